@@ -1,0 +1,182 @@
+//! Which pairs of boxes came to touch: every mover asks the trees it may touch.
+
+use super::tree::Tree;
+use crate::data::BitSet;
+use crate::shape::Aabb;
+
+/// What moves a collider decides in which tree it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum TreeKind {
+    /// On a static body.
+    Static,
+    /// On a kinematic body.
+    Kinematic,
+    /// On a dynamic body.
+    Dynamic,
+    /// Without a body.
+    Standalone,
+}
+
+impl TreeKind {
+    /// All kinds, in order.
+    pub const ALL: [Self; 4] = [Self::Static, Self::Kinematic, Self::Dynamic, Self::Standalone];
+}
+
+/// A set of kinds: those a mover may form pairs with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PairMask(u8);
+
+impl PairMask {
+    /// No kind.
+    pub const NONE: Self = Self(0);
+    /// Every kind.
+    pub const ALL: Self = Self(0b1111);
+
+    /// Just one kind.
+    pub const fn only(kind: TreeKind) -> Self {
+        Self(1 << kind as u8)
+    }
+
+    /// The kinds of either set.
+    pub const fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether the kind is in the set.
+    #[inline]
+    pub const fn contains(self, kind: TreeKind) -> bool {
+        self.0 >> kind as u8 & 1 != 0
+    }
+
+    /// The kinds that solid colliders of a kind can push or be pushed by: dynamic ones touch
+    /// everything, all others only what is dynamic. Sensors and event collectors ask for more.
+    pub const fn solid(kind: TreeKind) -> Self {
+        match kind {
+            TreeKind::Dynamic => Self::ALL,
+            _ => Self::only(TreeKind::Dynamic),
+        }
+    }
+}
+
+/// A tree per kind of collider.
+#[derive(Clone, Debug, Default)]
+pub struct Trees {
+    /// The trees, in the order of [`TreeKind`].
+    pub trees: [Tree; 4],
+}
+
+impl core::ops::Index<TreeKind> for Trees {
+    type Output = Tree;
+    #[inline]
+    fn index(&self, kind: TreeKind) -> &Tree {
+        &self.trees[kind as usize]
+    }
+}
+
+impl core::ops::IndexMut<TreeKind> for Trees {
+    #[inline]
+    fn index_mut(&mut self, kind: TreeKind) -> &mut Tree {
+        &mut self.trees[kind as usize]
+    }
+}
+
+/// A collider whose box in its tree is new or changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mover {
+    /// The collider: the id its leaf was inserted with.
+    pub id: u32,
+    /// The tree its leaf stands in.
+    pub kind: TreeKind,
+    /// The kinds to look for partners among.
+    pub mask: PairMask,
+    /// Its box, as in the tree.
+    pub aabb: Aabb,
+}
+
+/// The movers of a step, each once.
+#[derive(Clone, Debug, Default)]
+pub struct Movers {
+    list: Vec<Mover>,
+    moved: BitSet,
+    /// By id; of use only where `moved` has it.
+    masks: Vec<PairMask>,
+}
+
+impl Movers {
+    /// Adds a mover; whether its id was absent. If it was not, nothing changes.
+    pub fn insert(&mut self, mover: Mover) -> bool {
+        let absent = self.moved.insert(mover.id);
+        if absent {
+            let i = mover.id as usize;
+            if i >= self.masks.len() {
+                self.masks.resize(i + 1, PairMask::NONE);
+            }
+            self.masks[i] = mover.mask;
+            self.list.push(mover);
+        }
+        absent
+    }
+
+    /// The movers in the order of insertion: blocks of it may be searched in parallel.
+    #[inline]
+    pub fn list(&self) -> &[Mover] {
+        &self.list
+    }
+
+    /// Whether the collider is a mover.
+    #[inline]
+    pub fn contains(&self, id: u32) -> bool {
+        self.moved.contains(id)
+    }
+
+    /// Takes all out; the storage stays.
+    pub fn clear(&mut self) {
+        for mover in &self.list {
+            self.moved.remove(mover.id);
+        }
+        self.list.clear();
+    }
+
+    /// Whether the pair of a mover and what it found is left to the other, who finds it as well.
+    #[inline(always)]
+    fn is_left_to(&self, found: u32, mover: &Mover) -> bool {
+        found < mover.id && self.moved.contains(found) && self.masks[found as usize].contains(mover.kind)
+    }
+}
+
+/// Appends the pairs `(lower id, higher id)` that one mover is to report: what its box touches in the trees
+/// its mask names, less itself, less the pairs of two movers that the lower one reports, less those
+/// `is_known`. Order as the trees have it.
+#[inline]
+pub fn pairs_of(
+    mover: &Mover,
+    trees: &Trees,
+    movers: &Movers,
+    is_known: &impl Fn(u32, u32) -> bool,
+    out: &mut Vec<(u32, u32)>,
+) {
+    for kind in TreeKind::ALL.into_iter().filter(|k| mover.mask.contains(*k)) {
+        trees[kind].query(&mover.aabb, |found| {
+            let pair = (found.min(mover.id), found.max(mover.id));
+            if found != mover.id && !movers.is_left_to(found, mover) && !is_known(pair.0, pair.1) {
+                out.push(pair);
+            }
+            true
+        });
+    }
+}
+
+/// The pairs of all movers, sorted, each once, in `out` (cleared first). Every id must stand in one tree
+/// only, once.
+pub fn find_pairs(
+    trees: &Trees,
+    movers: &Movers,
+    is_known: impl Fn(u32, u32) -> bool,
+    out: &mut Vec<(u32, u32)>,
+) {
+    out.clear();
+    for mover in movers.list() {
+        pairs_of(mover, trees, movers, &is_known, out);
+    }
+    out.sort_unstable();
+}

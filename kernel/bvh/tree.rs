@@ -1,0 +1,444 @@
+//! The tree itself: its layout, and changes of one leaf at a time.
+
+use super::build::Item;
+use crate::math::DIM;
+use crate::shape::Aabb;
+
+/// A dynamic tree of boxes with a `u32` of the user's each.
+///
+/// *Layout.* A node with a box of its own is visited only to find that its box misses. So here a
+/// [`Branch`] holds the boxes of *both* children in one cache line, and a leaf's box stands in its
+/// parent: a walk touches one line per branch that was hit and none for what was missed, and the whole
+/// takes 72 bytes per leaf. Leaves keep their number (the [`ProxyId`]) wherever the branches move, so
+/// that a full rebuild can lay the branches out in the order of a walk.
+///
+/// *Total behaviour.* A box that is not `min ≤ max` in every component (inverted, NaN) is stored as
+/// [`Aabb::EMPTY`]: the leaf lives on, and no query finds it. Infinite boxes are found by everything they
+/// touch. A stale proxy is a bug of the caller: caught in debug builds, else ignored.
+///
+/// *Determinism.* The shape of the tree depends only on the calls made, in order.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    pub(super) branches: Vec<Branch>,
+    pub(super) leaves: Vec<Leaf>,
+    /// What stands at the top, [`NONE`] if nothing, and its box.
+    pub(super) root: u32,
+    pub(super) root_box: Aabb,
+    pub(super) free_branch: u32,
+    pub(super) free_leaf: u32,
+    pub(super) len: u32,
+    /// Work space of the builders, empty between calls.
+    pub(super) items: Vec<Item>,
+    pub(super) order: Vec<u32>,
+}
+
+/// The number of a leaf, from its insertion to its removal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ProxyId(pub u32);
+
+/// An inner node: one cache line, with the boxes of both children.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Branch {
+    pub boxes: [Aabb; 2],
+    /// Two nodes: branch numbers, or leaf numbers with [`LEAF`] set.
+    pub children: [u32; 2],
+    /// The slot this branch stands in; the next free branch if this one is free.
+    pub parent: u32,
+    /// 1 above leaves; 0 if the branch is free.
+    pub height: u16,
+    /// Bit `i`: below child `i` a leaf was inserted or enlarged since the last rebuild.
+    pub enlarged: u16,
+}
+
+const _: () = assert!(size_of::<Branch>() == 64);
+
+/// A user's id and the slot that holds the leaf's box: twice the branch's number plus the side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leaf {
+    pub id: u32,
+    pub slot: u32,
+}
+
+/// Marks a node as a leaf, and the slot of a free leaf.
+pub(super) const LEAF: u32 = 1 << 31;
+/// The slot above everything.
+pub(super) const ROOT: u32 = u32::MAX;
+/// No node; ends the free lists.
+pub(super) const NONE: u32 = u32::MAX;
+/// Ends the free list of leaves. Differs from [`ROOT`] with [`LEAF`] set, too.
+pub(super) const NO_LEAF: u32 = LEAF - 2;
+/// Two children whose heights differ by more are rotated even if that costs area. Large, because such
+/// a rotation is for the sake of bounded walks only; smaller values make worse trees.
+const MAX_IMBALANCE: u16 = 12;
+/// A tree that grew higher is rebuilt: walks would leave their fixed stack.
+pub(super) const MAX_HEIGHT: u16 = 72;
+
+pub(super) const FREE_BRANCH: Branch =
+    Branch { boxes: [Aabb::EMPTY; 2], children: [NONE; 2], parent: NONE, height: 0, enlarged: 0 };
+
+/// What a slot holds, box and all.
+#[derive(Clone, Copy)]
+pub(super) struct Entry {
+    pub aabb: Aabb,
+    pub node: u32,
+    pub enlarged: bool,
+}
+
+impl Default for Tree {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The box as it is stored; see [`Tree`] on total behaviour.
+#[inline(always)]
+pub(super) fn admitted(aabb: Aabb) -> Aabb {
+    let (low, high) = (aabb.min.to_array(), aabb.max.to_array());
+    if (0..DIM).fold(true, |all, i| all & (low[i] <= high[i])) { aabb } else { Aabb::EMPTY }
+}
+
+impl Tree {
+    /// An empty tree without storage.
+    pub const fn new() -> Self {
+        Self {
+            branches: Vec::new(),
+            leaves: Vec::new(),
+            root: NONE,
+            root_box: Aabb::EMPTY,
+            free_branch: NONE,
+            free_leaf: NO_LEAF,
+            len: 0,
+            items: Vec::new(),
+            order: Vec::new(),
+        }
+    }
+
+    /// The number of leaves.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.len as usize
+    }
+
+    /// Whether there is no leaf.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The most branches above a leaf: 0 for a tree of one leaf or none.
+    pub fn height(&self) -> usize {
+        usize::from(self.node_height(self.root))
+    }
+
+    /// A box around all leaves, [`Aabb::EMPTY`] if there are none. May be larger than needed after
+    /// [`enlarge`](Self::enlarge).
+    pub fn bounds(&self) -> Aabb {
+        self.root_box
+    }
+
+    /// Whether the proxy names a leaf of this tree.
+    pub fn is_live(&self, proxy: ProxyId) -> bool {
+        self.leaves.get(proxy.0 as usize).is_some_and(|l| l.slot == ROOT || l.slot & LEAF == 0)
+    }
+
+    /// The box of a leaf as it was last set; [`Aabb::EMPTY`] for a stale proxy.
+    #[inline]
+    pub fn aabb(&self, proxy: ProxyId) -> Aabb {
+        if self.is_checked(proxy) { self.slot_box(self.leaves[proxy.0 as usize].slot) } else { Aabb::EMPTY }
+    }
+
+    /// The user's id of a leaf; `u32::MAX` for a stale proxy.
+    #[inline]
+    pub fn id(&self, proxy: ProxyId) -> u32 {
+        if self.is_checked(proxy) { self.leaves[proxy.0 as usize].id } else { u32::MAX }
+    }
+
+    /// Takes all leaves out; the storage stays.
+    pub fn clear(&mut self) {
+        self.branches.clear();
+        self.leaves.clear();
+        (self.root, self.root_box, self.len) = (NONE, Aabb::EMPTY, 0);
+        (self.free_branch, self.free_leaf) = (NONE, NO_LEAF);
+    }
+
+    /// Adds a leaf where it makes the tree's boxes grow least.
+    pub fn insert(&mut self, id: u32, aabb: Aabb) -> ProxyId {
+        let leaf = self.new_leaf(id);
+        self.attach(leaf, admitted(aabb));
+        ProxyId(leaf)
+    }
+
+    /// Takes a leaf out. Its proxy may come back from a later [`insert`](Self::insert).
+    pub fn remove(&mut self, proxy: ProxyId) {
+        if self.is_checked(proxy) {
+            self.detach(proxy.0);
+            self.leaves[proxy.0 as usize] = Leaf { id: u32::MAX, slot: LEAF | self.free_leaf };
+            self.free_leaf = proxy.0;
+            self.len -= 1;
+        }
+    }
+
+    /// Moves a leaf anywhere: as good a tree as after removing and inserting, with the proxy kept.
+    pub fn set(&mut self, proxy: ProxyId, aabb: Aabb) {
+        if self.is_checked(proxy) {
+            self.detach(proxy.0);
+            self.attach(proxy.0, admitted(aabb));
+        }
+    }
+
+    /// Gives a leaf another box in place: the boxes above it only grow. Cheap, and good for small motions
+    /// followed by [`rebuild_partial`](Self::rebuild_partial).
+    pub fn enlarge(&mut self, proxy: ProxyId, aabb: Aabb) {
+        if !self.is_checked(proxy) {
+            return;
+        }
+        let aabb = admitted(aabb);
+        let mut slot = self.leaves[proxy.0 as usize].slot;
+        if slot == ROOT {
+            self.root_box = aabb;
+            return;
+        }
+        let branch = &mut self.branches[slot as usize >> 1];
+        branch.boxes[slot as usize & 1] = aabb;
+        branch.enlarged |= 1 << (slot & 1);
+        slot = branch.parent;
+        while slot != ROOT {
+            let branch = &mut self.branches[slot as usize >> 1];
+            let (side, bit) = (slot as usize & 1, 1 << (slot & 1));
+            // An enlarged slot stands under enlarged slots, and a box within larger boxes.
+            if branch.enlarged & bit != 0 && branch.boxes[side].contains(&aabb) {
+                return;
+            }
+            branch.enlarged |= bit;
+            branch.boxes[side] = branch.boxes[side].union(&aabb);
+            slot = branch.parent;
+        }
+        self.root_box = self.root_box.union(&aabb);
+    }
+
+    #[inline(always)]
+    fn is_checked(&self, proxy: ProxyId) -> bool {
+        let is_live = self.is_live(proxy);
+        debug_assert!(is_live, "{proxy:?} names no leaf");
+        is_live
+    }
+
+    #[inline(always)]
+    pub(super) fn node_height(&self, node: u32) -> u16 {
+        if node & LEAF == 0 { self.branches[node as usize].height } else { 0 }
+    }
+
+    #[inline(always)]
+    fn slot_box(&self, slot: u32) -> Aabb {
+        if slot == ROOT { self.root_box } else { self.branches[slot as usize >> 1].boxes[slot as usize & 1] }
+    }
+
+    #[inline(always)]
+    fn entry(&self, branch: u32, side: usize) -> Entry {
+        let b = &self.branches[branch as usize];
+        Entry { aabb: b.boxes[side], node: b.children[side], enlarged: b.enlarged >> side & 1 != 0 }
+    }
+
+    /// Writes a slot and the way back from what now stands there.
+    #[inline(always)]
+    pub(super) fn put(&mut self, slot: u32, entry: Entry) {
+        if slot == ROOT {
+            (self.root, self.root_box) = (entry.node, entry.aabb);
+        } else {
+            let (branch, side) = (&mut self.branches[slot as usize >> 1], slot as usize & 1);
+            branch.boxes[side] = entry.aabb;
+            branch.children[side] = entry.node;
+            branch.enlarged = branch.enlarged & !(1 << side) | u16::from(entry.enlarged) << side;
+        }
+        if entry.node & LEAF != 0 {
+            self.leaves[(entry.node & !LEAF) as usize].slot = slot;
+        } else {
+            self.branches[entry.node as usize].parent = slot;
+        }
+    }
+
+    pub(super) fn new_leaf(&mut self, id: u32) -> u32 {
+        self.len += 1;
+        let leaf = Leaf { id, slot: ROOT };
+        if self.free_leaf == NO_LEAF {
+            self.leaves.push(leaf);
+            return self.leaves.len() as u32 - 1;
+        }
+        let i = self.free_leaf;
+        self.free_leaf = self.leaves[i as usize].slot & !LEAF;
+        self.leaves[i as usize] = leaf;
+        i
+    }
+
+    fn new_branch(&mut self) -> u32 {
+        if self.free_branch == NONE {
+            self.branches.push(FREE_BRANCH);
+            return self.branches.len() as u32 - 1;
+        }
+        let i = self.free_branch;
+        self.free_branch = self.branches[i as usize].parent;
+        i
+    }
+
+    /// Hangs an unattached leaf into the tree.
+    pub(super) fn attach(&mut self, leaf: u32, aabb: Aabb) {
+        let new = Entry { aabb, node: LEAF | leaf, enlarged: true };
+        if self.root == NONE {
+            self.put(ROOT, new);
+            return;
+        }
+        let slot = self.best_sibling(&aabb);
+        let sibling = if slot == ROOT {
+            // The root has no flag; a branch there is enlarged if anything below it is.
+            let enlarged = self.root & LEAF != 0 || self.branches[self.root as usize].enlarged != 0;
+            Entry { aabb: self.root_box, node: self.root, enlarged }
+        } else {
+            self.entry(slot >> 1, slot as usize & 1)
+        };
+        let branch = self.new_branch();
+        self.branches[branch as usize] = FREE_BRANCH;
+        self.put(branch << 1, sibling);
+        self.put(branch << 1 | 1, new);
+        self.put(slot, Entry { aabb: sibling.aabb.union(&aabb), node: branch, enlarged: true });
+        self.mend_upward(branch, true);
+        if self.node_height(self.root) > MAX_HEIGHT {
+            self.rebuild_full();
+        }
+    }
+
+    /// Takes a leaf out of the tree but keeps its record.
+    fn detach(&mut self, leaf: u32) {
+        let slot = self.leaves[leaf as usize].slot;
+        if slot == ROOT {
+            (self.root, self.root_box) = (NONE, Aabb::EMPTY);
+            return;
+        }
+        let branch = slot >> 1;
+        let sibling = self.entry(branch, slot as usize & 1 ^ 1);
+        let parent = self.branches[branch as usize].parent;
+        self.put(parent, sibling);
+        self.branches[branch as usize] = Branch { parent: self.free_branch, ..FREE_BRANCH };
+        self.free_branch = branch;
+        if parent != ROOT {
+            self.mend_upward(parent >> 1, false);
+        }
+    }
+
+    /// The slot whose content becomes the sibling of a new leaf.
+    ///
+    /// Standing beside a node costs the area of the common box plus the growth of all boxes above it
+    /// (Catto 2019). One path is followed, towards the child that grows less; it ends where even the
+    /// new leaf's own area on top of the growth so far is no better than the best place seen. Of equal
+    /// places the deepest wins, by way of the lower child, so that a heap of equal boxes stays shallow.
+    fn best_sibling(&self, aabb: &Aabb) -> u32 {
+        let own = aabb.cost();
+        let mut node = self.root;
+        let (mut best, mut best_cost) = (ROOT, self.root_box.union(aabb).cost());
+        let mut inherited = best_cost - self.root_box.cost();
+        while node & LEAF == 0 && inherited + own <= best_cost {
+            let branch = &self.branches[node as usize];
+            let joined = [0, 1].map(|i| branch.boxes[i].union(aabb).cost());
+            let growth = [0, 1].map(|i| joined[i] - branch.boxes[i].cost());
+            let side = if growth[0] == growth[1] {
+                self.tied_side(branch, aabb)
+            } else {
+                usize::from(growth[1] < growth[0])
+            };
+            let direct = inherited + joined[side];
+            if direct <= best_cost {
+                (best, best_cost) = (node << 1 | side as u32, direct);
+            }
+            inherited += growth[side];
+            node = branch.children[side];
+        }
+        best
+    }
+
+    /// The side for a box that makes neither child grow, or both alike (flat boxes have no surface in
+    /// 3D): the one with the nearer centre, of those the lower.
+    #[cold]
+    fn tied_side(&self, branch: &Branch, aabb: &Aabb) -> usize {
+        let away = branch.boxes.map(|b| (b.min - aabb.min + (b.max - aabb.max)).length_squared());
+        let heights = branch.children.map(|c| self.node_height(c));
+        usize::from(if away[0] == away[1] { heights[1] < heights[0] } else { away[1] < away[0] })
+    }
+
+    /// Sets heights and boxes right from a branch to the root, rotating on the way. After an insertion
+    /// everything above is enlarged; after a removal the walk ends where nothing changes.
+    fn mend_upward(&mut self, mut branch: u32, inserted: bool) {
+        loop {
+            self.rotate(branch, inserted);
+            let (height, joined) = self.measure(branch);
+            let b = &mut self.branches[branch as usize];
+            let mut changed = b.height != height;
+            b.height = height;
+            let slot = b.parent;
+            changed |= self.slot_box(slot) != joined;
+            if slot == ROOT {
+                self.root_box = joined;
+                return;
+            }
+            let above = &mut self.branches[slot as usize >> 1];
+            above.boxes[slot as usize & 1] = joined;
+            above.enlarged |= u16::from(inserted) << (slot & 1);
+            if !changed && !inserted {
+                return;
+            }
+            branch = slot >> 1;
+        }
+    }
+
+    /// The height a branch should have, and the box around its children.
+    pub(super) fn measure(&self, branch: u32) -> (u16, Aabb) {
+        let b = &self.branches[branch as usize];
+        let height = b.children.map(|c| self.node_height(c));
+        (1 + height[0].max(height[1]), b.boxes[0].union(&b.boxes[1]))
+    }
+
+    /// Exchanges a child with a grandchild on the other side, if that shrinks the other child's box most
+    /// or if the children's heights have drifted too far apart.
+    fn rotate(&mut self, branch: u32, for_area: bool) {
+        let b = self.branches[branch as usize];
+        let heights = b.children.map(|c| self.node_height(c));
+        if heights[0].abs_diff(heights[1]) > MAX_IMBALANCE {
+            let tall = usize::from(heights[1] > heights[0]);
+            let grandchildren = self.branches[b.children[tall] as usize].children;
+            let taller = self.node_height(grandchildren[1]) > self.node_height(grandchildren[0]);
+            self.exchange(branch, tall, usize::from(taller));
+            return;
+        }
+        if !for_area {
+            return;
+        }
+        let (mut best, mut gain) = (None, 0.0);
+        for side in 0..2 {
+            if b.children[side] & LEAF != 0 {
+                continue;
+            }
+            let child = &self.branches[b.children[side] as usize];
+            let before = b.boxes[side].cost();
+            for grandchild in 0..2 {
+                let after = b.boxes[side ^ 1].union(&child.boxes[grandchild ^ 1]).cost();
+                if before - after > gain {
+                    (best, gain) = (Some((side, grandchild)), before - after);
+                }
+            }
+        }
+        if let Some((side, grandchild)) = best {
+            self.exchange(branch, side, grandchild);
+        }
+    }
+
+    /// Exchanges a grandchild below child `side` with the other child.
+    fn exchange(&mut self, branch: u32, side: usize, grandchild: usize) {
+        let child = self.branches[branch as usize].children[side];
+        let (up, down) = (self.entry(child, grandchild), self.entry(branch, side ^ 1));
+        self.put(child << 1 | grandchild as u32, down);
+        self.put(branch << 1 | (side ^ 1) as u32, up);
+        let (height, aabb) = self.measure(child);
+        self.branches[child as usize].height = height;
+        let enlarged = self.branches[child as usize].enlarged != 0;
+        self.put(branch << 1 | side as u32, Entry { aabb, node: child, enlarged });
+    }
+}

@@ -1,0 +1,397 @@
+//! The one door through which contacts come and go, and colours, islands and sleep change.
+//!
+//! Rules it keeps: a contact is active while one of its bodies is awake; it has a colour while it is
+//! solved and one of its dynamic bodies is awake; two dynamic bodies it is solved between are in one
+//! island; the bodies of an island are awake or asleep together.
+
+use super::record::{Contact, ContactFlags};
+use super::table::ContactTable;
+use crate::data::BitSet;
+use crate::graph::{ColorGraph, IslandId, Islands, LinkId};
+use crate::shape::Shape;
+use crate::table::{BodyKind, BodyTable, ColliderTable, NONE};
+
+/// What changed of a contact, for whoever tells others about it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Points came.
+    Began,
+    /// The last point went.
+    Ended,
+}
+
+/// All that a change of contacts touches.
+pub struct Link<'a> {
+    /// The bodies.
+    pub bodies: &'a mut BodyTable,
+    /// The colliders.
+    pub colliders: &'a mut ColliderTable,
+    /// The contacts.
+    pub contacts: &'a mut ContactTable,
+    /// The colours of solved contacts.
+    pub colors: &'a mut ColorGraph,
+    /// The islands of dynamic bodies; without them every body wakes alone and none is put to sleep.
+    pub islands: Option<&'a mut Islands>,
+}
+
+impl Link<'_> {
+    /// Adds the contact of a pair that has none. Its colliders must be live and of different bodies.
+    pub fn create(&mut self, a: u32, b: u32) -> u32 {
+        let colliders = [a.min(b), a.max(b)];
+        let bodies = colliders.map(|c| self.colliders[c].def.body);
+        let flags = self.flags(colliders, bodies);
+        let id = self.contacts.add(Contact::new(colliders, bodies, flags), self.colliders);
+        self.refresh(id);
+        id
+    }
+
+    /// Acts on what the narrow phase found, in the order of ids. `report` hears of each change.
+    pub fn apply(&mut self, changed: &BitSet, mut report: impl FnMut(u32, &Contact, Status)) {
+        for id in changed.iter() {
+            if !self.contacts.is_live(id) {
+                continue;
+            }
+            let contact = self.contacts.get(id);
+            let touching = contact.flags.has(ContactFlags::TOUCHING);
+            if contact.flags.has(ContactFlags::APART) {
+                if touching {
+                    report(id, contact, Status::Ended);
+                }
+                self.detach(id);
+                self.contacts.remove(id, self.colliders);
+            } else if touching {
+                report(id, contact, Status::Began);
+                self.attach(id);
+            } else {
+                report(id, contact, Status::Ended);
+                self.detach(id);
+            }
+        }
+    }
+
+    /// Removes a contact. What it held up is woken.
+    pub fn destroy(&mut self, id: u32) {
+        let contact = self.contacts.get(id);
+        if contact.is_solved() {
+            for body in contact.bodies {
+                self.wake_body(body);
+            }
+        }
+        self.detach(id);
+        self.contacts.remove(id, self.colliders);
+    }
+
+    /// Removes all contacts of a collider.
+    pub fn destroy_of_collider(&mut self, collider: u32) {
+        while self.colliders[collider].first_contact != NONE {
+            self.destroy(self.colliders[collider].first_contact >> 1);
+        }
+    }
+
+    /// Removes those contacts of a collider that `keep` does not want any more.
+    pub fn retain_of_collider(&mut self, collider: u32, keep: impl Fn(&ColliderTable, &Contact) -> bool) {
+        let gone: Vec<u32> = self
+            .contacts
+            .of_collider(collider, self.colliders)
+            .filter(|id| !keep(self.colliders, self.contacts.get(*id)))
+            .collect();
+        for id in gone {
+            self.destroy(id);
+        }
+    }
+
+    /// Enters a new body in the islands.
+    pub fn enter(&mut self, body: u32) {
+        if let Some(islands) = &mut self.islands
+            && self.bodies[body].kind == BodyKind::Dynamic
+        {
+            let island = islands.add_body(body);
+            islands.set_asleep(island, !self.bodies[body].awake);
+        }
+    }
+
+    /// Removes a body whose colliders are gone.
+    pub fn leave(&mut self, body: u32) {
+        self.leave_island(body);
+        self.bodies.remove(body);
+    }
+
+    /// Changes what moves a body. Its contacts stay, in new colours and islands; it wakes, and so does
+    /// what it touches.
+    pub fn retype(&mut self, body: u32, kind: BodyKind) {
+        let old = self.bodies[body].kind;
+        if old == kind {
+            return;
+        }
+        self.wake_body(body);
+        let contacts = self.contacts_of_body(body);
+        for id in &contacts {
+            for other in self.contacts.get(*id).bodies {
+                self.wake_body(other);
+            }
+            self.detach(*id);
+        }
+        self.leave_island(body);
+        self.bodies.set_kind(body, kind);
+        self.enter(body);
+        for id in contacts {
+            let contact = self.contacts.get(id);
+            let (colliders, bodies, touching) =
+                (contact.colliders, contact.bodies, contact.flags.has(ContactFlags::TOUCHING));
+            let mut flags = self.flags(colliders, bodies);
+            flags.set(ContactFlags::TOUCHING, touching);
+            self.contacts.get_mut(id).flags = flags;
+            self.refresh(id);
+            if touching {
+                self.attach(id);
+            }
+        }
+    }
+
+    /// Re-reads what its colliders say of a contact after one of them was redefined in place.
+    pub fn reflag_of_collider(&mut self, collider: u32) {
+        let ids: Vec<u32> = self.contacts.of_collider(collider, self.colliders).collect();
+        for id in ids {
+            let contact = self.contacts.get(id);
+            let (colliders, bodies, touching) =
+                (contact.colliders, contact.bodies, contact.flags.has(ContactFlags::TOUCHING));
+            let mut flags = self.flags(colliders, bodies);
+            flags.set(ContactFlags::TOUCHING, touching);
+            if flags != contact.flags {
+                self.detach(id);
+                self.contacts.get_mut(id).flags = flags;
+                if touching {
+                    self.attach(id);
+                }
+            }
+        }
+    }
+
+    /// Wakes the island of a dynamic body, or a kinematic body alone. Nothing for static ones and
+    /// [`NONE`].
+    pub fn wake_body(&mut self, body: u32) {
+        if body == NONE {
+            return;
+        }
+        match (self.bodies[body].kind, self.island_of(body)) {
+            (BodyKind::Static, _) => {}
+            (BodyKind::Kinematic, _) => self.set_kinematic_awake(body, true),
+            (BodyKind::Dynamic, Some(island)) => self.wake_island(island),
+            (BodyKind::Dynamic, None) => {
+                self.bodies[body].sleep_timer = 0.0;
+                if !self.bodies[body].awake {
+                    self.set_awake(&[body], true);
+                }
+            }
+        }
+    }
+
+    /// The island of a body, if it is in one.
+    pub fn island_of(&self, body: u32) -> Option<IslandId> {
+        self.islands.as_ref().and_then(|islands| islands.island_of(body))
+    }
+
+    fn leave_island(&mut self, body: u32) {
+        if let Some(islands) = &mut self.islands
+            && self.bodies[body].kind == BodyKind::Dynamic
+        {
+            islands.remove_body(body);
+        }
+    }
+
+    /// Wakes what a body touches, as after it was moved by hand.
+    pub fn wake_touching(&mut self, body: u32) {
+        for id in self.contacts_of_body(body) {
+            let contact = self.contacts.get(id);
+            if contact.is_solved() {
+                for other in contact.bodies {
+                    self.wake_body(other);
+                }
+            }
+        }
+    }
+
+    /// Wakes all bodies of an island and restarts their sleep timers.
+    pub fn wake_island(&mut self, island: IslandId) {
+        let Some(islands) = &mut self.islands else { return };
+        for &body in islands.bodies(island) {
+            self.bodies[body].sleep_timer = 0.0;
+        }
+        if islands.is_asleep(island) {
+            self.set_island_awake(island, true);
+        }
+    }
+
+    /// Puts all bodies of an island to sleep: their contacts keep their impulses, but leave the colours.
+    pub fn sleep_island(&mut self, island: IslandId) {
+        if self.islands.as_ref().is_some_and(|islands| !islands.is_asleep(island)) {
+            self.set_island_awake(island, false);
+        }
+    }
+
+    fn set_island_awake(&mut self, island: IslandId, awake: bool) {
+        let Some(islands) = &mut self.islands else { return };
+        islands.set_asleep(island, !awake);
+        let bodies = islands.bodies(island).to_vec();
+        self.set_awake(&bodies, awake);
+    }
+
+    fn set_awake(&mut self, bodies: &[u32], awake: bool) {
+        let mut contacts = Vec::new();
+        for &body in bodies {
+            self.bodies.set_awake(body, awake);
+            contacts.extend(self.contacts_of_body(body));
+        }
+        // Colours depend on the order in which contacts enter them.
+        contacts.sort_unstable();
+        contacts.dedup();
+        for id in contacts {
+            self.refresh(id);
+        }
+    }
+
+    /// Wakes a kinematic body, and what it touches, or lets it rest.
+    pub fn set_kinematic_awake(&mut self, body: u32, awake: bool) {
+        if self.bodies[body].kind != BodyKind::Kinematic || self.bodies[body].awake == awake {
+            return;
+        }
+        self.bodies.set_awake(body, awake);
+        for id in self.contacts_of_body(body) {
+            let contact = self.contacts.get(id);
+            if awake && contact.is_solved() {
+                for other in contact.bodies.into_iter().filter(|b| *b != body) {
+                    self.wake_body(other);
+                }
+            }
+            self.refresh(id);
+        }
+    }
+
+    /// The contacts of a body's colliders, ascending.
+    fn contacts_of_body(&self, body: u32) -> Vec<u32> {
+        let mut ids = Vec::new();
+        for collider in self.colliders.of_body(body, self.bodies) {
+            ids.extend(self.contacts.of_collider(collider, self.colliders));
+        }
+        ids.sort_unstable();
+        ids
+    }
+
+    /// What a pair is, by its colliders and bodies.
+    fn flags(&self, colliders: [u32; 2], bodies: [u32; 2]) -> ContactFlags {
+        let defs = colliders.map(|c| &self.colliders[c].def);
+        let mut flags = ContactFlags::default();
+        flags.set(ContactFlags::SENSOR, defs.iter().any(|d| d.flags.sensor));
+        flags.set(ContactFlags::FOREIGN, defs.iter().any(|d| matches!(d.shape, Shape::Foreign(_))));
+        let unattached = bodies.contains(&NONE);
+        let movable = bodies.iter().any(|b| *b != NONE && self.bodies[*b].kind == BodyKind::Dynamic);
+        flags.set(ContactFlags::IMMOVABLE, unattached || !movable);
+        flags
+    }
+
+    /// The bodies that bar a colour: the dynamic ones.
+    fn movable(&self, contact: &Contact) -> [Option<u32>; 2] {
+        contact.bodies.map(|b| (b != NONE && self.bodies[b].kind == BodyKind::Dynamic).then_some(b))
+    }
+
+    fn is_awake(&self, body: u32) -> bool {
+        body != NONE && self.bodies[body].awake
+    }
+
+    /// Makes a contact active and coloured exactly if its state asks for it.
+    fn refresh(&mut self, id: u32) {
+        let contact = self.contacts.get(id);
+        let active = contact.bodies.iter().any(|b| self.is_awake(*b));
+        let movable = self.movable(contact);
+        let colored = contact.is_solved() && movable.iter().flatten().any(|b| self.is_awake(*b));
+        match (colored, contact.slot) {
+            (true, None) => {
+                let slot = self.colors.assign(id, movable);
+                self.contacts.get_mut(id).slot = Some(slot);
+            }
+            (false, Some(_)) => self.uncolor(id),
+            _ => {}
+        }
+        if active {
+            self.contacts.activate(id);
+        } else {
+            self.contacts.deactivate(id);
+        }
+    }
+
+    fn uncolor(&mut self, id: u32) {
+        let contact = self.contacts.get(id);
+        let movable = self.movable(contact);
+        if let Some(slot) = self.contacts.get_mut(id).slot.take()
+            && let Some(moved) = self.colors.release(slot, movable)
+        {
+            self.contacts.get_mut(moved).slot = Some(slot);
+        }
+    }
+
+    /// Lets a touching contact take effect: wakes both sides, joins their islands, gives it a colour.
+    fn attach(&mut self, id: u32) {
+        let contact = self.contacts.get(id);
+        if !contact.is_solved() {
+            return;
+        }
+        let bodies = contact.bodies;
+        let [a, b] = self.movable(contact);
+        for body in [a, b].into_iter().flatten() {
+            // Whoever is touched by something awake wakes up; a pair at rest stays asleep.
+            if bodies.iter().any(|other| self.is_awake(*other)) && !self.bodies[body].awake {
+                self.wake_body(body);
+            }
+        }
+        if let (Some(a), Some(b), Some(islands)) = (a, b, &mut self.islands) {
+            islands.link(LinkId(2 * id), a, b);
+        }
+        self.refresh(id);
+    }
+
+    /// Takes away the effect of a contact.
+    fn detach(&mut self, id: u32) {
+        self.uncolor(id);
+        if let Some(islands) = &mut self.islands {
+            islands.unlink(LinkId(2 * id));
+        }
+    }
+
+    /// Checks that colours, islands and sleep agree with every contact and body.
+    ///
+    /// # Panics
+    ///
+    /// With the invariant that does not hold.
+    pub fn validate(&self) {
+        self.contacts.validate(self.colliders);
+        self.colors.validate(|id| {
+            let contact = self.contacts.get(id);
+            (contact.slot.expect("a coloured contact knows its slot"), self.movable(contact))
+        });
+        let mut colored = 0;
+        for (id, contact) in self.contacts.iter() {
+            let awake = contact.bodies.iter().any(|b| self.is_awake(*b));
+            assert_eq!(contact.active != NONE, awake, "contact {id} is active exactly if a body is awake");
+            let movable = self.movable(contact);
+            let moving = movable.iter().flatten().any(|b| self.is_awake(*b));
+            assert_eq!(contact.slot.is_some(), contact.is_solved() && moving, "contact {id}'s colour");
+            colored += usize::from(contact.slot.is_some());
+            if let ([Some(a), Some(b)], Some(islands)) = (movable, &self.islands) {
+                assert_eq!(islands.is_linked(LinkId(2 * id)), contact.is_solved(), "contact {id}'s link");
+                if contact.is_solved() {
+                    assert_eq!(islands.island_of(a), islands.island_of(b), "touching is together");
+                }
+            }
+        }
+        assert_eq!(self.colors.len(), colored, "only contacts have colours");
+        if let Some(islands) = &self.islands {
+            islands.validate();
+            for island in islands.islands() {
+                for body in islands.bodies(island) {
+                    let awake = self.bodies[*body].awake;
+                    assert_eq!(awake, !islands.is_asleep(island), "an island sleeps as one");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! Pairs of colliders that are near each other: their records, the manifold update with recycling, and
+//! the one door through which contacts, colours and islands change.
+
+mod link;
+mod record;
+mod table;
+mod update;
+
+pub use link::{Link, Status};
+pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
+pub use table::ContactTable;
+pub use update::{ManifoldSource, NarrowPhase, Scratch};

@@ -1,0 +1,154 @@
+//! What is kept of a pair of colliders from step to step.
+
+use crate::graph::ColorSlot;
+use crate::manifold::FeatureCache;
+use crate::math::{MAX_POINTS, Rot, Vector};
+use crate::table::NONE;
+
+/// Bits of a contact's state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ContactFlags(pub u16);
+
+impl ContactFlags {
+    /// Has points, so that it takes part in the solver (or would, were it not a sensor's).
+    pub const TOUCHING: Self = Self(1 << 0);
+    /// Detects only: no rows, no colour, no island.
+    pub const SENSOR: Self = Self(1 << 1);
+    /// Neither body moves by impulses: no rows, no colour, no island.
+    pub const IMMOVABLE: Self = Self(1 << 2);
+    /// A shape is known only to the embedder: manifolds come through its source, and are not recycled.
+    pub const FOREIGN: Self = Self(1 << 3);
+    /// Overlaps by more than a tenth of the smaller side's reach.
+    pub const DEEP: Self = Self(1 << 6);
+    /// The fat boxes do not overlap any more: to be destroyed.
+    pub const APART: Self = Self(1 << 5);
+    /// The frozen pose is valid, so that the manifold may be recycled.
+    pub const FROZEN: Self = Self(1 << 4);
+
+    /// Whether all bits of `other` are set.
+    #[inline(always)]
+    pub fn has(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+    /// Sets or clears the bits of `other`.
+    #[inline(always)]
+    pub fn set(&mut self, other: Self, on: bool) {
+        self.0 = if on { self.0 | other.0 } else { self.0 & !other.0 };
+    }
+    /// The bits of either.
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+    /// Whether any bit of `other` is set.
+    #[inline(always)]
+    pub fn any(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+}
+
+/// One point of a manifold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ManifoldPoint {
+    /// From body A's centre of mass, in world axes, at the pose the manifold was frozen at.
+    pub anchor: Vector,
+    /// The separation at the frozen pose, in metres.
+    pub frozen_separation: f32,
+    /// The separation now, in metres.
+    pub separation: f32,
+    /// The normal impulse of the last substep, N·s; the next step starts from it.
+    pub impulse: f32,
+    /// Which features of the shapes make this point.
+    pub feature: u32,
+}
+
+/// The contact of two convex parts: what the solver's rows are made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Manifold {
+    /// The unit normal from A to B, in world axes.
+    pub normal: Vector,
+    /// The points; the first `count` are valid.
+    pub points: [ManifoldPoint; MAX_POINTS],
+    /// How many points there are.
+    pub count: u32,
+    /// The friction impulse in world axes, N·s; the next step starts from it.
+    pub friction_impulse: Vector,
+    /// The impulse of the friction against turning about the normal, N·m·s; 0 in 2D.
+    pub twist_impulse: f32,
+}
+
+impl Manifold {
+    /// The valid points.
+    #[inline(always)]
+    pub fn points(&self) -> &[ManifoldPoint] {
+        &self.points[..self.count as usize]
+    }
+}
+
+/// The pose of the bodies when the manifold was last computed in full.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Frozen {
+    /// The rotations of bodies A and B.
+    pub rotations: [Rot; 2],
+    /// From A's to B's centre of mass.
+    pub offset: Vector,
+    /// The distance up to which points were looked for, margins aside, in metres.
+    pub prediction: f32,
+}
+
+/// A pair of colliders whose fat boxes overlap.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// The colliders, the lower id first.
+    pub colliders: [u32; 2],
+    /// The bodies they belong to, or [`NONE`].
+    pub bodies: [u32; 2],
+    /// State bits.
+    pub flags: ContactFlags,
+    /// How many manifolds stand in the side pool besides the inline one.
+    pub extra_count: u16,
+    /// Where in the side pool, or [`NONE`].
+    pub extra: u32,
+    /// The place among its colour's contacts; `None` unless it touches, responds and is awake.
+    pub slot: Option<ColorSlot>,
+    /// The place in the list of awake contacts, or [`NONE`].
+    pub active: u32,
+    /// Each side's revisions of collider and body when the manifold was computed.
+    pub revisions: [u32; 2],
+    /// The last separating axis or reference feature.
+    pub cache: FeatureCache,
+    /// The pose that anchors and normal were computed at.
+    pub frozen: Frozen,
+    /// The first (for native pairs: only) manifold.
+    pub manifold: Manifold,
+    /// Next and previous contact of the same collider, for each side, as `contact << 1 | side`.
+    pub(super) next: [u32; 2],
+    pub(super) previous: [u32; 2],
+}
+
+impl Contact {
+    /// A new pair, not touching.
+    pub(super) fn new(colliders: [u32; 2], bodies: [u32; 2], flags: ContactFlags) -> Self {
+        Self {
+            colliders,
+            bodies,
+            flags,
+            extra_count: 0,
+            extra: NONE,
+            slot: None,
+            active: NONE,
+            revisions: [0; 2],
+            cache: FeatureCache::NONE,
+            frozen: Frozen::default(),
+            manifold: Manifold::default(),
+            next: [NONE; 2],
+            previous: [NONE; 2],
+        }
+    }
+
+    /// Whether it has points and pushes.
+    #[inline(always)]
+    pub fn is_solved(&self) -> bool {
+        self.flags.has(ContactFlags::TOUCHING)
+            && !self.flags.any(ContactFlags::SENSOR.union(ContactFlags::IMMOVABLE))
+    }
+}

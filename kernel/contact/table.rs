@@ -1,0 +1,257 @@
+//! All contacts by id, the pairs they are of, and the list of the awake ones.
+
+use super::record::{Contact, ContactFlags, Manifold};
+use super::update::{Found, ManifoldSource, NarrowPhase, Scratch};
+use crate::data::{BitSet, IdPool, PairSet};
+use crate::table::{ColliderTable, NONE};
+
+/// All contacts.
+///
+/// One dense array by id with the first manifold inline: native pairs have just one, so a step follows no
+/// pointer and allocates nothing. Further manifolds, of composite foreign shapes, stand in a side pool.
+#[derive(Clone, Debug, Default)]
+pub struct ContactTable {
+    ids: IdPool,
+    contacts: Vec<Contact>,
+    pairs: PairSet,
+    /// Contacts with an awake body, in no particular order.
+    active: Vec<u32>,
+    /// Whether the last update found a deeply overlapping contact.
+    any_deep: bool,
+    extra: Vec<Vec<Manifold>>,
+    free_extra: Vec<u32>,
+}
+
+impl ContactTable {
+    /// How many contacts there are.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One more than the highest id ever used.
+    pub fn capacity(&self) -> usize {
+        self.contacts.len()
+    }
+
+    /// Whether an id is in use.
+    pub fn is_live(&self, id: u32) -> bool {
+        self.ids.is_live(id)
+    }
+
+    /// Whether the last update found a deeply overlapping contact.
+    pub fn any_deep(&self) -> bool {
+        self.any_deep
+    }
+
+    /// The contacts with an awake body, in no particular order.
+    pub fn active(&self) -> &[u32] {
+        &self.active
+    }
+
+    /// All contacts, by id.
+    pub fn iter(&self) -> impl Iterator<Item = (u32, &Contact)> {
+        (0..self.contacts.len() as u32).filter(|id| self.is_live(*id)).map(|id| (id, self.get(id)))
+    }
+
+    /// The contact of two colliders, in either order.
+    pub fn find(&self, a: u32, b: u32) -> Option<u32> {
+        self.pairs.get(a.min(b), a.max(b))
+    }
+
+    /// A contact.
+    #[inline(always)]
+    pub fn get(&self, id: u32) -> &Contact {
+        &self.contacts[id as usize]
+    }
+
+    /// A contact.
+    #[inline(always)]
+    pub fn get_mut(&mut self, id: u32) -> &mut Contact {
+        &mut self.contacts[id as usize]
+    }
+
+    /// A contact's manifold by its number, if it has that many.
+    #[inline(always)]
+    pub fn manifold<'a>(&'a self, contact: &'a Contact, index: u32) -> Option<&'a Manifold> {
+        match index {
+            0 => Some(&contact.manifold),
+            _ => self.extra_of(contact).get(index as usize - 1),
+        }
+    }
+
+    /// A contact's manifold by its number, which must exist.
+    #[inline(always)]
+    pub fn manifold_mut(&mut self, id: u32, index: u32) -> &mut Manifold {
+        let contact = &mut self.contacts[id as usize];
+        match index {
+            0 => &mut contact.manifold,
+            _ => &mut self.extra[contact.extra as usize][index as usize - 1],
+        }
+    }
+
+    /// The manifolds of a contact after the first.
+    pub fn extra_of(&self, contact: &Contact) -> &[Manifold] {
+        match contact.extra {
+            NONE => &[],
+            slot => &self.extra[slot as usize][..usize::from(contact.extra_count)],
+        }
+    }
+
+    /// Makes ids that were freed before this usable again.
+    pub fn recycle_ids(&mut self) {
+        self.ids.recycle();
+    }
+
+    /// Updates all awake contacts. `changed` receives those that began or ended to touch or whose boxes
+    /// came apart.
+    pub fn update<S: ManifoldSource>(
+        &mut self,
+        phase: &NarrowPhase<S>,
+        scratch: &mut Scratch,
+        changed: &mut BitSet,
+    ) {
+        self.any_deep = false;
+        for i in 0..self.active.len() {
+            let id = self.active[i];
+            let contact = &mut self.contacts[id as usize];
+            let touched = contact.flags.has(ContactFlags::TOUCHING);
+            let extra: &mut [Manifold] = match contact.extra {
+                NONE => &mut [],
+                slot => &mut self.extra[slot as usize][..usize::from(contact.extra_count)],
+            };
+            match phase.update(contact, extra, scratch) {
+                Found::Apart => {
+                    contact.flags.set(ContactFlags::APART, true);
+                    changed.insert(id);
+                }
+                Found::Recycled => {}
+                Found::Computed => {
+                    if touched != contact.flags.has(ContactFlags::TOUCHING) {
+                        changed.insert(id);
+                    }
+                    if contact.extra != NONE || !scratch.extra.is_empty() {
+                        self.store_extra(id, &scratch.extra);
+                    }
+                }
+            }
+            self.any_deep |= self.contacts[id as usize].flags.has(ContactFlags::DEEP);
+        }
+    }
+
+    fn store_extra(&mut self, id: u32, manifolds: &[Manifold]) {
+        let contact = &mut self.contacts[id as usize];
+        if contact.extra == NONE {
+            contact.extra = self.free_extra.pop().unwrap_or_else(|| {
+                self.extra.push(Vec::new());
+                self.extra.len() as u32 - 1
+            });
+        }
+        let count = manifolds.len().min(usize::from(u16::MAX));
+        contact.extra_count = count as u16;
+        let stored = &mut self.extra[contact.extra as usize];
+        stored.clear();
+        stored.extend_from_slice(&manifolds[..count]);
+    }
+
+    /// Adds the contact of a pair that has none, not active yet, and enters it in both colliders' lists.
+    pub(super) fn add(&mut self, contact: Contact, colliders: &mut ColliderTable) -> u32 {
+        let id = self.ids.allocate();
+        let [a, b] = contact.colliders;
+        self.pairs.insert(a, b, id);
+        if id as usize == self.contacts.len() {
+            self.contacts.push(contact);
+        } else {
+            self.contacts[id as usize] = contact;
+        }
+        for side in 0..2 {
+            let collider = self.contacts[id as usize].colliders[side];
+            let edge = id << 1 | side as u32;
+            let first = core::mem::replace(&mut colliders[collider].first_contact, edge);
+            self.contacts[id as usize].next[side] = first;
+            if first != NONE {
+                self.contacts[(first >> 1) as usize].previous[(first & 1) as usize] = edge;
+            }
+        }
+        id
+    }
+
+    /// Takes a contact out of all lists but the colours and islands, and frees its id.
+    pub(super) fn remove(&mut self, id: u32, colliders: &mut ColliderTable) {
+        self.deactivate(id);
+        let Contact { colliders: [a, b], next, previous, extra, .. } = *self.get(id);
+        self.pairs.remove(a, b);
+        for side in 0..2 {
+            match previous[side] {
+                NONE => colliders[[a, b][side]].first_contact = next[side],
+                edge => self.contacts[(edge >> 1) as usize].next[(edge & 1) as usize] = next[side],
+            }
+            if next[side] != NONE {
+                self.contacts[(next[side] >> 1) as usize].previous[(next[side] & 1) as usize] = previous[side];
+            }
+        }
+        if extra != NONE {
+            self.extra[extra as usize].clear();
+            self.free_extra.push(extra);
+        }
+        self.ids.free(id);
+    }
+
+    pub(super) fn activate(&mut self, id: u32) {
+        let contact = &mut self.contacts[id as usize];
+        if contact.active == NONE {
+            contact.active = self.active.len() as u32;
+            self.active.push(id);
+        }
+    }
+
+    pub(super) fn deactivate(&mut self, id: u32) {
+        let at = core::mem::replace(&mut self.contacts[id as usize].active, NONE);
+        if at != NONE {
+            self.active.swap_remove(at as usize);
+            if let Some(moved) = self.active.get(at as usize) {
+                self.contacts[*moved as usize].active = at;
+            }
+        }
+    }
+
+    /// The contacts of a collider.
+    pub fn of_collider<'a>(&'a self, collider: u32, colliders: &ColliderTable) -> impl Iterator<Item = u32> + 'a {
+        let first = colliders[collider].first_contact;
+        core::iter::successors((first != NONE).then_some(first), |edge| {
+            let next = self.contacts[(edge >> 1) as usize].next[(edge & 1) as usize];
+            (next != NONE).then_some(next)
+        })
+        .map(|edge| edge >> 1)
+    }
+
+    /// Checks every list against every record.
+    ///
+    /// # Panics
+    ///
+    /// With the invariant that does not hold.
+    pub fn validate(&self, colliders: &ColliderTable) {
+        for (at, id) in self.active.iter().enumerate() {
+            assert!(self.is_live(*id), "an active contact is live");
+            assert_eq!(self.get(*id).active as usize, at, "an active contact knows its place");
+        }
+        let mut live = 0;
+        for (id, contact) in self.iter() {
+            live += 1;
+            let [a, b] = contact.colliders;
+            assert!(a < b, "the lower collider comes first");
+            assert_eq!(self.find(a, b), Some(id), "a contact is found by its pair");
+            for c in [a, b] {
+                assert!(colliders.ids.is_live(c), "a contact's colliders are live");
+                assert!(self.of_collider(c, colliders).any(|k| k == id), "a collider lists its contacts");
+            }
+            assert_eq!(contact.bodies, [a, b].map(|c| colliders[c].def.body), "a contact knows its bodies");
+        }
+        assert_eq!(live, self.len());
+        assert_eq!(self.pairs.len(), live, "every pair has one contact");
+    }
+}

@@ -1,0 +1,299 @@
+//! The narrow phase of one contact: apart? → recycle? → the full manifold.
+//!
+//! Recycling is Erin Catto's (Box2D v3.2, Box3D; both ask to be cited for it): while two bodies have
+//! hardly moved relative to each other since their manifold was computed, its normal, anchors and
+//! features are kept and only the separations follow the motion. The frozen pose is not renewed by that,
+//! so errors cannot add up. Besides the time saved, frozen anchors are what lets tall towers stand.
+
+use super::record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
+use crate::manifold::{self, LocalManifold};
+use crate::math::{Angular, Rot, Vector, max, min};
+use crate::shape::Shape;
+use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Velocity};
+
+/// Whoever computes the manifolds of pairs with a [`Shape::Foreign`] in them.
+pub trait ManifoldSource: Sync {
+    /// Adds the manifolds of colliders `a` and `b`, in `a`'s frame with normals from `a` to `b`, with
+    /// points up to `prediction` metres apart.
+    fn manifolds(&self, a: u32, b: u32, prediction: f32, out: &mut Vec<LocalManifold>);
+}
+
+impl ManifoldSource for () {
+    fn manifolds(&self, _: u32, _: u32, _: f32, _: &mut Vec<LocalManifold>) {}
+}
+
+/// Buffers of one worker, kept between steps.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    local: Vec<LocalManifold>,
+    /// Where [`NarrowPhase::update`] leaves the manifolds after the first.
+    pub extra: Vec<Manifold>,
+}
+
+/// What the update of any contact reads; constant over the narrow phase.
+pub struct NarrowPhase<'a, S> {
+    /// The bodies.
+    pub bodies: &'a BodyTable,
+    /// The colliders.
+    pub colliders: &'a ColliderTable,
+    /// For pairs with a foreign shape.
+    pub source: &'a S,
+    /// The step's length, in seconds.
+    pub dt: f32,
+    /// Contacts up to this distance are always found, in metres.
+    pub tolerance: f32,
+    /// The distance up to which contacts are predicted at rest, in metres, where the colliders'
+    /// speculative margins allow it.
+    pub speculative: f32,
+    /// How far, in metres, a surface may have moved against the other for the manifold to be recycled;
+    /// 0 switches recycling off.
+    pub recycle_distance: f32,
+    /// Whether points inherit the impulses of the last step.
+    pub match_points: bool,
+}
+
+/// What an update found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// The fat boxes do not overlap any more.
+    Apart,
+    /// The manifold followed the motion.
+    Recycled,
+    /// The manifold was computed anew.
+    Computed,
+}
+
+/// Bodies that turned further than this since the manifold was computed do not recycle: cos 10°.
+const RECYCLE_COS: f32 = 0.985;
+
+impl<S: ManifoldSource> NarrowPhase<'_, S> {
+    /// Brings a contact up to date with where its bodies are now. Manifolds after the first are left in
+    /// `scratch.extra`; the caller stores them.
+    pub fn update(&self, contact: &mut Contact, extra: &mut [Manifold], scratch: &mut Scratch) -> Found {
+        let [a, b] = contact.colliders;
+        let (fat_a, fat_b) = (&self.colliders.fat[a as usize], &self.colliders.fat[b as usize]);
+        if !fat_a.overlaps(fat_b) {
+            return Found::Apart;
+        }
+        let poses = [self.pose(contact, 0), self.pose(contact, 1)];
+        let recycled = self.recycle(contact, extra, &poses);
+        if !recycled {
+            self.compute(contact, extra, &poses, scratch);
+        }
+        contact.flags.set(ContactFlags::DEEP, self.is_deep(contact));
+        if recycled { Found::Recycled } else { Found::Computed }
+    }
+
+    /// Whether the shapes overlap by more than a tenth of the smaller one's reach. Half-spaces reach
+    /// nowhere, and count by the other side.
+    fn is_deep(&self, contact: &Contact) -> bool {
+        let deepest = contact.manifold.points().iter().fold(0.0, |d, p| min(d, p.separation));
+        if deepest == 0.0 {
+            return false;
+        }
+        let [a, b] = contact.colliders.map(|c| self.colliders[c].extent);
+        let reach = if a == 0.0 || b == 0.0 { max(a, b) } else { min(a, b) };
+        deepest < -0.1 * reach
+    }
+
+    /// The centre of mass and rotation of a side's body; for a collider without one its own pose.
+    #[inline(always)]
+    fn pose(&self, contact: &Contact, side: usize) -> BodyPose {
+        match contact.bodies[side] {
+            NONE => {
+                let pose = self.colliders.poses[contact.colliders[side] as usize];
+                BodyPose { center: pose.position, rotation: pose.rotation }
+            }
+            body => self.bodies.poses[body as usize],
+        }
+    }
+
+    fn velocity(&self, contact: &Contact, side: usize) -> Velocity {
+        match contact.bodies[side] {
+            NONE => Velocity::default(),
+            body => self.bodies.velocities[body as usize],
+        }
+    }
+
+    /// The side's revision: of its collider and its body together.
+    #[inline(always)]
+    fn revision(&self, contact: &Contact, side: usize) -> u32 {
+        let collider = self.colliders[contact.colliders[side]].revision;
+        match contact.bodies[side] {
+            NONE => collider,
+            body => collider.wrapping_add(self.bodies[body].revision.wrapping_mul(0x9E37_79B1)),
+        }
+    }
+
+    /// Keeps the manifold if the bodies moved little enough against each other, and lets its
+    /// separations follow: s = s₀ + n · (Δoffset + (R_B − 1) r_B − (R_A − 1) r_A).
+    fn recycle(&self, contact: &mut Contact, extra: &mut [Manifold], poses: &[BodyPose; 2]) -> bool {
+        if !contact.flags.has(ContactFlags::FROZEN)
+            || contact.revisions[0] != self.revision(contact, 0)
+            || contact.revisions[1] != self.revision(contact, 1)
+            || contact.frozen.prediction < self.prediction(contact)
+        {
+            return false;
+        }
+        let Frozen { rotations, offset, .. } = contact.frozen;
+        let now = (poses[1].center - poses[0].center).to_local();
+        for i in 0..2 {
+            if rotations[i].cos_between(poses[i].rotation) < RECYCLE_COS {
+                return false;
+            }
+        }
+        // The motion of B relative to A: how far it shifted in A's frame, and the angle between how far
+        // each turned, times the farther reach of the two.
+        let shift = poses[0].rotation.inverse_rotate(now) - rotations[0].inverse_rotate(offset);
+        let relative = |of: [Rot; 2]| of[0].inverse().mul(of[1]);
+        let angle: Angular = relative(rotations).difference(relative(poses.map(|p| p.rotation)));
+        let reach = [0, 1].map(|i| {
+            let collider = &self.colliders[contact.colliders[i]];
+            match contact.bodies[i] {
+                NONE => 0.0,
+                body if self.bodies[body].kind == BodyKind::Static => 0.0,
+                _ => collider.extent,
+            }
+        });
+        let allowed = match contact.flags.has(ContactFlags::TOUCHING) {
+            true => self.recycle_distance,
+            false => min(self.recycle_distance, self.speculative),
+        };
+        let moved = shift.length() + max(reach[0], reach[1]) * angle.length();
+        // A NaN fails the comparison.
+        if !(moved < allowed) {
+            return false;
+        }
+        // In world axes the turn since freezing is R Rᶠ⁻¹.
+        let world = [0, 1].map(|i| poses[i].rotation.mul(rotations[i].inverse()));
+        let change = now - offset;
+        let manifolds = core::iter::once(&mut contact.manifold).chain(extra.iter_mut());
+        for m in manifolds {
+            let along = change.dot(m.normal);
+            for p in &mut m.points[..m.count as usize] {
+                let (ra, rb) = (p.anchor, p.anchor - offset);
+                let (ma, mb) = (ra.cross(m.normal), rb.cross(m.normal));
+                let turn = world[1].shift_along(rb, mb, m.normal) - world[0].shift_along(ra, ma, m.normal);
+                p.separation = p.frozen_separation + along + turn;
+            }
+        }
+        true
+    }
+
+    /// Computes the manifolds at the present pose and hands the old points' impulses on.
+    fn compute(
+        &self,
+        contact: &mut Contact,
+        extra: &[Manifold],
+        poses: &[BodyPose; 2],
+        scratch: &mut Scratch,
+    ) {
+        let [a, b] = contact.colliders;
+        let (ca, cb) = (&self.colliders[a], &self.colliders[b]);
+        let margin = ca.def.margin + cb.def.margin;
+        let reach = self.prediction(contact);
+        let prediction = reach + margin;
+        let (pose_a, pose_b) = (&self.colliders.poses[a as usize], &self.colliders.poses[b as usize]);
+
+        scratch.local.clear();
+        if contact.flags.has(ContactFlags::FOREIGN) {
+            self.source.manifolds(a, b, prediction, &mut scratch.local);
+        } else {
+            let relative = pose_a.relative(pose_b);
+            let mut local = LocalManifold::default();
+            let (sa, sb): (&Shape, &Shape) = (&ca.def.shape, &cb.def.shape);
+            manifold::collide(sa, sb, &relative, prediction, &mut contact.cache, &mut local);
+            if local.count > 0 {
+                scratch.local.push(local);
+            }
+        }
+
+        let frozen = Frozen {
+            rotations: poses.map(|p| p.rotation),
+            offset: (poses[1].center - poses[0].center).to_local(),
+            prediction: reach,
+        };
+        // From body A's centre of mass to collider A's origin, in world axes.
+        let to_shape = (pose_a.position - poses[0].center).to_local();
+        let old = contact.manifold;
+        scratch.extra.clear();
+        let mut first = Manifold::default();
+        for (i, local) in scratch.local.iter().enumerate() {
+            let mut m = to_world(local, pose_a.rotation, to_shape, margin);
+            if !m.normal.is_finite() || m.points().iter().any(|p| !p.separation.is_finite() || !p.anchor.is_finite())
+            {
+                continue;
+            }
+            if self.match_points {
+                inherit(&mut m, core::iter::once(&old).chain(extra.iter()));
+            }
+            if i == 0 {
+                first = m;
+            } else {
+                scratch.extra.push(m);
+            }
+        }
+        contact.manifold = first;
+        contact.frozen = frozen;
+        contact.revisions = [self.revision(contact, 0), self.revision(contact, 1)];
+        let touching = contact.manifold.count > 0 || !scratch.extra.is_empty();
+        contact.flags.set(ContactFlags::TOUCHING, touching);
+        let recyclable = self.recycle_distance > 0.0 && !contact.flags.has(ContactFlags::FOREIGN);
+        contact.flags.set(ContactFlags::FROZEN, recyclable);
+    }
+
+    /// How far apart surfaces may be to count as a contact: as far as they can close in this step, but
+    /// not beyond the colliders' speculative margins.
+    fn prediction(&self, contact: &Contact) -> f32 {
+        let limit = [0, 1].map(|i| self.colliders[contact.colliders[i]].def.speculative);
+        let limit = limit[0] + limit[1];
+        let closing = (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;
+        max(self.tolerance, min(max(self.speculative, closing), limit))
+    }
+}
+
+/// A manifold in world axes, with anchors from body A's centre of mass.
+fn to_world(local: &LocalManifold, rotation: Rot, to_shape: Vector, margin: f32) -> Manifold {
+    let mut m = Manifold {
+        normal: rotation.rotate(local.normal),
+        count: local.count as u32,
+        ..Manifold::default()
+    };
+    for (out, p) in m.points.iter_mut().zip(local.points()) {
+        let separation = p.separation - margin;
+        *out = ManifoldPoint {
+            anchor: to_shape + rotation.rotate(p.point),
+            frozen_separation: separation,
+            separation,
+            impulse: 0.0,
+            feature: p.feature,
+        };
+    }
+    m
+}
+
+/// Hands on the impulses of the old manifold that this one continues: the one whose normal is nearest,
+/// points by feature id.
+fn inherit<'a>(m: &mut Manifold, old: impl Iterator<Item = &'a Manifold>) {
+    /// Manifolds whose normals differ more than this are of another face: cos 25°.
+    const SAME_FACE: f32 = 0.9;
+    let mut best: Option<(&Manifold, f32)> = None;
+    for o in old.filter(|o| o.count > 0) {
+        let cos = o.normal.dot(m.normal);
+        if cos > SAME_FACE && best.is_none_or(|(_, c)| cos > c) {
+            best = Some((o, cos));
+        }
+    }
+    let Some((old, _)) = best else { return };
+    let mut any = false;
+    for p in &mut m.points[..m.count as usize] {
+        if let Some(o) = old.points().iter().find(|o| o.feature == p.feature) {
+            p.impulse = o.impulse;
+            any = true;
+        }
+    }
+    if any {
+        m.friction_impulse = old.friction_impulse;
+        m.twist_impulse = old.twist_impulse;
+    }
+}

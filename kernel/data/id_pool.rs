@@ -1,0 +1,157 @@
+//! Hands out small ids and takes them back.
+
+use super::BitSet;
+
+/// Small dense ids, reused last freed first, but not before the next [`recycle`](Self::recycle).
+///
+/// Between being freed and being recycled an id is neither live nor given out again: whoever still
+/// holds it from this step finds nothing there, rather than a stranger.
+#[derive(Clone, Debug, Default)]
+pub struct IdPool {
+    live: BitSet,
+    free: Vec<u32>,
+    pending: Vec<u32>,
+    capacity: u32,
+}
+
+impl IdPool {
+    /// An empty pool.
+    pub const fn new() -> Self {
+        Self { live: BitSet::new(), free: Vec::new(), pending: Vec::new(), capacity: 0 }
+    }
+
+    /// Gives out the reusable id that was freed last, or else the next id never given out.
+    pub fn allocate(&mut self) -> u32 {
+        let id = self.free.pop().unwrap_or_else(|| {
+            let id = self.capacity;
+            self.capacity += 1;
+            id
+        });
+        self.live.insert(id);
+        id
+    }
+
+    /// Takes an id back; [`recycle`](Self::recycle) makes it reusable. Freeing an id that is not live is
+    /// a bug of the caller: ignored in release builds.
+    pub fn free(&mut self, id: u32) {
+        let was_live = self.live.remove(id);
+        debug_assert!(was_live, "id {id} is freed but not live");
+        if was_live {
+            self.pending.push(id);
+        }
+    }
+
+    /// Makes the ids freed so far reusable.
+    pub fn recycle(&mut self) {
+        self.free.append(&mut self.pending);
+    }
+
+    /// Whether the id is given out.
+    #[inline]
+    pub fn is_live(&self, id: u32) -> bool {
+        self.live.contains(id)
+    }
+
+    /// The number of live ids.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.capacity as usize - self.free.len() - self.pending.len()
+    }
+
+    /// Whether no id is live.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One more than the highest id ever given out: the length of a table indexed by these ids.
+    #[inline]
+    pub fn capacity(&self) -> usize {
+        self.capacity as usize
+    }
+
+    /// The live ids in ascending order.
+    pub fn iter(&self) -> impl Iterator<Item = u32> + '_ {
+        self.live.iter()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::BTreeSet;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(8))]
+        #[test]
+        fn never_gives_out_a_live_or_pending_id(ops in prop::collection::vec((0..20u8, any::<u32>()), 10_000)) {
+            let mut pool = IdPool::new();
+            let (mut live, mut pending, mut free) = (Vec::<u32>::new(), Vec::new(), Vec::new());
+            let mut highest = 0;
+            for (kind, pick) in ops {
+                match kind {
+                    0..=9 => {
+                        let expected = free.pop().unwrap_or(highest);
+                        highest = highest.max(expected + 1);
+                        prop_assert_eq!(pool.allocate(), expected);
+                        live.push(expected);
+                    }
+                    10..=18 if !live.is_empty() => {
+                        let id = live.swap_remove(pick as usize % live.len());
+                        pool.free(id);
+                        pending.push(id);
+                        prop_assert!(!pool.is_live(id));
+                    }
+                    _ => {
+                        pool.recycle();
+                        free.append(&mut pending);
+                    }
+                }
+                prop_assert_eq!(pool.len(), live.len());
+                prop_assert_eq!(pool.capacity(), highest as usize);
+                prop_assert_eq!(pool.is_empty(), live.is_empty());
+                let id = pick % (highest + 2);
+                prop_assert_eq!(pool.is_live(id), live.contains(&id));
+            }
+            let model: BTreeSet<u32> = live.into_iter().collect();
+            prop_assert!(pool.iter().eq(model.into_iter()));
+        }
+    }
+
+    #[test]
+    fn a_freed_id_returns_only_after_recycling_last_freed_first() {
+        let mut pool = IdPool::new();
+        let ids = [pool.allocate(), pool.allocate(), pool.allocate()];
+        assert_eq!(ids, [0, 1, 2]);
+        pool.free(0);
+        pool.free(2);
+        assert_eq!(pool.allocate(), 3);
+        pool.recycle();
+        assert_eq!([pool.allocate(), pool.allocate(), pool.allocate()], [2, 0, 4]);
+    }
+
+    #[test]
+    fn a_clone_goes_its_own_way_from_the_same_state() {
+        let mut pool = IdPool::new();
+        (0..5).for_each(|_| {
+            pool.allocate();
+        });
+        pool.free(3);
+        pool.recycle();
+        let mut other = pool.clone();
+        assert_eq!(pool.allocate(), other.allocate());
+        pool.free(1);
+        assert!(other.is_live(1));
+    }
+
+    #[test]
+    #[cfg_attr(debug_assertions, should_panic(expected = "not live"))]
+    fn a_double_free_is_caught_or_ignored() {
+        let mut pool = IdPool::new();
+        let id = pool.allocate();
+        pool.free(id);
+        pool.free(id);
+        pool.recycle();
+        assert_eq!([pool.allocate(), pool.allocate()], [0, 1]);
+    }
+}

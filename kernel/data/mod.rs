@@ -1,0 +1,13 @@
+//! Containers of ids, without a dimension: a pool that hands ids out, a set of them, a map from pairs
+//! of them.
+//!
+//! All three are plain values: `Clone` is a snapshot, and what they answer depends only on the calls
+//! made, never on addresses, hash seeds or threads.
+
+mod bit_set;
+mod id_pool;
+mod pair_set;
+
+pub use bit_set::BitSet;
+pub use id_pool::IdPool;
+pub use pair_set::PairSet;

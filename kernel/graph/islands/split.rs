@@ -1,0 +1,129 @@
+//! The split of an island into its connected parts.
+
+use super::super::union_find::DisjointSets;
+use super::{IslandId, Islands, NONE};
+
+/// One of the connected parts an island fell into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Piece {
+    lowest_body: u32,
+    size: u32,
+    island: u32,
+}
+
+/// Memory of [`Islands::split`], empty between calls except for `created`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Scratch {
+    sets: DisjointSets,
+    /// By index of a body in the island: the index of its piece.
+    piece_of: Vec<u32>,
+    pieces: Vec<Piece>,
+    order: Vec<u32>,
+    created: Vec<IslandId>,
+}
+
+impl Islands {
+    /// Makes an island for every connected part of this one, so that each has `removed` = 0.
+    ///
+    /// The part with the most bodies (at a tie the one with the lowest body id) keeps the id, for it is
+    /// the dearest to move. The returned islands are the others, created by ascending lowest body id, as
+    /// awake as the original; none if it is connected.
+    pub fn split(&mut self, island: IslandId) -> &[IslandId] {
+        self.scratch.created.clear();
+        if self.removed(island) > 0 {
+            self.islands[island.0 as usize].removed = 0;
+            if self.find_pieces(island.0) {
+                self.name_pieces(island.0);
+                self.move_pieces(island.0);
+            }
+            self.scratch.sets.reset(0);
+            self.scratch.piece_of.clear();
+            self.scratch.pieces.clear();
+            self.scratch.order.clear();
+        }
+        &self.scratch.created
+    }
+
+    /// Fills `piece_of` and `pieces`, unless the island is connected: then returns `false`.
+    fn find_pieces(&mut self, island: u32) -> bool {
+        let Self { islands, body_places, scratch, .. } = self;
+        let island = &islands[island as usize];
+        let sets = &mut scratch.sets;
+        sets.reset(island.bodies.len());
+        for link in &island.links {
+            sets.unite(body_places[link.a as usize].index, body_places[link.b as usize].index);
+            if sets.count() == 1 {
+                return false;
+            }
+        }
+        scratch.piece_of.resize(island.bodies.len(), NONE);
+        for (index, &body) in island.bodies.iter().enumerate() {
+            let root = sets.find(index as u32) as usize;
+            // A root's entry may be set by a member before its own turn comes; it stays the same then.
+            if scratch.piece_of[root] == NONE {
+                scratch.piece_of[root] = scratch.pieces.len() as u32;
+                scratch.pieces.push(Piece { lowest_body: body, size: 0, island: NONE });
+            }
+            scratch.piece_of[index] = scratch.piece_of[root];
+            let piece = &mut scratch.pieces[scratch.piece_of[root] as usize];
+            piece.lowest_body = piece.lowest_body.min(body);
+            piece.size += 1;
+        }
+        scratch.pieces.len() > 1
+    }
+
+    /// Decides which island each piece goes to.
+    fn name_pieces(&mut self, island: u32) {
+        let awake = self.islands[island as usize].awake != NONE;
+        let Scratch { pieces, order, .. } = &mut self.scratch;
+        order.extend(0..pieces.len() as u32);
+        order.sort_unstable_by_key(|piece| pieces[*piece as usize].lowest_body);
+        let size = |rank: &usize| (pieces[order[*rank] as usize].size, std::cmp::Reverse(*rank));
+        let keeper = (0..order.len()).max_by_key(size).unwrap_or(0);
+        for rank in 0..self.scratch.order.len() {
+            let target = if rank == keeper { island } else { self.create(awake) };
+            let piece = self.scratch.order[rank];
+            self.scratch.pieces[piece as usize].island = target;
+            if rank != keeper {
+                self.scratch.created.push(IslandId(target));
+            }
+        }
+    }
+
+    /// Moves links and bodies to the islands of their pieces; what stays is moved up, in the same order.
+    fn move_pieces(&mut self, island: u32) {
+        let mut links = std::mem::take(&mut self.islands[island as usize].links);
+        let mut kept = 0;
+        links.retain(|link| {
+            let target = self.target_of(self.body_places[link.a as usize].index);
+            if target == island {
+                self.link_places[link.key.0 as usize].index = kept;
+                kept += 1;
+            } else {
+                self.push_link(target, *link);
+            }
+            target == island
+        });
+        self.islands[island as usize].links = links;
+
+        let mut bodies = std::mem::take(&mut self.islands[island as usize].bodies);
+        let (mut old, mut kept) = (0, 0);
+        bodies.retain(|body| {
+            let target = self.target_of(old);
+            old += 1;
+            if target == island {
+                self.body_places[*body as usize].index = kept;
+                kept += 1;
+            } else {
+                self.push_body(target, *body);
+            }
+            target == island
+        });
+        self.islands[island as usize].bodies = bodies;
+    }
+
+    /// The island that the body at an index of the split island goes to.
+    fn target_of(&self, index: u32) -> u32 {
+        self.scratch.pieces[self.scratch.piece_of[index as usize] as usize].island
+    }
+}

@@ -1,0 +1,90 @@
+//! Disjoint sets over `0..n`: which elements hang together through the pairs united so far.
+
+/// Union-find with union by rank and path halving (Tarjan and van Leeuwen, "Worst-case analysis of set
+/// union algorithms", 1984): practically constant time per call, no recursion, buffers are reused.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct DisjointSets {
+    parent: Vec<u32>,
+    /// An upper bound of the height of the tree below a root.
+    rank: Vec<u8>,
+    count: usize,
+}
+
+impl DisjointSets {
+    /// Starts over with `n` sets of one element each.
+    pub(super) fn reset(&mut self, n: usize) {
+        self.parent.clear();
+        self.parent.extend(0..n as u32);
+        self.rank.clear();
+        self.rank.resize(n, 0);
+        self.count = n;
+    }
+
+    /// The number of disjoint sets.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The representative of the set that `element` is in.
+    pub(super) fn find(&mut self, element: u32) -> u32 {
+        let mut at = element;
+        loop {
+            let parent = self.parent[at as usize];
+            if parent == at {
+                return at;
+            }
+            let grandparent = self.parent[parent as usize];
+            self.parent[at as usize] = grandparent;
+            at = grandparent;
+        }
+    }
+
+    /// Makes one set of the two that `a` and `b` are in.
+    pub(super) fn unite(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.find(a), self.find(b));
+        if a == b {
+            return;
+        }
+        let (rank_a, rank_b) = (self.rank[a as usize], self.rank[b as usize]);
+        let (root, child) = if rank_a >= rank_b { (a, b) } else { (b, a) };
+        self.parent[child as usize] = root;
+        if rank_a == rank_b {
+            self.rank[root as usize] += 1;
+        }
+        self.count -= 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The sets are the classes of the finest equivalence that holds the pairs, by brute force.
+        #[test]
+        fn sets_are_connected_components(
+            n in 1u32..60,
+            pairs in prop::collection::vec((any::<u32>(), any::<u32>()), 0..80),
+        ) {
+            let mut sets = DisjointSets::default();
+            sets.reset(7);
+            sets.reset(n as usize);
+            let mut label: Vec<u32> = (0..n).collect();
+            for (a, b) in pairs {
+                let (a, b) = (a % n, b % n);
+                sets.unite(a, b);
+                let (from, to) = (label[a as usize], label[b as usize]);
+                label.iter_mut().filter(|l| **l == from).for_each(|l| *l = to);
+            }
+            for a in 0..n {
+                for b in 0..n {
+                    prop_assert_eq!(sets.find(a) == sets.find(b), label[a as usize] == label[b as usize]);
+                }
+            }
+            label.sort_unstable();
+            label.dedup();
+            prop_assert_eq!(sets.count(), label.len());
+        }
+    }
+}

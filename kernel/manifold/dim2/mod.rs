@@ -1,0 +1,95 @@
+//! Contacts of convex shapes in the plane: at most two points, midway between the surfaces.
+//!
+//! Every bounded shape is seen as a polygon with a radius: a ball has one vertex, a capsule or segment
+//! two, the rest three and more. Which function makes the contact depends on the numbers of vertices
+//! only, so that seven kinds of shapes need five functions. (The view of capsules and rounded polygons
+//! as polygons with a radius, the pairing of vertices in feature ids and the early exit by a cached
+//! edge follow ideas of E. Catto's Box2D v3.)
+
+mod clip;
+mod cuboids;
+mod half_space;
+mod points;
+mod polygonal;
+mod polygons;
+mod segments;
+#[cfg(test)]
+mod tests;
+
+use super::{FeatureCache, LocalManifold};
+use crate::math::Pose;
+use crate::shape::Shape;
+use polygonal::{Buffer, Polygonal};
+
+/// The contact of shape `a` and shape `b`, given the pose of `b` in `a`'s frame; the result is in `a`'s
+/// frame with the normal from `a` to `b`.
+///
+/// `out` is cleared first and stays empty if the surfaces are farther apart than `prediction` metres,
+/// for foreign shapes and for two half-spaces. All points have a separation of at most `prediction`. Of
+/// overlapping shapes the normal is that of the least translation that parts them; where the shapes'
+/// centres coincide and no direction is better than another, it is a fixed one. Segments are two-sided.
+///
+/// `cache` must be that of the same pair in the same order (or [`FeatureCache::NONE`]): polygons look at
+/// the edge it names first, to see that they are apart, and keep it as the reference while it is as good
+/// as any other, so that resting contacts do not flip. Feature ids pair a vertex of `a` (upper 16 bits)
+/// with a vertex of `b` (lower 16 bits) whichever of the two gave the reference edge; contacts that
+/// never have more than one point have id 0.
+///
+/// Poses that are not finite give no points.
+pub fn collide(
+    a: &Shape,
+    b: &Shape,
+    pose_b_in_a: &Pose,
+    prediction: f32,
+    cache: &mut FeatureCache,
+    out: &mut LocalManifold,
+) {
+    *out = LocalManifold::default();
+    if !(pose_b_in_a.position.is_finite() && pose_b_in_a.rotation.is_finite()) {
+        return;
+    }
+    match (a, b) {
+        (Shape::Cuboid(a), Shape::Cuboid(b)) => cuboids::collide(a, b, pose_b_in_a, prediction, cache, out),
+        (Shape::HalfSpace(a), b) => {
+            let mut room = Buffer::EMPTY;
+            if let Some(b) = polygonal::view(b, &mut room) {
+                half_space::collide(a, &b, pose_b_in_a, prediction, half_space::Order::First, out);
+            }
+        }
+        (a, Shape::HalfSpace(b)) => {
+            let mut room = Buffer::EMPTY;
+            if let Some(a) = polygonal::view(a, &mut room) {
+                let pose = pose_b_in_a.inverse();
+                half_space::collide(b, &a, &pose, prediction, half_space::Order::Second, out);
+                *out = out.flipped(&pose);
+            }
+        }
+        (a, b) => {
+            let (mut room_a, mut room_b) = (Buffer::EMPTY, Buffer::EMPTY);
+            if let (Some(a), Some(b)) = (polygonal::view(a, &mut room_a), polygonal::view(b, &mut room_b)) {
+                collide_polygonal(&a, &b, pose_b_in_a, prediction, cache, out);
+            }
+        }
+    }
+}
+
+fn collide_polygonal(
+    a: &Polygonal,
+    b: &Polygonal,
+    pose: &Pose,
+    prediction: f32,
+    cache: &mut FeatureCache,
+    out: &mut LocalManifold,
+) {
+    match (a.len(), b.len()) {
+        (1, 1) => points::collide_points(a, b, pose, prediction, out),
+        (_, 1) => points::collide_with_point(a, b, pose, prediction, out),
+        (1, _) => {
+            let inverse = pose.inverse();
+            points::collide_with_point(b, a, &inverse, prediction, out);
+            *out = out.flipped(&inverse);
+        }
+        (2, 2) => segments::collide(a, b, pose, prediction, out),
+        _ => polygons::collide(a, b, pose, prediction, cache, out),
+    }
+}

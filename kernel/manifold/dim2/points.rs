@@ -1,0 +1,84 @@
+//! Contacts with a ball, which has one point at most: two centres, or a centre and a polygon.
+
+use super::super::LocalManifold;
+use super::polygonal::Polygonal;
+use crate::math::{Pose, Vector};
+use crate::shape::direction;
+
+/// Adds the point between two points `p`, `q` that have a radius each, if it is near enough, and gives
+/// the normal from `p` to `q`, which is `otherwise` if they coincide.
+#[inline]
+pub(super) fn push_between(
+    p: Vector,
+    q: Vector,
+    otherwise: Vector,
+    radii: [f32; 2],
+    prediction: f32,
+    feature: u32,
+    out: &mut LocalManifold,
+) -> Vector {
+    let (normal, distance) = direction(q - p).unwrap_or((otherwise, 0.0));
+    let separation = distance - radii[0] - radii[1];
+    if separation <= prediction {
+        out.push(p + normal * (0.5 * (distance + radii[0] - radii[1])), separation, feature);
+    }
+    normal
+}
+
+/// Two balls. The normal of concentric ones is upward.
+pub(super) fn collide_points(
+    a: &Polygonal,
+    b: &Polygonal,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    let (p, q) = (a.vertices[0], pose.transform(b.vertices[0]));
+    out.normal = push_between(p, q, Vector::Y, [a.radius, b.radius], prediction, 0, out);
+}
+
+/// A polygon `a` and a ball `b`: the edge the centre is farthest out of, or one of its ends if the
+/// centre is beyond it.
+pub(super) fn collide_with_point(
+    a: &Polygonal,
+    b: &Polygonal,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    let center = pose.transform(b.vertices[0]);
+    let radii = [a.radius, b.radius];
+    let reach = prediction + a.radius + b.radius;
+    let mut best = (f32::NEG_INFINITY, 0);
+    for (i, (v, n)) in a.vertices.iter().zip(a.normals).enumerate() {
+        let height = (center - *v).dot(*n);
+        if height > reach {
+            return;
+        }
+        if height > best.0 {
+            best = (height, i);
+        }
+    }
+    let (height, i) = best;
+    let (start, end, normal) = (a.vertices[i], a.vertices[a.next(i)], a.normals[i]);
+    // A segment's ends have no normals of their own: a centre on its line may still be beyond them.
+    if height > 0.0 || a.len() == 2 {
+        let axis = end - start;
+        let corner = if (center - start).dot(axis) < 0.0 {
+            Some(start)
+        } else if (center - end).dot(axis) > 0.0 {
+            Some(end)
+        } else {
+            None
+        };
+        if let Some(corner) = corner {
+            out.normal = push_between(corner, center, normal, radii, prediction, 0, out);
+            return;
+        }
+    }
+    let separation = height - a.radius - b.radius;
+    if separation <= prediction {
+        out.normal = normal;
+        out.push(center - normal * (0.5 * (height - a.radius + b.radius)), separation, 0);
+    }
+}

@@ -1,0 +1,99 @@
+//! The view of every bounded shape as a convex polygon with a radius.
+
+use crate::math::Vector;
+use crate::shape::{Shape, direction, oriented};
+
+/// A convex polygon with a radius: one vertex for a ball, two for a segment, else counter-clockwise.
+///
+/// `normals[i]` is the outward unit normal of the edge from vertex `i` to the next. A segment has two
+/// edges, there and back. A single vertex has no normals.
+pub(super) struct Polygonal<'a> {
+    pub(super) vertices: &'a [Vector],
+    pub(super) normals: &'a [Vector],
+    pub(super) radius: f32,
+}
+
+/// Room for the vertices and normals of shapes that do not store theirs.
+pub(super) struct Buffer {
+    vertices: [Vector; 4],
+    normals: [Vector; 4],
+}
+
+impl Buffer {
+    pub(super) const EMPTY: Self = Self { vertices: [Vector::ZERO; 4], normals: [Vector::ZERO; 4] };
+}
+
+impl Polygonal<'_> {
+    #[inline]
+    pub(super) fn len(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// The index after `i`, around the outline.
+    #[inline]
+    pub(super) fn next(&self, i: usize) -> usize {
+        if i + 1 < self.len() { i + 1 } else { 0 }
+    }
+
+    /// The index before `i`, around the outline.
+    #[inline]
+    pub(super) fn previous(&self, i: usize) -> usize {
+        if i == 0 { self.len() - 1 } else { i - 1 }
+    }
+}
+
+/// The polygon of a shape; `None` for half-spaces and foreign shapes.
+#[inline]
+pub(super) fn view<'a>(shape: &'a Shape, room: &'a mut Buffer) -> Option<Polygonal<'a>> {
+    Some(match shape {
+        Shape::Ball(s) => {
+            room.vertices[0] = Vector::ZERO;
+            Polygonal { vertices: &room.vertices[..1], normals: &[], radius: s.radius }
+        }
+        Shape::Capsule(s) => segment(s.a, s.b, s.radius, room),
+        Shape::Segment(s) => segment(s.a, s.b, 0.0, room),
+        Shape::Cuboid(s) => {
+            room.vertices = corners(s.half);
+            room.normals = NORMALS;
+            Polygonal { vertices: &room.vertices, normals: &room.normals, radius: 0.0 }
+        }
+        Shape::Triangle(s) => match oriented(s) {
+            Ok((corners, normals)) => {
+                room.vertices[..3].copy_from_slice(&corners);
+                room.normals[..3].copy_from_slice(&normals);
+                Polygonal { vertices: &room.vertices[..3], normals: &room.normals[..3], radius: 0.0 }
+            }
+            Err(side) => segment(side.a, side.b, 0.0, room),
+        },
+        Shape::Hull(s) => Polygonal { vertices: s.vertices(), normals: s.normals(), radius: s.radius() },
+        Shape::HalfSpace(_) | Shape::Foreign(_) => return None,
+    })
+}
+
+fn segment(a: Vector, b: Vector, radius: f32, room: &mut Buffer) -> Polygonal<'_> {
+    room.vertices[0] = a;
+    room.vertices[1] = b;
+    match direction(b - a) {
+        Some((axis, _)) => {
+            room.normals[0] = -axis.perp();
+            room.normals[1] = axis.perp();
+            Polygonal { vertices: &room.vertices[..2], normals: &room.normals[..2], radius }
+        }
+        None => Polygonal { vertices: &room.vertices[..1], normals: &[], radius },
+    }
+}
+
+/// The outward normals of a cuboid's edges, in the order of its [`corners`].
+pub(super) const NORMALS: [Vector; 4] = [
+    Vector::from_array([0.0, -1.0]),
+    Vector::from_array([1.0, 0.0]),
+    Vector::from_array([0.0, 1.0]),
+    Vector::from_array([-1.0, 0.0]),
+];
+
+/// A cuboid's corners, counter-clockwise from the lower left.
+#[inline]
+pub(super) fn corners(half: Vector) -> [Vector; 4] {
+    let Vector { x, y } = half;
+    [[-x, -y], [x, -y], [x, y], [-x, y]].map(Vector::from_array)
+}

@@ -1,0 +1,203 @@
+//! Two convex polygons of which one has an area: the edge normal that separates them most.
+//!
+//! The separation along a direction grows towards the best one and falls behind it, wherever it is
+//! positive; so the best edge of apart polygons is one beside the nearest corner, and looking at it and
+//! the edge facing it tells the nearest features.
+
+use super::super::{FeatureCache, LocalManifold};
+use super::clip::{Edge, Facing, Side};
+use super::polygonal::Polygonal;
+use crate::math::{Pose, Vector};
+
+/// An edge with the vertex of the other polygon that is lowest over it.
+#[derive(Clone, Copy)]
+pub(super) struct Best {
+    pub(super) edge: usize,
+    pub(super) support: usize,
+    pub(super) separation: f32,
+}
+
+/// How much better another edge must be to take the place of the reference, in metres: a thousandth of
+/// the prediction distance and what rounding may feign at the distance of the shapes' origins. Far below
+/// the overlap at which contacts rest, far above the noise of equal boxes on each other.
+#[inline]
+pub(super) fn preference(prediction: f32, pose: &Pose) -> f32 {
+    1.0e-3 * prediction + 1.0e-6 * pose.position.abs().max_element()
+}
+
+/// Fills `out` for two polygons.
+pub(super) fn collide(
+    a: &Polygonal,
+    b: &Polygonal,
+    pose: &Pose,
+    prediction: f32,
+    cache: &mut FeatureCache,
+    out: &mut LocalManifold,
+) {
+    let reach = prediction + a.radius + b.radius;
+    let inverse = pose.inverse();
+    let known = cached(a, b, pose, &inverse, cache);
+    if let Some((_, best)) = known.filter(|(_, best)| best.separation > reach) {
+        cache.separation = best.separation;
+        return;
+    }
+    let on_a = most_separating(a, b, &inverse, reach);
+    if on_a.separation > reach {
+        remember(cache, Side::A, on_a);
+        return;
+    }
+    let on_b = most_separating(b, a, pose, reach);
+    let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
+    remember(cache, side, best);
+    // Written so that a NaN leaves, too.
+    if !(best.separation <= reach) {
+        return;
+    }
+
+    let (own, other) = if side == Side::A { (a, b) } else { (b, a) };
+    let (own_pose, other_pose) =
+        if side == Side::A { (&Pose::IDENTITY, pose) } else { (pose, &Pose::IDENTITY) };
+    let local = own.normals[best.edge];
+    let normal = own_pose.rotation.rotate(local);
+    // Of the two edges at the lowest vertex the one that faces the reference more.
+    let facing = other_pose.rotation.inverse_rotate(normal);
+    let before = other.previous(best.support);
+    let turned = other.normals[before].dot(facing) < other.normals[best.support].dot(facing);
+    let incident = edge(other, if turned { before } else { best.support });
+    Facing {
+        side,
+        normal,
+        reference: edge(own, best.edge).moved(own_pose),
+        incident: incident.moved(other_pose),
+        radii: [own.radius, other.radius],
+        prediction,
+    }
+    .contact(best.separation > 0.0, out);
+}
+
+/// The reference: of two edges the better one. While the polygons overlap or touch, the one of the last
+/// step stays, or else that of A is taken, unless the other one is better by `preference`.
+#[inline]
+pub(super) fn choose(on_a: Best, on_b: Best, known: Option<(Side, Best)>, preference: f32) -> (Side, Best) {
+    let best = if on_b.separation > on_a.separation { (Side::B, on_b) } else { (Side::A, on_a) };
+    if best.1.separation > preference {
+        return best;
+    }
+    let floor = best.1.separation - preference;
+    match known {
+        Some(known) if known.1.separation >= floor => known,
+        _ if on_a.separation >= floor => (Side::A, on_a),
+        _ => best,
+    }
+}
+
+/// The edge `i` of a polygon.
+#[inline]
+fn edge(polygon: &Polygonal, i: usize) -> Edge {
+    let j = polygon.next(i);
+    Edge { ends: [polygon.vertices[i], polygon.vertices[j]], indices: [i, j] }
+}
+
+/// The edge of `own` that `other` is farthest out of, given the pose of `own` in `other`'s frame; the
+/// first one beyond `reach` ends the search.
+///
+/// The normals turn one way around, and so does the lowest vertex (rotating calipers; M. Shamos, 1978):
+/// every vertex is looked at about twice in all, not once per edge.
+fn most_separating(own: &Polygonal, other: &Polygonal, pose: &Pose, reach: f32) -> Best {
+    let mut best = Best { edge: 0, support: 0, separation: f32::NEG_INFINITY };
+    let mut support = lowest(other, pose.rotation.rotate(own.normals[0])).0;
+    for (i, (v, n)) in own.vertices.iter().zip(own.normals).enumerate() {
+        let normal = pose.rotation.rotate(*n);
+        let height;
+        (support, height) = descend(other, normal, support);
+        let separation = height - pose.transform(*v).dot(normal);
+        if separation > best.separation {
+            best = Best { edge: i, support, separation };
+            if separation > reach {
+                break;
+            }
+        }
+    }
+    best
+}
+
+/// The vertex least far along `normal`, and how far, walking from one that was it for a normal up to half a
+/// turn behind. After nearly half a turn the walk may start on an edge that is level within rounding: it
+/// looks two vertices ahead.
+#[inline]
+fn descend(polygon: &Polygonal, normal: Vector, start: usize) -> (usize, f32) {
+    if polygon.len() <= 4 {
+        return lowest(polygon, normal);
+    }
+    let (mut support, mut height) = (start, polygon.vertices[start].dot(normal));
+    for _ in 0..polygon.len() {
+        let next = polygon.next(support);
+        let after = polygon.next(next);
+        let heights = [next, after].map(|i| polygon.vertices[i].dot(normal));
+        if heights[0] < height {
+            (support, height) = (next, heights[0]);
+        } else if heights[1] < height {
+            (support, height) = (after, heights[1]);
+        } else {
+            break;
+        }
+    }
+    (support, height)
+}
+
+/// The vertex least far along `normal`, and how far.
+#[inline]
+fn lowest(polygon: &Polygonal, normal: Vector) -> (usize, f32) {
+    let mut best = (0, f32::INFINITY);
+    for (i, v) in polygon.vertices.iter().enumerate() {
+        let h = v.dot(normal);
+        if h < best.1 {
+            best = (i, h);
+        }
+    }
+    best
+}
+
+/// [`FeatureCache::kind`] while the reference edge is one of A.
+const EDGE_OF_A: u8 = 1;
+/// [`FeatureCache::kind`] while the reference edge is one of B.
+const EDGE_OF_B: u8 = 2;
+
+/// The cached reference, looked at anew.
+fn cached(
+    a: &Polygonal,
+    b: &Polygonal,
+    pose: &Pose,
+    inverse: &Pose,
+    cache: &FeatureCache,
+) -> Option<(Side, Best)> {
+    let (side, edge) = known_edge(cache)?;
+    let (own, other, pose) = if side == Side::A { (a, b, inverse) } else { (b, a, pose) };
+    let normal = pose.rotation.rotate(*own.normals.get(edge)?);
+    let (support, height) = lowest(other, normal);
+    let separation = height - pose.transform(own.vertices[edge]).dot(normal);
+    Some((side, Best { edge, support, separation }))
+}
+
+/// The side and edge a cache names.
+#[inline]
+pub(super) fn known_edge(cache: &FeatureCache) -> Option<(Side, usize)> {
+    match cache.kind {
+        EDGE_OF_A => Some((Side::A, usize::from(cache.a))),
+        EDGE_OF_B => Some((Side::B, usize::from(cache.b))),
+        _ => None,
+    }
+}
+
+/// Keeps a reference edge for the next step, if its index fits.
+#[inline]
+pub(super) fn remember(cache: &mut FeatureCache, side: Side, best: Best) {
+    *cache = FeatureCache::NONE;
+    if let Ok(edge) = u8::try_from(best.edge) {
+        cache.separation = best.separation;
+        match side {
+            Side::A => (cache.kind, cache.a) = (EDGE_OF_A, edge),
+            Side::B => (cache.kind, cache.b) = (EDGE_OF_B, edge),
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Two segments with radii: capsules and segments among themselves.
+//!
+//! Edge normals do not part segments that lie on one line, so the nearest points come first here.
+
+use super::super::LocalManifold;
+use super::clip::{Edge, Facing, Side, pair};
+use super::points::push_between;
+use super::polygonal::Polygonal;
+use crate::math::{Pose, Vector};
+
+/// An end of one segment against the other segment.
+#[derive(Clone, Copy)]
+struct Candidate {
+    /// The segment the end is held against.
+    side: Side,
+    /// Which end of the other segment.
+    end: usize,
+    /// The nearest end of the segment, if the end is beyond it.
+    corner: Option<usize>,
+    /// The height over the segment's line, along its unit normal `axis.perp()`.
+    height: f32,
+    square: f32,
+}
+
+/// Among equally near features the first one wins unless another is nearer by this part: parallel
+/// capsules keep their reference.
+const PREFERENCE: f32 = 1.0e-4;
+
+/// Fills `out` for two segments. Parallel segments side by side get two points.
+pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+    let p = [a.vertices[0], a.vertices[1]];
+    let q = [pose.transform(b.vertices[0]), pose.transform(b.vertices[1])];
+    let axes = [a.normals[0].perp(), pose.rotation.rotate(b.normals[0].perp())];
+    let candidates = [
+        candidate(Side::A, p, axes[0], q, 0),
+        candidate(Side::A, p, axes[0], q, 1),
+        candidate(Side::B, q, axes[1], p, 0),
+        candidate(Side::B, q, axes[1], p, 1),
+    ];
+    let crossing = opposite(candidates[0].height, candidates[1].height)
+        && opposite(candidates[2].height, candidates[3].height);
+    let best = if crossing { shallowest(&candidates) } else { nearest(&candidates) };
+    let reach = prediction + a.radius + b.radius;
+    if !crossing && best.square > reach * reach {
+        return;
+    }
+
+    let (own, other) = if best.side == Side::A { (p, q) } else { (q, p) };
+    let radii = if best.side == Side::A { [a.radius, b.radius] } else { [b.radius, a.radius] };
+    if let (Some(corner), false) = (best.corner, crossing) {
+        let feature = if best.side == Side::A { pair(corner, best.end) } else { pair(best.end, corner) };
+        let fallback = own_axis(&axes, best.side).perp();
+        let normal = push_between(own[corner], other[best.end], fallback, radii, prediction, feature, out);
+        out.normal = if best.side == Side::A { normal } else { -normal };
+        return;
+    }
+    // The side of the segment where the other one is. The nearest end is there too, unless it has come
+    // through (they cross) or lies on the line; then the far end tells.
+    let far_end = (other[1 - best.end] - own[0]).dot(own_axis(&axes, best.side).perp());
+    let on_line = best.height.abs() <= 1.0e-6 * far_end.abs();
+    let faces_left = if crossing || on_line { far_end > 0.0 } else { best.height > 0.0 };
+    let normal = own_axis(&axes, best.side).perp() * if faces_left { 1.0 } else { -1.0 };
+    let edge = |v: [Vector; 2], backward: bool| {
+        if backward {
+            Edge { ends: [v[1], v[0]], indices: [1, 0] }
+        } else {
+            Edge { ends: v, indices: [0, 1] }
+        }
+    };
+    // Counter-clockwise, an edge with its normal on the right runs forward, on the left backward.
+    let incident_backward = normal.perp().dot(other[1] - other[0]) > 0.0;
+    Facing {
+        side: best.side,
+        normal,
+        reference: edge(own, faces_left),
+        incident: edge(other, incident_backward),
+        radii,
+        prediction,
+    }
+    .contact(false, out);
+}
+
+#[inline]
+fn own_axis(axes: &[Vector; 2], side: Side) -> Vector {
+    if side == Side::A { axes[0] } else { axes[1] }
+}
+
+#[inline]
+fn opposite(a: f32, b: f32) -> bool {
+    (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0)
+}
+
+fn candidate(side: Side, own: [Vector; 2], axis: Vector, other: [Vector; 2], end: usize) -> Candidate {
+    let from = [other[end] - own[0], other[end] - own[1]];
+    let height = from[0].dot(axis.perp());
+    let corner = if from[0].dot(axis) < 0.0 {
+        Some(0)
+    } else if from[1].dot(axis) > 0.0 {
+        Some(1)
+    } else {
+        None
+    };
+    let square = corner.map_or(height * height, |c| from[c].length_squared());
+    Candidate { side, end, corner, height, square }
+}
+
+/// The end that is least deep behind the other segment's line.
+fn shallowest(candidates: &[Candidate; 4]) -> Candidate {
+    let mut best = candidates[0];
+    for c in &candidates[1..] {
+        if c.height.abs() < best.height.abs() * (1.0 - PREFERENCE) {
+            best = *c;
+        }
+    }
+    best
+}
+
+/// The nearest end; one over the inside of a segment before one beyond it, when equally near.
+fn nearest(candidates: &[Candidate; 4]) -> Candidate {
+    let mut best = candidates[0];
+    for c in &candidates[1..] {
+        let nearer = c.square < best.square * (1.0 - PREFERENCE);
+        let as_near = c.square <= best.square * (1.0 + PREFERENCE);
+        if nearer || (as_near && best.corner.is_some() && c.corner.is_none()) {
+            best = *c;
+        }
+    }
+    best
+}

@@ -1,0 +1,272 @@
+//! Any two polyhedra, with radii: the separating axis, then the points.
+//!
+//! The axis of the last step is tried first (digest of Gregorius, "Robust Contact Creation for Physics
+//! Simulations", GDC 2015). Faces are preferred to edges unless those are clearly better, which makes
+//! the choice of points the same from step to step.
+
+use super::clip::{clip, incident_polygon};
+use super::reduce::{Candidate, Candidates, reduce};
+use super::sat::{self, EdgeAxis};
+use super::view::{Frame, View, extents};
+use super::{EDGES, FACE_A, FACE_B, gjk};
+use crate::manifold::{FeatureCache, LocalManifold};
+use crate::math::{Pose, Vector, clamp, max, min};
+
+/// A cached axis is taken again if its separation changed by less than this share of the smaller
+/// shape's extent since the full search: 5 mm for a shape of 1 m.
+pub(super) const CACHE_TOLERANCE: f32 = 0.005;
+/// An edge axis must beat the faces by this share of the smaller shape's extent, and the faces of B
+/// those of A by a tenth of it.
+pub(super) const PREFER_FACES: f32 = 0.002;
+/// By how much, as a share of the smaller shape's extent, the nearest point may be farther than the
+/// axis says while the axis still counts as exact.
+pub(super) const EXACT: f32 = 1.0e-3;
+
+/// Two polyhedra and where they are to each other.
+struct Pair<'a> {
+    a: &'a View<'a>,
+    b: &'a View<'a>,
+    b_in_a: Frame,
+    a_in_b: Frame,
+    prediction: f32,
+    radius: f32,
+    smaller: f32,
+    larger: f32,
+}
+
+/// A feature that separates the pair.
+#[derive(Clone, Copy)]
+enum Axis {
+    FaceA(usize),
+    FaceB(usize),
+    Edges(EdgeAxis),
+}
+
+/// The contact of two polyhedra; see the module.
+pub(super) fn collide(
+    a: &View,
+    b: &View,
+    pose: &Pose,
+    prediction: f32,
+    cache: &mut FeatureCache,
+    out: &mut LocalManifold,
+) {
+    let pair = Pair::new(a, b, pose, prediction);
+    if a.faces.is_empty() && b.faces.is_empty() {
+        return pair.build_faceless(out);
+    }
+    if pair.try_cached(cache, out) {
+        return;
+    }
+    out.count = 0;
+    let (axis, separation) = pair.search();
+    *cache = remember(axis, separation);
+    // No axis at all: sizes that are not numbers.
+    if separation > pair.limit() || separation == f32::NEG_INFINITY {
+        return;
+    }
+    let exact = pair.build(axis, separation, out);
+    if !exact && separation > gjk::resolution(pair.larger, pair.smaller) {
+        pair.build_closest(separation, out);
+    }
+}
+
+/// One point between the closest features of two polyhedra that an axis separates, where the axis
+/// itself says less than the distance. Leaves the manifold alone if the distance is no larger.
+pub(super) fn collide_apart(
+    a: &View,
+    b: &View,
+    pose: &Pose,
+    separation: f32,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    Pair::new(a, b, pose, prediction).build_closest(separation, out);
+}
+
+/// What the next step tries first. Features beyond a byte are not remembered.
+fn remember(axis: Axis, separation: f32) -> FeatureCache {
+    let (kind, a, b) = match axis {
+        Axis::FaceA(i) => (FACE_A, i, 0),
+        Axis::FaceB(i) => (FACE_B, 0, i),
+        Axis::Edges(e) => (EDGES, e.a, e.b),
+    };
+    match (u8::try_from(a), u8::try_from(b)) {
+        (Ok(a), Ok(b)) => FeatureCache { kind, a, b, separation },
+        _ => FeatureCache::NONE,
+    }
+}
+
+impl<'a> Pair<'a> {
+    fn new(a: &'a View<'a>, b: &'a View<'a>, pose: &Pose, prediction: f32) -> Self {
+        let b_in_a = Frame::new(pose);
+        let (larger, smaller) = extents(a, b);
+        let radius = a.radius + b.radius;
+        Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), prediction, radius, smaller, larger }
+    }
+
+    /// Cores farther apart than this have no contact.
+    fn limit(&self) -> f32 {
+        self.prediction + self.radius
+    }
+
+    /// Whether the cached axis settles the matter.
+    fn try_cached(&self, cache: &FeatureCache, out: &mut LocalManifold) -> bool {
+        let (i, j) = (cache.a as usize, cache.b as usize);
+        let (axis, separation) = match cache.kind {
+            FACE_A if i < self.a.faces.len() => {
+                (Axis::FaceA(i), sat::face_separation(self.a, i, self.b, &self.b_in_a))
+            }
+            FACE_B if j < self.b.faces.len() => {
+                (Axis::FaceB(j), sat::face_separation(self.b, j, self.a, &self.a_in_b))
+            }
+            EDGES if i < self.a.edges.len() && j < self.b.edges.len() => {
+                let Some(edges) = sat::edge_separation(self.a, i, self.b, j, &self.b_in_a) else {
+                    return false;
+                };
+                (Axis::Edges(edges), edges.separation)
+            }
+            _ => return false,
+        };
+        if separation > self.limit() {
+            return true;
+        }
+        if !((separation - cache.separation).abs() < CACHE_TOLERANCE * self.smaller) {
+            return false;
+        }
+        let exact = self.build(axis, separation, out);
+        exact || (out.count > 0 && separation <= gjk::resolution(self.larger, self.smaller))
+    }
+
+    /// The axis of least penetration or largest separation, or the first beyond the limit.
+    fn search(&self) -> (Axis, f32) {
+        let of_a = sat::best_face(self.a, self.b, &self.b_in_a, self.limit());
+        if of_a.separation > self.limit() {
+            return (Axis::FaceA(of_a.face), of_a.separation);
+        }
+        let of_b = sat::best_face(self.b, self.a, &self.a_in_b, self.limit());
+        if of_b.separation > self.limit() {
+            return (Axis::FaceB(of_b.face), of_b.separation);
+        }
+        let edges = sat::best_edges(self.a, self.b, &self.b_in_a, self.limit());
+        let preference = PREFER_FACES * self.smaller;
+        let (face, separation) = if of_b.separation > of_a.separation + 0.1 * preference {
+            (Axis::FaceB(of_b.face), of_b.separation)
+        } else {
+            (Axis::FaceA(of_a.face), of_a.separation)
+        };
+        match edges {
+            Some(e) if e.separation > separation + preference => (Axis::Edges(e), e.separation),
+            _ => (face, separation),
+        }
+    }
+
+    /// Fills the manifold from an axis. Whether its nearest point is as near as the axis says, which
+    /// is then the true distance.
+    fn build(&self, axis: Axis, separation: f32, out: &mut LocalManifold) -> bool {
+        match axis {
+            Axis::FaceA(i) => self.build_face(i, separation, false, out),
+            Axis::FaceB(i) => self.build_face(i, separation, true, out),
+            Axis::Edges(e) => self.build_edges(&e, out),
+        }
+    }
+
+    fn build_face(&self, face: usize, separation: f32, of_b: bool, out: &mut LocalManifold) -> bool {
+        let (reference, incident, frame) =
+            if of_b { (self.b, self.a, &self.a_in_b) } else { (self.a, self.b, &self.b_in_a) };
+        let plane = &reference.faces[face];
+        let normal = plane.normal;
+        let local = frame.direction_in(normal);
+        let deepest = incident.support(-local);
+        let mut polygon = incident_polygon(incident, local, deepest, frame);
+        clip(reference, face, &mut polygon, self.smaller);
+        // A corner at height s over the plane is between the surfaces at (s + r_ref − r_inc) / 2.
+        let middle = |point: Vector, s: f32| {
+            let point = point - normal * (0.5 * (s - reference.radius + incident.radius));
+            if of_b { self.b_in_a.point(point) } else { point }
+        };
+        let base = u32::from(of_b) << 30 | (face as u32 & 0x3ff) << 20;
+        let mut candidates = Candidates::new();
+        let mut least = f32::INFINITY;
+        for corner in polygon.corners() {
+            let s = normal.dot(corner.point) - plane.offset;
+            least = min(s, least);
+            if s - self.radius <= self.prediction {
+                let point = middle(corner.point, s);
+                candidates.push(Candidate {
+                    point,
+                    separation: s - self.radius,
+                    feature: base | corner.name,
+                });
+            }
+        }
+        out.count = 0;
+        out.normal = if of_b { -self.b_in_a.direction(normal) } else { normal };
+        let list = candidates.as_slice();
+        let (kept, count) = reduce(list, out.normal);
+        for k in &kept[..count] {
+            out.push(list[*k].point, list[*k].separation, list[*k].feature);
+        }
+        if out.count == 0 && separation <= gjk::resolution(self.larger, self.smaller) {
+            // Overlapping beside the face: the deepest vertex alone.
+            let point = middle(frame.point(incident.vertices[deepest]), separation);
+            out.push(point, separation - self.radius, base | 0xf_ffff);
+        }
+        least <= separation + EXACT * self.smaller
+    }
+
+    fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {
+        let (edge_a, edge_b) = (&self.a.edges[axis.a], &self.b.edges[axis.b]);
+        let ends_a = [edge_a.tail, edge_a.head].map(|i| self.a.vertices[i as usize]);
+        let ends_b = [edge_b.tail, edge_b.head].map(|i| self.b_in_a.point(self.b.vertices[i as usize]));
+        let (point_a, point_b, inside) = closest_of_lines(ends_a, ends_b);
+        let normal = axis.normal;
+        let between = (point_a + normal * self.a.radius + point_b - normal * self.b.radius) * 0.5;
+        let feature = 2 << 30 | (axis.a as u32 & 0x7fff) << 15 | axis.b as u32 & 0x7fff;
+        (out.count, out.normal) = (0, normal);
+        if axis.separation - self.radius <= self.prediction {
+            out.push(between, axis.separation - self.radius, feature);
+        }
+        inside
+    }
+
+    /// Two cores without faces: a triangle without area is a segment or a point.
+    fn build_faceless(&self, out: &mut LocalManifold) {
+        self.build_closest(f32::NEG_INFINITY, out);
+        if out.count == 0 && gjk::closest(self.a, self.b, &self.b_in_a).is_none() {
+            let point = self.a.center;
+            (out.normal, out.count) = (Vector::Y, 0);
+            out.push(point, -self.radius, 3 << 30);
+        }
+    }
+
+    /// One point between the closest vertices or edges, if they really are apart.
+    fn build_closest(&self, separation: f32, out: &mut LocalManifold) {
+        let Some(c) = gjk::closest(self.a, self.b, &self.b_in_a) else { return };
+        if !(c.distance > separation) {
+            return;
+        }
+        (out.count, out.normal) = (0, c.normal);
+        if c.distance - self.radius > self.prediction {
+            return;
+        }
+        let point = (c.a + c.normal * self.a.radius + c.b - c.normal * self.b.radius) * 0.5;
+        out.push(point, c.distance - self.radius, 3 << 30 | c.feature);
+    }
+}
+
+/// The closest points of two lines that are not parallel, held to the segments given by their ends,
+/// and whether they were inside of them.
+fn closest_of_lines(a: [Vector; 2], b: [Vector; 2]) -> (Vector, Vector, bool) {
+    let (u, v, w) = (a[1] - a[0], b[1] - b[0], b[0] - a[0]);
+    let (uu, vv, uv) = (u.length_squared(), v.length_squared(), u.dot(v));
+    let (uw, vw) = (u.dot(w), v.dot(w));
+    let determinant = uu * vv - uv * uv;
+    if !(determinant > 0.0) {
+        return (a[0] + u * 0.5, b[0] + v * 0.5, false);
+    }
+    let s = (uw * vv - vw * uv) / determinant;
+    let t = (uw * uv - vw * uu) / determinant;
+    let inside = max(max(-s, s - 1.0), max(-t, t - 1.0)) < EXACT;
+    (a[0] + u * clamp(s, 0.0, 1.0), b[0] + v * clamp(t, 0.0, 1.0), inside)
+}

@@ -1,0 +1,49 @@
+//! A half-space against the vertices of anything.
+
+use super::reduce::{Candidate, Candidates, reduce};
+use crate::manifold::LocalManifold;
+use crate::math::{Pose, Vector};
+use crate::shape::Shape;
+
+/// The contact of the half-space with the given unit normal, in its own frame, with a shape.
+pub(super) fn collide(normal: Vector, b: &Shape, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+    match b {
+        Shape::Ball(s) => vertices(normal, [Vector::ZERO], s.radius, pose, prediction, out),
+        Shape::Capsule(s) => vertices(normal, [s.a, s.b], s.radius, pose, prediction, out),
+        Shape::Segment(s) => vertices(normal, [s.a, s.b], 0.0, pose, prediction, out),
+        Shape::Triangle(s) => vertices(normal, [s.a, s.b, s.c], 0.0, pose, prediction, out),
+        Shape::Cuboid(s) => {
+            let side = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
+            let corner = |i: usize| Vector { x: side(i & 1), y: side(i & 2), z: side(i & 4) }.scale(s.half);
+            vertices(normal, (0..8).map(corner), 0.0, pose, prediction, out);
+        }
+        Shape::Hull(s) => vertices(normal, s.vertices().iter().copied(), 0.0, pose, prediction, out),
+        Shape::HalfSpace(_) | Shape::Foreign(_) => {}
+    }
+}
+
+fn vertices(
+    normal: Vector,
+    points: impl IntoIterator<Item = Vector>,
+    radius: f32,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    // Heights in the frame of B: one product a vertex, and only what is near is turned.
+    let (local, base) = (pose.rotation.inverse_rotate(normal), normal.dot(pose.position) - radius);
+    let mut candidates = Candidates::new();
+    for (i, p) in points.into_iter().enumerate() {
+        let separation = local.dot(p) + base;
+        if separation <= prediction {
+            let point = pose.transform(p) - normal * (radius + 0.5 * separation);
+            candidates.push(Candidate { point, separation, feature: i as u32 });
+        }
+    }
+    out.normal = normal;
+    let list = candidates.as_slice();
+    let (kept, count) = reduce(list, normal);
+    for k in &kept[..count] {
+        out.push(list[*k].point, list[*k].separation, list[*k].feature);
+    }
+}

@@ -1,0 +1,307 @@
+//! One view of every polyhedral core: hulls by reference, boxes, triangles, segments and points
+//! scaled onto the stack. The same code then collides them all.
+
+use crate::math::{F32x4, Lane, Pose, Vector, max, min};
+use crate::shape::{Capsule, Edge, EdgeBlock, Face, Hull, pack, support_index};
+
+/// The convex polyhedron (or flat limit of one) that a shape is, but for a radius around it.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub vertices: &'a [Vector],
+    pub blocks: &'a [Vector<F32x4>],
+    pub faces: &'a [Face],
+    pub loops: &'a [u32],
+    pub edges: &'a [Edge],
+    pub edge_blocks: &'a [EdgeBlock],
+    /// A point inside.
+    pub center: Vector,
+    /// About the distance from the centre to the farthest vertex.
+    pub extent: f32,
+    /// How far the surface lies outside of the polyhedron.
+    pub radius: f32,
+}
+
+impl View<'_> {
+    /// The index of the vertex farthest along a direction.
+    #[inline]
+    pub fn support(&self, direction: Vector) -> usize {
+        support_index(self.vertices, self.blocks, direction)
+    }
+
+    /// The least product of a vertex with a direction.
+    #[inline(always)]
+    pub fn lowest(&self, direction: Vector) -> f32 {
+        let d = Vector::<F32x4>::splat(direction);
+        let mut least = self.blocks[0].dot(d);
+        for block in &self.blocks[1..] {
+            least = block.dot(d).min(least);
+        }
+        min(min(least.get(0), least.get(1)), min(least.get(2), least.get(3)))
+    }
+
+    /// The vertices of a face, counter-clockwise.
+    #[inline]
+    pub fn outline(&self, face: usize) -> &[u32] {
+        let f = &self.faces[face];
+        &self.loops[f.first as usize..(f.first + f.count) as usize]
+    }
+}
+
+impl<'a> From<&'a Hull> for View<'a> {
+    fn from(hull: &'a Hull) -> Self {
+        Self {
+            vertices: hull.vertices(),
+            blocks: hull.blocks(),
+            faces: hull.faces(),
+            loops: hull.loops(),
+            edges: hull.edges(),
+            edge_blocks: hull.edge_blocks(),
+            center: hull.centroid(),
+            extent: hull.reach(),
+            radius: 0.0,
+        }
+    }
+}
+
+const fn edge(tail: u32, head: u32, left: u32, right: u32) -> Edge {
+    Edge { tail, head, left, right }
+}
+
+/// Bit k of a corner's number says on which side of axis k it lies; face 2k is the lower of axis k.
+const CUBE_LOOPS: [u32; 24] = [0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6];
+const CUBE_EDGES: [Edge; 12] = [
+    edge(0, 1, 2, 4),
+    edge(2, 3, 4, 3),
+    edge(4, 5, 5, 2),
+    edge(6, 7, 3, 5),
+    edge(0, 2, 4, 0),
+    edge(1, 3, 1, 4),
+    edge(4, 6, 0, 5),
+    edge(5, 7, 5, 1),
+    edge(0, 4, 0, 2),
+    edge(1, 5, 2, 1),
+    edge(2, 6, 3, 0),
+    edge(3, 7, 1, 3),
+];
+const TRIANGLE_LOOPS: [u32; 6] = [0, 1, 2, 0, 2, 1];
+const TRIANGLE_EDGES: [Edge; 3] = [edge(0, 1, 0, 1), edge(1, 2, 0, 1), edge(2, 0, 0, 1)];
+const SEGMENT_EDGES: [Edge; 3] = [edge(0, 1, 0, 1), edge(0, 1, 1, 2), edge(0, 1, 2, 0)];
+const NO_FACE: Face = Face { normal: Vector::ZERO, offset: 0.0, first: 0, count: 0 };
+
+/// Room on the stack for a small polyhedron.
+pub(super) struct Small {
+    vertices: [Vector; 8],
+    blocks: [Vector<F32x4>; 2],
+    faces: [Face; 6],
+    edge_blocks: [EdgeBlock; 3],
+    loops: &'static [u32],
+    edges: &'static [Edge],
+    vertex_count: usize,
+    face_count: usize,
+    center: Vector,
+    extent: f32,
+    radius: f32,
+}
+
+impl Small {
+    /// One point: the core of a ball.
+    pub fn point(at: Vector, radius: f32) -> Self {
+        let empty = EdgeBlock {
+            direction: Vector::ZERO,
+            left: Vector::ZERO,
+            right: Vector::ZERO,
+            tail: Vector::ZERO,
+        };
+        let mut small = Self {
+            vertices: [at; 8],
+            blocks: [Vector::ZERO; 2],
+            faces: [NO_FACE; 6],
+            edge_blocks: [empty; 3],
+            loops: &[],
+            edges: &[],
+            vertex_count: 1,
+            face_count: 0,
+            center: at,
+            extent: radius,
+            radius,
+        };
+        small.fill_blocks();
+        small
+    }
+
+    /// A box.
+    pub fn cuboid(half: Vector) -> Self {
+        let mut small = Self::point(Vector::ZERO, 0.0);
+        let side = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
+        small.vertices =
+            core::array::from_fn(|i| Vector { x: side(i & 1), y: side(i & 2), z: side(i & 4) }.scale(half));
+        let h = half.to_array();
+        small.faces = core::array::from_fn(|i| Face {
+            normal: Vector::AXES[i / 2] * side(i & 1),
+            offset: h[i / 2],
+            first: 4 * i as u32,
+            count: 4,
+        });
+        (small.loops, small.edges) = (&CUBE_LOOPS, &CUBE_EDGES);
+        (small.vertex_count, small.face_count) = (8, 6);
+        small.extent = half.length();
+        let directions = core::array::from_fn(|i| Vector::AXES[i / 4]);
+        let sides = [|e: &Edge| e.left as usize, |e: &Edge| e.right as usize]
+            .map(|f| core::array::from_fn(|i| small.faces[f(&CUBE_EDGES[i])].normal));
+        small.fill_edges(&directions, &sides);
+        small.fill_blocks();
+        small
+    }
+
+    /// A triangle as a flat hull with two faces; without area, its longest side.
+    pub fn triangle(corners: [Vector; 3]) -> Self {
+        let [a, b, c] = corners;
+        let sides = [b - a, c - b, a - c];
+        let size = sides.iter().fold(0.0, |m, s| max(m, s.abs().max_element()));
+        let k = if size > 0.0 { 1.0 / size } else { 0.0 };
+        let area = (sides[0] * k).cross(sides[1] * k);
+        let twice_area = area.length();
+        if !(twice_area > 1.0e-6) {
+            let mut longest = 0;
+            for i in 1..3 {
+                if sides[i].abs().max_element() > sides[longest].abs().max_element() {
+                    longest = i;
+                }
+            }
+            return Self::segment(corners[longest], corners[(longest + 1) % 3], 0.0);
+        }
+        let normal = area * (1.0 / twice_area);
+        let mut small = Self::point(a, 0.0);
+        (small.vertices[1], small.vertices[2]) = (b, c);
+        small.vertices[3] = c;
+        small.vertex_count = 3;
+        small.center = (a + b + c) * (1.0 / 3.0);
+        small.extent = corners.iter().fold(0.0, |m, p| max(m, (*p - small.center).length()));
+        let offset = normal.dot(small.center);
+        small.faces[0] = Face { normal, offset, first: 0, count: 3 };
+        small.faces[1] = Face { normal: -normal, offset: -offset, first: 3, count: 3 };
+        small.face_count = 2;
+        (small.loops, small.edges) = (&TRIANGLE_LOOPS, &TRIANGLE_EDGES);
+        let unit = sides.map(|s| (s * k) * (1.0 / max((s * k).length(), f32::MIN_POSITIVE)));
+        let directions = core::array::from_fn(|i| unit[i.min(2)]);
+        small.fill_edges(&directions, &[[normal; 12], [-normal; 12]]);
+        small.fill_blocks();
+        small
+    }
+
+    /// A segment with a radius: one edge whose Gauss map is the whole great circle about it, given as
+    /// three arcs of 120°, as of a prism that has become thin. It has no faces.
+    pub fn segment(a: Vector, b: Vector, radius: f32) -> Self {
+        let along = b - a;
+        let size = along.abs().max_element();
+        if !(size > 0.0) {
+            return Self::point(a, radius);
+        }
+        let unit = along * (1.0 / size);
+        let unit = unit * (1.0 / unit.length());
+        let mut small = Self::point(a, radius);
+        for v in &mut small.vertices[1..] {
+            *v = b;
+        }
+        small.vertex_count = 2;
+        small.center = (a + b) * 0.5;
+        small.extent = 0.5 * along.length() + radius;
+        small.edges = &SEGMENT_EDGES;
+        let u = unit.any_orthonormal();
+        let v = unit.cross(u);
+        // cos 120° and sin 120°.
+        let spokes = [u, u * -0.5 + v * 0.866_025_4, u * -0.5 - v * 0.866_025_4];
+        let spoke = |i: usize| core::array::from_fn(|k| spokes[(k.min(2) + i) % 3]);
+        small.fill_edges(&[unit; 12], &[spoke(0), spoke(1)]);
+        small.fill_blocks();
+        small
+    }
+
+    /// The core of a capsule.
+    pub fn capsule(capsule: &Capsule) -> Self {
+        Self::segment(capsule.a, capsule.b, capsule.radius)
+    }
+
+    fn fill_blocks(&mut self) {
+        for (block, packed) in self.blocks.iter_mut().zip(pack(&self.vertices)) {
+            *block = packed;
+        }
+    }
+
+    fn fill_edges(&mut self, directions: &[Vector; 12], sides: &[[Vector; 12]; 2]) {
+        let last = self.edges.len() - 1;
+        let tails: [Vector; 12] =
+            core::array::from_fn(|i| self.vertices[self.edges[i.min(last)].tail as usize]);
+        let columns = pack(directions).zip(pack(&sides[0])).zip(pack(&sides[1]).zip(pack(&tails)));
+        for (block, ((direction, left), (right, tail))) in self.edge_blocks.iter_mut().zip(columns) {
+            *block = EdgeBlock { direction, left, right, tail };
+        }
+    }
+
+    /// The view that the queries take.
+    pub fn view(&self) -> View<'_> {
+        View {
+            vertices: &self.vertices[..self.vertex_count],
+            blocks: &self.blocks[..self.vertex_count.div_ceil(4)],
+            faces: &self.faces[..self.face_count],
+            loops: self.loops,
+            edges: self.edges,
+            edge_blocks: &self.edge_blocks[..self.edges.len().div_ceil(4)],
+            center: self.center,
+            extent: self.extent,
+            radius: self.radius,
+        }
+    }
+}
+
+/// A pose as a matrix: several vectors are turned by it.
+#[derive(Clone, Copy)]
+pub(super) struct Frame {
+    /// Where the axes of the inner frame point.
+    pub axes: [Vector; 3],
+    /// Where the inner origin is.
+    pub position: Vector,
+}
+
+impl Frame {
+    #[inline]
+    pub fn new(pose: &Pose) -> Self {
+        Self { axes: pose.rotation.axes(), position: pose.position }
+    }
+
+    /// The outer frame as seen from the inner one.
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        let [x, y, z] = self.axes;
+        let axes = [
+            Vector { x: x.x, y: y.x, z: z.x },
+            Vector { x: x.y, y: y.y, z: z.y },
+            Vector { x: x.z, y: y.z, z: z.z },
+        ];
+        Self { axes, position: -self.direction_in(self.position) }
+    }
+
+    /// Turns a direction outward.
+    #[inline(always)]
+    pub fn direction<N: Lane>(&self, v: Vector<N>) -> Vector<N> {
+        let [x, y, z] = self.axes.map(Vector::<N>::splat);
+        x * v.x + y * v.y + z * v.z
+    }
+
+    /// Takes a point outward.
+    #[inline(always)]
+    pub fn point<N: Lane>(&self, v: Vector<N>) -> Vector<N> {
+        self.direction(v) + Vector::<N>::splat(self.position)
+    }
+
+    /// Turns a direction inward.
+    #[inline(always)]
+    pub fn direction_in(&self, v: Vector) -> Vector {
+        Vector { x: self.axes[0].dot(v), y: self.axes[1].dot(v), z: self.axes[2].dot(v) }
+    }
+}
+
+/// The larger of two extents, and the smaller.
+pub(super) fn extents(a: &View, b: &View) -> (f32, f32) {
+    (max(a.extent, b.extent), min(a.extent, b.extent))
+}

@@ -1,0 +1,65 @@
+//! Two shapes and their relative pose give contact points with feature ids.
+//!
+//! One allocation-free function per pair of native shapes. All of them work in the frame of shape A,
+//! with the normal from A to B; the narrow phase turns the result into the world. Points lie midway
+//! between the two surfaces. A point is given as long as its separation is below the prediction
+//! distance: a positive separation is a speculative contact.
+
+mod cache;
+#[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
+#[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
+mod dim;
+
+pub use cache::FeatureCache;
+pub use dim::collide;
+
+use crate::math::{MAX_POINTS, Vector};
+
+/// One contact point in the frame of shape A.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LocalPoint {
+    /// Midway between the two surfaces, in metres.
+    pub point: Vector,
+    /// The distance between the surfaces along the normal; negative where they overlap.
+    pub separation: f32,
+    /// Which features of the two shapes make this point; equal in the next step if the same ones do.
+    pub feature: u32,
+}
+
+/// The contact of two convex shapes in the frame of shape A.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LocalManifold {
+    /// The unit normal from A to B.
+    pub normal: Vector,
+    /// The points; the first `count` are valid.
+    pub points: [LocalPoint; MAX_POINTS],
+    /// How many points there are, 0 if the shapes are farther apart than the prediction distance.
+    pub count: usize,
+}
+
+impl LocalManifold {
+    /// The valid points.
+    pub fn points(&self) -> &[LocalPoint] {
+        &self.points[..self.count]
+    }
+
+    /// Adds a point. Points beyond `MAX_POINTS` are dropped: functions that find more reduce first.
+    pub fn push(&mut self, point: Vector, separation: f32, feature: u32) {
+        debug_assert!(self.count < MAX_POINTS, "a manifold is reduced before it is filled");
+        if self.count < MAX_POINTS {
+            self.points[self.count] = LocalPoint { point, separation, feature };
+            self.count += 1;
+        }
+    }
+
+    /// The same contact seen from shape B: `pose` is that of B in A's frame, which this manifold is in.
+    /// The result is in B's frame with the normal from B to A.
+    pub fn flipped(&self, pose: &crate::math::Pose) -> Self {
+        let mut out = *self;
+        out.normal = pose.rotation.inverse_rotate(-self.normal);
+        for p in &mut out.points[..self.count] {
+            p.point = pose.inverse_transform(p.point);
+        }
+        out
+    }
+}

@@ -1,0 +1,481 @@
+//! The algebra of the plane. `dim3.rs` has the same types with the same operations.
+
+use super::{Lane, Num, Scalar};
+
+/// The number of spatial dimensions.
+pub const DIM: usize = 2;
+/// The most points one manifold holds after reduction.
+pub const MAX_POINTS: usize = 2;
+
+/// A direction, offset or linear velocity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Vector<N = f32> {
+    /// Rightwards.
+    pub x: N,
+    /// Upwards.
+    pub y: N,
+}
+
+/// An angular velocity, torque or moment: a number about the axis out of the plane, counter-clockwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Angular<N = f32> {
+    /// About the axis out of the plane.
+    pub z: N,
+}
+
+/// The inverse of a moment of inertia; zero does not turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct InvInertia<N = f32> {
+    /// 1 / I, in 1 / (kg·m²).
+    pub zz: N,
+}
+
+/// A rotation, as the cosine and sine of its angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Rot<N = f32> {
+    /// The cosine of the angle.
+    pub cos: N,
+    /// The sine of the angle.
+    pub sin: N,
+}
+
+/// A vector in the tangent space of a contact: one number along the tangent.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Tangent<N = f32> {
+    /// Along the tangent.
+    pub x: N,
+}
+
+/// The tangent directions of a contact normal.
+#[derive(Clone, Copy, Debug)]
+pub struct TangentFrame<N = f32> {
+    x: Vector<N>,
+}
+
+/// The effective mass of a contact's tangent row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct TangentMass<N = f32> {
+    xx: N,
+}
+
+impl Vector {
+    /// The unit vector to the right.
+    pub const X: Self = Self { x: 1.0, y: 0.0 };
+    /// The unit vector upwards.
+    pub const Y: Self = Self { x: 0.0, y: 1.0 };
+    /// All components 1.
+    pub const ONE: Self = Self::splat_const(1.0);
+    /// The unit vectors.
+    pub const AXES: [Self; DIM] = [Self::X, Self::Y];
+
+    const fn splat_const(v: f32) -> Self {
+        Self { x: v, y: v }
+    }
+
+    /// Makes a vector from its components.
+    #[inline]
+    pub const fn from_array(v: [f32; DIM]) -> Self {
+        Self { x: v[0], y: v[1] }
+    }
+
+    /// The components, in order.
+    #[inline]
+    pub const fn to_array(self) -> [f32; DIM] {
+        [self.x, self.y]
+    }
+
+    /// Widens a local vector to world precision.
+    #[inline(always)]
+    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+    pub fn to_world(self) -> Vector<Scalar> {
+        Vector { x: self.x as Scalar, y: self.y as Scalar }
+    }
+
+    /// The vector turned by a quarter counter-clockwise.
+    #[inline]
+    pub fn perp(self) -> Self {
+        Self { x: -self.y, y: self.x }
+    }
+
+    /// The scalar cross product, `x1 y2 − y1 x2`.
+    #[inline]
+    pub fn perp_dot(self, other: Self) -> f32 {
+        self.x * other.y - self.y * other.x
+    }
+
+    /// Each component's absolute value.
+    #[inline]
+    pub fn abs(self) -> Self {
+        Self { x: self.x.abs(), y: self.y.abs() }
+    }
+
+    /// The componentwise smaller values.
+    #[inline]
+    pub fn min(self, other: Self) -> Self {
+        Self { x: super::min(self.x, other.x), y: super::min(self.y, other.y) }
+    }
+
+    /// The componentwise larger values.
+    #[inline]
+    pub fn max(self, other: Self) -> Self {
+        Self { x: super::max(self.x, other.x), y: super::max(self.y, other.y) }
+    }
+
+    /// The smallest component.
+    #[inline]
+    pub fn min_element(self) -> f32 {
+        super::min(self.x, self.y)
+    }
+
+    /// The largest component.
+    #[inline]
+    pub fn max_element(self) -> f32 {
+        super::max(self.x, self.y)
+    }
+
+    /// Whether no component is infinite or NaN.
+    #[inline]
+    pub fn is_finite(self) -> bool {
+        self.x.is_finite() && self.y.is_finite()
+    }
+
+    /// A unit vector at right angles to this unit vector.
+    #[inline]
+    pub fn any_orthonormal(self) -> Self {
+        self.perp()
+    }
+}
+
+impl Vector<Scalar> {
+    /// Narrows a difference of world positions.
+    #[inline(always)]
+    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+    pub fn to_local(self) -> Vector {
+        Vector { x: self.x as f32, y: self.y as f32 }
+    }
+
+    /// Each component through `f`, for roundings other than the nearest.
+    #[inline]
+    pub fn map_to_f32(self, f: impl Fn(Scalar) -> f32) -> Vector {
+        Vector { x: f(self.x), y: f(self.y) }
+    }
+
+    /// Whether no component of a world position is infinite or NaN.
+    #[inline]
+    pub fn is_finite_world(self) -> bool {
+        self.x.is_finite() && self.y.is_finite()
+    }
+}
+
+impl<N: Num> Vector<N> {
+    /// All components 0.
+    pub const ZERO: Self = Self { x: N::ZERO, y: N::ZERO };
+
+    /// The dot product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> N {
+        self.x * other.x + self.y * other.y
+    }
+    /// The cross product `self × other`, as a moment.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Angular<N> {
+        Angular { z: self.x * other.y - self.y * other.x }
+    }
+    /// The componentwise product.
+    #[inline(always)]
+    pub fn scale(self, other: Self) -> Self {
+        Self { x: self.x * other.x, y: self.y * other.y }
+    }
+    /// The dot product with itself.
+    #[inline(always)]
+    pub fn length_squared(self) -> N {
+        self.dot(self)
+    }
+    /// The Euclidean length.
+    #[inline(always)]
+    pub fn length(self) -> N {
+        self.length_squared().sqrt()
+    }
+}
+
+impl<N: Lane> Vector<N> {
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn splat(v: Vector) -> Self {
+        Self { x: N::splat(v.x), y: N::splat(v.y) }
+    }
+    /// Reads lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Vector {
+        Vector { x: self.x.get(i), y: self.y.get(i) }
+    }
+    /// Writes lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: Vector) {
+        self.x.set(i, v.x);
+        self.y.set(i, v.y);
+    }
+}
+
+impl<N: Num> Angular<N> {
+    /// No turn.
+    pub const ZERO: Self = Self { z: N::ZERO };
+
+    /// The velocity `ω × r` of a point at `r`.
+    #[inline(always)]
+    pub fn cross(self, r: Vector<N>) -> Vector<N> {
+        Vector { x: -self.z * r.y, y: self.z * r.x }
+    }
+    /// The dot product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> N {
+        self.z * other.z
+    }
+    /// The dot product with itself.
+    #[inline(always)]
+    pub fn length_squared(self) -> N {
+        self.z * self.z
+    }
+}
+
+impl Angular {
+    /// Whether the value is neither infinite nor NaN.
+    #[inline]
+    pub fn is_finite(self) -> bool {
+        self.z.is_finite()
+    }
+    /// The magnitude.
+    #[inline]
+    pub fn length(self) -> f32 {
+        self.z.abs()
+    }
+}
+
+impl<N: Num> InvInertia<N> {
+    /// Does not turn.
+    pub const ZERO: Self = Self { zz: N::ZERO };
+
+    /// Every entry times a factor.
+    #[inline(always)]
+    pub fn scaled(self, factor: N) -> Self {
+        Self { zz: self.zz * factor }
+    }
+    /// The change of angular velocity that an angular impulse makes.
+    #[inline(always)]
+    pub fn apply(self, impulse: Angular<N>) -> Angular<N> {
+        Angular { z: self.zz * impulse.z }
+    }
+}
+
+impl<N: Lane> InvInertia<N> {
+    /// Writes lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: InvInertia) {
+        self.zz.set(i, v.zz);
+    }
+}
+
+impl InvInertia {
+    /// The inverse inertia in world axes of a body turned by `rotation`; in 2D the same.
+    #[inline]
+    pub fn rotated(self, _rotation: Rot) -> Self {
+        self
+    }
+    /// The inverse inertia of a body whose turning about the axes in `locks` is held.
+    #[inline]
+    pub fn locked(self, locks: AxisLocks) -> Self {
+        if locks.rotation() == 0 { self } else { Self::ZERO }
+    }
+}
+
+impl<N: Num> Default for Rot<N> {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl<N: Num> Rot<N> {
+    /// No turn.
+    pub const IDENTITY: Self = Self { cos: N::ONE, sin: N::ZERO };
+
+    /// Turns a vector.
+    #[inline(always)]
+    pub fn rotate(self, v: Vector<N>) -> Vector<N> {
+        Vector { x: self.cos * v.x - self.sin * v.y, y: self.sin * v.x + self.cos * v.y }
+    }
+    /// Turns a vector the other way.
+    #[inline(always)]
+    pub fn inverse_rotate(self, v: Vector<N>) -> Vector<N> {
+        Vector { x: self.cos * v.x + self.sin * v.y, y: self.cos * v.y - self.sin * v.x }
+    }
+    /// The rotation the other way.
+    #[inline(always)]
+    pub fn inverse(self) -> Self {
+        Self { cos: self.cos, sin: -self.sin }
+    }
+    /// `other` first, then `self`. Not renormalised.
+    #[inline(always)]
+    pub fn mul(self, other: Self) -> Self {
+        Self {
+            cos: self.cos * other.cos - self.sin * other.sin,
+            sin: self.sin * other.cos + self.cos * other.sin,
+        }
+    }
+    /// How far the tip of `arm` moves along `normal` when it turns: n · (R r − r), given r × n.
+    /// In 2D (cos − 1) n · r + sin (r × n).
+    #[inline(always)]
+    pub fn shift_along(self, arm: Vector<N>, arm_cross_normal: Angular<N>, normal: Vector<N>) -> N {
+        (self.cos - N::ONE) * arm.dot(normal) + self.sin * arm_cross_normal.z
+    }
+    /// Scaled to unit length.
+    #[inline(always)]
+    pub fn normalized(self) -> Self {
+        let length = (self.cos * self.cos + self.sin * self.sin).sqrt();
+        Self { cos: self.cos / length, sin: self.sin / length }
+    }
+    /// Turned further by the small angle `delta`, by one normalised Euler step `q + ½ δ q`.
+    #[inline(always)]
+    pub fn integrated(self, delta: Angular<N>) -> Self {
+        Self { cos: self.cos - delta.z * self.sin, sin: self.sin + delta.z * self.cos }.normalized()
+    }
+}
+
+impl Rot {
+    /// The rotation by an angle in radians, counter-clockwise.
+    pub fn from_angle(angle: f32) -> Self {
+        let (sin, cos) = super::sin_cos(f64::from(angle));
+        Self { cos: cos as f32, sin: sin as f32 }
+    }
+    /// Whether no component is infinite or NaN.
+    #[inline]
+    pub fn is_finite(self) -> bool {
+        self.cos.is_finite() && self.sin.is_finite()
+    }
+    /// How far two rotations are apart: the sine of the angle between them, about its size when small.
+    #[inline]
+    pub fn difference(self, other: Self) -> Angular {
+        Angular { z: self.inverse().mul(other).sin }
+    }
+    /// The cosine of the angle between two rotations.
+    #[inline]
+    pub fn cos_between(self, other: Self) -> f32 {
+        self.cos * other.cos + self.sin * other.sin
+    }
+    /// The columns of the rotation matrix: where the axes go.
+    #[inline]
+    pub fn axes(self) -> [Vector; DIM] {
+        [Vector { x: self.cos, y: self.sin }, Vector { x: -self.sin, y: self.cos }]
+    }
+}
+
+impl<N: Num> Tangent<N> {
+    /// Nothing along the tangent.
+    pub const ZERO: Self = Self { x: N::ZERO };
+}
+
+impl<N: Lane> Tangent<N> {
+    /// Shortened to at most `limit` (≥ 0).
+    #[inline(always)]
+    pub fn clamp_length(self, limit: N) -> Self {
+        Self { x: self.x.max(-limit).min(limit) }
+    }
+    /// Writes lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: Tangent) {
+        self.x.set(i, v.x);
+    }
+    /// Reads lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Tangent {
+        Tangent { x: self.x.get(i) }
+    }
+}
+
+impl<N: Lane> TangentFrame<N> {
+    /// The tangent of a unit normal: the normal turned clockwise by a quarter.
+    #[inline(always)]
+    pub fn new(normal: Vector<N>) -> Self {
+        Self { x: Vector { x: normal.y, y: -normal.x } }
+    }
+    /// The part of `v` in the tangent space.
+    #[inline(always)]
+    pub fn project(&self, v: Vector<N>) -> Tangent<N> {
+        Tangent { x: self.x.dot(v) }
+    }
+    /// The vector of a tangent-space vector.
+    #[inline(always)]
+    pub fn expand(&self, t: Tangent<N>) -> Vector<N> {
+        self.x * t.x
+    }
+    /// The inverse of the tangent row's K for two bodies of the inverse inertias and arms given:
+    /// K = tᵀ M⁻¹ t + Σ (rᵢ × t)ᵀ Iᵢ⁻¹ (rᵢ × t), where `inv_mass` applies the summed M⁻¹. Zero where
+    /// K is zero.
+    #[inline(always)]
+    pub fn mass(
+        &self,
+        inv_mass: impl Fn(Vector<N>) -> Vector<N>,
+        bodies: [(InvInertia<N>, Vector<N>); 2],
+    ) -> TangentMass<N> {
+        let mut k = self.x.dot(inv_mass(self.x));
+        for (inertia, arm) in bodies {
+            let c = arm.cross(self.x);
+            k += c.dot(inertia.apply(c));
+        }
+        TangentMass { xx: N::select(N::ZERO.lt(k), N::ONE / k, N::ZERO) }
+    }
+}
+
+impl<N: Num> TangentMass<N> {
+    /// The impulse that makes the tangent velocity `v` vanish, but for its sign.
+    #[inline(always)]
+    pub fn apply(self, v: Tangent<N>) -> Tangent<N> {
+        Tangent { x: self.xx * v.x }
+    }
+}
+
+/// Translation and rotation axes of the world along or about which a body does not move.
+///
+/// Bits as in Avian's `LockedAxes`: translation x, y at bits 5, 4; rotation at bit 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AxisLocks(pub u8);
+
+impl AxisLocks {
+    /// Nothing held.
+    pub const NONE: Self = Self(0);
+
+    /// The rotation bits, 0 if it may turn.
+    #[inline]
+    pub fn rotation(self) -> u8 {
+        self.0 & 0b000_001
+    }
+    /// 1 along the free axes, 0 along the held ones.
+    #[inline]
+    pub fn translation_factors(self) -> Vector {
+        let free = |bit: u8| if self.0 & bit == 0 { 1.0 } else { 0.0 };
+        Vector { x: free(0b100_000), y: free(0b010_000) }
+    }
+    /// 1 about the free axes, 0 about the held ones.
+    #[inline]
+    pub fn rotation_factors(self) -> Angular {
+        Angular { z: if self.rotation() == 0 { 1.0 } else { 0.0 } }
+    }
+    /// Whether some, but not all, translation axes are held.
+    #[inline]
+    pub fn is_translation_partial(self) -> bool {
+        let t = self.0 & 0b110_000;
+        t != 0 && t != 0b110_000
+    }
+    /// Whether every translation axis is held.
+    #[inline]
+    pub fn is_translation_full(self) -> bool {
+        self.0 & 0b110_000 == 0b110_000
+    }
+}
+
+componentwise! { Vector { x, y } Angular { z } Tangent { x } }

@@ -1,0 +1,598 @@
+//! The algebra of space. `dim2.rs` has the same types with the same operations.
+
+use super::{Lane, Num, Scalar};
+
+/// The number of spatial dimensions.
+pub const DIM: usize = 3;
+/// The most points one manifold holds after reduction.
+pub const MAX_POINTS: usize = 4;
+
+/// A direction, offset or linear velocity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Vector<N = f32> {
+    /// Rightwards.
+    pub x: N,
+    /// Upwards.
+    pub y: N,
+    /// Towards the viewer.
+    pub z: N,
+}
+
+/// An angular velocity, torque or moment, along its axis, right-handed.
+pub type Angular<N = f32> = Vector<N>;
+
+/// The inverse of an inertia tensor, symmetric; zero does not turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct InvInertia<N = f32> {
+    /// Diagonal, x.
+    pub xx: N,
+    /// Diagonal, y.
+    pub yy: N,
+    /// Diagonal, z.
+    pub zz: N,
+    /// Off the diagonal, x and y.
+    pub xy: N,
+    /// Off the diagonal, x and z.
+    pub xz: N,
+    /// Off the diagonal, y and z.
+    pub yz: N,
+}
+
+/// A rotation, as a unit quaternion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Rot<N = f32> {
+    /// Imaginary, i.
+    pub x: N,
+    /// Imaginary, j.
+    pub y: N,
+    /// Imaginary, k.
+    pub z: N,
+    /// Real.
+    pub w: N,
+}
+
+/// A vector in the tangent plane of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Tangent<N = f32> {
+    /// Along the first tangent.
+    pub x: N,
+    /// Along the second tangent.
+    pub y: N,
+}
+
+/// The tangent directions of a contact normal.
+#[derive(Clone, Copy, Debug)]
+pub struct TangentFrame<N = f32> {
+    x: Vector<N>,
+    y: Vector<N>,
+}
+
+/// The effective mass of a contact's coupled tangent rows, a symmetric 2 × 2 matrix.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct TangentMass<N = f32> {
+    xx: N,
+    yy: N,
+    xy: N,
+}
+
+impl Vector {
+    /// The unit vector to the right.
+    pub const X: Self = Self { x: 1.0, y: 0.0, z: 0.0 };
+    /// The unit vector upwards.
+    pub const Y: Self = Self { x: 0.0, y: 1.0, z: 0.0 };
+    /// The unit vector towards the viewer.
+    pub const Z: Self = Self { x: 0.0, y: 0.0, z: 1.0 };
+    /// All components 1.
+    pub const ONE: Self = Self { x: 1.0, y: 1.0, z: 1.0 };
+    /// The unit vectors.
+    pub const AXES: [Self; DIM] = [Self::X, Self::Y, Self::Z];
+
+    /// Makes a vector from its components.
+    #[inline]
+    pub const fn from_array(v: [f32; DIM]) -> Self {
+        Self { x: v[0], y: v[1], z: v[2] }
+    }
+
+    /// The components, in order.
+    #[inline]
+    pub const fn to_array(self) -> [f32; DIM] {
+        [self.x, self.y, self.z]
+    }
+
+    /// Widens a local vector to world precision.
+    #[inline(always)]
+    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+    pub fn to_world(self) -> Vector<Scalar> {
+        Vector { x: self.x as Scalar, y: self.y as Scalar, z: self.z as Scalar }
+    }
+
+    /// Each component's absolute value.
+    #[inline]
+    pub fn abs(self) -> Self {
+        Self { x: self.x.abs(), y: self.y.abs(), z: self.z.abs() }
+    }
+
+    /// The componentwise smaller values.
+    #[inline]
+    pub fn min(self, other: Self) -> Self {
+        Self {
+            x: super::min(self.x, other.x),
+            y: super::min(self.y, other.y),
+            z: super::min(self.z, other.z),
+        }
+    }
+
+    /// The componentwise larger values.
+    #[inline]
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            x: super::max(self.x, other.x),
+            y: super::max(self.y, other.y),
+            z: super::max(self.z, other.z),
+        }
+    }
+
+    /// The smallest component.
+    #[inline]
+    pub fn min_element(self) -> f32 {
+        super::min(super::min(self.x, self.y), self.z)
+    }
+
+    /// The largest component.
+    #[inline]
+    pub fn max_element(self) -> f32 {
+        super::max(super::max(self.x, self.y), self.z)
+    }
+
+    /// Whether no component is infinite or NaN.
+    #[inline]
+    pub fn is_finite(self) -> bool {
+        self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+    }
+
+    /// A unit vector at right angles to this unit vector.
+    #[inline]
+    pub fn any_orthonormal(self) -> Self {
+        TangentFrame::new(self).x
+    }
+}
+
+impl Vector<Scalar> {
+    /// Narrows a difference of world positions.
+    #[inline(always)]
+    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+    pub fn to_local(self) -> Vector {
+        Vector { x: self.x as f32, y: self.y as f32, z: self.z as f32 }
+    }
+
+    /// Each component through `f`, for roundings other than the nearest.
+    #[inline]
+    pub fn map_to_f32(self, f: impl Fn(Scalar) -> f32) -> Vector {
+        Vector { x: f(self.x), y: f(self.y), z: f(self.z) }
+    }
+
+    /// Whether no component of a world position is infinite or NaN.
+    #[inline]
+    pub fn is_finite_world(self) -> bool {
+        self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+    }
+}
+
+impl<N: Num> Vector<N> {
+    /// All components 0.
+    pub const ZERO: Self = Self { x: N::ZERO, y: N::ZERO, z: N::ZERO };
+
+    /// The dot product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> N {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+    /// The cross product `self × other`: a moment, or the velocity `ω × r` of a point at `r`.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+    /// The componentwise product.
+    #[inline(always)]
+    pub fn scale(self, other: Self) -> Self {
+        Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
+    }
+    /// The dot product with itself.
+    #[inline(always)]
+    pub fn length_squared(self) -> N {
+        self.dot(self)
+    }
+    /// The Euclidean length.
+    #[inline(always)]
+    pub fn length(self) -> N {
+        self.length_squared().sqrt()
+    }
+}
+
+impl<N: Lane> Vector<N> {
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn splat(v: Vector) -> Self {
+        Self { x: N::splat(v.x), y: N::splat(v.y), z: N::splat(v.z) }
+    }
+    /// Reads lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Vector {
+        Vector { x: self.x.get(i), y: self.y.get(i), z: self.z.get(i) }
+    }
+    /// Writes lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: Vector) {
+        self.x.set(i, v.x);
+        self.y.set(i, v.y);
+        self.z.set(i, v.z);
+    }
+}
+
+impl<N: Num> InvInertia<N> {
+    /// Does not turn.
+    pub const ZERO: Self =
+        Self { xx: N::ZERO, yy: N::ZERO, zz: N::ZERO, xy: N::ZERO, xz: N::ZERO, yz: N::ZERO };
+
+    /// Every entry times a factor.
+    #[inline(always)]
+    pub fn scaled(self, factor: N) -> Self {
+        Self { xx: self.xx * factor, yy: self.yy * factor, zz: self.zz * factor, xy: self.xy * factor, xz: self.xz * factor, yz: self.yz * factor }
+    }
+    /// The change of angular velocity that an angular impulse makes.
+    #[inline(always)]
+    pub fn apply(self, v: Angular<N>) -> Angular<N> {
+        Vector {
+            x: self.xx * v.x + self.xy * v.y + self.xz * v.z,
+            y: self.xy * v.x + self.yy * v.y + self.yz * v.z,
+            z: self.xz * v.x + self.yz * v.y + self.zz * v.z,
+        }
+    }
+}
+
+impl<N: Lane> InvInertia<N> {
+    /// Writes lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: InvInertia) {
+        self.xx.set(i, v.xx);
+        self.yy.set(i, v.yy);
+        self.zz.set(i, v.zz);
+        self.xy.set(i, v.xy);
+        self.xz.set(i, v.xz);
+        self.yz.set(i, v.yz);
+    }
+}
+
+impl InvInertia {
+    /// A diagonal tensor.
+    #[inline]
+    pub const fn from_diagonal(v: Vector) -> Self {
+        Self { xx: v.x, yy: v.y, zz: v.z, xy: 0.0, xz: 0.0, yz: 0.0 }
+    }
+
+    /// The tensor in world axes of a body turned by `rotation`: R I R⁻¹.
+    #[inline]
+    pub fn rotated(self, rotation: Rot) -> Self {
+        let [cx, cy, cz] = rotation.axes();
+        // Rows of R are (cx.x, cy.x, cz.x), …; first T = R I, then T Rᵀ, of which six entries differ.
+        let row = |a: f32, b: f32, c: f32| Vector {
+            x: a * self.xx + b * self.xy + c * self.xz,
+            y: a * self.xy + b * self.yy + c * self.yz,
+            z: a * self.xz + b * self.yz + c * self.zz,
+        };
+        let r = [
+            Vector { x: cx.x, y: cy.x, z: cz.x },
+            Vector { x: cx.y, y: cy.y, z: cz.y },
+            Vector { x: cx.z, y: cy.z, z: cz.z },
+        ];
+        let t = [row(r[0].x, r[0].y, r[0].z), row(r[1].x, r[1].y, r[1].z), row(r[2].x, r[2].y, r[2].z)];
+        Self {
+            xx: t[0].dot(r[0]),
+            yy: t[1].dot(r[1]),
+            zz: t[2].dot(r[2]),
+            xy: t[0].dot(r[1]),
+            xz: t[0].dot(r[2]),
+            yz: t[1].dot(r[2]),
+        }
+    }
+
+    /// The inverse of this symmetric matrix; zero if it is singular.
+    pub fn inverse(self) -> Self {
+        let Self { xx, yy, zz, xy, xz, yz } = self;
+        let (a, b, c) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
+        let determinant = xx * a + xy * b + xz * c;
+        // NaN and zero both fail the comparison.
+        if !(determinant.abs() > 0.0) || !determinant.is_finite() {
+            return Self::ZERO;
+        }
+        let k = 1.0 / determinant;
+        Self {
+            xx: a * k,
+            yy: (xx * zz - xz * xz) * k,
+            zz: (xx * yy - xy * xy) * k,
+            xy: b * k,
+            xz: c * k,
+            yz: (xy * xz - xx * yz) * k,
+        }
+    }
+
+    /// The inverse inertia, in world axes, of a body whose turning about the axes in `locks` is held.
+    ///
+    /// Holding an axis is an infinite moment of inertia about it. In the inverse that is a rank-one
+    /// downdate per held axis: I⁻¹ − (I⁻¹ e)(I⁻¹ e)ᵀ / (eᵀ I⁻¹ e).
+    pub fn locked(self, locks: AxisLocks) -> Self {
+        let mut m = self;
+        for (bit, axis) in [(0b100, Vector::X), (0b010, Vector::Y), (0b001, Vector::Z)] {
+            if locks.0 & bit != 0 {
+                let column = m.apply(axis);
+                let pivot = axis.dot(column);
+                if pivot > 0.0 {
+                    m.xx -= column.x * column.x / pivot;
+                    m.yy -= column.y * column.y / pivot;
+                    m.zz -= column.z * column.z / pivot;
+                    m.xy -= column.x * column.y / pivot;
+                    m.xz -= column.x * column.z / pivot;
+                    m.yz -= column.y * column.z / pivot;
+                }
+            }
+        }
+        // What is held is exactly zero, whatever the rounding left.
+        let f = locks.rotation_factors();
+        Self {
+            xx: m.xx * f.x,
+            yy: m.yy * f.y,
+            zz: m.zz * f.z,
+            xy: m.xy * f.x * f.y,
+            xz: m.xz * f.x * f.z,
+            yz: m.yz * f.y * f.z,
+        }
+    }
+}
+
+impl<N: Num> Default for Rot<N> {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl<N: Num> Rot<N> {
+    /// No turn.
+    pub const IDENTITY: Self = Self { x: N::ZERO, y: N::ZERO, z: N::ZERO, w: N::ONE };
+
+    /// Turns a vector: v + 2 w (u × v) + 2 u × (u × v), with u the imaginary part.
+    #[inline(always)]
+    pub fn rotate(self, v: Vector<N>) -> Vector<N> {
+        let u = Vector { x: self.x, y: self.y, z: self.z };
+        let t = u.cross(v);
+        let t = t + t;
+        v + t * self.w + u.cross(t)
+    }
+    /// Turns a vector the other way.
+    #[inline(always)]
+    pub fn inverse_rotate(self, v: Vector<N>) -> Vector<N> {
+        self.inverse().rotate(v)
+    }
+    /// The rotation the other way.
+    #[inline(always)]
+    pub fn inverse(self) -> Self {
+        Self { x: -self.x, y: -self.y, z: -self.z, w: self.w }
+    }
+    /// `other` first, then `self`. Not renormalised.
+    #[inline(always)]
+    pub fn mul(self, o: Self) -> Self {
+        Self {
+            x: self.w * o.x + self.x * o.w + self.y * o.z - self.z * o.y,
+            y: self.w * o.y + self.y * o.w + self.z * o.x - self.x * o.z,
+            z: self.w * o.z + self.z * o.w + self.x * o.y - self.y * o.x,
+            w: self.w * o.w - self.x * o.x - self.y * o.y - self.z * o.z,
+        }
+    }
+    /// How far the tip of `arm` moves along `normal` when it turns: n · (R r − r), given r × n.
+    /// With the quaternion (u, w) that is 2 (w u · (r × n) + (u · r)(u · n) − (u · u)(r · n)).
+    #[inline(always)]
+    pub fn shift_along(self, arm: Vector<N>, arm_cross_normal: Angular<N>, normal: Vector<N>) -> N {
+        let u = Vector { x: self.x, y: self.y, z: self.z };
+        let half = self.w * u.dot(arm_cross_normal) + u.dot(arm) * u.dot(normal)
+            - u.length_squared() * arm.dot(normal);
+        half + half
+    }
+    /// Scaled to unit length.
+    #[inline(always)]
+    pub fn normalized(self) -> Self {
+        let length =
+            (self.x * self.x + self.y * self.y + self.z * self.z + self.w * self.w).sqrt();
+        Self {
+            x: self.x / length,
+            y: self.y / length,
+            z: self.z / length,
+            w: self.w / length,
+        }
+    }
+    /// Turned further by the small rotation vector `delta`, by one normalised Euler step `q + ½ δ q`.
+    #[inline(always)]
+    pub fn integrated(self, delta: Angular<N>) -> Self {
+        let half = N::ONE / (N::ONE + N::ONE);
+        let d = delta * half;
+        Self {
+            x: self.x + d.x * self.w + d.y * self.z - d.z * self.y,
+            y: self.y + d.y * self.w + d.z * self.x - d.x * self.z,
+            z: self.z + d.z * self.w + d.x * self.y - d.y * self.x,
+            w: self.w - d.x * self.x - d.y * self.y - d.z * self.z,
+        }
+        .normalized()
+    }
+}
+
+impl Rot {
+    /// The rotation about the unit vector `axis` by an angle in radians, right-handed.
+    pub fn from_axis_angle(axis: Vector, angle: f32) -> Self {
+        let (sin, cos) = super::sin_cos(0.5 * f64::from(angle));
+        let v = axis * (sin as f32);
+        Self { x: v.x, y: v.y, z: v.z, w: cos as f32 }
+    }
+    /// Whether no component is infinite or NaN.
+    #[inline]
+    pub fn is_finite(self) -> bool {
+        self.x.is_finite() && self.y.is_finite() && self.z.is_finite() && self.w.is_finite()
+    }
+    /// How far two rotations are apart: twice the imaginary part of the quaternion between them, about
+    /// the rotation vector when small.
+    #[inline]
+    pub fn difference(self, other: Self) -> Angular {
+        let d = self.inverse().mul(other);
+        Vector { x: d.x, y: d.y, z: d.z } * 2.0
+    }
+    /// The cosine of the angle between two rotations.
+    #[inline]
+    pub fn cos_between(self, other: Self) -> f32 {
+        let dot = self.x * other.x + self.y * other.y + self.z * other.z + self.w * other.w;
+        2.0 * dot * dot - 1.0
+    }
+    /// The columns of the rotation matrix: where the axes go.
+    #[inline]
+    pub fn axes(self) -> [Vector; DIM] {
+        let Self { x, y, z, w } = self;
+        let (x2, y2, z2) = (x + x, y + y, z + z);
+        let (xx, yy, zz) = (x * x2, y * y2, z * z2);
+        let (xy, xz, yz) = (x * y2, x * z2, y * z2);
+        let (wx, wy, wz) = (w * x2, w * y2, w * z2);
+        [
+            Vector { x: 1.0 - (yy + zz), y: xy + wz, z: xz - wy },
+            Vector { x: xy - wz, y: 1.0 - (xx + zz), z: yz + wx },
+            Vector { x: xz + wy, y: yz - wx, z: 1.0 - (xx + yy) },
+        ]
+    }
+}
+
+impl<N: Num> Tangent<N> {
+    /// Nothing in the tangent plane.
+    pub const ZERO: Self = Self { x: N::ZERO, y: N::ZERO };
+}
+
+impl<N: Lane> Tangent<N> {
+    /// Shortened to at most `limit` (≥ 0), along its direction: a circular cone.
+    #[inline(always)]
+    pub fn clamp_length(self, limit: N) -> Self {
+        let square = self.x * self.x + self.y * self.y;
+        let long = (limit * limit).lt(square);
+        let factor = N::select(long, limit / square.sqrt(), N::ONE);
+        Self { x: self.x * factor, y: self.y * factor }
+    }
+    /// Writes lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: Tangent) {
+        self.x.set(i, v.x);
+        self.y.set(i, v.y);
+    }
+    /// Reads lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Tangent {
+        Tangent { x: self.x.get(i), y: self.y.get(i) }
+    }
+}
+
+impl<N: Lane> TangentFrame<N> {
+    /// Two unit tangents of a unit normal, without a branch (Duff et al., "Building an Orthonormal
+    /// Basis, Revisited", JCGT 2017).
+    #[inline(always)]
+    pub fn new(n: Vector<N>) -> Self {
+        let sign = N::select(n.z.lt(N::ZERO), -N::ONE, N::ONE);
+        let a = -N::ONE / (sign + n.z);
+        let b = n.x * n.y * a;
+        Self {
+            x: Vector { x: N::ONE + sign * n.x * n.x * a, y: sign * b, z: -(sign * n.x) },
+            y: Vector { x: b, y: sign + n.y * n.y * a, z: -n.y },
+        }
+    }
+    /// The part of `v` in the tangent plane.
+    #[inline(always)]
+    pub fn project(&self, v: Vector<N>) -> Tangent<N> {
+        Tangent { x: self.x.dot(v), y: self.y.dot(v) }
+    }
+    /// The vector of a tangent-plane vector.
+    #[inline(always)]
+    pub fn expand(&self, t: Tangent<N>) -> Vector<N> {
+        self.x * t.x + self.y * t.y
+    }
+    /// The inverse of the coupled tangent rows' 2 × 2 K matrix for two bodies of the inverse inertias
+    /// and arms given: K_ab = t_aᵀ M⁻¹ t_b + Σ (rᵢ × t_a)ᵀ Iᵢ⁻¹ (rᵢ × t_b), where `inv_mass` applies the
+    /// summed M⁻¹. Zero where K is singular.
+    #[inline(always)]
+    pub fn mass(
+        &self,
+        inv_mass: impl Fn(Vector<N>) -> Vector<N>,
+        bodies: [(InvInertia<N>, Vector<N>); 2],
+    ) -> TangentMass<N> {
+        let (lx, ly) = (inv_mass(self.x), inv_mass(self.y));
+        let (mut xx, mut yy, mut xy) = (self.x.dot(lx), self.y.dot(ly), self.x.dot(ly));
+        for (inertia, arm) in bodies {
+            let (cx, cy) = (arm.cross(self.x), arm.cross(self.y));
+            let (ix, iy) = (inertia.apply(cx), inertia.apply(cy));
+            xx += cx.dot(ix);
+            yy += cy.dot(iy);
+            xy += cx.dot(iy);
+        }
+        let determinant = xx * yy - xy * xy;
+        let k = N::select(N::ZERO.lt(determinant), N::ONE / determinant, N::ZERO);
+        TangentMass { xx: yy * k, yy: xx * k, xy: -(xy * k) }
+    }
+}
+
+impl<N: Num> TangentMass<N> {
+    /// The impulse that makes the tangent velocity `v` vanish, but for its sign.
+    #[inline(always)]
+    pub fn apply(self, v: Tangent<N>) -> Tangent<N> {
+        Tangent { x: self.xx * v.x + self.xy * v.y, y: self.xy * v.x + self.yy * v.y }
+    }
+}
+
+/// Translation and rotation axes of the world along or about which a body does not move.
+///
+/// Bits as in Avian's `LockedAxes`: translation x, y, z at bits 5, 4, 3; rotation x, y, z at 2, 1, 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AxisLocks(pub u8);
+
+impl AxisLocks {
+    /// Nothing held.
+    pub const NONE: Self = Self(0);
+
+    /// The rotation bits, 0 if it may turn about every axis.
+    #[inline]
+    pub fn rotation(self) -> u8 {
+        self.0 & 0b000_111
+    }
+    /// 1 along the free axes, 0 along the held ones.
+    #[inline]
+    pub fn translation_factors(self) -> Vector {
+        let free = |bit: u8| if self.0 & bit == 0 { 1.0 } else { 0.0 };
+        Vector { x: free(0b100_000), y: free(0b010_000), z: free(0b001_000) }
+    }
+    /// 1 about the free axes, 0 about the held ones.
+    #[inline]
+    pub fn rotation_factors(self) -> Angular {
+        let free = |bit: u8| if self.0 & bit == 0 { 1.0 } else { 0.0 };
+        Vector { x: free(0b100), y: free(0b010), z: free(0b001) }
+    }
+    /// Whether some, but not all, translation axes are held.
+    #[inline]
+    pub fn is_translation_partial(self) -> bool {
+        let t = self.0 & 0b111_000;
+        t != 0 && t != 0b111_000
+    }
+    /// Whether every translation axis is held.
+    #[inline]
+    pub fn is_translation_full(self) -> bool {
+        self.0 & 0b111_000 == 0b111_000
+    }
+}
+
+componentwise! { Vector { x, y, z } Tangent { x, y } }

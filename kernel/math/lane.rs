@@ -1,0 +1,242 @@
+//! The lane: what a solver row computes with, one `f32` or several side by side.
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// Four floats loaded and stored as one: a quarter or a half of a body row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(16))]
+pub struct Quad(pub [f32; 4]);
+
+/// A number the vector types can be made of.
+pub trait Num:
+    Copy
+    + Debug
+    + Default
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// Zero in every lane.
+    const ZERO: Self;
+    /// One in every lane.
+    const ONE: Self;
+    /// The square root, correctly rounded.
+    fn sqrt(self) -> Self;
+}
+
+/// The body-row indices of one wide row, one for each lane.
+pub trait Ids: Copy + Debug {
+    /// The same index in every lane.
+    fn splat(id: u32) -> Self;
+    /// The indices, lane by lane.
+    fn lanes(&self) -> &[u32];
+    /// Writes lane `i`.
+    fn set(&mut self, i: usize, id: u32);
+}
+
+impl<const W: usize> Ids for [u32; W] {
+    fn splat(id: u32) -> Self {
+        [id; W]
+    }
+    fn lanes(&self) -> &[u32] {
+        self
+    }
+    fn set(&mut self, i: usize, id: u32) {
+        self[i] = id;
+    }
+}
+
+/// `WIDTH` floats that are computed with at once. A lane's result never depends on its neighbours.
+///
+/// `max` and `min` follow `a > b ? a : b` and `a < b ? a : b`, so that a NaN in either operand gives
+/// `b`, on every instruction set.
+pub trait Lane: Num {
+    /// How many floats stand side by side.
+    const WIDTH: usize;
+    /// The outcome of a comparison, lane by lane.
+    type Mask: Copy;
+    /// One body-row index for each lane.
+    type Ids: Ids;
+
+    /// The same value in every lane.
+    fn splat(value: f32) -> Self;
+    /// Reads lane `i`. For setting up and taking down rows, not for hot loops.
+    fn get(&self, i: usize) -> f32;
+    /// Writes lane `i`. For setting up and taking down rows, not for hot loops.
+    fn set(&mut self, i: usize, value: f32);
+    /// `a > b ? a : b`.
+    fn max(self, other: Self) -> Self;
+    /// `a < b ? a : b`.
+    fn min(self, other: Self) -> Self;
+    /// `self < other`.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self <= other`.
+    fn le(self, other: Self) -> Self::Mask;
+    /// `self == other`.
+    fn eq(self, other: Self) -> Self::Mask;
+    /// Either of two masks.
+    fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// Both of two masks.
+    fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// Whether the mask is set in any lane. Only for skipping work that would select the old value.
+    fn any(mask: Self::Mask) -> bool;
+    /// `mask ? a : b`, lane by lane.
+    fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+    /// Loads one quad for each lane through `fetch` and transposes: element `k` of the result holds
+    /// float `k` of every quad.
+    fn gather<'a>(ids: &Self::Ids, fetch: impl Fn(u32) -> &'a Quad) -> [Self; 4];
+    /// The inverse of [`gather`](Self::gather): hands each lane's quad to `put`.
+    fn scatter(values: [Self; 4], ids: &Self::Ids, put: impl FnMut(u32, Quad));
+}
+
+impl Num for f32 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
+}
+
+impl Num for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+}
+
+impl Lane for f32 {
+    const WIDTH: usize = 1;
+    type Mask = bool;
+    type Ids = [u32; 1];
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn get(&self, _: usize) -> f32 {
+        *self
+    }
+    #[inline(always)]
+    fn set(&mut self, _: usize, value: f32) {
+        *self = value;
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        super::max(self, other)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        super::min(self, other)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    fn eq(self, other: Self) -> bool {
+        self == other
+    }
+    #[inline(always)]
+    fn or(a: bool, b: bool) -> bool {
+        a | b
+    }
+    #[inline(always)]
+    fn and(a: bool, b: bool) -> bool {
+        a & b
+    }
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    #[inline(always)]
+    fn select(mask: bool, a: Self, b: Self) -> Self {
+        if mask { a } else { b }
+    }
+    #[inline(always)]
+    fn gather<'a>(ids: &[u32; 1], fetch: impl Fn(u32) -> &'a Quad) -> [Self; 4] {
+        fetch(ids[0]).0
+    }
+    #[inline(always)]
+    fn scatter(values: [Self; 4], ids: &[u32; 1], mut put: impl FnMut(u32, Quad)) {
+        put(ids[0], Quad(values));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::F32x4;
+    use super::*;
+
+    fn pack(v: [f32; 4]) -> F32x4 {
+        let mut out = F32x4::default();
+        for (i, v) in v.iter().enumerate() {
+            out.set(i, *v);
+        }
+        out
+    }
+
+    /// Every operation of the wide lane gives the bits that the scalar lane gives.
+    #[test]
+    fn wide_lane_equals_scalar_lane() {
+        let samples = [0.0, -0.0, 1.5, -2.25, 1e-38, 3e38, f32::NAN, f32::INFINITY, -7.0, 0.1];
+        for &x in &samples {
+            for &y in &samples {
+                let (a, b) = (pack([x, y, x, 1.0]), pack([y, x, -y, x]));
+                let same = |wide: F32x4, f: &dyn Fn(f32, f32) -> f32| {
+                    for i in 0..4 {
+                        let want = f(a.get(i), b.get(i));
+                        let got = wide.get(i);
+                        assert!(
+                            got.to_bits() == want.to_bits() || (got.is_nan() && want.is_nan()),
+                            "{} {} gave {got}, not {want}",
+                            a.get(i),
+                            b.get(i)
+                        );
+                    }
+                };
+                same(a + b, &|a, b| a + b);
+                same(a - b, &|a, b| a - b);
+                same(a * b, &|a, b| a * b);
+                same(a / b, &|a, b| a / b);
+                same(-a, &|a, _| -a);
+                same(Lane::max(a, b), &|a, b| Lane::max(a, b));
+                same(Lane::min(a, b), &|a, b| Lane::min(a, b));
+                same(Num::sqrt(a), &|a, _| a.sqrt());
+                same(F32x4::select(a.lt(b), a, b), &|a, b| if a < b { a } else { b });
+                same(F32x4::select(a.le(b), a, b), &|a, b| if a <= b { a } else { b });
+                same(F32x4::select(Lane::eq(a, b), a, -b), &|a, b| if a == b { a } else { -b });
+            }
+        }
+    }
+
+    #[test]
+    fn gather_then_scatter_returns_the_rows() {
+        let rows: Vec<Quad> =
+            (0..9).map(|i| Quad([i as f32, i as f32 + 0.25, -(i as f32), 100.0 + i as f32])).collect();
+        let ids = [7, 2, 0, 5];
+        let columns = F32x4::gather(&ids, |i| &rows[i as usize]);
+        for (lane, id) in ids.iter().enumerate() {
+            for (k, column) in columns.iter().enumerate() {
+                assert_eq!(column.get(lane), rows[*id as usize].0[k]);
+            }
+        }
+        let mut out = vec![Quad::default(); 9];
+        F32x4::scatter(columns, &ids, |i, q| out[i as usize] = q);
+        for id in ids {
+            assert_eq!(out[id as usize], rows[id as usize]);
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Numbers with a dimension and a lane. Owns the algebra every other module computes with.
+//!
+//! Each concept is its own small type with the *same operations* in 2D and 3D, so that solver rows are
+//! written once. `N` is `f32`, a wide lane, or (for world positions only) `f64`.
+
+/// Implements `+`, `-`, unary `-`, `* N`, `+=` and `-=` field by field.
+macro_rules! componentwise {
+    ($($type:ident { $($field:ident),+ })+) => {$(
+        impl<N: Num> core::ops::Add for $type<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                Self { $($field: self.$field + other.$field),+ }
+            }
+        }
+        impl<N: Num> core::ops::Sub for $type<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                Self { $($field: self.$field - other.$field),+ }
+            }
+        }
+        impl<N: Num> core::ops::Neg for $type<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self { $($field: -self.$field),+ }
+            }
+        }
+        impl<N: Num> core::ops::Mul<N> for $type<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, factor: N) -> Self {
+                Self { $($field: self.$field * factor),+ }
+            }
+        }
+        impl<N: Num> core::ops::AddAssign for $type<N> {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
+        impl<N: Num> core::ops::SubAssign for $type<N> {
+            #[inline(always)]
+            fn sub_assign(&mut self, other: Self) {
+                *self = *self - other;
+            }
+        }
+    )+};
+}
+
+#[cfg_attr(feature = "2d", path = "dim2.rs")]
+#[cfg_attr(feature = "3d", path = "dim3.rs")]
+mod dim;
+mod lane;
+#[cfg(target_arch = "x86_64")]
+mod lane_sse;
+#[cfg(not(target_arch = "x86_64"))]
+mod lane_portable;
+mod pose;
+mod trig;
+
+pub use dim::*;
+pub use lane::{Ids, Lane, Num, Quad};
+#[cfg(not(target_arch = "x86_64"))]
+pub use lane_portable::F32x4;
+#[cfg(target_arch = "x86_64")]
+pub use lane_sse::F32x4;
+pub use pose::{Pose, WorldPose, WorldVector};
+pub use trig::{atan2, cos, sin, sin_cos};
+
+/// The precision of world positions: `f64` with the feature `f64`, else `f32`. All else is `f32`.
+#[cfg(feature = "f64")]
+pub type Scalar = f64;
+/// The precision of world positions: `f64` with the feature `f64`, else `f32`. All else is `f32`.
+#[cfg(not(feature = "f64"))]
+pub type Scalar = f32;
+
+/// The larger of two values by the rule `a > b ? a : b`, on every instruction set: with a NaN in
+/// either place the result is `b`.
+#[inline(always)]
+pub fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two values by the rule `a < b ? a : b`; a NaN in either place gives `b`.
+#[inline(always)]
+pub fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// `value` held between `low` and `high`; NaN becomes `high`.
+#[inline(always)]
+pub fn clamp(value: f32, low: f32, high: f32) -> f32 {
+    max(min(value, high), low)
+}

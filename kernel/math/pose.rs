@@ -1,0 +1,102 @@
+//! Where a thing is and how it is turned: relative poses in `f32`, world poses with a position in
+//! [`Scalar`] precision. Differences of world positions are formed in full precision, then narrowed.
+
+use super::{Rot, Scalar, Vector};
+
+/// A position in the world.
+pub type WorldVector = Vector<Scalar>;
+
+/// A pose relative to another body or shape: rotate, then translate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// The origin of the inner frame, in metres.
+    pub position: Vector,
+    /// The turn of the inner frame.
+    pub rotation: Rot,
+}
+
+/// A pose in the world: rotate, then translate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WorldPose {
+    /// The origin of the inner frame, in metres.
+    pub position: WorldVector,
+    /// The turn of the inner frame.
+    pub rotation: Rot,
+}
+
+impl Pose {
+    /// No translation and no rotation.
+    pub const IDENTITY: Self = Self { position: Vector::ZERO, rotation: Rot::IDENTITY };
+
+    /// The pose that rotates by `rotation`, then translates by `position`.
+    #[inline]
+    pub fn new(position: Vector, rotation: Rot) -> Self {
+        Self { position, rotation }
+    }
+
+    /// Takes a point from the inner frame to the outer one.
+    #[inline]
+    pub fn transform(&self, point: Vector) -> Vector {
+        self.rotation.rotate(point) + self.position
+    }
+
+    /// Takes a point from the outer frame to the inner one.
+    #[inline]
+    pub fn inverse_transform(&self, point: Vector) -> Vector {
+        self.rotation.inverse_rotate(point - self.position)
+    }
+
+    /// The pose of the outer frame in the inner one.
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        Self { position: self.rotation.inverse_rotate(-self.position), rotation: self.rotation.inverse() }
+    }
+
+    /// The pose of `inner`'s frame in this pose's outer frame.
+    #[inline]
+    pub fn then(&self, inner: &Pose) -> Self {
+        Self { position: self.transform(inner.position), rotation: self.rotation.mul(inner.rotation) }
+    }
+}
+
+impl WorldPose {
+    /// The origin of the world, unturned.
+    pub const IDENTITY: Self = Self { position: WorldVector::ZERO, rotation: Rot::IDENTITY };
+
+    /// The pose that rotates by `rotation`, then translates by `position`.
+    #[inline]
+    pub fn new(position: WorldVector, rotation: Rot) -> Self {
+        Self { position, rotation }
+    }
+
+    /// The world pose of a frame given relative to this one.
+    #[inline]
+    pub fn then(&self, inner: &Pose) -> Self {
+        Self {
+            position: self.position + self.rotation.rotate(inner.position).to_world(),
+            rotation: self.rotation.mul(inner.rotation),
+        }
+    }
+
+    /// The pose of `other` in this pose's frame. The positions are subtracted in full precision.
+    #[inline]
+    pub fn relative(&self, other: &WorldPose) -> Pose {
+        let offset = (other.position - self.position).to_local();
+        Pose {
+            position: self.rotation.inverse_rotate(offset),
+            rotation: self.rotation.inverse().mul(other.rotation),
+        }
+    }
+
+    /// Takes a point from this frame to the world.
+    #[inline]
+    pub fn transform(&self, point: Vector) -> WorldVector {
+        self.position + self.rotation.rotate(point).to_world()
+    }
+
+    /// Takes a world point to this frame.
+    #[inline]
+    pub fn inverse_transform(&self, point: WorldVector) -> Vector {
+        self.rotation.inverse_rotate((point - self.position).to_local())
+    }
+}

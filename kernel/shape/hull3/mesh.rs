@@ -1,0 +1,251 @@
+//! From a closed convex mesh to a hull: weld, merge coplanar faces, check.
+//!
+//! All checks are relative to the largest extent of the mesh.
+
+use super::{Hull, Wide, mass, narrow, size_of, widen};
+use crate::math::Vector;
+use crate::shape::ShapeError;
+
+/// How far, as a share of the size, a vertex may lie off a face's plane to be part of the face.
+/// Larger eats small bevels, smaller leaves the slivers that hull builders make.
+const FLATNESS: f64 = 1.0e-4;
+/// How far, as a share of the size, a vertex may lie in front of a face.
+const CONVEXITY: f64 = 1.0e-3;
+/// Faces are merged only if the cosine between their normals is above this.
+const SAME_DIRECTION: f64 = 0.99;
+/// Faces with less area than this share of the size's square have no reliable normal.
+const SLIVER_AREA: f64 = 1.0e-9;
+/// Meshes with less volume than this share of the size's cube are flat.
+const FLAT_VOLUME: f64 = 1.0e-9;
+
+/// A half edge of the input mesh: tail, head, face.
+type HalfEdge = (u32, u32, u32);
+
+impl Hull {
+    /// A hull from vertices (in metres) and faces, each a loop of at least three vertex indices,
+    /// counter-clockwise from outside. Coplanar neighbours are merged into polygons.
+    ///
+    /// # Errors
+    ///
+    /// `NotFinite` for a bad coordinate; `Degenerate` if the faces do not close a surface of the
+    /// topology of a ball (Euler: V − E + F = 2), an index is out of range, or there is no volume;
+    /// `NotConvex` if a vertex lies in front of a face by more than 0.1 % of the size, or the faces
+    /// are clockwise.
+    pub fn from_mesh(vertices: Vec<Vector>, faces: Vec<Vec<u32>>) -> Result<Self, ShapeError> {
+        let (vertices, faces) = weld(vertices, faces)?;
+        let size = f64::from(size_of(&vertices));
+        if faces.len() < 4 || !(size > 0.0) {
+            return Err(ShapeError::Degenerate);
+        }
+        let half_edges = half_edges(&faces)?;
+        let volume = mass::signed_volume(&vertices, &faces);
+        if !(volume.abs() > FLAT_VOLUME * size * size * size) {
+            return Err(ShapeError::Degenerate);
+        }
+        if volume < 0.0 {
+            return Err(ShapeError::NotConvex);
+        }
+        let groups = merge_coplanar(&vertices, &faces, &half_edges, size);
+        let outlines = outlines(&groups, &half_edges)?;
+        let (vertices, outlines) = drop_unused(&vertices, outlines);
+        let planes = checked_planes(&vertices, &outlines, size)?;
+        Ok(Self::assemble(vertices, &planes, &outlines))
+    }
+
+    /// A hull from a triangle mesh, as builders of convex hulls give it; see
+    /// [`from_mesh`](Self::from_mesh).
+    ///
+    /// # Errors
+    ///
+    /// As [`from_mesh`](Self::from_mesh).
+    pub fn from_triangles(vertices: Vec<Vector>, triangles: &[[u32; 3]]) -> Result<Self, ShapeError> {
+        Self::from_mesh(vertices, triangles.iter().map(|t| t.to_vec()).collect())
+    }
+}
+
+/// Joins vertices at the same place; drops what that collapses.
+fn weld(vertices: Vec<Vector>, mut faces: Vec<Vec<u32>>) -> Result<(Vec<Vector>, Vec<Vec<u32>>), ShapeError> {
+    if vertices.iter().any(|v| !v.is_finite()) {
+        return Err(ShapeError::NotFinite);
+    }
+    // Squares and cubes of extents must be finite and not vanish.
+    let size = size_of(&vertices);
+    if !(size > 1.0e-12 && size < 1.0e12) {
+        return Err(ShapeError::Degenerate);
+    }
+    if faces.iter().flatten().any(|i| *i as usize >= vertices.len()) {
+        return Err(ShapeError::Degenerate);
+    }
+    let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
+    let key = |i: u32| vertices[i as usize].to_array().map(|c| (c + 0.0).to_bits());
+    order.sort_by_key(|i| (key(*i), *i));
+    let mut first_of = vec![0u32; vertices.len()];
+    for k in 0..order.len() {
+        let same = k > 0 && key(order[k]) == key(order[k - 1]);
+        first_of[order[k] as usize] = if same { first_of[order[k - 1] as usize] } else { order[k] };
+    }
+    for face in &mut faces {
+        for i in face.iter_mut() {
+            *i = first_of[*i as usize];
+        }
+        face.dedup();
+        while face.len() > 1 && face.first() == face.last() {
+            face.pop();
+        }
+    }
+    faces.retain(|f| f.len() >= 3);
+    Ok((vertices, faces))
+}
+
+/// The half edges, sorted. Each must be there once, and its twin too.
+fn half_edges(faces: &[Vec<u32>]) -> Result<Vec<HalfEdge>, ShapeError> {
+    let mut list = Vec::new();
+    for (f, face) in faces.iter().enumerate() {
+        for k in 0..face.len() {
+            list.push((face[k], face[(k + 1) % face.len()], f as u32));
+        }
+    }
+    list.sort_unstable();
+    let twice = list.windows(2).any(|w| (w[0].0, w[0].1) == (w[1].0, w[1].1));
+    let closed = list.iter().all(|h| h.0 != h.1 && face_at(&list, h.1, h.0).is_some());
+    if twice || !closed { Err(ShapeError::Degenerate) } else { Ok(list) }
+}
+
+/// The face that has the half edge from `tail` to `head`.
+fn face_at(half_edges: &[HalfEdge], tail: u32, head: u32) -> Option<u32> {
+    let at = half_edges.binary_search_by_key(&(tail, head), |h| (h.0, h.1));
+    at.ok().map(|i| half_edges[i].2)
+}
+
+/// Twice the area vector of a polygon (Newell's method): its normal, not of unit length.
+fn area_vector(vertices: &[Vector], outline: &[u32]) -> Wide {
+    let at = |k: usize| widen(vertices[outline[k % outline.len()] as usize]);
+    (1..outline.len() - 1).fold(Wide::ZERO, |sum, k| sum + (at(k) - at(0)).cross(at(k + 1) - at(0)))
+}
+
+/// Gives each face the number of its group of coplanar neighbours.
+///
+/// Groups grow from the largest face on, and a face is compared with that seed alone: comparing
+/// neighbours with each other would melt a finely tessellated ball into one face.
+fn merge_coplanar(vertices: &[Vector], faces: &[Vec<u32>], half_edges: &[HalfEdge], size: f64) -> Vec<u32> {
+    let areas: Vec<Wide> = faces.iter().map(|f| area_vector(vertices, f)).collect();
+    let mut order: Vec<usize> = (0..faces.len()).collect();
+    order.sort_by(|a, b| areas[*b].length().total_cmp(&areas[*a].length()).then(a.cmp(b)));
+    let mut group = vec![u32::MAX; faces.len()];
+    let mut queue = Vec::new();
+    for seed in order {
+        if group[seed] != u32::MAX {
+            continue;
+        }
+        let length = areas[seed].length();
+        let normal = if length > 0.0 { areas[seed] * (1.0 / length) } else { Wide::ZERO };
+        let base = widen(vertices[faces[seed][0] as usize]);
+        let joins = |face: usize| {
+            let area = areas[face].length();
+            let sliver = area < SLIVER_AREA * size * size;
+            let flat = faces[face]
+                .iter()
+                .all(|v| normal.dot(widen(vertices[*v as usize]) - base).abs() < FLATNESS * size);
+            flat && (sliver || normal.dot(areas[face]) > SAME_DIRECTION * area)
+        };
+        group[seed] = seed as u32;
+        queue.push(seed);
+        while let Some(face) = queue.pop() {
+            for k in 0..faces[face].len() {
+                let (tail, head) = (faces[face][k], faces[face][(k + 1) % faces[face].len()]);
+                let Some(other) = face_at(half_edges, head, tail) else { continue };
+                let other = other as usize;
+                if group[other] == u32::MAX && joins(other) {
+                    group[other] = seed as u32;
+                    queue.push(other);
+                }
+            }
+        }
+    }
+    group
+}
+
+/// The boundary loop of each group; vertices that only two groups share are left out, since they lie
+/// on a straight edge.
+fn outlines(group: &[u32], half_edges: &[HalfEdge]) -> Result<Vec<Vec<u32>>, ShapeError> {
+    let mut border: Vec<HalfEdge> = Vec::new();
+    for &(tail, head, face) in half_edges {
+        let twin = face_at(half_edges, head, tail).ok_or(ShapeError::Degenerate)?;
+        if group[face as usize] != group[twin as usize] {
+            border.push((group[face as usize], tail, head));
+        }
+    }
+    border.sort_unstable();
+    let vertex_count = border.iter().map(|b| b.1 as usize + 1).max().ok_or(ShapeError::Degenerate)?;
+    let mut degree = vec![0u32; vertex_count];
+    for b in &border {
+        degree[b.1 as usize] += 1;
+    }
+    let mut result = Vec::new();
+    for of_group in border.chunk_by(|a, b| a.0 == b.0) {
+        let mut outline = Vec::with_capacity(of_group.len());
+        let start = of_group[0].1;
+        let mut at = start;
+        for _ in 0..of_group.len() {
+            let next = of_group.binary_search_by_key(&at, |b| b.1).map_err(|_| ShapeError::Degenerate)?;
+            if degree[at as usize] > 2 {
+                outline.push(at);
+            }
+            at = of_group[next].2;
+        }
+        // Another loop, or a vertex passed twice: the group is not a disc.
+        let pinched = of_group.windows(2).any(|w| w[0].1 == w[1].1);
+        if at != start || pinched || outline.len() < 3 {
+            return Err(ShapeError::Degenerate);
+        }
+        result.push(outline);
+    }
+    Ok(result)
+}
+
+/// Renumbers the vertices that are left.
+fn drop_unused(vertices: &[Vector], mut outlines: Vec<Vec<u32>>) -> (Vec<Vector>, Vec<Vec<u32>>) {
+    let mut number = vec![u32::MAX; vertices.len()];
+    for i in outlines.iter().flatten() {
+        number[*i as usize] = 0;
+    }
+    let mut kept = Vec::new();
+    for (n, v) in number.iter_mut().zip(vertices) {
+        if *n == 0 {
+            *n = kept.len() as u32;
+            kept.push(*v);
+        }
+    }
+    for i in outlines.iter_mut().flatten() {
+        *i = number[*i as usize];
+    }
+    (kept, outlines)
+}
+
+/// The planes of the faces, if the solid is convex and closed.
+fn checked_planes(
+    vertices: &[Vector],
+    outlines: &[Vec<u32>],
+    size: f64,
+) -> Result<Vec<(Vector, f32)>, ShapeError> {
+    let half_edge_count: usize = outlines.iter().map(Vec::len).sum();
+    if vertices.len() * 2 + outlines.len() * 2 != half_edge_count + 4 {
+        return Err(ShapeError::Degenerate);
+    }
+    let mut planes = Vec::with_capacity(outlines.len());
+    for outline in outlines {
+        let area = area_vector(vertices, outline);
+        let length = area.length();
+        if !(length > 0.0) {
+            return Err(ShapeError::Degenerate);
+        }
+        let normal = area * (1.0 / length);
+        let height = |i: &u32| normal.dot(widen(vertices[*i as usize]));
+        let offset = outline.iter().map(height).sum::<f64>() / outline.len() as f64;
+        if vertices.iter().any(|v| normal.dot(widen(*v)) > offset + CONVEXITY * size) {
+            return Err(ShapeError::NotConvex);
+        }
+        planes.push((narrow(normal), offset as f32));
+    }
+    Ok(planes)
+}

@@ -1,0 +1,306 @@
+//! The convex polyhedron: vertices, polygonal faces, and edges that know the faces beside them.
+
+mod mass;
+mod mesh;
+mod quickhull;
+#[cfg(test)]
+mod tests;
+
+use super::MassProperties;
+use crate::math::{F32x4, Lane, Num, Vector, max, min};
+use crate::shape::{RayHit, ShapeError};
+
+/// A face of a hull: its plane and where its vertices stand in the list of loops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face {
+    /// The outward unit normal.
+    pub normal: Vector,
+    /// The signed distance from the origin to the plane along the normal, in metres.
+    pub offset: f32,
+    /// Where the loop of the face starts.
+    pub(crate) first: u32,
+    /// How many vertices the loop has.
+    pub(crate) count: u32,
+}
+
+/// An edge of a hull. Seen from outside, the `left` face has it counter-clockwise.
+///
+/// On the Gauss map (each face a point of the unit sphere, its normal) the edge is the arc from the
+/// left normal to the right one, a turn about the direction of the edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edge {
+    /// The vertex it starts at.
+    pub tail: u32,
+    /// The vertex it ends at.
+    pub head: u32,
+    /// The face it runs counter-clockwise around.
+    pub left: u32,
+    /// The face on its other side.
+    pub right: u32,
+}
+
+/// Four edges side by side, for the wide search over pairs of edges.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EdgeBlock {
+    /// The unit direction from tail to head.
+    pub direction: Vector<F32x4>,
+    /// The normal of the left face.
+    pub left: Vector<F32x4>,
+    /// The normal of the right face.
+    pub right: Vector<F32x4>,
+    /// The vertex it starts at.
+    pub tail: Vector<F32x4>,
+}
+
+/// A convex polyhedron.
+///
+/// Immutable once made. The vertices are stored twice: one by one, and four side by side for the
+/// support search, which is most of what a hull is asked.
+#[derive(Clone, Debug)]
+pub struct Hull {
+    vertices: Vec<Vector>,
+    blocks: Vec<Vector<F32x4>>,
+    faces: Vec<Face>,
+    loops: Vec<u32>,
+    edges: Vec<Edge>,
+    edge_blocks: Vec<EdgeBlock>,
+    unit_mass: MassProperties,
+    extent: f32,
+}
+
+impl PartialEq for Hull {
+    fn eq(&self, other: &Self) -> bool {
+        self.vertices == other.vertices && self.faces == other.faces && self.loops == other.loops
+    }
+}
+
+/// Packs vectors four side by side; the last is repeated to fill the tail.
+pub(crate) fn pack(values: &[Vector]) -> impl Iterator<Item = Vector<F32x4>> + '_ {
+    values.chunks(4).map(|chunk| {
+        let mut block = Vector::<F32x4>::splat(chunk[0]);
+        for lane in 1..4 {
+            block.set(lane, chunk[lane.min(chunk.len() - 1)]);
+        }
+        block
+    })
+}
+
+/// The index of the vertex farthest along `direction`, the lowest of equals.
+#[inline]
+pub(crate) fn support_index(vertices: &[Vector], blocks: &[Vector<F32x4>], direction: Vector) -> usize {
+    let d = Vector::<F32x4>::splat(direction);
+    let mut best = blocks[0].dot(d);
+    let mut at = F32x4::ZERO;
+    let mut number = F32x4::ZERO;
+    for block in &blocks[1..] {
+        number += F32x4::ONE;
+        let value = block.dot(d);
+        let better = best.lt(value);
+        best = F32x4::select(better, value, best);
+        at = F32x4::select(better, number, at);
+    }
+    let mut index = 0;
+    let mut value = f32::NEG_INFINITY;
+    for lane in 0..4 {
+        let candidate = at.get(lane) as usize * 4 + lane;
+        let v = best.get(lane);
+        if v > value || (v == value && candidate < index) {
+            (index, value) = (candidate, v);
+        }
+    }
+    index.min(vertices.len() - 1)
+}
+
+impl Hull {
+    /// The box with the given half extents, in metres; they must be positive.
+    pub fn cuboid(half: Vector) -> Result<Self, ShapeError> {
+        if !half.is_finite() {
+            return Err(ShapeError::NotFinite);
+        }
+        if half.min_element() < 0.0 {
+            return Err(ShapeError::Negative);
+        }
+        let sign = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
+        let corner = |i: usize| Vector { x: sign(i & 1), y: sign(i & 2), z: sign(i & 4) }.scale(half);
+        let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        Self::from_mesh((0..8).map(corner).collect(), faces.iter().map(|f| f.to_vec()).collect())
+    }
+
+    /// Puts a hull together from checked parts: each face is a loop of vertices.
+    fn assemble(vertices: Vec<Vector>, planes: &[(Vector, f32)], outlines: &[Vec<u32>]) -> Self {
+        let mut faces = Vec::with_capacity(planes.len());
+        let mut loops = Vec::new();
+        let mut half_edges = Vec::new();
+        for (face, (outline, (normal, offset))) in outlines.iter().zip(planes).enumerate() {
+            let first = loops.len() as u32;
+            faces.push(Face { normal: *normal, offset: *offset, first, count: outline.len() as u32 });
+            loops.extend_from_slice(outline);
+            for (k, tail) in outline.iter().enumerate() {
+                half_edges.push((*tail, outline[(k + 1) % outline.len()], face as u32));
+            }
+        }
+        half_edges.sort_unstable();
+        let twin = |tail: u32, head: u32| {
+            let at = half_edges.binary_search_by_key(&(head, tail), |h| (h.0, h.1));
+            at.map_or(0, |i| half_edges[i].2)
+        };
+        let edges: Vec<Edge> = half_edges
+            .iter()
+            .filter(|(tail, head, _)| tail < head)
+            .map(|&(tail, head, left)| Edge { tail, head, left, right: twin(tail, head) })
+            .collect();
+        let unit_mass = mass::of_polyhedron(&vertices, outlines);
+        let extent = vertices.iter().map(|v| (*v - unit_mass.center).length_squared()).fold(0.0, max).sqrt();
+        Self {
+            blocks: pack(&vertices).collect(),
+            edge_blocks: edge_blocks(&vertices, &faces, &edges),
+            vertices,
+            faces,
+            loops,
+            edges,
+            unit_mass,
+            extent,
+        }
+    }
+
+    /// The corners, in the hull's frame, in metres.
+    pub fn vertices(&self) -> &[Vector] {
+        &self.vertices
+    }
+
+    /// How far the surface lies outside of the polyhedron: always 0 in space.
+    pub fn radius(&self) -> f32 {
+        0.0
+    }
+
+    /// The faces.
+    pub fn faces(&self) -> &[Face] {
+        &self.faces
+    }
+
+    /// The vertices of a face, as indices, counter-clockwise from outside.
+    pub fn outline(&self, face: &Face) -> &[u32] {
+        &self.loops[face.first as usize..(face.first + face.count) as usize]
+    }
+
+    /// The edges, each once.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// The centre of mass at uniform density.
+    pub fn centroid(&self) -> Vector {
+        self.unit_mass.center
+    }
+
+    /// The distance from the centroid to the farthest vertex, in metres.
+    pub(crate) fn reach(&self) -> f32 {
+        self.extent
+    }
+
+    /// The vertices of all faces, one face after another.
+    pub(crate) fn loops(&self) -> &[u32] {
+        &self.loops
+    }
+
+    /// The vertices four side by side.
+    pub(crate) fn blocks(&self) -> &[Vector<F32x4>] {
+        &self.blocks
+    }
+
+    /// The edges four side by side, the last repeated to fill the tail.
+    pub(crate) fn edge_blocks(&self) -> &[EdgeBlock] {
+        &self.edge_blocks
+    }
+
+    /// The vertex farthest along `direction` (any length).
+    pub fn support(&self, direction: Vector) -> Vector {
+        self.vertices[support_index(&self.vertices, &self.blocks, direction)]
+    }
+
+    /// Mass, centre and inertia at 1 kg/m³.
+    pub fn unit_mass(&self) -> MassProperties {
+        self.unit_mass
+    }
+
+    /// Where a ray along the unit vector `direction` first meets the hull; see
+    /// [`Shape::cast_ray`](crate::shape::Shape::cast_ray).
+    ///
+    /// The ray is cut by the plane of each face: what enters last and leaves first bounds the part
+    /// inside (Cyrus and Beck, 1978).
+    pub fn cast_ray(
+        &self,
+        origin: Vector,
+        direction: Vector,
+        max_distance: f32,
+        solid: bool,
+    ) -> Option<RayHit> {
+        let (mut enter, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
+        let (mut enter_normal, mut exit_normal) = (Vector::ZERO, Vector::ZERO);
+        for face in &self.faces {
+            let height = face.normal.dot(origin) - face.offset;
+            let slope = face.normal.dot(direction);
+            if slope == 0.0 {
+                if height > 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let t = -height / slope;
+            if slope < 0.0 && t > enter {
+                (enter, enter_normal) = (t, face.normal);
+            } else if slope > 0.0 && t < exit {
+                (exit, exit_normal) = (t, face.normal);
+            }
+        }
+        if !(enter <= exit) || exit < 0.0 {
+            return None;
+        }
+        let hit = match (enter >= 0.0, solid) {
+            (true, _) => RayHit { distance: enter, normal: enter_normal },
+            (false, true) => RayHit { distance: 0.0, normal: Vector::ZERO },
+            (false, false) => RayHit { distance: exit, normal: exit_normal },
+        };
+        (hit.distance <= max_distance).then_some(hit)
+    }
+}
+
+/// Packs edges four side by side with the normals of their faces.
+fn edge_blocks(vertices: &[Vector], faces: &[Face], edges: &[Edge]) -> Vec<EdgeBlock> {
+    let column = |f: &dyn Fn(&Edge) -> Vector| {
+        let values: Vec<Vector> = edges.iter().map(f).collect();
+        pack(&values).collect::<Vec<_>>()
+    };
+    let direction = column(&|e| {
+        let d = vertices[e.head as usize] - vertices[e.tail as usize];
+        // Scaled first: the square of a short edge may not be a normal number.
+        let scale = d.abs().max_element();
+        let d = d * (1.0 / max(scale, f32::MIN_POSITIVE));
+        d * (1.0 / max(d.length(), f32::MIN_POSITIVE))
+    });
+    let left = column(&|e| faces[e.left as usize].normal);
+    let right = column(&|e| faces[e.right as usize].normal);
+    let tail = column(&|e| vertices[e.tail as usize]);
+    (0..direction.len())
+        .map(|i| EdgeBlock { direction: direction[i], left: left[i], right: right[i], tail: tail[i] })
+        .collect()
+}
+
+/// A vector in double precision, for building.
+type Wide = Vector<f64>;
+
+fn widen(v: Vector) -> Wide {
+    Wide { x: f64::from(v.x), y: f64::from(v.y), z: f64::from(v.z) }
+}
+
+fn narrow(v: Wide) -> Vector {
+    Vector { x: v.x as f32, y: v.y as f32, z: v.z as f32 }
+}
+
+/// The largest extent of some points along an axis; 0 for none.
+fn size_of(points: &[Vector]) -> f32 {
+    let Some(first) = points.first() else { return 0.0 };
+    let low = points.iter().fold(*first, |m, p| m.min(*p)).to_array();
+    let high = points.iter().fold(*first, |m, p| m.max(*p)).to_array();
+    (0..3).fold(0.0, |size, i| max(size, min(high[i] - low[i], f32::MAX)))
+}

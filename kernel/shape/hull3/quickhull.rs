@@ -1,0 +1,184 @@
+//! The convex hull of a cloud of points, for users of the bare kernel and for tests.
+//!
+//! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", 1996) in `f64`
+//! with one tolerance: a point in front of a face by less than that is on it.
+
+use super::{Hull, Wide, size_of, widen};
+use crate::math::Vector;
+use crate::shape::ShapeError;
+
+/// Points in front of the hull by less than this share of the size are dropped, and points closer to
+/// each other than this are one.
+const TOLERANCE: f64 = 1.0e-5;
+
+/// A triangle of the growing hull.
+struct Facet {
+    corners: [usize; 3],
+    normal: Wide,
+    offset: f64,
+    /// Points in front of this facet and of none before it.
+    outside: Vec<usize>,
+    alive: bool,
+}
+
+impl Facet {
+    fn new(points: &[Wide], corners: [usize; 3]) -> Self {
+        let [a, b, c] = corners.map(|i| points[i]);
+        let area = (b - a).cross(c - a);
+        let length = area.length();
+        let normal = if length > 0.0 { area * (1.0 / length) } else { Wide::ZERO };
+        Self { corners, normal, offset: normal.dot(a), outside: Vec::new(), alive: true }
+    }
+
+    fn height(&self, p: Wide) -> f64 {
+        self.normal.dot(p) - self.offset
+    }
+}
+
+impl Hull {
+    /// The convex hull of some points, in metres. Meant for up to a few hundred points.
+    ///
+    /// # Errors
+    ///
+    /// `NotFinite` for a bad coordinate, `Degenerate` if the points lie in a plane to within 0.001 %
+    /// of their extent.
+    pub fn convex_hull_of(points: &[Vector]) -> Result<Self, ShapeError> {
+        if points.iter().any(|p| !p.is_finite()) {
+            return Err(ShapeError::NotFinite);
+        }
+        let size = f64::from(size_of(points));
+        if !(size > 0.0) {
+            return Err(ShapeError::Degenerate);
+        }
+        let tolerance = TOLERANCE * size;
+        let mut distinct: Vec<Vector> = Vec::new();
+        for p in points {
+            let near = |q: &Vector| (widen(*q) - widen(*p)).length() < tolerance;
+            if !distinct.iter().any(near) {
+                distinct.push(*p);
+            }
+        }
+        let wide: Vec<Wide> = distinct.iter().map(|p| widen(*p)).collect();
+        let triangles = quickhull(&wide, tolerance).ok_or(ShapeError::Degenerate)?;
+        Self::from_triangles(distinct, &triangles)
+    }
+}
+
+/// The index of the point with the largest measure, if that is above the tolerance.
+fn farthest(points: &[Wide], tolerance: f64, measure: impl Fn(Wide) -> f64) -> Option<usize> {
+    let mut best = None;
+    let mut most = tolerance;
+    for (i, p) in points.iter().enumerate() {
+        let m = measure(*p);
+        if m > most {
+            (best, most) = (Some(i), m);
+        }
+    }
+    best
+}
+
+/// Four points that span a tetrahedron, the last in front of none.
+fn first_tetrahedron(points: &[Wide], tolerance: f64) -> Option<[usize; 4]> {
+    let a = *points.first()?;
+    let b = farthest(points, tolerance, |p| (p - a).length())?;
+    let axis = points[b] - a;
+    let axis = axis * (1.0 / axis.length());
+    let c = farthest(points, tolerance, |p| (p - a).cross(axis).length())?;
+    let normal = axis.cross(points[c] - a);
+    let normal = normal * (1.0 / normal.length());
+    let d = farthest(points, tolerance, |p| normal.dot(p - a).abs())?;
+    Some(if normal.dot(points[d] - a) > 0.0 { [0, c, b, d] } else { [0, b, c, d] })
+}
+
+fn quickhull(points: &[Wide], tolerance: f64) -> Option<Vec<[u32; 3]>> {
+    let [a, b, c, d] = first_tetrahedron(points, tolerance)?;
+    let mut facets: Vec<Facet> =
+        [[a, b, c], [a, d, b], [b, d, c], [c, d, a]].map(|t| Facet::new(points, t)).into();
+    assign(points, &mut facets, 0, (0..points.len()).collect(), tolerance);
+    // Every round uses up at least the point it adds.
+    for _ in 0..points.len() {
+        let Some(facet) = facets.iter().position(|f| f.alive && !f.outside.is_empty()) else { break };
+        let height = |i: &usize| facets[facet].height(points[*i]);
+        let apex = *facets[facet].outside.iter().max_by(|x, y| height(x).total_cmp(&height(y)))?;
+        let (visible, horizon) = visible_from(&facets, facet, points[apex], tolerance)?;
+        let mut orphans = Vec::new();
+        for f in visible {
+            facets[f].alive = false;
+            orphans.append(&mut facets[f].outside);
+        }
+        orphans.retain(|p| *p != apex);
+        orphans.sort_unstable();
+        let from = facets.len();
+        for (tail, head) in horizon {
+            facets.push(Facet::new(points, [tail, head, apex]));
+        }
+        assign(points, &mut facets, from, orphans, tolerance);
+    }
+    Some(facets.iter().filter(|f| f.alive).map(|f| f.corners.map(|i| i as u32)).collect())
+}
+
+/// Gives each point to the facet, from number `from` on, that it lies farthest in front of.
+fn assign(points: &[Wide], facets: &mut [Facet], from: usize, candidates: Vec<usize>, tolerance: f64) {
+    for p in candidates {
+        let mut best = None;
+        let mut most = tolerance;
+        for (f, facet) in facets.iter().enumerate().skip(from) {
+            let height = facet.height(points[p]);
+            if height > most && !facet.corners.contains(&p) {
+                (best, most) = (Some(f), height);
+            }
+        }
+        if let Some(f) = best {
+            facets[f].outside.push(p);
+        }
+    }
+}
+
+/// The facets that a point sees, connected to the one given, and the half edges around them.
+fn visible_from(
+    facets: &[Facet],
+    start: usize,
+    eye: Wide,
+    tolerance: f64,
+) -> Option<(Vec<usize>, Vec<(usize, usize)>)> {
+    let mut neighbours: Vec<(usize, usize, usize)> = Vec::new();
+    for (f, facet) in facets.iter().enumerate().filter(|(_, f)| f.alive) {
+        for k in 0..3 {
+            neighbours.push((facet.corners[k], facet.corners[(k + 1) % 3], f));
+        }
+    }
+    neighbours.sort_unstable();
+    let across = |tail: usize, head: usize| {
+        let at = neighbours.binary_search_by_key(&(head, tail), |n| (n.0, n.1));
+        at.ok().map(|i| neighbours[i].2)
+    };
+    let mut visible = vec![start];
+    let mut horizon = Vec::new();
+    let mut at = 0;
+    while at < visible.len() {
+        let corners = facets[visible[at]].corners;
+        at += 1;
+        for k in 0..3 {
+            let (tail, head) = (corners[k], corners[(k + 1) % 3]);
+            let other = across(tail, head)?;
+            if visible.contains(&other) {
+                continue;
+            }
+            // A facet without area goes with whatever is replaced next to it.
+            let flat = facets[other].normal == Wide::ZERO;
+            if flat || facets[other].height(eye) > tolerance * 1.0e-3 {
+                visible.push(other);
+            }
+        }
+    }
+    for f in &visible {
+        let corners = facets[*f].corners;
+        for k in 0..3 {
+            let (tail, head) = (corners[k], corners[(k + 1) % 3]);
+            if !visible.contains(&across(tail, head)?) {
+                horizon.push((tail, head));
+            }
+        }
+    }
+    Some((visible, horizon))
+}

@@ -1,0 +1,168 @@
+//! A shape with a pose answers: its box, its support point, its mass, where a ray hits it.
+//!
+//! Shapes are convex and in `f32`, in a frame of their own. What the kernel does not know natively
+//! stands in the tables as [`Shape::Foreign`] and gets its manifolds through
+//! [`ManifoldSource`](crate::contact::ManifoldSource).
+
+mod aabb;
+#[cfg_attr(feature = "2d", path = "dim2.rs")]
+#[cfg_attr(feature = "3d", path = "dim3.rs")]
+mod dim;
+mod primitives;
+
+pub use aabb::Aabb;
+pub use dim::*;
+pub use primitives::{Ball, Capsule, Cuboid, HalfSpace, Segment, Triangle};
+
+use crate::math::{Vector, WorldPose};
+use std::sync::Arc;
+
+/// A convex shape.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A circle or sphere.
+    Ball(Ball),
+    /// A segment with a radius.
+    Capsule(Capsule),
+    /// A rectangle or box.
+    Cuboid(Cuboid),
+    /// A convex polygon or polyhedron.
+    Hull(Arc<Hull>),
+    /// A triangle: solid in 2D, a two-sided surface in 3D.
+    Triangle(Triangle),
+    /// A line segment without thickness.
+    Segment(Segment),
+    /// All that lies behind a plane through the origin.
+    HalfSpace(HalfSpace),
+    /// Known only to the embedder, which gives its box and its manifolds.
+    Foreign(Foreign),
+}
+
+/// A shape the kernel has no geometry for, by the box that its embedder computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foreign {
+    /// The box around the shape in its own frame.
+    pub aabb: Aabb,
+}
+
+/// Where a ray meets a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit {
+    /// The distance along the (unit) direction, in metres.
+    pub distance: f32,
+    /// The outward unit normal; zero if the ray starts inside of a solid shape.
+    pub normal: Vector,
+}
+
+/// A shape with nothing in it or a value that is not a usable number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeError {
+    /// A coordinate, length or radius is NaN or infinite.
+    NotFinite,
+    /// A radius or half extent is negative.
+    Negative,
+    /// Fewer distinct points than span the shape, or all on a line (or plane).
+    Degenerate,
+    /// The points given as a convex outline or mesh are not convex.
+    NotConvex,
+}
+
+impl core::fmt::Display for ShapeError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "a coordinate, length or radius is NaN or infinite",
+            Self::Negative => "a radius or half extent is negative",
+            Self::Degenerate => "the points do not span a shape",
+            Self::NotConvex => "the points are not in convex position",
+        })
+    }
+}
+
+impl core::error::Error for ShapeError {}
+
+impl Shape {
+    /// The box around the shape at a world pose, rounded outward to `f32`. Half-spaces give an
+    /// infinite box.
+    pub fn aabb(&self, pose: &WorldPose) -> Aabb {
+        self.local_aabb(pose.rotation).at(pose.position)
+    }
+
+    /// The box around the shape in its own frame turned by `rotation`, centred on nothing.
+    pub fn local_aabb(&self, rotation: crate::math::Rot) -> Aabb {
+        match self {
+            Self::Ball(s) => s.local_aabb(),
+            Self::Capsule(s) => s.local_aabb(rotation),
+            Self::Cuboid(s) => s.local_aabb(rotation),
+            Self::Hull(s) => Aabb::around(s.vertices().iter().map(|v| rotation.rotate(*v))).grown(s.radius()),
+            Self::Triangle(s) => Aabb::around([s.a, s.b, s.c].map(|v| rotation.rotate(v))),
+            Self::Segment(s) => Aabb::around([s.a, s.b].map(|v| rotation.rotate(v))),
+            Self::HalfSpace(_) => Aabb::EVERYTHING,
+            Self::Foreign(s) => s.aabb.rotated(rotation),
+        }
+    }
+
+    /// The point of the shape farthest along `direction` (any length), radius included. `None` for
+    /// half-spaces and foreign shapes.
+    pub fn support(&self, direction: Vector) -> Option<Vector> {
+        Some(match self {
+            Self::Ball(s) => s.support(direction),
+            Self::Capsule(s) => s.support(direction),
+            Self::Cuboid(s) => s.support(direction),
+            Self::Hull(s) => s.support(direction),
+            Self::Triangle(s) => s.support(direction),
+            Self::Segment(s) => s.support(direction),
+            Self::HalfSpace(_) | Self::Foreign(_) => return None,
+        })
+    }
+
+    /// The distance from `center` to the farthest point of the shape, in metres: how far a point of
+    /// the shape moves, per radian, when it turns about `center`. Zero for half-spaces.
+    pub fn extent(&self, center: Vector) -> f32 {
+        let farthest = |points: &[Vector]| {
+            points.iter().map(|p| (*p - center).length_squared()).fold(0.0, crate::math::max).sqrt()
+        };
+        match self {
+            Self::Ball(s) => center.length() + s.radius,
+            Self::Capsule(s) => farthest(&[s.a, s.b]) + s.radius,
+            Self::Cuboid(s) => (center.abs() + s.half).length(),
+            Self::Hull(s) => farthest(s.vertices()) + s.radius(),
+            Self::Triangle(s) => farthest(&[s.a, s.b, s.c]),
+            Self::Segment(s) => farthest(&[s.a, s.b]),
+            Self::HalfSpace(_) => 0.0,
+            Self::Foreign(s) => farthest(&s.aabb.corners()),
+        }
+    }
+
+    /// Where a ray from `origin` along the unit vector `direction` first meets the shape within
+    /// `max_distance`, all in the shape's frame.
+    ///
+    /// A ray that starts inside hits at distance 0 with a zero normal if `solid`, else the boundary
+    /// from within. Surfaces without an inside (3D triangles, segments) are hit from both sides;
+    /// segments in 3D are never hit, foreign shapes neither.
+    pub fn cast_ray(&self, origin: Vector, direction: Vector, max_distance: f32, solid: bool) -> Option<RayHit> {
+        match self {
+            Self::Ball(s) => s.cast_ray(origin, direction, max_distance, solid),
+            Self::Capsule(s) => s.cast_ray(origin, direction, max_distance, solid),
+            Self::Cuboid(s) => s.cast_ray(origin, direction, max_distance, solid),
+            Self::Hull(s) => s.cast_ray(origin, direction, max_distance, solid),
+            Self::Triangle(s) => cast_ray_triangle(s, origin, direction, max_distance, solid),
+            Self::Segment(s) => cast_ray_segment(s, origin, direction, max_distance),
+            Self::HalfSpace(s) => s.cast_ray(origin, direction, max_distance, solid),
+            Self::Foreign(_) => None,
+        }
+    }
+
+    /// Mass, centre of mass and inertia at a uniform density in kg/m² or kg/m³. Zero for shapes
+    /// without an inside, for half-spaces, and for foreign shapes.
+    pub fn mass_properties(&self, density: f32) -> MassProperties {
+        let unit = match self {
+            Self::Ball(s) => mass_of_ball(s),
+            Self::Capsule(s) => mass_of_capsule(s),
+            Self::Cuboid(s) => mass_of_cuboid(s),
+            Self::Hull(s) => s.unit_mass(),
+            Self::Triangle(s) => mass_of_triangle(s),
+            Self::Segment(_) | Self::HalfSpace(_) | Self::Foreign(_) => MassProperties::ZERO,
+        };
+        unit.scaled(density)
+    }
+}

@@ -1,0 +1,120 @@
+//! The dense bodies of one step: rows that contact rows refer to by index.
+#![expect(unsafe_code, reason = "rows of disjoint bodies are written through shared views")]
+
+use super::{BodyRow, MassRow};
+use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
+use core::cell::UnsafeCell;
+
+/// How a body's velocity changes by itself, and what limits it. Constant over a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// m/s², gravity included.
+    pub acceleration: Vector,
+    /// rad/s².
+    pub angular_acceleration: Angular,
+    /// 1/s.
+    pub linear_damping: f32,
+    /// 1/s.
+    pub angular_damping: f32,
+    /// m/s; infinity for no limit.
+    pub max_speed: f32,
+    /// rad/s; infinity for no limit.
+    pub max_angular_speed: f32,
+    /// Axes along or about which the body does not move.
+    pub locks: AxisLocks,
+    /// The inverse inertia in the body's frame, for the gyroscopic torque.
+    pub local_inv_inertia: InvInertia,
+    /// The body's rotation when the step begins.
+    pub rotation: Rot,
+}
+
+impl Motion {
+    /// No acceleration, no damping, no limit.
+    pub const FREE: Self = Self {
+        acceleration: Vector::ZERO,
+        angular_acceleration: Angular::ZERO,
+        linear_damping: 0.0,
+        angular_damping: 0.0,
+        max_speed: f32::INFINITY,
+        max_angular_speed: f32::INFINITY,
+        locks: AxisLocks::NONE,
+        local_inv_inertia: InvInertia::ZERO,
+        rotation: Rot::IDENTITY,
+    };
+}
+
+/// The bodies of one step. Row 0 is the immovable dummy that static partners and padding refer to; then
+/// come the kinematic bodies, then the dynamic ones from [`first_dynamic`](Self::first_dynamic). Only
+/// dynamic rows are ever written by contact rows.
+#[derive(Clone, Debug, Default)]
+pub struct BodyRows {
+    /// Velocity and motion.
+    pub rows: Vec<BodyRow>,
+    /// Inverse masses.
+    pub masses: Vec<MassRow>,
+    /// What changes velocities.
+    pub motions: Vec<Motion>,
+    /// The first row of a dynamic body.
+    pub first_dynamic: u32,
+}
+
+impl BodyRows {
+    /// Makes room for `kinematic` and `dynamic` bodies after the dummy, all at rest.
+    pub fn reset(&mut self, kinematic: usize, dynamic: usize) {
+        let count = 1 + kinematic + dynamic;
+        self.rows.clear();
+        self.rows.resize(count, BodyRow::REST);
+        self.masses.clear();
+        self.masses.resize(count, MassRow::default());
+        self.motions.clear();
+        self.motions.resize(count, Motion::FREE);
+        self.first_dynamic = 1 + kinematic as u32;
+    }
+
+    /// A view through which rows of disjoint bodies can be read and written; only dynamic bodies are.
+    pub fn view(&mut self) -> RowView<'_, BodyRow> {
+        RowView::over(&mut self.rows, self.first_dynamic)
+    }
+
+    /// A view that writes kinematic bodies too, for integrating positions.
+    pub fn view_all(&mut self) -> RowView<'_, BodyRow> {
+        RowView::over(&mut self.rows, 1)
+    }
+}
+
+/// Rows shared between batches of one colour.
+///
+/// A colour holds no dynamic body twice, so no two contact rows of a colour write the same row; what is
+/// not dynamic is read by many and written by none. That is what makes the shared writes sound.
+pub struct RowView<'a, T> {
+    cells: &'a [UnsafeCell<T>],
+    first_writable: u32,
+}
+
+// SAFETY: threads only touch disjoint rows, or rows that nobody writes (see the type).
+unsafe impl<T: Send + Sync> Sync for RowView<'_, T> {}
+
+impl<'a, T> RowView<'a, T> {
+    pub(super) fn over(rows: &'a mut [T], first_writable: u32) -> Self {
+        // SAFETY: `UnsafeCell<T>` has the layout of `T`, and the rows are borrowed mutably.
+        let cells = unsafe { &*(core::ptr::from_mut(rows) as *const [UnsafeCell<T>]) };
+        Self { cells, first_writable }
+    }
+
+    /// Reads a row.
+    #[inline(always)]
+    pub(super) fn get(&self, id: u32) -> &T {
+        // SAFETY: nobody writes this row meanwhile: a contact row reads its bodies before it writes
+        // them, no other row of its colour holds them, and the reference does not outlive the load.
+        unsafe { &*self.cells[id as usize].get() }
+    }
+
+    /// Changes a row, if it may be written.
+    #[inline(always)]
+    pub(super) fn put(&self, id: u32, change: impl FnOnce(&mut T)) {
+        if id >= self.first_writable {
+            // SAFETY: as for `get`; `change` is a store.
+            change(unsafe { &mut *self.cells[id as usize].get() });
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! What differs between the dimensions in the rows: how a body lies in memory, and twist friction.
+//! `dim3.rs` exports the same names.
+
+use super::RowView;
+use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Vector};
+
+/// A body while the solver runs: velocity, and how far it has moved in this step. 32 bytes.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct BodyRow {
+    /// v.x, v.y, ω, unused.
+    velocity: Quad,
+    /// Δx, Δy, cos Δθ, sin Δθ.
+    delta: Quad,
+}
+
+/// A body's inverse masses, in world axes.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(16))]
+pub struct MassRow {
+    /// 1/m, 1/I, unused, unused.
+    quad: Quad,
+}
+
+impl BodyRow {
+    /// At rest and not moved.
+    pub const REST: Self =
+        Self { velocity: Quad([0.0; 4]), delta: Quad([0.0, 0.0, 1.0, 0.0]) };
+
+    /// A body not yet moved.
+    pub fn new(linear: Vector, angular: Angular) -> Self {
+        let mut row = Self::REST;
+        row.set_velocity(linear, angular);
+        row
+    }
+    /// The velocity, m/s and rad/s.
+    #[inline]
+    pub fn velocity(&self) -> (Vector, Angular) {
+        let [x, y, z, _] = self.velocity.0;
+        (Vector { x, y }, Angular { z })
+    }
+    /// Sets the velocity, m/s and rad/s.
+    #[inline]
+    pub fn set_velocity(&mut self, linear: Vector, angular: Angular) {
+        self.velocity.0 = [linear.x, linear.y, angular.z, 0.0];
+    }
+    /// How far the body has moved and turned since the step began.
+    #[inline]
+    pub fn delta(&self) -> (Vector, Rot) {
+        let [x, y, cos, sin] = self.delta.0;
+        (Vector { x, y }, Rot { cos, sin })
+    }
+    /// Sets how far the body has moved and turned since the step began.
+    #[inline]
+    pub fn set_delta(&mut self, position: Vector, rotation: Rot) {
+        self.delta.0 = [position.x, position.y, rotation.cos, rotation.sin];
+    }
+
+    /// Loads the velocities of one body for each lane.
+    #[inline(always)]
+    pub(super) fn gather_velocity<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Angular<N>) {
+        let [x, y, z, _] = N::gather(ids, |id| &rows.get(id).velocity);
+        (Vector { x, y }, Angular { z })
+    }
+    /// Loads the motion in this step of one body for each lane.
+    #[inline(always)]
+    pub(super) fn gather_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Rot<N>) {
+        let [x, y, cos, sin] = N::gather(ids, |id| &rows.get(id).delta);
+        (Vector { x, y }, Rot { cos, sin })
+    }
+    /// Stores the velocities of one body for each lane, where the body may be written.
+    #[inline(always)]
+    pub(super) fn scatter_velocity<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, v: Vector<N>, w: Angular<N>) {
+        N::scatter([v.x, v.y, w.z, N::ZERO], ids, |id, quad| rows.put(id, |row| row.velocity = quad));
+    }
+    /// Stores the motion in this step of one body for each lane, where the body may be written.
+    #[inline(always)]
+    pub(super) fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
+        N::scatter([p.x, p.y, q.cos, q.sin], ids, |id, quad| rows.put(id, |row| row.delta = quad));
+    }
+}
+
+impl MassRow {
+    /// Inverse mass in 1/kg and inverse inertia in world axes; zeros do not move.
+    pub fn new(inv_mass: f32, inv_inertia: InvInertia) -> Self {
+        Self { quad: Quad([inv_mass, inv_inertia.zz, 0.0, 0.0]) }
+    }
+    /// The inverse mass, 1/kg.
+    pub fn inv_mass(&self) -> f32 {
+        self.quad.0[0]
+    }
+    /// The inverse inertia in world axes.
+    pub fn inv_inertia(&self) -> InvInertia {
+        InvInertia { zz: self.quad.0[1] }
+    }
+    /// Loads one body for each lane.
+    #[inline(always)]
+    pub(super) fn gather<N: Lane>(rows: &[Self], ids: &N::Ids) -> (N, InvInertia<N>) {
+        let [inv_mass, zz, ..] = N::gather(ids, |id| &rows[id as usize].quad);
+        (inv_mass, InvInertia { zz })
+    }
+}
+
+/// Friction against turning about the contact normal: nothing in 2D, and no bytes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Twist<N, const P: usize>(core::marker::PhantomData<N>);
+
+impl<N: Lane, const P: usize> Twist<N, P> {
+    /// Prepares the row: nothing to do in 2D.
+    #[inline(always)]
+    pub(super) fn prepare(
+        &mut self,
+        _normal: Vector<N>,
+        _center: Vector<N>,
+        _anchors: [Vector<N>; P],
+        _inertia: [InvInertia<N>; 2],
+    ) {
+    }
+    /// Applies the accumulated impulse: nothing in 2D.
+    #[inline(always)]
+    pub(super) fn warm_start(
+        &self,
+        _normal: Vector<N>,
+        _inertia: [InvInertia<N>; 2],
+        _w: &mut [Angular<N>; 2],
+    ) {
+    }
+    /// Solves the row: nothing in 2D.
+    #[inline(always)]
+    pub(super) fn solve(
+        &mut self,
+        _normal: Vector<N>,
+        _friction: N,
+        _impulses: [N; P],
+        _inertia: [InvInertia<N>; 2],
+        _w: &mut [Angular<N>; 2],
+    ) {
+    }
+    /// The accumulated impulse of lane `i`, N·m·s.
+    pub(super) fn impulse(&self, _i: usize) -> f32 {
+        0.0
+    }
+    /// Sets the accumulated impulse of lane `i`, N·m·s.
+    pub(super) fn set_impulse(&mut self, _i: usize, _value: f32) {}
+}

@@ -1,0 +1,199 @@
+//! What differs between the dimensions in the rows: how a body lies in memory, and twist friction.
+//! `dim2.rs` exports the same names.
+
+use super::RowView;
+use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Vector};
+
+/// A body while the solver runs: velocity, and how far it has moved in this step. 64 bytes, one cache
+/// line; the padding buys loads of whole quads.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct BodyRow {
+    /// v, unused.
+    linear: Quad,
+    /// ω, unused.
+    angular: Quad,
+    /// Δx, unused.
+    position: Quad,
+    /// The quaternion of the turn in this step.
+    rotation: Quad,
+}
+
+/// A body's inverse masses, in world axes.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(32))]
+pub struct MassRow {
+    /// 1/m, xx, yy, zz.
+    diagonal: Quad,
+    /// xy, xz, yz, unused.
+    rest: Quad,
+}
+
+impl BodyRow {
+    /// At rest and not moved.
+    pub const REST: Self = Self {
+        linear: Quad([0.0; 4]),
+        angular: Quad([0.0; 4]),
+        position: Quad([0.0; 4]),
+        rotation: Quad([0.0, 0.0, 0.0, 1.0]),
+    };
+
+    /// A body not yet moved.
+    pub fn new(linear: Vector, angular: Angular) -> Self {
+        let mut row = Self::REST;
+        row.set_velocity(linear, angular);
+        row
+    }
+    /// The velocity, m/s and rad/s.
+    #[inline]
+    pub fn velocity(&self) -> (Vector, Angular) {
+        let ([x, y, z, _], [a, b, c, _]) = (self.linear.0, self.angular.0);
+        (Vector { x, y, z }, Vector { x: a, y: b, z: c })
+    }
+    /// Sets the velocity, m/s and rad/s.
+    #[inline]
+    pub fn set_velocity(&mut self, linear: Vector, angular: Angular) {
+        self.linear.0 = [linear.x, linear.y, linear.z, 0.0];
+        self.angular.0 = [angular.x, angular.y, angular.z, 0.0];
+    }
+    /// How far the body has moved and turned since the step began.
+    #[inline]
+    pub fn delta(&self) -> (Vector, Rot) {
+        let ([x, y, z, _], [a, b, c, w]) = (self.position.0, self.rotation.0);
+        (Vector { x, y, z }, Rot { x: a, y: b, z: c, w })
+    }
+    /// Sets how far the body has moved and turned since the step began.
+    #[inline]
+    pub fn set_delta(&mut self, position: Vector, rotation: Rot) {
+        self.position.0 = [position.x, position.y, position.z, 0.0];
+        self.rotation.0 = [rotation.x, rotation.y, rotation.z, rotation.w];
+    }
+
+    /// Loads the velocities of one body for each lane.
+    #[inline(always)]
+    pub(super) fn gather_velocity<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Angular<N>) {
+        let [x, y, z, _] = N::gather(ids, |id| &rows.get(id).linear);
+        let [a, b, c, _] = N::gather(ids, |id| &rows.get(id).angular);
+        (Vector { x, y, z }, Vector { x: a, y: b, z: c })
+    }
+    /// Loads the motion in this step of one body for each lane.
+    #[inline(always)]
+    pub(super) fn gather_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Rot<N>) {
+        let [x, y, z, _] = N::gather(ids, |id| &rows.get(id).position);
+        let [a, b, c, w] = N::gather(ids, |id| &rows.get(id).rotation);
+        (Vector { x, y, z }, Rot { x: a, y: b, z: c, w })
+    }
+    /// Stores the velocities of one body for each lane, where the body may be written.
+    #[inline(always)]
+    pub(super) fn scatter_velocity<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, v: Vector<N>, w: Angular<N>) {
+        N::scatter([v.x, v.y, v.z, N::ZERO], ids, |id, quad| rows.put(id, |row| row.linear = quad));
+        N::scatter([w.x, w.y, w.z, N::ZERO], ids, |id, quad| rows.put(id, |row| row.angular = quad));
+    }
+    /// Stores the motion in this step of one body for each lane, where the body may be written.
+    #[inline(always)]
+    pub(super) fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
+        N::scatter([p.x, p.y, p.z, N::ZERO], ids, |id, quad| rows.put(id, |row| row.position = quad));
+        N::scatter([q.x, q.y, q.z, q.w], ids, |id, quad| rows.put(id, |row| row.rotation = quad));
+    }
+}
+
+impl MassRow {
+    /// Inverse mass in 1/kg and inverse inertia in world axes; zeros do not move.
+    pub fn new(inv_mass: f32, i: InvInertia) -> Self {
+        Self { diagonal: Quad([inv_mass, i.xx, i.yy, i.zz]), rest: Quad([i.xy, i.xz, i.yz, 0.0]) }
+    }
+    /// The inverse mass, 1/kg.
+    pub fn inv_mass(&self) -> f32 {
+        self.diagonal.0[0]
+    }
+    /// The inverse inertia in world axes.
+    pub fn inv_inertia(&self) -> InvInertia {
+        let ([_, xx, yy, zz], [xy, xz, yz, _]) = (self.diagonal.0, self.rest.0);
+        InvInertia { xx, yy, zz, xy, xz, yz }
+    }
+    /// Loads one body for each lane.
+    #[inline(always)]
+    pub(super) fn gather<N: Lane>(rows: &[Self], ids: &N::Ids) -> (N, InvInertia<N>) {
+        let [inv_mass, xx, yy, zz] = N::gather(ids, |id| &rows[id as usize].diagonal);
+        let [xy, xz, yz, _] = N::gather(ids, |id| &rows[id as usize].rest);
+        (inv_mass, InvInertia { xx, yy, zz, xy, xz, yz })
+    }
+}
+
+/// Friction against turning about the contact normal (torsional friction).
+///
+/// The angular row K = nᵀ (I_A⁻¹ + I_B⁻¹) n, limited by μ Σ lᵢ λᵢ: each point can resist with its normal
+/// impulse λᵢ at its distance lᵢ from the friction centre.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Twist<N, const P: usize> {
+    levers: [N; P],
+    mass: N,
+    impulse: N,
+}
+
+impl<N: Lane, const P: usize> Default for Twist<N, P> {
+    fn default() -> Self {
+        Self { levers: [N::ZERO; P], mass: N::ZERO, impulse: N::ZERO }
+    }
+}
+
+impl<N: Lane, const P: usize> Twist<N, P> {
+    /// Computes the effective mass and the levers.
+    #[inline(always)]
+    pub(super) fn prepare(
+        &mut self,
+        normal: Vector<N>,
+        center: Vector<N>,
+        anchors: [Vector<N>; P],
+        inertia: [InvInertia<N>; 2],
+    ) {
+        let k = normal.dot(inertia[0].apply(normal) + inertia[1].apply(normal));
+        self.mass = N::select(N::ZERO.lt(k), N::ONE / k, N::ZERO);
+        for (lever, anchor) in self.levers.iter_mut().zip(anchors) {
+            *lever = (anchor - center).length();
+        }
+    }
+    /// Applies the accumulated impulse.
+    #[inline(always)]
+    pub(super) fn warm_start(
+        &self,
+        normal: Vector<N>,
+        inertia: [InvInertia<N>; 2],
+        w: &mut [Angular<N>; 2],
+    ) {
+        let impulse = normal * self.impulse;
+        w[0] -= inertia[0].apply(impulse);
+        w[1] += inertia[1].apply(impulse);
+    }
+    /// Solves the row.
+    #[inline(always)]
+    pub(super) fn solve(
+        &mut self,
+        normal: Vector<N>,
+        friction: N,
+        impulses: [N; P],
+        inertia: [InvInertia<N>; 2],
+        w: &mut [Angular<N>; 2],
+    ) {
+        let mut limit = N::ZERO;
+        for (lever, impulse) in self.levers.iter().zip(impulses) {
+            limit += *lever * impulse;
+        }
+        let limit = friction * limit;
+        let speed = normal.dot(w[1] - w[0]);
+        let new = (self.impulse - self.mass * speed).max(-limit).min(limit);
+        let impulse = normal * (new - self.impulse);
+        self.impulse = new;
+        w[0] -= inertia[0].apply(impulse);
+        w[1] += inertia[1].apply(impulse);
+    }
+    /// The accumulated impulse of lane `i`, N·m·s.
+    pub(super) fn impulse(&self, i: usize) -> f32 {
+        self.impulse.get(i)
+    }
+    /// Sets the accumulated impulse of lane `i`, N·m·s.
+    pub(super) fn set_impulse(&mut self, i: usize, value: f32) {
+        self.impulse.set(i, value);
+    }
+}

@@ -1,0 +1,193 @@
+//! Free motion: velocities from accelerations and damping, positions from velocities.
+
+use super::{BodyRow, BodyRows, Motion};
+use crate::math::{Angular, F32x4, Lane};
+
+/// Row ids of bodies whose velocity needs more than acceleration and damping.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Special {
+    /// Held along or about axes, or limited in speed.
+    limited: Vec<u32>,
+    /// Turned by its own spin (3D).
+    gyroscopic: Vec<u32>,
+}
+
+impl Special {
+    /// Finds the bodies of this step that need it.
+    pub(super) fn find(&mut self, bodies: &BodyRows) {
+        self.limited.clear();
+        self.gyroscopic.clear();
+        for (i, motion) in bodies.motions.iter().enumerate().skip(1) {
+            let id = i as u32;
+            if motion.locks.0 != 0 || motion.max_speed.is_finite() || motion.max_angular_speed.is_finite() {
+                self.limited.push(id);
+            }
+            if id >= bodies.first_dynamic && !is_isotropic(motion.local_inv_inertia) {
+                self.gyroscopic.push(id);
+            }
+        }
+    }
+
+    fn limit(&self, bodies: &mut BodyRows) {
+        for &id in &self.limited {
+            let motion = &bodies.motions[id as usize];
+            let row = &mut bodies.rows[id as usize];
+            let (v, w) = row.velocity();
+            let v = v.scale(motion.locks.translation_factors());
+            let w = hold(w, motion);
+            row.set_velocity(
+                v * limit_factor(v.length(), motion.max_speed),
+                w * limit_factor(w.length(), motion.max_angular_speed),
+            );
+        }
+    }
+}
+
+/// The angular velocity without its part about held axes.
+fn hold(w: Angular, motion: &Motion) -> Angular {
+    let free = motion.locks.rotation_factors();
+    scale_angular(w, free)
+}
+
+fn limit_factor(speed: f32, max: f32) -> f32 {
+    if speed > max { max / speed } else { 1.0 }
+}
+
+impl BodyRows {
+    /// v ← v / (1 + c h) + h a for every dynamic body; the damping acts on the old velocity, so that
+    /// without forces v falls by exactly 1 / (1 + c h). In 3D then one step of the gyroscopic torque.
+    pub(super) fn integrate_velocities(&mut self, special: &Special, h: f32) {
+        let first = self.first_dynamic as usize;
+        for (row, motion) in self.rows[first..].iter_mut().zip(&self.motions[first..]) {
+            let (v, w) = row.velocity();
+            row.set_velocity(
+                v * (1.0 / (1.0 + motion.linear_damping * h)) + motion.acceleration * h,
+                w * (1.0 / (1.0 + motion.angular_damping * h)) + motion.angular_acceleration * h,
+            );
+        }
+        for &id in &special.gyroscopic {
+            let motion = &self.motions[id as usize];
+            let row = &mut self.rows[id as usize];
+            let (v, w) = row.velocity();
+            let rotation = world_rotation(row.delta().1, motion.rotation);
+            row.set_velocity(v, gyroscopic(w, rotation, motion.local_inv_inertia, h));
+        }
+        special.limit(self);
+    }
+
+    /// Δx ← Δx + h v and Δθ ← Δθ turned by h ω, for every body.
+    pub(super) fn integrate_positions(&mut self, special: &Special, h: f32) {
+        special.limit(self);
+        let count = self.rows.len() as u32;
+        let view = self.view_all();
+        let mut id = 0;
+        while id + F32x4::WIDTH as u32 <= count {
+            let ids = core::array::from_fn(|k| id + k as u32);
+            move_bodies::<F32x4>(&view, &ids, h);
+            id += F32x4::WIDTH as u32;
+        }
+        for id in id..count {
+            move_bodies::<f32>(&view, &[id], h);
+        }
+    }
+}
+
+#[inline(always)]
+fn move_bodies<N: Lane>(view: &super::RowView<BodyRow>, ids: &N::Ids, h: f32) {
+    let (v, w) = BodyRow::gather_velocity::<N>(view, ids);
+    let (p, q) = BodyRow::gather_delta::<N>(view, ids);
+    let h = N::splat(h);
+    let (p, q) = (p + v * h, q.integrated(exact_turn(w * h)));
+    BodyRow::scatter_delta::<N>(view, ids, p, q);
+}
+
+/// The normalised Euler step turns by 2 atan(δ/2) (in 2D: atan δ) instead of δ. Two terms of the
+/// tangent's series beforehand make up for it: δ (1 + (kδ)²/3 + 2(kδ)⁴/15), k = ½ (in 2D: 1).
+#[inline(always)]
+fn exact_turn<N: Lane>(turn: Angular<N>) -> Angular<N> {
+    let k = if crate::math::DIM == 2 { 1.0 } else { 0.25 };
+    let x = turn.length_squared() * N::splat(k);
+    turn * (N::ONE + x * (N::splat(1.0 / 3.0) + x * N::splat(2.0 / 15.0)))
+}
+
+#[cfg_attr(feature = "2d", path = "gyro2.rs")]
+#[cfg_attr(feature = "3d", path = "gyro3.rs")]
+mod gyro;
+use gyro::{gyroscopic, is_isotropic, scale_angular, world_rotation};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Rot, Vector};
+
+    fn one_body(motion: Motion, v: Vector) -> BodyRows {
+        let mut bodies = BodyRows::default();
+        bodies.reset(0, 1);
+        bodies.rows[1] = BodyRow::new(v, Angular::ZERO);
+        bodies.motions[1] = motion;
+        bodies
+    }
+
+    #[test]
+    fn free_fall_is_symplectic_euler() {
+        let g = Vector::Y * -9.81;
+        let mut bodies = one_body(Motion { acceleration: g, ..Motion::FREE }, Vector::X * 3.0);
+        let (h, n) = (1.0 / 256.0, 512);
+        let special = Special::default();
+        for _ in 0..n {
+            bodies.integrate_velocities(&special, h);
+            bodies.integrate_positions(&special, h);
+        }
+        let t = h * n as f32;
+        let (v, p) = (bodies.rows[1].velocity().0, bodies.rows[1].delta().0);
+        let want = Vector::X * (3.0 * t) + g * (0.5 * t * (t + h));
+        assert!((p - want).length() < 1e-5 * want.length(), "{p:?} is not {want:?}");
+        assert!((v.y + 9.81 * t).abs() < 1e-4);
+    }
+
+    #[test]
+    fn damping_divides_the_velocity() {
+        let mut bodies = one_body(Motion { linear_damping: 0.7, ..Motion::FREE }, Vector::X * 5.0);
+        let h = 1.0 / 60.0;
+        for _ in 0..100 {
+            bodies.integrate_velocities(&Special::default(), h);
+        }
+        let want = 5.0 / (1.0f64 + 0.7 / 60.0).powi(100);
+        assert!((f64::from(bodies.rows[1].velocity().0.x) - want).abs() < 1e-4 * want);
+    }
+
+    #[test]
+    fn a_turn_is_the_angle_it_should_be() {
+        let axis = Rot::IDENTITY.axes()[0];
+        for degrees in [1.0f32, 10.0, 30.0] {
+            let angle = degrees / 180.0 * core::f32::consts::PI;
+            let turn = spin(angle);
+            let turned = Rot::IDENTITY.integrated(exact_turn(turn)).rotate(axis);
+            let cos = turned.dot(axis);
+            assert!((f64::from(cos) - crate::math::cos(f64::from(angle))).abs() < 2e-5, "{degrees}°");
+        }
+    }
+
+    #[test]
+    fn held_axes_do_not_move_and_speeds_stay_limited() {
+        let motion = Motion {
+            acceleration: Vector::ONE,
+            locks: crate::math::AxisLocks(0b100_000),
+            max_speed: 0.25,
+            ..Motion::FREE
+        };
+        let mut bodies = one_body(motion, Vector::ZERO);
+        let mut special = Special::default();
+        special.find(&bodies);
+        for _ in 0..60 {
+            bodies.integrate_velocities(&special, 1.0 / 60.0);
+            bodies.integrate_positions(&special, 1.0 / 60.0);
+        }
+        let (v, _) = bodies.rows[1].velocity();
+        assert_eq!(v.x, 0.0);
+        assert!((v.length() - 0.25).abs() < 1e-6);
+        assert_eq!(bodies.rows[1].delta().0.x, 0.0);
+    }
+
+    use gyro::spin;
+}

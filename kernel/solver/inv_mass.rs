@@ -1,0 +1,58 @@
+//! The inverse mass of a row's body: one number, or one for each axis.
+
+use crate::math::{Lane, Num, Vector};
+
+/// How an impulse changes a velocity. A body held along some, but not all, axes has another inverse mass
+/// along each, so its rows carry a vector; all other rows carry a number.
+pub trait InvMass<N: Lane>: Copy {
+    /// Immovable.
+    const ZERO: Self;
+    /// The change of velocity that an impulse makes.
+    fn apply(self, impulse: Vector<N>) -> Vector<N>;
+    /// Whether no impulse moves the body.
+    fn is_zero(self) -> N::Mask;
+    /// From the inverse mass and 1 along free, 0 along held axes.
+    fn new(inv_mass: N, free: Vector<N>) -> Self;
+    /// This where the mask is not set, immovable where it is.
+    fn zero_where(self, mask: N::Mask) -> Self;
+}
+
+impl<N: Lane> InvMass<N> for N {
+    const ZERO: Self = <N as Num>::ZERO;
+    #[inline(always)]
+    fn apply(self, impulse: Vector<N>) -> Vector<N> {
+        impulse * self
+    }
+    #[inline(always)]
+    fn is_zero(self) -> N::Mask {
+        self.eq(<N as Num>::ZERO)
+    }
+    #[inline(always)]
+    fn new(inv_mass: N, _free: Vector<N>) -> Self {
+        inv_mass
+    }
+    #[inline(always)]
+    fn zero_where(self, mask: N::Mask) -> Self {
+        N::select(mask, <N as Num>::ZERO, self)
+    }
+}
+
+impl<N: Lane> InvMass<N> for Vector<N> {
+    const ZERO: Self = Vector::ZERO;
+    #[inline(always)]
+    fn apply(self, impulse: Vector<N>) -> Vector<N> {
+        impulse.scale(self)
+    }
+    #[inline(always)]
+    fn is_zero(self) -> N::Mask {
+        self.dot(self).eq(<N as Num>::ZERO)
+    }
+    #[inline(always)]
+    fn new(inv_mass: N, free: Vector<N>) -> Self {
+        free * inv_mass
+    }
+    #[inline(always)]
+    fn zero_where(self, mask: N::Mask) -> Self {
+        self * N::select(mask, <N as Num>::ZERO, N::ONE)
+    }
+}

@@ -1,0 +1,31 @@
+//! The TGS-Soft contact solver: dense body rows, wide contact rows, and the stages of a substep.
+//!
+//! One step is: fill [`Solver::bodies`], build the rows from touching manifolds, then per substep
+//! integrate velocities → warm start → solve with soft bias → integrate positions → relax; after the
+//! last one restitution, and the impulses go back into the manifolds.
+//!
+//! The method is Erin Catto's (Solver2D, Box2D v3, Box3D): soft constraints, relaxation, positions kept
+//! as deltas over the step. Rows here differ in that both dimensions have one central friction row per
+//! manifold (in 2D the two points of an edge have the same tangent Jacobian up to the edge's slope), and
+//! in that the second anchor is the first less one offset per manifold.
+
+mod batch;
+mod body;
+#[cfg_attr(feature = "2d", path = "dim2.rs")]
+#[cfg_attr(feature = "3d", path = "dim3.rs")]
+mod dim;
+mod integrate;
+mod inv_mass;
+mod prepare;
+mod row;
+mod softness;
+mod stages;
+
+pub use batch::{Batch, PointClass, RowSet};
+pub use body::{BodyRows, Motion, RowView};
+pub use inv_mass::InvMass;
+pub use dim::{BodyRow, MassRow, Twist};
+pub use prepare::{ContactSource, RowInput};
+pub use row::{ContactRow, PointRow, RestitutionRow};
+pub use softness::{Softness, SubstepParams};
+pub use stages::Solver;

@@ -1,0 +1,315 @@
+//! Manifolds become rows: each colour's contacts are sorted by point count, lanes are filled, and the
+//! effective masses computed for all lanes of a row at once.
+
+use super::batch::{Batch, PointClass, RowSet, Rows, Source, with_rows};
+use super::{BodyRow, BodyRows, ContactRow, InvMass, MassRow, RestitutionRow, RowView, SubstepParams};
+use crate::contact::{Contact, ContactFlags, ContactTable, Manifold};
+use crate::math::{Ids, Lane, TangentFrame, Vector};
+use crate::table::{BodyTable, ColliderTable, NONE};
+
+/// What rows are made from.
+pub struct RowInput<'a> {
+    /// The contacts, with their manifolds.
+    pub contacts: &'a ContactTable,
+    /// Which row each body has.
+    pub bodies: &'a BodyTable,
+    /// The surfaces.
+    pub colliders: &'a ColliderTable,
+}
+
+/// How many deeply overlapping contacts each body row has.
+///
+/// Overlap is pushed out at a limited speed for each contact. Where a body overlaps many others deeply, as
+/// when a crowd is spawned in one place, those pushes would add up to an explosion; so they share the
+/// limit.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DeepCounts(Vec<u32>);
+
+impl DeepCounts {
+    pub(super) fn count(&mut self, input: &RowInput, rows: usize) {
+        self.0.clear();
+        if !input.contacts.any_deep() {
+            return;
+        }
+        self.0.resize(rows, 0);
+        for id in input.contacts.active() {
+            let contact = input.contacts.get(*id);
+            if contact.flags.has(ContactFlags::DEEP) && contact.slot.is_some() {
+                for body in contact.bodies {
+                    self.0[row_of(input.bodies, body) as usize] += 1;
+                }
+            }
+        }
+    }
+
+    /// The share of the push-out speed of a contact between two body rows: the least crowded movable side
+    /// decides.
+    #[inline(always)]
+    fn share(&self, rows: [u32; 2], first_dynamic: u32) -> f32 {
+        if self.0.is_empty() {
+            return 1.0;
+        }
+        let count = rows.into_iter().filter(|r| *r >= first_dynamic).map(|r| self.0[r as usize]).min();
+        1.0 / count.unwrap_or(1).max(1) as f32
+    }
+}
+
+/// One manifold that wants a row.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactSource {
+    contact: u32,
+    manifold: u32,
+}
+
+/// What the rows of a step are built with besides their input.
+pub(super) struct StepRows<'a> {
+    pub(super) bodies: &'a mut BodyRows,
+    pub(super) params: &'a SubstepParams,
+    pub(super) deep: &'a DeepCounts,
+    pub(super) buckets: &'a mut Buckets,
+}
+
+/// Buckets by point class, kept between steps.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Buckets([Vec<ContactSource>; 3]);
+
+impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
+    /// Adds the rows of contacts whose dynamic bodies are all different.
+    ///
+    /// A contact with several manifolds has them solved one after the other: the first manifolds of all
+    /// contacts form the first batches, the second ones the next, and so on, so that a batch still holds
+    /// no body twice.
+    pub(super) fn add_color(
+        &mut self,
+        input: &RowInput,
+        step: &mut StepRows,
+        contacts: impl Iterator<Item = u32> + Clone,
+    ) {
+        let StepRows { bodies, params, deep, buckets } = step;
+        let mut layer = 0;
+        loop {
+            let mut more = false;
+            for bucket in &mut buckets.0 {
+                bucket.clear();
+            }
+            for id in contacts.clone() {
+                let contact = input.contacts.get(id);
+                more |= u32::from(contact.extra_count) > layer;
+                let Some(manifold) = input.contacts.manifold(contact, layer) else { continue };
+                if manifold.count > 0 {
+                    let source = ContactSource { contact: id, manifold: layer };
+                    buckets.0[PointClass::of(manifold.count) as usize].push(source);
+                }
+            }
+            for class in PointClass::ALL {
+                let sources = &buckets.0[class as usize];
+                if !sources.is_empty() {
+                    let batch = with_rows!(self, class, |rows| rows.add(input, bodies, params, deep, sources));
+                    self.batches.push(Batch { class, ..batch });
+                }
+            }
+            if !more {
+                return;
+            }
+            layer += 1;
+        }
+    }
+}
+
+impl<N: Lane, M: InvMass<N>, const P: usize> Rows<N, M, P> {
+    fn add(
+        &mut self,
+        input: &RowInput,
+        bodies: &mut BodyRows,
+        params: &SubstepParams,
+        deep: &DeepCounts,
+        sources: &[ContactSource],
+    ) -> Batch {
+        let start = self.rows.len();
+        let mut bouncy = false;
+        for chunk in sources.chunks(N::WIDTH) {
+            let mut row = ContactRow::default();
+            let mut bounce = RestitutionRow::default();
+            let mut source = Source::<N> { contacts: N::Ids::splat(NONE), manifolds: N::Ids::splat(0) };
+            let mut fill = Fill {
+                friction_impulse: Vector::ZERO,
+                weights: [N::ZERO; P],
+                free: [Vector::splat(Vector::ONE); 2],
+                dominated: [N::ZERO; 2],
+            };
+            for (lane, from) in chunk.iter().enumerate() {
+                source.contacts.set(lane, from.contact);
+                source.manifolds.set(lane, from.manifold);
+                fill.lane(input, bodies, params, *from, lane, &mut row, &mut bounce);
+                let share = deep.share([0, 1].map(|i| row.ids[i].lanes()[lane]), bodies.first_dynamic);
+                row.push_speed.set(lane, params.max_push_speed * share);
+            }
+            let BodyRows { rows, masses, first_dynamic, .. } = &mut *bodies;
+            let view = RowView::over(rows, *first_dynamic);
+            fill.finish(&mut row, &mut bounce, masses, &view);
+            bouncy |= N::any(N::ZERO.lt(bounce.restitution));
+            self.rows.push(row);
+            self.bounces.push(bounce);
+            self.sources.push(source);
+        }
+        let len = (self.rows.len() - start) as u32;
+        Batch { class: PointClass::One, start: start as u32, len, bouncy }
+    }
+}
+
+/// What is needed of a row only while it is prepared.
+struct Fill<N, const P: usize> {
+    friction_impulse: Vector<N>,
+    weights: [N; P],
+    free: [Vector<N>; 2],
+    dominated: [N; 2],
+}
+
+impl<N: Lane, const P: usize> Fill<N, P> {
+    /// Copies one manifold into a lane.
+    #[allow(clippy::too_many_arguments, reason = "a lane of three structures filled in one go")]
+    #[inline(always)]
+    fn lane<M: InvMass<N>>(
+        &mut self,
+        input: &RowInput,
+        bodies: &BodyRows,
+        params: &SubstepParams,
+        from: ContactSource,
+        lane: usize,
+        row: &mut ContactRow<N, M, P>,
+        bounce: &mut RestitutionRow<N, P>,
+    ) {
+        let contact = input.contacts.get(from.contact);
+        let manifold = input.contacts.manifold(contact, from.manifold).expect("it was there to be counted");
+        for side in 0..2 {
+            let id = row_of(input.bodies, contact.bodies[side]);
+            row.ids[side].set(lane, id);
+            let locks = bodies.motions[id as usize].locks;
+            if locks.is_translation_partial() {
+                self.free[side].set(lane, locks.translation_factors());
+            }
+        }
+        self.dominate(input.bodies, contact, lane);
+        let [a, b] = contact.colliders.map(|c| input.colliders[c].def.material);
+        row.friction.set(lane, a.friction.mix(b.friction));
+        bounce.restitution.set(lane, a.restitution.mix(b.restitution));
+        self.copy(manifold, contact.frozen.offset, params, lane, row);
+    }
+
+    /// Marks the side that cannot be moved by the other because it dominates it.
+    #[inline(always)]
+    fn dominate(&mut self, bodies: &BodyTable, contact: &Contact, lane: usize) {
+        let [a, b] = contact.bodies;
+        if a != NONE && b != NONE {
+            let (a, b) = (bodies[a].dominance, bodies[b].dominance);
+            if a > b {
+                self.dominated[0].set(lane, 1.0);
+            } else if b > a {
+                self.dominated[1].set(lane, 1.0);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn copy<M: InvMass<N>>(
+        &mut self,
+        manifold: &Manifold,
+        offset: Vector,
+        params: &SubstepParams,
+        lane: usize,
+        row: &mut ContactRow<N, M, P>,
+    ) {
+        row.normal.set(lane, manifold.normal);
+        row.offset.set(lane, offset);
+        self.friction_impulse.set(lane, manifold.friction_impulse * params.warm_start);
+        row.twist.set_impulse(lane, manifold.twist_impulse * params.warm_start);
+        for (i, p) in manifold.points().iter().enumerate() {
+            let point = &mut row.points[i];
+            point.anchor.set(lane, p.anchor);
+            point.separation.set(lane, p.separation);
+            point.impulse.set(lane, p.impulse * params.warm_start);
+            // 1 marks the point as present until its mass is known.
+            point.mass.set(lane, 1.0);
+            // A point that is still apart counts less the farther it is, so that the friction centre
+            // does not jump when a point comes or goes.
+            let weight = 2.0 - p.separation / params.friction_fade;
+            self.weights[i].set(lane, crate::math::clamp(weight, 1.0e-10, 1.0));
+        }
+    }
+
+    /// Computes what follows from the lanes, for all at once: effective masses, friction centre,
+    /// approach speeds.
+    #[inline(always)]
+    fn finish<M: InvMass<N>>(
+        &self,
+        row: &mut ContactRow<N, M, P>,
+        bounce: &mut RestitutionRow<N, P>,
+        masses: &[MassRow],
+        view: &RowView<BodyRow>,
+    ) {
+        for side in 0..2 {
+            let (inv_mass, mut inertia) = MassRow::gather::<N>(masses, &row.ids[side]);
+            let dominated = N::ZERO.lt(self.dominated[side]);
+            row.inv_mass[side] = M::new(inv_mass, self.free[side]).zero_where(dominated);
+            inertia = inertia.scaled(N::select(dominated, N::ZERO, N::ONE));
+            row.inv_inertia[side] = inertia;
+        }
+        let (va, wa) = BodyRow::gather_velocity::<N>(view, &row.ids[0]);
+        let (vb, wb) = BodyRow::gather_velocity::<N>(view, &row.ids[1]);
+        let n = row.normal;
+        let linear = n.dot(row.inv_mass[0].apply(n)) + n.dot(row.inv_mass[1].apply(n));
+        let (mut total, mut center) = (N::ZERO, Vector::ZERO);
+        for i in 0..P {
+            let point = &mut row.points[i];
+            let (ma, mb) = (point.anchor.cross(n), (point.anchor - row.offset).cross(n));
+            let k = linear + ma.dot(row.inv_inertia[0].apply(ma)) + mb.dot(row.inv_inertia[1].apply(mb));
+            let present = N::and(N::ZERO.lt(k), N::ZERO.lt(point.mass));
+            point.mass = N::select(present, N::ONE / k, N::ZERO);
+            bounce.approach[i] = (vb - va).dot(n) + wb.dot(mb) - wa.dot(ma);
+            total += self.weights[i];
+            center += point.anchor * self.weights[i];
+        }
+        let total = N::select(N::ZERO.lt(total), total, N::ONE);
+        row.center = center * (N::ONE / total);
+        let frame = TangentFrame::new(n);
+        let arms = [(row.inv_inertia[0], row.center), (row.inv_inertia[1], row.center - row.offset)];
+        let [m0, m1] = row.inv_mass;
+        row.tangent_mass = frame.mass(|t| m0.apply(t) + m1.apply(t), arms);
+        row.tangent_impulse = frame.project(self.friction_impulse);
+        let anchors = core::array::from_fn(|i| {
+            // A point that is not there must not add a lever.
+            let there = N::ZERO.lt(self.weights[i]);
+            let anchor = row.points[i].anchor - row.center;
+            row.center + anchor * N::select(there, N::ONE, N::ZERO)
+        });
+        row.twist.prepare(n, row.center, anchors, row.inv_inertia);
+    }
+}
+
+/// A body's row in this step; the dummy for none.
+#[inline(always)]
+fn row_of(bodies: &BodyTable, body: u32) -> u32 {
+    if body == NONE { 0 } else { bodies.rows[body as usize] }
+}
+
+/// Puts the rows' impulses back into the manifolds.
+pub(super) fn store_impulses<N: Lane, M: InvMass<N>, const P: usize>(
+    rows: &Rows<N, M, P>,
+    contacts: &mut ContactTable,
+) {
+    for (row, source) in rows.rows.iter().zip(&rows.sources) {
+        let friction = TangentFrame::new(row.normal).expand(row.tangent_impulse);
+        for (lane, contact) in source.contacts.lanes().iter().enumerate() {
+            if *contact == NONE {
+                continue;
+            }
+            let manifold = contacts.manifold_mut(*contact, source.manifolds.lanes()[lane]);
+            manifold.friction_impulse = friction.get(lane);
+            manifold.twist_impulse = row.twist.impulse(lane);
+            let count = manifold.count as usize;
+            for (p, point) in manifold.points[..count].iter_mut().zip(&row.points) {
+                p.impulse = point.impulse.get(lane);
+            }
+        }
+    }
+}

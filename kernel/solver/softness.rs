@@ -1,0 +1,56 @@
+//! Soft-constraint coefficients and the numbers all rows of a substep share.
+
+/// A soft constraint's coefficients over one substep.
+///
+/// A damped harmonic oscillator of angular frequency ω and damping ratio ζ, integrated implicitly with
+/// time step h: with a₁ = 2ζ + hω, a₂ = hω a₁, a₃ = 1 / (1 + a₂) the constraint is solved with the bias
+/// velocity (ω / a₁) C, the mass scaled by a₂ a₃ and a share a₃ of the accumulated impulse taken back
+/// (Catto, "Soft Constraints", GDC 2011; Solver2D).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Softness {
+    /// Bias velocity for each metre of error, 1/s.
+    pub bias_rate: f32,
+    /// Factor on the effective mass.
+    pub mass_scale: f32,
+    /// Share of the accumulated impulse that is taken back.
+    pub impulse_scale: f32,
+}
+
+impl Softness {
+    /// No softness: the velocity error vanishes, position error is left alone.
+    pub const RIGID: Self = Self { bias_rate: 0.0, mass_scale: 1.0, impulse_scale: 0.0 };
+
+    /// The coefficients for a frequency in Hz, a damping ratio and a time step in seconds. Rigid where
+    /// the frequency or the time step is not positive.
+    pub fn new(frequency: f32, damping_ratio: f32, h: f32) -> Self {
+        let omega = core::f32::consts::TAU * frequency;
+        if !(omega > 0.0 && h > 0.0) {
+            return Self::RIGID;
+        }
+        let a1 = 2.0 * damping_ratio + h * omega;
+        let a2 = h * omega * a1;
+        let a3 = 1.0 / (1.0 + a2);
+        Self { bias_rate: omega / a1, mass_scale: a2 * a3, impulse_scale: a3 }
+    }
+}
+
+/// What all rows of a substep share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SubstepParams {
+    /// The substep's length, in seconds; positive.
+    pub h: f32,
+    /// Its inverse, 1/s.
+    pub inv_h: f32,
+    /// Between two bodies that both give way.
+    pub soft: Softness,
+    /// Against something immovable.
+    pub stiff: Softness,
+    /// The fastest that overlapping bodies are pushed apart, m/s.
+    pub max_push_speed: f32,
+    /// The share of the last impulses that rows start from, 0 … 1.
+    pub warm_start: f32,
+    /// Approach speeds below this do not bounce, m/s.
+    pub restitution_threshold: f32,
+    /// The separation over which a point's weight in the friction centre fades, in metres.
+    pub friction_fade: f32,
+}

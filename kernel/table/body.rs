@@ -1,0 +1,200 @@
+//! Bodies by id: what kind, where, how fast, and which row they have in this step.
+
+use super::NONE;
+use crate::data::{BitSet, IdPool};
+use crate::math::{Angular, Rot, Vector, WorldPose, WorldVector};
+
+/// What moves a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BodyKind {
+    /// Nothing.
+    Static,
+    /// Its velocity, which nothing in the simulation changes.
+    Kinematic,
+    /// Forces, contacts and joints.
+    #[default]
+    Dynamic,
+}
+
+/// What is rarely needed of a body.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// What moves it.
+    pub kind: BodyKind,
+    /// Whether it takes part in steps. Static bodies are never awake.
+    pub awake: bool,
+    /// Higher dominance acts on lower as if it could not be moved.
+    pub dominance: i8,
+    /// Counts changes that make cached contacts wrong: kind, centre of mass, teleports.
+    pub revision: u32,
+    /// The centre of mass in the body's frame, in metres.
+    pub local_center: Vector,
+    /// The first of its colliders, or [`NONE`].
+    pub first_collider: u32,
+    /// Seconds for which it has been slow enough to sleep.
+    pub sleep_timer: f32,
+}
+
+/// Where a body is: hot in the narrow phase.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyPose {
+    /// The centre of mass in the world.
+    pub center: WorldVector,
+    /// The rotation.
+    pub rotation: Rot,
+}
+
+/// How fast a body moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Velocity {
+    /// Of the centre of mass, m/s.
+    pub linear: Vector,
+    /// rad/s.
+    pub angular: Angular,
+}
+
+/// All bodies that take part in the simulation, asleep ones included.
+#[derive(Clone, Debug, Default)]
+pub struct BodyTable {
+    /// Which ids are in use.
+    pub ids: IdPool,
+    bodies: Vec<Body>,
+    /// Poses by id.
+    pub poses: Vec<BodyPose>,
+    /// Velocities by id.
+    pub velocities: Vec<Velocity>,
+    /// The solver row of each body in this step; 0, the immovable dummy, if it has none.
+    pub rows: Vec<u32>,
+    /// Bodies that woke or fell asleep since the embedder last emptied this; some may be back.
+    pub flipped: Vec<u32>,
+    awake_kinematic: BitSet,
+    awake_dynamic: BitSet,
+}
+
+impl BodyTable {
+    /// Adds a body, awake unless static.
+    pub fn add(&mut self, kind: BodyKind, local_center: Vector, pose: WorldPose) -> u32 {
+        let id = self.ids.allocate();
+        let body = Body {
+            kind,
+            awake: false,
+            dominance: 0,
+            revision: 0,
+            local_center,
+            first_collider: NONE,
+            sleep_timer: 0.0,
+        };
+        let center = BodyPose { center: pose.transform(local_center), rotation: pose.rotation };
+        let i = id as usize;
+        if i == self.bodies.len() {
+            self.bodies.push(body);
+            self.poses.push(center);
+            self.velocities.push(Velocity::default());
+            self.rows.push(0);
+        } else {
+            // The revision goes on counting, so that nothing cached for the id's last owner fits.
+            let revision = self.bodies[i].revision.wrapping_add(1);
+            self.bodies[i] = Body { revision, ..body };
+            self.poses[i] = center;
+            self.velocities[i] = Velocity::default();
+            self.rows[i] = 0;
+        }
+        self.set_awake(id, true);
+        id
+    }
+
+    /// Frees a body's id. Its colliders and contacts must be gone.
+    pub fn remove(&mut self, id: u32) {
+        debug_assert!(self[id].first_collider == NONE, "a removed body has no colliders");
+        self.set_awake(id, false);
+        self.ids.free(id);
+    }
+
+    /// Changes what moves a body, and keeps the awake lists true.
+    pub fn set_kind(&mut self, id: u32, kind: BodyKind) {
+        let awake = self[id].awake;
+        self.set_awake(id, false);
+        let body = &mut self[id];
+        body.kind = kind;
+        body.revision = body.revision.wrapping_add(1);
+        self.set_awake(id, awake || kind != BodyKind::Static);
+    }
+
+    /// Wakes a body or puts it to sleep; static bodies stay as they are.
+    pub fn set_awake(&mut self, id: u32, awake: bool) {
+        let body = &mut self[id];
+        let kind = body.kind;
+        let was = core::mem::replace(&mut body.awake, awake && kind != BodyKind::Static);
+        if was != body.awake {
+            self.flipped.push(id);
+        }
+        let set = match kind {
+            BodyKind::Static => return,
+            BodyKind::Kinematic => &mut self.awake_kinematic,
+            BodyKind::Dynamic => &mut self.awake_dynamic,
+        };
+        if awake {
+            set.insert(id);
+        } else {
+            set.remove(id);
+        }
+    }
+
+    /// The awake kinematic bodies, by id.
+    pub fn awake_kinematic(&self) -> impl Iterator<Item = u32> + '_ {
+        self.awake_kinematic.iter()
+    }
+
+    /// The awake dynamic bodies, by id.
+    pub fn awake_dynamic(&self) -> impl Iterator<Item = u32> + '_ {
+        self.awake_dynamic.iter()
+    }
+
+    /// Gives every awake body its row for this step, kinematic ones first, each kind in the order of
+    /// ids, and all others row 0. `listed` receives the bodies in the order of their rows, from row 1.
+    /// Returns the number of kinematic bodies.
+    pub fn assign_rows(&mut self, listed: &mut Vec<u32>) -> usize {
+        for id in listed.drain(..) {
+            if let Some(row) = self.rows.get_mut(id as usize) {
+                *row = 0;
+            }
+        }
+        listed.extend(self.awake_kinematic.iter());
+        let kinematic = listed.len();
+        listed.extend(self.awake_dynamic.iter());
+        for (i, id) in listed.iter().enumerate() {
+            self.rows[*id as usize] = 1 + i as u32;
+        }
+        kinematic
+    }
+
+    /// The body's frame in the world: its pose less its centre of mass.
+    pub fn frame(&self, id: u32) -> WorldPose {
+        let pose = self.poses[id as usize];
+        let center = pose.rotation.rotate(self[id].local_center);
+        WorldPose { position: pose.center - center.to_world(), rotation: pose.rotation }
+    }
+
+    /// Moves a body by hand. Cached contacts are invalidated.
+    pub fn teleport(&mut self, id: u32, frame: WorldPose) {
+        let center = frame.transform(self[id].local_center);
+        self.poses[id as usize] = BodyPose { center, rotation: frame.rotation };
+        let body = &mut self[id];
+        body.revision = body.revision.wrapping_add(1);
+    }
+}
+
+impl core::ops::Index<u32> for BodyTable {
+    type Output = Body;
+    #[inline(always)]
+    fn index(&self, id: u32) -> &Body {
+        &self.bodies[id as usize]
+    }
+}
+
+impl core::ops::IndexMut<u32> for BodyTable {
+    #[inline(always)]
+    fn index_mut(&mut self, id: u32) -> &mut Body {
+        &mut self.bodies[id as usize]
+    }
+}

@@ -1,0 +1,293 @@
+//! Colliders by id: native shape, world pose, fat box, surface, layers and revision.
+
+use super::{BodyTable, NONE};
+use crate::data::IdPool;
+use crate::math::{Pose, Vector, WorldPose};
+use crate::shape::{Aabb, Shape};
+use core::ops::{Index, IndexMut};
+
+/// How two surfaces' coefficients make one. Of two different rules the greater wins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Combine {
+    /// (a + b) / 2.
+    #[default]
+    Average = 1,
+    /// √(a b).
+    GeometricMean = 2,
+    /// The smaller.
+    Min = 3,
+    /// a b.
+    Multiply = 4,
+    /// The larger.
+    Max = 5,
+}
+
+/// A coefficient and how it is combined with another.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// ≥ 0.
+    pub coefficient: f32,
+    /// The rule.
+    pub rule: Combine,
+}
+
+impl Surface {
+    /// The coefficient of two surfaces in contact.
+    #[inline]
+    pub fn mix(self, other: Self) -> f32 {
+        let (a, b) = (self.coefficient, other.coefficient);
+        match self.rule.max(other.rule) {
+            Combine::Average => 0.5 * (a + b),
+            Combine::GeometricMean => (a * b).sqrt(),
+            Combine::Min => crate::math::min(a, b),
+            Combine::Multiply => a * b,
+            Combine::Max => crate::math::max(a, b),
+        }
+    }
+}
+
+/// A collider's surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Material {
+    /// Of sliding.
+    pub friction: Surface,
+    /// Of bouncing, 0 … 1.
+    pub restitution: Surface,
+}
+
+/// What a collider is and what it collides with, as bit masks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layers {
+    /// What it is.
+    pub memberships: u32,
+    /// What it collides with.
+    pub filters: u32,
+}
+
+impl Layers {
+    /// Whether each is in the other's filter.
+    #[inline(always)]
+    pub fn interacts_with(self, other: Self) -> bool {
+        self.memberships & other.filters != 0 && other.memberships & self.filters != 0
+    }
+}
+
+/// Bits of a collider.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ColliderFlags {
+    /// Detects, but is not pushed and does not push.
+    pub sensor: bool,
+}
+
+/// What the embedder says of a collider.
+#[derive(Clone, Debug)]
+pub struct ColliderDef {
+    /// The shape, scaled.
+    pub shape: Shape,
+    /// The body, or [`NONE`].
+    pub body: u32,
+    /// The shape's frame in the body's; without a body unused.
+    pub local: Pose,
+    /// The surface.
+    pub material: Material,
+    /// The layers.
+    pub layers: Layers,
+    /// Bits.
+    pub flags: ColliderFlags,
+    /// How far from the shape others are kept, in metres.
+    pub margin: f32,
+    /// The greatest distance at which contacts are predicted, in metres; may be infinite.
+    pub speculative: f32,
+}
+
+/// What is kept of a collider.
+#[derive(Clone, Debug)]
+pub struct Collider {
+    /// What the embedder said.
+    pub def: ColliderDef,
+    /// Counts changes that make cached contacts wrong: shape, place on the body, margin.
+    pub revision: u32,
+    /// The distance from the body's centre of mass to the farthest point of the shape, in metres.
+    pub extent: f32,
+    /// The first of its contacts, as `contact << 1 | side`, or [`NONE`].
+    pub first_contact: u32,
+    /// Its leaf in its tree, or [`NONE`].
+    pub proxy: u32,
+    /// The neighbours in its body's list.
+    next: u32,
+    previous: u32,
+}
+
+/// All colliders that take part in the simulation.
+#[derive(Clone, Debug, Default)]
+pub struct ColliderTable {
+    /// Which ids are in use.
+    pub ids: IdPool,
+    colliders: Vec<Collider>,
+    /// World poses by id.
+    pub poses: Vec<WorldPose>,
+    /// Fat boxes by id: what the trees hold.
+    pub fat: Vec<Aabb>,
+}
+
+/// How a box is made fat, constant over a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Fattening {
+    /// Added on every side when a box is enlarged, in metres.
+    pub margin: f32,
+    /// The time for which boxes are swept along their body's velocity, in seconds.
+    pub dt: f32,
+}
+
+impl ColliderTable {
+    /// Adds a collider at a pose and links it to its body. Its fat box is empty until
+    /// [`refresh`](Self::refresh).
+    pub fn add(&mut self, def: ColliderDef, pose: WorldPose, bodies: &mut BodyTable) -> u32 {
+        let id = self.ids.allocate();
+        let mut collider = Collider {
+            def,
+            revision: 0,
+            extent: 0.0,
+            first_contact: NONE,
+            proxy: NONE,
+            next: NONE,
+            previous: NONE,
+        };
+        let i = id as usize;
+        if i == self.colliders.len() {
+            self.colliders.push(collider);
+            self.poses.push(pose);
+            self.fat.push(Aabb::EMPTY);
+        } else {
+            // The revision goes on counting, so that nothing cached for the id's last owner fits.
+            collider.revision = self.colliders[i].revision.wrapping_add(1);
+            self.colliders[i] = collider;
+            self.poses[i] = pose;
+            self.fat[i] = Aabb::EMPTY;
+        }
+        self.attach(id, bodies);
+        self.update_extent(id, bodies);
+        id
+    }
+
+    /// Takes a collider from its body and frees its id. Its contacts and its leaf must be gone.
+    pub fn remove(&mut self, id: u32, bodies: &mut BodyTable) {
+        debug_assert!(self[id].first_contact == NONE, "a removed collider has no contacts");
+        self.detach(id, bodies);
+        self.ids.free(id);
+    }
+
+    /// Changes shape, place, margin or body; cached contacts are invalidated. The contacts of a
+    /// collider that changes its body must be gone.
+    pub fn redefine(&mut self, id: u32, def: ColliderDef, bodies: &mut BodyTable) {
+        debug_assert!(
+            self[id].def.body == def.body || self[id].first_contact == NONE,
+            "contacts know their bodies"
+        );
+        self.detach(id, bodies);
+        let collider = &mut self[id];
+        collider.def = def;
+        collider.revision = collider.revision.wrapping_add(1);
+        self.attach(id, bodies);
+        self.update_extent(id, bodies);
+    }
+
+    /// Recomputes how far the shape reaches from the body's centre of mass.
+    pub fn update_extent(&mut self, id: u32, bodies: &BodyTable) {
+        let def = &self[id].def;
+        let center = if def.body == NONE {
+            Vector::ZERO
+        } else {
+            def.local.inverse_transform(bodies[def.body].local_center)
+        };
+        let extent = def.shape.extent(center);
+        self[id].extent = extent;
+    }
+
+    /// The colliders of a body.
+    pub fn of_body<'a>(&'a self, body: u32, bodies: &BodyTable) -> impl Iterator<Item = u32> + 'a {
+        let first = bodies[body].first_collider;
+        core::iter::successors((first != NONE).then_some(first), |id| {
+            let next = self[*id].next;
+            (next != NONE).then_some(next)
+        })
+    }
+
+    /// The collider after `id` in its body's list, or [`NONE`].
+    pub fn next_of_body(&self, id: u32) -> u32 {
+        self[id].next
+    }
+
+    /// Puts a collider where its body is, and enlarges its fat box if it no longer holds the shape, its
+    /// margin, and its motion of one step. Returns whether it did. Colliders without a body keep their
+    /// pose.
+    pub fn refresh(&mut self, id: u32, bodies: &BodyTable, fattening: Fattening) -> bool {
+        let collider = &self.colliders[id as usize];
+        let def = &collider.def;
+        let mut motion = Vector::ZERO;
+        if def.body != NONE {
+            self.poses[id as usize] = bodies.frame(def.body).then(&def.local);
+            let velocity = bodies.velocities[def.body as usize].linear;
+            let speed = velocity.length();
+            let reach = crate::math::min(speed * fattening.dt, def.speculative);
+            if reach > 0.0 && reach.is_finite() {
+                motion = velocity * (reach / speed);
+            }
+        }
+        let needed = def.shape.aabb(&self.poses[id as usize]).grown(def.margin).swept(motion);
+        if self.fat[id as usize].contains(&needed) {
+            return false;
+        }
+        self.fat[id as usize] = needed.grown(fattening.margin);
+        true
+    }
+
+    /// The smallest box around a collider as it stands.
+    pub fn tight(&self, id: u32) -> Aabb {
+        self[id].def.shape.aabb(&self.poses[id as usize])
+    }
+
+    fn attach(&mut self, id: u32, bodies: &mut BodyTable) {
+        let body = self[id].def.body;
+        if body == NONE {
+            return;
+        }
+        let first = core::mem::replace(&mut bodies[body].first_collider, id);
+        self[id].next = first;
+        self[id].previous = NONE;
+        if first != NONE {
+            self[first].previous = id;
+        }
+    }
+
+    fn detach(&mut self, id: u32, bodies: &mut BodyTable) {
+        let Collider { next, previous, .. } = self[id];
+        let body = self[id].def.body;
+        if body == NONE {
+            return;
+        }
+        match previous {
+            NONE => bodies[body].first_collider = next,
+            _ => self[previous].next = next,
+        }
+        if next != NONE {
+            self[next].previous = previous;
+        }
+    }
+}
+
+impl Index<u32> for ColliderTable {
+    type Output = Collider;
+    #[inline(always)]
+    fn index(&self, id: u32) -> &Collider {
+        &self.colliders[id as usize]
+    }
+}
+
+impl IndexMut<u32> for ColliderTable {
+    #[inline(always)]
+    fn index_mut(&mut self, id: u32) -> &mut Collider {
+        &mut self.colliders[id as usize]
+    }
+}

@@ -1,0 +1,13 @@
+//! The dense tables of bodies and colliders by id: what the stages look up, and nothing that the
+//! embedder's own records already say.
+
+mod body;
+mod collider;
+
+pub use body::{Body, BodyKind, BodyPose, BodyTable, Velocity};
+pub use collider::{
+    Collider, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material, Surface,
+};
+
+/// No body, collider, contact or row.
+pub const NONE: u32 = u32::MAX;

@@ -1,0 +1,37 @@
+//! What a test must know of the plane.
+
+use crate::kernel::math::{Angular, InvInertia, Rot, Vector};
+use crate::kernel::shape::MassProperties;
+
+/// The inverse inertia of a body.
+pub fn inverse_inertia(mass: &MassProperties) -> InvInertia {
+    InvInertia { zz: if mass.inertia > 0.0 { 1.0 / mass.inertia } else { 0.0 } }
+}
+
+/// The rotation by an angle in the plane of x and y.
+pub fn turned(angle: f32) -> Rot {
+    Rot::from_angle(angle)
+}
+
+/// The angular velocity in the plane of x and y.
+pub fn spin(speed: f32) -> Angular {
+    Angular { z: speed }
+}
+
+/// The part of an angular velocity in the plane of x and y.
+pub fn spin_of(w: Angular) -> f32 {
+    w.z
+}
+
+/// A box of the given size; `depth` is for space only.
+pub fn sized(x: f32, y: f32, _depth: f32) -> Vector {
+    Vector { x, y }
+}
+
+/// The moment of inertia of a solid ball over m r².
+pub const BALL_INERTIA: f32 = 0.5;
+
+/// The kinetic energy of turning.
+pub fn spin_energy(inverse: InvInertia, _rotation: Rot, w: Angular) -> f64 {
+    if inverse.zz > 0.0 { 0.5 * f64::from(w.z * w.z / inverse.zz) } else { 0.0 }
+}

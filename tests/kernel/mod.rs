@@ -1,0 +1,7 @@
+//! Tests of the kernel's parts working together, written once for both dimensions.
+
+#[cfg_attr(feature = "2d", path = "dim2.rs")]
+#[cfg_attr(feature = "3d", path = "dim3.rs")]
+mod dim;
+mod physics;
+mod sim;

@@ -1,0 +1,267 @@
+//! Closed forms and stability, on the kernel alone.
+
+use crate::kernel;
+use super::dim::{BALL_INERTIA, sized, spin_of, turned};
+use super::sim::Sim;
+use kernel::math::{Rot, Vector};
+use kernel::shape::{Ball, Cuboid, Shape};
+use kernel::table::BodyKind;
+
+#[test]
+fn a_box_comes_to_rest_on_the_floor() {
+    let mut sim = Sim::new();
+    sim.floor();
+    let id = sim.cuboid(Vector::ONE * 0.5, Vector::Y * 2.0);
+    sim.steps(180);
+    let p = sim.position(id);
+    assert!((p.y - 0.5).abs() < 0.01, "rests at {p:?}");
+    assert!(p.x.abs() < 0.01, "landed flat, it hardly shifts: {p:?}");
+    assert!(sim.bodies.velocities[id as usize].linear.length() < 1e-3);
+}
+
+/// Builds a pyramid of unit boxes and returns its top.
+fn pyramid(sim: &mut Sim, base: usize) -> u32 {
+    let mut top = 0;
+    for row in 0..base {
+        for col in 0..base - row {
+            let x = 0.5 * row as f32 + col as f32 - 0.5 * base as f32;
+            top = sim.cuboid(Vector::ONE * 0.5, Vector::X * x + Vector::Y * (0.5 + row as f32));
+        }
+    }
+    top
+}
+
+#[test]
+fn a_pyramid_stands() {
+    let mut sim = Sim::new();
+    sim.floor();
+    let top = pyramid(&mut sim, 20);
+    sim.steps(300);
+    let before = sim.position(top);
+    sim.steps(300);
+    let after = sim.position(top);
+    assert!((after - before).length() < 0.01, "the top moved from {before:?} to {after:?}");
+    assert!(before.y > 19.5 - 0.4, "the top sagged to {before:?}");
+}
+
+#[test]
+fn towers_stand() {
+    for height in [10, 20, 50] {
+        let mut sim = Sim::new();
+        sim.floor();
+        let mut top = 0;
+        for i in 0..height {
+            top = sim.cuboid(Vector::ONE * 0.5, Vector::Y * (0.5 + i as f32));
+        }
+        sim.steps(600);
+        let p = sim.position(top);
+        assert!(p.y > 0.97 * (height as kernel::math::Scalar - 0.5) && p.x.abs() < 0.25, "the top of {height} is at {p:?}");
+    }
+}
+
+#[test]
+fn a_box_sticks_below_the_angle_of_friction_and_slides_above_it() {
+    let mu = 0.5f32;
+    for (offset, slides) in [(-0.5f64, false), (0.5, true)] {
+        let angle = f64::from(mu).atan() + offset.to_radians();
+        let tilt = turned(angle as f32);
+        let mut sim = Sim::new();
+        let half = Vector::ONE * 50.0;
+        sim.add_with(BodyKind::Static, Shape::Cuboid(Cuboid { half }), tilt.rotate(Vector::Y * -50.0), tilt, mu, 0.0);
+        let at = tilt.rotate(Vector::Y * 0.25);
+        let shape = Shape::Cuboid(Cuboid { half: sized(0.5, 0.25, 0.5) });
+        let id = sim.add_with(BodyKind::Dynamic, shape, at, tilt, mu, 0.0);
+        sim.steps(60);
+        let v0 = sim.bodies.velocities[id as usize].linear.length();
+        sim.steps(120);
+        let v1 = sim.bodies.velocities[id as usize].linear.length();
+        if slides {
+            let want = 10.0 * (angle.sin() - f64::from(mu) * angle.cos());
+            let got = f64::from(v1 - v0) / 2.0;
+            assert!((got - want).abs() < 0.02 * want, "slides with {got}, not {want}");
+        } else {
+            assert!(v1 < 1e-3, "creeps at {v1}");
+        }
+    }
+}
+
+#[test]
+fn a_ball_rolls_down_as_a_solid_ball_does() {
+    let angle = 15.0f64.to_radians();
+    let tilt = turned(-angle as f32);
+    let mut sim = Sim::new();
+    let half = Vector::ONE * 50.0;
+    sim.add(BodyKind::Static, Shape::Cuboid(Cuboid { half }), tilt.rotate(Vector::Y * -50.0), tilt);
+    let id = sim.ball(0.5, tilt.rotate(Vector::Y * 0.5));
+    sim.steps(120);
+    let v0 = sim.bodies.velocities[id as usize].linear.length();
+    sim.steps(60);
+    let v1 = sim.bodies.velocities[id as usize].linear.length();
+    let want = 10.0 * angle.sin() / f64::from(1.0 + BALL_INERTIA);
+    assert!((f64::from(v1 - v0) - want).abs() < 0.01 * want, "{} is not {want}", v1 - v0);
+    let w = spin_of(sim.bodies.velocities[id as usize].angular);
+    assert!((w.abs() * 0.5 - v1).abs() < 0.01 * v1, "it rolls without slipping");
+}
+
+#[test]
+fn a_ball_rebounds_to_e_squared_of_the_height() {
+    for e in [0.1f32, 0.3, 0.5, 0.7, 0.95] {
+        let mut sim = Sim::new();
+        sim.substeps = 6;
+        sim.dt = 1.0 / 64.0;
+        let floor = Shape::Cuboid(Cuboid { half: Vector::ONE * 200.0 });
+        sim.add_with(BodyKind::Static, floor, Vector::Y * -200.0, Rot::IDENTITY, 0.5, e);
+        let id = sim.add_with(
+            BodyKind::Dynamic,
+            Shape::Ball(Ball { radius: 0.5 }),
+            Vector::Y * 10.5,
+            Rot::IDENTITY,
+            0.5,
+            e,
+        );
+        let mut bounced = false;
+        let mut highest: f32 = 0.0;
+        for _ in 0..400 {
+            sim.step();
+            let v = sim.bodies.velocities[id as usize].linear.y;
+            bounced |= v > 0.0;
+            if bounced {
+                highest = highest.max(sim.position(id).to_local().y - 0.5);
+                if v < 0.0 {
+                    break;
+                }
+            }
+        }
+        let want = e * e * 10.0;
+        assert!((highest - want).abs() < 0.03 * want + 0.01, "e = {e}: {highest}, not {want}");
+    }
+}
+
+#[test]
+fn a_free_swarm_keeps_its_momentum() {
+    let mut sim = Sim::new();
+    sim.gravity = Vector::ZERO;
+    let mut ids = Vec::new();
+    for i in 0..40 {
+        let p = sized((i % 7) as f32 * 1.4, (i / 7) as f32 * 1.4, 0.3 * (i % 3) as f32);
+        let id = if i % 2 == 0 { sim.ball(0.5, p) } else { sim.cuboid(Vector::ONE * 0.4, p) };
+        let away = p - sized(4.0, 4.0, 0.3);
+        sim.bodies.velocities[id as usize].linear = away * -1.0;
+        ids.push(id);
+    }
+    let momentum = |sim: &Sim| {
+        ids.iter().fold(Vector::ZERO, |sum, id| {
+            let mass = sim.colliders[*id].def.shape.mass_properties(1.0).mass;
+            sum + sim.bodies.velocities[*id as usize].linear * mass
+        })
+    };
+    let scale: f32 = ids.iter().map(|id| sim.bodies.velocities[*id as usize].linear.length()).sum();
+    let before = momentum(&sim);
+    sim.steps(240);
+    let change = (momentum(&sim) - before).length();
+    assert!(change < 1e-4 * scale, "momentum changed by {change} of {scale}");
+}
+
+#[test]
+fn bodies_in_one_place_come_apart_gently() {
+    let mut sim = Sim::new();
+    sim.gravity = Vector::ZERO;
+    for i in 0..100 {
+        sim.add(
+            BodyKind::Dynamic,
+            Shape::Cuboid(Cuboid { half: Vector::ONE * 0.5 }),
+            Vector::ZERO,
+            turned(0.01 * i as f32),
+        );
+    }
+    let mut fastest: f32 = 0.0;
+    for _ in 0..300 {
+        sim.step();
+        for v in &sim.bodies.velocities {
+            fastest = fastest.max(v.linear.length());
+        }
+    }
+    assert!(fastest.is_finite() && fastest < 40.0, "pushed apart at {fastest} m/s");
+}
+
+#[test]
+fn a_pile_falls_asleep_and_wakes_together() {
+    let mut sim = Sim::new();
+    sim.sleeping = true;
+    sim.floor();
+    let top = pyramid(&mut sim, 5);
+    sim.steps(240);
+    assert_eq!(sim.bodies.awake_dynamic().count(), 0, "all asleep");
+    assert_eq!(sim.contacts.active().len(), 0, "sleeping contacts cost nothing");
+    let p = sim.position(top).to_local();
+    sim.ball(0.2, p + Vector::Y * 1.5);
+    let mut woken = 0;
+    for _ in 0..60 {
+        sim.step();
+        woken = woken.max(sim.bodies.awake_dynamic().count());
+    }
+    assert_eq!(woken, 16, "the hit woke the pyramid");
+    sim.steps(400);
+    assert_eq!(sim.bodies.awake_dynamic().count(), 0, "and asleep again");
+}
+
+#[test]
+fn the_same_bits_twice() {
+    let run = || {
+        let mut sim = Sim::new();
+        sim.floor();
+        pyramid(&mut sim, 8);
+        sim.ball(0.7, Vector::Y * 12.0 + Vector::X * 0.3);
+        sim.steps(200);
+        sim.bodies.poses.iter().map(|p| format!("{p:?}")).collect::<Vec<_>>()
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn a_kinematic_floor_carries_and_is_not_moved() {
+    let mut sim = Sim::new();
+    let floor = sim.add(
+        BodyKind::Kinematic,
+        Shape::Cuboid(Cuboid { half: sized(5.0, 0.5, 5.0) }),
+        Vector::Y * -0.5,
+        Rot::IDENTITY,
+    );
+    sim.bodies.velocities[floor as usize].linear = Vector::X * 0.5;
+    let id = sim.cuboid(Vector::ONE * 0.5, Vector::Y * 0.5);
+    sim.steps(240);
+    let (v, p) = (sim.bodies.velocities[id as usize].linear, sim.position(floor));
+    assert!((v.x - 0.5).abs() < 1e-2, "the box rides along at {v:?}");
+    assert!((p.x - 2.0).abs() < 1e-3 && p.y == -0.5, "the floor moves as told: {p:?}");
+}
+
+#[test]
+fn a_body_held_along_an_axis_only_moves_along_the_others() {
+    let mut sim = Sim::new();
+    sim.floor();
+    let held = sim.cuboid(Vector::ONE * 0.5, Vector::Y * 0.5);
+    sim.locks[held as usize] = kernel::math::AxisLocks(0b100_000);
+    let ball = sim.ball(0.4, Vector::Y * 0.6 + Vector::X * -3.0);
+    sim.bodies.velocities[ball as usize].linear = Vector::X * 8.0;
+    sim.steps(120);
+    let p = sim.position(held);
+    assert_eq!(p.x, 0.0, "not pushed along x");
+    assert!((p.y - 0.5).abs() < 0.02);
+    let b = sim.position(ball);
+    assert!(b.x < -0.85, "the ball stopped at what it could not move: {b:?}");
+}
+
+/// How long a step of a large pyramid takes: `cargo test --release -- --ignored --nocapture pyramid_speed`.
+#[test]
+#[ignore = "prints a time"]
+fn pyramid_speed() {
+    let mut sim = Sim::new();
+    sim.floor();
+    pyramid(&mut sim, 100);
+    sim.steps(5);
+    let start = std::time::Instant::now();
+    let steps = 200;
+    sim.steps(steps);
+    let ms = start.elapsed().as_secs_f64() * 1e3 / steps as f64;
+    println!("{ms:.3} ms a step, {} contacts", sim.contacts.len());
+}

@@ -1,0 +1,293 @@
+//! A step made of the kernel's parts, in the order in which the engine runs them: what an embedder without
+//! an ECS would write.
+
+use crate::kernel;
+use super::dim::inverse_inertia;
+use kernel::bvh::{Mover, Movers, PairMask, ProxyId, TreeKind, Trees, find_pairs};
+use kernel::contact::{ContactTable, Link, NarrowPhase, Scratch};
+use kernel::data::BitSet;
+use kernel::graph::{ColorGraph, Islands, SleepScan};
+use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
+use kernel::shape::{Ball, Cuboid, Shape};
+use kernel::solver::{BodyRow, MassRow, Motion, RowInput, Softness, Solver, SubstepParams};
+use kernel::table::{
+    BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
+    Surface,
+};
+
+/// A whole simulation.
+#[derive(Clone)]
+pub struct Sim {
+    pub bodies: BodyTable,
+    pub colliders: ColliderTable,
+    pub contacts: ContactTable,
+    pub colors: ColorGraph,
+    pub islands: Islands,
+    pub gravity: Vector,
+    pub dt: f32,
+    pub substeps: u32,
+    pub sleeping: bool,
+    pub recycle: bool,
+    pub locks: Vec<AxisLocks>,
+    trees: Trees,
+    proxies: Vec<(TreeKind, ProxyId)>,
+    masses: Vec<(f32, InvInertia)>,
+    movers: Movers,
+    pairs: Vec<(u32, u32)>,
+    solver: Solver,
+    scratch: Scratch,
+    scan: SleepScan,
+    listed: Vec<u32>,
+    changed: BitSet,
+}
+
+impl Sim {
+    pub fn new() -> Self {
+        Self {
+            bodies: BodyTable::default(),
+            colliders: ColliderTable::default(),
+            contacts: ContactTable::default(),
+            colors: ColorGraph::new(),
+            islands: Islands::new(),
+            gravity: Vector::Y * -10.0,
+            dt: 1.0 / 60.0,
+            substeps: 4,
+            sleeping: false,
+            recycle: true,
+            locks: Vec::new(),
+            trees: Trees::default(),
+            proxies: Vec::new(),
+            masses: Vec::new(),
+            movers: Movers::default(),
+            pairs: Vec::new(),
+            solver: Solver::default(),
+            scratch: Scratch::default(),
+            scan: SleepScan::new(),
+            listed: Vec::new(),
+            changed: BitSet::default(),
+        }
+    }
+
+    pub fn link(&mut self) -> Link<'_> {
+        Link {
+            bodies: &mut self.bodies,
+            colliders: &mut self.colliders,
+            contacts: &mut self.contacts,
+            colors: &mut self.colors,
+            islands: Some(&mut self.islands),
+        }
+    }
+
+    /// Adds a body of one shape with density 1; its id is its collider's.
+    pub fn add(&mut self, kind: BodyKind, shape: Shape, position: Vector, rotation: Rot) -> u32 {
+        self.add_with(kind, shape, position, rotation, 0.6, 0.0)
+    }
+
+    pub fn add_with(
+        &mut self,
+        kind: BodyKind,
+        shape: Shape,
+        position: Vector,
+        rotation: Rot,
+        friction: f32,
+        restitution: f32,
+    ) -> u32 {
+        let mass = shape.mass_properties(1.0);
+        let pose = WorldPose::new(position.to_world(), rotation);
+        let id = self.bodies.add(kind, mass.center, pose);
+        self.link().enter(id);
+        let inverse = if mass.mass > 0.0 { 1.0 / mass.mass } else { 0.0 };
+        self.masses.push((inverse, inverse_inertia(&mass)));
+        self.locks.push(AxisLocks::NONE);
+        let surface = |coefficient| Surface { coefficient, rule: Combine::Average };
+        let def = ColliderDef {
+            shape,
+            body: id,
+            local: Pose::IDENTITY,
+            material: Material { friction: surface(friction), restitution: surface(restitution) },
+            layers: Layers { memberships: 1, filters: u32::MAX },
+            flags: ColliderFlags::default(),
+            margin: 0.0,
+            speculative: f32::MAX,
+        };
+        let collider = self.colliders.add(def, pose, &mut self.bodies);
+        assert_eq!(collider, id, "one collider a body");
+        let tree = match kind {
+            BodyKind::Static => TreeKind::Static,
+            BodyKind::Kinematic => TreeKind::Kinematic,
+            BodyKind::Dynamic => TreeKind::Dynamic,
+        };
+        self.colliders.refresh(id, &self.bodies, self.fattening());
+        let aabb = self.colliders.fat[id as usize];
+        let proxy = self.trees[tree].insert(id, aabb);
+        self.proxies.push((tree, proxy));
+        self.movers.insert(Mover { id, kind: tree, mask: PairMask::solid(tree), aabb });
+        id
+    }
+
+    pub fn ball(&mut self, radius: f32, position: Vector) -> u32 {
+        self.add(BodyKind::Dynamic, Shape::Ball(Ball { radius }), position, Rot::IDENTITY)
+    }
+
+    pub fn cuboid(&mut self, half: Vector, position: Vector) -> u32 {
+        self.add(BodyKind::Dynamic, Shape::Cuboid(Cuboid { half }), position, Rot::IDENTITY)
+    }
+
+    pub fn floor(&mut self) -> u32 {
+        let half = Vector::ONE * 200.0;
+        self.add(BodyKind::Static, Shape::Cuboid(Cuboid { half }), Vector::Y * -200.0, Rot::IDENTITY)
+    }
+
+    pub fn position(&self, id: u32) -> WorldVector {
+        self.bodies.frame(id).position
+    }
+
+    fn fattening(&self) -> Fattening {
+        Fattening { margin: 0.05, dt: self.dt }
+    }
+
+    fn params(&self) -> SubstepParams {
+        let h = self.dt / self.substeps as f32;
+        let hertz = 1.5 * (0.5 / self.dt).min(0.25 / h);
+        SubstepParams {
+            h,
+            inv_h: 1.0 / h,
+            soft: Softness::new(hertz, 10.0, h),
+            stiff: Softness::new(2.0 * hertz, 10.0, h),
+            max_push_speed: 4.0,
+            warm_start: 1.0,
+            restitution_threshold: 1.0,
+            friction_fade: 0.02,
+        }
+    }
+
+    pub fn steps(&mut self, count: usize) {
+        for _ in 0..count {
+            self.step();
+        }
+    }
+
+    pub fn step(&mut self) {
+        self.bodies.ids.recycle();
+        self.colliders.ids.recycle();
+        self.contacts.recycle_ids();
+        self.gather();
+        let contacts = &self.contacts;
+        find_pairs(&self.trees, &self.movers, |a, b| contacts.find(a, b).is_some(), &mut self.pairs);
+        self.movers.clear();
+        for (a, b) in core::mem::take(&mut self.pairs) {
+            self.link().create(a, b);
+        }
+        self.narrow();
+        let params = self.params();
+        let input = RowInput { contacts: &self.contacts, bodies: &self.bodies, colliders: &self.colliders };
+        self.solver.build_rows(&input, &self.colors, &params);
+        for _ in 0..self.substeps {
+            self.solver.substep(&params);
+        }
+        self.solver.restitute(&params);
+        self.solver.store_impulses(&mut self.contacts);
+        self.scatter();
+        if self.sleeping {
+            self.sleep();
+        }
+        if cfg!(debug_assertions) {
+            self.link().validate();
+        }
+    }
+
+    fn gather(&mut self) {
+        let kinematic = self.bodies.assign_rows(&mut self.listed);
+        let rows = &mut self.solver.bodies;
+        rows.reset(kinematic, self.listed.len() - kinematic);
+        for (i, &id) in self.listed.iter().enumerate() {
+            let row = i + 1;
+            let velocity = self.bodies.velocities[id as usize];
+            rows.rows[row] = BodyRow::new(velocity.linear, velocity.angular);
+            if self.bodies[id].kind == BodyKind::Dynamic {
+                let (mass, local) = self.masses[id as usize];
+                let rotation = self.bodies.poses[id as usize].rotation;
+                let locks = self.locks[id as usize];
+                rows.masses[row] = MassRow::new(mass, local.rotated(rotation).locked(locks));
+                rows.motions[row] = Motion {
+                    acceleration: self.gravity,
+                    local_inv_inertia: local,
+                    locks,
+                    rotation,
+                    ..Motion::FREE
+                };
+            }
+        }
+    }
+
+    fn narrow(&mut self) {
+        let phase = NarrowPhase {
+            bodies: &self.bodies,
+            colliders: &self.colliders,
+            source: &(),
+            dt: self.dt,
+            tolerance: 0.005,
+            speculative: 0.02,
+            recycle_distance: if self.recycle { 0.05 } else { 0.0 },
+            match_points: true,
+        };
+        self.changed.clear();
+        self.contacts.update(&phase, &mut self.scratch, &mut self.changed);
+        let changed = core::mem::take(&mut self.changed);
+        self.link().apply(&changed, |_, _, _| {});
+        self.changed = changed;
+    }
+
+    fn scatter(&mut self) {
+        let fattening = self.fattening();
+        for (i, &id) in self.listed.iter().enumerate() {
+            let row = &self.solver.bodies.rows[i + 1];
+            let (moved, turned) = row.delta();
+            let (v, w) = row.velocity();
+            let velocity = &mut self.bodies.velocities[id as usize];
+            velocity.linear = v;
+            velocity.angular = w;
+            let pose = &mut self.bodies.poses[id as usize];
+            let before = pose.rotation;
+            pose.center += moved.to_world();
+            pose.rotation = turned.mul(pose.rotation).normalized();
+            let angle = before.difference(pose.rotation).length();
+            let slow = moved.length() < 0.15 * self.dt && angle < 0.15 * self.dt;
+            let body = &mut self.bodies[id];
+            body.sleep_timer = if slow { body.sleep_timer + self.dt } else { 0.0 };
+            if self.colliders.refresh(id, &self.bodies, fattening) {
+                let (kind, proxy) = self.proxies[id as usize];
+                let aabb = self.colliders.fat[id as usize];
+                self.trees[kind].set(proxy, aabb);
+                self.movers.insert(Mover { id, kind, mask: PairMask::solid(kind), aabb });
+            }
+        }
+    }
+
+    fn sleep(&mut self) {
+        let bodies = &self.bodies;
+        self.scan.scan(&self.islands, 0.5, |body| Some(bodies[body].sleep_timer));
+        if let Some(island) = self.scan.split() {
+            self.islands.split(island);
+        }
+        for island in self.scan.sleepers().to_vec() {
+            self.link().sleep_island(island);
+        }
+    }
+
+    /// Kinetic and potential energy of the dynamic bodies.
+    pub fn energy(&self) -> f64 {
+        let mut sum = 0.0;
+        for id in self.bodies.awake_dynamic() {
+            let (inverse, local) = self.masses[id as usize];
+            let v = self.bodies.velocities[id as usize];
+            let mass = 1.0 / f64::from(inverse);
+            let rotation = self.bodies.poses[id as usize].rotation;
+            sum += 0.5 * mass * f64::from(v.linear.length_squared());
+            sum += super::dim::spin_energy(local, rotation, v.angular);
+            let p = self.bodies.poses[id as usize].center.to_local();
+            sum -= mass * f64::from(self.gravity.dot(p));
+        }
+        sum
+    }
+}
