@@ -1,0 +1,8 @@
+//! What avian2d does within an app; the files are shared with avian3d.
+
+#[path = "../../../../tests/plugins.rs"]
+mod plugins;
+#[path = "../../../../tests/reflection.rs"]
+mod reflection;
+#[path = "../../../../tests/schedule.rs"]
+mod schedule;

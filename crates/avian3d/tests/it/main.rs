@@ -1,0 +1,8 @@
+//! What avian3d does within an app; the files are shared with avian2d.
+
+#[path = "../../../../tests/plugins.rs"]
+mod plugins;
+#[path = "../../../../tests/reflection.rs"]
+mod reflection;
+#[path = "../../../../tests/schedule.rs"]
+mod schedule;

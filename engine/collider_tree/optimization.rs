@@ -1,0 +1,87 @@
+//! How trees are kept good to search while their colliders move.
+
+use bevy_ecs::prelude::*;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+
+/// How the trees of colliders are optimized after they moved.
+#[derive(Resource, Debug, PartialEq, Reflect)]
+#[reflect(Resource, Debug, Default, PartialEq)]
+pub struct ColliderTreeOptimization {
+    /// What is done; [`TreeOptimizationMode::Adaptive`] by default.
+    pub optimization_mode: TreeOptimizationMode,
+    /// Whether trees are optimized where they are; true by default. When false a copy is, and swapped in when done.
+    pub optimize_in_place: bool,
+    /// Whether optimization runs beside the rest of the step where there are threads for it; true by default.
+    pub use_async_tasks: bool,
+}
+
+impl Default for ColliderTreeOptimization {
+    fn default() -> Self {
+        Self {
+            optimization_mode: TreeOptimizationMode::default(),
+            optimize_in_place: true,
+            use_async_tasks: true,
+        }
+    }
+}
+
+/// What is done to a tree to keep it good to search, from the cheapest to the most thorough.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Clone, Debug, Default, PartialEq)]
+pub enum TreeOptimizationMode {
+    /// Leaves that moved are taken out and inserted where they fit best.
+    Reinsert,
+    /// The parts of the tree with leaves that moved are rebuilt.
+    PartialRebuild,
+    /// The tree is rebuilt.
+    FullRebuild,
+    /// Chosen by the share of leaves that moved.
+    Adaptive {
+        /// Up to this share leaves are [reinserted](Self::Reinsert); 0.15 by default.
+        reinsert_threshold: f32,
+        /// Up to this share the tree is [rebuilt in part](Self::PartialRebuild), above it [in full](Self::FullRebuild); 0.45 by default.
+        partial_rebuild_threshold: f32,
+    },
+}
+
+impl Default for TreeOptimizationMode {
+    fn default() -> Self {
+        Self::Adaptive { reinsert_threshold: 0.15, partial_rebuild_threshold: 0.45 }
+    }
+}
+
+impl TreeOptimizationMode {
+    /// The mode for a tree of which `moved_ratio` (0 to 1) of the leaves moved: never [`Adaptive`](Self::Adaptive).
+    pub fn resolve(&self, moved_ratio: f32) -> TreeOptimizationMode {
+        match *self {
+            Self::Adaptive { reinsert_threshold, .. } if moved_ratio <= reinsert_threshold => Self::Reinsert,
+            Self::Adaptive { partial_rebuild_threshold, .. } if moved_ratio <= partial_rebuild_threshold => {
+                Self::PartialRebuild
+            }
+            Self::Adaptive { .. } => Self::FullRebuild,
+            mode => mode,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn adaptive_resolves_by_the_share_that_moved() {
+        let mode = TreeOptimizationMode::default();
+        for (ratio, expected) in [
+            (0.0, TreeOptimizationMode::Reinsert),
+            (0.15, TreeOptimizationMode::Reinsert),
+            (0.16, TreeOptimizationMode::PartialRebuild),
+            (0.45, TreeOptimizationMode::PartialRebuild),
+            (0.46, TreeOptimizationMode::FullRebuild),
+            (1.0, TreeOptimizationMode::FullRebuild),
+            (f32::NAN, TreeOptimizationMode::FullRebuild),
+        ] {
+            assert_eq!(mode.resolve(ratio), expected);
+            assert_eq!(TreeOptimizationMode::Reinsert.resolve(ratio), TreeOptimizationMode::Reinsert);
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! What a collider type must be able to do: the traits behind custom collider backends.
+
+use super::ColliderAabb;
+use crate::math::{ComputeMassProperties, Vector};
+use crate::physics_transform::Rotation;
+use bevy_derive::Deref;
+use bevy_ecs::component::Mutable;
+use bevy_ecs::prelude::{Component, Entity};
+use bevy_ecs::system::{ReadOnlySystemParam, SystemParam};
+
+/// A thing that can be made a collider of type `C`, such as one of Bevy's geometric primitives.
+pub trait IntoCollider<C: AnyCollider> {
+    /// Makes the collider.
+    fn collider(&self) -> C;
+}
+
+/// What [`AnyCollider::aabb_with_context`] gets beside the collider: whose it is, and the system
+/// parameter that the collider type asks for.
+#[derive(Deref)]
+pub struct AabbContext<'a, 'w, 's, T: ReadOnlySystemParam> {
+    /// The collider's entity.
+    pub entity: Entity,
+    #[deref]
+    item: &'a <T as SystemParam>::Item<'w, 's>,
+}
+
+impl<T: ReadOnlySystemParam> Clone for AabbContext<'_, '_, '_, T> {
+    fn clone(&self) -> Self {
+        Self { entity: self.entity, item: self.item }
+    }
+}
+
+impl<'a, 'w, 's, T: ReadOnlySystemParam> AabbContext<'a, 'w, 's, T> {
+    /// The context of the collider of `entity`.
+    pub fn new(entity: Entity, item: &'a <T as SystemParam>::Item<'w, 's>) -> Self {
+        Self { entity, item }
+    }
+}
+
+impl AabbContext<'_, '_, '_, ()> {
+    /// The context of a collider that needs none.
+    fn fake() -> Self {
+        Self { entity: Entity::PLACEHOLDER, item: &() }
+    }
+}
+
+/// A component that the engine can use as a collider.
+///
+/// Colliders that need nothing but themselves set `Context = ()` and get [`SimpleCollider`]. Others name
+/// a read-only system parameter, for instance a query for what their shape depends on.
+pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
+    /// The system parameter that the methods need beside the collider.
+    type Context: for<'w, 's> ReadOnlySystemParam<Item<'w, 's>: Send + Sync>;
+
+    /// The box around the collider at a position and rotation in the world.
+    fn aabb_with_context(
+        &self,
+        position: Vector,
+        rotation: impl Into<Rotation>,
+        context: AabbContext<Self::Context>,
+    ) -> ColliderAabb;
+
+    /// The box around the collider on its way from one pose to another. The way between is taken to lie
+    /// within the union of the boxes at its ends.
+    fn swept_aabb_with_context(
+        &self,
+        start_position: Vector,
+        start_rotation: impl Into<Rotation>,
+        end_position: Vector,
+        end_rotation: impl Into<Rotation>,
+        context: AabbContext<Self::Context>,
+    ) -> ColliderAabb {
+        self.aabb_with_context(start_position, start_rotation, context.clone())
+            .merged(self.aabb_with_context(end_position, end_rotation, context))
+    }
+}
+
+/// The methods of [`AnyCollider`] for colliders that need no context.
+pub trait SimpleCollider: AnyCollider<Context = ()> {
+    /// The box around the collider at a position and rotation in the world.
+    fn aabb(&self, position: Vector, rotation: impl Into<Rotation>) -> ColliderAabb {
+        self.aabb_with_context(position, rotation, AabbContext::fake())
+    }
+
+    /// The box around the collider on its way from one pose to another.
+    fn swept_aabb(
+        &self,
+        start_position: Vector,
+        start_rotation: impl Into<Rotation>,
+        end_position: Vector,
+        end_rotation: impl Into<Rotation>,
+    ) -> ColliderAabb {
+        self.swept_aabb_with_context(
+            start_position,
+            start_rotation,
+            end_position,
+            end_rotation,
+            AabbContext::fake(),
+        )
+    }
+}
+
+impl<C: AnyCollider<Context = ()>> SimpleCollider for C {}
+
+/// A collider that can be scaled.
+pub trait ScalableCollider: AnyCollider {
+    /// The scale along each axis.
+    fn scale(&self) -> Vector;
+
+    /// Sets the scale. `detail` is the number of subdivisions for curved shapes that become polygonal.
+    fn set_scale(&mut self, scale: Vector, detail: u32);
+
+    /// Multiplies the scale.
+    fn scale_by(&mut self, factor: Vector, detail: u32) {
+        self.set_scale(factor * self.scale(), detail);
+    }
+}

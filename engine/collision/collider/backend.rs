@@ -1,0 +1,122 @@
+//! The plugin that makes a component type a collider of the engine.
+
+use super::{AnyCollider, ColliderAabb, CollisionLayers, EnlargedAabb, ScalableCollider, Sensor};
+use crate::dynamics::lifecycle::ColliderId;
+use crate::dynamics::rigid_body::mass_properties::MassPropertySystems;
+use crate::dynamics::rigid_body::mass_properties::components::{ColliderDensity, ColliderMassProperties};
+use bevy_app::{App, FixedPostUpdate, Plugin};
+use bevy_ecs::change_detection::DetectChangesMut;
+use bevy_ecs::intern::Interned;
+use bevy_ecs::lifecycle::RemovedComponents;
+use bevy_ecs::prelude::{Changed, Component, Entity, IntoScheduleConfigs, Or, Query, Without};
+use bevy_ecs::reflect::ReflectComponent;
+use bevy_ecs::schedule::ScheduleLabel;
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use core::marker::PhantomData;
+
+/// Makes components of type `C` colliders: gives them the components every collider has, and keeps
+/// their mass properties.
+///
+/// The plugin for [`Collider`](super::Collider) is part of `PhysicsPlugins`. Add one for each collider
+/// type of your own.
+pub struct ColliderBackendPlugin<C: ScalableCollider> {
+    schedule: Interned<dyn ScheduleLabel>,
+    _collider: PhantomData<C>,
+}
+
+impl<C: ScalableCollider> ColliderBackendPlugin<C> {
+    /// Runs the systems in the given schedule: the one that the physics runs in.
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self { schedule: schedule.intern(), _collider: PhantomData }
+    }
+}
+
+impl<C: ScalableCollider> Default for ColliderBackendPlugin<C> {
+    /// Runs in `FixedPostUpdate`.
+    fn default() -> Self {
+        Self::new(FixedPostUpdate)
+    }
+}
+
+impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
+    fn build(&self, app: &mut App) {
+        // What `C` already requires by itself stays as it is: the error says only that.
+        let _ = app.try_register_required_components::<C, ColliderMarker>();
+        let _ = app.try_register_required_components::<C, ColliderAabb>();
+        let _ = app.try_register_required_components::<C, CollisionLayers>();
+        let _ = app.try_register_required_components::<C, EnlargedAabb>();
+        let _ = app.try_register_required_components::<C, ColliderDensity>();
+        let _ = app.try_register_required_components::<C, ColliderMassProperties>();
+        let _ = app.try_register_required_components::<C, ColliderId>();
+
+        app.add_systems(
+            self.schedule,
+            update_collider_mass_properties::<C>.in_set(MassPropertySystems::UpdateColliderMassProperties),
+        );
+    }
+}
+
+/// Marks an entity as having a collider, of whatever type. Added by the engine.
+#[derive(Reflect, Component, Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default)]
+pub struct ColliderMarker;
+
+/// Recomputes [`ColliderMassProperties`] where the collider or its density changed, or where it ceased to
+/// be a sensor. Those of sensors are left as they are.
+pub fn update_collider_mass_properties<C: AnyCollider>(
+    changed: Query<Entity, (Or<(Changed<C>, Changed<ColliderDensity>)>, Without<Sensor>)>,
+    mut former_sensors: RemovedComponents<Sensor>,
+    mut colliders: Query<(&C, &ColliderDensity, &mut ColliderMassProperties), Without<Sensor>>,
+) {
+    for entity in changed.iter().chain(former_sensors.read()) {
+        let Ok((collider, density, mut properties)) = colliders.get_mut(entity) else {
+            continue;
+        };
+        // Masses of NaN or below zero would reach the solver through sums: no mass is the safe reading.
+        let density = if density.0.is_finite() && density.0 > 0.0 { density.0 } else { 0.0 };
+        properties.set_if_neq(ColliderMassProperties::from_shape(collider, density));
+    }
+}
+
+#[cfg(all(test, feature = "default-collider"))]
+mod tests {
+    use super::*;
+    use crate::collision::collider::Collider;
+    use bevy_app::Update;
+
+    fn mass(app: &App, entity: Entity) -> f32 {
+        app.world().get::<ColliderMassProperties>(entity).map_or(f32::NAN, |p| p.mass)
+    }
+
+    #[test]
+    fn mass_follows_shape_density_and_sensors() {
+        let mut app = App::new();
+        app.add_plugins(ColliderBackendPlugin::<Collider>::new(Update));
+        let plain = app.world_mut().spawn(Collider::capsule(0.5, 1.0)).id();
+        let sensor = app.world_mut().spawn((Collider::capsule(0.5, 1.0), Sensor)).id();
+        app.update();
+        let unit = mass(&app, plain);
+        assert!(unit > 0.5 && mass(&app, sensor) == 0.0);
+        assert!(app.world().get::<ColliderMarker>(plain).is_some());
+
+        app.world_mut().entity_mut(plain).insert(ColliderDensity(3.0));
+        app.world_mut().entity_mut(sensor).remove::<Sensor>();
+        app.update();
+        assert!((mass(&app, plain) - 3.0 * unit).abs() < 1.0e-4);
+        assert_eq!(mass(&app, sensor), unit);
+
+        for bad in [-1.0, f32::NAN, f32::INFINITY] {
+            app.world_mut().entity_mut(plain).insert(ColliderDensity(bad));
+            app.update();
+            assert_eq!(mass(&app, plain), 0.0);
+        }
+        app.world_mut().entity_mut(plain).insert((Collider::default(), ColliderDensity(1.0)));
+        app.update();
+        assert_eq!(mass(&app, plain), crate::math::ComputeMassProperties::mass(&Collider::default(), 1.0));
+    }
+}

@@ -1,0 +1,218 @@
+//! Where a collider sits on its body: [`ColliderTransform`], kept from the transforms between them, and the
+//! world poses of colliders that are children of a body.
+
+use bevy_app::{App, FixedPostUpdate, Plugin};
+use bevy_ecs::{
+    change_detection::Tick, intern::Interned, prelude::*, reflect::ReflectComponent, schedule::ScheduleLabel,
+    system::SystemChangeTick,
+};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use bevy_transform::components::Transform;
+
+use super::{
+    ColliderMarker,
+    collider_hierarchy::{AttachesColliders, ColliderOf, CompoundBody, RigidBodyColliders, attach_colliders},
+};
+use crate::{
+    dynamics::rigid_body::RigidBody,
+    math::Vector,
+    physics_transform::{
+        PhysicsTransformSystems, Position, Rotation,
+        frame::{Frame, read_pose},
+        tree::{
+            FollowsBody, HierarchyQueue, Parents, TransformTree, TransformTreePlugin, TreeChanges,
+            update_tree,
+        },
+        turn_to_rotation, vector_from_xyz,
+    },
+};
+
+/// The pose and scale of a collider relative to its body, from the transforms between them. On the body
+/// itself, and on colliders without a body, only the scale is of interest.
+#[derive(Reflect, Clone, Copy, Component, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default, PartialEq)]
+pub struct ColliderTransform {
+    /// From the body's origin to the collider's, in the body's axes, in metres; the body's scale is in it.
+    pub translation: Vector,
+    /// From the body's axes to the collider's.
+    pub rotation: Rotation,
+    /// The scale of the collider in the world, along its own axes.
+    pub scale: Vector,
+}
+
+impl ColliderTransform {
+    /// Takes a point from the collider's space to the body's: scaled, turned, moved.
+    pub fn transform_point(&self, mut point: Vector) -> Vector {
+        point *= self.scale;
+        self.rotation * point + self.translation
+    }
+}
+
+impl Default for ColliderTransform {
+    fn default() -> Self {
+        Self { translation: Vector::ZERO, rotation: Rotation::IDENTITY, scale: Vector::ONE }
+    }
+}
+
+impl From<Transform> for ColliderTransform {
+    fn from(transform: Transform) -> Self {
+        let (translation, rotation) = read_pose(None, &transform);
+        let scale = vector_from_xyz(transform.scale.to_array().map(f64::from));
+        Self { translation, rotation: rotation.unwrap_or(Rotation::IDENTITY), scale }
+    }
+}
+
+/// Keeps [`ColliderTransform`]s, and the poses of colliders that are children of a body.
+pub struct ColliderTransformPlugin {
+    schedule: Interned<dyn ScheduleLabel>,
+}
+
+impl ColliderTransformPlugin {
+    /// Runs in `schedule`, where [`PhysicsSystems`](crate::schedule::PhysicsSystems) run.
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self { schedule: schedule.intern() }
+    }
+}
+
+impl Default for ColliderTransformPlugin {
+    fn default() -> Self {
+        Self::new(FixedPostUpdate)
+    }
+}
+
+impl Plugin for ColliderTransformPlugin {
+    fn build(&self, app: &mut App) {
+        use PhysicsTransformSystems::{PositionToTransform, Propagate, TransformToPosition};
+        TransformTreePlugin::ensure(app, self.schedule);
+        // Each fails only where the requirement is there already.
+        let _ =
+            app.try_register_required_components_with::<ColliderMarker, Position>(|| Position::PLACEHOLDER);
+        let _ =
+            app.try_register_required_components_with::<ColliderMarker, Rotation>(|| Rotation::PLACEHOLDER);
+        let _ = app.try_register_required_components::<ColliderMarker, ColliderTransform>();
+        app.init_resource::<HierarchyQueue>()
+            .init_resource::<Placement>()
+            .register_type::<ColliderTransform>()
+            .add_observer(note_attached)
+            .add_systems(
+                self.schedule,
+                (
+                    attach_colliders
+                        .run_if(resource_exists::<AttachesColliders>)
+                        .after(update_tree)
+                        .in_set(Propagate),
+                    (update_collider_transforms, place_child_colliders)
+                        .chain()
+                        .in_set(TransformToPosition)
+                        .after(crate::physics_transform::transform_to_position),
+                    place_child_colliders
+                        .in_set(PositionToTransform)
+                        .after(crate::physics_transform::position_to_transform),
+                ),
+            );
+    }
+}
+
+/// What is to be placed, and when that was last done.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct Placement {
+    /// Colliders that got another body.
+    attached: Vec<Entity>,
+    /// Colliders with another transform relative to their body.
+    offset: Vec<Entity>,
+    last: Tick,
+}
+
+fn note_attached(attached: On<Insert, (ColliderOf, ColliderMarker)>, mut placement: ResMut<Placement>) {
+    placement.attached.push(attached.event_target());
+}
+
+/// Where a walk down the hierarchy has come to.
+#[derive(Clone, Copy)]
+struct Path {
+    world: Frame,
+    /// The nearest body at or above, and the frame relative to it.
+    body: Option<Frame>,
+}
+
+impl Path {
+    fn child(&self, is_body: bool, transform: &Transform) -> Self {
+        let world = self.world.child(transform);
+        let body = if is_body { Some(world.unposed()) } else { self.body.map(|f| f.child(transform)) };
+        Self { world, body }
+    }
+
+    fn collider_transform(&self) -> ColliderTransform {
+        let frame = self.body.unwrap_or_else(|| self.world.unposed());
+        ColliderTransform {
+            translation: vector_from_xyz(frame.translation()),
+            rotation: turn_to_rotation(frame.rotation()),
+            scale: vector_from_xyz(frame.scale()),
+        }
+    }
+}
+
+/// Recomputes the [`ColliderTransform`]s at and below changed transforms, and of newly attached colliders.
+pub(crate) fn update_collider_transforms(
+    changes: Res<TreeChanges>,
+    mut tree: ResMut<TransformTree>,
+    mut placement: ResMut<Placement>,
+    transforms: Query<(&Transform, Has<RigidBody>)>,
+    parents: Parents,
+    mut colliders: Query<&mut ColliderTransform>,
+) {
+    let attached = core::mem::take(&mut placement.attached);
+    tree.begin_walk();
+    for &entity in changes.transforms.iter().chain(&attached) {
+        let above = path_above(entity, &parents, &transforms);
+        tree.descend(entity, above, |entity, path: &Path| {
+            let (transform, is_body) = transforms.get(entity).ok()?;
+            let path = path.child(is_body, transform);
+            if let Ok(mut held) = colliders.get_mut(entity)
+                && held.set_if_neq(path.collider_transform())
+            {
+                placement.offset.push(entity);
+            }
+            Some(path)
+        });
+    }
+    placement.offset.extend(attached);
+}
+
+/// The path from the root to the parent of an entity.
+fn path_above(entity: Entity, parents: &Parents, transforms: &Query<(&Transform, Has<RigidBody>)>) -> Path {
+    let above = |at: &Entity| parents.get(*at).ok().map(ChildOf::parent);
+    let line: Vec<Entity> = core::iter::successors(above(&entity), above).collect();
+    let root = Path { world: Frame::IDENTITY, body: None };
+    line.iter().rev().filter_map(|&e| transforms.get(e).ok()).fold(root, |path, (t, b)| path.child(b, t))
+}
+
+/// Sets the world poses of colliders that follow a body: of moved bodies, and those with a new offset.
+pub(crate) fn place_child_colliders(
+    mut placement: ResMut<Placement>,
+    bodies: Query<
+        (Entity, Ref<Position>, Ref<Rotation>, &RigidBodyColliders),
+        (With<CompoundBody>, Without<FollowsBody>),
+    >,
+    mut children: Query<(&mut Position, &mut Rotation, &ColliderTransform, &ColliderOf), With<FollowsBody>>,
+    system: SystemChangeTick,
+) {
+    let last = core::mem::replace(&mut placement.last, system.this_run());
+    let mut place = |collider: Entity| {
+        let Ok((mut position, mut rotation, offset, of)) = children.get_mut(collider) else { return };
+        let Ok((_, at, turned, _)) = bodies.get(of.body) else { return };
+        position.set_if_neq(Position(at.0 + *turned * offset.translation));
+        rotation.set_if_neq(*turned * offset.rotation);
+    };
+    placement.offset.drain(..).for_each(&mut place);
+    for (_, position, rotation, colliders) in &bodies {
+        let is_new = |tick: Tick| tick.is_newer_than(last, system.this_run());
+        if is_new(position.last_changed()) || is_new(rotation.last_changed()) {
+            colliders.into_iter().for_each(&mut place);
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Colliders: the shapes that bodies touch with, and the components beside them.
+//!
+//! [`Collider`] is the default one; any component can be a collider through [`AnyCollider`].
+
+mod aabb;
+mod any_collider;
+mod backend;
+pub mod collider_hierarchy;
+pub mod collider_transform;
+mod layers;
+#[cfg(all(feature = "default-collider", any(feature = "parry-f32", feature = "parry-f64")))]
+mod parry;
+
+pub use aabb::{ColliderAabb, EnlargedAabb};
+pub use any_collider::{AabbContext, AnyCollider, IntoCollider, ScalableCollider, SimpleCollider};
+pub use backend::{ColliderBackendPlugin, ColliderMarker, update_collider_mass_properties};
+pub use layers::*;
+#[cfg(all(feature = "default-collider", any(feature = "parry-f32", feature = "parry-f64")))]
+pub use parry::*;
+
+use crate::math::Scalar;
+use bevy_derive::{Deref, DerefMut};
+use bevy_ecs::prelude::Component;
+use bevy_ecs::reflect::ReflectComponent;
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use derive_more::From;
+
+/// Takes a collider out of the simulation: no contacts, no queries, no mass.
+#[derive(Reflect, Clone, Copy, Component, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default)]
+pub struct ColliderDisabled;
+
+/// Makes a collider a sensor: it reports what it touches, but nothing collides with it, and it adds no
+/// mass.
+#[derive(Reflect, Clone, Component, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default, PartialEq)]
+#[doc(alias = "Trigger")]
+pub struct Sensor;
+
+/// An empty shell around a collider, in metres: other colliders are kept at this distance from its
+/// surface.
+///
+/// A little margin makes thin and jagged shapes more robust, at the price of a gap. Without the component
+/// a collider has that of its body, or none.
+#[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq, From)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default, PartialEq)]
+#[doc(alias = "CollisionSkin")]
+pub struct CollisionMargin(pub Scalar);

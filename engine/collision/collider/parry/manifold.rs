@@ -1,0 +1,154 @@
+//! How shapes touch that the kernel does not know: parry's manifolds, in the kernel's convention.
+
+use super::{Collider, dim};
+use crate::math::{Scalar, Vector, vector_to_kernel};
+use crate::parry::query::{
+    ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
+    TrackedContact,
+};
+use crate::parry::shape::SharedShape;
+use kernel::manifold::{LocalManifold, LocalPoint};
+use kernel::math::{MAX_POINTS, Pose};
+
+/// The buffer that parry writes its manifolds to, kept to spare the allocation.
+#[derive(Default)]
+pub(crate) struct ManifoldWorkspace {
+    manifolds: Vec<ContactManifold<(), ()>>,
+    points: Vec<LocalPoint>,
+}
+
+/// Appends the contact manifolds of two colliders of which the kernel does not know one.
+///
+/// `pose` is that of `b` in the frame of `a`. See [`parry_manifolds`].
+pub(crate) fn foreign_manifolds(
+    a: &Collider,
+    b: &Collider,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut Vec<LocalManifold>,
+) {
+    let workspace = &mut ManifoldWorkspace::default();
+    parry_manifolds(a.shape_scaled(), b.shape_scaled(), pose, prediction, workspace, out);
+}
+
+/// Appends the contact manifolds of two shapes: one for convex shapes, one per touching part for composite
+/// ones, none for what parry cannot collide.
+///
+/// `pose` is that of shape 2 in the frame of shape 1, which the manifolds are in, with normals from 1 to 2 and
+/// points midway between the surfaces, no farther apart than `prediction` metres. At most `MAX_POINTS` per
+/// manifold: the deepest and those that spread widest. Feature ids of one part pair differ from another's.
+///
+/// Parry could start from its last result for the pair. It does not get it: the result then depends on
+/// the shapes and the pose alone, as everything else in a step does.
+pub(crate) fn parry_manifolds(
+    shape1: &SharedShape,
+    shape2: &SharedShape,
+    pose: &Pose,
+    prediction: f32,
+    workspace: &mut ManifoldWorkspace,
+    out: &mut Vec<LocalManifold>,
+) {
+    if !(pose.position.is_finite() && pose.rotation.is_finite() && prediction.is_finite()) {
+        return;
+    }
+    let pose = dim::pose_from_kernel(pose);
+    let ManifoldWorkspace { manifolds, points } = workspace;
+    manifolds.clear();
+    // Composite shapes note here which manifold belongs to which parts; it dies with the manifolds.
+    let mut parts: Option<ContactManifoldsWorkspace> = None;
+    let found = DefaultQueryDispatcher.contact_manifolds(
+        &pose,
+        &**shape1,
+        &**shape2,
+        Scalar::from(prediction),
+        manifolds,
+        &mut parts,
+    );
+    if found.is_err() {
+        return;
+    }
+    // In the order of the parts, whichever way the tree was walked.
+    manifolds.sort_by_key(|m| (m.subshape1, m.subshape2));
+    for manifold in manifolds.iter() {
+        let Some(normal) = normal_in_frame_1(manifold) else {
+            continue;
+        };
+        points.clear();
+        points.extend(manifold.points.iter().filter_map(|p| {
+            let point = local_point(manifold, &pose, p);
+            (point.separation <= prediction && point.separation.is_finite() && point.point.is_finite())
+                .then_some(point)
+        }));
+        reduce(points);
+        let mut local = LocalManifold { normal, ..Default::default() };
+        for p in points.iter() {
+            local.push(p.point, p.separation, p.feature);
+        }
+        if local.count > 0 {
+            out.push(local);
+        }
+    }
+}
+
+/// The unit normal in the frame of shape 1; `None` if there is none.
+fn normal_in_frame_1(manifold: &ContactManifold<(), ()>) -> Option<kernel::math::Vector> {
+    let normal = match manifold.subshape_pos1() {
+        Some(part) => part.rotation * manifold.local_n1,
+        None => manifold.local_n1,
+    };
+    let normal = vector_to_kernel(normal);
+    let length = normal.length();
+    (length > 0.5 && length.is_finite()).then(|| normal * (1.0 / length))
+}
+
+/// A contact of parry, whose points lie on the surfaces in the frames of the parts.
+fn local_point(
+    manifold: &ContactManifold<(), ()>,
+    pose: &crate::parry::math::Pose,
+    contact: &TrackedContact<()>,
+) -> LocalPoint {
+    let in_shape = |part: Option<&crate::parry::math::Pose>, p: Vector| part.map_or(p, |part| *part * p);
+    let p1 = in_shape(manifold.subshape_pos1(), contact.local_p1);
+    let p2 = *pose * in_shape(manifold.subshape_pos2(), contact.local_p2);
+    let features = [contact.fid1.0, contact.fid2.0, manifold.subshape1, manifold.subshape2];
+    LocalPoint {
+        point: vector_to_kernel(p1.midpoint(p2)),
+        separation: contact.dist as f32,
+        feature: features.into_iter().fold(0, mix),
+    }
+}
+
+/// One round of a hash of words: features only need to be told apart, and the same in the next step.
+fn mix(hash: u32, word: u32) -> u32 {
+    (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9)
+}
+
+/// Leaves the deepest point and those that spread widest, at most `MAX_POINTS`, and no two in one place.
+///
+/// Parry adds the closest points to those it clips, so one in a corner comes twice.
+fn reduce(points: &mut Vec<LocalPoint>) {
+    let deepest =
+        (0..points.len()).reduce(|a, b| if points[b].separation < points[a].separation { b } else { a });
+    let Some(deepest) = deepest else {
+        return;
+    };
+    points.swap(0, deepest);
+    let first = points[0].point;
+    let spread = points.iter().map(|p| (p.point - first).length_squared()).fold(0.0, kernel::math::max);
+    // A thousandth of the spread apart is another place.
+    let least = spread * 1.0e-6;
+    for chosen in 1..points.len() {
+        let to_chosen = |i: usize| {
+            let distances = points[..chosen].iter().map(|c| (c.point - points[i].point).length_squared());
+            distances.fold(f32::MAX, kernel::math::min)
+        };
+        let farthest = (chosen..points.len()).reduce(|a, b| if to_chosen(b) > to_chosen(a) { b } else { a });
+        match farthest {
+            Some(i) if chosen < MAX_POINTS && to_chosen(i) > least => points.swap(chosen, i),
+            _ => {
+                points.truncate(chosen);
+                return;
+            }
+        }
+    }
+}

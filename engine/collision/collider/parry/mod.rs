@@ -1,0 +1,215 @@
+//! [`Collider`], the default collider: a shape of parry with a scale.
+//!
+//! `constructors`, `dim2`, `dim3` and `primitives` say what a collider is made from, `native` what the kernel
+//! makes of it, `manifold` how the shapes the kernel does not know touch.
+
+#![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+
+mod composite;
+mod constructors;
+#[cfg_attr(feature = "2d", path = "dim2.rs")]
+#[cfg_attr(feature = "3d", path = "dim3.rs")]
+mod dim;
+#[cfg(feature = "2d")]
+mod ellipse;
+mod input;
+mod manifold;
+mod native;
+mod params;
+#[cfg(feature = "2d")]
+mod primitives2d;
+#[cfg(feature = "3d")]
+mod primitives3d;
+mod queries;
+#[cfg(feature = "2d")]
+mod regular_polygon;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+#[cfg_attr(feature = "2d", path = "tests2d.rs")]
+#[cfg_attr(feature = "3d", path = "tests3d.rs")]
+mod tests_dim;
+
+#[cfg(feature = "2d")]
+pub use ellipse::EllipseColliderShape;
+pub use params::{FillMode, TrimeshFlags, VhacdParameters};
+#[cfg(feature = "2d")]
+pub use regular_polygon::RegularPolygonColliderShape;
+
+pub(crate) use manifold::foreign_manifolds;
+
+use super::{
+    AabbContext, AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, IntoCollider,
+    ScalableCollider,
+};
+use crate::dynamics::lifecycle::ColliderId;
+use crate::dynamics::rigid_body::mass_properties::components::{ColliderDensity, ColliderMassProperties};
+use crate::math::Vector;
+use crate::parry::shape::SharedShape;
+use crate::physics_transform::Rotation;
+use bevy_ecs::prelude::Component;
+use native::native_shape;
+
+/// Why a mesh collider could not be made.
+pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
+
+/// The shape of a body for collisions and spatial queries.
+///
+/// On an entity with a `RigidBody` it is that body's collider; on a descendant it belongs to the nearest
+/// body above; without any it only answers queries and reports what touches it. Cheap to clone: the
+/// shape is shared.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// fn setup(mut commands: Commands) {
+///     commands.spawn((RigidBody::Static, Collider::capsule(0.5, 2.0)));
+///     commands.spawn((RigidBody::Dynamic, Collider::compound(vec![
+///         (Position::default(), Rotation::default(), Collider::capsule(0.5, 2.0)),
+///     ])));
+/// }
+/// ```
+///
+/// Constructors without a `Result` or `Option` never fail: values that make no shape (NaN, negative or
+/// zero sizes, indices out of range) are mended, with one warning per constructor. Sizes become positive
+/// and at least 10 µm; if nothing is left, the collider is a ball of that size.
+///
+/// Parry's shapes are in its own types: `Collider::from(SharedShape)` takes any of them, and
+/// [`shape_scaled`](Self::shape_scaled) gives what the engine uses.
+#[derive(Clone, Component, Debug)]
+#[require(
+    ColliderMarker,
+    ColliderAabb,
+    CollisionLayers,
+    EnlargedAabb,
+    ColliderDensity,
+    ColliderMassProperties,
+    ColliderId
+)]
+pub struct Collider {
+    /// The shape without scale.
+    shape: SharedShape,
+    /// The shape the engine uses.
+    scaled_shape: SharedShape,
+    /// What the kernel makes of `scaled_shape`.
+    native: kernel::shape::Shape,
+    scale: Vector,
+    /// Whether `shape` may have changed since `scaled_shape` was made.
+    stale: bool,
+}
+
+impl<T: IntoCollider<Collider>> From<T> for Collider {
+    fn from(value: T) -> Self {
+        value.collider()
+    }
+}
+
+impl From<SharedShape> for Collider {
+    fn from(shape: SharedShape) -> Self {
+        let native = native_shape(&shape);
+        Self { scaled_shape: shape.clone(), shape, native, scale: Vector::ONE, stale: false }
+    }
+}
+
+impl Default for Collider {
+    /// A square or cube with sides of 0.5 m.
+    fn default() -> Self {
+        dim::default_shape().into()
+    }
+}
+
+impl Collider {
+    /// The shape without scale.
+    pub fn shape(&self) -> &SharedShape {
+        &self.shape
+    }
+
+    /// The shape without scale, to change. The change takes effect with the next
+    /// [`set_scale`](Self::set_scale), which the engine calls for colliders that changed.
+    pub fn shape_mut(&mut self) -> &mut SharedShape {
+        self.stale = true;
+        &mut self.shape
+    }
+
+    /// The shape with the scale applied: the one that collides.
+    pub fn shape_scaled(&self) -> &SharedShape {
+        &self.scaled_shape
+    }
+
+    /// The scaled shape as the kernel has it.
+    pub(crate) fn native(&self) -> &kernel::shape::Shape {
+        &self.native
+    }
+
+    /// Replaces the shape, and keeps the scale.
+    pub fn set_shape(&mut self, shape: SharedShape) {
+        self.shape = shape;
+        self.stale = true;
+        self.set_scale(self.scale, DEFAULT_SUBDIVISIONS);
+    }
+
+    /// The scale along each axis.
+    pub fn scale(&self) -> Vector {
+        self.scale
+    }
+
+    /// Sets the scale along each axis.
+    ///
+    /// A ball or another curved shape that is scaled unevenly becomes a convex hull, with
+    /// `num_subdivisions` points per quarter or so. A scale that is not finite is ignored, with a
+    /// warning; an axis scaled by almost nothing keeps 1/100,000 of its length. Where a shape cannot be
+    /// scaled, a warning is given and the collider keeps its size.
+    pub fn set_scale(&mut self, scale: Vector, num_subdivisions: u32) {
+        if !scale.is_finite() {
+            bevy_log::warn_once!("a collider's scale of {scale} is not finite; it keeps its scale");
+            return;
+        }
+        let scale = Vector::from_array(
+            scale
+                .to_array()
+                .map(|s| if s.abs() < input::MIN_LENGTH { input::MIN_LENGTH.copysign(s) } else { s }),
+        );
+        if scale == self.scale && !self.stale {
+            return;
+        }
+        if let Some(scaled) = composite::scaled(&self.shape, scale, num_subdivisions) {
+            self.scaled_shape = scaled;
+        } else {
+            bevy_log::warn_once!(
+                "a collider of type {:?} cannot be scaled by {scale}",
+                self.shape.shape_type()
+            );
+            self.scaled_shape = self.shape.clone();
+        }
+        self.native = native_shape(&self.scaled_shape);
+        self.scale = scale;
+        self.stale = false;
+    }
+}
+
+/// How finely curved shapes are approximated when only the shape was set.
+const DEFAULT_SUBDIVISIONS: u32 = 10;
+
+impl AnyCollider for Collider {
+    type Context = ();
+
+    fn aabb_with_context(
+        &self,
+        position: Vector,
+        rotation: impl Into<Rotation>,
+        _: AabbContext<()>,
+    ) -> ColliderAabb {
+        let aabb = self.scaled_shape.compute_aabb(&dim::pose(position, rotation.into()));
+        ColliderAabb::from_min_max(aabb.mins, aabb.maxs)
+    }
+}
+
+impl ScalableCollider for Collider {
+    fn scale(&self) -> Vector {
+        self.scale()
+    }
+
+    fn set_scale(&mut self, scale: Vector, detail: u32) {
+        self.set_scale(scale, detail);
+    }
+}

@@ -1,0 +1,75 @@
+//! What the kernel makes of a parry shape: a native one where it has one, else a box with the promise
+//! that parry answers for it.
+
+use super::dim;
+use crate::math::{Scalar, Vector, vector_to_kernel};
+use crate::parry::shape::{SharedShape, TypedShape};
+use kernel::shape::{Aabb, Ball, Capsule, Cuboid, Foreign, HalfSpace, Segment, Shape, Triangle};
+
+/// The shape the kernel collides for a parry shape, in `f32`.
+///
+/// Balls, capsules, cuboids, triangles, segments and half-spaces become themselves; convex polygons with or
+/// without a radius, regular polygons, round rectangles and convex polyhedra become hulls, if the kernel has
+/// room for their features. All else, and what has a coordinate that is not finite, is foreign.
+pub(crate) fn native_shape(shape: &SharedShape) -> Shape {
+    native(shape.as_typed_shape()).unwrap_or_else(|| Shape::Foreign(foreign(shape)))
+}
+
+fn native(shape: TypedShape<'_>) -> Option<Shape> {
+    let native = match shape {
+        TypedShape::Ball(ball) => Shape::Ball(Ball { radius: size(ball.radius)? }),
+        TypedShape::Capsule(capsule) => Shape::Capsule(Capsule {
+            a: point(capsule.segment.a)?,
+            b: point(capsule.segment.b)?,
+            radius: size(capsule.radius)?,
+        }),
+        TypedShape::Cuboid(cuboid) => {
+            let half = cuboid.half_extents;
+            size(half.min_element())?;
+            Shape::Cuboid(Cuboid { half: point(half)? })
+        }
+        TypedShape::Triangle(t) => {
+            Shape::Triangle(Triangle { a: point(t.a)?, b: point(t.b)?, c: point(t.c)? })
+        }
+        TypedShape::Segment(s) => Shape::Segment(Segment { a: point(s.a)?, b: point(s.b)? }),
+        TypedShape::HalfSpace(half_space) => {
+            Shape::HalfSpace(HalfSpace { normal: point(half_space.normal)? })
+        }
+        other => dim::native_of_dimension(other)?,
+    };
+    Some(native)
+}
+
+/// A finite length that is not negative.
+fn size(value: Scalar) -> Option<f32> {
+    let value = value as f32;
+    (value.is_finite() && value >= 0.0).then_some(value)
+}
+
+/// A finite point.
+fn point(value: Vector) -> Option<kernel::math::Vector> {
+    let value = vector_to_kernel(value);
+    value.is_finite().then_some(value)
+}
+
+/// The box of a shape in its own frame, rounded outward.
+fn foreign(shape: &SharedShape) -> Foreign {
+    let aabb = shape.compute_local_aabb();
+    let outward = |corner: Vector, rounded: fn(Scalar) -> f32| {
+        kernel::math::Vector::from_array(corner.to_array().map(rounded))
+    };
+    let aabb = Aabb { min: outward(aabb.mins, round_down), max: outward(aabb.maxs, round_up) };
+    // A shape that a user set may have no box; what has none touches nothing.
+    Foreign { aabb: if aabb.is_valid() { aabb } else { Aabb::around([kernel::math::Vector::ZERO]) } }
+}
+
+/// The nearest `f32` not above `v`.
+fn round_down(v: Scalar) -> f32 {
+    let rounded = v as f32;
+    if Scalar::from(rounded) > v { rounded.next_down() } else { rounded }
+}
+
+/// The nearest `f32` not below `v`.
+fn round_up(v: Scalar) -> f32 {
+    -round_down(-v)
+}

@@ -1,0 +1,89 @@
+//! The narrow phase's systems: manifolds of awake contacts, and what follows from those that changed.
+
+use bevy_ecs::prelude::*;
+use bevy_time::Time;
+use kernel::{
+    contact::{ManifoldSource, NarrowPhase, Scratch},
+    manifold::LocalManifold,
+    table::ColliderTable,
+};
+
+use crate::{
+    collision::{
+        collider::{Collider, foreign_manifolds},
+        diagnostics::CollisionDiagnostics,
+        narrow_phase::NarrowPhaseConfig,
+    },
+    dynamics::{solver::PhysicsLengthUnit, tables::Tables},
+    math::to_f32,
+    schedule::Physics,
+};
+
+/// Contacts at rest are predicted up to this distance, times the length unit: four times the linear slop
+/// of 5 mm that contacts are left to overlap by.
+const SPECULATIVE: f32 = 0.02;
+/// A surface may move this far against another, times the length unit, before their manifold is computed
+/// anew. Further makes contacts lag behind rolling bodies; less makes stacks jitter and costs time.
+const RECYCLE: f32 = 0.05;
+
+/// Buffers of the narrow phase.
+#[derive(Resource, Default)]
+pub(crate) struct NarrowScratch(Scratch);
+
+/// Manifolds of pairs that the kernel does not know, by parry.
+struct Foreign<'a, 'w, 's, 'c> {
+    colliders: &'a Query<'w, 's, &'c Collider>,
+    entities: &'a [Entity],
+    table: &'a ColliderTable,
+}
+
+impl ManifoldSource for Foreign<'_, '_, '_, '_> {
+    fn manifolds(&self, a: u32, b: u32, prediction: f32, out: &mut Vec<LocalManifold>) {
+        let entity = |id: u32| self.entities[id as usize];
+        if let Ok([ca, cb]) = self.colliders.get_many([entity(a), entity(b)]) {
+            let relative = self.table.poses[a as usize].relative(&self.table.poses[b as usize]);
+            foreign_manifolds(ca, cb, &relative, prediction, out);
+        }
+    }
+}
+
+/// Brings the manifolds of all awake contacts up to date.
+pub(crate) fn update_contacts(
+    shapes: Query<&Collider>,
+    config: Res<NarrowPhaseConfig>,
+    unit: Res<PhysicsLengthUnit>,
+    time: Res<Time<Physics>>,
+    mut scratch: ResMut<NarrowScratch>,
+    mut diagnostics: ResMut<CollisionDiagnostics>,
+    mut tables: Tables,
+) {
+    let start = bevy_platform::time::Instant::now();
+    let unit = to_f32(unit.0);
+    let colliders = &tables.colliders;
+    let source = Foreign { colliders: &shapes, entities: &colliders.entities, table: &colliders.table };
+    let phase = NarrowPhase {
+        bodies: &tables.bodies.table,
+        colliders: &colliders.table,
+        source: &source,
+        dt: time.delta_secs(),
+        tolerance: to_f32(config.contact_tolerance).max(0.0) * unit,
+        speculative: SPECULATIVE * unit,
+        recycle_distance: RECYCLE * unit,
+        match_points: config.match_contacts,
+    };
+    let contacts = &mut *tables.contacts;
+    contacts.changed.clear();
+    contacts.table.update(&phase, &mut scratch.0, &mut contacts.changed);
+    diagnostics.contact_count = contacts.table.len() as u32;
+    diagnostics.narrow_phase += start.elapsed();
+}
+
+/// Lets contacts that began or ended take effect: colours, islands, waking.
+pub(crate) fn link_contacts(mut tables: Tables) {
+    let changed = core::mem::take(&mut tables.contacts.changed);
+    tables.link().apply(&changed, |_, _, _| {});
+    tables.contacts.changed = changed;
+    if cfg!(feature = "validate") {
+        tables.link().validate();
+    }
+}

@@ -1,0 +1,30 @@
+//! What touches what: [colliders](collider), the [broad phase](broad_phase) that finds pairs which might touch, and the
+//! [narrow phase](narrow_phase) that computes their contacts.
+
+pub mod broad_phase;
+pub mod collider;
+pub(crate) mod contacts;
+mod diagnostics;
+pub(crate) mod pairs;
+pub mod narrow_phase;
+
+pub use diagnostics::CollisionDiagnostics;
+
+/// The names of this module that most apps use.
+pub mod prelude {
+    #[cfg(feature = "default-collider")]
+    pub use super::collider::Collider;
+    #[expect(deprecated, reason = "former names stay importable")]
+    pub use super::narrow_phase::NarrowPhaseSet;
+    pub use super::{
+        broad_phase::{BroadPhaseCorePlugin, BroadPhaseSystems, BvhBroadPhasePlugin},
+        collider::{
+            AabbContext, AnyCollider, ColliderAabb, ColliderBackendPlugin, ColliderDisabled, ColliderMarker,
+            CollisionLayers, CollisionMargin, IntoCollider,
+            LayerMask, PhysicsLayer, ScalableCollider, Sensor, SimpleCollider,
+            collider_hierarchy::{ColliderHierarchyPlugin, ColliderOf, RigidBodyColliders},
+            collider_transform::{ColliderTransform, ColliderTransformPlugin},
+        },
+        narrow_phase::{NarrowPhaseConfig, NarrowPhasePlugin, NarrowPhaseSystems},
+    };
+}

@@ -1,0 +1,309 @@
+//! Brings the tables in line with what bodies and colliders are now. See [`lifecycle`](super::lifecycle).
+
+use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
+use kernel::{
+    bvh::TreeKind,
+    math::Pose,
+    table::{BodyKind, ColliderDef, ColliderFlags, Layers, NONE},
+};
+
+use crate::{
+    collision::collider::{
+        Collider, ColliderDisabled, CollisionLayers, Sensor,
+        collider_hierarchy::ColliderOf,
+        collider_transform::ColliderTransform,
+    },
+    dynamics::{
+        lifecycle::{BodyId, ColliderId, LifecycleQueue},
+        materials::{SurfaceQuery, Surfaces},
+        rigid_body::{Dominance, RigidBody, RigidBodyDisabled, mass_properties::components::ComputedCenterOfMass},
+        tables::Tables,
+    },
+    math::vector_to_kernel,
+    physics_transform::{Position, Rotation, world_pose},
+};
+
+/// What a body's place in the tables follows from.
+type BodyState = (
+    &'static RigidBody,
+    Has<RigidBodyDisabled>,
+    Has<Disabled>,
+    &'static Position,
+    &'static Rotation,
+    &'static ComputedCenterOfMass,
+    Option<&'static Dominance>,
+);
+
+/// What a collider's place in the tables follows from.
+type ColliderState = (
+    &'static Collider,
+    Option<&'static ColliderOf>,
+    Option<&'static ColliderTransform>,
+    Option<(&'static Position, &'static Rotation)>,
+    &'static CollisionLayers,
+    Has<Sensor>,
+    Has<ColliderDisabled>,
+    Has<Disabled>,
+);
+
+/// What the drain reads and writes of the world.
+#[derive(SystemParam)]
+pub(crate) struct Census<'w, 's> {
+    bodies: Query<'w, 's, BodyState, Allow<Disabled>>,
+    colliders: Query<'w, 's, ColliderState, Allow<Disabled>>,
+    body_ids: Query<'w, 's, &'static mut BodyId, Allow<Disabled>>,
+    collider_ids: Query<'w, 's, &'static mut ColliderId, Allow<Disabled>>,
+    surfaces: SurfaceQuery<'w, 's>,
+}
+
+/// Drains the queue: lost ids leave, then noted bodies enter, leave or are retyped, then noted colliders.
+pub(crate) fn drain_lifecycle(mut queue: ResMut<LifecycleQueue>, mut tables: Tables, mut census: Census) {
+    tables.bodies.table.ids.recycle();
+    tables.colliders.table.ids.recycle();
+    tables.contacts.table.recycle_ids();
+    remove_lost(&mut queue, &mut tables, &mut census);
+
+    let mut bodies = core::mem::take(&mut queue.bodies);
+    dedup(&mut bodies);
+    for entity in bodies.drain(..) {
+        census.settle_body(entity, &mut tables, &mut queue);
+    }
+    queue.bodies = bodies;
+
+    let mut colliders = core::mem::take(&mut queue.colliders);
+    dedup(&mut colliders);
+    for entity in colliders.drain(..) {
+        census.settle_collider(entity, &mut tables);
+    }
+    queue.colliders = colliders;
+}
+
+/// Once more at the end of the step: what was despawned during it leaves before anybody is told of it.
+pub(crate) fn remove_lost_late(mut queue: ResMut<LifecycleQueue>, mut tables: Tables, mut census: Census) {
+    remove_lost(&mut queue, &mut tables, &mut census);
+}
+
+fn remove_lost(queue: &mut LifecycleQueue, tables: &mut Tables, census: &mut Census) {
+    for id in core::mem::take(&mut queue.lost_colliders) {
+        if tables.colliders.table.ids.is_live(id) {
+            remove_collider(id, tables);
+        }
+    }
+    for id in core::mem::take(&mut queue.lost_bodies) {
+        if tables.bodies.table.ids.is_live(id) {
+            census.remove_body(id, tables, queue);
+        }
+    }
+}
+
+/// Where a collider is on its body.
+fn local_pose(transform: &ColliderTransform) -> Pose {
+    Pose::new(vector_to_kernel(transform.translation), Rotation::from(transform.rotation).to_kernel())
+}
+
+/// Each entity once, in the order first noted: ids follow that order, never the entities'.
+fn dedup(entities: &mut Vec<Entity>) {
+    let mut seen = bevy_ecs::entity::EntityHashSet::default();
+    entities.retain(|e| seen.insert(*e));
+}
+
+fn remove_collider(id: u32, tables: &mut Tables) {
+    tables.link().destroy_of_collider(id);
+    let Tables { bodies, colliders, .. } = tables;
+    let colliders = &mut **colliders;
+    colliders.trees.remove(id);
+    colliders.moved.remove(id);
+    colliders.stale.remove(id);
+    colliders.table.remove(id, &mut bodies.table);
+    colliders.entities[id as usize] = Entity::PLACEHOLDER;
+}
+
+fn kind_of(body: &RigidBody) -> BodyKind {
+    match body {
+        RigidBody::Dynamic => BodyKind::Dynamic,
+        RigidBody::Static => BodyKind::Static,
+        RigidBody::Kinematic => BodyKind::Kinematic,
+    }
+}
+
+/// Writes `value` at `index` of a list that grows as ids do.
+fn put<T: Clone>(list: &mut Vec<T>, index: u32, value: T, filler: T) {
+    let index = index as usize;
+    if list.len() <= index {
+        list.resize(index + 1, filler);
+    }
+    list[index] = value;
+}
+
+impl Census<'_, '_> {
+    fn settle_body(&mut self, entity: Entity, tables: &mut Tables, queue: &mut LifecycleQueue) {
+        let id = self.body_ids.get(entity).map_or(NONE, |id| id.0);
+        let wanted = self.bodies.get(entity).ok().filter(|state| {
+            let (_, body_disabled, disabled, position, ..) = state;
+            !body_disabled && !disabled && **position != Position::PLACEHOLDER
+        });
+        match (wanted, id) {
+            (None, NONE) => {}
+            (None, id) => self.remove_body(id, tables, queue),
+            (Some((body, _, _, position, rotation, center, dominance)), NONE) => {
+                let kind = kind_of(body);
+                let center = vector_to_kernel(center.0);
+                let id = tables.bodies.table.add(kind, center, world_pose(position, rotation));
+                tables.bodies.table[id].dominance = dominance.map_or(0, |d| d.0);
+                put(&mut tables.bodies.entities, id, entity, Entity::PLACEHOLDER);
+                note_kinematic(id, kind, tables);
+                tables.link().enter(id);
+                if let Ok(mut component) = self.body_ids.get_mut(entity) {
+                    component.0 = id;
+                }
+                self.note_colliders(entity, queue);
+            }
+            (Some((body, ..)), id) => {
+                let kind = kind_of(body);
+                if tables.bodies.table[id].kind != kind {
+                    tables.link().retype(id, kind);
+                    note_kinematic(id, kind, tables);
+                    move_to_tree(id, kind, tables);
+                }
+            }
+        }
+    }
+
+    /// The colliders of a body that entered are its own from now on.
+    fn note_colliders(&self, body: Entity, queue: &mut LifecycleQueue) {
+        queue.colliders.extend(
+            self.colliders_of(body),
+        );
+    }
+
+    fn colliders_of(&self, body: Entity) -> Vec<Entity> {
+        self.surfaces.colliders_of(body)
+    }
+
+    fn remove_body(&mut self, id: u32, tables: &mut Tables, queue: &mut LifecycleQueue) {
+        loop {
+            let first = tables.bodies.table[id].first_collider;
+            if first == NONE {
+                break;
+            }
+            // The collider may live on without the body; it is looked at again.
+            let entity = tables.colliders.entities[first as usize];
+            remove_collider(first, tables);
+            if let Ok(mut component) = self.collider_ids.get_mut(entity) {
+                component.0 = NONE;
+                queue.colliders.push(entity);
+            }
+        }
+        tables.bodies.kinematic.remove(id);
+        tables.link().leave(id);
+        let entity = core::mem::replace(&mut tables.bodies.entities[id as usize], Entity::PLACEHOLDER);
+        if let Ok(mut component) = self.body_ids.get_mut(entity) {
+            component.0 = NONE;
+        }
+    }
+
+    fn settle_collider(&mut self, entity: Entity, tables: &mut Tables) {
+        let id = self.collider_ids.get(entity).map_or(NONE, |id| id.0);
+        let state = self.colliders.get(entity).ok().filter(|state| !state.6 && !state.7);
+        let Some((collider, of, transform, pose, layers, sensor, ..)) = state else {
+            if id != NONE {
+                remove_collider(id, tables);
+                if let Ok(mut component) = self.collider_ids.get_mut(entity) {
+                    component.0 = NONE;
+                }
+            }
+            return;
+        };
+        let body_entity = of.map(|of| of.body);
+        let body = body_entity.and_then(|body| self.body_ids.get(body).ok()).map_or(NONE, |id| id.0);
+        let Surfaces { material, margin, speculative } = self.surfaces.of(entity, body_entity);
+        let local = transform.filter(|_| body_entity != Some(entity)).map_or(Pose::IDENTITY, local_pose);
+        let def = ColliderDef {
+            shape: collider.native().clone(),
+            body,
+            local,
+            material,
+            layers: Layers { memberships: layers.memberships.0, filters: layers.filters.0 },
+            flags: ColliderFlags { sensor },
+            margin,
+            speculative,
+        };
+        let world = match pose {
+            Some((position, rotation)) if *position != Position::PLACEHOLDER => world_pose(position, rotation),
+            _ if body != NONE => tables.bodies.table.frame(body).then(&local),
+            _ => return,
+        };
+        // A contact knows its bodies: under another body the collider is a new one.
+        if id != NONE && tables.colliders.table[id].def.body != body {
+            remove_collider(id, tables);
+        }
+        let id = if id != NONE && tables.colliders.table.ids.is_live(id) {
+            redefine(id, def, tables);
+            id
+        } else {
+            let Tables { bodies, colliders, .. } = &mut *tables;
+            let id = colliders.table.add(def, world, &mut bodies.table);
+            put(&mut colliders.entities, id, entity, Entity::PLACEHOLDER);
+            id
+        };
+        let kind = match body {
+            NONE => TreeKind::Standalone,
+            body => tree_of(tables.bodies.table[body].kind),
+        };
+        let colliders = &mut *tables.colliders;
+        colliders.trees.place(id, kind);
+        colliders.stale.insert(id);
+        if let Ok(mut component) = self.collider_ids.get_mut(entity) {
+            component.0 = id;
+        }
+    }
+}
+
+/// Changes a collider in place. Whatever it touched is woken; pairs that its new layers forbid end.
+fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
+    let body = def.body;
+    let filtered = tables.colliders.table[id].def.layers != def.layers;
+    let mut link = tables.link();
+    if body != NONE {
+        link.wake_body(body);
+        link.wake_touching(body);
+    }
+    link.colliders.redefine(id, def, link.bodies);
+    if filtered {
+        link.retain_of_collider(id, |colliders, contact| {
+            let [a, b] = contact.colliders.map(|c| colliders[c].def.layers);
+            a.interacts_with(b)
+        });
+        // New partners are found as for a collider that moved.
+        tables.colliders.moved.insert(id);
+    }
+    tables.link().reflag_of_collider(id);
+}
+
+fn note_kinematic(id: u32, kind: BodyKind, tables: &mut Tables) {
+    if kind == BodyKind::Kinematic {
+        tables.bodies.kinematic.insert(id);
+    } else {
+        tables.bodies.kinematic.remove(id);
+    }
+}
+
+fn tree_of(kind: BodyKind) -> TreeKind {
+    match kind {
+        BodyKind::Static => TreeKind::Static,
+        BodyKind::Kinematic => TreeKind::Kinematic,
+        BodyKind::Dynamic => TreeKind::Dynamic,
+    }
+}
+
+fn move_to_tree(body: u32, kind: BodyKind, tables: &mut Tables) {
+    let Tables { bodies, colliders, .. } = tables;
+    let colliders = &mut **colliders;
+    let mut next = bodies.table[body].first_collider;
+    while next != NONE {
+        colliders.trees.place(next, tree_of(kind));
+        colliders.stale.insert(next);
+        colliders.moved.insert(next);
+        next = colliders.table.next_of_body(next);
+    }
+}

@@ -1,0 +1,103 @@
+//! Gravity, and the stages in which velocities and positions are integrated.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+
+use crate::{
+    dynamics::solver::schedule::{SolverSystems, SubstepSchedule},
+    math::Vector,
+    schedule::PhysicsSchedule,
+};
+
+/// Integrates velocities and positions, by semi-implicit Euler: velocities first, then positions with the new velocities.
+pub struct IntegratorPlugin {
+    schedule: Interned<dyn ScheduleLabel>,
+}
+
+impl IntegratorPlugin {
+    /// Integrates in `schedule`; the default is [`SubstepSchedule`].
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self { schedule: schedule.intern() }
+    }
+}
+
+impl Default for IntegratorPlugin {
+    fn default() -> Self {
+        Self::new(SubstepSchedule)
+    }
+}
+
+impl Plugin for IntegratorPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Gravity>();
+        crate::step::install(app);
+        crate::step::substep::add_integration(app);
+
+        app.configure_sets(
+            self.schedule,
+            (IntegrationSystems::Velocity, IntegrationSystems::Position).chain(),
+        );
+        app.configure_sets(
+            PhysicsSchedule,
+            (
+                IntegrationSystems::UpdateVelocityIncrements.in_set(SolverSystems::PreSubstep),
+                IntegrationSystems::ClearVelocityIncrements.in_set(SolverSystems::PostSubstep),
+            ),
+        );
+    }
+}
+
+/// The stages of integration.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum IntegrationSystems {
+    /// Gravity, forces and accelerations become velocity increments per substep. Once per step, in [`SolverSystems::PreSubstep`].
+    UpdateVelocityIncrements,
+    /// Increments and damping are applied to velocities. Once per substep.
+    Velocity,
+    /// Velocities move the bodies. Once per substep.
+    Position,
+    /// The increments are zeroed. Once per step, in [`SolverSystems::PostSubstep`].
+    ClearVelocityIncrements,
+}
+
+/// The former name of [`IntegrationSystems`].
+#[deprecated(since = "0.4.0", note = "renamed to `IntegrationSystems`")]
+pub type IntegrationSet = IntegrationSystems;
+
+/// The acceleration that every dynamic body feels, times its [`GravityScale`](crate::dynamics::rigid_body::GravityScale), in m/s².
+///
+/// The default is 9.81 m/s² down the Y axis. It is *not* scaled by [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit):
+/// where a metre is 100 pixels, write `Vector::NEG_Y * 981.0`.
+///
+/// ```
+/// # use avian::{math::Vector, prelude::*};
+/// # use bevy_app::App;
+/// # let mut app = App::new();
+/// app.insert_resource(Gravity(Vector::NEG_Y * 1.62)); // the moon's
+/// app.insert_resource(Gravity::ZERO);
+/// ```
+#[derive(Reflect, Resource, Debug)]
+#[reflect(Debug, Resource, Default)]
+pub struct Gravity(pub Vector);
+
+impl Default for Gravity {
+    fn default() -> Self {
+        Self(Vector::NEG_Y * 9.81)
+    }
+}
+
+impl Gravity {
+    /// No gravity.
+    pub const ZERO: Gravity = Gravity(Vector::ZERO);
+}
+
+/// Leaves the velocity of this body to the app: no gravity, forces, damping or speed limits are applied. Contacts still push it.
+#[derive(Component, Debug, Default, Reflect)]
+#[reflect(Debug, Component, Default)]
+pub struct CustomVelocityIntegration;
+
+/// Leaves the position of this body to the app: its velocity does not move it. Contacts still see its velocity.
+#[derive(Component, Debug, Default, Reflect)]
+#[reflect(Debug, Component, Default)]
+pub struct CustomPositionIntegration;

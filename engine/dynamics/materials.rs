@@ -1,0 +1,136 @@
+//! Which friction, restitution and margins a collider has: its own, else its body's, else the default.
+
+use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
+use kernel::table::{Combine, Material, Surface};
+
+use crate::{
+    collision::{
+        collider::{CollisionMargin, collider_hierarchy::RigidBodyColliders},
+        narrow_phase::NarrowPhaseConfig,
+    },
+    dynamics::{
+        ccd::SpeculativeMargin,
+        lifecycle::ColliderId,
+        rigid_body::{CoefficientCombine, DefaultFriction, DefaultRestitution, Friction, Restitution},
+        tables::Tables,
+    },
+    math::{to_f32, Scalar},
+};
+
+/// The surface of a collider and how far it reaches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Surfaces {
+    pub(crate) material: Material,
+    pub(crate) margin: f32,
+    pub(crate) speculative: f32,
+}
+
+type SurfaceComponents = (
+    Option<&'static Friction>,
+    Option<&'static Restitution>,
+    Option<&'static CollisionMargin>,
+    Option<&'static SpeculativeMargin>,
+);
+
+/// Everything a collider's surface follows from.
+#[derive(SystemParam)]
+pub(crate) struct SurfaceQuery<'w, 's> {
+    surfaces: Query<'w, 's, SurfaceComponents, Allow<Disabled>>,
+    colliders: Query<'w, 's, &'static RigidBodyColliders, Allow<Disabled>>,
+    friction: Res<'w, DefaultFriction>,
+    restitution: Res<'w, DefaultRestitution>,
+    config: Res<'w, NarrowPhaseConfig>,
+}
+
+impl SurfaceQuery<'_, '_> {
+    /// The surface of a collider on a body, which may be the same entity.
+    pub(crate) fn of(&self, collider: Entity, body: Option<Entity>) -> Surfaces {
+        let own = self.surfaces.get(collider).unwrap_or_default();
+        let from_body = body.and_then(|body| self.surfaces.get(body).ok()).unwrap_or_default();
+        let friction = own.0.or(from_body.0).unwrap_or(&self.friction.0);
+        let restitution = own.1.or(from_body.1).unwrap_or(&self.restitution.0);
+        let margin = own.2.or(from_body.2).map_or(0.0, |m| m.0);
+        let speculative = own.3.or(from_body.3).map_or(self.config.default_speculative_margin, |m| m.0);
+        Surfaces {
+            material: Material {
+                friction: surface(friction.dynamic_coefficient, friction.combine_rule, f32::MAX),
+                restitution: surface(restitution.coefficient, restitution.combine_rule, 1.0),
+            },
+            margin: length(margin),
+            speculative: length(speculative),
+        }
+    }
+
+    /// The colliders of a body.
+    pub(crate) fn colliders_of(&self, body: Entity) -> Vec<Entity> {
+        self.colliders.get(body).map(|list| list.iter().collect()).unwrap_or_default()
+    }
+}
+
+/// A coefficient, held to what it can physically be.
+fn surface(coefficient: Scalar, rule: CoefficientCombine, max: f32) -> Surface {
+    let rule = match rule {
+        CoefficientCombine::Average => Combine::Average,
+        CoefficientCombine::GeometricMean => Combine::GeometricMean,
+        CoefficientCombine::Min => Combine::Min,
+        CoefficientCombine::Multiply => Combine::Multiply,
+        CoefficientCombine::Max => Combine::Max,
+    };
+    let coefficient = to_f32(coefficient);
+    let coefficient = if coefficient.is_nan() { 0.0 } else { coefficient.clamp(0.0, max) };
+    Surface { coefficient, rule }
+}
+
+/// A margin: negative and NaN are none.
+fn length(value: Scalar) -> f32 {
+    let value = to_f32(value);
+    if value > 0.0 { value.min(f32::MAX) } else { 0.0 }
+}
+
+type SurfaceChanged =
+    Or<(Changed<Friction>, Changed<Restitution>, Changed<CollisionMargin>, Changed<SpeculativeMargin>)>;
+
+/// Brings the table in line with changed surfaces, on colliders and on bodies whose colliders have none of
+/// their own. Removals of these components are noticed when the collider is next settled.
+pub(crate) fn refresh_surfaces(
+    changed: Query<Entity, SurfaceChanged>,
+    removed: (
+        RemovedComponents<Friction>,
+        RemovedComponents<Restitution>,
+        RemovedComponents<CollisionMargin>,
+        RemovedComponents<SpeculativeMargin>,
+    ),
+    ids: Query<(&ColliderId, Option<&crate::collision::collider::collider_hierarchy::ColliderOf>)>,
+    query: SurfaceQuery,
+    mut tables: Tables,
+) {
+    let (mut friction, mut restitution, mut margin, mut speculative) = removed;
+    let defaults = query.friction.is_changed() || query.restitution.is_changed() || query.config.is_changed();
+    let mut entities: Vec<Entity> = changed.iter().collect();
+    entities.extend(friction.read());
+    entities.extend(restitution.read());
+    entities.extend(margin.read());
+    entities.extend(speculative.read());
+    if defaults {
+        entities.extend(tables.colliders.entities.iter().copied());
+    }
+    for entity in entities {
+        let own = core::iter::once(entity);
+        for collider in own.chain(query.colliders_of(entity)) {
+            let Ok((id, of)) = ids.get(collider) else { continue };
+            if !tables.colliders.table.ids.is_live(id.0) {
+                continue;
+            }
+            let surfaces = query.of(collider, of.map(|of| of.body));
+            let colliders = &mut *tables.colliders;
+            let entry = &mut colliders.table[id.0];
+            entry.def.material = surfaces.material;
+            if entry.def.margin != surfaces.margin || entry.def.speculative != surfaces.speculative {
+                entry.def.margin = surfaces.margin;
+                entry.def.speculative = surfaces.speculative;
+                entry.revision = entry.revision.wrapping_add(1);
+                colliders.stale.insert(id.0);
+            }
+        }
+    }
+}

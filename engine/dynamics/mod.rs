@@ -1,0 +1,47 @@
+//! What moves and how: [rigid bodies](rigid_body), [gravity and integration](integrator), [continuous collision](ccd) and the
+//! [solver] of contacts.
+
+pub mod ccd;
+pub(crate) mod drain;
+pub mod integrator;
+pub(crate) mod lifecycle;
+pub(crate) mod materials;
+pub mod rigid_body;
+pub(crate) mod sleep;
+pub mod solver;
+pub(crate) mod tables;
+
+/// The names of this module that most apps use.
+pub mod prelude {
+    pub use super::{
+        ccd::SpeculativeMargin,
+        integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity, IntegratorPlugin},
+        rigid_body::{
+            mass_properties::{
+                MassPropertiesExt, MassPropertyHelper, MassPropertyPlugin,
+                bevy_heavy::{
+                    AngularInertiaTensor, AngularInertiaTensorError, ComputeMassProperties2d,
+                    ComputeMassProperties3d, MassProperties2d, MassProperties3d,
+                },
+                components::{
+                    AngularInertia, CenterOfMass, ColliderDensity, ColliderMassProperties,
+                    ComputedAngularInertia, ComputedCenterOfMass, ComputedMass, Mass, MassPropertiesBundle,
+                    NoAutoAngularInertia, NoAutoCenterOfMass, NoAutoMass,
+                },
+            },
+            sleeping::{SleepThreshold, SleepTimer, Sleeping, SleepingDisabled, TimeToSleep},
+            *,
+        },
+        solver::{
+            PhysicsLengthUnit, SolverPlugin, SolverPlugins,
+            islands::{IslandPlugin, IslandSleepingPlugin},
+            schedule::{SolverSchedulePlugin, SolverSystems, SubstepCount, SubstepSchedule},
+            solver_body::SolverBodyPlugin,
+        },
+    };
+    #[expect(deprecated, reason = "former names stay importable")]
+    pub use super::{
+        rigid_body::sleeping::{DeactivationTime, SleepingThreshold, TimeSleeping},
+        solver::schedule::SolverSet,
+    };
+}

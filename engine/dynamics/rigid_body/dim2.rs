@@ -1,0 +1,25 @@
+//! The body components whose shape is that of the plane. `dim3.rs` is the twin.
+
+use bevy_derive::{Deref, DerefMut};
+use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use derive_more::From;
+
+use crate::math::Scalar;
+
+/// How fast a body turns, in rad/s, counter-clockwise.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct AngularVelocity(pub Scalar);
+
+impl AngularVelocity {
+    /// Not turning.
+    pub const ZERO: AngularVelocity = AngularVelocity(0.0);
+}

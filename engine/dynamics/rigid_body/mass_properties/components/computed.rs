@@ -1,0 +1,193 @@
+//! A body's total mass and centre of mass, as the solver uses them.
+
+use bevy_derive::{Deref, DerefMut};
+use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use derive_more::From;
+
+use super::{CenterOfMass, Mass, MassError};
+use crate::math::{AdjustPrecision, RecipOrZero, Scalar, Vector};
+
+/// The mass of a body with all that belongs to it, in kg. Stored as its inverse, so that infinite mass is a
+/// plain zero; a mass of zero means the same, as a body without mass cannot be pushed either.
+///
+/// Computed from [`Mass`] and the colliders; static bodies have infinite mass, kinematic ones the mass they
+/// would have as dynamic ones, though nothing that touches them feels a difference. Writing it is of use only
+/// with [`NoAutoMass`](super::NoAutoMass).
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct ComputedMass {
+    inverse: Scalar,
+}
+
+impl ComputedMass {
+    /// Cannot be pushed.
+    pub const INFINITY: Self = Self { inverse: 0.0 };
+
+    /// A mass in kg; 0 means infinite. Negative and NaN, which debug builds refuse with a panic, give infinite.
+    pub fn new(mass: Scalar) -> Self {
+        let result = Self::try_new(mass);
+        debug_assert!(result.is_ok(), "a mass is not negative and not NaN, this is {mass}");
+        result.unwrap_or(Self::INFINITY)
+    }
+
+    /// A mass in kg; 0 means infinite. Negative and NaN are errors.
+    pub fn try_new(mass: Scalar) -> Result<Self, MassError> {
+        check(mass).map(|()| Self { inverse: mass.recip_or_zero() })
+    }
+
+    /// A mass from its inverse in 1/kg. Negative and NaN, which debug builds refuse with a panic, give infinite
+    /// mass.
+    pub fn from_inverse(inverse_mass: Scalar) -> Self {
+        let result = Self::try_from_inverse(inverse_mass);
+        debug_assert!(result.is_ok(), "an inverse mass is not negative and not NaN, this is {inverse_mass}");
+        result.unwrap_or(Self::INFINITY)
+    }
+
+    /// A mass from its inverse in 1/kg. Negative and NaN are errors.
+    pub fn try_from_inverse(inverse_mass: Scalar) -> Result<Self, MassError> {
+        check(inverse_mass).map(|()| Self { inverse: inverse_mass })
+    }
+
+    /// The mass in kg, 0 if infinite.
+    pub fn value(self) -> Scalar {
+        self.inverse.recip_or_zero()
+    }
+
+    /// 1 / mass in 1/kg, 0 if infinite.
+    pub fn inverse(self) -> Scalar {
+        self.inverse
+    }
+
+    /// Replaces the mass.
+    pub fn set(&mut self, mass: impl Into<ComputedMass>) {
+        *self = mass.into();
+    }
+
+    /// Whether the mass is neither infinite nor NaN.
+    pub fn is_finite(self) -> bool {
+        !self.is_infinite() && !self.is_nan()
+    }
+
+    /// Whether nothing can push the body.
+    pub fn is_infinite(self) -> bool {
+        self.value() == 0.0 && !self.is_nan()
+    }
+
+    /// Whether the mass is NaN, which no constructor makes.
+    pub fn is_nan(self) -> bool {
+        self.inverse.is_nan()
+    }
+}
+
+fn check(value: Scalar) -> Result<(), MassError> {
+    if value.is_nan() {
+        Err(MassError::NaN)
+    } else if value < 0.0 {
+        Err(MassError::Negative)
+    } else {
+        Ok(())
+    }
+}
+
+impl From<Scalar> for ComputedMass {
+    fn from(mass: Scalar) -> Self {
+        Self::new(mass)
+    }
+}
+
+impl From<Mass> for ComputedMass {
+    fn from(mass: Mass) -> Self {
+        Self::new(mass.0.adjust_precision())
+    }
+}
+
+impl From<ComputedMass> for Mass {
+    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+    fn from(mass: ComputedMass) -> Self {
+        Self(mass.value() as f32)
+    }
+}
+
+/// The centre of mass of a body with all that belongs to it, in the body's frame, in metres.
+///
+/// Computed from [`CenterOfMass`] and the colliders; writing it is of use only with
+/// [`NoAutoCenterOfMass`](super::NoAutoCenterOfMass).
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct ComputedCenterOfMass(pub Vector);
+
+impl ComputedCenterOfMass {
+    /// The body's origin.
+    pub const ZERO: Self = Self(Vector::ZERO);
+}
+
+impl From<CenterOfMass> for ComputedCenterOfMass {
+    fn from(center: CenterOfMass) -> Self {
+        Self(center.0.adjust_precision())
+    }
+}
+
+impl From<ComputedCenterOfMass> for CenterOfMass {
+    fn from(center: ComputedCenterOfMass) -> Self {
+        use crate::math::AsF32;
+        Self(center.0.f32())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mass_keeps_its_value_and_inverse() {
+        let mass = ComputedMass::new(4.0);
+        assert_eq!((mass.value(), mass.inverse()), (4.0, 0.25));
+        assert!(mass.is_finite() && !mass.is_infinite() && !mass.is_nan());
+        assert_eq!(ComputedMass::from_inverse(0.25), mass);
+        assert_eq!(Mass::from(mass), Mass(4.0));
+        assert_eq!(ComputedMass::from(Mass(4.0)), mass);
+        let mut other = ComputedMass::INFINITY;
+        other.set(4.0);
+        assert_eq!(other, mass);
+    }
+
+    #[test]
+    fn zero_and_infinity_are_infinite() {
+        for mass in [0.0, Scalar::INFINITY] {
+            let mass = ComputedMass::new(mass);
+            assert_eq!(mass, ComputedMass::INFINITY);
+            assert!(mass.is_infinite() && !mass.is_finite());
+            assert_eq!((mass.value(), mass.inverse()), (0.0, 0.0));
+        }
+        assert_eq!(ComputedMass::default(), ComputedMass::INFINITY);
+    }
+
+    #[test]
+    fn what_is_no_mass_is_an_error() {
+        assert_eq!(ComputedMass::try_new(-1.0), Err(MassError::Negative));
+        assert_eq!(ComputedMass::try_new(Scalar::NEG_INFINITY), Err(MassError::Negative));
+        assert_eq!(ComputedMass::try_new(Scalar::NAN), Err(MassError::NaN));
+        assert_eq!(ComputedMass::try_from_inverse(-1.0), Err(MassError::Negative));
+        assert_eq!(ComputedMass::try_from_inverse(Scalar::NAN), Err(MassError::NaN));
+    }
+
+    #[test]
+    fn centres_convert_both_ways() {
+        let center = CenterOfMass::ZERO;
+        assert_eq!(ComputedCenterOfMass::from(center), ComputedCenterOfMass::ZERO);
+        assert_eq!(CenterOfMass::from(ComputedCenterOfMass::ZERO), center);
+    }
+}

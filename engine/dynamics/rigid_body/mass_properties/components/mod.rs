@@ -1,0 +1,178 @@
+//! What a body weighs: the components users write, those colliders bring, and those the engine computes.
+
+mod collider;
+mod computed;
+#[cfg_attr(feature = "2d", path = "dim2.rs")]
+#[cfg_attr(feature = "3d", path = "dim3.rs")]
+mod dim;
+
+pub use collider::{ColliderDensity, ColliderMassProperties};
+pub use computed::{ComputedCenterOfMass, ComputedMass};
+pub use dim::{AngularInertia, ComputedAngularInertia};
+
+use bevy_derive::{Deref, DerefMut};
+use bevy_ecs::{lifecycle::HookContext, prelude::*, world::DeferredWorld};
+use bevy_reflect::prelude::*;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use derive_more::From;
+
+use crate::math::{ComputeMassProperties, VectorF32};
+
+/// Why a number is no mass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MassError {
+    /// It is below zero.
+    #[error("a mass is not negative")]
+    Negative,
+    /// It is NaN.
+    #[error("a mass is not NaN")]
+    NaN,
+}
+
+/// Why a number, or in 3D one of three, is no angular inertia.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AngularInertiaError {
+    /// It is below zero.
+    #[error("an angular inertia is not negative")]
+    Negative,
+    /// It is NaN.
+    #[error("an angular inertia is not NaN")]
+    NaN,
+}
+
+/// The mass of one entity, in kg: of a body, or of a part of a body on one of its descendants.
+///
+/// It replaces the mass of the collider on the same entity; without an [`AngularInertia`] the collider's
+/// inertia is scaled along. The body's total, [`ComputedMass`], is the sum over the body and its descendants,
+/// unless [`NoAutoMass`] says that this is all. Infinity is allowed; negative and NaN count as 0 and are
+/// warned of.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// fn spawn(mut commands: Commands) {
+///     // 7 kg in all.
+///     commands.spawn((RigidBody::Dynamic, Mass(5.0))).with_child(Mass(2.0));
+///     // 5 kg whatever hangs on it.
+///     commands.spawn((RigidBody::Dynamic, Mass(5.0), NoAutoMass)).with_child(Mass(2.0));
+/// }
+/// ```
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct Mass(pub f32);
+
+impl Mass {
+    /// No mass.
+    pub const ZERO: Self = Self(0.0);
+
+    /// The mass of a shape filled with a material of `density`, in kg/m³ (in 2D kg/m²).
+    pub fn from_shape<T: ComputeMassProperties>(shape: &T, density: f32) -> Self {
+        Self(shape.mass(density))
+    }
+}
+
+/// The centre of mass of one entity, in its own frame, in metres: of a body, or of a part of a body on one of
+/// its descendants.
+///
+/// It replaces the centre of the collider on the same entity. The body's total, [`ComputedCenterOfMass`], is
+/// the mean over the body and its descendants, weighted by mass, unless [`NoAutoCenterOfMass`] says that this
+/// is it.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct CenterOfMass(pub VectorF32);
+
+impl CenterOfMass {
+    /// The entity's origin.
+    pub const ZERO: Self = Self(VectorF32::ZERO);
+
+    /// The centroid of a shape.
+    pub fn from_shape<T: ComputeMassProperties>(shape: &T) -> Self {
+        Self(shape.center_of_mass())
+    }
+}
+
+/// Makes a body's mass its own [`Mass`] alone: neither colliders nor descendants add to it. Without a `Mass`
+/// the [`ComputedMass`] is left as it is, for the user to set.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[require(RecomputeMassProperties)]
+#[component(on_remove = on_remove_no_auto)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct NoAutoMass;
+
+/// Makes a body's angular inertia its own [`AngularInertia`] alone: neither colliders nor descendants add to
+/// it. Without an `AngularInertia` the [`ComputedAngularInertia`] is left as it is, for the user to set.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[require(RecomputeMassProperties)]
+#[component(on_remove = on_remove_no_auto)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct NoAutoAngularInertia;
+
+/// Makes a body's centre of mass its own [`CenterOfMass`] alone: neither colliders nor descendants shift it.
+/// Without a `CenterOfMass` the [`ComputedCenterOfMass`] is left as it is, for the user to set.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[require(RecomputeMassProperties)]
+#[component(on_remove = on_remove_no_auto)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct NoAutoCenterOfMass;
+
+/// Asks for a body's mass properties to be computed again before the next step, which removes it.
+///
+/// The engine inserts it where it sees a change. It does not see everything: see
+/// [`MassPropertyPlugin`](super::MassPropertyPlugin) for when to insert it by hand.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[component(storage = "SparseSet")]
+pub struct RecomputeMassProperties;
+
+fn on_remove_no_auto(mut world: DeferredWorld, context: HookContext) {
+    world.commands().entity(context.entity).try_insert(RecomputeMassProperties);
+}
+
+/// The mass properties of one entity, to be spawned together.
+#[derive(Bundle, Debug, Default, Clone, PartialEq)]
+pub struct MassPropertiesBundle {
+    /// In kg.
+    pub mass: Mass,
+    /// In kg·m², about the centre of mass.
+    pub angular_inertia: AngularInertia,
+    /// In metres, in the entity's frame.
+    pub center_of_mass: CenterOfMass,
+}
+
+impl MassPropertiesBundle {
+    /// The mass properties of a shape filled with a material of `density`, in kg/m³ (in 2D kg/m²).
+    pub fn from_shape<T: ComputeMassProperties>(shape: &T, density: f32) -> Self {
+        let mass = shape.mass(density);
+        Self {
+            mass: Mass(mass),
+            angular_inertia: AngularInertia::from_shape(shape, mass),
+            center_of_mass: CenterOfMass::from_shape(shape),
+        }
+    }
+}

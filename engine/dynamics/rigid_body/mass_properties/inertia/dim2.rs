@@ -1,0 +1,105 @@
+//! Inertia in the plane, and frames. `dim3.rs` is the twin.
+
+use bevy_math::{DMat2, DVec2, Vec2};
+use bevy_transform::prelude::Transform;
+
+use super::{Frame, HUGE, narrow, sanitize};
+use crate::{
+    collision::collider::collider_transform::ColliderTransform,
+    dynamics::rigid_body::mass_properties::components::{AngularInertia, ComputedAngularInertia},
+    math::{MassProperties, Scalar},
+};
+
+/// A vector in `f64`.
+pub(in super::super) type Vector64 = DVec2;
+/// A matrix in `f64`.
+pub(in super::super) type Matrix64 = DMat2;
+
+/// An angular inertia in kg·m².
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Inertia(pub(in super::super) f64);
+
+impl Inertia {
+    /// None.
+    pub(in super::super) const ZERO: Self = Self(0.0);
+
+    pub(super) fn from_properties(properties: &MassProperties) -> Self {
+        Self(sanitize(properties.angular_inertia))
+    }
+
+    pub(in super::super) fn from_component(inertia: &AngularInertia) -> Self {
+        Self(sanitize(inertia.0))
+    }
+
+    pub(super) fn scaled(self, factor: f64) -> Self {
+        Self((self.0 * factor).min(HUGE))
+    }
+
+    /// In other axes: in the plane the same.
+    pub(in super::super) fn rotated(self, _rotation: Matrix64) -> Self {
+        self
+    }
+
+    /// About a point off the centre of mass: I + m d².
+    pub(in super::super) fn shifted(self, mass: f64, offset: Vector64) -> Self {
+        Self(self.0 + mass * offset.length_squared())
+    }
+
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+
+    /// For the solver; infinite for none, and for what `f32` cannot hold.
+    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+    pub(in super::super) fn computed(self) -> ComputedAngularInertia {
+        if self.0 > 0.0 && self.0 < f64::from(f32::MAX) {
+            ComputedAngularInertia::new(self.0 as Scalar)
+        } else {
+            ComputedAngularInertia::INFINITY
+        }
+    }
+}
+
+pub(super) fn widen_vector(v: Vec2) -> Vector64 {
+    v.as_dvec2()
+}
+
+pub(super) fn narrow_vector(v: Vector64) -> Vec2 {
+    v.as_vec2()
+}
+
+pub(super) fn mass_properties(mass: f32, center: Vec2, inertia: Inertia) -> MassProperties {
+    MassProperties::new(mass, narrow(inertia.0), center)
+}
+
+impl Frame {
+    /// Where a collider lies in its body. Its scale is in its mass properties already.
+    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+    pub(in super::super) fn of_collider(transform: &ColliderTransform) -> Self {
+        let (cos, sin) = (transform.rotation.cos as f64, transform.rotation.sin as f64);
+        Self {
+            translation: DVec2::new(transform.translation.x as f64, transform.translation.y as f64),
+            rotation: DMat2::from_cols_array(&[cos, sin, -sin, cos]),
+            scale: DVec2::ONE,
+        }
+    }
+
+    /// A frame whose lengths are scaled as an entity's `transform` says.
+    pub(in super::super) fn scaled_by(transform: &Transform) -> Self {
+        let scale = transform.scale.truncate().as_dvec2();
+        Self { translation: DVec2::ZERO, rotation: DMat2::IDENTITY, scale }
+    }
+
+    /// Where an entity lies in its parent. Of a rotation, the part about the z axis.
+    pub(in super::super) fn of_entity(transform: &Transform) -> Self {
+        let (z, w) = (f64::from(transform.rotation.z), f64::from(transform.rotation.w));
+        let square = z * z + w * w;
+        let (cos, sin) =
+            if square > 0.0 { ((w * w - z * z) / square, 2.0 * w * z / square) } else { (1.0, 0.0) };
+        Self {
+            translation: transform.translation.truncate().as_dvec2(),
+            rotation: DMat2::from_cols_array(&[cos, sin, -sin, cos]),
+            scale: transform.scale.truncate().as_dvec2(),
+        }
+    }
+}

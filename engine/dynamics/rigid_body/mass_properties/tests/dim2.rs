@@ -1,0 +1,25 @@
+//! What the tests need of the plane. `dim3.rs` is the twin.
+
+use super::{AngularInertia, ComputedAngularInertia, Lump, UNIT_INERTIA};
+use crate::math::{ComputeMassProperties, Scalar, VectorF32};
+
+impl ComputeMassProperties for Lump {
+    fn mass(&self, density: f32) -> f32 {
+        density
+    }
+    fn unit_angular_inertia(&self) -> f32 {
+        UNIT_INERTIA
+    }
+    fn center_of_mass(&self) -> VectorF32 {
+        self.center
+    }
+}
+
+pub(super) fn inertia(value: f32) -> AngularInertia {
+    AngularInertia(value)
+}
+
+/// In kg·m², about z.
+pub(super) fn about_z(inertia: &ComputedAngularInertia) -> Scalar {
+    inertia.value()
+}

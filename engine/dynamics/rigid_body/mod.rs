@@ -1,0 +1,238 @@
+//! The components a rigid body is made of: its type, velocities, limits, damping, locks and surface.
+
+#[cfg_attr(feature = "2d", path = "dim2.rs")]
+#[cfg_attr(feature = "3d", path = "dim3.rs")]
+mod dim;
+mod locked_axes;
+pub mod mass_properties;
+mod physics_material;
+pub mod sleeping;
+
+pub use dim::AngularVelocity;
+pub use locked_axes::LockedAxes;
+pub use physics_material::{CoefficientCombine, DefaultFriction, DefaultRestitution, Friction, Restitution};
+
+use bevy_derive::{Deref, DerefMut};
+use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use derive_more::From;
+
+use self::mass_properties::components::{
+    ComputedAngularInertia, ComputedCenterOfMass, ComputedMass, RecomputeMassProperties,
+};
+use crate::dynamics::lifecycle::BodyId;
+use crate::math::{Scalar, Vector};
+use crate::physics_transform::{Position, Rotation};
+
+/// Makes an entity a rigid body, and says what moves it.
+///
+/// The component is immutable: to change the type, insert another `RigidBody`. That is what lets the engine
+/// hear of every change without looking at all bodies every step. Contacts, joints, velocities and everything
+/// else of the body outlive the change.
+///
+/// A dynamic body needs mass: from colliders on itself or its descendants (see
+/// [`ColliderDensity`](mass_properties::components::ColliderDensity)), or from
+/// [`Mass`](mass_properties::components::Mass) and its siblings. One without mass still falls, but nothing
+/// that touches it moves it; the engine warns once.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// fn spawn(mut commands: Commands) {
+///     // A body that falls, with a known mass and no shape.
+///     commands.spawn((RigidBody::Dynamic, Mass(2.0), LinearVelocity::ZERO));
+///     // One that is scenery.
+///     commands.spawn(RigidBody::Static);
+/// }
+/// ```
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+#[require(
+    Position::PLACEHOLDER,
+    Rotation::PLACEHOLDER,
+    LinearVelocity,
+    AngularVelocity,
+    ComputedMass,
+    ComputedAngularInertia,
+    ComputedCenterOfMass,
+    RecomputeMassProperties,
+    BodyId
+)]
+#[component(immutable)]
+pub enum RigidBody {
+    /// Moved by forces, contacts and joints.
+    #[default]
+    Dynamic,
+    /// Does not move. It may be teleported, but pushes nothing on the way.
+    Static,
+    /// Moved by its velocity alone, as if of infinite mass: it pushes dynamic bodies and is pushed by nothing.
+    Kinematic,
+}
+
+impl RigidBody {
+    /// Whether forces, contacts and joints move the body.
+    pub fn is_dynamic(&self) -> bool {
+        *self == Self::Dynamic
+    }
+
+    /// Whether the body never moves of itself.
+    pub fn is_static(&self) -> bool {
+        *self == Self::Static
+    }
+
+    /// Whether the body moves by its velocity and nothing else.
+    pub fn is_kinematic(&self) -> bool {
+        *self == Self::Kinematic
+    }
+}
+
+/// Takes a body out of the simulation while present: it does not move, its contacts and joints do nothing,
+/// and what rested on it wakes. All its components keep their values.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default)]
+#[reflect(Component, Debug, Default)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct RigidBodyDisabled;
+
+/// The velocity of a body's centre of mass, in m/s along the world's axes.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct LinearVelocity(pub Vector);
+
+impl LinearVelocity {
+    /// At rest.
+    pub const ZERO: LinearVelocity = LinearVelocity(Vector::ZERO);
+}
+
+/// The most a body's linear speed may be, in m/s; the direction is kept. Infinite by default.
+#[derive(Component, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, From)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct MaxLinearSpeed(pub Scalar);
+
+impl Default for MaxLinearSpeed {
+    fn default() -> Self {
+        Self(Scalar::INFINITY)
+    }
+}
+
+/// The most a body's angular speed may be, in rad/s; the axis is kept. Infinite by default.
+#[derive(Component, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, From)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct MaxAngularSpeed(pub Scalar);
+
+impl Default for MaxAngularSpeed {
+    fn default() -> Self {
+        Self(Scalar::INFINITY)
+    }
+}
+
+/// How strongly gravity acts on a body: 1 as on every other (the default), 0 not at all, below 0 upwards.
+#[derive(Component, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, PartialOrd, From)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct GravityScale(pub Scalar);
+
+impl Default for GravityScale {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
+/// Slows a body's linear motion, as a medium would: the rate `c` in `dv/dt = −c v`, in 1/s. 0 by default.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, PartialOrd, From)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct LinearDamping(pub Scalar);
+
+/// Slows a body's turning, as a medium would: the rate `c` in `dω/dt = −c ω`, in 1/s. 0 by default.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, PartialOrd, From)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct AngularDamping(pub Scalar);
+
+/// Who yields in a contact between dynamic bodies: the one of higher dominance acts as if of infinite mass.
+/// Equal ones, and by default all are 0, push each other as their masses say. Static and kinematic bodies
+/// dominate whatever number is given.
+#[derive(
+    Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, From, PartialEq, Eq, PartialOrd, Ord,
+)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serialize",
+    derive(serde::Serialize, serde::Deserialize),
+    reflect(Serialize, Deserialize)
+)]
+pub struct Dominance(pub i8);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_comes_with_all_it_needs() {
+        let mut world = World::new();
+        let body = world.spawn(RigidBody::default()).id();
+        let body = world.entity(body);
+        assert!(body.get::<RigidBody>().expect("just inserted").is_dynamic());
+        assert_eq!(body.get::<Position>(), Some(&Position::PLACEHOLDER));
+        assert_eq!(body.get::<LinearVelocity>(), Some(&LinearVelocity::ZERO));
+        assert_eq!(body.get::<AngularVelocity>(), Some(&AngularVelocity::ZERO));
+        assert!(body.get::<ComputedMass>().expect("required").is_infinite());
+        assert!(body.contains::<RecomputeMassProperties>());
+    }
+
+    #[test]
+    fn inserting_another_type_asks_for_the_mass_again() {
+        let mut world = World::new();
+        let body = world.spawn(RigidBody::Static).id();
+        world.entity_mut(body).remove::<RecomputeMassProperties>();
+        world.entity_mut(body).insert(RigidBody::Dynamic);
+        assert!(world.entity(body).contains::<RecomputeMassProperties>());
+    }
+
+    #[test]
+    fn defaults_change_nothing() {
+        assert_eq!(GravityScale::default().0, 1.0);
+        assert_eq!(MaxLinearSpeed::default().0, Scalar::INFINITY);
+        assert_eq!(MaxAngularSpeed::default().0, Scalar::INFINITY);
+        assert_eq!((LinearDamping::default().0, AngularDamping::default().0), (0.0, 0.0));
+        assert_eq!(Dominance::default().0, 0);
+    }
+}

@@ -1,0 +1,106 @@
+//! Which islands fall asleep, and the [`Sleeping`] component as their mirror.
+
+use bevy_app::App;
+use bevy_ecs::prelude::*;
+use kernel::{graph::SleepScan, table::NONE};
+
+use crate::dynamics::{
+    lifecycle::BodyId,
+    rigid_body::sleeping::{Sleeping, TimeToSleep},
+    tables::Tables,
+};
+
+/// Bodies whose [`Sleeping`] component was added or removed since the last step, by the app or as a mirror.
+#[derive(Resource, Default)]
+pub(crate) struct SleepRequests {
+    sleep: Vec<Entity>,
+    wake: Vec<Entity>,
+}
+
+/// Buffers of the sleep scan.
+#[derive(Resource, Default)]
+pub(crate) struct SleepBuffers(SleepScan);
+
+/// Registers the observers of [`Sleeping`].
+pub(crate) fn watch_sleeping(app: &mut App) {
+    app.init_resource::<SleepRequests>()
+        .init_resource::<SleepBuffers>()
+        .add_observer(|on: On<Add, Sleeping>, mut requests: ResMut<SleepRequests>| {
+            requests.sleep.push(on.entity);
+        })
+        .add_observer(|on: On<Remove, Sleeping>, mut requests: ResMut<SleepRequests>| {
+            requests.wake.push(on.entity);
+        });
+}
+
+/// Does what the app asked for by adding or removing [`Sleeping`]: with a body sleeps or wakes its island.
+pub(crate) fn follow_requests(
+    mut requests: ResMut<SleepRequests>,
+    ids: Query<(&BodyId, Has<Sleeping>)>,
+    mut tables: Tables,
+) {
+    for entity in core::mem::take(&mut requests.sleep) {
+        // Added and removed again: the state now is what counts.
+        if let Ok((id, true)) = ids.get(entity)
+            && id.0 != NONE
+            && let Some(island) = tables.link().island_of(id.0)
+        {
+            tables.link().sleep_island(island);
+        }
+    }
+    for entity in core::mem::take(&mut requests.wake) {
+        if let Ok((id, false)) = ids.get(entity)
+            && id.0 != NONE
+        {
+            tables.link().wake_body(id.0);
+        }
+    }
+}
+
+/// Splits at most one island that lost contacts, and puts to sleep those whose bodies have all rested.
+pub(crate) fn sleep_islands(mut scan: ResMut<SleepBuffers>, time_to_sleep: Res<TimeToSleep>, mut tables: Tables) {
+    let Tables { bodies, islands, .. } = &mut tables;
+    let Some(islands) = islands else { return };
+    let rested = |body: u32| Some(bodies.table[body].sleep_timer).filter(|t| *t >= 0.0);
+    scan.0.scan(&islands.0, time_to_sleep.0, rested);
+    if let Some(island) = scan.0.split() {
+        islands.0.split(island);
+    }
+    for island in scan.0.sleepers().to_vec() {
+        tables.link().sleep_island(island);
+    }
+}
+
+/// Adds and removes [`Sleeping`] where a body fell asleep or woke, and stops what fell asleep.
+pub(crate) fn mirror_sleeping(
+    mut tables: Tables,
+    sleeping: Query<Has<Sleeping>>,
+    mut velocities: Query<(
+        &mut crate::dynamics::rigid_body::LinearVelocity,
+        &mut crate::dynamics::rigid_body::AngularVelocity,
+    )>,
+    mut commands: Commands,
+) {
+    let bodies = &mut *tables.bodies;
+    for id in core::mem::take(&mut bodies.table.flipped) {
+        if !bodies.table.ids.is_live(id) || bodies.table[id].kind != kernel::table::BodyKind::Dynamic {
+            continue;
+        }
+        let entity = bodies.entities[id as usize];
+        let asleep = !bodies.table[id].awake;
+        match (asleep, sleeping.get(entity)) {
+            (true, Ok(false)) => {
+                commands.entity(entity).insert(Sleeping);
+                if let Ok((mut v, mut w)) = velocities.get_mut(entity) {
+                    v.0 = Default::default();
+                    w.0 = Default::default();
+                    bodies.table.velocities[id as usize] = Default::default();
+                }
+            }
+            (false, Ok(true)) => {
+                commands.entity(entity).remove::<Sleeping>();
+            }
+            _ => {}
+        }
+    }
+}

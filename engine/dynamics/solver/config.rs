@@ -1,0 +1,233 @@
+//! How the solver is tuned: the length unit, [`SolverConfig`], and the softness of contacts derived from it every step.
+
+use bevy_app::{App, Plugin};
+use bevy_derive::{Deref, DerefMut};
+use bevy_ecs::prelude::*;
+use bevy_log::warn;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use bevy_time::Time;
+
+use super::{
+    SolverDiagnostics,
+    diagnostics::reset_solver,
+    schedule::SubstepCount,
+    softness_parameters::{SoftnessCoefficients, SoftnessParameters},
+    substeps::{apply_restitution, prepare_rows, store_impulses},
+};
+use crate::{
+    math::Scalar,
+    schedule::{Physics, PhysicsSchedule, PhysicsStepSystems, TimePrecisionAdjusted},
+    step::{self, Stage},
+};
+
+/// Solves contacts, in the stages of [`SolverSystems`](super::schedule::SolverSystems).
+#[derive(Default)]
+pub struct SolverPlugin {
+    length_unit: Option<Scalar>,
+}
+
+impl SolverPlugin {
+    /// The plugin with a [`PhysicsLengthUnit`] of `unit`; the default leaves the resource as it is, or 1.
+    pub fn new_with_length_unit(unit: Scalar) -> Self {
+        Self { length_unit: Some(unit) }
+    }
+}
+
+impl Plugin for SolverPlugin {
+    fn build(&self, app: &mut App) {
+        if let Some(unit) = self.length_unit {
+            app.insert_resource(PhysicsLengthUnit::valid_or_default(unit));
+        }
+        app.init_resource::<PhysicsLengthUnit>()
+            .init_resource::<SolverConfig>()
+            .init_resource::<ContactSoftnessCoefficients>();
+
+        app.init_resource::<SolverDiagnostics>();
+        step::install(app);
+        step::substep::add_contacts(app);
+        app.add_systems(
+            PhysicsSchedule,
+            (
+                reset_solver.in_set(Stage::ResetDiagnostics),
+                update_contact_softness.after(PhysicsStepSystems::NarrowPhase).before(PhysicsStepSystems::Solver),
+                prepare_rows.in_set(Stage::PrepareRows),
+                apply_restitution.in_set(Stage::Restitution),
+                store_impulses.in_set(Stage::StoreImpulses),
+            ),
+        );
+    }
+}
+
+/// Roughly the length of a metre in the units of the app: the size of a typical object.
+///
+/// Tolerances and thresholds that are lengths or speeds are multiplied by it, so that a 2D game with characters of 100 pixels is as
+/// stable as one with characters of 1 unit. It scales neither positions nor velocities nor [`Gravity`](crate::dynamics::integrator::Gravity).
+/// 1 by default; set it before anything moves.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_app::App;
+/// # use bevy_transform::TransformPlugin;
+/// App::new().add_plugins((TransformPlugin, PhysicsPlugins::default().with_length_unit(100.0)));
+/// ```
+#[derive(Resource, Clone, Debug, Deref, DerefMut, PartialEq, Reflect)]
+#[reflect(Resource, Default, Debug, PartialEq)]
+pub struct PhysicsLengthUnit(pub Scalar);
+
+impl Default for PhysicsLengthUnit {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
+impl PhysicsLengthUnit {
+    /// `unit` if it is a length, 1 with a warning if it is zero, negative, infinite or NaN.
+    fn valid_or_default(unit: Scalar) -> Self {
+        if unit.is_finite() && unit > 0.0 {
+            Self(unit)
+        } else {
+            warn!("a physics length unit of {unit} is not a positive length, 1 is used instead");
+            Self::default()
+        }
+    }
+}
+
+/// How stiff, how fast and how bouncy contacts are. "LU" is [`PhysicsLengthUnit`].
+#[derive(Resource, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Resource, Default, Debug, PartialEq)]
+pub struct SolverConfig {
+    /// The damping ratio ζ of overlap recovery; 10 by default. Above 1 overlap creeps out without bouncing; lower is springier.
+    pub contact_damping_ratio: Scalar,
+    /// The frequency of overlap recovery as a multiple of what the timestep can resolve; 1.5 by default. Higher is stiffer, and jitters.
+    pub contact_frequency_factor: Scalar,
+    /// The fastest that overlap is pushed out, in LU/s; 4 by default. Higher shoots overlapping spawns apart.
+    pub max_overlap_solve_speed: Scalar,
+    /// The share of last step's impulses that a step starts from; 1 by default. At 0 stacks sag.
+    pub warm_start_coefficient: Scalar,
+    /// Contacts that close slower than this do not bounce, in LU/s; 1 by default. At 0 resting bodies never come to rest.
+    pub restitution_threshold: Scalar,
+    /// How often restitution is applied per step; 1 by default. More spreads a bounce farther through touching bodies.
+    pub restitution_iterations: usize,
+}
+
+impl Default for SolverConfig {
+    fn default() -> Self {
+        Self {
+            contact_damping_ratio: 10.0,
+            contact_frequency_factor: 1.5,
+            max_overlap_solve_speed: 4.0,
+            warm_start_coefficient: 1.0,
+            restitution_threshold: 1.0,
+            restitution_iterations: 1,
+        }
+    }
+}
+
+/// How softly contacts push, recomputed from [`SolverConfig`] and the timestep before every solve.
+#[derive(Resource, Clone, Copy, PartialEq, Reflect)]
+#[reflect(Resource, Default, PartialEq)]
+pub struct ContactSoftnessCoefficients {
+    /// For contacts between dynamic bodies.
+    pub dynamic: SoftnessCoefficients,
+    /// For contacts of a dynamic body with a static or kinematic one: twice as stiff, so that the ground wins over the pile on it.
+    pub non_dynamic: SoftnessCoefficients,
+}
+
+impl Default for ContactSoftnessCoefficients {
+    fn default() -> Self {
+        Self {
+            dynamic: SoftnessParameters::new(10.0, 30.0).compute_coefficients(1.0 / 60.0),
+            non_dynamic: SoftnessParameters::new(10.0, 60.0).compute_coefficients(1.0 / 60.0),
+        }
+    }
+}
+
+impl ContactSoftnessCoefficients {
+    /// The softness of contacts in a step of `delta_secs` seconds, `substeps` times solved.
+    ///
+    /// A spring of frequency f is sampled once per substep h and its target once per step dt. Half the step rate, 1/(2 dt), is the
+    /// fastest oscillation that steps can represent; a quarter of the substep rate, 0.25/h, the fastest one that the solver integrates
+    /// well (E. Catto, *Solver2D*, 2024). Hence
+    ///
+    /// ```text
+    /// f = factor · min(1/(2 dt), 0.25/h),   h = dt / substeps
+    /// ```
+    ///
+    /// for dynamic bodies, and 2 f where the other body does not yield.
+    pub fn for_step(config: &SolverConfig, delta_secs: Scalar, substeps: u32) -> Self {
+        let substep_secs = delta_secs / substeps.max(1) as Scalar;
+        let highest = Scalar::min(0.5 / delta_secs, 0.25 / substep_secs);
+        let frequency = config.contact_frequency_factor * highest;
+        let coefficients =
+            |hz| SoftnessParameters::new(config.contact_damping_ratio, hz).compute_coefficients(substep_secs);
+        Self { dynamic: coefficients(frequency), non_dynamic: coefficients(2.0 * frequency) }
+    }
+}
+
+fn update_contact_softness(
+    mut softness: ResMut<ContactSoftnessCoefficients>,
+    config: Res<SolverConfig>,
+    substeps: Option<Res<SubstepCount>>,
+    time: Res<Time<Physics>>,
+) {
+    let substeps = substeps.map_or(1, |count| count.0);
+    let current = ContactSoftnessCoefficients::for_step(&config, time.delta_seconds_adjusted(), substeps);
+    softness.set_if_neq(current);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn few_substeps_are_limited_by_the_substep_rate_and_many_by_the_step_rate() {
+        let config = SolverConfig::default();
+        let dt = 1.0 / 60.0;
+        let by_hand = |hz: Scalar, h| SoftnessParameters::new(10.0, hz).compute_coefficients(h);
+        // One substep: 0.25 · 60 Hz is below 60/2 Hz.
+        let one = ContactSoftnessCoefficients::for_step(&config, dt, 1);
+        assert_relative(one.dynamic, by_hand(1.5 * 15.0, dt));
+        assert_relative(one.non_dynamic, by_hand(2.0 * 1.5 * 15.0, dt));
+        // Six: 0.25 · 360 Hz is above it.
+        let six = ContactSoftnessCoefficients::for_step(&config, dt, 6);
+        assert_relative(six.dynamic, by_hand(1.5 * 30.0, dt / 6.0));
+        assert_relative(six.non_dynamic, by_hand(2.0 * 1.5 * 30.0, dt / 6.0));
+    }
+
+    fn assert_relative(a: SoftnessCoefficients, b: SoftnessCoefficients) {
+        for (a, b) in [(a.bias, b.bias), (a.mass_scale, b.mass_scale), (a.impulse_scale, b.impulse_scale)] {
+            assert!((a - b).abs() <= 1e-5 * b.abs(), "{a} is not {b}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_configuration_gives_a_coefficient_that_is_no_number(
+            damping in proptest::num::f64::ANY,
+            factor in proptest::num::f64::ANY,
+            nanos: u64,
+            substeps: u32,
+        ) {
+            let config = SolverConfig {
+                contact_damping_ratio: damping as Scalar,
+                contact_frequency_factor: factor as Scalar,
+                ..SolverConfig::default()
+            };
+            let dt = (nanos as f64 * 1e-9) as Scalar;
+            let softness = ContactSoftnessCoefficients::for_step(&config, dt, substeps);
+            for c in [softness.dynamic, softness.non_dynamic] {
+                prop_assert!(c.bias >= 0.0 && c.bias.is_finite(), "{c:?}");
+                prop_assert!((0.0..=1.0).contains(&c.mass_scale) && (0.0..=1.0).contains(&c.impulse_scale), "{c:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_length_unit_is_a_positive_length() {
+        assert_eq!(PhysicsLengthUnit::valid_or_default(100.0).0, 100.0);
+        for wrong in [0.0, -1.0, Scalar::NAN, Scalar::INFINITY] {
+            assert_eq!(PhysicsLengthUnit::valid_or_default(wrong).0, 1.0);
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! How long the solver took, stage by stage.
+
+use bevy_ecs::prelude::*;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use core::time::Duration;
+
+/// Timers and counters of the solver in the last step.
+///
+/// While [`SubstepSchedule`](super::schedule::SubstepSchedule) holds no system but the engine's own, all
+/// substeps run as one call, and their time is in [`solve_constraints`](Self::solve_constraints).
+#[derive(Resource, Debug, Default, Reflect)]
+#[reflect(Resource, Debug, Default)]
+pub struct SolverDiagnostics {
+    /// Gathering bodies and building the rows of contacts.
+    pub prepare_constraints: Duration,
+    /// Summing up accelerations.
+    pub update_velocity_increments: Duration,
+    /// Integrating velocities.
+    pub integrate_velocities: Duration,
+    /// Applying the impulses of the last substep in advance.
+    pub warm_start: Duration,
+    /// Solving contacts, or, in a fused step, all substeps.
+    pub solve_constraints: Duration,
+    /// Integrating positions.
+    pub integrate_positions: Duration,
+    /// Relaxing velocities.
+    pub relax_velocities: Duration,
+    /// Applying restitution.
+    pub apply_restitution: Duration,
+    /// Writing bodies back.
+    pub finalize: Duration,
+    /// Storing impulses.
+    pub store_impulses: Duration,
+    /// Continuous collision detection.
+    pub swept_ccd: Duration,
+    /// How many rows the contacts were solved in; a row holds up to four contacts.
+    pub contact_constraint_count: u32,
+}
+
+pub(crate) fn reset_solver(mut diagnostics: ResMut<SolverDiagnostics>) {
+    *diagnostics = SolverDiagnostics::default();
+}

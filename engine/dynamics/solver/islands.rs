@@ -1,0 +1,42 @@
+//! Islands: bodies that rest on each other fall asleep and wake together.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+
+use crate::{
+    dynamics::{
+        rigid_body::sleeping::TimeToSleep,
+        sleep::{follow_requests, mirror_sleeping, sleep_islands, watch_sleeping},
+        tables::PhysicsIslands,
+    },
+    schedule::PhysicsSchedule,
+    step::{self, Stage},
+};
+
+/// Keeps track of which awake bodies touch or are joined: the islands.
+pub struct IslandPlugin;
+
+impl Plugin for IslandPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<PhysicsIslands>();
+    }
+}
+
+/// Puts islands at rest to sleep and wakes them; needs [`IslandPlugin`].
+pub struct IslandSleepingPlugin;
+
+impl Plugin for IslandSleepingPlugin {
+    fn build(&self, app: &mut App) {
+        step::install(app);
+        watch_sleeping(app);
+        app.init_resource::<TimeToSleep>();
+        app.add_systems(
+            PhysicsSchedule,
+            (
+                follow_requests.in_set(Stage::FollowSleep),
+                sleep_islands.in_set(Stage::Sleep),
+                mirror_sleeping.in_set(Stage::MirrorSleep),
+            ),
+        );
+    }
+}

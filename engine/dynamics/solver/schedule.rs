@@ -1,0 +1,174 @@
+//! The stages of the solver in a step, and of a substep.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use bevy_time::Time;
+use core::time::Duration;
+
+use super::{
+    PhysicsLengthUnit, SolverDiagnostics,
+    substeps::{OwnSubstepSystems, prepare_params, run_substeps},
+};
+use crate::{
+    dynamics::integrator::IntegrationSystems,
+    step::{self, Stage},
+    schedule::{Physics, PhysicsSchedule, PhysicsStepSystems, Substeps, make_deterministic},
+};
+
+/// Adds [`SubstepSchedule`], [`SubstepCount`] and the order of [`SolverSystems`] and [`SubstepSolverSystems`].
+#[derive(Debug, Default)]
+pub struct SolverSchedulePlugin;
+
+impl Plugin for SolverSchedulePlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<SubstepCount>();
+
+        app.configure_sets(
+            PhysicsSchedule,
+            (
+                SolverSystems::PrepareSolverBodies,
+                SolverSystems::PrepareJoints,
+                SolverSystems::PrepareContactConstraints,
+                SolverSystems::PreSubstep,
+                SolverSystems::Substep,
+                SolverSystems::PostSubstep,
+                SolverSystems::Restitution,
+                SolverSystems::Finalize,
+                SolverSystems::StoreContactImpulses,
+            )
+                .chain()
+                .in_set(PhysicsStepSystems::Solver),
+        );
+        app.init_resource::<SolverDiagnostics>()
+            .init_resource::<OwnSubstepSystems>()
+            .init_resource::<PhysicsLengthUnit>();
+        step::install(app);
+        app.add_systems(
+            PhysicsSchedule,
+            (
+                start_substep_clock.before(PhysicsStepSystems::First),
+                // Bodies move by these parameters also when no contacts are solved.
+                prepare_params.in_set(SolverSystems::PrepareJoints),
+                run_substeps.in_set(Stage::Substeps),
+            ),
+        );
+
+        app.edit_schedule(SubstepSchedule, make_deterministic);
+        app.configure_sets(
+            SubstepSchedule,
+            (
+                IntegrationSystems::Velocity,
+                SubstepSolverSystems::WarmStart,
+                SubstepSolverSystems::SolveConstraints,
+                IntegrationSystems::Position,
+                SubstepSolverSystems::Relax,
+                SubstepSolverSystems::Damping,
+            )
+                .chain(),
+        );
+    }
+}
+
+/// One substep, run [`SubstepCount`] times per step in [`SolverSystems::Substep`], in the order
+/// [`Velocity`](IntegrationSystems::Velocity), [`WarmStart`](SubstepSolverSystems::WarmStart),
+/// [`SolveConstraints`](SubstepSolverSystems::SolveConstraints), [`Position`](IntegrationSystems::Position),
+/// [`Relax`](SubstepSolverSystems::Relax), [`Damping`](SubstepSolverSystems::Damping).
+///
+/// Systems run one after the other, and an ambiguous order is an error. The generic [`Time`] shows [`Time<Substeps>`](Substeps) in it.
+#[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
+pub struct SubstepSchedule;
+
+/// The stages of the solver, in this order, in [`PhysicsStepSystems::Solver`].
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SolverSystems {
+    /// Awake bodies are gathered into rows for the solver.
+    PrepareSolverBodies,
+    /// Joints are prepared.
+    PrepareJoints,
+    /// Touching contacts are gathered into rows for the solver.
+    PrepareContactConstraints,
+    /// Before the substeps.
+    PreSubstep,
+    /// [`SubstepSchedule`] runs [`SubstepCount`] times.
+    Substep,
+    /// After the substeps.
+    PostSubstep,
+    /// Contacts that closed fast bounce.
+    Restitution,
+    /// The rows of bodies are written back to components.
+    Finalize,
+    /// Contact impulses are stored, to start the next step from.
+    StoreContactImpulses,
+}
+
+/// The former name of [`SolverSystems`].
+#[deprecated(since = "0.4.0", note = "renamed to `SolverSystems`")]
+pub type SolverSet = SolverSystems;
+
+/// The solver's stages of a substep, in [`SubstepSchedule`].
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SubstepSolverSystems {
+    /// The impulses of the last substep, or step, are applied in advance.
+    WarmStart,
+    /// Velocities are solved so that overlap and joint errors shrink.
+    SolveConstraints,
+    /// Velocities are solved once more, without the part that pushed errors out: it should move bodies, not throw them.
+    Relax,
+    /// Joint damping.
+    Damping,
+}
+
+/// The former name of [`SubstepSolverSystems`].
+#[deprecated(since = "0.4.0", note = "renamed to `SubstepSolverSystems`")]
+pub type SubstepSolverSet = SubstepSolverSystems;
+
+/// How many substeps a step is solved in; 6 by default. 0 counts as 1.
+///
+/// Contacts are computed once per step, the solver runs once per substep: more substeps make stacks and joints stiffer at the cost of
+/// solver time alone.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_app::App;
+/// # let mut app = App::new();
+/// app.insert_resource(SubstepCount(12));
+/// ```
+#[derive(Debug, Reflect, Resource, Clone, Copy, PartialEq, Eq)]
+#[reflect(Debug, Resource, Default, PartialEq)]
+pub struct SubstepCount(pub u32);
+
+impl Default for SubstepCount {
+    fn default() -> Self {
+        Self(6)
+    }
+}
+
+/// The length of each of `count` substeps of a step of length `step`.
+///
+/// A [`Duration`] counts nanoseconds, so this is rounded down; what the solver multiplies with is the quotient of seconds.
+pub(crate) fn substep_delta(step: Duration, count: SubstepCount) -> Duration {
+    step / count.0.max(1)
+}
+
+/// Advances [`Time<Substeps>`](Substeps) to the end of the first substep, so that systems before the substeps know how long one is.
+fn start_substep_clock(
+    mut substeps: ResMut<Time<Substeps>>,
+    physics: Res<Time<Physics>>,
+    count: Res<SubstepCount>,
+) {
+    substeps.advance_by(substep_delta(physics.delta(), *count));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_substeps_are_one() {
+        let step = Duration::from_millis(12);
+        assert_eq!(substep_delta(step, SubstepCount(0)), step);
+        assert_eq!(substep_delta(step, SubstepCount(1)), step);
+        assert_eq!(substep_delta(step, SubstepCount(6)), Duration::from_millis(2));
+    }
+}

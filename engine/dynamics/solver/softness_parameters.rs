@@ -1,0 +1,141 @@
+//! Soft constraints: a spring given by damping ratio and frequency, and the coefficients that make a velocity constraint behave like it.
+
+use bevy_reflect::Reflect;
+
+use crate::math::{Scalar, TAU};
+
+/// What [`SoftnessParameters`] cap both of their values at: far beyond what a step can resolve, far below where squares overflow.
+const LIMIT: Scalar = 1e9;
+
+/// A damped spring, given by how it swings instead of by stiffness, so that it behaves alike for every mass.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Debug, Clone, PartialEq)]
+pub struct SoftnessParameters {
+    damping_ratio: Scalar,
+    angular_frequency: Scalar,
+}
+
+impl SoftnessParameters {
+    /// A spring of damping ratio ζ (0 swings for ever, 1 returns fastest without swinging, above 1 creeps) and undamped frequency in Hz.
+    ///
+    /// Negative and NaN values count as 0, values above 10⁹ as 10⁹.
+    pub fn new(damping_ratio: Scalar, frequency_hz: Scalar) -> Self {
+        Self { damping_ratio: sanitized(damping_ratio), angular_frequency: TAU * sanitized(frequency_hz) }
+    }
+
+    /// The damping ratio ζ.
+    pub fn damping_ratio(self) -> Scalar {
+        self.damping_ratio
+    }
+
+    /// The undamped frequency in Hz.
+    pub fn frequency(self) -> Scalar {
+        self.angular_frequency / TAU
+    }
+
+    /// The undamped angular frequency ω in rad/s.
+    pub const fn angular_frequency(self) -> Scalar {
+        self.angular_frequency
+    }
+
+    /// The coefficients of this spring for a step of `delta_secs` seconds.
+    ///
+    /// With h the step and ω the angular frequency (E. Catto, *Soft Constraints*, GDC 2011, and *Solver2D*, 2024),
+    ///
+    /// ```text
+    /// a1 = 2 ζ + h ω      a2 = h ω a1      a3 = 1 / (1 + a2)
+    /// bias = ω / a1       mass_scale = a2 a3       impulse_scale = a3
+    /// ```
+    ///
+    /// It is total: a spring without frequency pushes not at all, and a step of no length, negative or NaN counts as no step.
+    pub fn compute_coefficients(self, delta_secs: Scalar) -> SoftnessCoefficients {
+        let omega = self.angular_frequency;
+        if omega == 0.0 {
+            return SoftnessCoefficients { bias: 0.0, mass_scale: 0.0, impulse_scale: 1.0 };
+        }
+        let h = sanitized(delta_secs);
+        let a1 = 2.0 * self.damping_ratio + h * omega;
+        let a2 = h * omega * a1;
+        let a3 = 1.0 / (1.0 + a2);
+        // Without damping and step a1 is 0, and so is a2: nothing is pushed, whatever the bias.
+        let bias = if a1 > 0.0 { omega / a1 } else { 0.0 };
+        SoftnessCoefficients { bias, mass_scale: a2 * a3, impulse_scale: a3 }
+    }
+}
+
+/// `value` within 0 to [`LIMIT`]; NaN is 0.
+fn sanitized(value: Scalar) -> Scalar {
+    if value > 0.0 { value.min(LIMIT) } else { 0.0 }
+}
+
+/// What a velocity constraint needs to act as a spring: λ = −mass_scale · m · (v + bias · c) − impulse_scale · Σλ.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Debug, Clone, PartialEq)]
+pub struct SoftnessCoefficients {
+    /// The velocity wanted per length of error, in 1/s.
+    pub bias: Scalar,
+    /// The share of the effective mass that pushes, 0 to 1.
+    pub mass_scale: Scalar,
+    /// The share of the accumulated impulse that is taken back, 0 to 1; with `mass_scale` it sums to 1.
+    pub impulse_scale: Scalar,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An implicit Euler step of x'' + 2ζω x' + ω² x = 0, the spring that the coefficients stand for.
+    fn spring_step(zeta: f64, omega: f64, h: f64, x: f64, v: f64) -> f64 {
+        (v - h * omega * omega * x) / (1.0 + 2.0 * zeta * omega * h + h * h * omega * omega)
+    }
+
+    #[test]
+    fn one_soft_impulse_is_an_implicit_step_of_the_spring() {
+        for (zeta, hz, h) in [(0.1, 1.0, 0.01), (1.0, 5.0, 0.02), (10.0, 30.0, 1.0 / 360.0)] {
+            let softness = SoftnessParameters::new(zeta, hz);
+            let c = softness.compute_coefficients(h);
+            for (x, v) in [(0.1, 0.0), (0.0, -2.0), (-0.3, 1.5)] {
+                // Unit mass: the change of velocity is the impulse.
+                let soft = v - c.mass_scale * (v + c.bias * x);
+                let omega = core::f64::consts::TAU * f64::from(hz as f32);
+                let exact = spring_step(
+                    f64::from(zeta as f32),
+                    omega,
+                    f64::from(h as f32),
+                    f64::from(x as f32),
+                    f64::from(v as f32),
+                );
+                assert!((f64::from(soft as f32) - exact).abs() < 1e-5, "{soft} is not {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn shares_sum_to_one() {
+        for (zeta, hz, h) in [(0.0, 0.0, 0.0), (10.0, 45.0, 1.0 / 360.0), (0.0, 1e9, 1e9), (1e9, 1e-9, 1e-9)]
+        {
+            let c = SoftnessParameters::new(zeta, hz).compute_coefficients(h);
+            assert!((c.mass_scale + c.impulse_scale - 1.0).abs() < 1e-6, "{c:?}");
+        }
+    }
+
+    #[test]
+    fn the_limits_are_nothing_and_rigid() {
+        let nothing = SoftnessCoefficients { bias: 0.0, mass_scale: 0.0, impulse_scale: 1.0 };
+        for spring in [(0.0, 0.0), (1.0, -1.0), (1.0, Scalar::NAN), (Scalar::NAN, Scalar::NAN)] {
+            assert_eq!(SoftnessParameters::new(spring.0, spring.1).compute_coefficients(0.01), nothing);
+        }
+        let rigid = SoftnessParameters::new(1.0, Scalar::INFINITY).compute_coefficients(0.01);
+        assert!(
+            (rigid.bias - 100.0).abs() < 1e-3 && rigid.mass_scale > 0.999_999 && rigid.impulse_scale < 1e-6
+        );
+    }
+
+    #[test]
+    fn getters_return_what_went_in() {
+        let softness = SoftnessParameters::new(0.5, 4.0);
+        assert_eq!(softness.damping_ratio(), 0.5);
+        assert!((softness.frequency() - 4.0).abs() < 1e-5);
+        assert_eq!(softness.angular_frequency(), TAU * 4.0);
+    }
+}

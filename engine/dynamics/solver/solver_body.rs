@@ -1,0 +1,34 @@
+//! The rows of bodies that the solver works on.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+
+use super::{
+    PhysicsLengthUnit,
+    gather::{gather_bodies, read_awake, wake_changed, wake_kinematic},
+    scatter::scatter_bodies,
+};
+use crate::{
+    dynamics::integrator::Gravity,
+    schedule::PhysicsSchedule,
+    step::{self, Stage},
+};
+
+/// Gathers awake bodies into the solver's rows before a solve and writes them back after it.
+pub struct SolverBodyPlugin;
+
+impl Plugin for SolverBodyPlugin {
+    fn build(&self, app: &mut App) {
+        step::install(app);
+        app.init_resource::<Gravity>().init_resource::<PhysicsLengthUnit>();
+        app.add_systems(
+            PhysicsSchedule,
+            (
+                (wake_changed, wake_kinematic).chain().in_set(Stage::FollowApp),
+                read_awake.in_set(Stage::ReadAwake),
+                gather_bodies.in_set(Stage::Gather),
+                scatter_bodies.in_set(Stage::Scatter),
+            ),
+        );
+    }
+}

@@ -1,0 +1,230 @@
+//! The solver's systems: rows, substeps, restitution, impulses.
+
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
+use bevy_time::Time;
+use kernel::{
+    graph::ColorGraph,
+    solver::{RowInput, Softness, Solver, SubstepParams},
+};
+
+use crate::{
+    collision::narrow_phase::ContactResponse,
+    dynamics::{
+        solver::{
+            PhysicsLengthUnit, SolverConfig, SolverDiagnostics,
+            config::ContactSoftnessCoefficients,
+            schedule::{SubstepCount, SubstepSchedule},
+            softness_parameters::SoftnessCoefficients,
+        },
+        tables::{Bodies, Colliders, Contacts},
+    },
+    math::to_f32,
+    schedule::{Physics, Substeps},
+};
+
+/// The kernel's solver, and what its rows share in this step.
+#[derive(Resource, Clone)]
+pub(crate) struct StepSolver {
+    pub(crate) kernel: Solver,
+    pub(crate) params: SubstepParams,
+    pub(crate) substeps: u32,
+}
+
+impl Default for StepSolver {
+    fn default() -> Self {
+        Self {
+            kernel: Solver::default(),
+            params: SubstepParams {
+                h: 1.0 / 360.0,
+                inv_h: 360.0,
+                soft: Softness::RIGID,
+                stiff: Softness::RIGID,
+                max_push_speed: 4.0,
+                warm_start: 1.0,
+                restitution_threshold: 1.0,
+                friction_fade: 0.02,
+            },
+            substeps: 1,
+        }
+    }
+}
+
+/// Which of the engine's own systems stand in [`SubstepSchedule`]: while nobody else's do, one fused call of
+/// the kernel replaces them.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub(crate) struct OwnSubstepSystems {
+    pub(crate) integrates: bool,
+    pub(crate) solves: bool,
+}
+
+impl OwnSubstepSystems {
+    fn count(self) -> usize {
+        2 * usize::from(self.integrates) + 3 * usize::from(self.solves)
+    }
+}
+
+/// The friction centre fades a separated point over this distance, times the length unit: four times the
+/// linear slop of 5 mm.
+const FRICTION_FADE: f32 = 0.02;
+
+fn softness(c: SoftnessCoefficients) -> Softness {
+    Softness {
+        bias_rate: to_f32(c.bias),
+        mass_scale: to_f32(c.mass_scale),
+        impulse_scale: to_f32(c.impulse_scale),
+    }
+}
+
+/// What all rows of this step share.
+pub(crate) fn prepare_params(
+    mut solver: ResMut<StepSolver>,
+    config: Option<Res<SolverConfig>>,
+    soft: Option<Res<ContactSoftnessCoefficients>>,
+    unit: Res<PhysicsLengthUnit>,
+    count: Res<SubstepCount>,
+    time: Res<Time<Physics>>,
+) {
+    let config = config.map(|c| c.clone()).unwrap_or_default();
+    let soft = soft.map(|s| *s).unwrap_or_default();
+    let unit = to_f32(unit.0);
+    let substeps = count.0.max(1);
+    let h = time.delta_secs() / substeps as f32;
+    solver.substeps = substeps;
+    solver.params = SubstepParams {
+        h,
+        inv_h: if h > 0.0 { 1.0 / h } else { 0.0 },
+        soft: softness(soft.dynamic),
+        stiff: softness(soft.non_dynamic),
+        max_push_speed: to_f32(config.max_overlap_solve_speed) * unit,
+        warm_start: to_f32(config.warm_start_coefficient),
+        restitution_threshold: to_f32(config.restitution_threshold) * unit,
+        friction_fade: FRICTION_FADE * unit,
+    };
+}
+
+/// Builds the rows of all touching contacts.
+pub(crate) fn prepare_rows(
+    bodies: Res<Bodies>,
+    colliders: Res<Colliders>,
+    contacts: Res<Contacts>,
+    response: Option<Res<ContactResponse>>,
+    mut solver: ResMut<StepSolver>,
+    mut diagnostics: ResMut<SolverDiagnostics>,
+) {
+    let start = bevy_platform::time::Instant::now();
+    let input = RowInput { contacts: &contacts.table, bodies: &bodies.table, colliders: &colliders.table };
+    let StepSolver { kernel, params, .. } = &mut *solver;
+    if response.is_none_or(|r| r.0) {
+        kernel.build_rows(&input, &contacts.colors, params);
+    } else {
+        kernel.build_rows(&input, &ColorGraph::new(), params);
+    }
+    let (wide, scalar) = kernel.row_counts();
+    diagnostics.contact_constraint_count = (wide + scalar) as u32;
+    diagnostics.prepare_constraints += start.elapsed();
+}
+
+/// Runs the substeps: fused while only the engine's own systems are in the schedule, else the schedule.
+pub(crate) fn run_substeps(world: &mut World) {
+    let own = *world.resource::<OwnSubstepSystems>();
+    let substeps = world.resource::<StepSolver>().substeps;
+    let foreign = world
+        .get_resource::<Schedules>()
+        .and_then(|schedules| schedules.get(SubstepSchedule))
+        .is_some_and(|schedule| schedule.graph().systems.len() != own.count());
+    if foreign {
+        run_schedule(world, substeps);
+    } else {
+        let start = bevy_platform::time::Instant::now();
+        let mut solver = world.resource_mut::<StepSolver>();
+        let StepSolver { kernel, params, .. } = &mut *solver;
+        for _ in 0..substeps {
+            match (own.integrates, own.solves) {
+                (true, true) => kernel.substep(params),
+                (true, false) => {
+                    kernel.integrate_velocities(params);
+                    kernel.integrate_positions(params);
+                }
+                (false, true) => {
+                    kernel.warm_start(params);
+                    kernel.solve(params);
+                    kernel.relax(params);
+                }
+                (false, false) => {}
+            }
+        }
+        world.resource_mut::<SolverDiagnostics>().solve_constraints += start.elapsed();
+    }
+}
+
+/// The generic clock shows the substeps' while they run.
+fn run_schedule(world: &mut World, substeps: u32) {
+    let step = world.resource::<Time<Physics>>().delta();
+    let outer = *world.resource::<Time>();
+    let mut clock = *world.resource::<Time<Substeps>>();
+    clock.advance_by(step / substeps);
+    world.insert_resource(clock);
+    for _ in 0..substeps {
+        *world.resource_mut::<Time>() = world.resource::<Time<Substeps>>().as_generic();
+        world.run_schedule(SubstepSchedule.intern());
+    }
+    *world.resource_mut::<Time>() = outer;
+}
+
+macro_rules! stage {
+    ($(#[$doc:meta])* $system:ident => $stage:ident, $timer:ident) => {
+        $(#[$doc])*
+        pub(crate) fn $system(mut solver: ResMut<StepSolver>, mut diagnostics: ResMut<SolverDiagnostics>) {
+            let start = bevy_platform::time::Instant::now();
+            let StepSolver { kernel, params, .. } = &mut *solver;
+            kernel.$stage(params);
+            diagnostics.$timer += start.elapsed();
+        }
+    };
+}
+
+stage! {
+    /// Velocities from accelerations and damping.
+    integrate_velocities => integrate_velocities, integrate_velocities
+}
+stage! {
+    /// Accumulated impulses are applied in advance.
+    warm_start => warm_start, warm_start
+}
+stage! {
+    /// Non-penetration with soft bias.
+    solve_contacts => solve, solve_constraints
+}
+stage! {
+    /// Positions from velocities.
+    integrate_positions => integrate_positions, integrate_positions
+}
+stage! {
+    /// The velocity that the bias added is taken out, and friction applied.
+    relax_contacts => relax, relax_velocities
+}
+
+/// Makes what hit fast enough bounce.
+pub(crate) fn apply_restitution(
+    mut solver: ResMut<StepSolver>,
+    config: Res<SolverConfig>,
+    mut diagnostics: ResMut<SolverDiagnostics>,
+) {
+    let start = bevy_platform::time::Instant::now();
+    let StepSolver { kernel, params, .. } = &mut *solver;
+    for _ in 0..config.restitution_iterations {
+        kernel.restitute(params);
+    }
+    diagnostics.apply_restitution += start.elapsed();
+}
+
+/// Keeps the impulses for the next step to start from.
+pub(crate) fn store_impulses(
+    solver: Res<StepSolver>,
+    mut contacts: ResMut<Contacts>,
+    mut diagnostics: ResMut<SolverDiagnostics>,
+) {
+    let start = bevy_platform::time::Instant::now();
+    solver.kernel.store_impulses(&mut contacts.table);
+    diagnostics.store_impulses += start.elapsed();
+}

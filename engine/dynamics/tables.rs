@@ -1,0 +1,73 @@
+//! What persists between steps and has no component: the kernel's tables, as resources that can be cloned
+//! for a snapshot.
+
+use bevy_ecs::{prelude::*, system::SystemParam};
+use kernel::{
+    contact::{ContactTable, Link},
+    data::BitSet,
+    graph::{ColorGraph, Islands},
+    table::{BodyTable, ColliderTable},
+};
+
+use crate::collider_tree::ProxyTable;
+
+/// All bodies in the simulation.
+#[derive(Resource, Clone, Default)]
+pub(crate) struct Bodies {
+    pub(crate) table: BodyTable,
+    /// The entity of each id.
+    pub(crate) entities: Vec<Entity>,
+    /// All kinematic bodies, at rest or not.
+    pub(crate) kinematic: BitSet,
+    /// The bodies with a solver row in this step, in the order of their rows from row 1.
+    pub(crate) listed: Vec<u32>,
+}
+
+/// All colliders in the simulation, and the trees they are in.
+#[derive(Resource, Clone, Default)]
+pub(crate) struct Colliders {
+    pub(crate) table: ColliderTable,
+    /// The entity of each id.
+    pub(crate) entities: Vec<Entity>,
+    pub(crate) trees: ProxyTable,
+    /// Colliders whose fat box changed since pairs were last looked for.
+    pub(crate) moved: BitSet,
+    /// Colliders to be put where their bodies are before the next pairs.
+    pub(crate) stale: BitSet,
+}
+
+/// All contacts, and the colours they are solved in.
+#[derive(Resource, Clone, Default)]
+pub(crate) struct Contacts {
+    pub(crate) table: ContactTable,
+    pub(crate) colors: ColorGraph,
+    /// Contacts that began or ended to touch in this step's narrow phase.
+    pub(crate) changed: BitSet,
+}
+
+/// Which bodies touch each other and sleep together. Absent without the island plugin: then nobody sleeps.
+#[derive(Resource, Clone, Default)]
+pub(crate) struct PhysicsIslands(pub(crate) Islands);
+
+/// All tables that a change of contacts touches.
+#[derive(SystemParam)]
+pub(crate) struct Tables<'w> {
+    pub(crate) bodies: ResMut<'w, Bodies>,
+    pub(crate) colliders: ResMut<'w, Colliders>,
+    pub(crate) contacts: ResMut<'w, Contacts>,
+    pub(crate) islands: Option<ResMut<'w, PhysicsIslands>>,
+}
+
+impl Tables<'_> {
+    /// The kernel's door for changes of contacts.
+    pub(crate) fn link(&mut self) -> Link<'_> {
+        let Contacts { table, colors, .. } = &mut *self.contacts;
+        Link {
+            bodies: &mut self.bodies.table,
+            colliders: &mut self.colliders.table,
+            contacts: table,
+            colors,
+            islands: self.islands.as_mut().map(|i| &mut i.0),
+        }
+    }
+}

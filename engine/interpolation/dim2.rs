@@ -1,0 +1,18 @@
+//! Velocities of 2D bodies in the three dimensions of `Transform`.
+
+use bevy_math::Vec3;
+
+use crate::{
+    dynamics::rigid_body::{AngularVelocity, LinearVelocity},
+    math::AsF32,
+};
+
+/// In the plane of X and Y.
+pub(super) fn linear_vec3(velocity: LinearVelocity) -> Vec3 {
+    velocity.0.f32().extend(0.0)
+}
+
+/// About Z.
+pub(super) fn angular_vec3(velocity: AngularVelocity) -> Vec3 {
+    Vec3::Z * velocity.0 as f32
+}

@@ -1,0 +1,94 @@
+//! Rigid-body physics for [Bevy](https://bevy.org), in two dimensions (`avian2d`) and three (`avian3d`).
+//!
+//! The API is that of Avian: bodies, shapes and settings are components and resources, results are components, and every stage of a step
+//! is a plugin that can be configured, disabled or replaced. What is inside was written anew: a dense, wide and deterministic solver with
+//! soft contacts and substeps.
+//!
+//! # Quick start
+//!
+//! Add [`PhysicsPlugins`] to the app, give an entity a [`RigidBody`](prelude::RigidBody) and a `Collider`, and it falls.
+//!
+//! ```
+//! # use avian::{math::Vector, prelude::*};
+//! # use bevy_app::prelude::*;
+//! # use bevy_ecs::prelude::*;
+//! # use bevy_time::TimePlugin;
+//! # use bevy_transform::prelude::*;
+//! fn main() {
+//!     App::new()
+//!         // An app with a window has these from `DefaultPlugins`.
+//!         .add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin))
+//!         .add_plugins(PhysicsPlugins::default())
+//!         .insert_resource(Gravity(Vector::NEG_Y * 9.81))
+//!         .add_systems(Startup, setup)
+//!         .run();
+//! }
+//!
+//! fn setup(mut commands: Commands) {
+//!     commands.spawn((RigidBody::Dynamic, Transform::from_xyz(0.0, 4.0, 0.0)));
+//! }
+//! ```
+//!
+//! # When it runs
+//!
+//! Physics takes one step per run of the schedule given to [`PhysicsPlugins::new`], by default `FixedPostUpdate`: 64 times a second
+//! whatever the frame rate. [`schedule::PhysicsSystems`] are its place in that schedule, [`schedule::PhysicsStepSystems`] the stages of a step,
+//! [`Time<Physics>`](schedule::Physics) its clock, which can be paused, slowed and stepped by hand.
+//!
+//! # Units
+//!
+//! Metres, seconds, kilograms and radians. If a metre is 100 pixels in your game, say so with [`PhysicsPlugins::with_length_unit`].
+//!
+//! # Features
+//!
+//! `f32` (default) or `f64` is the precision of positions; `parry-f32` or `parry-f64` bring the default `Collider`. Exactly one dimension
+//! and one precision must be enabled.
+
+#[cfg(not(any(feature = "2d", feature = "3d")))]
+compile_error!("enable feature `2d` of avian2d or `3d` of avian3d: one dimension is needed");
+#[cfg(all(feature = "2d", feature = "3d"))]
+compile_error!("features `2d` and `3d` exclude each other: use avian2d and avian3d side by side instead");
+#[cfg(not(any(feature = "f32", feature = "f64")))]
+compile_error!("enable feature `f32` or `f64`: one precision is needed");
+#[cfg(all(feature = "f32", feature = "f64"))]
+compile_error!("features `f32` and `f64` exclude each other");
+#[cfg(all(feature = "default-collider", not(any(feature = "parry-f32", feature = "parry-f64"))))]
+compile_error!("feature `default-collider` needs `parry-f32` or `parry-f64`, as the precision is");
+
+pub mod collider_tree;
+pub mod collision;
+pub mod dynamics;
+pub mod interpolation;
+pub mod math;
+pub mod physics_transform;
+pub mod schedule;
+
+mod plugins;
+mod step;
+mod type_registration;
+
+#[cfg(feature = "parry-f32")]
+pub use parry_f32 as parry;
+#[cfg(feature = "parry-f64")]
+pub use parry_f64 as parry;
+pub use plugins::PhysicsPlugins;
+pub use type_registration::PhysicsTypeRegistrationPlugin;
+
+/// The names that most apps use.
+pub mod prelude {
+    pub use crate::{
+        PhysicsPlugins,
+        collider_tree::{ColliderTreeOptimization, ColliderTreePlugin, TreeOptimizationMode},
+        collision::prelude::*,
+        dynamics::{self, ccd::SpeculativeMargin, prelude::*},
+        interpolation::*,
+        physics_transform::{PhysicsTransformHelper, PhysicsTransformPlugin, Position, Rotation},
+        schedule::{
+            Physics, PhysicsSchedule, PhysicsSchedulePlugin, PhysicsStepSystems, PhysicsSystems, PhysicsTime,
+            Substeps,
+        },
+    };
+    #[expect(deprecated, reason = "former names stay importable")]
+    pub use crate::schedule::{PhysicsSet, PhysicsStepSet};
+    pub use avian_derive::*;
+}

@@ -1,0 +1,82 @@
+//! `f64` as the precision of the public API: the scalar, the vectors and matrices, and the conversions into it.
+
+use bevy_math::{DMat3, DQuat, DVec2, DVec3, Mat3, Quat, Vec2, Vec3};
+use glam_matrix_extras::{SymmetricDMat2, SymmetricDMat3, SymmetricMat2, SymmetricMat3};
+
+use super::AdjustPrecision;
+
+/// The floating-point type of positions, velocities and all other public quantities without a precision in
+/// their name: `f32` with the feature `f32`, `f64` with the feature `f64`.
+pub type Scalar = f64;
+/// π / 2.
+pub const FRAC_PI_2: Scalar = core::f64::consts::FRAC_PI_2;
+/// π.
+pub const PI: Scalar = core::f64::consts::PI;
+/// 2 π, a full turn in radians.
+pub const TAU: Scalar = core::f64::consts::TAU;
+/// 1 / √2.
+pub const FRAC_1_SQRT_2: Scalar = core::f64::consts::FRAC_1_SQRT_2;
+
+/// A vector of the crate's dimension, in [`Scalar`] precision.
+#[cfg(feature = "2d")]
+pub type Vector = DVec2;
+/// A vector of the crate's dimension, in [`Scalar`] precision.
+#[cfg(feature = "3d")]
+pub type Vector = DVec3;
+/// A 2D vector in [`Scalar`] precision.
+pub type Vector2 = DVec2;
+/// A 3D vector in [`Scalar`] precision.
+pub type Vector3 = DVec3;
+/// A square matrix of the crate's dimension, in [`Scalar`] precision.
+#[cfg(feature = "2d")]
+pub type Matrix = Matrix2;
+/// A square matrix of the crate's dimension, in [`Scalar`] precision.
+#[cfg(feature = "3d")]
+pub type Matrix = Matrix3;
+/// A 2 × 2 matrix in [`Scalar`] precision.
+pub type Matrix2 = bevy_math::DMat2;
+/// A 3 × 3 matrix in [`Scalar`] precision.
+pub type Matrix3 = DMat3;
+/// A symmetric matrix of the crate's dimension, in [`Scalar`] precision.
+#[cfg(feature = "2d")]
+pub type SymmetricMatrix = SymmetricDMat2;
+/// A symmetric matrix of the crate's dimension, in [`Scalar`] precision.
+#[cfg(feature = "3d")]
+pub type SymmetricMatrix = SymmetricDMat3;
+/// A symmetric 2 × 2 matrix in [`Scalar`] precision.
+pub type SymmetricMatrix2 = SymmetricDMat2;
+/// A symmetric 3 × 3 matrix in [`Scalar`] precision.
+pub type SymmetricMatrix3 = SymmetricDMat3;
+/// A quaternion in [`Scalar`] precision.
+pub type Quaternion = DQuat;
+
+/// Implements [`AdjustPrecision`] by one expression per source type.
+macro_rules! adjust_precision {
+    ($($source:ty => $adjusted:ty: |$value:ident| $conversion:expr;)+) => {$(
+        impl AdjustPrecision for $source {
+            type Adjusted = $adjusted;
+            #[inline]
+            fn adjust_precision(&self) -> $adjusted {
+                let $value = *self;
+                $conversion
+            }
+        }
+    )+};
+}
+
+adjust_precision! {
+    f32 => Scalar: |v| f64::from(v);
+    f64 => Scalar: |v| v;
+    Vec3 => Vector3: |v| v.as_dvec3();
+    DVec3 => Vector3: |v| v;
+    Vec2 => Vector2: |v| v.as_dvec2();
+    DVec2 => Vector2: |v| v;
+    Quat => Quaternion: |v| v.as_dquat();
+    DQuat => Quaternion: |v| v;
+    Mat3 => Matrix3: |v| v.as_dmat3();
+    DMat3 => Matrix3: |v| v;
+    SymmetricMat2 => SymmetricMatrix2: |v| v.as_symmetric_dmat2();
+    SymmetricDMat2 => SymmetricMatrix2: |v| v;
+    SymmetricMat3 => SymmetricMatrix3: |v| v.as_symmetric_dmat3();
+    SymmetricDMat3 => SymmetricMatrix3: |v| v;
+}

@@ -1,0 +1,305 @@
+//! Rotations of space, and what else the sync does differently there. `dim2.rs` is the twin.
+
+use bevy_derive::{Deref, DerefMut};
+use bevy_ecs::{component::Component, reflect::ReflectComponent};
+use bevy_math::{DQuat, Quat};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use core::ops::Mul;
+use kernel::math as km;
+
+use super::{
+    Position,
+    frame::{Turn, narrow, wide},
+};
+use crate::math::{Quaternion, Scalar, Vector};
+
+/// The world rotation of a rigid body or collider, a unit quaternion.
+///
+/// Multiplication renormalises, so that chains of rotations stay rotations. The products are written
+/// out in scalars: their bits do not depend on the machine's vector instructions.
+#[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default, PartialEq)]
+pub struct Rotation(pub Quaternion);
+
+impl Rotation {
+    /// Stands for "take it from the `Transform`"; replaced when the entity gets its body or collider.
+    pub const PLACEHOLDER: Self =
+        Self(Quaternion::from_xyzw(Scalar::MAX, Scalar::MAX, Scalar::MAX, Scalar::MAX));
+    /// No rotation.
+    pub const IDENTITY: Self = Self(Quaternion::IDENTITY);
+
+    /// The angle in radians between two rotations, in 0 … π.
+    pub fn angle_between(self, other: Self) -> Scalar {
+        narrow(self.to_turn().inverse().mul(other.to_turn()).angle())
+    }
+
+    /// The rotation the other way.
+    pub fn inverse(&self) -> Self {
+        Self(Quaternion::from_xyzw(-self.0.x, -self.0.y, -self.0.z, self.0.w))
+    }
+
+    /// Between `self` (`t` = 0) and `end` (`t` = 1) along the chord, the shorter way, renormalised.
+    pub fn nlerp(self, end: Self, t: Scalar) -> Self {
+        let (a, b) = (self.to_turn(), end.to_turn());
+        let b = if a.dot(b) < 0.0 { b.negated() } else { b };
+        Self::from_turn(a.mix(1.0 - wide(t), b, wide(t)).normalized()).unwrap_or(self)
+    }
+
+    /// Between `self` (`t` = 0) and `end` (`t` = 1) at constant angular speed, the shorter way.
+    ///
+    /// `(sin((1 − t) θ) a + sin(t θ) b) / sin θ` with `cos θ = a · b` (Shoemake, "Animating Rotation
+    /// with Quaternion Curves", 1985); where θ vanishes, along the chord.
+    pub fn slerp(self, end: Self, t: Scalar) -> Self {
+        let (a, b) = (self.to_turn(), end.to_turn());
+        let b = if a.dot(b) < 0.0 { b.negated() } else { b };
+        let angle = 0.5 * a.inverse().mul(b).angle();
+        if angle < 1e-6 {
+            return self.nlerp(end, t);
+        }
+        let t = wide(t);
+        let mix = a.mix(km::sin((1.0 - t) * angle), b, km::sin(t * angle));
+        Self::from_turn(mix.normalized()).unwrap_or(self)
+    }
+
+    /// Brought closer to length 1 without a root: one Newton step, for quaternions that are nearly unit.
+    pub fn fast_renormalize(self) -> Self {
+        let q = self.0;
+        let square = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+        let factor = 0.5 * (3.0 - square);
+        Self(Quaternion::from_xyzw(q.x * factor, q.y * factor, q.z * factor, q.w * factor))
+    }
+
+    /// Turns a vector: `v + w t + u × t` with `t = 2 u × v`, for q = (u, w).
+    #[inline]
+    pub(super) fn rotate_vector(self, v: Vector) -> Vector {
+        let q = self.0;
+        let tx = 2.0 * (q.y * v.z - q.z * v.y);
+        let ty = 2.0 * (q.z * v.x - q.x * v.z);
+        let tz = 2.0 * (q.x * v.y - q.y * v.x);
+        Vector::new(
+            v.x + q.w * tx + (q.y * tz - q.z * ty),
+            v.y + q.w * ty + (q.z * tx - q.x * tz),
+            v.z + q.w * tz + (q.x * ty - q.y * tx),
+        )
+    }
+
+    /// `other` first, then `self`; renormalised unless that would not be finite.
+    #[inline]
+    pub(super) fn then_of(self, other: Self) -> Self {
+        let (a, b) = (self.0, other.0);
+        let x = a.w * b.x + a.x * b.w + (a.y * b.z - a.z * b.y);
+        let y = a.w * b.y + a.y * b.w + (a.z * b.x - a.x * b.z);
+        let z = a.w * b.z + a.z * b.w + (a.x * b.y - a.y * b.x);
+        let w = a.w * b.w - (a.x * b.x + a.y * b.y + a.z * b.z);
+        let length = (x * x + y * y + z * z + w * w).sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            return Self(Quaternion::from_xyzw(x, y, z, w));
+        }
+        Self(Quaternion::from_xyzw(x / length, y / length, z / length, w / length))
+    }
+
+    /// Whether no number is infinite or NaN.
+    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
+    pub(crate) fn is_finite(self) -> bool {
+        let [x, y, z, w] = self.0.to_array();
+        x.is_finite() && y.is_finite() && z.is_finite() && w.is_finite()
+    }
+
+    /// The rotation in the kernel's precision.
+    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
+    pub(crate) fn to_kernel(self) -> km::Rot {
+        let [x, y, z, w] = self.0.to_array();
+        km::Rot { x: x as f32, y: y as f32, z: z as f32, w: w as f32 }
+    }
+
+    /// The rotation of a kernel rotation.
+    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
+    pub(crate) fn from_kernel(rotation: km::Rot) -> Self {
+        let km::Rot { x, y, z, w } = rotation;
+        Self(Quaternion::from_xyzw(Scalar::from(x), Scalar::from(y), Scalar::from(z), Scalar::from(w)))
+    }
+
+    pub(super) fn to_turn(self) -> Turn {
+        let [x, y, z, w] = self.0.to_array();
+        Turn { x: wide(x), y: wide(y), z: wide(z), w: wide(w) }
+    }
+
+    /// The rotation of a turn, renormalised only if it is more than rounding away from a unit
+    /// quaternion; `None` where it has no finite direction.
+    pub(super) fn from_turn(turn: Turn) -> Option<Self> {
+        let square = turn.dot(turn);
+        if !(square > 0.0 && square.is_finite()) {
+            return None;
+        }
+        let turn = if (square - 1.0).abs() > 1e-6 { turn.normalized() } else { turn };
+        Some(Self(Quaternion::from_xyzw(narrow(turn.x), narrow(turn.y), narrow(turn.z), narrow(turn.w))))
+    }
+}
+
+/// The world turn of something that should have the rotation `rotation`.
+pub(super) fn world_turn(rotation: Rotation, _current: Turn) -> Turn {
+    rotation.to_turn()
+}
+
+/// Whether `read` differs from `held` by rounding only; in space bits are compared instead.
+pub(super) fn is_rounding(_read: Rotation, _held: Rotation, _current: Turn) -> bool {
+    false
+}
+
+/// The spatial part of a point.
+pub(crate) fn vector_from_xyz([x, y, z]: [f64; 3]) -> Vector {
+    Vector::new(narrow(x), narrow(y), narrow(z))
+}
+
+/// The point with the spatial part `v`.
+pub(super) fn xyz_with(v: Vector, _rest: [f64; 3]) -> [f64; 3] {
+    [wide(v.x), wide(v.y), wide(v.z)]
+}
+
+pub(super) fn vector_to_kernel(v: Vector) -> km::WorldVector {
+    km::Vector { x: v.x, y: v.y, z: v.z }
+}
+
+pub(super) fn vector_from_kernel(v: km::WorldVector) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+impl Position {
+    /// The position at a point, in metres.
+    pub fn from_xyz(x: Scalar, y: Scalar, z: Scalar) -> Self {
+        Self(Vector::new(x, y, z))
+    }
+}
+
+/// `Rotation * Quaternion` and `Quaternion * Rotation`, by value and by reference on the left.
+macro_rules! quaternion_products {
+    ($($left:ty),+) => {$(
+        impl Mul<Quaternion> for $left {
+            type Output = Quaternion;
+            fn mul(self, other: Quaternion) -> Quaternion {
+                self.then_of(Rotation(other)).0
+            }
+        }
+    )+};
+    (quaternion $($left:ty),+) => {$(
+        impl Mul<Rotation> for $left {
+            type Output = Rotation;
+            fn mul(self, other: Rotation) -> Rotation {
+                let [x, y, z, w] = self.to_array();
+                Rotation(Quaternion::from_xyzw(x, y, z, w)).then_of(other)
+            }
+        }
+    )+};
+}
+quaternion_products!(Rotation, &Rotation, &mut Rotation);
+quaternion_products!(quaternion Quaternion, &Quaternion, &mut Quaternion);
+
+impl From<Rotation> for Quaternion {
+    fn from(rotation: Rotation) -> Self {
+        rotation.0
+    }
+}
+
+impl From<Quat> for Rotation {
+    fn from(rotation: Quat) -> Self {
+        let [x, y, z, w] = rotation.to_array();
+        Self(Quaternion::from_xyzw(Scalar::from(x), Scalar::from(y), Scalar::from(z), Scalar::from(w)))
+    }
+}
+
+impl From<DQuat> for Rotation {
+    fn from(rotation: DQuat) -> Self {
+        let [x, y, z, w] = rotation.to_array();
+        Self(Quaternion::from_xyzw(narrow(x), narrow(y), narrow(z), narrow(w)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Dir, PI};
+
+    fn sample(i: u16) -> Rotation {
+        let t = Scalar::from(i);
+        let turn = Turn {
+            x: wide(t * 0.37) % 2.0 - 1.0,
+            y: wide(t * 0.71) % 2.0 - 1.0,
+            z: wide(t * 0.13) % 2.0 - 1.0,
+            w: wide(t * 0.57) % 2.0 - 1.0,
+        };
+        Rotation::from_turn(turn.normalized()).expect("a unit turn")
+    }
+
+    #[test]
+    fn quarters_are_exact() {
+        let half = core::f64::consts::FRAC_1_SQRT_2;
+        let quarter = Rotation::from_turn(Turn { x: 0.0, y: 0.0, z: half, w: half }).expect("a unit turn");
+        assert_eq!(quarter * quarter * Vector::X, -Vector::X);
+        assert_eq!(quarter * quarter * (quarter * quarter) * Vector::X, Vector::X);
+    }
+
+    #[test]
+    fn products_agree_with_the_quaternion_library() {
+        for i in 0..200 {
+            let (a, b) = (sample(i), sample(i + 1));
+            let v = Vector::new(0.3, -2.0, 1.1);
+            assert!((a * v).distance(a.0 * v) < 1e-5);
+            assert!((a * (b * v)).distance(a * b * v) < 1e-5);
+            assert!((a * a.inverse() * v).distance(v) < 1e-5);
+            assert!((a * b.0).dot((a.0 * b).0).abs() > 1.0 - 1e-5);
+            assert!(((a * b).0.length() - 1.0).abs() < 3e-7);
+            let direction = a * Dir::X;
+            assert!((direction.length() - 1.0).abs() < 1e-6);
+            assert!((a.angle_between(b) - a.0.angle_between(b.0)).abs() < 2e-3);
+        }
+    }
+
+    #[test]
+    fn interpolation_is_even_and_goes_the_short_way() {
+        for i in 0..100 {
+            let (a, b) = (sample(i), sample(i + 7));
+            let whole = a.angle_between(b);
+            assert!((0.0..=PI + 1e-5).contains(&whole));
+            for part in 0u8..=10 {
+                let t = Scalar::from(part) / 10.0;
+                let (slow, fast) = (a.slerp(b, t), a.nlerp(b, t));
+                assert!((a.angle_between(slow) - t * whole).abs() < 1e-5);
+                assert!((fast.0.length() - 1.0).abs() < 1e-6);
+            }
+            assert!(a.slerp(a, 0.5).0.dot(a.0) > 1.0 - 1e-6);
+        }
+        assert!(Rotation::from_turn(Turn { x: 0.0, y: 0.0, z: 0.0, w: 0.0 }).is_none());
+    }
+
+    #[test]
+    fn poses_survive_parents_that_shear_and_mirror() {
+        use super::super::frame::{Frame, read_pose, same_rotation, same_translation, write_pose};
+        use bevy_math::Vec3;
+        use bevy_transform::components::{GlobalTransform, Transform};
+        let scales = [Vec3::ONE, Vec3::new(1.0, 2.0, 0.5), Vec3::new(-1.0, 1.5, 1.0), Vec3::splat(-2.0)];
+        for i in 0..400 {
+            let link = |k: u16| {
+                let [x, y, z, w] = sample(k).to_turn().to_quat().to_array();
+                Transform::from_xyz(x * 9.0, y * 9.0, z * 9.0)
+                    .with_rotation(Quat::from_xyzw(x, y, z, w))
+                    .with_scale(scales[usize::from(k) % 4])
+            };
+            let (outer, inner, leaf) = (link(i), link(i / 4), link(i / 16));
+            let frame = Frame::IDENTITY.child(&outer).child(&inner);
+            let bevy = Position::from(GlobalTransform::from(outer) * inner * leaf).0;
+            assert!(read_pose(Some(&frame), &leaf).0.distance(bevy) < 1e-3);
+            let (position, rotation) = (Vector::new(1.0, -2.0, 3.0), sample(i + 3));
+            let written = write_pose(Some(&frame), &leaf, position, rotation);
+            let (read, turned) = read_pose(Some(&frame), &written);
+            assert!(read.distance(position) < 1e-4);
+            assert!(turned.expect("a unit turn").angle_between(rotation) < 1e-4);
+            let again = write_pose(Some(&frame), &written, position, rotation);
+            assert!(same_translation(&again, &written) && same_rotation(&again, &written));
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! The world position of a body or collider.
+
+use bevy_derive::{Deref, DerefMut};
+use bevy_ecs::{component::Component, reflect::ReflectComponent};
+use bevy_math::curve::{FunctionCurve, Interval, easing::Ease};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use bevy_transform::components::GlobalTransform;
+use derive_more::From;
+
+use super::dim;
+use crate::math::{Scalar, Vector};
+
+/// The world position of a rigid body or collider, in metres.
+///
+/// This, with [`Rotation`](super::Rotation), is what the simulation reads and writes; `Transform` is
+/// kept in step with it. To place something, set either; if both were set since the last step, the
+/// position wins. The position of a collider that is a child of a body follows from the body and the
+/// collider's [`ColliderTransform`](crate::collision::collider::collider_transform::ColliderTransform).
+///
+/// A nested body (a body that is a child of another) moves on its own: its position is not changed by
+/// the simulated motion of its parent.
+#[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq, From)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default, PartialEq)]
+pub struct Position(pub Vector);
+
+impl Position {
+    /// Stands for "take it from the `Transform`"; replaced when the entity gets its body or collider.
+    pub const PLACEHOLDER: Self = Self(Vector::MAX);
+
+    /// The position at a point, in metres.
+    pub fn new(position: Vector) -> Self {
+        Self(position)
+    }
+
+    /// The position as the kernel's world vector.
+    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
+    pub(crate) fn to_kernel(self) -> kernel::math::WorldVector {
+        dim::vector_to_kernel(self.0)
+    }
+
+    /// The position of a kernel world vector.
+    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
+    pub(crate) fn from_kernel(position: kernel::math::WorldVector) -> Self {
+        Self(dim::vector_from_kernel(position))
+    }
+}
+
+impl From<GlobalTransform> for Position {
+    fn from(transform: GlobalTransform) -> Self {
+        Self::from(&transform)
+    }
+}
+
+impl From<&GlobalTransform> for Position {
+    fn from(transform: &GlobalTransform) -> Self {
+        let [x, y, z] = transform.translation().to_array();
+        Self(dim::vector_from_xyz([f64::from(x), f64::from(y), f64::from(z)]))
+    }
+}
+
+impl Ease for Position {
+    fn interpolating_curve_unbounded(start: Self, end: Self) -> impl bevy_math::Curve<Self> {
+        FunctionCurve::new(Interval::EVERYWHERE, move |t: f32| {
+            Self(start.0 + (end.0 - start.0) * Scalar::from(t))
+        })
+    }
+}

@@ -1,0 +1,79 @@
+//! What rotations do alike in both dimensions: products, conversions from transforms, easing.
+
+use bevy_math::curve::{FunctionCurve, Interval, easing::Ease};
+use bevy_transform::components::{GlobalTransform, Transform};
+use core::ops::{Mul, MulAssign};
+
+use super::Rotation;
+use crate::math::{AdjustPrecision, AsF32, Dir, Scalar, Vector};
+
+/// `$left * $right` for every mix of values, references and mutable references.
+macro_rules! by_reference {
+    ($left:ty, $right:ty => $out:ty, |$a:ident, $b:ident| $body:expr) => {
+        by_reference!(@one $left, $right => $out, |$a, $b| $body);
+        by_reference!(@one $left, &$right => $out, |$a, $b| { let $b = *$b; $body });
+        by_reference!(@one $left, &mut $right => $out, |$a, $b| { let $b = *$b; $body });
+        by_reference!(@one &$left, $right => $out, |$a, $b| $body);
+        by_reference!(@one &$left, &$right => $out, |$a, $b| { let $b = *$b; $body });
+        by_reference!(@one &$left, &mut $right => $out, |$a, $b| { let $b = *$b; $body });
+        by_reference!(@one &mut $left, $right => $out, |$a, $b| $body);
+        by_reference!(@one &mut $left, &$right => $out, |$a, $b| { let $b = *$b; $body });
+        by_reference!(@one &mut $left, &mut $right => $out, |$a, $b| { let $b = *$b; $body });
+    };
+    (@one $left:ty, $right:ty => $out:ty, |$a:ident, $b:ident| $body:expr) => {
+        impl core::ops::Mul<$right> for $left {
+            type Output = $out;
+            fn mul(self, $b: $right) -> $out {
+                let $a = self;
+                $body
+            }
+        }
+    };
+}
+pub(super) use by_reference;
+
+by_reference!(Rotation, Vector => Vector, |rotation, v| rotation.rotate_vector(v));
+by_reference!(Rotation, Dir => Dir, |rotation, direction| {
+    // A direction stays one even where the rotation is not quite unit; one that is zero or NaN turns
+    // nothing.
+    let v: Vector = direction.adjust_precision();
+    Dir::new(rotation.rotate_vector(v).f32()).unwrap_or(direction)
+});
+
+impl Mul for Rotation {
+    type Output = Self;
+    /// `other` first, then `self`; renormalised.
+    fn mul(self, other: Self) -> Self {
+        self.then_of(other)
+    }
+}
+
+impl MulAssign for Rotation {
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl From<Transform> for Rotation {
+    fn from(transform: Transform) -> Self {
+        Self::from(transform.rotation)
+    }
+}
+
+impl From<GlobalTransform> for Rotation {
+    fn from(transform: GlobalTransform) -> Self {
+        Self::from(&transform)
+    }
+}
+
+impl From<&GlobalTransform> for Rotation {
+    fn from(transform: &GlobalTransform) -> Self {
+        Self::from(transform.rotation())
+    }
+}
+
+impl Ease for Rotation {
+    fn interpolating_curve_unbounded(start: Self, end: Self) -> impl bevy_math::Curve<Self> {
+        FunctionCurve::new(Interval::EVERYWHERE, move |t: f32| start.slerp(end, Scalar::from(t)))
+    }
+}

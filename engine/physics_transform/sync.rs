@@ -1,0 +1,341 @@
+//! Keeps `Transform` and the pair [`Position`], [`Rotation`] in step: transforms that the user changed are
+//! read before a step, poses that moved are written after it.
+//!
+//! What counts as a user's change of a `Transform` is decided by bits, not by tolerance: its value differs
+//! from what the write-back would put there for the present pose. So an untouched body's pose is never
+//! perturbed, and nothing about the sync needs to be stored or rolled back. Change ticks only narrow down
+//! where to look.
+
+use bevy_ecs::{
+    change_detection::{CheckChangeTicks, Tick},
+    entity::EntityHashSet,
+    prelude::*,
+    system::{SystemChangeTick, SystemParam},
+};
+use bevy_transform::components::Transform;
+
+use super::{
+    ApplyPosToTransform, PhysicsTransformConfig, Position, Rotation, dim,
+    frame::{Frame, Turn, read_pose, same_rotation, same_translation, write_pose},
+    tree::{FollowsBody, Parents, TransformTree, TreeChanges},
+};
+use crate::{dynamics::rigid_body::RigidBody, math::Vector};
+
+/// When the sync last looked and wrote.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct SyncTicks {
+    /// The last scan over `Transform`.
+    scan: Tick,
+    /// The last write-back; its own writes to `Transform` bear this tick.
+    writeback: Tick,
+    /// The last initialisation and the last reading; what they wrote to poses bears these ticks and came
+    /// from transforms, so that it need not go back there.
+    read: [Tick; 2],
+}
+
+impl SyncTicks {
+    pub(crate) fn clamp(&mut self, check: CheckChangeTicks) {
+        for tick in [&mut self.scan, &mut self.writeback].into_iter().chain(&mut self.read) {
+            tick.check_tick(check);
+        }
+    }
+}
+
+/// An entity that got its [`Position`] since the last step.
+#[derive(Clone, Debug)]
+pub(crate) struct Spawned {
+    entity: Entity,
+    /// Whether the user gave the position and the rotation.
+    given: [bool; 2],
+    /// What the first initialisation made of the pose.
+    first: (Position, Option<Rotation>),
+}
+
+/// Entities to initialise, in order of their making.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct SpawnQueue(Vec<Spawned>);
+
+/// The frame an entity's `Transform` is relative to, through all ancestors; `None` for a root. An ancestor
+/// without a transform counts as unmoved.
+pub(crate) fn parent_frame(
+    entity: Entity,
+    parents: &Parents,
+    transform: impl Fn(Entity) -> Option<Transform>,
+) -> Option<Frame> {
+    let mut line: Vec<Entity> = Vec::new();
+    let mut at = entity;
+    while let Ok(parent) = parents.get(at) {
+        at = parent.parent();
+        line.push(at);
+    }
+    if line.is_empty() {
+        return None;
+    }
+    let chain = line.iter().rev().filter_map(|&ancestor| transform(ancestor));
+    Some(chain.fold(Frame::IDENTITY, |frame, t| frame.child(&t)))
+}
+
+/// Finds the transforms that changed since the last scan other than by the write-back: the one scan over
+/// all entities with a `Transform`.
+pub(crate) fn find_changed_transforms(
+    transforms: Query<(Entity, Ref<Transform>, Has<Position>, Has<Children>)>,
+    tree: Res<TransformTree>,
+    mut changes: ResMut<TreeChanges>,
+    mut ticks: ResMut<SyncTicks>,
+    system: SystemChangeTick,
+) {
+    let TreeChanges { reparented, transforms: found, .. } = &mut *changes;
+    found.append(&mut reparented.clone());
+    let since = ticks.scan;
+    let is_new = |tick: Tick| tick.is_newer_than(since, system.this_run()) && tick != ticks.writeback;
+    let matters =
+        |entity, physical: bool, has_children: bool| physical || (has_children && tree.contains(entity));
+    match transforms.contiguous_iter() {
+        Ok(tables) => {
+            for (entities, transforms, physical, has_children) in tables {
+                if !physical && !has_children {
+                    continue;
+                }
+                for (&entity, &tick) in entities.iter().zip(transforms.changed_ticks_slice()) {
+                    if is_new(tick) && matters(entity, physical, has_children) {
+                        found.push(entity);
+                    }
+                }
+            }
+        }
+        Err(_) => {
+            for (entity, transform, physical, has_children) in &transforms {
+                if is_new(transform.last_changed()) && matters(entity, physical, has_children) {
+                    found.push(entity);
+                }
+            }
+        }
+    }
+    ticks.scan = system.this_run();
+}
+
+/// Poses, transforms and the hierarchy, as initialising needs them.
+#[derive(SystemParam)]
+pub(crate) struct Initialiser<'w, 's> {
+    poses: Query<
+        'w,
+        's,
+        (&'static mut Position, Option<&'static mut Rotation>, Has<RigidBody>, Has<FollowsBody>),
+    >,
+    transforms: Query<'w, 's, &'static mut Transform>,
+    parents: Parents<'w, 's>,
+    config: Res<'w, PhysicsTransformConfig>,
+}
+
+impl Initialiser<'_, '_> {
+    fn depth(&self, entity: Entity) -> usize {
+        core::iter::successors(Some(entity), |&at| self.parents.get(at).ok().map(ChildOf::parent)).count()
+    }
+
+    /// What the user gave goes to the `Transform`, what the user did not give comes from there.
+    fn initialise(&mut self, entity: Entity, given: [bool; 2]) {
+        let Ok((mut position, mut rotation, ..)) = self.poses.get_mut(entity) else { return };
+        let transform = self.transforms.get(entity).copied().unwrap_or_default();
+        let parent = parent_frame(entity, &self.parents, |e| self.transforms.get(e).ok().copied());
+        let (read, turned) = read_pose(parent.as_ref(), &transform);
+        if !given[0] {
+            position.0 = if read.is_finite() { read } else { Vector::ZERO };
+        }
+        if !given[1]
+            && let Some(rotation) = &mut rotation
+        {
+            **rotation = turned.unwrap_or(Rotation::IDENTITY);
+        }
+        if !self.config.position_to_transform || given == [false; 2] {
+            return;
+        }
+        let rotation = rotation.map_or(Rotation::IDENTITY, |rotation| *rotation);
+        let written = write_pose(parent.as_ref(), &transform, position.0, rotation);
+        if let Ok(mut transform) = self.transforms.get_mut(entity) {
+            if given[0] && !same_translation(&transform, &written) {
+                transform.translation = written.translation;
+            }
+            if given[1] && !same_rotation(&transform, &written) {
+                transform.rotation = written.rotation;
+            }
+        }
+    }
+}
+
+/// Gives a new [`Position`] its value at once, so that nobody reads a placeholder; ancestors may still be
+/// missing or without their final transforms, so [`initialise_poses`] looks again before the step.
+pub(crate) fn initialise_added(
+    added: On<Add, Position>,
+    mut initialiser: Initialiser,
+    mut queue: ResMut<SpawnQueue>,
+) {
+    let entity = added.event_target();
+    let Ok((position, rotation, ..)) = initialiser.poses.get(entity) else { return };
+    let given = [*position != Position::PLACEHOLDER, rotation.is_some_and(|r| *r != Rotation::PLACEHOLDER)];
+    initialiser.initialise(entity, given);
+    let Ok((position, rotation, ..)) = initialiser.poses.get(entity) else { return };
+    queue.0.push(Spawned { entity, given, first: (*position, rotation.copied()) });
+}
+
+/// Initialises the poses of new entities, ancestors first.
+pub(crate) fn initialise_poses(
+    mut queue: ResMut<SpawnQueue>,
+    mut initialiser: Initialiser,
+    mut ticks: ResMut<SyncTicks>,
+    system: SystemChangeTick,
+) {
+    ticks.read[0] = system.this_run();
+    let mut spawned: Vec<(usize, Spawned)> =
+        queue.0.drain(..).map(|new| (initialiser.depth(new.entity), new)).collect();
+    spawned.sort_by_key(|&(depth, _)| depth);
+    for (_, Spawned { entity, given, first }) in spawned {
+        let Ok((position, rotation, _, false)) = initialiser.poses.get(entity) else { continue };
+        // A pose set after spawning is as good as one given with it.
+        let given = [given[0] || *position != first.0, given[1] || rotation.copied() != first.1];
+        initialiser.initialise(entity, given);
+    }
+}
+
+/// What reading transforms needs.
+#[derive(SystemParam)]
+pub struct TransformReader<'w, 's> {
+    tree: ResMut<'w, TransformTree>,
+    changes: Res<'w, TreeChanges>,
+    ticks: ResMut<'w, SyncTicks>,
+    config: Res<'w, PhysicsTransformConfig>,
+    transforms: Query<'w, 's, &'static Transform>,
+    parents: Parents<'w, 's>,
+    poses: Query<'w, 's, (&'static mut Position, Option<&'static mut Rotation>), Without<FollowsBody>>,
+}
+
+/// Reads the transforms that users changed since the last step, their own or an ancestor's, into
+/// [`Position`] and [`Rotation`]. A position or rotation that was itself set since then is left alone.
+pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick) {
+    let TransformReader { mut tree, changes, mut ticks, config, transforms, parents, mut poses } = reader;
+    ticks.read[1] = system.this_run();
+    let last = ticks.writeback;
+    let mut visit = |entity: Entity, parent: Option<&Frame>, transform: &Transform| {
+        let Ok((mut position, rotation)) = poses.get_mut(entity) else { return };
+        let held = rotation.as_ref().map_or(Rotation::IDENTITY, |rotation| **rotation);
+        let expected = write_pose(parent, transform, position.0, held);
+        let is_free = |changed: Tick| !changed.is_newer_than(last, system.this_run());
+        let (read, turned) = read_pose(parent, transform);
+        let moved = !same_translation(&expected, transform) && read.is_finite();
+        if moved && is_free(position.last_changed()) && position.0 != read {
+            position.0 = read;
+        }
+        let (Some(mut rotation), Some(turned)) = (rotation, turned) else { return };
+        let current = parent.map_or(Turn::from_quat(transform.rotation), |f| f.child(transform).rotation());
+        let rotated = !same_rotation(&expected, transform) && !dim::is_rounding(turned, held, current);
+        if rotated && is_free(rotation.last_changed()) && *rotation != turned {
+            *rotation = turned;
+        }
+    };
+    tree.begin_walk();
+    for &entity in &changes.transforms {
+        let Ok(transform) = transforms.get(entity) else { continue };
+        if !tree.contains(entity) {
+            visit(entity, None, transform);
+            continue;
+        }
+        let parent = parent_frame(entity, &parents, |e| transforms.get(e).ok().copied());
+        tree.descend(entity, parent, |entity, parent: &Option<Frame>| {
+            let transform = transforms.get(entity).ok()?;
+            visit(entity, parent.as_ref(), transform);
+            let below = || Some(parent.unwrap_or(Frame::IDENTITY).child(transform));
+            config.propagate_before_physics.then(below)
+        });
+    }
+}
+
+/// What writing transforms needs.
+#[derive(SystemParam)]
+pub struct TransformWriter<'w, 's> {
+    tree: ResMut<'w, TransformTree>,
+    ticks: ResMut<'w, SyncTicks>,
+    config: Res<'w, PhysicsTransformConfig>,
+    moved: Query<
+        'w,
+        's,
+        (Entity, Ref<'static, Position>, Ref<'static, Rotation>),
+        Or<(With<RigidBody>, With<ApplyPosToTransform>)>,
+    >,
+    transforms: Query<'w, 's, &'static mut Transform>,
+    parents: Parents<'w, 's>,
+    following: Query<'w, 's, (), With<FollowsBody>>,
+}
+
+/// Writes the poses that moved since the last write-back into `Transform`: of bodies, and of entities with
+/// [`ApplyPosToTransform`]. Bodies below a moved one keep their pose in the world, so theirs are written
+/// too. Scale is kept; in 2D also the depth and any tilt.
+pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick) {
+    let TransformWriter { mut tree, mut ticks, config, moved, mut transforms, parents, following } = writer;
+    let (since, read) = (ticks.writeback, ticks.read);
+    ticks.writeback = system.this_run();
+    if !config.position_to_transform {
+        return;
+    }
+    let is_new = |tick: Tick| tick.is_newer_than(since, system.this_run()) && !read.contains(&tick);
+    let mut nested: Vec<Entity> = Vec::new();
+    let mut write = |entity, position: &Position, rotation: &Rotation| {
+        if tree.contains(entity) {
+            nested.push(entity);
+        } else {
+            write_transform(&mut transforms, entity, None, position, rotation);
+        }
+    };
+    match moved.contiguous_iter() {
+        Ok(tables) => {
+            for (entities, positions, rotations) in tables {
+                let (at, turned) = (positions.changed_ticks_slice(), rotations.changed_ticks_slice());
+                for (row, &entity) in entities.iter().enumerate() {
+                    if is_new(at[row]) || is_new(turned[row]) {
+                        write(entity, &positions[row], &rotations[row]);
+                    }
+                }
+            }
+        }
+        Err(_) => {
+            for (entity, position, rotation) in &moved {
+                if is_new(position.last_changed()) || is_new(rotation.last_changed()) {
+                    write(entity, &position, &rotation);
+                }
+            }
+        }
+    }
+    if nested.is_empty() {
+        return;
+    }
+    let set: EntityHashSet = nested.iter().copied().collect();
+    tree.begin_walk();
+    for &entity in &nested {
+        let above = |at: &Entity| tree.parent(*at);
+        let line = core::iter::successors(Some(entity), above);
+        let top = line.filter(|ancestor| set.contains(ancestor)).last().unwrap_or(entity);
+        let parent = parent_frame(top, &parents, |e| transforms.get(e).ok().copied());
+        tree.descend(top, parent, |entity, parent: &Option<Frame>| {
+            if let Ok((_, position, rotation)) = moved.get(entity)
+                && !following.contains(entity)
+            {
+                write_transform(&mut transforms, entity, parent.as_ref(), &position, &rotation);
+            }
+            let transform = transforms.get(entity).ok()?;
+            Some(Some(parent.unwrap_or(Frame::IDENTITY).child(transform)))
+        });
+    }
+}
+
+/// Writes one pose, if it differs from what stands there.
+fn write_transform(
+    transforms: &mut Query<&mut Transform>,
+    entity: Entity,
+    parent: Option<&Frame>,
+    position: &Position,
+    rotation: &Rotation,
+) {
+    let Ok(mut transform) = transforms.get_mut(entity) else { return };
+    let written = write_pose(parent, &transform, position.0, *rotation);
+    if !same_translation(&transform, &written) || !same_rotation(&transform, &written) {
+        *transform = written;
+    }
+}

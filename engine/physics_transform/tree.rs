@@ -1,0 +1,263 @@
+//! The part of Bevy's hierarchy that has physics in it: entities with a [`Position`] and their ancestors,
+//! with links down to those only.
+//!
+//! A level may hang a hundred thousand pictures and one body under one root. Walking `Children` from the
+//! root would visit them all, with markers or without; this shadow of the hierarchy visits the body. Roots
+//! without anything below need no node. Observers append to one queue; [`update_tree`] alone writes the
+//! tree, in the order of the queue, by looking at the hierarchy as it is then, so that the order in which
+//! things were spawned, reparented and despawned before does not matter.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::{
+    change_detection::CheckChangeTicks,
+    entity::{EntityHashMap, EntityHashSet},
+    entity_disabling::Disabled,
+    intern::Interned,
+    prelude::*,
+    query::Allow,
+    schedule::ScheduleLabel,
+};
+
+use super::{PhysicsTransformSystems, Position, sync::SyncTicks, sync::find_changed_transforms};
+use crate::schedule::PhysicsSystems;
+
+/// On an entity whose pose follows from its body: a collider that is not on the body itself.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub(crate) struct FollowsBody;
+
+/// Entities whose parent, body or collider came, went or changed since the last step.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct HierarchyQueue(pub(crate) Vec<Entity>);
+
+/// What [`update_tree`] found, for the systems after it in this step.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct TreeChanges {
+    /// The queue of this step, each entity once, in order.
+    pub(crate) queued: Vec<Entity>,
+    /// Entities with another parent than before.
+    pub(crate) reparented: Vec<Entity>,
+    /// Entities whose `Transform` may differ from what physics knows, the topmost sufficing: changed,
+    /// reparented or enabled again.
+    pub(crate) transforms: Vec<Entity>,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Node {
+    parent: Option<Entity>,
+    /// Where the parent lists this node.
+    slot: usize,
+    children: Vec<Entity>,
+    visit: u64,
+}
+
+/// The nodes; see the module.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct TransformTree {
+    nodes: EntityHashMap<Node>,
+    walk: u64,
+    /// How many entities walks have visited so far.
+    pub(crate) visited: u64,
+}
+
+/// The hierarchy as it is now.
+pub(crate) type Parents<'w, 's> = Query<'w, 's, &'static ChildOf, Allow<Disabled>>;
+type Physical<'w, 's> = Query<'w, 's, (), (With<Position>, Allow<Disabled>)>;
+
+impl TransformTree {
+    /// Whether the entity has tracked relatives.
+    pub(crate) fn contains(&self, entity: Entity) -> bool {
+        self.nodes.contains_key(&entity)
+    }
+
+    /// The tracked parent.
+    pub(crate) fn parent(&self, entity: Entity) -> Option<Entity> {
+        self.nodes.get(&entity)?.parent
+    }
+
+    /// The tracked children: those that have physics, or have some below.
+    pub(crate) fn children(&self, entity: Entity) -> &[Entity] {
+        self.nodes.get(&entity).map_or(&[], |node| &node.children)
+    }
+
+    /// Begins a set of walks that visit no entity twice.
+    pub(crate) fn begin_walk(&mut self) {
+        self.walk += 1;
+    }
+
+    /// Visits `root` and what is tracked below, parents first; `visit` gets what it returned for the parent
+    /// and returns `None` to go no deeper. Entities visited since [`begin_walk`](Self::begin_walk) are
+    /// skipped with all below.
+    pub(crate) fn descend<C: Clone>(
+        &mut self,
+        root: Entity,
+        context: C,
+        mut visit: impl FnMut(Entity, &C) -> Option<C>,
+    ) {
+        let mut stack = vec![(root, context)];
+        while let Some((entity, context)) = stack.pop() {
+            if let Some(node) = self.nodes.get_mut(&entity) {
+                if node.visit == self.walk {
+                    continue;
+                }
+                node.visit = self.walk;
+            }
+            self.visited += 1;
+            if let Some(below) = visit(entity, &context) {
+                stack.extend(self.children(entity).iter().rev().map(|&child| (child, below.clone())));
+            }
+        }
+    }
+
+    /// Brings the link of one entity up to date; returns whether it has another parent than before.
+    fn refresh(&mut self, entity: Entity, parents: &Parents, physical: &Physical) -> bool {
+        let tracked = physical.contains(entity) || !self.children(entity).is_empty();
+        let parent = if tracked { parents.get(entity).ok().map(ChildOf::parent) } else { None };
+        let held = self.parent(entity);
+        if parent != held {
+            self.unlink(entity, physical);
+            if let Some(parent) = parent {
+                self.link(entity, parent, parents);
+            }
+        }
+        self.prune(entity, physical);
+        parent != held
+    }
+
+    /// Links `entity` below `parent`, and the ancestors that were not tracked yet.
+    fn link(&mut self, entity: Entity, parent: Entity, parents: &Parents) {
+        let (mut entity, mut parent) = (entity, parent);
+        loop {
+            let above = self.nodes.entry(parent).or_default();
+            above.children.push(entity);
+            let (slot, linked) = (above.children.len() - 1, above.parent.is_some());
+            let node = self.nodes.entry(entity).or_default();
+            (node.parent, node.slot) = (Some(parent), slot);
+            match parents.get(parent) {
+                Ok(next) if !linked => (entity, parent) = (parent, next.parent()),
+                _ => return,
+            }
+        }
+    }
+
+    fn unlink(&mut self, entity: Entity, physical: &Physical) {
+        let Some(node) = self.nodes.get_mut(&entity) else { return };
+        let (slot, Some(parent)) = (node.slot, node.parent.take()) else { return };
+        if let Some(above) = self.nodes.get_mut(&parent) {
+            above.children.swap_remove(slot);
+            if let Some(&moved) = above.children.get(slot)
+                && let Some(moved) = self.nodes.get_mut(&moved)
+            {
+                moved.slot = slot;
+            }
+        }
+        self.prune(parent, physical);
+    }
+
+    /// Forgets the entity if it has nothing below and either no parent or no physics.
+    fn prune(&mut self, entity: Entity, physical: &Physical) {
+        let Some(node) = self.nodes.get(&entity) else { return };
+        if !node.children.is_empty() || (node.parent.is_some() && physical.contains(entity)) {
+            return;
+        }
+        self.unlink(entity, physical);
+        self.nodes.remove(&entity);
+    }
+
+    /// How many entities are tracked.
+    #[cfg(test)]
+    pub(crate) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Panics where a link is not mutual, or, with nothing queued, differs from the hierarchy.
+    #[cfg(test)]
+    pub(crate) fn check(&self, world: &World) {
+        if !world.resource::<HierarchyQueue>().0.is_empty() {
+            return;
+        }
+        for (&entity, node) in &self.nodes {
+            let actual = world.get::<ChildOf>(entity).map(ChildOf::parent);
+            assert_eq!(node.parent, actual, "parent of {entity}");
+            assert!(world.get::<Position>(entity).is_some() || !node.children.is_empty());
+            assert!(node.parent.is_some() || !node.children.is_empty());
+            if let Some(parent) = node.parent {
+                assert_eq!(self.nodes[&parent].children[node.slot], entity);
+            }
+            for child in &node.children {
+                assert_eq!(self.nodes[child].parent, Some(entity));
+            }
+        }
+    }
+}
+
+/// Drains the queue into the tree.
+pub(crate) fn update_tree(
+    mut queue: ResMut<HierarchyQueue>,
+    mut tree: ResMut<TransformTree>,
+    mut changes: ResMut<TreeChanges>,
+    parents: Parents,
+    physical: Physical,
+    mut seen: Local<EntityHashSet>,
+) {
+    let TreeChanges { queued, reparented, transforms } = &mut *changes;
+    queued.clear();
+    reparented.clear();
+    transforms.clear();
+    if queue.0.is_empty() {
+        return;
+    }
+    seen.clear();
+    queued.extend(queue.0.drain(..).filter(|&entity| seen.insert(entity)));
+    reparented.extend(queued.iter().copied().filter(|&entity| tree.refresh(entity, &parents, &physical)));
+}
+
+/// Appends the entity of a life-cycle event to the queue.
+pub(crate) fn enqueue<E: EntityEvent, B: Bundle>(event: On<E, B>, mut queue: ResMut<HierarchyQueue>) {
+    queue.0.push(event.event_target());
+}
+
+/// Appends an entity with another parent, if there is physics in it or below.
+fn enqueue_parented<E: EntityEvent>(
+    event: On<E, ChildOf>,
+    mut queue: ResMut<HierarchyQueue>,
+    tree: Res<TransformTree>,
+    physical: Physical,
+) {
+    let entity = event.event_target();
+    if tree.contains(entity) || physical.contains(entity) {
+        queue.0.push(entity);
+    }
+}
+
+/// Owns the tree and the one scan over `Transform`. Added by whichever plugin needs it first.
+pub(crate) struct TransformTreePlugin(pub(crate) Interned<dyn ScheduleLabel>);
+
+impl TransformTreePlugin {
+    /// Adds the plugin unless it is there.
+    pub(crate) fn ensure(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
+        if !app.is_plugin_added::<Self>() {
+            app.add_plugins(Self(schedule));
+        }
+    }
+}
+
+impl Plugin for TransformTreePlugin {
+    fn build(&self, app: &mut App) {
+        use PhysicsTransformSystems::{PositionToTransform, Propagate, TransformToPosition};
+        app.init_resource::<HierarchyQueue>()
+            .init_resource::<TransformTree>()
+            .init_resource::<TreeChanges>()
+            .init_resource::<SyncTicks>()
+            .add_observer(enqueue::<Add, Position>)
+            .add_observer(enqueue::<Remove, Position>)
+            .add_observer(enqueue_parented::<Insert>)
+            .add_observer(enqueue_parented::<Remove>)
+            .add_observer(|check: On<CheckChangeTicks>, mut ticks: ResMut<SyncTicks>| ticks.clamp(*check))
+            .configure_sets(
+                self.0,
+                ((Propagate, TransformToPosition).chain().in_set(PhysicsSystems::Prepare),),
+            )
+            .configure_sets(self.0, PositionToTransform.in_set(PhysicsSystems::Writeback))
+            .add_systems(self.0, (update_tree, find_changed_transforms).chain().in_set(Propagate));
+    }
+}

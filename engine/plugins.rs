@@ -1,0 +1,108 @@
+//! [`PhysicsPlugins`]: everything that makes up the engine, in the order it is added.
+
+use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
+use bevy_ecs::{intern::Interned, schedule::ScheduleLabel};
+
+#[cfg(feature = "default-collider")]
+use crate::{
+    collider_tree::ColliderTreePlugin,
+    collision::{
+        collider::{Collider, ColliderBackendPlugin},
+        narrow_phase::NarrowPhasePlugin,
+    },
+};
+use crate::{
+    collision::{
+        broad_phase::{BroadPhaseCorePlugin, BvhBroadPhasePlugin},
+        collider::{
+            collider_hierarchy::ColliderHierarchyPlugin, collider_transform::ColliderTransformPlugin,
+        },
+    },
+    dynamics::{rigid_body::mass_properties::MassPropertyPlugin, solver::SolverPlugins},
+    interpolation::PhysicsInterpolationPlugin,
+    math::Scalar,
+    physics_transform::PhysicsTransformPlugin,
+    schedule::PhysicsSchedulePlugin,
+    type_registration::PhysicsTypeRegistrationPlugin,
+};
+
+/// All plugins of the engine.
+///
+/// | Plugin | Gives |
+/// | --- | --- |
+/// | [`PhysicsSchedulePlugin`] | the schedule of a step, its clocks, and the system that takes it |
+/// | [`PhysicsTypeRegistrationPlugin`] | reflection of components and resources |
+/// | [`MassPropertyPlugin`] | mass, inertia and centre of mass from colliders |
+/// | [`ColliderHierarchyPlugin`] | which colliders belong to which body |
+/// | [`ColliderTransformPlugin`] | where they are on it |
+/// | [`ColliderBackendPlugin`](crate::collision::collider::ColliderBackendPlugin) | boxes, scale and mass of `Collider`s |
+/// | [`ColliderTreePlugin`](crate::collider_tree::ColliderTreePlugin) | the trees over them |
+/// | [`NarrowPhasePlugin`](crate::collision::narrow_phase::NarrowPhasePlugin) | contacts between them |
+/// | [`SolverPlugins`] | motion, contact response, sleep |
+/// | [`BroadPhaseCorePlugin`], [`BvhBroadPhasePlugin`] | pairs that might touch |
+/// | [`PhysicsTransformPlugin`] | `Transform` to `Position` and `Rotation`, and back |
+/// | [`PhysicsInterpolationPlugin`] | smooth transforms between steps, for those who ask |
+///
+/// Those about `Collider` need feature `default-collider`.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_app::prelude::*;
+/// # use bevy_transform::TransformPlugin;
+/// # let mut app = App::new();
+/// # app.add_plugins(TransformPlugin);
+/// // In `FixedUpdate`, a metre being 20 units, and nothing ever falling asleep:
+/// app.add_plugins(
+///     PhysicsPlugins::new(FixedUpdate).with_length_unit(20.0).build().disable::<IslandSleepingPlugin>(),
+/// );
+/// ```
+pub struct PhysicsPlugins {
+    schedule: Interned<dyn ScheduleLabel>,
+    length_unit: Option<Scalar>,
+}
+
+impl PhysicsPlugins {
+    /// Physics hosted in `schedule`: one step per run, as long as its `Time` advanced. The default is [`FixedPostUpdate`].
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self { schedule: schedule.intern(), length_unit: None }
+    }
+
+    /// Sets [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit): roughly how many units of the app a metre is. What is no positive length counts as
+    /// 1, with a warning.
+    pub fn with_length_unit(mut self, unit: Scalar) -> Self {
+        self.length_unit = Some(unit);
+        self
+    }
+}
+
+impl Default for PhysicsPlugins {
+    fn default() -> Self {
+        Self::new(FixedPostUpdate)
+    }
+}
+
+impl PluginGroup for PhysicsPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        let builder = PluginGroupBuilder::start::<Self>()
+            .add(PhysicsSchedulePlugin::new(self.schedule))
+            .add(PhysicsTypeRegistrationPlugin)
+            .add(MassPropertyPlugin::new(self.schedule))
+            .add(ColliderHierarchyPlugin)
+            .add(ColliderTransformPlugin::new(self.schedule));
+
+        #[cfg(feature = "default-collider")]
+        let builder = builder
+            .add(ColliderBackendPlugin::<Collider>::new(self.schedule))
+            .add(ColliderTreePlugin::<Collider>::default())
+            .add(NarrowPhasePlugin::<Collider>::default());
+
+        builder
+            .add_group(
+                self.length_unit.map_or_else(SolverPlugins::default, SolverPlugins::new_with_length_unit),
+            )
+            .add(BroadPhaseCorePlugin)
+            .add(BvhBroadPhasePlugin::<()>::default())
+            .add(PhysicsTransformPlugin::new(self.schedule))
+            .add(PhysicsInterpolationPlugin::default())
+    }
+}

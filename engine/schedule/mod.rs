@@ -1,0 +1,191 @@
+//! When physics runs: [`PhysicsSchedule`] is one step, [`PhysicsSystems`] are its place in the schedule that hosts it,
+//! [`PhysicsStepSystems`] are its stages, and the [clocks](Physics) say how long a step is.
+
+mod time;
+
+pub use time::*;
+
+use bevy_app::{App, FixedPostUpdate, Plugin};
+use bevy_ecs::{
+    change_detection::Tick,
+    intern::Interned,
+    prelude::*,
+    schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor},
+    system::SystemChangeTick,
+};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use bevy_time::Time;
+use bevy_transform::TransformSystems;
+use core::time::Duration;
+
+/// Adds [`PhysicsSchedule`], the clocks, the system sets and the system that takes a step whenever the hosting schedule runs.
+///
+/// Without it there are no clocks and no step is taken.
+pub struct PhysicsSchedulePlugin {
+    schedule: Interned<dyn ScheduleLabel>,
+}
+
+impl PhysicsSchedulePlugin {
+    /// Hosts physics in `schedule`; the default is [`FixedPostUpdate`].
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self { schedule: schedule.intern() }
+    }
+}
+
+impl Default for PhysicsSchedulePlugin {
+    fn default() -> Self {
+        Self::new(FixedPostUpdate)
+    }
+}
+
+impl Plugin for PhysicsSchedulePlugin {
+    fn build(&self, app: &mut App) {
+        // The generic clock is the app's; it is only made sure of here for apps without `TimePlugin`.
+        app.init_resource::<Time>()
+            .init_resource::<Time<Physics>>()
+            .init_resource::<Time<Substeps>>()
+            .init_resource::<LastPhysicsTick>()
+            .init_resource::<SimulatedTime>();
+
+        app.configure_sets(
+            self.schedule,
+            (
+                PhysicsSystems::First,
+                PhysicsSystems::Prepare,
+                PhysicsSystems::StepSimulation,
+                PhysicsSystems::Writeback,
+                PhysicsSystems::Last,
+            )
+                .chain()
+                .before(TransformSystems::Propagate),
+        );
+        app.add_systems(self.schedule, run_physics_schedule.in_set(PhysicsSystems::StepSimulation));
+
+        app.edit_schedule(PhysicsSchedule, make_deterministic);
+        app.configure_sets(
+            PhysicsSchedule,
+            (
+                PhysicsStepSystems::First,
+                PhysicsStepSystems::BroadPhase,
+                PhysicsStepSystems::NarrowPhase,
+                PhysicsStepSystems::Solver,
+                PhysicsStepSystems::Sleeping,
+                PhysicsStepSystems::Finalize,
+                PhysicsStepSystems::Last,
+            )
+                .chain(),
+        );
+        app.add_systems(PhysicsSchedule, record_step.after(PhysicsStepSystems::Last));
+    }
+}
+
+/// Makes a schedule run its systems one after the other, and fail to build if their order is not determined.
+///
+/// A step is parallel inside its systems; a task per system would cost more than it wins, twelve times a tick.
+pub(crate) fn make_deterministic(schedule: &mut Schedule) {
+    schedule.set_executor(SingleThreadedExecutor::new()).set_build_settings(ScheduleBuildSettings {
+        ambiguity_detection: LogLevel::Error,
+        ..ScheduleBuildSettings::default()
+    });
+}
+
+/// One step of the simulation, in the stages of [`PhysicsStepSystems`].
+///
+/// Systems run one after the other, and an ambiguous order is an error: say `.before` or `.after` where two of your systems share data.
+/// [Run by hand](Physics#stepping-by-hand), a step is as long as the delta of [`Time<Physics>`](Physics), whatever the generic [`Time`] shows.
+#[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
+pub struct PhysicsSchedule;
+
+/// The stages of physics in the schedule that hosts it, in this order and before [`TransformSystems::Propagate`].
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PhysicsSystems {
+    /// Before anything of physics.
+    First,
+    /// What the app changed is read in: transforms, hierarchies, colliders, mass properties.
+    Prepare,
+    /// The clock advances and, unless it stands still, [`PhysicsSchedule`] runs.
+    StepSimulation,
+    /// Results are written to where the app reads them: positions and rotations to transforms.
+    Writeback,
+    /// After everything of physics.
+    Last,
+}
+
+/// The former name of [`PhysicsSystems`].
+#[deprecated(since = "0.4.0", note = "renamed to `PhysicsSystems`")]
+pub type PhysicsSet = PhysicsSystems;
+
+/// The stages of a step, in this order, in [`PhysicsSchedule`].
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PhysicsStepSystems {
+    /// Before anything of the step.
+    First,
+    /// Pairs of colliders whose boxes overlap are found.
+    BroadPhase,
+    /// Contacts of those pairs are computed.
+    NarrowPhase,
+    /// Velocities and positions are integrated, contacts and joints solved, substep by substep.
+    Solver,
+    /// Islands at rest are put to sleep.
+    Sleeping,
+    /// Collision events are sent, diagnostics written.
+    Finalize,
+    /// After everything of the step.
+    Last,
+}
+
+/// The former name of [`PhysicsStepSystems`].
+#[deprecated(since = "0.4.0", note = "renamed to `PhysicsStepSystems`")]
+pub type PhysicsStepSet = PhysicsStepSystems;
+
+/// The change tick at the end of the last step.
+///
+/// What changed after it was changed by the app, or by the write-back of that step, not by the step itself. A run of the hosting schedule that took no step does not move it:
+/// what the app changes while physics is paused is still news to the first step after it.
+#[derive(Resource, Reflect, Default)]
+#[reflect(Resource, Default)]
+pub struct LastPhysicsTick(pub Tick);
+
+/// How far [`Time<Physics>`](Physics) had come at the end of the last step, however that was started.
+///
+/// A paused clock that is further than this was advanced by hand, and the step for it was not run yet.
+#[derive(Resource, Default)]
+struct SimulatedTime(Duration);
+
+fn record_step(
+    mut last_tick: ResMut<LastPhysicsTick>,
+    mut simulated: ResMut<SimulatedTime>,
+    clock: Res<Time<Physics>>,
+    tick: SystemChangeTick,
+) {
+    last_tick.0 = tick.this_run();
+    simulated.0 = clock.elapsed();
+}
+
+/// Advances [`Time<Physics>`](Physics) and takes one step of that length, if it has one.
+///
+/// The first run is a run like any other: if the host's clock has not started, there is nothing to simulate.
+fn run_physics_schedule(world: &mut World) {
+    let host_delta = world.resource::<Time>().delta();
+    let simulated = world.resource::<SimulatedTime>().0;
+    let mut clock = world.resource_mut::<Time<Physics>>();
+
+    let paused = clock.is_paused();
+    if !paused {
+        let delta = scaled_delta(&clock, host_delta);
+        clock.advance_by(delta);
+    } else if clock.elapsed() <= simulated {
+        clock.advance_by(Duration::ZERO);
+    }
+    if clock.delta().is_zero() {
+        return;
+    }
+
+    let generic = clock.as_generic();
+    with_generic_time(world, generic, |world| world.run_schedule(PhysicsSchedule));
+
+    let mut clock = world.resource_mut::<Time<Physics>>();
+    if paused && clock.is_paused() {
+        clock.advance_by(Duration::ZERO);
+    }
+}

@@ -1,0 +1,151 @@
+//! The step: every system of the engine in [`PhysicsSchedule`], in the order it runs.
+//!
+//! Plugins add the systems to the stages below, so that disabling a plugin takes its systems out; this list
+//! says where each stage stands. The public sets are attached to the same list, so they cannot drift apart.
+
+use bevy_app::App;
+use bevy_ecs::prelude::*;
+
+use crate::{
+    collider_tree::ColliderTreeSystems,
+    collision::{broad_phase::BroadPhaseSystems, narrow_phase::NarrowPhaseSystems},
+    dynamics::{
+        integrator::IntegrationSystems,
+        lifecycle,
+        solver::{
+            StepSolver,
+            schedule::{SolverSystems, SubstepSolverSystems},
+        },
+        tables::{Bodies, Colliders, Contacts},
+    },
+    schedule::{PhysicsSchedule, PhysicsStepSystems},
+};
+
+/// The stages of a step, in order.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Stage {
+    /// Counters and timers start anew.
+    ResetDiagnostics,
+    /// Bodies and colliders enter and leave.
+    DrainLifecycle,
+    /// Surfaces follow their components.
+    RefreshSurfaces,
+    /// Islands fall asleep and wake as the app asked.
+    FollowSleep,
+    /// What the app moved or pushed wakes.
+    FollowApp,
+    /// Poses and velocities of awake bodies are read.
+    ReadAwake,
+    /// Boxes of what entered or was moved by hand.
+    UpdateBoxes,
+    /// New pairs become contacts.
+    FindPairs,
+    /// Manifolds of awake contacts.
+    UpdateContacts,
+    /// Colours, islands, waking.
+    LinkContacts,
+    /// Awake bodies become rows.
+    Gather,
+    /// Touching manifolds become rows.
+    PrepareRows,
+    /// The substeps.
+    Substeps,
+    /// What hit fast bounces.
+    Restitution,
+    /// Rows become poses and velocities.
+    Scatter,
+    /// Impulses go back into the manifolds.
+    StoreImpulses,
+    /// Islands at rest fall asleep.
+    Sleep,
+    /// Boxes of what moved.
+    Refit,
+    /// What was despawned during the step leaves.
+    RemoveLost,
+    /// [`Sleeping`](crate::dynamics::rigid_body::sleeping::Sleeping) follows.
+    MirrorSleep,
+}
+
+/// Puts the stages in order and makes the tables. Every plugin that adds to the step calls it; the first call
+/// counts.
+pub(crate) fn install(app: &mut App) {
+    if app.world().contains_resource::<Bodies>() {
+        return;
+    }
+    app.init_resource::<Bodies>()
+        .init_resource::<Colliders>()
+        .init_resource::<Contacts>()
+        .init_resource::<StepSolver>();
+    lifecycle::watch(app);
+    app.configure_sets(
+        PhysicsSchedule,
+        (
+            (
+                Stage::ResetDiagnostics,
+                Stage::DrainLifecycle,
+                Stage::RefreshSurfaces,
+                Stage::FollowSleep,
+                Stage::FollowApp,
+                Stage::ReadAwake,
+            )
+                .chain()
+                .in_set(PhysicsStepSystems::First),
+            Stage::UpdateBoxes.in_set(ColliderTreeSystems::UpdateAabbs),
+            Stage::FindPairs.in_set(BroadPhaseSystems::CollectCollisions),
+            (Stage::UpdateContacts, Stage::LinkContacts).chain().in_set(NarrowPhaseSystems::Update),
+            Stage::Gather.in_set(SolverSystems::PrepareSolverBodies),
+            Stage::PrepareRows.in_set(SolverSystems::PrepareContactConstraints),
+            Stage::Substeps.in_set(SolverSystems::Substep),
+            Stage::Restitution.in_set(SolverSystems::Restitution),
+            Stage::Scatter.in_set(SolverSystems::Finalize),
+            Stage::StoreImpulses.in_set(SolverSystems::StoreContactImpulses),
+            Stage::Sleep.in_set(PhysicsStepSystems::Sleeping),
+            (Stage::Refit, Stage::RemoveLost, Stage::MirrorSleep).chain().in_set(PhysicsStepSystems::Finalize),
+        )
+            .chain(),
+    );
+    app.add_systems(
+        PhysicsSchedule,
+        (
+            crate::dynamics::drain::drain_lifecycle.in_set(Stage::DrainLifecycle),
+            crate::dynamics::drain::remove_lost_late.in_set(Stage::RemoveLost),
+        ),
+    );
+}
+
+/// The engine's own systems of a substep, in the public sets of [`SubstepSchedule`].
+///
+/// [`SubstepSchedule`]: crate::dynamics::solver::schedule::SubstepSchedule
+pub(crate) mod substep {
+    use super::{IntegrationSystems, SubstepSolverSystems};
+    use crate::dynamics::solver::{schedule::SubstepSchedule, substeps::*};
+    use bevy_app::App;
+    use bevy_ecs::prelude::*;
+
+    /// Velocities and positions.
+    pub(crate) fn add_integration(app: &mut App) {
+        app.init_resource::<OwnSubstepSystems>();
+        app.world_mut().resource_mut::<OwnSubstepSystems>().integrates = true;
+        app.add_systems(
+            SubstepSchedule,
+            (
+                integrate_velocities.in_set(IntegrationSystems::Velocity),
+                integrate_positions.in_set(IntegrationSystems::Position),
+            ),
+        );
+    }
+
+    /// Contacts.
+    pub(crate) fn add_contacts(app: &mut App) {
+        app.init_resource::<OwnSubstepSystems>();
+        app.world_mut().resource_mut::<OwnSubstepSystems>().solves = true;
+        app.add_systems(
+            SubstepSchedule,
+            (
+                warm_start.in_set(SubstepSolverSystems::WarmStart),
+                solve_contacts.in_set(SubstepSolverSystems::SolveConstraints),
+                relax_contacts.in_set(SubstepSolverSystems::Relax),
+            ),
+        );
+    }
+}

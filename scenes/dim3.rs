@@ -1,0 +1,227 @@
+//! What the scenes need to know about space, and the list of 3D scenes.
+
+use avian::math::Vector;
+use avian::parry::math::Pose;
+use avian::prelude::*;
+use bevy_ecs::world::World;
+use bevy_math::{Quat, Vec3};
+use bevy_transform::components::Transform;
+
+use crate::numbers::{Rng, half_turn_parts, sin_cos};
+use crate::scene::{Bounds, Scene, Watch, at, spawn_block, spawn_body};
+use crate::{card_house, dominoes, pile, pyramid, slopes, towers, tumbler};
+
+/// Density of the bodies in kg/m³.
+pub const DENSITY: f32 = 100.0;
+/// Keeps positions as they are: space has all three coordinates.
+pub const PLANE: Vec3 = Vec3::ONE;
+/// Width of the large pyramid's floor in metres.
+pub const FLOOR_WIDTH: f32 = 800.0;
+/// Columns and rows of one layer of the pile.
+pub const PILE_GRID: (u32, u32) = (7, 7);
+/// Kinds of pieces in the pile.
+pub const PIECES: u32 = 8;
+/// Layers of boxes in the tumbler, front to back.
+pub const TUMBLER_DEPTH: u32 = 5;
+/// Room between the tumbler's front and back in metres.
+pub const TUMBLER_SPACE: f32 = 6.0;
+/// Side and pitch of the tumbler's boxes in metres.
+pub const TUMBLER_BOX: (f32, f32) = (0.6, 1.0);
+
+/// The scenes of the tour.
+pub static SCENES: [Scene; 8] = [
+    Scene {
+        name: "large_pyramid",
+        about: "5,050 unit boxes, 100 at the base, sleeping off",
+        steps: 200,
+        build: |world| drop(pyramid::large(world, 100)),
+        bounds: Bounds::new([-51.0, 0.0, -1.0], [51.0, 100.0, 1.0]),
+        eye: Vec3::new(0.35, 0.18, 1.0),
+        watch: Watch::Rest,
+    },
+    Scene {
+        name: "many_pyramids",
+        about: "14 x 14 pyramids of base 10, 10,780 boxes, sleeping off",
+        steps: 100,
+        build: |world| pyramid::many(world, 14, 14, 10),
+        bounds: Bounds::new([-77.0, 0.0, -77.0], [77.0, 10.0, 77.0]),
+        eye: Vec3::new(0.5, 0.55, 1.0),
+        watch: Watch::Rest,
+    },
+    Scene {
+        name: "mixed_pile",
+        about: "every shape falls into a container",
+        steps: 900,
+        build: |world| pile::mixed(world, 9),
+        bounds: Bounds::new([-8.0, -1.0, -8.0], [8.0, 9.0, 8.0]),
+        eye: Vec3::new(0.35, 0.7, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "tumbler",
+        about: "boxes in a kinematic drum that turns 25 degrees a second",
+        steps: 750,
+        build: |world| {
+            tumbler::tumbler(world, 16);
+        },
+        bounds: Bounds::new([-15.0, -5.0, -4.0], [15.0, 25.0, 4.0]),
+        eye: Vec3::new(0.25, 0.15, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "dominoes",
+        about: "200 dominoes along a spiral, the outermost one falling",
+        steps: 1800,
+        build: |world| drop(dominoes::dominoes(world, 200)),
+        bounds: Bounds::new([-10.0, -0.5, -10.0], [10.0, 1.5, 10.0]),
+        eye: Vec3::new(0.1, 0.9, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "card_house",
+        about: "a house of cards of 5 storeys",
+        steps: 600,
+        build: |world| card_house::card_house(world, 5),
+        bounds: Bounds::new([-2.5, 0.0, -0.5], [2.5, 5.0, 0.5]),
+        eye: Vec3::new(0.5, 0.25, 1.0),
+        watch: Watch::Rest,
+    },
+    Scene {
+        name: "slopes",
+        about: "balls and cylinders roll or slip, boxes slide or stick on slopes of 20 degrees",
+        steps: 240,
+        build: |world| drop(slopes::slopes(world)),
+        bounds: Bounds::new([-12.0, -4.5, -10.0], [12.0, 5.5, 10.0]),
+        eye: Vec3::new(-0.4, 0.6, 1.0),
+        watch: Watch::Rest,
+    },
+    Scene {
+        name: "towers",
+        about: "towers of 10, 20 and 50 boxes",
+        steps: 900,
+        build: |world| towers::towers(world, &[10, 20, 50]),
+        bounds: Bounds::new([-8.0, 0.0, -2.0], [8.0, 50.5, 2.0]),
+        eye: Vec3::new(0.6, 0.25, 1.0),
+        watch: Watch::Rest,
+    },
+];
+
+/// Parry's pose for a transform without scale.
+pub fn pose(transform: &Transform) -> Pose {
+    Pose::from_parts(transform.translation, transform.rotation)
+}
+
+/// A vector along y.
+pub fn upwards(length: f32) -> Vector {
+    Vector::new(0.0, length, 0.0)
+}
+
+/// A velocity of turning about z, counter-clockwise, in rad/s.
+pub fn spin(rate: f32) -> AngularVelocity {
+    AngularVelocity(Vector::new(0.0, 0.0, rate))
+}
+
+/// A box by its side lengths.
+pub fn block(width: f32, height: f32, depth: f32) -> Collider {
+    Collider::cuboid(width, height, depth)
+}
+
+/// A sphere.
+pub fn ball(radius: f32) -> Collider {
+    Collider::sphere(radius)
+}
+
+/// What rolls down a slope: a cylinder along y, see [`roller_turn`].
+pub fn roller(radius: f32, length: f32) -> Collider {
+    Collider::cylinder(radius, length)
+}
+
+/// The turn that lays a cylinder's axis across the slope.
+pub fn roller_turn() -> Quat {
+    let (sin, cos) = half_turn_parts(core::f32::consts::FRAC_PI_2);
+    Quat::from_xyzw(sin, 0.0, 0.0, cos)
+}
+
+/// Where the ramp of a lane has its middle: beside each other.
+pub fn lane(index: usize) -> Vec3 {
+    Vec3::new(0.0, 0.0, (index as f32 - 3.5) * 2.5)
+}
+
+/// z and glass of the walls in front and behind.
+pub fn walls_across(distance: f32) -> [(f32, bool); 2] {
+    [(-distance, false), (distance, true)]
+}
+
+/// Where a row of pyramids stands.
+pub fn pyramid_row(row: u32, rows: u32, width: f32, _pitch: f32) -> Vec3 {
+    let reach = 0.5 * width - 1.0;
+    let step = 2.0 * reach / (rows.max(2) - 1) as f32;
+    Vec3::new(0.0, 0.0, row as f32 * step - reach)
+}
+
+/// One floor for all pyramids.
+pub fn spawn_pyramid_floors(world: &mut World, _rows: u32, width: f32, _pitch: f32) {
+    spawn_body(world, RigidBody::Static, block(width, 2.0, width), at(0.0, -1.0, 0.0));
+}
+
+/// Foot and heading of each domino: an Archimedean spiral inwards, r = r₀ − c φ, walked in steps of equal length.
+pub fn domino_path(count: u32) -> Vec<(Vec3, f32)> {
+    let (mut radius, mut angle) = (8.5, 0.0f32);
+    let shrink = 1.8 / core::f32::consts::TAU;
+    (0..count)
+        .map(|_| {
+            let (sin, cos) = sin_cos(angle);
+            let foot = Vec3::new(radius * cos, 0.0, radius * sin);
+            // The way on is (−sin, cos) in (x, z); a yaw ψ turns x into (cos ψ, −sin ψ).
+            let heading = -angle - core::f32::consts::FRAC_PI_2;
+            let step = dominoes::PITCH / radius;
+            angle += step;
+            radius -= shrink * step;
+            (foot, heading)
+        })
+        .collect()
+}
+
+/// The floor below the spiral.
+pub fn spawn_domino_floor(world: &mut World, _count: u32) {
+    spawn_block(world, [24.0, 2.0, 24.0], at(0.0, -1.0, 0.0));
+}
+
+/// A further turn of a piece of the pile, out of the plane.
+pub fn piece_turn(angle: f32) -> Quat {
+    let (sin, cos) = half_turn_parts(1.7 * angle);
+    Quat::from_xyzw(sin, 0.0, 0.0, cos)
+}
+
+/// The colliders of a piece of the pile, each with its place on the body: the first is the body's own.
+pub fn piece(kind: u32) -> Vec<(Collider, Transform)> {
+    let single = |collider: Collider| vec![(collider, Transform::IDENTITY)];
+    match kind {
+        0 => single(Collider::sphere(0.45)),
+        1 => single(Collider::capsule(0.3, 0.5)),
+        2 => single(Collider::cuboid(0.9, 0.6, 0.7)),
+        3 => single(Collider::convex_hull(rock(0.6)).expect("points around a sphere")),
+        4 => single(Collider::cylinder(0.4, 0.8)),
+        5 => single(Collider::cone(0.5, 0.9)),
+        6 => single(Collider::round_cuboid(0.6, 0.5, 0.4, 0.12)),
+        _ => vec![
+            (Collider::cuboid(0.8, 0.2, 0.2), Transform::IDENTITY),
+            (Collider::sphere(0.23), at(-0.37, 0.0, 0.0)),
+            (Collider::sphere(0.23), at(0.37, 0.0, 0.0)),
+        ],
+    }
+}
+
+/// Twelve random points at the given distance from the origin.
+fn rock(radius: f32) -> Vec<Vector> {
+    let mut rng = Rng::new(3);
+    let mut points = Vec::new();
+    while points.len() < 12 {
+        let mut coordinate = || rng.between(-1.0, 1.0);
+        let point = Vec3::new(coordinate(), coordinate(), coordinate());
+        if (0.1..1.0).contains(&point.length_squared()) {
+            points.push(point * (radius / point.length()));
+        }
+    }
+    points
+}

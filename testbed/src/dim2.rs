@@ -1,0 +1,13 @@
+//! The testbed's view of the plane: `avian2d`, its scenes, its shapes.
+
+use avian2d as avian;
+use scenes2d as scenes;
+
+#[path = "overlap.rs"]
+mod overlap;
+#[path = "space2.rs"]
+mod space;
+#[path = "world.rs"]
+mod world;
+
+pub use world::entries;

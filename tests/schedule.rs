@@ -1,0 +1,344 @@
+//! When steps are taken and what the clocks show: pausing, speed, stepping by hand, the order of stages.
+
+use avian::{
+    dynamics::{integrator::IntegrationSystems, solver::schedule::SubstepSolverSystems},
+    prelude::*,
+    schedule::LastPhysicsTick,
+};
+use bevy_app::prelude::*;
+use bevy_ecs::{
+    prelude::*,
+    schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel},
+};
+use bevy_time::prelude::*;
+use bevy_transform::{TransformPlugin, TransformSystems, prelude::GlobalTransform};
+use core::time::Duration;
+
+/// The deltas of the steps taken, each as (generic clock, physics clock).
+#[derive(Resource, Default)]
+struct Steps(Vec<(Duration, Duration)>);
+
+fn note_step(mut steps: ResMut<Steps>, generic: Res<Time>, physics: Res<Time<Physics>>) {
+    steps.0.push((generic.delta(), physics.delta()));
+}
+
+/// An app whose `Update` hosts physics and whose generic clock only [`tick`] moves.
+fn app() -> App {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update)));
+    app.init_resource::<Steps>();
+    app.add_systems(PhysicsSchedule, note_step.in_set(PhysicsStepSystems::First));
+    app.finish();
+    app.cleanup();
+    app
+}
+
+fn tick(app: &mut App, millis: u64) {
+    app.world_mut().resource_mut::<Time>().advance_by(Duration::from_millis(millis));
+    app.update();
+}
+
+fn clock(app: &mut App) -> Mut<'_, Time<Physics>> {
+    app.world_mut().resource_mut::<Time<Physics>>()
+}
+
+fn steps(app: &App) -> &[(Duration, Duration)] {
+    &app.world().resource::<Steps>().0
+}
+
+fn millis(count: u64) -> (Duration, Duration) {
+    (Duration::from_millis(count), Duration::from_millis(count))
+}
+
+#[test]
+fn every_run_of_the_host_is_one_step_of_its_delta() {
+    let mut app = app();
+    tick(&mut app, 10);
+    tick(&mut app, 7);
+    assert_eq!(steps(&app), [millis(10), millis(7)]);
+    assert_eq!(clock(&mut app).elapsed(), Duration::from_millis(17));
+}
+
+#[test]
+fn the_generic_clock_is_given_back() {
+    let mut app = app();
+    clock(&mut app).set_relative_speed(0.5);
+    tick(&mut app, 10);
+    let generic = app.world().resource::<Time>();
+    assert_eq!(generic.delta(), Duration::from_millis(10));
+    assert_eq!(generic.elapsed(), Duration::from_millis(10));
+}
+
+#[test]
+fn no_time_is_no_step() {
+    let mut app = app();
+    app.update();
+    tick(&mut app, 0);
+    clock(&mut app).set_relative_speed(0.0);
+    tick(&mut app, 10);
+    assert_eq!(steps(&app), []);
+}
+
+#[test]
+fn tiny_and_huge_deltas_are_passed_on() {
+    let mut app = app();
+    for delta in [Duration::from_nanos(1), Duration::from_secs(10), Duration::from_secs(1 << 40)] {
+        app.world_mut().resource_mut::<Time>().advance_by(delta);
+        app.update();
+        assert_eq!(steps(&app).last(), Some(&(delta, delta)));
+    }
+}
+
+#[test]
+fn a_paused_clock_takes_no_step_and_goes_on_afterwards() {
+    let mut app = app();
+    tick(&mut app, 10);
+    clock(&mut app).pause();
+    tick(&mut app, 10);
+    tick(&mut app, 10);
+    assert!(clock(&mut app).is_paused());
+    assert_eq!(clock(&mut app).delta(), Duration::ZERO);
+    clock(&mut app).unpause();
+    tick(&mut app, 5);
+    assert_eq!(steps(&app), [millis(10), millis(5)]);
+    assert_eq!(clock(&mut app).elapsed(), Duration::from_millis(15));
+}
+
+#[test]
+fn relative_speed_scales_steps_and_not_their_number() {
+    let mut app = app();
+    clock(&mut app).set_relative_speed(0.5);
+    tick(&mut app, 10);
+    clock(&mut app).set_relative_speed(3.0);
+    tick(&mut app, 10);
+    assert_eq!(steps(&app), [millis(5), millis(30)]);
+}
+
+#[test]
+fn speeds_that_are_no_ratio_change_nothing() {
+    let mut app = app();
+    for wrong in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -2.0] {
+        clock(&mut app).set_relative_speed(wrong);
+        tick(&mut app, 10);
+    }
+    assert_eq!(steps(&app), [millis(10); 4]);
+}
+
+#[test]
+fn a_speed_beyond_all_clocks_does_not_panic() {
+    let mut app = app();
+    clock(&mut app).set_relative_speed_f64(f64::MAX);
+    tick(&mut app, 10);
+    tick(&mut app, 10);
+    // The first step reaches the end of time; there is nothing after it.
+    assert_eq!(steps(&app).len(), 1);
+    assert_eq!(clock(&mut app).elapsed(), Duration::MAX);
+}
+
+#[test]
+fn steps_run_by_hand_are_as_long_as_the_physics_clock_says() {
+    let mut app = app();
+    clock(&mut app).pause();
+    for _ in 0..3 {
+        clock(&mut app).advance_by(Duration::from_millis(4));
+        app.world_mut().run_schedule(PhysicsSchedule);
+    }
+    assert!(steps(&app).iter().all(|step| step.1 == Duration::from_millis(4)));
+    assert_eq!(steps(&app).len(), 3);
+    // They are done: the host takes none of them a second time.
+    tick(&mut app, 10);
+    assert_eq!(steps(&app).len(), 3);
+}
+
+#[test]
+fn advancing_a_paused_clock_asks_the_host_for_one_step() {
+    let mut app = app();
+    clock(&mut app).pause();
+    clock(&mut app).advance_by(Duration::from_millis(4));
+    tick(&mut app, 10);
+    tick(&mut app, 10);
+    assert_eq!(steps(&app), [millis(4)]);
+    assert_eq!(clock(&mut app).elapsed(), Duration::from_millis(4));
+    assert_eq!(app.world().resource::<Time>().delta(), Duration::from_millis(10));
+}
+
+#[test]
+fn the_substep_clock_runs_at_a_fraction_of_the_step() {
+    let mut app = app();
+    for (count, expected) in [(4, 3), (1, 12), (0, 12)] {
+        app.insert_resource(SubstepCount(count));
+        tick(&mut app, 12);
+        assert_eq!(app.world().resource::<Time<Substeps>>().delta(), Duration::from_millis(expected));
+    }
+}
+
+#[test]
+fn only_steps_move_the_last_physics_tick() {
+    let mut app = app();
+    tick(&mut app, 10);
+    let after_step = app.world().resource::<LastPhysicsTick>().0;
+    clock(&mut app).pause();
+    tick(&mut app, 10);
+    assert_eq!(app.world().resource::<LastPhysicsTick>().0, after_step);
+    clock(&mut app).unpause();
+    tick(&mut app, 10);
+    let now = app.world_mut().change_tick();
+    assert!(app.world().resource::<LastPhysicsTick>().0.is_newer_than(after_step, now));
+}
+
+#[test]
+fn the_host_may_be_any_schedule_and_is_fixed_by_default() {
+    #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
+    struct Rollback;
+
+    for (plugins, host, others) in [
+        (PhysicsPlugins::default(), FixedPostUpdate.intern(), [Update.intern(), FixedUpdate.intern()]),
+        (PhysicsPlugins::new(Rollback), Rollback.intern(), [FixedPostUpdate.intern(), PostUpdate.intern()]),
+    ] {
+        let mut app = App::new();
+        app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, plugins)).init_resource::<Steps>();
+        app.init_schedule(Update).init_schedule(FixedUpdate).init_schedule(FixedPostUpdate);
+        app.add_systems(PhysicsSchedule, note_step.in_set(PhysicsStepSystems::First));
+        app.world_mut().resource_mut::<Time>().advance_by(Duration::from_millis(10));
+        for other in others {
+            app.world_mut().run_schedule(other);
+        }
+        assert_eq!(steps(&app).len(), 0);
+        app.world_mut().run_schedule(host);
+        assert_eq!(steps(&app).len(), 1);
+    }
+}
+
+/// Makes a system of each set of a list note that set, and gives the list as it should be noted.
+fn note_sets<S: SystemSet + Clone>(
+    app: &mut App,
+    schedule: impl ScheduleLabel + Clone,
+    sets: &[S],
+) -> Vec<String> {
+    app.init_resource::<Order>();
+    for set in sets.iter().cloned() {
+        let name = format!("{set:?}");
+        app.add_systems(
+            schedule.clone(),
+            (move |mut order: ResMut<Order>| order.0.push(name.clone())).in_set(set),
+        );
+    }
+    sets.iter().map(|set| format!("{set:?}")).collect()
+}
+
+#[derive(Resource, Default)]
+struct Order(Vec<String>);
+
+#[test]
+fn the_stages_of_the_host_are_in_order_and_before_transforms_are_propagated() {
+    let mut app = app();
+    let mut expected = note_sets(
+        &mut app,
+        Update,
+        &[
+            PhysicsSystems::First,
+            PhysicsSystems::Prepare,
+            PhysicsSystems::StepSimulation,
+            PhysicsSystems::Writeback,
+            PhysicsSystems::Last,
+        ],
+    );
+    expected.extend(note_sets(&mut app, Update, &[TransformSystems::Propagate]));
+    app.configure_sets(Update, PhysicsSystems::First.ambiguous_with(PhysicsSystems::Last));
+    tick(&mut app, 10);
+    assert_eq!(app.world().resource::<Order>().0, expected);
+}
+
+#[test]
+fn the_stages_of_a_step_are_in_order() {
+    let mut app = app();
+    let mut expected = note_sets(&mut app, PhysicsSchedule, &[PhysicsStepSystems::First]);
+    expected.extend(note_sets(
+        &mut app,
+        PhysicsSchedule,
+        &[BroadPhaseSystems::First, BroadPhaseSystems::CollectCollisions, BroadPhaseSystems::Last],
+    ));
+    expected.extend(note_sets(
+        &mut app,
+        PhysicsSchedule,
+        &[NarrowPhaseSystems::First, NarrowPhaseSystems::Update, NarrowPhaseSystems::Last],
+    ));
+    expected.extend(note_sets(
+        &mut app,
+        PhysicsSchedule,
+        &[
+            SolverSystems::PrepareSolverBodies,
+            SolverSystems::PrepareJoints,
+            SolverSystems::PrepareContactConstraints,
+            SolverSystems::PreSubstep,
+            SolverSystems::Substep,
+            SolverSystems::PostSubstep,
+            SolverSystems::Restitution,
+            SolverSystems::Finalize,
+            SolverSystems::StoreContactImpulses,
+        ],
+    ));
+    expected.extend(note_sets(
+        &mut app,
+        PhysicsSchedule,
+        &[PhysicsStepSystems::Sleeping, PhysicsStepSystems::Finalize, PhysicsStepSystems::Last],
+    ));
+    // An unordered pair of these systems would be an ambiguity, which is an error here.
+    tick(&mut app, 10);
+    assert_eq!(app.world().resource::<Order>().0, expected);
+}
+
+#[test]
+fn the_stages_of_a_substep_are_in_order() {
+    let mut app = app();
+    let mut expected = note_sets(&mut app, SubstepSchedule, &[IntegrationSystems::Velocity]);
+    expected.extend(note_sets(
+        &mut app,
+        SubstepSchedule,
+        &[SubstepSolverSystems::WarmStart, SubstepSolverSystems::SolveConstraints],
+    ));
+    expected.extend(note_sets(&mut app, SubstepSchedule, &[IntegrationSystems::Position]));
+    expected.extend(note_sets(
+        &mut app,
+        SubstepSchedule,
+        &[SubstepSolverSystems::Relax, SubstepSolverSystems::Damping],
+    ));
+    app.world_mut().resource_mut::<Order>().0.clear();
+    app.world_mut().run_schedule(SubstepSchedule);
+    assert_eq!(app.world().resource::<Order>().0, expected);
+}
+
+#[test]
+fn the_systems_of_the_engine_are_unambiguous_in_host_step_and_substep() {
+    let mut app = app();
+    app.edit_schedule(Update, |schedule| {
+        schedule.set_build_settings(ScheduleBuildSettings {
+            ambiguity_detection: LogLevel::Error,
+            ..Default::default()
+        });
+    });
+    app.world_mut().spawn((RigidBody::Dynamic, GlobalTransform::default()));
+    app.world_mut().schedule_scope(Update, |world, schedule| schedule.initialize(world).expect("host"));
+    app.world_mut().schedule_scope(PhysicsSchedule, |world, schedule| {
+        schedule.initialize(world).expect("step");
+    });
+    app.world_mut().schedule_scope(SubstepSchedule, |world, schedule| {
+        schedule.initialize(world).expect("substep");
+    });
+    tick(&mut app, 10);
+    assert_eq!(steps(&app).len(), 1);
+}
+
+#[test]
+fn an_ambiguous_order_of_systems_in_a_step_or_substep_is_an_error() {
+    fn write(_: ResMut<Steps>) {}
+    fn also_write(_: ResMut<Steps>) {}
+
+    for schedule in [PhysicsSchedule.intern(), SubstepSchedule.intern()] {
+        let mut app = app();
+        app.add_systems(schedule, (write, also_write));
+        app.world_mut().schedule_scope(schedule, |world, schedule| {
+            assert!(schedule.initialize(world).is_err(), "{:?}", schedule.label());
+        });
+    }
+}
