@@ -41,6 +41,7 @@ impl Default for Rotation {
     }
 }
 
+#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 impl Rotation {
     /// Stands for "take it from the `Transform`"; replaced when the entity gets its body or collider.
     pub const PLACEHOLDER: Self = Self { cos: Scalar::MAX, sin: Scalar::MAX };
@@ -51,14 +52,14 @@ impl Rotation {
     /// A quarter turn, π/2 radians.
     pub const FRAC_PI_2: Self = Self { cos: 0.0, sin: 1.0 };
     /// A sixth of a turn, π/3 radians.
-    pub const FRAC_PI_3: Self = Self { cos: 0.5, sin: 0.866_025_403_784_438_6 as Scalar };
+    pub const FRAC_PI_3: Self = Self { cos: 0.5, sin: 0.866_025_403_784_438_6_f64 as Scalar };
     /// An eighth of a turn, π/4 radians.
     pub const FRAC_PI_4: Self = Self { cos: FRAC_1_SQRT_2, sin: FRAC_1_SQRT_2 };
     /// A twelfth of a turn, π/6 radians.
-    pub const FRAC_PI_6: Self = Self { cos: 0.866_025_403_784_438_6 as Scalar, sin: 0.5 };
+    pub const FRAC_PI_6: Self = Self { cos: 0.866_025_403_784_438_6_f64 as Scalar, sin: 0.5 };
     /// A sixteenth of a turn, π/8 radians.
     pub const FRAC_PI_8: Self =
-        Self { cos: 0.923_879_532_511_286_7 as Scalar, sin: 0.382_683_432_365_089_8 as Scalar };
+        Self { cos: 0.923_879_532_511_286_7_f64 as Scalar, sin: 0.382_683_432_365_089_8_f64 as Scalar };
 
     /// The rotation by an angle in radians, counter-clockwise. An angle that is not finite gives NaN.
     pub fn radians(radians: Scalar) -> Self {

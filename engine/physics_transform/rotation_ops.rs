@@ -30,6 +30,7 @@ macro_rules! by_reference {
         }
     };
 }
+#[allow(unused_imports, reason = "rotations of the plane have more products")]
 pub(super) use by_reference;
 
 by_reference!(Rotation, Vector => Vector, |rotation, v| rotation.rotate_vector(v));

@@ -54,6 +54,7 @@ fn app() -> App {
 }
 
 /// The point with x, y and, where there is depth, z.
+#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 fn at(x: Scalar, y: Scalar) -> Vector {
     dim::vector_from_xyz([f64::from(x as f32), f64::from(y as f32), 0.0])
 }

@@ -9,7 +9,8 @@ use crate::shape::Aabb;
 /// *Layout.* A node with a box of its own is visited only to find that its box misses. So here a
 /// [`Branch`] holds the boxes of *both* children in one cache line, and a leaf's box stands in its
 /// parent: a walk touches one line per branch that was hit and none for what was missed, and the whole
-/// takes 72 bytes per leaf. Leaves keep their number (the [`ProxyId`]) wherever the branches move, so
+/// takes 72 bytes per leaf. (Bounds turned sideways for four-lane tests made rays some 15 % faster and box
+/// queries, which wait for unpredictable jumps, no faster: not worth it.) Leaves keep their number (the [`ProxyId`]) wherever the branches move, so
 /// that a full rebuild can lay the branches out in the order of a walk.
 ///
 /// *Total behaviour.* A box that is not `min ≤ max` in every component (inverted, NaN) is stored as

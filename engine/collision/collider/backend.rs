@@ -2,7 +2,10 @@
 
 use super::{AnyCollider, ColliderAabb, CollisionLayers, EnlargedAabb, ScalableCollider, Sensor};
 use crate::dynamics::lifecycle::ColliderId;
-use crate::dynamics::rigid_body::mass_properties::MassPropertySystems;
+use crate::dynamics::rigid_body::mass_properties::{
+    MassPropertyQueue, MassPropertySystems,
+    components::{ColliderDensity, ColliderMassProperties},
+};
 use crate::dynamics::rigid_body::mass_properties::components::{ColliderDensity, ColliderMassProperties};
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::change_detection::DetectChangesMut;
@@ -72,6 +75,7 @@ pub fn update_collider_mass_properties<C: AnyCollider>(
     changed: Query<Entity, (Or<(Changed<C>, Changed<ColliderDensity>)>, Without<Sensor>)>,
     mut former_sensors: RemovedComponents<Sensor>,
     mut colliders: Query<(&C, &ColliderDensity, &mut ColliderMassProperties), Without<Sensor>>,
+    mut queue: MassPropertyQueue,
 ) {
     for entity in changed.iter().chain(former_sensors.read()) {
         let Ok((collider, density, mut properties)) = colliders.get_mut(entity) else {
@@ -79,7 +83,9 @@ pub fn update_collider_mass_properties<C: AnyCollider>(
         };
         // Masses of NaN or below zero would reach the solver through sums: no mass is the safe reading.
         let density = if density.0.is_finite() && density.0 > 0.0 { density.0 } else { 0.0 };
-        properties.set_if_neq(ColliderMassProperties::from_shape(collider, density));
+        if properties.set_if_neq(ColliderMassProperties::from_shape(collider, density)) {
+            queue.push(entity);
+        }
     }
 }
 

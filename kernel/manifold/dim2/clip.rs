@@ -1,7 +1,7 @@
 //! From a reference edge and an incident edge to contact points.
 
 use super::super::LocalManifold;
-use super::points::push_between;
+use super::points::{Limits, push_between};
 use crate::math::{Pose, Vector, max};
 
 /// An edge of a polygon, counter-clockwise, with the indices of its ends.
@@ -34,8 +34,7 @@ pub(super) struct Facing {
     pub(super) reference: Edge,
     pub(super) incident: Edge,
     /// The radii of the reference and of the incident polygon.
-    pub(super) radii: [f32; 2],
-    pub(super) prediction: f32,
+    pub(super) limits: Limits,
 }
 
 /// Offsets along an edge below this part of the edges' lengths count as none.
@@ -53,39 +52,45 @@ impl Facing {
         let offsets = self.incident.ends.map(|w| w - start);
         let along = offsets.map(|w| w.dot(tangent));
         let height = offsets.map(|w| w.dot(self.normal));
-        let deepest = usize::from(height[1] < height[0]);
         let nothing = ALIGNED * (length + (along[1] - along[0]).abs());
+        // The end to look at is the lower one. Of an edge that lies wholly beside the reference it is the
+        // one nearer to the corner: level edges have no lower end.
+        let beside = along[1] > length || along[0] < 0.0;
+        let end = if beside {
+            let corner = self.reference.ends[usize::from(along[1] > length)];
+            let [p, q] = self.incident.ends.map(|w| (w - corner).length_squared());
+            usize::from(q < p)
+        } else {
+            usize::from(height[1] < height[0])
+        };
 
-        if apart {
-            let beyond = max(-along[deepest], along[deepest] - length);
-            if beyond > nothing {
-                // Beyond an end of the reference edge: either that end faces the inside of the incident
-                // edge, and the normals are nearly those of parallel edges, or two corners are nearest.
-                let end = usize::from(along[deepest] > 0.0);
-                let corner = self.reference.ends[end];
-                let w = self.incident.ends[deepest];
-                let toward = self.incident.ends[1 - deepest] - w;
-                if (corner - w).dot(toward) < -nothing * toward.length() {
-                    self.corners(end, deepest, out);
-                    return;
-                }
+        let beyond = max(-along[end], along[end] - length);
+        if apart && beyond > nothing {
+            // Beyond an end of the reference edge: either that end faces the inside of the incident edge, which
+            // passes over it and is nearly parallel, or two corners are nearest.
+            let own_end = usize::from(along[end] > 0.0);
+            let w = self.incident.ends[end];
+            let toward = self.incident.ends[1 - end] - w;
+            if beside || (self.reference.ends[own_end] - w).dot(toward) < -nothing * toward.length() {
+                self.corners(own_end, end, out);
+                return;
             }
         }
-        self.edges(length, along, height, out);
+        self.edges(length, along, height, end, out);
     }
 
     /// One point between a corner of the reference edge and one of the incident edge.
-    fn corners(&self, end: usize, deepest: usize, out: &mut LocalManifold) {
-        let (p, q) = (self.reference.ends[end], self.incident.ends[deepest]);
-        let feature = self.feature(self.reference.indices[end], self.incident.indices[deepest]);
-        let normal = push_between(p, q, self.normal, self.radii, self.prediction, feature, out);
+    fn corners(&self, own_end: usize, end: usize, out: &mut LocalManifold) {
+        let (p, q) = (self.reference.ends[own_end], self.incident.ends[end]);
+        let feature = self.feature(self.reference.indices[own_end], self.incident.indices[end]);
+        let normal = push_between(p, q, self.normal, self.limits, feature, out);
         out.normal = self.outward(normal);
     }
 
     /// Up to two points where the edges face each other, from positions along the reference edge and
-    /// heights over it.
+    /// heights over it; `end` of the incident edge alone if they do not face each other.
     #[inline]
-    fn edges(&self, length: f32, along: [f32; 2], height: [f32; 2], out: &mut LocalManifold) {
+    fn edges(&self, length: f32, along: [f32; 2], height: [f32; 2], end: usize, out: &mut LocalManifold) {
         out.normal = self.outward(self.normal);
         // The incident edge runs against the reference edge: its end 1 pairs with the start.
         let run = along[0] - along[1];
@@ -102,9 +107,8 @@ impl Facing {
             self.push(first.0, first.1, at(first.1), out);
             self.push(second.0, second.1, at(second.1), out);
         } else {
-            // They only touch, or one of them is upright: the deepest end alone.
-            let deepest = usize::from(height[1] < height[0]);
-            self.push(1 - deepest, along[deepest], height[deepest], out);
+            // One of them is upright or has no length, or rounding let them touch.
+            self.push(1 - end, along[end], height[end], out);
         }
     }
 
@@ -112,9 +116,9 @@ impl Facing {
     /// it, if it is near enough. `end` names the end of the reference edge it is nearer to.
     #[inline]
     fn push(&self, end: usize, t: f32, height: f32, out: &mut LocalManifold) {
-        let separation = height - self.radii[0] - self.radii[1];
-        if separation <= self.prediction {
-            let middle = 0.5 * (height + self.radii[0] - self.radii[1]);
+        let separation = height - self.limits.radii[0] - self.limits.radii[1];
+        if separation <= self.limits.prediction {
+            let middle = 0.5 * (height + self.limits.radii[0] - self.limits.radii[1]);
             let point = self.reference.ends[0] + self.normal.perp() * t + self.normal * middle;
             let feature = self.feature(self.reference.indices[end], self.incident.indices[1 - end]);
             out.push(point, separation, feature);

@@ -3,6 +3,7 @@
 
 use super::super::{FeatureCache, LocalManifold};
 use super::clip::{Edge, Facing, Side};
+use super::points::Limits;
 use super::polygonal::NORMALS;
 use super::polygons::{Best, choose, known_edge, preference, remember};
 use crate::math::{Pose, Vector};
@@ -34,8 +35,7 @@ pub(super) fn collide(
     });
     let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
     remember(cache, side, best);
-    // Written so that a NaN leaves, too.
-    if !(best.separation <= prediction) {
+    if best.separation > prediction {
         return;
     }
 
@@ -47,7 +47,7 @@ pub(super) fn collide(
         let normal = pose.rotation.rotate(NORMALS[best.edge]);
         (edge(own, best.edge).moved(pose), facing_edge(other, normal), normal)
     };
-    Facing { side, normal, reference, incident, radii: [0.0; 2], prediction }
+    Facing { side, normal, reference, incident, limits: Limits { radii: [0.0; 2], prediction } }
         .contact(best.separation > 0.0, out);
 }
 

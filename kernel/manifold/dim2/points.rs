@@ -5,6 +5,13 @@ use super::polygonal::Polygonal;
 use crate::math::{Pose, Vector};
 use crate::shape::direction;
 
+/// The radii of the two shapes, and how far their surfaces may be apart for a contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    pub(super) radii: [f32; 2],
+    pub(super) prediction: f32,
+}
+
 /// Adds the point between two points `p`, `q` that have a radius each, if it is near enough, and gives
 /// the normal from `p` to `q`, which is `otherwise` if they coincide.
 #[inline]
@@ -12,15 +19,14 @@ pub(super) fn push_between(
     p: Vector,
     q: Vector,
     otherwise: Vector,
-    radii: [f32; 2],
-    prediction: f32,
+    limits: Limits,
     feature: u32,
     out: &mut LocalManifold,
 ) -> Vector {
     let (normal, distance) = direction(q - p).unwrap_or((otherwise, 0.0));
-    let separation = distance - radii[0] - radii[1];
-    if separation <= prediction {
-        out.push(p + normal * (0.5 * (distance + radii[0] - radii[1])), separation, feature);
+    let separation = distance - limits.radii[0] - limits.radii[1];
+    if separation <= limits.prediction {
+        out.push(p + normal * (0.5 * (distance + limits.radii[0] - limits.radii[1])), separation, feature);
     }
     normal
 }
@@ -34,7 +40,7 @@ pub(super) fn collide_points(
     out: &mut LocalManifold,
 ) {
     let (p, q) = (a.vertices[0], pose.transform(b.vertices[0]));
-    out.normal = push_between(p, q, Vector::Y, [a.radius, b.radius], prediction, 0, out);
+    out.normal = push_between(p, q, Vector::Y, Limits { radii: [a.radius, b.radius], prediction }, 0, out);
 }
 
 /// A polygon `a` and a ball `b`: the edge the centre is farthest out of, or one of its ends if the
@@ -47,7 +53,6 @@ pub(super) fn collide_with_point(
     out: &mut LocalManifold,
 ) {
     let center = pose.transform(b.vertices[0]);
-    let radii = [a.radius, b.radius];
     let reach = prediction + a.radius + b.radius;
     let mut best = (f32::NEG_INFINITY, 0);
     for (i, (v, n)) in a.vertices.iter().zip(a.normals).enumerate() {
@@ -72,7 +77,14 @@ pub(super) fn collide_with_point(
             None
         };
         if let Some(corner) = corner {
-            out.normal = push_between(corner, center, normal, radii, prediction, 0, out);
+            out.normal = push_between(
+                corner,
+                center,
+                normal,
+                Limits { radii: [a.radius, b.radius], prediction },
+                0,
+                out,
+            );
             return;
         }
     }

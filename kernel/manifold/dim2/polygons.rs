@@ -6,8 +6,9 @@
 
 use super::super::{FeatureCache, LocalManifold};
 use super::clip::{Edge, Facing, Side};
+use super::points::Limits;
 use super::polygonal::Polygonal;
-use crate::math::{Pose, Vector};
+use crate::math::{Pose, Vector, min};
 
 /// An edge with the vertex of the other polygon that is lowest over it.
 #[derive(Clone, Copy)]
@@ -49,8 +50,7 @@ pub(super) fn collide(
     let on_b = most_separating(b, a, pose, reach);
     let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
     remember(cache, side, best);
-    // Written so that a NaN leaves, too.
-    if !(best.separation <= reach) {
+    if best.separation > reach {
         return;
     }
 
@@ -69,8 +69,7 @@ pub(super) fn collide(
         normal,
         reference: edge(own, best.edge).moved(own_pose),
         incident: incident.moved(other_pose),
-        radii: [own.radius, other.radius],
-        prediction,
+        limits: Limits { radii: [own.radius, other.radius], prediction },
     }
     .contact(best.separation > 0.0, out);
 }
@@ -98,37 +97,42 @@ fn edge(polygon: &Polygonal, i: usize) -> Edge {
     Edge { ends: [polygon.vertices[i], polygon.vertices[j]], indices: [i, j] }
 }
 
+/// Up to this many vertices, looking at all of them for every edge is faster than walking: no branches.
+const FEW: usize = 16;
+
 /// The edge of `own` that `other` is farthest out of, given the pose of `own` in `other`'s frame; the
 /// first one beyond `reach` ends the search.
 ///
-/// The normals turn one way around, and so does the lowest vertex (rotating calipers; M. Shamos, 1978):
-/// every vertex is looked at about twice in all, not once per edge.
+/// Of a polygon with many vertices not all are looked at for every edge: the normals turn one way
+/// around, and so does the lowest vertex (rotating calipers; M. Shamos, 1978).
 fn most_separating(own: &Polygonal, other: &Polygonal, pose: &Pose, reach: f32) -> Best {
-    let mut best = Best { edge: 0, support: 0, separation: f32::NEG_INFINITY };
-    let mut support = lowest(other, pose.rotation.rotate(own.normals[0])).0;
+    let mut best = (f32::NEG_INFINITY, 0, Vector::ZERO);
+    let few = other.len() <= FEW;
+    let mut support = if few { 0 } else { lowest(other, pose.rotation.rotate(own.normals[0])).0 };
     for (i, (v, n)) in own.vertices.iter().zip(own.normals).enumerate() {
         let normal = pose.rotation.rotate(*n);
-        let height;
-        (support, height) = descend(other, normal, support);
-        let separation = height - pose.transform(*v).dot(normal);
-        if separation > best.separation {
-            best = Best { edge: i, support, separation };
+        let height = if few {
+            other.vertices.iter().fold(f32::INFINITY, |low, w| min(w.dot(normal), low))
+        } else {
+            support = descend(other, normal, support);
+            other.vertices[support].dot(normal)
+        };
+        let separation = height - v.dot(*n) - pose.position.dot(normal);
+        if separation > best.0 {
+            best = (separation, i, normal);
             if separation > reach {
                 break;
             }
         }
     }
-    best
+    Best { edge: best.1, support: lowest(other, best.2).0, separation: best.0 }
 }
 
-/// The vertex least far along `normal`, and how far, walking from one that was it for a normal up to half a
-/// turn behind. After nearly half a turn the walk may start on an edge that is level within rounding: it
-/// looks two vertices ahead.
+/// The vertex least far along `normal`, walking from one that was it for a normal up to half a turn
+/// behind. After nearly half a turn the walk may start on an edge that is level within rounding: it looks
+/// two vertices ahead.
 #[inline]
-fn descend(polygon: &Polygonal, normal: Vector, start: usize) -> (usize, f32) {
-    if polygon.len() <= 4 {
-        return lowest(polygon, normal);
-    }
+fn descend(polygon: &Polygonal, normal: Vector, start: usize) -> usize {
     let (mut support, mut height) = (start, polygon.vertices[start].dot(normal));
     for _ in 0..polygon.len() {
         let next = polygon.next(support);
@@ -142,7 +146,7 @@ fn descend(polygon: &Polygonal, normal: Vector, start: usize) -> (usize, f32) {
             break;
         }
     }
-    (support, height)
+    support
 }
 
 /// The vertex least far along `normal`, and how far.
@@ -175,7 +179,7 @@ fn cached(
     let (own, other, pose) = if side == Side::A { (a, b, inverse) } else { (b, a, pose) };
     let normal = pose.rotation.rotate(*own.normals.get(edge)?);
     let (support, height) = lowest(other, normal);
-    let separation = height - pose.transform(own.vertices[edge]).dot(normal);
+    let separation = height - own.vertices[edge].dot(own.normals[edge]) - pose.position.dot(normal);
     Some((side, Best { edge, support, separation }))
 }
 

@@ -4,7 +4,7 @@
 
 use super::super::LocalManifold;
 use super::clip::{Edge, Facing, Side, pair};
-use super::points::push_between;
+use super::points::{Limits, push_between};
 use super::polygonal::Polygonal;
 use crate::math::{Pose, Vector};
 
@@ -46,11 +46,14 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32
     }
 
     let (own, other) = if best.side == Side::A { (p, q) } else { (q, p) };
-    let radii = if best.side == Side::A { [a.radius, b.radius] } else { [b.radius, a.radius] };
+    let limits = Limits {
+        radii: if best.side == Side::A { [a.radius, b.radius] } else { [b.radius, a.radius] },
+        prediction,
+    };
     if let (Some(corner), false) = (best.corner, crossing) {
         let feature = if best.side == Side::A { pair(corner, best.end) } else { pair(best.end, corner) };
         let fallback = own_axis(&axes, best.side).perp();
-        let normal = push_between(own[corner], other[best.end], fallback, radii, prediction, feature, out);
+        let normal = push_between(own[corner], other[best.end], fallback, limits, feature, out);
         out.normal = if best.side == Side::A { normal } else { -normal };
         return;
     }
@@ -74,8 +77,7 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32
         normal,
         reference: edge(own, faces_left),
         incident: edge(other, incident_backward),
-        radii,
-        prediction,
+        limits,
     }
     .contact(false, out);
 }

@@ -1,6 +1,6 @@
 //! Contacts against brute force in `f64`, and against what must not change them.
 
-use super::super::{FeatureCache, LocalManifold};
+use super::super::{FeatureCache, LocalManifold, LocalPoint};
 use super::collide;
 use crate::math::{Pose, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Foreign, HalfSpace, Hull, Segment, Shape, Triangle};
@@ -273,11 +273,12 @@ proptest! {
         if m.count == 0 || m.normal.dot(swapped.normal) < 0.999_999_9 {
             return Ok(());
         }
-        let turn = |f: u32| f >> 16 | f << 16;
+        let turn = |f: u32| f.rotate_left(16);
         for p in m.points().iter().filter(|p| p.separation < PREDICTION - 1e-4) {
-            let twin = swapped.points().iter().find(|q| (q.point - p.point).length() < 2e-3);
-            prop_assert!(twin.is_some(), "{m:?} and {swapped:?}");
-            let twin = twin.unwrap();
+            let off = |q: &LocalPoint| (q.point - p.point).length() + (q.separation - p.separation).abs();
+            let twin = swapped.points().iter().min_by(|q, r| off(q).total_cmp(&off(r)));
+            prop_assert!(twin.is_some_and(|q| (q.point - p.point).length() < 2e-3), "{m:?} and {swapped:?}");
+            let twin = twin.expect("just seen");
             prop_assert!((twin.separation - p.separation).abs() < 2e-3);
             let distinct = m.count == 1 || (m.points[0].point - m.points[1].point).length() > 5e-3;
             if distinct && swapped.count == m.count {

@@ -18,7 +18,7 @@ pub(super) fn principal_axes(matrix: SymmetricDMat3) -> (DVec3, DMat3) {
     let size = a.iter().flatten().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     for _ in 0..MAX_SWEEPS {
         let off = a[0][1].abs().max(a[0][2].abs()).max(a[1][2].abs());
-        if !(off > size * 1e-17) {
+        if off <= size * 1e-17 || off.is_nan() {
             break;
         }
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
@@ -50,11 +50,9 @@ fn rotate(a: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize) {
     a[p][r] = a[r][p];
     a[q][r] = a[r][q];
     // V is stored by columns.
-    for row in 0..3 {
-        let (vp, vq) = (v[p][row], v[q][row]);
-        v[p][row] = c * vp - s * vq;
-        v[q][row] = s * vp + c * vq;
-    }
+    let (vp, vq) = (v[p], v[q]);
+    v[p] = core::array::from_fn(|row| c * vp[row] - s * vq[row]);
+    v[q] = core::array::from_fn(|row| s * vp[row] + c * vq[row]);
 }
 
 /// R diag(values) Rᵀ for a rotation matrix R.

@@ -21,7 +21,7 @@ type WithOwnMass = Or<(With<Mass>, With<AngularInertia>, With<CenterOfMass>)>;
 
 /// Marks bodies for recomputation, given an entity that belongs to one.
 #[derive(SystemParam)]
-pub(crate) struct MassPropertyQueue<'w, 's> {
+pub struct MassPropertyQueue<'w, 's> {
     commands: Commands<'w, 's>,
     bodies: Query<'w, 's, Has<RecomputeMassProperties>, (With<RigidBody>, Allow<Disabled>)>,
     colliders: Query<'w, 's, &'static ColliderOf, Allow<Disabled>>,
@@ -101,7 +101,7 @@ pub(super) fn queue_changed(
     for (entity, mass, inertia, center, name) in &changed {
         queue.push(entity);
         let wrong = match (mass, inertia, center) {
-            (Some(Mass(mass)), ..) if !(*mass >= 0.0) => Some("`Mass` is negative or NaN"),
+            (Some(Mass(mass)), ..) if mass.is_nan() || *mass < 0.0 => Some("`Mass` is negative or NaN"),
             (_, Some(inertia), _) if !inertia.is_valid() => Some("`AngularInertia` is negative or NaN"),
             (.., Some(center)) if !center.is_finite() => Some("`CenterOfMass` is infinite or NaN"),
             _ => None,

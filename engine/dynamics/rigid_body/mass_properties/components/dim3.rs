@@ -267,7 +267,7 @@ impl ComputedAngularInertia {
         if q[0] == 0.0 && q[1] == 0.0 && q[2] == 0.0 {
             return self;
         }
-        let [x, y, z, w] = q.map(|component| AdjustDouble::double(component));
+        let [x, y, z, w] = q.map(AdjustDouble::double);
         let rotation = quaternion_to_matrix(bevy_math::DQuat::from_xyzw(x, y, z, w));
         Self { inverse: Inertia(widen(self.inverse)).rotated(rotation).0.adjust_precision() }
     }

@@ -1,0 +1,184 @@
+//! The convex polygon, sharp or rounded, of any number of vertices.
+
+mod mass;
+mod outline;
+#[cfg(test)]
+mod tests;
+pub(super) mod wide;
+
+use super::MassProperties;
+use crate::math::{Vector, max, min};
+use crate::shape::primitives::{Stretch, checked_length, direction_or, hit_of_stretch};
+use crate::shape::{Aabb, Capsule, RayHit, ShapeError};
+use mass::mass_of_rounded_polygon;
+use outline::{edges, merge_distance, monotone_chain, simplified, turns_left_once};
+use wide::{cross, length, sub, wide};
+
+/// A convex polygon, sharp or rounded: all points within [`radius`](Self::radius) of its core.
+///
+/// The vertices go round counter-clockwise, without duplicates and without vertices on the line of
+/// their neighbours; edge `i` leads from vertex `i` to the next one and has normal `i`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hull {
+    vertices: Box<[Vector]>,
+    normals: Box<[Vector]>,
+    radius: f32,
+    aabb: Aabb,
+    mass: MassProperties,
+}
+
+impl Hull {
+    /// The polygon with the given outline, rounded by `radius` metres (0 leaves it sharp).
+    ///
+    /// Takes either orientation. Duplicate points and points on the line of their neighbours, within
+    /// 1e-6 of the size, are left out.
+    ///
+    /// # Errors
+    /// `NotFinite` and `Negative` for such numbers, `Degenerate` if less than a triangle is left,
+    /// `NotConvex` if the outline turns both ways or goes round more than once.
+    pub fn from_convex(vertices: &[Vector], radius: f32) -> Result<Self, ShapeError> {
+        let radius = check(vertices, radius)?;
+        let mut outline = vertices.to_vec();
+        let origin = outline.first().copied().map(wide).ok_or(ShapeError::Degenerate)?;
+        let area: f64 = edges(&outline).map(|(p, q)| cross(sub(wide(p), origin), sub(wide(q), origin))).sum();
+        if area < 0.0 {
+            outline.reverse();
+        }
+        let outline = simplified(outline, merge_distance(vertices))?;
+        if turns_left_once(&outline) { Ok(Self::build(outline, radius)) } else { Err(ShapeError::NotConvex) }
+    }
+
+    /// The convex hull of any points, rounded by `radius` metres (0 leaves it sharp).
+    ///
+    /// # Errors
+    /// `NotFinite` and `Negative` for such numbers, `Degenerate` if all points lie on one line within
+    /// 1e-6 of their extent.
+    pub fn convex_hull_of(points: &[Vector], radius: f32) -> Result<Self, ShapeError> {
+        let radius = check(points, radius)?;
+        let tolerance = merge_distance(points);
+        let outline = simplified(monotone_chain(points), tolerance)?;
+        if turns_left_once(&outline) { Ok(Self::build(outline, radius)) } else { Err(ShapeError::Degenerate) }
+    }
+
+    fn build(vertices: Vec<Vector>, radius: f32) -> Self {
+        let normals: Box<[Vector]> = edges(&vertices)
+            .map(|(p, q)| {
+                let e = sub(wide(q), wide(p));
+                let l = length(e);
+                Vector::from_array([(e[1] / l) as f32, (-e[0] / l) as f32])
+            })
+            .collect();
+        let aabb = Aabb::around(vertices.iter().copied()).grown(radius);
+        let mass = mass_of_rounded_polygon(&vertices, f64::from(radius));
+        Self { vertices: vertices.into(), normals, radius, aabb, mass }
+    }
+
+    /// The corners of the core, counter-clockwise; at least three.
+    #[inline]
+    pub fn vertices(&self) -> &[Vector] {
+        &self.vertices
+    }
+
+    /// The outward unit normals: `normals()[i]` is that of the edge from vertex `i` to the next.
+    #[inline]
+    pub fn normals(&self) -> &[Vector] {
+        &self.normals
+    }
+
+    /// How far the surface stands off the core, in metres; 0 for a sharp polygon.
+    #[inline]
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// The box around the polygon in its own frame, radius included.
+    #[inline]
+    pub fn bounds(&self) -> Aabb {
+        self.aabb
+    }
+
+    /// The point farthest along `direction` (any length), radius included.
+    pub fn support(&self, direction: Vector) -> Vector {
+        let mut best = (self.vertices[0], self.vertices[0].dot(direction));
+        for v in &self.vertices[1..] {
+            let height = v.dot(direction);
+            if height > best.1 {
+                best = (*v, height);
+            }
+        }
+        if self.radius > 0.0 { best.0 + direction_or(direction, Vector::X) * self.radius } else { best.0 }
+    }
+
+    /// Where a ray along the unit vector `direction` hits; see [`Shape::cast_ray`](super::Shape::cast_ray).
+    pub fn cast_ray(
+        &self,
+        origin: Vector,
+        direction: Vector,
+        max_distance: f32,
+        solid: bool,
+    ) -> Option<RayHit> {
+        if self.radius == 0.0 {
+            return cast_ray_polygon(&self.vertices, &self.normals, origin, direction, max_distance, solid);
+        }
+        // The boundary of a rounded polygon is that of the capsules around its edges.
+        let mut whole: Option<Stretch> = None;
+        let (mut first, mut last) = (None, None);
+        for (a, b) in edges(&self.vertices) {
+            let capsule = Capsule { a, b, radius: self.radius };
+            let Some((enter, exit)) = capsule.stretch(origin, direction) else { continue };
+            let (low, high) = whole.unwrap_or((f32::INFINITY, f32::NEG_INFINITY));
+            if enter < low {
+                first = Some(capsule);
+            }
+            if exit > high {
+                last = Some(capsule);
+            }
+            whole = Some((min(enter, low), max(exit, high)));
+        }
+        hit_of_stretch(whole?, max_distance, solid, |entering, t| {
+            let outward = if entering { -direction } else { direction };
+            let capsule = if entering { first } else { last };
+            capsule.map_or(outward, |c| c.normal_at(origin + direction * t, outward))
+        })
+    }
+
+    /// Area, centroid and polar moment of the area about it.
+    #[inline]
+    pub fn unit_mass(&self) -> MassProperties {
+        self.mass
+    }
+}
+
+/// The radius, if all numbers are usable.
+fn check(points: &[Vector], radius: f32) -> Result<f32, ShapeError> {
+    if points.iter().all(|p| p.is_finite()) { checked_length(radius) } else { Err(ShapeError::NotFinite) }
+}
+
+/// Clips the ray by every edge's line (M. Cyrus and J. Beck, 1978).
+pub(super) fn cast_ray_polygon(
+    vertices: &[Vector],
+    normals: &[Vector],
+    origin: Vector,
+    direction: Vector,
+    max_distance: f32,
+    solid: bool,
+) -> Option<RayHit> {
+    let (mut enter, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
+    let (mut first, mut last) = (-direction, direction);
+    for (v, n) in vertices.iter().zip(normals) {
+        let (height, slope) = ((origin - *v).dot(*n), direction.dot(*n));
+        let t = height / -slope;
+        if slope < 0.0 {
+            if t > enter {
+                (enter, first) = (t, *n);
+            }
+        } else if slope > 0.0 {
+            if t < exit {
+                (exit, last) = (t, *n);
+            }
+        } else if height > 0.0 {
+            return None;
+        }
+    }
+    hit_of_stretch((enter, exit), max_distance, solid, |entering, _| if entering { first } else { last })
+}

@@ -1,0 +1,443 @@
+//! The rules of the source tree that no compiler checks: where code may depend on the dimension, which way
+//! imports point, and what the simulation must not call if the same input is to give the same bits.
+
+use std::fs;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// The most lines that may name a dimension. What differs more belongs in twin files.
+const CFG_BUDGET: usize = 80;
+
+/// The kernel's folders from the ground up: each may use those before it, and none after it.
+const KERNEL_FLOORS: [&str; 12] = [
+    "math", "data", "team", "shape", "bvh", "graph", "manifold", "table", "contact", "ccd", "solver", "query",
+];
+
+/// Float functions whose bits depend on the platform's libm, on the target or on the compiler. The kernel's
+/// `math` has its own sine, cosine and arc tangent.
+const UNSTABLE_FLOATS: [&str; 22] = [
+    ".sin()",
+    ".cos()",
+    ".tan()",
+    ".sin_cos()",
+    ".asin()",
+    ".acos()",
+    ".atan()",
+    ".atan2(",
+    ".sinh()",
+    ".cosh()",
+    ".tanh()",
+    ".exp()",
+    ".exp2()",
+    ".ln()",
+    ".log2()",
+    ".log10()",
+    ".powf(",
+    ".mul_add(",
+    ".recip()",
+    ".hypot(",
+    ".cbrt()",
+    ".to_radians()",
+];
+
+/// What else makes results depend on more than the input: hash order, clocks, approximations, fused products.
+const UNSTABLE_REST: [&str; 7] =
+    ["HashMap", "HashSet", "Instant::now", "SystemTime", "_mm_rcp", "_mm_rsqrt", "fmadd"];
+
+/// A file of the tree.
+struct Source {
+    /// From the root, with `/`.
+    path: String,
+    text: String,
+    /// The text without comments.
+    code: String,
+    /// The text without comments, literals and what is compiled for tests only.
+    shipped: String,
+}
+
+impl Source {
+    fn new(path: String, text: String) -> Self {
+        let (code, mut shipped) = blank(&text);
+        if is_test_file(&path) {
+            shipped = blank_range(&shipped, 0..shipped.len());
+        }
+        while let Some(part) = test_part(&shipped) {
+            shipped = blank_range(&shipped, part);
+        }
+        Self { path, text, code, shipped }
+    }
+
+    /// The module's depth below the crate's root, that of a file directly in `kernel/` or `engine/` being 1.
+    fn depth(&self) -> usize {
+        let folders = self.path.matches('/').count();
+        folders - usize::from(self.path.ends_with("/mod.rs"))
+    }
+
+    /// The folder or file directly below the crate's root that this file is or is in.
+    fn room(&self) -> &str {
+        let inside = self.path.split_once('/').map_or("", |(_, rest)| rest);
+        inside.split(['/', '.']).next().unwrap_or("")
+    }
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// All Rust files in some folders of the root, in the order of their paths.
+fn sources(folders: &[&str]) -> Vec<Source> {
+    let mut paths = Vec::new();
+    for folder in folders {
+        collect(&root().join(folder), (*folder).to_owned(), &mut paths);
+    }
+    paths.sort();
+    assert!(!paths.is_empty(), "the source tree stands beside the crate");
+    paths
+        .into_iter()
+        .map(|path| {
+            let text = fs::read_to_string(root().join(&path)).expect("a source file can be read");
+            Source::new(path, text)
+        })
+        .collect()
+}
+
+fn collect(folder: &Path, name: String, out: &mut Vec<String>) {
+    for entry in fs::read_dir(folder).unwrap_or_else(|e| panic!("{name}: {e}")) {
+        let entry = entry.expect("a folder can be listed");
+        let file = entry.file_name().to_string_lossy().into_owned();
+        let path = format!("{name}/{file}");
+        if entry.path().is_dir() {
+            if file != "target" {
+                collect(&entry.path(), path, out);
+            }
+        } else if file.ends_with(".rs") {
+            out.push(path);
+        }
+    }
+}
+
+/// Whether a file is compiled for tests only, which its name tells.
+fn is_test_file(path: &str) -> bool {
+    let is_test = |part: &str| {
+        part.starts_with("tests") || ["oracle", "bench", "measure"].contains(&part.trim_end_matches(".rs"))
+    };
+    path.split('/').skip(1).any(is_test)
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Token {
+    Code,
+    Comment,
+    Literal,
+}
+
+/// The text without comments, and the same without what stands in literals. Lines and columns stay.
+fn blank(text: &str) -> (String, String) {
+    let bytes = text.as_bytes();
+    let (mut code, mut bare) = (Vec::with_capacity(bytes.len()), Vec::with_capacity(bytes.len()));
+    let mut at = 0;
+    while at < bytes.len() {
+        let (token, len) = next_token(bytes, at);
+        let end = (at + len).min(bytes.len());
+        for &byte in &bytes[at..end] {
+            let space = if byte == b'\n' { b'\n' } else { b' ' };
+            code.push(if token == Token::Comment { space } else { byte });
+            bare.push(if token == Token::Code { byte } else { space });
+        }
+        at = end;
+    }
+    let whole = |bytes| String::from_utf8(bytes).expect("characters are blanked as a whole");
+    (whole(code), whole(bare))
+}
+
+/// What begins at a byte, and its length: a comment, a literal, or one byte of code.
+fn next_token(bytes: &[u8], at: usize) -> (Token, usize) {
+    let rest = &bytes[at..];
+    let until = |from: usize, end: &[u8]| {
+        let tail = rest.get(from..).unwrap_or(&[]);
+        tail.windows(end.len()).position(|w| w == end).map_or(rest.len(), |p| from + p + end.len())
+    };
+    match rest {
+        [b'/', b'/', ..] => (Token::Comment, until(2, b"\n") - 1),
+        [b'/', b'*', ..] => (Token::Comment, until(2, b"*/")),
+        [b'"', ..] => (Token::Literal, string_length(rest)),
+        [b'r', b'"' | b'#', ..] if at == 0 || !is_word(bytes[at - 1]) => {
+            let hashes = rest[1..].iter().take_while(|b| **b == b'#').count();
+            if rest.get(1 + hashes) != Some(&b'"') {
+                return (Token::Code, 1); // a raw identifier
+            }
+            let end: Vec<u8> = std::iter::once(b'"').chain(std::iter::repeat_n(b'#', hashes)).collect();
+            (Token::Literal, until(2 + hashes, &end))
+        }
+        [b'\'', b'\\', ..] => (Token::Literal, until(3, b"'")),
+        [b'\'', _, b'\'', ..] => (Token::Literal, 3),
+        [b'\'', 0x80..=0xFF, ..] => (Token::Literal, until(2, b"'")),
+        _ => (Token::Code, 1),
+    }
+}
+
+/// The length of a string literal with its quotes.
+fn string_length(rest: &[u8]) -> usize {
+    let mut at = 1;
+    while at < rest.len() {
+        match rest[at] {
+            b'\\' => at += 2,
+            b'"' => return at + 1,
+            _ => at += 1,
+        }
+    }
+    rest.len()
+}
+
+fn is_word(byte: u8) -> bool {
+    byte.is_ascii_alphanumeric() || byte == b'_'
+}
+
+fn blank_range(text: &str, range: Range<usize>) -> String {
+    let keep = |(i, c): (usize, char)| if range.contains(&i) && c != '\n' { ' ' } else { c };
+    text.char_indices().map(keep).collect()
+}
+
+/// The first item that only tests compile, with its attribute.
+fn test_part(bare: &str) -> Option<Range<usize>> {
+    let start = ["#[cfg(test)]", "#[cfg(all(test"].iter().filter_map(|a| bare.find(a)).min()?;
+    let body = start + bare[start..].find(['{', ';']).unwrap_or(bare.len() - start - 1);
+    let end = if bare[body..].starts_with('{') { body + group(&bare[body..]).len() } else { body + 1 };
+    Some(start..end)
+}
+
+/// From an opening brace to the closing one.
+fn group(text: &str) -> &str {
+    let mut open = 0;
+    for (i, c) in text.char_indices() {
+        match c {
+            '{' => open += 1,
+            '}' => open -= 1,
+            _ => {}
+        }
+        if open == 0 {
+            return &text[..=i];
+        }
+    }
+    text
+}
+
+/// The rooms of the crate that a file names by `crate::` or by enough `super::`.
+fn arrows(source: &Source) -> Vec<String> {
+    let text = &source.shipped;
+    let mut found = Vec::new();
+    for (at, _) in text.match_indices("crate::") {
+        let whole = at == 0 || !is_word(text.as_bytes()[at - 1]);
+        if whole {
+            names_after(&text[at + "crate::".len()..], &mut found);
+        }
+    }
+    let climb = "super::".repeat(source.depth());
+    for (at, _) in text.match_indices(&climb) {
+        let starts = at == 0 || !(is_word(text.as_bytes()[at - 1]) || text.as_bytes()[at - 1] == b':');
+        if starts {
+            names_after(&text[at + climb.len()..], &mut found);
+        }
+    }
+    found.sort();
+    found.dedup();
+    found
+}
+
+/// The first name of a path, or those of a group of paths.
+fn names_after(path: &str, out: &mut Vec<String>) {
+    let name =
+        |text: &str| -> String { text.trim_start().chars().take_while(|c| is_word(*c as u8)).collect() };
+    if !path.starts_with('{') {
+        out.push(name(path));
+        return;
+    }
+    let inside = group(path);
+    let mut open = 0;
+    for (i, c) in inside.char_indices() {
+        match c {
+            '{' => open += 1,
+            '}' => open -= 1,
+            _ => {}
+        }
+        if open == 1 && (c == '{' || c == ',') {
+            out.push(name(&inside[i + 1..]));
+        }
+    }
+    out.retain(|n| !n.is_empty());
+}
+
+/// Every line of the shipped code that has one of `words` in it, as `path:line: word`.
+fn find_words(sources: &[Source], words: &[&str]) -> Vec<String> {
+    let mut found = Vec::new();
+    for source in sources {
+        for (number, line) in source.shipped.lines().enumerate() {
+            for word in words.iter().filter(|w| line.contains(**w)) {
+                found.push(format!("{}:{}: {word}", source.path, number + 1));
+            }
+        }
+    }
+    found
+}
+
+/// Which lines have a part inside of a function.
+fn lines_in_functions(bare: &str) -> Vec<bool> {
+    let (mut blocks, mut header): (Vec<bool>, usize) = (Vec::new(), 0);
+    let mut lines = vec![false];
+    for (i, c) in bare.char_indices() {
+        match c {
+            '{' => {
+                let inside = blocks.last() == Some(&true);
+                blocks.push(inside || bare[header..i].split(|c| !is_word(c as u8)).any(|w| w == "fn"));
+            }
+            '}' => drop(blocks.pop()),
+            '\n' => lines.push(false),
+            _ => {}
+        }
+        if matches!(c, '{' | '}' | ';') {
+            header = i + 1;
+        }
+        if blocks.last() == Some(&true)
+            && let Some(line) = lines.last_mut()
+        {
+            *line = true;
+        }
+    }
+    lines
+}
+
+#[track_caller]
+fn assert_none(found: &[String], rule: &str) {
+    assert!(found.is_empty(), "{rule}:\n  {}", found.join("\n  "));
+}
+
+fn names_dimension(line: &str) -> bool {
+    line.contains("feature = \"2d\"") || line.contains("feature = \"3d\"")
+}
+
+#[test]
+fn few_lines_depend_on_the_dimension_and_none_inside_of_functions() {
+    let mut lines = Vec::new();
+    let mut inside = Vec::new();
+    for source in sources(&["kernel", "engine", "scenes"]) {
+        let in_function = lines_in_functions(&blank(&source.text).1);
+        for (number, line) in source.code.lines().enumerate().filter(|(_, l)| names_dimension(l)) {
+            let place = format!("{}:{}: {}", source.path, number + 1, line.trim());
+            if in_function[number] {
+                inside.push(place.clone());
+            }
+            lines.push(place);
+        }
+    }
+    assert_none(&inside, "a dimension is chosen per module, import, alias or field, not inside of functions");
+    let count = lines.len();
+    assert!(
+        count <= CFG_BUDGET,
+        "{count} lines name a dimension, {CFG_BUDGET} may:\n  {}",
+        lines.join("\n  ")
+    );
+}
+
+#[test]
+fn the_kernel_knows_no_bevy() {
+    assert_none(
+        &find_words(&sources(&["kernel"]), &["use bevy", "bevy_", "bevy::"]),
+        "the kernel is free of Bevy",
+    );
+}
+
+#[test]
+fn preludes_are_for_users() {
+    let mut found = Vec::new();
+    for source in sources(&["kernel", "engine"]) {
+        for statement in source.shipped.split([';', '}']) {
+            let statement = statement.trim_start();
+            let own = ["use crate::", "use super::", "use self::"].iter().any(|u| statement.starts_with(u));
+            if (own && statement.contains("prelude")) || statement.contains("crate::prelude") {
+                found.push(format!("{}: {statement}", source.path));
+            }
+        }
+    }
+    assert_none(&found, "inside of the crates names are imported from where they are defined");
+}
+
+#[test]
+fn the_kernel_calls_nothing_that_differs_between_machines() {
+    let kernel = sources(&["kernel"]);
+    let words = [&UNSTABLE_FLOATS[..], &UNSTABLE_REST[..]].concat();
+    assert_none(&find_words(&kernel, &words), "the same input gives the same bits");
+}
+
+#[test]
+fn the_engine_calls_no_float_function_that_differs_between_machines() {
+    assert_none(&find_words(&sources(&["engine"]), &UNSTABLE_FLOATS), "the same input gives the same bits");
+}
+
+#[test]
+fn arrows_in_the_kernel_go_down() {
+    let floor = |room: &str| KERNEL_FLOORS.iter().position(|f| *f == room);
+    let mut up = Vec::new();
+    for source in sources(&["kernel"]).iter().filter(|s| s.path != "kernel/lib.rs") {
+        let Some(own) = floor(source.room()) else {
+            up.push(format!("{}: has no floor yet", source.path));
+            continue;
+        };
+        for target in arrows(source) {
+            match floor(&target) {
+                Some(floor) if floor <= own => {}
+                _ => up.push(format!("{} uses {target}", source.path)),
+            }
+        }
+    }
+    assert_none(&up, "a floor uses the floors below it");
+}
+
+#[test]
+fn the_lowest_floor_of_the_engine_uses_nothing_above_it() {
+    let mut up = Vec::new();
+    for source in sources(&["engine"]).iter().filter(|s| ["math", "schedule"].contains(&s.room())) {
+        let above =
+            arrows(source).into_iter().filter(|t| ["dynamics", "collision", "collider_tree"].contains(&&**t));
+        up.extend(above.map(|target| format!("{} uses {target}", source.path)));
+    }
+    assert_none(&up, "numbers and schedules come before bodies and colliders");
+}
+
+#[test]
+fn nothing_is_left_for_later_in_the_code() {
+    let words =
+        [concat!("to", "do!("), concat!("unimple", "mented!("), concat!("FIX", "ME"), concat!("TO", "DO")];
+    let mut found = Vec::new();
+    for source in sources(&["kernel", "engine", "scenes", "testbed", "examples", "crates", "tests"]) {
+        for (number, line) in
+            source.text.lines().enumerate().filter(|(_, l)| words.iter().any(|w| l.contains(w)))
+        {
+            found.push(format!("{}:{}: {}", source.path, number + 1, line.trim()));
+        }
+    }
+    assert_none(&found, "what is missing is missing openly, not as a mark in the code");
+}
+
+/// The rules would hold of any tree if nothing were ever found.
+#[test]
+fn what_is_shipped_is_told_from_what_is_not() {
+    let text = "use crate::{math::Vector, solver::{self, Row}};\n\
+        /* x.sin() */ // x.cos()\n\
+        fn f<'a>(x: &'a str) -> char { let _ = r#\"\"x.tan()\"#; if x == \"\\\"x.exp()\" { '\"' } else { 'ü' } }\n\
+        #[cfg(test)]\nmod oracle;\n\
+        fn g(x: f32) -> f32 { super::super::graph::h(x).recip() }\n\
+        #[cfg(test)]\nmod tests {\n    use crate::query;\n    fn k() { 1.0.ln(); }\n}\n\
+        fn last() {}\n";
+    let source = Source::new("kernel/shape/ball.rs".to_owned(), text.to_owned());
+    assert_eq!(source.text.len(), source.code.len(), "blanks keep places");
+    assert_eq!(arrows(&source), ["graph", "math", "solver"]);
+    assert_eq!(source.room(), "shape");
+    assert!(source.shipped.contains("fn last") && source.code.contains("fn k"));
+    assert!(!source.shipped.contains("fn k") && !source.shipped.contains("oracle"));
+    let inside = lines_in_functions("struct A {\n    a: fn(u8),\n}\nfn f() {\n    g();\n}\nuse b;\n");
+    assert_eq!(inside, [false, false, false, true, true, true, false, false]);
+    let found = find_words(&[source], &UNSTABLE_FLOATS);
+    assert_eq!(found, ["kernel/shape/ball.rs:6: .recip()"]);
+    assert!(is_test_file("kernel/bvh/measure.rs") && is_test_file("engine/x/tests/dim2.rs"));
+    assert!(!is_test_file("tests/rules.rs") && !is_test_file("kernel/shape/hull3/mesh.rs"));
+}
