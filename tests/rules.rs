@@ -290,7 +290,9 @@ fn lines_in_functions(bare: &str) -> Vec<bool> {
                 let inside = blocks.last() == Some(&true);
                 blocks.push(inside || bare[header..i].split(|c| !is_word(c as u8)).any(|w| w == "fn"));
             }
-            '}' => drop(blocks.pop()),
+            '}' => {
+                blocks.pop();
+            }
             '\n' => lines.push(false),
             _ => {}
         }
@@ -396,8 +398,9 @@ fn arrows_in_the_kernel_go_down() {
 fn the_lowest_floor_of_the_engine_uses_nothing_above_it() {
     let mut up = Vec::new();
     for source in sources(&["engine"]).iter().filter(|s| ["math", "schedule"].contains(&s.room())) {
-        let above =
-            arrows(source).into_iter().filter(|t| ["dynamics", "collision", "collider_tree"].contains(&&**t));
+        let above = arrows(source)
+            .into_iter()
+            .filter(|t| ["dynamics", "collision", "collider_tree"].contains(&t.as_str()));
         up.extend(above.map(|target| format!("{} uses {target}", source.path)));
     }
     assert_none(&up, "numbers and schedules come before bodies and colliders");

@@ -6,7 +6,6 @@ use crate::dynamics::rigid_body::mass_properties::{
     MassPropertyQueue, MassPropertySystems,
     components::{ColliderDensity, ColliderMassProperties},
 };
-use crate::dynamics::rigid_body::mass_properties::components::{ColliderDensity, ColliderMassProperties};
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::change_detection::DetectChangesMut;
 use bevy_ecs::intern::Interned;
