@@ -76,6 +76,8 @@ pub use type_registration::PhysicsTypeRegistrationPlugin;
 
 /// The names that most apps use.
 pub mod prelude {
+    #[expect(deprecated, reason = "former names stay importable")]
+    pub use crate::schedule::{PhysicsSet, PhysicsStepSet};
     pub use crate::{
         PhysicsPlugins,
         collider_tree::{ColliderTreeOptimization, ColliderTreePlugin, TreeOptimizationMode},
@@ -88,7 +90,5 @@ pub mod prelude {
             Substeps,
         },
     };
-    #[expect(deprecated, reason = "former names stay importable")]
-    pub use crate::schedule::{PhysicsSet, PhysicsStepSet};
     pub use avian_derive::*;
 }

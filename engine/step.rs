@@ -100,7 +100,9 @@ pub(crate) fn install(app: &mut App) {
             Stage::Scatter.in_set(SolverSystems::Finalize),
             Stage::StoreImpulses.in_set(SolverSystems::StoreContactImpulses),
             Stage::Sleep.in_set(PhysicsStepSystems::Sleeping),
-            (Stage::Refit, Stage::RemoveLost, Stage::MirrorSleep).chain().in_set(PhysicsStepSystems::Finalize),
+            (Stage::Refit, Stage::RemoveLost, Stage::MirrorSleep)
+                .chain()
+                .in_set(PhysicsStepSystems::Finalize),
         )
             .chain(),
     );

@@ -39,7 +39,9 @@ impl ProxyTable {
 
     /// Takes a collider out.
     pub(crate) fn remove(&mut self, id: u32) {
-        if let Some(Place { kind, leaf: Some(leaf) }) = self.places.get_mut(id as usize).and_then(Option::take) {
+        if let Some(Place { kind, leaf: Some(leaf) }) =
+            self.places.get_mut(id as usize).and_then(Option::take)
+        {
             self.trees[kind].remove(leaf);
         }
     }

@@ -5,8 +5,8 @@ pub mod broad_phase;
 pub mod collider;
 pub(crate) mod contacts;
 mod diagnostics;
-pub(crate) mod pairs;
 pub mod narrow_phase;
+pub(crate) mod pairs;
 
 pub use diagnostics::CollisionDiagnostics;
 
@@ -20,8 +20,8 @@ pub mod prelude {
         broad_phase::{BroadPhaseCorePlugin, BroadPhaseSystems, BvhBroadPhasePlugin},
         collider::{
             AabbContext, AnyCollider, ColliderAabb, ColliderBackendPlugin, ColliderDisabled, ColliderMarker,
-            CollisionLayers, CollisionMargin, IntoCollider,
-            LayerMask, PhysicsLayer, ScalableCollider, Sensor, SimpleCollider,
+            CollisionLayers, CollisionMargin, IntoCollider, LayerMask, PhysicsLayer, ScalableCollider,
+            Sensor, SimpleCollider,
             collider_hierarchy::{ColliderHierarchyPlugin, ColliderOf, RigidBodyColliders},
             collider_transform::{ColliderTransform, ColliderTransformPlugin},
         },

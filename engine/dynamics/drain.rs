@@ -9,14 +9,15 @@ use kernel::{
 
 use crate::{
     collision::collider::{
-        Collider, ColliderDisabled, CollisionLayers, Sensor,
-        collider_hierarchy::ColliderOf,
+        Collider, ColliderDisabled, CollisionLayers, Sensor, collider_hierarchy::ColliderOf,
         collider_transform::ColliderTransform,
     },
     dynamics::{
         lifecycle::{BodyId, ColliderId, LifecycleQueue},
         materials::{SurfaceQuery, Surfaces},
-        rigid_body::{Dominance, RigidBody, RigidBodyDisabled, mass_properties::components::ComputedCenterOfMass},
+        rigid_body::{
+            Dominance, RigidBody, RigidBodyDisabled, mass_properties::components::ComputedCenterOfMass,
+        },
         tables::Tables,
     },
     math::vector_to_kernel,
@@ -171,9 +172,7 @@ impl Census<'_, '_> {
 
     /// The colliders of a body that entered are its own from now on.
     fn note_colliders(&self, body: Entity, queue: &mut LifecycleQueue) {
-        queue.colliders.extend(
-            self.colliders_of(body),
-        );
+        queue.colliders.extend(self.colliders_of(body));
     }
 
     fn colliders_of(&self, body: Entity) -> Vec<Entity> {
@@ -229,7 +228,9 @@ impl Census<'_, '_> {
             speculative,
         };
         let world = match pose {
-            Some((position, rotation)) if *position != Position::PLACEHOLDER => world_pose(position, rotation),
+            Some((position, rotation)) if *position != Position::PLACEHOLDER => {
+                world_pose(position, rotation)
+            }
             _ if body != NONE => tables.bodies.table.frame(body).then(&local),
             _ => return,
         };

@@ -14,7 +14,7 @@ use crate::{
         rigid_body::{CoefficientCombine, DefaultFriction, DefaultRestitution, Friction, Restitution},
         tables::Tables,
     },
-    math::{to_f32, Scalar},
+    math::{Scalar, to_f32},
 };
 
 /// The surface of a collider and how far it reaches.

@@ -58,7 +58,11 @@ pub(crate) fn follow_requests(
 }
 
 /// Splits at most one island that lost contacts, and puts to sleep those whose bodies have all rested.
-pub(crate) fn sleep_islands(mut scan: ResMut<SleepBuffers>, time_to_sleep: Res<TimeToSleep>, mut tables: Tables) {
+pub(crate) fn sleep_islands(
+    mut scan: ResMut<SleepBuffers>,
+    time_to_sleep: Res<TimeToSleep>,
+    mut tables: Tables,
+) {
     let Tables { bodies, islands, .. } = &mut tables;
     let Some(islands) = islands else { return };
     let rested = |body: u32| Some(bodies.table[body].sleep_timer).filter(|t| *t >= 0.0);

@@ -32,8 +32,8 @@ pub(crate) mod tree;
 
 pub use dim::Rotation;
 pub(crate) use dim::vector_from_xyz;
-pub(crate) use kernel_pose::{set_pose, world_pose};
 pub use helper::PhysicsTransformHelper;
+pub(crate) use kernel_pose::{set_pose, world_pose};
 pub use position::Position;
 pub use sync::{position_to_transform, transform_to_position};
 

@@ -191,7 +191,8 @@ impl ContactTable {
                 edge => self.contacts[(edge >> 1) as usize].next[(edge & 1) as usize] = next[side],
             }
             if next[side] != NONE {
-                self.contacts[(next[side] >> 1) as usize].previous[(next[side] & 1) as usize] = previous[side];
+                self.contacts[(next[side] >> 1) as usize].previous[(next[side] & 1) as usize] =
+                    previous[side];
             }
         }
         if extra != NONE {
@@ -220,7 +221,11 @@ impl ContactTable {
     }
 
     /// The contacts of a collider.
-    pub fn of_collider<'a>(&'a self, collider: u32, colliders: &ColliderTable) -> impl Iterator<Item = u32> + 'a {
+    pub fn of_collider<'a>(
+        &'a self,
+        collider: u32,
+        colliders: &ColliderTable,
+    ) -> impl Iterator<Item = u32> + 'a {
         let first = colliders[collider].first_contact;
         core::iter::successors((first != NONE).then_some(first), |edge| {
             let next = self.contacts[(edge >> 1) as usize].next[(edge & 1) as usize];

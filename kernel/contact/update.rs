@@ -220,7 +220,8 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         let mut first = Manifold::default();
         for (i, local) in scratch.local.iter().enumerate() {
             let mut m = to_world(local, pose_a.rotation, to_shape, margin);
-            if !m.normal.is_finite() || m.points().iter().any(|p| !p.separation.is_finite() || !p.anchor.is_finite())
+            if !m.normal.is_finite()
+                || m.points().iter().any(|p| !p.separation.is_finite() || !p.anchor.is_finite())
             {
                 continue;
             }
@@ -247,18 +248,16 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
     fn prediction(&self, contact: &Contact) -> f32 {
         let limit = [0, 1].map(|i| self.colliders[contact.colliders[i]].def.speculative);
         let limit = limit[0] + limit[1];
-        let closing = (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;
+        let closing =
+            (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;
         max(self.tolerance, min(max(self.speculative, closing), limit))
     }
 }
 
 /// A manifold in world axes, with anchors from body A's centre of mass.
 fn to_world(local: &LocalManifold, rotation: Rot, to_shape: Vector, margin: f32) -> Manifold {
-    let mut m = Manifold {
-        normal: rotation.rotate(local.normal),
-        count: local.count as u32,
-        ..Manifold::default()
-    };
+    let mut m =
+        Manifold { normal: rotation.rotate(local.normal), count: local.count as u32, ..Manifold::default() };
     for (out, p) in m.points.iter_mut().zip(local.points()) {
         let separation = p.separation - margin;
         *out = ManifoldPoint {

@@ -246,7 +246,14 @@ impl<N: Num> InvInertia<N> {
     /// Every entry times a factor.
     #[inline(always)]
     pub fn scaled(self, factor: N) -> Self {
-        Self { xx: self.xx * factor, yy: self.yy * factor, zz: self.zz * factor, xy: self.xy * factor, xz: self.xz * factor, yz: self.yz * factor }
+        Self {
+            xx: self.xx * factor,
+            yy: self.yy * factor,
+            zz: self.zz * factor,
+            xy: self.xy * factor,
+            xz: self.xz * factor,
+            yz: self.yz * factor,
+        }
     }
     /// The change of angular velocity that an angular impulse makes.
     #[inline(always)]
@@ -408,14 +415,8 @@ impl<N: Num> Rot<N> {
     /// Scaled to unit length.
     #[inline(always)]
     pub fn normalized(self) -> Self {
-        let length =
-            (self.x * self.x + self.y * self.y + self.z * self.z + self.w * self.w).sqrt();
-        Self {
-            x: self.x / length,
-            y: self.y / length,
-            z: self.z / length,
-            w: self.w / length,
-        }
+        let length = (self.x * self.x + self.y * self.y + self.z * self.z + self.w * self.w).sqrt();
+        Self { x: self.x / length, y: self.y / length, z: self.z / length, w: self.w / length }
     }
     /// Turned further by the small rotation vector `delta`, by one normalised Euler step `q + ½ δ q`.
     #[inline(always)]

@@ -53,10 +53,10 @@ macro_rules! componentwise {
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 mod lane;
-#[cfg(target_arch = "x86_64")]
-mod lane_sse;
 #[cfg(not(target_arch = "x86_64"))]
 mod lane_portable;
+#[cfg(target_arch = "x86_64")]
+mod lane_sse;
 mod pose;
 mod trig;
 

@@ -98,7 +98,8 @@ fn atan_unit(z: f64) -> f64 {
     let c = eighth / 8.0;
     let t = (z - c) / (1.0 + z * c);
     let s = t * t;
-    let series = s * (-1.0 / 3.0 + s * (1.0 / 5.0 + s * (-1.0 / 7.0 + s * (1.0 / 9.0 + s * (-1.0 / 11.0 + s / 13.0)))));
+    let series = s
+        * (-1.0 / 3.0 + s * (1.0 / 5.0 + s * (-1.0 / 7.0 + s * (1.0 / 9.0 + s * (-1.0 / 11.0 + s / 13.0)))));
     ATAN_EIGHTHS[eighth as usize] + (t + t * series)
 }
 

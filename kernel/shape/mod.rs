@@ -139,7 +139,13 @@ impl Shape {
     /// A ray that starts inside hits at distance 0 with a zero normal if `solid`, else the boundary
     /// from within. Surfaces without an inside (3D triangles, segments) are hit from both sides;
     /// segments in 3D are never hit, foreign shapes neither.
-    pub fn cast_ray(&self, origin: Vector, direction: Vector, max_distance: f32, solid: bool) -> Option<RayHit> {
+    pub fn cast_ray(
+        &self,
+        origin: Vector,
+        direction: Vector,
+        max_distance: f32,
+        solid: bool,
+    ) -> Option<RayHit> {
         match self {
             Self::Ball(s) => s.cast_ray(origin, direction, max_distance, solid),
             Self::Capsule(s) => s.cast_ray(origin, direction, max_distance, solid),

@@ -24,8 +24,7 @@ pub struct MassRow {
 
 impl BodyRow {
     /// At rest and not moved.
-    pub const REST: Self =
-        Self { velocity: Quad([0.0; 4]), delta: Quad([0.0, 0.0, 1.0, 0.0]) };
+    pub const REST: Self = Self { velocity: Quad([0.0; 4]), delta: Quad([0.0, 0.0, 1.0, 0.0]) };
 
     /// A body not yet moved.
     pub fn new(linear: Vector, angular: Angular) -> Self {

@@ -156,12 +156,7 @@ impl<N: Lane, const P: usize> Twist<N, P> {
     }
     /// Applies the accumulated impulse.
     #[inline(always)]
-    pub(super) fn warm_start(
-        &self,
-        normal: Vector<N>,
-        inertia: [InvInertia<N>; 2],
-        w: &mut [Angular<N>; 2],
-    ) {
+    pub(super) fn warm_start(&self, normal: Vector<N>, inertia: [InvInertia<N>; 2], w: &mut [Angular<N>; 2]) {
         let impulse = normal * self.impulse;
         w[0] -= inertia[0].apply(impulse);
         w[1] += inertia[1].apply(impulse);

@@ -22,9 +22,8 @@ pub(super) fn gyroscopic(w: Angular, rotation: Rot, inv_inertia: InvInertia, h: 
     let momentum = inertia.apply(local);
     let residual = local.cross(momentum) * h;
     // The Jacobian I + h ([ω]× I − [I ω]×), by its columns.
-    let column = |axis: Vector| {
-        inertia.apply(axis) + (local.cross(inertia.apply(axis)) - momentum.cross(axis)) * h
-    };
+    let column =
+        |axis: Vector| inertia.apply(axis) + (local.cross(inertia.apply(axis)) - momentum.cross(axis)) * h;
     let (x, y, z) = (column(Vector::X), column(Vector::Y), column(Vector::Z));
     let determinant = x.dot(y.cross(z));
     if !(determinant.abs() > 0.0) {

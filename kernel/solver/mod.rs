@@ -23,8 +23,8 @@ mod stages;
 
 pub use batch::{Batch, PointClass, RowSet};
 pub use body::{BodyRows, Motion, RowView};
-pub use inv_mass::InvMass;
 pub use dim::{BodyRow, MassRow, Twist};
+pub use inv_mass::InvMass;
 pub use prepare::{ContactSource, RowInput};
 pub use row::{ContactRow, PointRow, RestitutionRow};
 pub use softness::{Softness, SubstepParams};

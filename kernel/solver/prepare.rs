@@ -104,7 +104,8 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
             for class in PointClass::ALL {
                 let sources = &buckets.0[class as usize];
                 if !sources.is_empty() {
-                    let batch = with_rows!(self, class, |rows| rows.add(input, bodies, params, deep, sources));
+                    let batch =
+                        with_rows!(self, class, |rows| rows.add(input, bodies, params, deep, sources));
                     self.batches.push(Batch { class, ..batch });
                 }
             }

@@ -1,8 +1,8 @@
 //! Closed forms and stability, on the kernel alone.
 
-use crate::kernel;
 use super::dim::{BALL_INERTIA, sized, spin_of, turned};
 use super::sim::Sim;
+use crate::kernel;
 use kernel::math::{Rot, Vector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::table::BodyKind;
@@ -55,7 +55,10 @@ fn towers_stand() {
         }
         sim.steps(600);
         let p = sim.position(top);
-        assert!(p.y > 0.97 * (height as kernel::math::Scalar - 0.5) && p.x.abs() < 0.25, "the top of {height} is at {p:?}");
+        assert!(
+            p.y > 0.97 * (height as kernel::math::Scalar - 0.5) && p.x.abs() < 0.25,
+            "the top of {height} is at {p:?}"
+        );
     }
 }
 
@@ -67,7 +70,14 @@ fn a_box_sticks_below_the_angle_of_friction_and_slides_above_it() {
         let tilt = turned(angle as f32);
         let mut sim = Sim::new();
         let half = Vector::ONE * 50.0;
-        sim.add_with(BodyKind::Static, Shape::Cuboid(Cuboid { half }), tilt.rotate(Vector::Y * -50.0), tilt, mu, 0.0);
+        sim.add_with(
+            BodyKind::Static,
+            Shape::Cuboid(Cuboid { half }),
+            tilt.rotate(Vector::Y * -50.0),
+            tilt,
+            mu,
+            0.0,
+        );
         let at = tilt.rotate(Vector::Y * 0.25);
         let shape = Shape::Cuboid(Cuboid { half: sized(0.5, 0.25, 0.5) });
         let id = sim.add_with(BodyKind::Dynamic, shape, at, tilt, mu, 0.0);

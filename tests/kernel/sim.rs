@@ -1,8 +1,8 @@
 //! A step made of the kernel's parts, in the order in which the engine runs them: what an embedder without
 //! an ECS would write.
 
-use crate::kernel;
 use super::dim::inverse_inertia;
+use crate::kernel;
 use kernel::bvh::{Mover, Movers, PairMask, ProxyId, TreeKind, Trees, find_pairs};
 use kernel::contact::{ContactTable, Link, NarrowPhase, Scratch};
 use kernel::data::BitSet;

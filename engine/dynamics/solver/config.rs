@@ -49,7 +49,9 @@ impl Plugin for SolverPlugin {
             PhysicsSchedule,
             (
                 reset_solver.in_set(Stage::ResetDiagnostics),
-                update_contact_softness.after(PhysicsStepSystems::NarrowPhase).before(PhysicsStepSystems::Solver),
+                update_contact_softness
+                    .after(PhysicsStepSystems::NarrowPhase)
+                    .before(PhysicsStepSystems::Solver),
                 prepare_rows.in_set(Stage::PrepareRows),
                 apply_restitution.in_set(Stage::Restitution),
                 store_impulses.in_set(Stage::StoreImpulses),

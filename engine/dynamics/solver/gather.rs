@@ -12,14 +12,14 @@ use crate::{
         integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
         lifecycle::BodyId,
         rigid_body::{
-            AngularDamping, AngularVelocity, Dominance, GravityScale, LinearDamping, LinearVelocity, LockedAxes,
-            MaxAngularSpeed, MaxLinearSpeed,
+            AngularDamping, AngularVelocity, Dominance, GravityScale, LinearDamping, LinearVelocity,
+            LockedAxes, MaxAngularSpeed, MaxLinearSpeed,
             mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
         },
         solver::StepSolver,
         tables::{Bodies, Tables},
     },
-    math::{to_f32, Scalar, angular_to_kernel, inv_inertia_to_kernel, vector_to_kernel},
+    math::{Scalar, angular_to_kernel, inv_inertia_to_kernel, to_f32, vector_to_kernel},
     physics_transform::{Position, Rotation, world_pose},
 };
 
@@ -160,7 +160,8 @@ pub(crate) fn wake_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
 
 /// Reads pose and velocity of every awake body, before anything is computed from them.
 pub(crate) fn read_awake(query: Query<BodyInput>, mut tables: Tables) {
-    let awake: Vec<u32> = tables.bodies.table.awake_kinematic().chain(tables.bodies.table.awake_dynamic()).collect();
+    let awake: Vec<u32> =
+        tables.bodies.table.awake_kinematic().chain(tables.bodies.table.awake_dynamic()).collect();
     let entities: Vec<Entity> = awake.iter().map(|id| tables.bodies.entities[*id as usize]).collect();
     let mut read = |body: BodyInputItem| {
         let id = body.id.0;

@@ -3,7 +3,10 @@
 use bevy_ecs::prelude::*;
 use bevy_log::warn;
 use bevy_time::Time;
-use kernel::{math::Vector as KernelVector, table::{BodyKind, NONE}};
+use kernel::{
+    math::Vector as KernelVector,
+    table::{BodyKind, NONE},
+};
 
 use crate::{
     dynamics::{
@@ -16,7 +19,7 @@ use crate::{
         solver::{PhysicsLengthUnit, StepSolver},
         tables::Bodies,
     },
-    math::{to_f32, angular_from_kernel, vector_from_kernel},
+    math::{angular_from_kernel, to_f32, vector_from_kernel},
     physics_transform::{Position, Rotation, set_pose},
     schedule::Physics,
 };
@@ -50,7 +53,8 @@ pub(crate) fn scatter_bodies(
     let dt = time.delta_secs();
     let unit = to_f32(unit.0);
     let mut write = |item: <Output as bevy_ecs::query::QueryData>::Item<'_, '_>| {
-        let (entity, id, position, rotation, linear, angular, threshold, sleepless, timer, own_position) = item;
+        let (entity, id, position, rotation, linear, angular, threshold, sleepless, timer, own_position) =
+            item;
         let row = if id.0 == NONE { 0 } else { bodies.table.rows[id.0 as usize] };
         if row == 0 {
             return;
@@ -62,7 +66,8 @@ pub(crate) fn scatter_bodies(
         let mut pose = old;
         pose.center = old.center + moved.to_world();
         pose.rotation = turned.mul(old.rotation).normalized();
-        let finite = v.is_finite() && w.is_finite() && pose.center.is_finite_world() && pose.rotation.is_finite();
+        let finite =
+            v.is_finite() && w.is_finite() && pose.center.is_finite_world() && pose.rotation.is_finite();
         if !finite {
             warn!("{entity} came to a position or velocity that is not finite; it is put back and disabled");
             commands.entity(entity).insert(RigidBodyDisabled);

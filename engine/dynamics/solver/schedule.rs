@@ -12,8 +12,8 @@ use super::{
 };
 use crate::{
     dynamics::integrator::IntegrationSystems,
-    step::{self, Stage},
     schedule::{Physics, PhysicsSchedule, PhysicsStepSystems, Substeps, make_deterministic},
+    step::{self, Stage},
 };
 
 /// Adds [`SubstepSchedule`], [`SubstepCount`] and the order of [`SolverSystems`] and [`SubstepSolverSystems`].

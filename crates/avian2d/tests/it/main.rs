@@ -6,3 +6,5 @@ mod plugins;
 mod reflection;
 #[path = "../../../../tests/schedule.rs"]
 mod schedule;
+#[path = "../../../../tests/rules.rs"]
+mod rules;
