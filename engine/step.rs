@@ -113,6 +113,8 @@ pub(crate) fn install(app: &mut App) {
             crate::dynamics::drain::remove_lost_late.in_set(Stage::RemoveLost),
         ),
     );
+    #[cfg(feature = "validate")]
+    crate::dynamics::validate::install(app);
 }
 
 /// The engine's own systems of a substep, in the public sets of [`SubstepSchedule`].

@@ -119,7 +119,7 @@ fn remove_collider(id: u32, tables: &mut Tables) {
     colliders.entities[id as usize] = Entity::PLACEHOLDER;
 }
 
-fn kind_of(body: &RigidBody) -> BodyKind {
+pub(super) fn kind_of(body: &RigidBody) -> BodyKind {
     match body {
         RigidBody::Dynamic => BodyKind::Dynamic,
         RigidBody::Static => BodyKind::Static,
@@ -289,7 +289,7 @@ fn note_kinematic(id: u32, kind: BodyKind, tables: &mut Tables) {
     }
 }
 
-fn tree_of(kind: BodyKind) -> TreeKind {
+pub(super) fn tree_of(kind: BodyKind) -> TreeKind {
     match kind {
         BodyKind::Static => TreeKind::Static,
         BodyKind::Kinematic => TreeKind::Kinematic,

@@ -122,13 +122,14 @@ pub(crate) fn refresh_surfaces(
                 continue;
             }
             let surfaces = query.of(collider, of.map(|of| of.body));
-            let colliders = &mut *tables.colliders;
+            let Tables { bodies, colliders, .. } = &mut tables;
+            let colliders = &mut **colliders;
             let entry = &mut colliders.table[id.0];
             entry.def.material = surfaces.material;
             if entry.def.margin != surfaces.margin || entry.def.speculative != surfaces.speculative {
                 entry.def.margin = surfaces.margin;
                 entry.def.speculative = surfaces.speculative;
-                entry.revision = entry.revision.wrapping_add(1);
+                colliders.table.update_reach(id.0, &bodies.table);
                 colliders.stale.insert(id.0);
             }
         }

@@ -10,6 +10,8 @@ pub mod rigid_body;
 pub(crate) mod sleep;
 pub mod solver;
 pub(crate) mod tables;
+#[cfg(feature = "validate")]
+pub(crate) mod validate;
 
 /// The names of this module that most apps use.
 pub mod prelude {

@@ -17,6 +17,14 @@ pub(crate) struct SleepRequests {
     wake: Vec<Entity>,
 }
 
+#[cfg(feature = "validate")]
+impl SleepRequests {
+    /// Whether something is still to be done about a body.
+    pub(crate) fn concern(&self, entity: Entity) -> bool {
+        self.sleep.contains(&entity) || self.wake.contains(&entity)
+    }
+}
+
 /// Buffers of the sleep scan.
 #[derive(Resource, Default)]
 pub(crate) struct SleepBuffers(SleepScan);
@@ -98,7 +106,7 @@ pub(crate) fn mirror_sleeping(
                 if let Ok((mut v, mut w)) = velocities.get_mut(entity) {
                     v.0 = Default::default();
                     w.0 = Default::default();
-                    bodies.table.velocities[id as usize] = Default::default();
+                    bodies.table.set_velocity(id, Default::default());
                 }
             }
             (false, Ok(true)) => {

@@ -133,6 +133,11 @@ impl Link<'_> {
         }
         self.leave_island(body);
         self.bodies.set_kind(body, kind);
+        let mut collider = self.bodies[body].first_collider;
+        while collider != NONE {
+            self.colliders.update_reach(collider, self.bodies);
+            collider = self.colliders.next_of_body(collider);
+        }
         self.enter(body);
         for id in contacts {
             let contact = self.contacts.get(id);

@@ -9,7 +9,7 @@ use super::record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
 use crate::manifold::{self, LocalManifold};
 use crate::math::{Angular, Rot, Vector, max, min};
 use crate::shape::Shape;
-use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Velocity};
+use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity};
 
 /// Whoever computes the manifolds of pairs with a [`Shape::Foreign`] in them.
 pub trait ManifoldSource: Sync {
@@ -91,7 +91,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         if deepest == 0.0 {
             return false;
         }
-        let [a, b] = contact.colliders.map(|c| self.colliders[c].extent);
+        let [a, b] = contact.colliders.map(|c| self.colliders.reaches[c as usize].extent);
         let reach = if a == 0.0 || b == 0.0 { max(a, b) } else { min(a, b) };
         deepest < -0.1 * reach
     }
@@ -102,7 +102,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         match contact.bodies[side] {
             NONE => {
                 let pose = self.colliders.poses[contact.colliders[side] as usize];
-                BodyPose { center: pose.position, rotation: pose.rotation }
+                BodyPose { center: pose.position, rotation: pose.rotation, speed: 0.0, revision: 0 }
             }
             body => self.bodies.poses[body as usize],
         }
@@ -117,25 +117,30 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
 
     /// The side's revision: of its collider and its body together.
     #[inline(always)]
-    fn revision(&self, contact: &Contact, side: usize) -> u32 {
-        let collider = self.colliders[contact.colliders[side]].revision;
-        match contact.bodies[side] {
-            NONE => collider,
-            body => collider.wrapping_add(self.bodies[body].revision.wrapping_mul(0x9E37_79B1)),
-        }
+    fn revision(reach: &Reach, pose: &BodyPose) -> u32 {
+        reach.revision.wrapping_add(pose.revision.wrapping_mul(0x9E37_79B1))
+    }
+
+    #[inline(always)]
+    fn revisions(&self, contact: &Contact, poses: &[BodyPose; 2]) -> [u32; 2] {
+        let reaches = contact.colliders.map(|c| &self.colliders.reaches[c as usize]);
+        [Self::revision(reaches[0], &poses[0]), Self::revision(reaches[1], &poses[1])]
     }
 
     /// Keeps the manifold if the bodies moved little enough against each other, and lets its
     /// separations follow: s = s₀ + n · (Δoffset + (R_B − 1) r_B − (R_A − 1) r_A).
     fn recycle(&self, contact: &mut Contact, extra: &mut [Manifold], poses: &[BodyPose; 2]) -> bool {
+        let reaches = contact.colliders.map(|c| &self.colliders.reaches[c as usize]);
+        let Frozen { rotations, offset, prediction } = contact.frozen;
+        // Neither can close faster than both together: that settles it without asking for the velocities
+        // of all but fast bodies.
+        let fastest = (poses[0].speed + poses[1].speed) * self.dt;
         if !contact.flags.has(ContactFlags::FROZEN)
-            || contact.revisions[0] != self.revision(contact, 0)
-            || contact.revisions[1] != self.revision(contact, 1)
-            || contact.frozen.prediction < self.prediction(contact)
+            || contact.revisions != self.revisions(contact, poses)
+            || (fastest > prediction && prediction < self.prediction(contact))
         {
             return false;
         }
-        let Frozen { rotations, offset, .. } = contact.frozen;
         let now = (poses[1].center - poses[0].center).to_local();
         for i in 0..2 {
             if rotations[i].cos_between(poses[i].rotation) < RECYCLE_COS {
@@ -147,19 +152,11 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         let shift = poses[0].rotation.inverse_rotate(now) - rotations[0].inverse_rotate(offset);
         let relative = |of: [Rot; 2]| of[0].inverse().mul(of[1]);
         let angle: Angular = relative(rotations).difference(relative(poses.map(|p| p.rotation)));
-        let reach = [0, 1].map(|i| {
-            let collider = &self.colliders[contact.colliders[i]];
-            match contact.bodies[i] {
-                NONE => 0.0,
-                body if self.bodies[body].kind == BodyKind::Static => 0.0,
-                _ => collider.extent,
-            }
-        });
         let allowed = match contact.flags.has(ContactFlags::TOUCHING) {
             true => self.recycle_distance,
             false => min(self.recycle_distance, self.speculative),
         };
-        let moved = shift.length() + max(reach[0], reach[1]) * angle.length();
+        let moved = shift.length() + max(reaches[0].turning, reaches[1].turning) * angle.length();
         // A NaN fails the comparison.
         if !(moved < allowed) {
             return false;
@@ -236,7 +233,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         }
         contact.manifold = first;
         contact.frozen = frozen;
-        contact.revisions = [self.revision(contact, 0), self.revision(contact, 1)];
+        contact.revisions = self.revisions(contact, poses);
         let touching = contact.manifold.count > 0 || !scratch.extra.is_empty();
         contact.flags.set(ContactFlags::TOUCHING, touching);
         let recyclable = self.recycle_distance > 0.0 && !contact.flags.has(ContactFlags::FOREIGN);
@@ -246,7 +243,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
     /// How far apart surfaces may be to count as a contact: as far as they can close in this step, but
     /// not beyond the colliders' speculative margins.
     fn prediction(&self, contact: &Contact) -> f32 {
-        let limit = [0, 1].map(|i| self.colliders[contact.colliders[i]].def.speculative);
+        let limit = [0, 1].map(|i| self.colliders.reaches[contact.colliders[i] as usize].speculative);
         let limit = limit[0] + limit[1];
         let closing =
             (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;

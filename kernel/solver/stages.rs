@@ -58,7 +58,7 @@ impl Solver {
         order.clear();
         // Body rows were gathered, so only they know what is held.
         let any_held = bodies.motions.iter().any(|m| m.locks.is_translation_partial());
-        let motions = bodies.motions.clone();
+        let motions = if any_held { bodies.motions.clone() } else { Vec::new() };
         let held = |id: &u32| {
             any_held
                 && input.contacts.get(*id).bodies.iter().any(|b| {

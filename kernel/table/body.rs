@@ -25,8 +25,6 @@ pub struct Body {
     pub awake: bool,
     /// Higher dominance acts on lower as if it could not be moved.
     pub dominance: i8,
-    /// Counts changes that make cached contacts wrong: kind, centre of mass, teleports.
-    pub revision: u32,
     /// The centre of mass in the body's frame, in metres.
     pub local_center: Vector,
     /// The first of its colliders, or [`NONE`].
@@ -35,13 +33,17 @@ pub struct Body {
     pub sleep_timer: f32,
 }
 
-/// Where a body is: hot in the narrow phase.
+/// Where a body is, and what else the narrow phase asks of a body for every contact: one cache line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyPose {
     /// The centre of mass in the world.
     pub center: WorldVector,
     /// The rotation.
     pub rotation: Rot,
+    /// How fast the centre of mass moves, m/s.
+    pub speed: f32,
+    /// Counts changes that make cached contacts wrong: kind, centre of mass, teleports.
+    pub revision: u32,
 }
 
 /// How fast a body moves.
@@ -61,7 +63,7 @@ pub struct BodyTable {
     bodies: Vec<Body>,
     /// Poses by id.
     pub poses: Vec<BodyPose>,
-    /// Velocities by id.
+    /// Velocities by id; written through [`set_velocity`](Self::set_velocity).
     pub velocities: Vec<Velocity>,
     /// The solver row of each body in this step; 0, the immovable dummy, if it has none.
     pub rows: Vec<u32>,
@@ -75,27 +77,25 @@ impl BodyTable {
     /// Adds a body, awake unless static.
     pub fn add(&mut self, kind: BodyKind, local_center: Vector, pose: WorldPose) -> u32 {
         let id = self.ids.allocate();
-        let body = Body {
-            kind,
-            awake: false,
-            dominance: 0,
+        let body =
+            Body { kind, awake: false, dominance: 0, local_center, first_collider: NONE, sleep_timer: 0.0 };
+        let mut placed = BodyPose {
+            center: pose.transform(local_center),
+            rotation: pose.rotation,
+            speed: 0.0,
             revision: 0,
-            local_center,
-            first_collider: NONE,
-            sleep_timer: 0.0,
         };
-        let center = BodyPose { center: pose.transform(local_center), rotation: pose.rotation };
         let i = id as usize;
         if i == self.bodies.len() {
             self.bodies.push(body);
-            self.poses.push(center);
+            self.poses.push(placed);
             self.velocities.push(Velocity::default());
             self.rows.push(0);
         } else {
             // The revision goes on counting, so that nothing cached for the id's last owner fits.
-            let revision = self.bodies[i].revision.wrapping_add(1);
-            self.bodies[i] = Body { revision, ..body };
-            self.poses[i] = center;
+            placed.revision = self.poses[i].revision.wrapping_add(1);
+            self.bodies[i] = body;
+            self.poses[i] = placed;
             self.velocities[i] = Velocity::default();
             self.rows[i] = 0;
         }
@@ -114,9 +114,8 @@ impl BodyTable {
     pub fn set_kind(&mut self, id: u32, kind: BodyKind) {
         let awake = self[id].awake;
         self.set_awake(id, false);
-        let body = &mut self[id];
-        body.kind = kind;
-        body.revision = body.revision.wrapping_add(1);
+        self[id].kind = kind;
+        self.revise(id);
         self.set_awake(id, awake || kind != BodyKind::Static);
     }
 
@@ -178,9 +177,22 @@ impl BodyTable {
     /// Moves a body by hand. Cached contacts are invalidated.
     pub fn teleport(&mut self, id: u32, frame: WorldPose) {
         let center = frame.transform(self[id].local_center);
-        self.poses[id as usize] = BodyPose { center, rotation: frame.rotation };
-        let body = &mut self[id];
-        body.revision = body.revision.wrapping_add(1);
+        let pose = &mut self.poses[id as usize];
+        pose.center = center;
+        pose.rotation = frame.rotation;
+        self.revise(id);
+    }
+
+    /// Sets how fast a body moves.
+    #[inline]
+    pub fn set_velocity(&mut self, id: u32, velocity: Velocity) {
+        self.velocities[id as usize] = velocity;
+        self.poses[id as usize].speed = velocity.linear.length();
+    }
+
+    fn revise(&mut self, id: u32) {
+        let pose = &mut self.poses[id as usize];
+        pose.revision = pose.revision.wrapping_add(1);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Colliders by id: native shape, world pose, fat box, surface, layers and revision.
 
-use super::{BodyTable, NONE};
+use super::{BodyKind, BodyTable, NONE};
 use crate::data::IdPool;
 use crate::math::{Pose, Vector, WorldPose};
 use crate::shape::{Aabb, Shape};
@@ -106,10 +106,6 @@ pub struct ColliderDef {
 pub struct Collider {
     /// What the embedder said.
     pub def: ColliderDef,
-    /// Counts changes that make cached contacts wrong: shape, place on the body, margin.
-    pub revision: u32,
-    /// The distance from the body's centre of mass to the farthest point of the shape, in metres.
-    pub extent: f32,
     /// The first of its contacts, as `contact << 1 | side`, or [`NONE`].
     pub first_contact: u32,
     /// Its leaf in its tree, or [`NONE`].
@@ -117,6 +113,19 @@ pub struct Collider {
     /// The neighbours in its body's list.
     next: u32,
     previous: u32,
+}
+
+/// What the narrow phase asks of a collider for every contact.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reach {
+    /// The distance from the body's centre of mass to the farthest point of the shape, in metres.
+    pub extent: f32,
+    /// The same, but 0 on a static body: how far the surface moves for each radian the body may turn.
+    pub turning: f32,
+    /// The greatest distance at which contacts are predicted, in metres.
+    pub speculative: f32,
+    /// Counts changes that make cached contacts wrong: shape, place on the body, margins.
+    pub revision: u32,
 }
 
 /// All colliders that take part in the simulation.
@@ -129,6 +138,8 @@ pub struct ColliderTable {
     pub poses: Vec<WorldPose>,
     /// Fat boxes by id: what the trees hold.
     pub fat: Vec<Aabb>,
+    /// Reaches by id.
+    pub reaches: Vec<Reach>,
 }
 
 /// How a box is made fat, constant over a step.
@@ -145,29 +156,21 @@ impl ColliderTable {
     /// [`refresh`](Self::refresh).
     pub fn add(&mut self, def: ColliderDef, pose: WorldPose, bodies: &mut BodyTable) -> u32 {
         let id = self.ids.allocate();
-        let mut collider = Collider {
-            def,
-            revision: 0,
-            extent: 0.0,
-            first_contact: NONE,
-            proxy: NONE,
-            next: NONE,
-            previous: NONE,
-        };
+        let collider = Collider { def, first_contact: NONE, proxy: NONE, next: NONE, previous: NONE };
         let i = id as usize;
         if i == self.colliders.len() {
             self.colliders.push(collider);
             self.poses.push(pose);
             self.fat.push(Aabb::EMPTY);
+            self.reaches.push(Reach::default());
         } else {
-            // The revision goes on counting, so that nothing cached for the id's last owner fits.
-            collider.revision = self.colliders[i].revision.wrapping_add(1);
             self.colliders[i] = collider;
             self.poses[i] = pose;
             self.fat[i] = Aabb::EMPTY;
         }
         self.attach(id, bodies);
-        self.update_extent(id, bodies);
+        // The revision goes on counting, so that nothing cached for the id's last owner fits.
+        self.update_reach(id, bodies);
         id
     }
 
@@ -186,23 +189,30 @@ impl ColliderTable {
             "contacts know their bodies"
         );
         self.detach(id, bodies);
-        let collider = &mut self[id];
-        collider.def = def;
-        collider.revision = collider.revision.wrapping_add(1);
+        self[id].def = def;
         self.attach(id, bodies);
-        self.update_extent(id, bodies);
+        self.update_reach(id, bodies);
     }
 
-    /// Recomputes how far the shape reaches from the body's centre of mass.
-    pub fn update_extent(&mut self, id: u32, bodies: &BodyTable) {
-        let def = &self[id].def;
+    /// Recomputes how far the shape reaches from the body's centre of mass; cached contacts are
+    /// invalidated. To be called after changes of the shape, the margins, or the body's kind or centre of
+    /// mass.
+    pub fn update_reach(&mut self, id: u32, bodies: &BodyTable) {
+        let def = &self.colliders[id as usize].def;
         let center = if def.body == NONE {
             Vector::ZERO
         } else {
             def.local.inverse_transform(bodies[def.body].local_center)
         };
         let extent = def.shape.extent(center);
-        self[id].extent = extent;
+        let fixed = def.body == NONE || bodies[def.body].kind == BodyKind::Static;
+        let reach = &mut self.reaches[id as usize];
+        *reach = Reach {
+            extent,
+            turning: if fixed { 0.0 } else { extent },
+            speculative: def.speculative,
+            revision: reach.revision.wrapping_add(1),
+        };
     }
 
     /// The colliders of a body.

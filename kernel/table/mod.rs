@@ -6,7 +6,7 @@ mod collider;
 
 pub use body::{Body, BodyKind, BodyPose, BodyTable, Velocity};
 pub use collider::{
-    Collider, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material, Surface,
+    Collider, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material, Reach, Surface,
 };
 
 /// No body, collider, contact or row.

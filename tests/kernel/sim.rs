@@ -12,7 +12,7 @@ use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::solver::{BodyRow, MassRow, Motion, RowInput, Softness, Solver, SubstepParams};
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
-    Surface,
+    Surface, Velocity,
 };
 
 /// A whole simulation.
@@ -203,6 +203,7 @@ impl Sim {
         for (i, &id) in self.listed.iter().enumerate() {
             let row = i + 1;
             let velocity = self.bodies.velocities[id as usize];
+            self.bodies.set_velocity(id, velocity);
             rows.rows[row] = BodyRow::new(velocity.linear, velocity.angular);
             if self.bodies[id].kind == BodyKind::Dynamic {
                 let (mass, local) = self.masses[id as usize];
@@ -244,9 +245,7 @@ impl Sim {
             let row = &self.solver.bodies.rows[i + 1];
             let (moved, turned) = row.delta();
             let (v, w) = row.velocity();
-            let velocity = &mut self.bodies.velocities[id as usize];
-            velocity.linear = v;
-            velocity.angular = w;
+            self.bodies.set_velocity(id, Velocity { linear: v, angular: w });
             let pose = &mut self.bodies.poses[id as usize];
             let before = pose.rotation;
             pose.center += moved.to_world();

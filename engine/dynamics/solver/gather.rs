@@ -91,7 +91,7 @@ fn read_in(id: u32, body: &BodyInputItem, tables: &mut Tables) -> bool {
     let frame = world_pose(body.position, body.rotation);
     let moved = bodies.frame(id) != frame;
     let recentered = bodies[id].local_center != center && center.is_finite();
-    bodies.velocities[id as usize] = body.velocity();
+    bodies.set_velocity(id, body.velocity());
     if moved || recentered {
         if recentered {
             bodies[id].local_center = center;
@@ -102,7 +102,7 @@ fn read_in(id: u32, body: &BodyInputItem, tables: &mut Tables) -> bool {
         let mut next = bodies.table[id].first_collider;
         while next != NONE {
             colliders.stale.insert(next);
-            colliders.table.update_extent(next, &bodies.table);
+            colliders.table.update_reach(next, &bodies.table);
             next = colliders.table.next_of_body(next);
         }
     }

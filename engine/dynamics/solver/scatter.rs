@@ -5,7 +5,7 @@ use bevy_log::warn;
 use bevy_time::Time;
 use kernel::{
     math::Vector as KernelVector,
-    table::{BodyKind, NONE},
+    table::{BodyKind, NONE, Velocity},
 };
 
 use crate::{
@@ -77,9 +77,7 @@ pub(crate) fn scatter_bodies(
         }
         bodies.table.poses[id.0 as usize] = pose;
         if bodies.table[id.0].kind == BodyKind::Dynamic {
-            let velocity = &mut bodies.table.velocities[id.0 as usize];
-            velocity.linear = v;
-            velocity.angular = w;
+            bodies.table.set_velocity(id.0, Velocity { linear: v, angular: w });
             write_changed(linear, LinearVelocity(vector_from_kernel(v)));
             write_changed(angular, AngularVelocity(angular_from_kernel(w)));
         }

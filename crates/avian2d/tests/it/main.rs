@@ -4,7 +4,7 @@
 mod plugins;
 #[path = "../../../../tests/reflection.rs"]
 mod reflection;
-#[path = "../../../../tests/schedule.rs"]
-mod schedule;
 #[path = "../../../../tests/rules.rs"]
 mod rules;
+#[path = "../../../../tests/schedule.rs"]
+mod schedule;

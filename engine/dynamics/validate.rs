@@ -1,0 +1,155 @@
+//! Checks at the end of every step that the tables say what the components say. Only with the feature
+//! `validate`: it looks at everything.
+
+use bevy_app::App;
+use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
+use kernel::{
+    bvh::TreeKind,
+    table::{BodyKind, NONE},
+};
+
+use crate::{
+    collision::collider::{Collider, ColliderDisabled, collider_hierarchy::ColliderOf},
+    dynamics::{
+        drain::{kind_of, tree_of},
+        lifecycle::{BodyId, ColliderId, LifecycleQueue},
+        rigid_body::{RigidBody, RigidBodyDisabled, sleeping::Sleeping},
+        sleep::SleepRequests,
+        tables::Tables,
+    },
+    physics_transform::Position,
+    schedule::{PhysicsSchedule, PhysicsStepSystems},
+};
+
+type BodyWorld<'a> =
+    (Entity, &'a BodyId, Option<&'a RigidBody>, Has<RigidBodyDisabled>, Has<Disabled>, Has<Sleeping>, &'a Position);
+
+type ColliderWorld<'a> =
+    (Entity, &'a ColliderId, Has<Collider>, Option<&'a ColliderOf>, Has<ColliderDisabled>, Has<Disabled>);
+
+/// What the checks read.
+#[derive(SystemParam)]
+struct Audit<'w, 's> {
+    bodies: Query<'w, 's, BodyWorld<'static>, Allow<Disabled>>,
+    colliders: Query<'w, 's, ColliderWorld<'static>, Allow<Disabled>>,
+    queue: Res<'w, LifecycleQueue>,
+    requests: Option<Res<'w, SleepRequests>>,
+    tables: Tables<'w>,
+}
+
+/// Adds the checks to the step.
+pub(crate) fn install(app: &mut App) {
+    app.add_systems(PhysicsSchedule, validate.in_set(PhysicsStepSystems::Last).ambiguous_with_all());
+}
+
+fn validate(mut audit: Audit) {
+    audit.tables.link().validate();
+    audit.check_bodies();
+    audit.check_colliders();
+    audit.check_trees();
+}
+
+impl Audit<'_, '_> {
+    /// Every id is where its entity says, every body that should be in the simulation is, as what it is.
+    /// What changed since the queue was drained is left out: it is seen to in the next step.
+    fn check_bodies(&self) {
+        let bodies = &*self.tables.bodies;
+        let mut found = 0;
+        for (entity, id, body, body_disabled, disabled, sleeping, position) in &self.bodies {
+            let id = id.0;
+            if id != NONE {
+                found += 1;
+                assert!(bodies.table.ids.is_live(id), "{entity} has the body id {id}, which is not in use");
+                assert_eq!(bodies.entities[id as usize], entity, "body {id} is another entity's");
+            }
+            if self.queue.bodies.contains(&entity) {
+                continue;
+            }
+            let wanted = body.filter(|_| !body_disabled && !disabled && *position != Position::PLACEHOLDER);
+            assert_eq!(wanted.is_some(), id != NONE, "{entity} with {body:?} at {position:?} takes part");
+            let Some(body) = wanted else { continue };
+            let record = &bodies.table[id];
+            assert_eq!(record.kind, kind_of(body), "{entity} is the body it says");
+            assert_eq!(bodies.kinematic.contains(id), record.kind == BodyKind::Kinematic);
+            if let Some(requests) = &self.requests
+                && record.kind == BodyKind::Dynamic
+                && !requests.concern(entity)
+            {
+                assert_eq!(sleeping, !record.awake, "{entity} says whether it sleeps");
+            }
+        }
+        let lost = self.queue.lost_bodies.len();
+        let live = bodies.table.ids.len();
+        assert_eq!(live, found + lost, "{live} bodies, of {found} entities and {lost} that are gone");
+        for id in bodies.table.awake_kinematic().chain(bodies.table.awake_dynamic()) {
+            assert!(bodies.table.ids.is_live(id) && bodies.table[id].awake, "body {id} is listed awake");
+        }
+        if let Some(islands) = &self.tables.islands {
+            for id in bodies.table.ids.iter() {
+                let is_dynamic = bodies.table[id].kind == BodyKind::Dynamic;
+                assert_eq!(islands.0.island_of(id).is_some(), is_dynamic, "dynamic bodies are in islands");
+            }
+        }
+    }
+
+    fn check_colliders(&self) {
+        let colliders = &*self.tables.colliders;
+        let mut found = 0;
+        for (entity, id, present, of, collider_disabled, disabled) in &self.colliders {
+            let id = id.0;
+            if id != NONE {
+                found += 1;
+                assert!(colliders.table.ids.is_live(id), "{entity} has the unused collider id {id}");
+                assert_eq!(colliders.entities[id as usize], entity, "collider {id} is another entity's");
+            }
+            if self.queue.colliders.contains(&entity) {
+                continue;
+            }
+            let wanted = present && !collider_disabled && !disabled;
+            assert_eq!(wanted, id != NONE, "{entity} with a collider takes part");
+            if !wanted {
+                continue;
+            }
+            let body = of.and_then(|of| self.bodies.get(of.body).ok());
+            if body.is_none_or(|(body, ..)| !self.queue.bodies.contains(&body)) {
+                let body = body.map_or(NONE, |(_, id, ..)| id.0);
+                assert_eq!(colliders.table[id].def.body, body, "{entity} is on its body");
+            }
+        }
+        let lost = self.queue.lost_colliders.len();
+        let live = colliders.table.ids.len();
+        assert_eq!(live, found + lost, "{live} colliders, of {found} entities and {lost} that are gone");
+        let listed = self.tables.bodies.table.ids.iter().map(|body| {
+            let of_body = colliders.table.of_body(body, &self.tables.bodies.table);
+            of_body.filter(|c| colliders.table.ids.is_live(*c) && colliders.table[*c].def.body == body).count()
+        });
+        let attached = colliders.table.ids.iter().filter(|c| colliders.table[*c].def.body != NONE).count();
+        assert_eq!(listed.sum::<usize>(), attached, "bodies list their colliders");
+    }
+
+    fn check_trees(&self) {
+        let colliders = &*self.tables.colliders;
+        let mut counts = [0; 4];
+        for id in 0..colliders.table.ids.capacity() as u32 {
+            let kind = colliders.trees.kind(id);
+            if !colliders.table.ids.is_live(id) {
+                assert_eq!(kind, None, "collider {id} is gone, but not from its tree");
+                continue;
+            }
+            let expected = match colliders.table[id].def.body {
+                NONE => TreeKind::Standalone,
+                body => {
+                    assert!(self.tables.bodies.table.ids.is_live(body), "collider {id} is on a body");
+                    tree_of(self.tables.bodies.table[body].kind)
+                }
+            };
+            assert_eq!(kind, Some(expected), "the tree of collider {id}");
+            counts[expected as usize] += usize::from(!colliders.trees.is_new(id));
+        }
+        for kind in TreeKind::ALL {
+            let tree = &colliders.trees.trees[kind];
+            tree.validate();
+            assert_eq!(tree.len(), counts[kind as usize], "leaves of the tree of {kind:?} colliders");
+        }
+    }
+}

@@ -1,0 +1,329 @@
+//! Bodies and colliders come, go and change in any order, also from inside observers, and the simulation keeps
+//! up: the feature `validate`, which is on in tests, compares all tables with the world in every step.
+
+use avian::{
+    math::{AsF32, Scalar, Vector},
+    parry::shape::SharedShape,
+    prelude::*,
+};
+use bevy_app::prelude::*;
+use bevy_ecs::{entity_disabling::Disabled, prelude::*};
+use bevy_time::Time;
+use bevy_transform::{TransformPlugin, components::Transform};
+use core::time::Duration;
+
+/// Changes per run.
+const OPERATIONS: u32 = 25_000;
+/// Changes between two steps, on average.
+const PER_STEP: u32 = 8;
+/// So few entities that changes keep meeting each other.
+const CROWD: usize = 48;
+const DT: Duration = Duration::from_millis(16);
+
+/// Equal seeds give equal sequences: Marsaglia's xorshift (2003).
+#[derive(Resource, Clone)]
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 32) as usize % n.max(1)
+    }
+
+    fn between(&mut self, low: Scalar, high: Scalar) -> Scalar {
+        low + (high - low) * self.below(1 << 16) as Scalar / 65_536.0
+    }
+
+    fn vector(&mut self, size: Scalar) -> Vector {
+        Vector::from_array([(); Vector::AXES.len()].map(|()| self.between(-size, size)))
+    }
+
+    fn chance(&mut self, one_in: usize) -> bool {
+        self.below(one_in) == 0
+    }
+}
+
+/// What the random changes may pick from.
+#[derive(Resource, Default)]
+struct Crowd(Vec<Entity>);
+
+impl Crowd {
+    fn pick(&self, random: &mut Random) -> Option<Entity> {
+        (!self.0.is_empty()).then(|| self.0[random.below(self.0.len())])
+    }
+}
+
+fn app() -> App {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update)))
+        .insert_resource(SubstepCount(2));
+    app.finish();
+    app.cleanup();
+    app
+}
+
+fn step(app: &mut App) {
+    app.world_mut().resource_mut::<Time>().advance_by(DT);
+    app.update();
+}
+
+fn steps(app: &mut App, count: u32) {
+    (0..count).for_each(|_| step(app));
+}
+
+fn at(x: f32, y: f32) -> Transform {
+    Transform::from_xyz(x, y, 0.0)
+}
+
+/// A box with sides of 1 m.
+fn block() -> Collider {
+    hull(0.5)
+}
+
+/// A square or cube by half its side, as a hull.
+fn hull(half: Scalar) -> Collider {
+    let mut corners = vec![Vector::ZERO];
+    for axis in Vector::AXES {
+        corners = corners.iter().flat_map(|c| [*c - axis * half, *c + axis * half]).collect();
+    }
+    Collider::convex_hull(corners).expect("a box is convex")
+}
+
+fn floor(app: &mut App) -> Entity {
+    app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::Y))).id()
+}
+
+fn height(app: &App, entity: Entity) -> Scalar {
+    app.world().get::<Position>(entity).expect("a body has a position").y
+}
+
+fn is_asleep(app: &App, entity: Entity) -> bool {
+    app.world().get::<Sleeping>(entity).is_some()
+}
+
+fn any_collider(random: &mut Random) -> Collider {
+    let size = random.between(0.2, 0.8);
+    match random.below(7) {
+        0 | 1 => SharedShape::ball(size).into(),
+        2 => Collider::capsule(0.5 * size, size),
+        3 => block(),
+        4 => hull(0.5 * size),
+        5 => Collider::compound(vec![
+            (Vector::X * size, Rotation::IDENTITY, Collider::capsule(0.2, 0.3)),
+            (Vector::NEG_X * size, Rotation::IDENTITY, block()),
+        ]),
+        // A shape that the kernel does not know.
+        _ => Collider::polyline(vec![Vector::NEG_X, Vector::ZERO, Vector::X + Vector::Y], None),
+    }
+}
+
+fn any_body(random: &mut Random) -> RigidBody {
+    match random.below(5) {
+        0 => RigidBody::Static,
+        1 => RigidBody::Kinematic,
+        _ => RigidBody::Dynamic,
+    }
+}
+
+fn any_place(random: &mut Random) -> Transform {
+    let v = random.vector(3.0).f32();
+    let [x, y] = [v.x, v.y];
+    Transform::from_xyz(x, y, v.to_array().get(2).copied().unwrap_or(0.0))
+}
+
+/// Spawns something, and enters it in the crowd.
+fn spawn(world: &mut World, random: &mut Random) {
+    let place = any_place(random);
+    let new = match random.below(6) {
+        0..=2 => world.spawn((any_body(random), any_collider(random), place)).id(),
+        3 => world.spawn((any_body(random), place)).id(),
+        4 => world.spawn((any_collider(random), place)).id(),
+        // Not there yet when it is spawned, as a prefab.
+        _ => world.spawn((any_body(random), any_collider(random), place, Disabled)).id(),
+    };
+    let parent = world.resource::<Crowd>().pick(random);
+    if let Some(parent) = parent.filter(|_| random.chance(3)) {
+        if let Ok(mut new) = world.get_entity_mut(new) {
+            new.insert(ChildOf(parent));
+        }
+    }
+    world.resource_mut::<Crowd>().0.push(new);
+}
+
+/// Inserts a component if it is absent, else removes it.
+fn toggle<C: Component + Default>(world: &mut World, entity: Entity) {
+    let mut entity = world.entity_mut(entity);
+    if entity.contains::<C>() {
+        entity.remove::<C>();
+    } else {
+        entity.insert(C::default());
+    }
+}
+
+fn is_below(world: &World, entity: Entity, ancestor: Entity) -> bool {
+    let above = |at: &Entity| world.get::<ChildOf>(*at).map(ChildOf::parent);
+    core::iter::successors(Some(entity), above).any(|at| at == ancestor)
+}
+
+fn change_hierarchy(world: &mut World, entity: Entity, random: &mut Random) {
+    let parent = world.resource::<Crowd>().pick(random);
+    match parent.filter(|parent| !random.chance(2) && !is_below(world, *parent, entity)) {
+        Some(parent) => drop(world.entity_mut(entity).insert(ChildOf(parent))),
+        None => drop(world.entity_mut(entity).remove::<ChildOf>()),
+    }
+}
+
+fn change_setting(world: &mut World, entity: Entity, random: &mut Random) {
+    let mut of = world.entity_mut(entity);
+    match random.below(10) {
+        0 => of.insert(CollisionLayers::new(1 << random.below(3), LayerMask(random.below(8) as u32))),
+        1 => of.insert(CollisionLayers::default()),
+        2 => of.insert(Friction::new(random.between(0.0, 2.0))),
+        3 => of.remove::<Friction>(),
+        4 => of.insert(Restitution::new(random.between(0.0, 1.0))),
+        5 => of.insert(Mass(random.between(0.1, 10.0) as f32)),
+        6 => of.remove::<Mass>(),
+        7 => of.insert(LockedAxes::ROTATION_LOCKED),
+        8 => of.remove::<LockedAxes>(),
+        _ => of.insert(CollisionMargin(random.between(0.0, 0.1))),
+    };
+}
+
+/// One random change of something in the crowd.
+fn change(world: &mut World, random: &mut Random) {
+    let mut crowd = core::mem::take(&mut world.resource_mut::<Crowd>().0);
+    crowd.retain(|e| world.get_entity(*e).is_ok());
+    let full = crowd.len() >= CROWD;
+    world.resource_mut::<Crowd>().0 = crowd;
+    let target = world.resource::<Crowd>().pick(random);
+    let Some(entity) = target.filter(|_| full || !random.chance(6)) else {
+        spawn(world, random);
+        return;
+    };
+    match random.below(27) {
+        0..=1 => drop(world.despawn(entity)),
+        2 => drop(world.entity_mut(entity).remove::<RigidBody>()),
+        3..=5 => drop(world.entity_mut(entity).insert(any_body(random))),
+        6 => drop(world.entity_mut(entity).remove::<Collider>()),
+        7..=8 => drop(world.entity_mut(entity).insert(any_collider(random))),
+        9 => toggle::<RigidBodyDisabled>(world, entity),
+        10 => toggle::<ColliderDisabled>(world, entity),
+        11 => toggle::<Disabled>(world, entity),
+        12 => toggle::<Sensor>(world, entity),
+        13..=15 => toggle::<Sleeping>(world, entity),
+        16 => toggle::<SleepingDisabled>(world, entity),
+        17 => change_hierarchy(world, entity, random),
+        18 => {
+            let place = random.vector(3.0);
+            world.entity_mut(entity).insert(Position(place));
+        }
+        19 => {
+            let place = any_place(random);
+            world.entity_mut(entity).insert(place);
+        }
+        20 => {
+            let velocity = random.vector(5.0);
+            world.entity_mut(entity).insert(LinearVelocity(velocity));
+        }
+        21 => {
+            if let Some(mut collider) = world.get_mut::<Collider>(entity) {
+                collider.set_shape(SharedShape::ball(random.between(0.2, 0.8)));
+            }
+        }
+        22 => {
+            world.entity_mut(entity).remove_with_requires::<RigidBody>();
+        }
+        23 => {
+            world.entity_mut(entity).remove_with_requires::<Collider>();
+        }
+        24 => drop(world.entity_mut(entity).remove::<CollisionLayers>()),
+        _ => change_setting(world, entity, random),
+    }
+}
+
+/// Lets an observer meddle: sometimes something else changes at once.
+fn meddle(mut commands: Commands) {
+    commands.queue(|world: &mut World| {
+        let mut random = core::mem::replace(&mut *world.resource_mut::<Random>(), Random(77));
+        if random.chance(4) {
+            change(world, &mut random);
+        }
+        *world.resource_mut() = random;
+    });
+}
+
+/// The awake, free dynamic bodies without a collider, and how fast they are.
+fn free_bodies(app: &mut App) -> Vec<(Entity, Scalar)> {
+    let world = app.world_mut();
+    let mut query = world.query_filtered::<(Entity, &RigidBody, &LinearVelocity, Option<&LockedAxes>), (
+        Without<RigidBodyDisabled>,
+        Without<Sleeping>,
+        Without<RigidBodyColliders>,
+    )>();
+    query
+        .iter(world)
+        .filter(|(_, body, _, locks)| body.is_dynamic() && locks.is_none())
+        .map(|(e, _, velocity, _)| (e, velocity.y))
+        .collect()
+}
+
+fn check(app: &mut App, falling: &[(Entity, Scalar)], step: u32) {
+    let now = free_bodies(app);
+    let expected = 9.81 * DT.as_secs_f64() as Scalar;
+    for (entity, before) in falling {
+        if let Some((_, after)) = now.iter().find(|(e, _)| e == entity) {
+            let gained = before - after;
+            assert!((gained - expected).abs() < 1e-4, "{entity} fell by {gained} m/s in step {step}");
+        }
+    }
+    let world = app.world_mut();
+    let mut all = world.query::<(Entity, &Position, Option<&Rotation>, Option<&LinearVelocity>)>();
+    for (entity, position, rotation, velocity) in all.iter(world) {
+        assert!(position.is_finite(), "{entity} is at {position:?} in step {step}");
+        assert!(rotation.is_none_or(|r| r.is_finite()), "{entity} is turned by {rotation:?} in step {step}");
+        assert!(velocity.is_none_or(|v| v.is_finite()), "{entity} moves at {velocity:?} in step {step}");
+    }
+}
+
+fn run(seed: u64, observers: bool) {
+    let mut app = app();
+    let mut random = Random(seed);
+    app.init_resource::<Crowd>().insert_resource(Random(!seed)).insert_resource(TimeToSleep(0.05));
+    floor(&mut app);
+    if observers {
+        app.add_observer(|_: On<Add, Sleeping>, commands: Commands| meddle(commands))
+            .add_observer(|_: On<Remove, Sleeping>, commands: Commands| meddle(commands))
+            .add_observer(|_: On<Add, RigidBody>, commands: Commands| meddle(commands))
+            .add_observer(|_: On<Remove, Collider>, commands: Commands| meddle(commands));
+    }
+    for number in 0..OPERATIONS / PER_STEP {
+        for _ in 0..PER_STEP {
+            change(app.world_mut(), &mut random);
+        }
+        let falling = free_bodies(&mut app);
+        step(&mut app);
+        check(&mut app, &falling, number);
+    }
+}
+
+#[test]
+fn any_order_of_changes_leaves_tables_and_world_agreeing_1() {
+    run(0x9E37_79B9_7F4A_7C15, false);
+}
+
+#[test]
+fn any_order_of_changes_leaves_tables_and_world_agreeing_2() {
+    run(0xD1B5_4A32_D192_ED03, false);
+}
+
+#[test]
+fn any_order_of_changes_in_observers_leaves_tables_and_world_agreeing_1() {
+    run(0x2545_F491_4F6C_DD1D, true);
+}
+
+#[test]
+fn any_order_of_changes_in_observers_leaves_tables_and_world_agreeing_2() {
+    run(0x8CB9_2BA7_2F3D_8DD7, true);
+}
