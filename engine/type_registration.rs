@@ -18,7 +18,10 @@ impl Plugin for PhysicsTypeRegistrationPlugin {
     fn build(&self, app: &mut App) {
         register_schedule(app);
         register_dynamics(app);
+        register_bodies(app);
+        register_mass_properties(app);
         register_collision(app);
+        register_collider_settings(app);
     }
 }
 
@@ -30,28 +33,90 @@ fn register_schedule(app: &mut App) {
 }
 
 fn register_dynamics(app: &mut App) {
-    use crate::dynamics::{
-        ccd::SpeculativeMargin,
-        integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
-        solver::{
-            ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig,
-            schedule::SubstepCount,
-            softness_parameters::{SoftnessCoefficients, SoftnessParameters},
+    use crate::{
+        dynamics::{
+            ccd::SpeculativeMargin,
+            integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
+            lifecycle::{BodyId, ColliderId},
+            rigid_body::sleeping::TimeToSleep,
+            solver::{
+                ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig, SolverDiagnostics,
+                schedule::SubstepCount,
+                softness_parameters::{SoftnessCoefficients, SoftnessParameters},
+            },
         },
+        physics_transform::PhysicsTransformConfig,
     };
 
     register!(app:
         SpeculativeMargin, Gravity, CustomVelocityIntegration, CustomPositionIntegration,
-        PhysicsLengthUnit, SolverConfig, ContactSoftnessCoefficients, SubstepCount,
-        SoftnessParameters, SoftnessCoefficients,
+        PhysicsLengthUnit, SolverConfig, SolverDiagnostics, ContactSoftnessCoefficients, SubstepCount,
+        SoftnessParameters, SoftnessCoefficients, TimeToSleep, PhysicsTransformConfig, BodyId, ColliderId,
+    );
+}
+
+fn register_bodies(app: &mut App) {
+    use crate::{
+        dynamics::rigid_body::{
+            AngularDamping, AngularVelocity, CoefficientCombine, DefaultFriction, DefaultRestitution, Dominance,
+            Friction, GravityScale, LinearDamping, LinearVelocity, LockedAxes, MaxAngularSpeed, MaxLinearSpeed,
+            Restitution, RigidBody, RigidBodyDisabled,
+            sleeping::{SleepThreshold, SleepTimer, Sleeping, SleepingDisabled},
+        },
+        physics_transform::{Position, Rotation},
+    };
+
+    register!(app:
+        RigidBody, RigidBodyDisabled, Position, Rotation, LinearVelocity, AngularVelocity, MaxLinearSpeed,
+        MaxAngularSpeed, GravityScale, LinearDamping, AngularDamping, Dominance, LockedAxes,
+        Friction, Restitution, CoefficientCombine, DefaultFriction, DefaultRestitution,
+        Sleeping, SleepingDisabled, SleepThreshold, SleepTimer,
+    );
+}
+
+fn register_mass_properties(app: &mut App) {
+    use crate::dynamics::rigid_body::mass_properties::components::{
+        AngularInertia, CenterOfMass, ColliderDensity, ColliderMassProperties, ComputedAngularInertia,
+        ComputedCenterOfMass, ComputedMass, Mass, NoAutoAngularInertia, NoAutoCenterOfMass, NoAutoMass,
+        RecomputeMassProperties,
+    };
+
+    register!(app:
+        Mass, AngularInertia, CenterOfMass, ComputedMass, ComputedAngularInertia, ComputedCenterOfMass,
+        NoAutoMass, NoAutoAngularInertia, NoAutoCenterOfMass, RecomputeMassProperties,
+        ColliderDensity, ColliderMassProperties,
     );
 }
 
 fn register_collision(app: &mut App) {
     use crate::{
-        collider_tree::{ColliderTreeOptimization, TreeOptimizationMode},
-        collision::narrow_phase::NarrowPhaseConfig,
+        collider_tree::{ColliderTreeDiagnostics, ColliderTreeOptimization, TreeOptimizationMode},
+        collision::{
+            CollisionDiagnostics,
+            collider::{
+                ColliderAabb, ColliderDisabled, ColliderMarker, CollisionLayers, CollisionMargin, EnlargedAabb,
+                LayerMask, Sensor,
+                collider_hierarchy::{ColliderOf, RigidBodyColliders},
+                collider_transform::ColliderTransform,
+            },
+            narrow_phase::NarrowPhaseConfig,
+        },
     };
 
-    register!(app: NarrowPhaseConfig, ColliderTreeOptimization, TreeOptimizationMode);
+    register!(app:
+        NarrowPhaseConfig, CollisionDiagnostics, ColliderTreeOptimization, TreeOptimizationMode,
+        ColliderTreeDiagnostics, ColliderMarker, ColliderAabb, EnlargedAabb, ColliderDisabled, Sensor,
+        CollisionLayers, LayerMask, CollisionMargin, ColliderOf, RigidBodyColliders, ColliderTransform,
+    );
 }
+
+/// The parts of shapes' descriptions; shapes themselves do not reflect yet.
+#[cfg(feature = "default-collider")]
+fn register_collider_settings(app: &mut App) {
+    use crate::collision::collider::{FillMode, TrimeshFlags, VhacdParameters};
+
+    register!(app: VhacdParameters, FillMode, TrimeshFlags);
+}
+
+#[cfg(not(feature = "default-collider"))]
+fn register_collider_settings(_: &mut App) {}

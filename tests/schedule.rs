@@ -271,7 +271,15 @@ fn the_stages_of_a_step_are_in_order() {
             SolverSystems::PrepareJoints,
             SolverSystems::PrepareContactConstraints,
             SolverSystems::PreSubstep,
-            SolverSystems::Substep,
+        ],
+    ));
+    // `SolverSystems::Substep` has all to itself: it is where the substeps run.
+    app.insert_resource(SubstepCount(1));
+    expected.extend(note_sets(&mut app, SubstepSchedule, &[SubstepSolverSystems::SolveConstraints]));
+    expected.extend(note_sets(
+        &mut app,
+        PhysicsSchedule,
+        &[
             SolverSystems::PostSubstep,
             SolverSystems::Restitution,
             SolverSystems::Finalize,

@@ -150,7 +150,10 @@ impl Census<'_, '_> {
                 let kind = kind_of(body);
                 let center = vector_to_kernel(center.0);
                 let id = tables.bodies.table.add(kind, center, world_pose(position, rotation));
-                tables.bodies.table[id].dominance = dominance.map_or(0, |d| d.0);
+                let dominance = dominance.map_or(0, |d| d.0);
+                tables.bodies.table[id].dominance = dominance;
+                // Once set it stays: a static body's dominance is not read again.
+                tables.bodies.table.any_dominance |= dominance != 0;
                 put(&mut tables.bodies.entities, id, entity, Entity::PLACEHOLDER);
                 note_kinematic(id, kind, tables);
                 tables.link().enter(id);

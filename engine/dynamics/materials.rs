@@ -124,8 +124,8 @@ pub(crate) fn refresh_surfaces(
             let surfaces = query.of(collider, of.map(|of| of.body));
             let Tables { bodies, colliders, .. } = &mut tables;
             let colliders = &mut **colliders;
+            colliders.table.set_material(id.0, surfaces.material);
             let entry = &mut colliders.table[id.0];
-            entry.def.material = surfaces.material;
             if entry.def.margin != surfaces.margin || entry.def.speculative != surfaces.speculative {
                 entry.def.margin = surfaces.margin;
                 entry.def.speculative = surfaces.speculative;

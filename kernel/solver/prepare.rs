@@ -66,6 +66,8 @@ pub(super) struct StepRows<'a> {
     pub(super) bodies: &'a mut BodyRows,
     pub(super) params: &'a SubstepParams,
     pub(super) deep: &'a DeepCounts,
+    /// Whether any body is held along some axes.
+    pub(super) any_held: bool,
     pub(super) buckets: &'a mut Buckets,
 }
 
@@ -85,11 +87,10 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
         step: &mut StepRows,
         contacts: impl Iterator<Item = u32> + Clone,
     ) {
-        let StepRows { bodies, params, deep, buckets } = step;
         let mut layer = 0;
         loop {
             let mut more = false;
-            for bucket in &mut buckets.0 {
+            for bucket in &mut step.buckets.0 {
                 bucket.clear();
             }
             for id in contacts.clone() {
@@ -98,16 +99,16 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
                 let Some(manifold) = input.contacts.manifold(contact, layer) else { continue };
                 if manifold.count > 0 {
                     let source = ContactSource { contact: id, manifold: layer };
-                    buckets.0[PointClass::of(manifold.count) as usize].push(source);
+                    step.buckets.0[PointClass::of(manifold.count) as usize].push(source);
                 }
             }
             for class in PointClass::ALL {
-                let sources = &buckets.0[class as usize];
+                let sources = core::mem::take(&mut step.buckets.0[class as usize]);
                 if !sources.is_empty() {
-                    let batch =
-                        with_rows!(self, class, |rows| rows.add(input, bodies, params, deep, sources));
+                    let batch = with_rows!(self, class, |rows| rows.add(input, step, &sources));
                     self.batches.push(Batch { class, ..batch });
                 }
+                step.buckets.0[class as usize] = sources;
             }
             if !more {
                 return;
@@ -118,43 +119,29 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
 }
 
 impl<N: Lane, M: InvMass<N>, const P: usize> Rows<N, M, P> {
-    fn add(
-        &mut self,
-        input: &RowInput,
-        bodies: &mut BodyRows,
-        params: &SubstepParams,
-        deep: &DeepCounts,
-        sources: &[ContactSource],
-    ) -> Batch {
+    fn add(&mut self, input: &RowInput, step: &mut StepRows, sources: &[ContactSource]) -> Batch {
         let start = self.rows.len();
+        let len = sources.len().div_ceil(N::WIDTH);
+        self.rows.resize(start + len, ContactRow::default());
+        self.bounces.resize(start + len, RestitutionRow::default());
+        self.sources.reserve(len);
         let mut bouncy = false;
-        for chunk in sources.chunks(N::WIDTH) {
-            let mut row = ContactRow::default();
-            let mut bounce = RestitutionRow::default();
+        for (i, chunk) in sources.chunks(N::WIDTH).enumerate() {
+            let (row, bounce) = (&mut self.rows[start + i], &mut self.bounces[start + i]);
             let mut source = Source::<N> { contacts: N::Ids::splat(NONE), manifolds: N::Ids::splat(0) };
-            let mut fill = Fill {
-                friction_impulse: Vector::ZERO,
-                weights: [N::ZERO; P],
-                free: [Vector::splat(Vector::ONE); 2],
-                dominated: [N::ZERO; 2],
-            };
+            let mut fill = Fill::<N, P>::new();
             for (lane, from) in chunk.iter().enumerate() {
                 source.contacts.set(lane, from.contact);
                 source.manifolds.set(lane, from.manifold);
-                fill.lane(input, bodies, params, *from, lane, &mut row, &mut bounce);
-                let share = deep.share([0, 1].map(|i| row.ids[i].lanes()[lane]), bodies.first_dynamic);
-                row.push_speed.set(lane, params.max_push_speed * share);
+                fill.lane(input, step, *from, lane, row, bounce);
             }
-            let BodyRows { rows, masses, first_dynamic, .. } = &mut *bodies;
+            let BodyRows { rows, masses, first_dynamic, .. } = &mut *step.bodies;
             let view = RowView::over(rows, *first_dynamic);
-            fill.finish(&mut row, &mut bounce, masses, &view);
+            fill.finish(row, bounce, masses, &view);
             bouncy |= N::any(N::ZERO.lt(bounce.restitution));
-            self.rows.push(row);
-            self.bounces.push(bounce);
             self.sources.push(source);
         }
-        let len = (self.rows.len() - start) as u32;
-        Batch { class: PointClass::One, start: start as u32, len, bouncy }
+        Batch { class: PointClass::One, start: start as u32, len: len as u32, bouncy }
     }
 }
 
@@ -167,14 +154,21 @@ struct Fill<N, const P: usize> {
 }
 
 impl<N: Lane, const P: usize> Fill<N, P> {
+    fn new() -> Self {
+        Self {
+            friction_impulse: Vector::ZERO,
+            weights: [N::ZERO; P],
+            free: [Vector::splat(Vector::ONE); 2],
+            dominated: [N::ZERO; 2],
+        }
+    }
+
     /// Copies one manifold into a lane.
-    #[allow(clippy::too_many_arguments, reason = "a lane of three structures filled in one go")]
     #[inline(always)]
     fn lane<M: InvMass<N>>(
         &mut self,
         input: &RowInput,
-        bodies: &BodyRows,
-        params: &SubstepParams,
+        step: &StepRows,
         from: ContactSource,
         lane: usize,
         row: &mut ContactRow<N, M, P>,
@@ -182,19 +176,25 @@ impl<N: Lane, const P: usize> Fill<N, P> {
     ) {
         let contact = input.contacts.get(from.contact);
         let manifold = input.contacts.manifold(contact, from.manifold).expect("it was there to be counted");
+        let ids = contact.bodies.map(|body| row_of(input.bodies, body));
         for side in 0..2 {
-            let id = row_of(input.bodies, contact.bodies[side]);
-            row.ids[side].set(lane, id);
-            let locks = bodies.motions[id as usize].locks;
-            if locks.is_translation_partial() {
-                self.free[side].set(lane, locks.translation_factors());
+            row.ids[side].set(lane, ids[side]);
+            if step.any_held {
+                let locks = step.bodies.motions[ids[side] as usize].locks;
+                if locks.is_translation_partial() {
+                    self.free[side].set(lane, locks.translation_factors());
+                }
             }
         }
-        self.dominate(input.bodies, contact, lane);
-        let [a, b] = contact.colliders.map(|c| input.colliders[c].def.material);
+        if input.bodies.any_dominance {
+            self.dominate(input.bodies, contact, lane);
+        }
+        let [a, b] = contact.colliders.map(|c| &input.colliders.materials[c as usize]);
         row.friction.set(lane, a.friction.mix(b.friction));
         bounce.restitution.set(lane, a.restitution.mix(b.restitution));
-        self.copy(manifold, contact.frozen.offset, params, lane, row);
+        let share = step.deep.share(ids, step.bodies.first_dynamic);
+        row.push_speed.set(lane, step.params.max_push_speed * share);
+        self.copy(manifold, contact.frozen.offset, step.params, lane, row);
     }
 
     /// Marks the side that cannot be moved by the other because it dominates it.

@@ -67,7 +67,7 @@ impl Solver {
                 })
         };
         deep.count(input, bodies.rows.len());
-        let step = &mut StepRows { bodies, params, deep, buckets };
+        let step = &mut StepRows { bodies, params, deep, any_held, buckets };
         for id in colors.overflow() {
             let one = core::iter::once(*id);
             if held(id) {

@@ -69,6 +69,8 @@ pub struct BodyTable {
     pub rows: Vec<u32>,
     /// Bodies that woke or fell asleep since the embedder last emptied this; some may be back.
     pub flipped: Vec<u32>,
+    /// Whether any body's dominance is not 0: what rows need not ask otherwise. Set by whoever sets it.
+    pub any_dominance: bool,
     awake_kinematic: BitSet,
     awake_dynamic: BitSet,
 }

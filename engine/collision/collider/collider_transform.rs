@@ -103,7 +103,7 @@ impl Plugin for ColliderTransformPlugin {
                 (
                     attach_colliders
                         .run_if(resource_exists::<AttachesColliders>)
-                        .after(update_tree)
+                        .after(find_changed_transforms)
                         .in_set(Propagate),
                     (update_collider_transforms, place_child_colliders)
                         .chain()

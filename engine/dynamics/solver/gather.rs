@@ -240,7 +240,9 @@ impl Gather {
         rows.rows[row] = BodyRow::new(velocity.linear, velocity.angular);
         let locks = AxisLocks(body.options.locks.map_or(0, |l| l.to_bits()));
         let dynamic = row >= rows.first_dynamic as usize;
-        tables.bodies.table[id].dominance = body.options.dominance.map_or(0, |d| d.0);
+        let dominance = body.options.dominance.map_or(0, |d| d.0);
+        tables.bodies.table[id].dominance = dominance;
+        tables.bodies.table.any_dominance |= dominance != 0;
         if dynamic {
             let inv_mass = max(to_f32(body.mass.inverse()), 0.0);
             let inv_mass = if locks.is_translation_full() || !inv_mass.is_finite() { 0.0 } else { inv_mass };
