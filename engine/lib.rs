@@ -90,5 +90,4 @@ pub mod prelude {
             Substeps,
         },
     };
-    pub use avian_derive::*;
 }

@@ -8,10 +8,11 @@ use bevy_ecs::prelude::*;
 
 use crate::{
     collider_tree::ColliderTreeSystems,
-    collision::{broad_phase::BroadPhaseSystems, narrow_phase::NarrowPhaseSystems},
+    collision::{broad_phase::BroadPhaseSystems, narrow_phase::{NarrowPhaseConfig, NarrowPhaseSystems}},
     dynamics::{
         integrator::IntegrationSystems,
         lifecycle,
+        rigid_body::{DefaultFriction, DefaultRestitution},
         solver::{
             StepSolver,
             schedule::{SolverSystems, SubstepSolverSystems},
@@ -75,7 +76,11 @@ pub(crate) fn install(app: &mut App) {
     app.init_resource::<Bodies>()
         .init_resource::<Colliders>()
         .init_resource::<Contacts>()
-        .init_resource::<StepSolver>();
+        .init_resource::<StepSolver>()
+        // Colliders have a surface whether or not the narrow phase is there to use it.
+        .init_resource::<DefaultFriction>()
+        .init_resource::<DefaultRestitution>()
+        .init_resource::<NarrowPhaseConfig>();
     lifecycle::watch(app);
     app.configure_sets(
         PhysicsSchedule,
@@ -109,7 +114,9 @@ pub(crate) fn install(app: &mut App) {
     app.add_systems(
         PhysicsSchedule,
         (
-            crate::dynamics::drain::drain_lifecycle.in_set(Stage::DrainLifecycle),
+            (lifecycle::note_changed_colliders, crate::dynamics::drain::drain_lifecycle)
+                .chain()
+                .in_set(Stage::DrainLifecycle),
             crate::dynamics::drain::remove_lost_late.in_set(Stage::RemoveLost),
         ),
     );

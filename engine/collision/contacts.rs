@@ -58,7 +58,7 @@ pub(crate) fn update_contacts(
     mut tables: Tables,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let unit = to_f32(unit.0);
+    let unit = unit.metres();
     let colliders = &tables.colliders;
     let source = Foreign { colliders: &shapes, entities: &colliders.entities, table: &colliders.table };
     let phase = NarrowPhase {

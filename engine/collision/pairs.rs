@@ -15,7 +15,7 @@ use crate::{
         solver::PhysicsLengthUnit,
         tables::{Bodies, Colliders, Tables},
     },
-    math::{to_f32, vector_from_kernel},
+    math::vector_from_kernel,
     schedule::Physics,
 };
 
@@ -24,7 +24,7 @@ use crate::{
 const FAT_MARGIN: f32 = 0.05;
 
 fn fattening(unit: &PhysicsLengthUnit, time: &Time<Physics>) -> Fattening {
-    Fattening { margin: FAT_MARGIN * to_f32(unit.0), dt: time.delta_secs() }
+    Fattening { margin: FAT_MARGIN * unit.metres(), dt: time.delta_secs() }
 }
 
 /// Puts what entered or was changed by hand where it is, and in its tree.

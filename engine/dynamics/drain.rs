@@ -13,8 +13,9 @@ use crate::{
         collider_transform::ColliderTransform,
     },
     dynamics::{
-        lifecycle::{BodyId, ColliderId, LifecycleQueue},
+        lifecycle::{BodyEssentials, BodyId, ColliderId, LifecycleQueue},
         materials::{SurfaceQuery, Surfaces},
+        quarantine::{is_finite, quarantine},
         rigid_body::{
             Dominance, RigidBody, RigidBodyDisabled, mass_properties::components::ComputedCenterOfMass,
         },
@@ -41,7 +42,7 @@ type ColliderState = (
     Option<&'static ColliderOf>,
     Option<&'static ColliderTransform>,
     Option<(&'static Position, &'static Rotation)>,
-    &'static CollisionLayers,
+    Option<&'static CollisionLayers>,
     Has<Sensor>,
     Has<ColliderDisabled>,
     Has<Disabled>,
@@ -50,11 +51,12 @@ type ColliderState = (
 /// What the drain reads and writes of the world.
 #[derive(SystemParam)]
 pub(crate) struct Census<'w, 's> {
-    bodies: Query<'w, 's, BodyState, Allow<Disabled>>,
-    colliders: Query<'w, 's, ColliderState, Allow<Disabled>>,
+    bodies: Query<'w, 's, BodyState, (With<BodyId>, With<BodyEssentials>, Allow<Disabled>)>,
+    colliders: Query<'w, 's, ColliderState, (With<ColliderId>, Allow<Disabled>)>,
     body_ids: Query<'w, 's, &'static mut BodyId, Allow<Disabled>>,
     collider_ids: Query<'w, 's, &'static mut ColliderId, Allow<Disabled>>,
     surfaces: SurfaceQuery<'w, 's>,
+    commands: Commands<'w, 's>,
 }
 
 /// Drains the queue: lost ids leave, then noted bodies enter, leave or are retyped, then noted colliders.
@@ -62,6 +64,8 @@ pub(crate) fn drain_lifecycle(mut queue: ResMut<LifecycleQueue>, mut tables: Tab
     tables.bodies.table.ids.recycle();
     tables.colliders.table.ids.recycle();
     tables.contacts.table.recycle_ids();
+    // Whoever mirrors sleep has done so at the end of the last step.
+    tables.bodies.table.flipped.clear();
     remove_lost(&mut queue, &mut tables, &mut census);
 
     let mut bodies = core::mem::take(&mut queue.bodies);
@@ -127,6 +131,10 @@ pub(super) fn kind_of(body: &RigidBody) -> BodyKind {
     }
 }
 
+fn layers_of(layers: CollisionLayers) -> Layers {
+    Layers { memberships: layers.memberships.0, filters: layers.filters.0 }
+}
+
 /// Writes `value` at `index` of a list that grows as ids do.
 fn put<T: Clone>(list: &mut Vec<T>, index: u32, value: T, filler: T) {
     let index = index as usize;
@@ -142,6 +150,13 @@ impl Census<'_, '_> {
         let wanted = self.bodies.get(entity).ok().filter(|state| {
             let (_, body_disabled, disabled, position, ..) = state;
             !body_disabled && !disabled && **position != Position::PLACEHOLDER
+        });
+        let wanted = wanted.filter(|(.., position, rotation, _, _)| {
+            let finite = id != NONE || is_finite(&world_pose(position, rotation));
+            if !finite {
+                quarantine(entity, None, &mut self.commands);
+            }
+            finite
         });
         match (wanted, id) {
             (None, NONE) => {}
@@ -204,17 +219,20 @@ impl Census<'_, '_> {
         }
     }
 
+    fn dismiss_collider(&mut self, entity: Entity, id: u32, tables: &mut Tables) {
+        if id != NONE {
+            remove_collider(id, tables);
+            if let Ok(mut component) = self.collider_ids.get_mut(entity) {
+                component.0 = NONE;
+            }
+        }
+    }
+
     fn settle_collider(&mut self, entity: Entity, tables: &mut Tables) {
         let id = self.collider_ids.get(entity).map_or(NONE, |id| id.0);
         let state = self.colliders.get(entity).ok().filter(|state| !state.6 && !state.7);
         let Some((collider, of, transform, pose, layers, sensor, ..)) = state else {
-            if id != NONE {
-                remove_collider(id, tables);
-                if let Ok(mut component) = self.collider_ids.get_mut(entity) {
-                    component.0 = NONE;
-                }
-            }
-            return;
+            return self.dismiss_collider(entity, id, tables);
         };
         let body_entity = of.map(|of| of.body);
         let body = body_entity.and_then(|body| self.body_ids.get(body).ok()).map_or(NONE, |id| id.0);
@@ -225,7 +243,7 @@ impl Census<'_, '_> {
             body,
             local,
             material,
-            layers: Layers { memberships: layers.memberships.0, filters: layers.filters.0 },
+            layers: layers_of(layers.copied().unwrap_or_default()),
             flags: ColliderFlags { sensor },
             margin,
             speculative,
@@ -235,7 +253,7 @@ impl Census<'_, '_> {
                 world_pose(position, rotation)
             }
             _ if body != NONE => tables.bodies.table.frame(body).then(&local),
-            _ => return,
+            _ => return self.dismiss_collider(entity, id, tables),
         };
         // A contact knows its bodies: under another body the collider is a new one.
         if id != NONE && tables.colliders.table[id].def.body != body {
@@ -255,6 +273,9 @@ impl Census<'_, '_> {
             body => tree_of(tables.bodies.table[body].kind),
         };
         let colliders = &mut *tables.colliders;
+        if body == NONE {
+            colliders.table.poses[id as usize] = world;
+        }
         colliders.trees.place(id, kind);
         colliders.stale.insert(id);
         if let Ok(mut component) = self.collider_ids.get_mut(entity) {
@@ -266,7 +287,10 @@ impl Census<'_, '_> {
 /// Changes a collider in place. Whatever it touched is woken; pairs that its new layers forbid end.
 fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
     let body = def.body;
-    let filtered = tables.colliders.table[id].def.layers != def.layers;
+    let old = &tables.colliders.table[id].def;
+    let filtered = old.layers != def.layers;
+    // A new sensor is of interest to what it was not solved against.
+    let repaired = filtered || old.flags != def.flags;
     let mut link = tables.link();
     if body != NONE {
         link.wake_body(body);
@@ -278,6 +302,8 @@ fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
             let [a, b] = contact.colliders.map(|c| colliders[c].def.layers);
             a.interacts_with(b)
         });
+    }
+    if repaired {
         // New partners are found as for a collider that moved.
         tables.colliders.moved.insert(id);
     }

@@ -16,12 +16,21 @@
 use bevy_app::App;
 use bevy_ecs::{entity_disabling::Disabled, prelude::*};
 use bevy_reflect::Reflect;
+use kernel::table::NONE;
 
 use crate::{
     collision::collider::{
         Collider, ColliderDisabled, CollisionLayers, Sensor, collider_hierarchy::ColliderOf,
+        collider_transform::ColliderTransform,
     },
-    dynamics::rigid_body::{RigidBody, RigidBodyDisabled},
+    dynamics::{
+        rigid_body::{
+            AngularVelocity, LinearVelocity, RigidBody, RigidBodyDisabled,
+            mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
+        },
+        tables::Colliders,
+    },
+    physics_transform::{Position, Rotation},
 };
 
 /// A body's number in the tables; `u32::MAX` while it takes no part in the simulation.
@@ -38,13 +47,13 @@ pub struct ColliderId(pub(crate) u32);
 
 impl Default for BodyId {
     fn default() -> Self {
-        Self(kernel::table::NONE)
+        Self(NONE)
     }
 }
 
 impl Default for ColliderId {
     fn default() -> Self {
-        Self(kernel::table::NONE)
+        Self(NONE)
     }
 }
 
@@ -61,6 +70,17 @@ pub(crate) struct LifecycleQueue {
     pub(crate) lost_colliders: Vec<u32>,
 }
 
+/// Without any of these a body cannot be simulated. They come with it, but may be taken away.
+pub(crate) type BodyEssentials = (
+    Position,
+    Rotation,
+    LinearVelocity,
+    AngularVelocity,
+    ComputedMass,
+    ComputedAngularInertia,
+    ComputedCenterOfMass,
+);
+
 /// Registers the observers, and notes what was spawned before them.
 pub(crate) fn watch(app: &mut App) {
     if app.world().contains_resource::<LifecycleQueue>() {
@@ -76,6 +96,14 @@ pub(crate) fn watch(app: &mut App) {
     note_collider::<CollisionLayers>(app);
     note_collider::<Sensor>(app);
     note_collider::<Disabled>(app);
+    app.add_observer(|on: On<Add, BodyEssentials>, mut queue: ResMut<LifecycleQueue>| {
+        queue.bodies.push(on.entity);
+        queue.colliders.push(on.entity);
+    })
+    .add_observer(|on: On<Remove, BodyEssentials>, mut queue: ResMut<LifecycleQueue>| {
+        queue.bodies.push(on.entity);
+        queue.colliders.push(on.entity);
+    });
     app.add_observer(lose_body).add_observer(lose_collider);
 
     let world = app.world_mut();
@@ -99,13 +127,28 @@ fn note_collider<C: Component>(app: &mut App) {
         });
 }
 
+/// What a collider is, and where it is on its body.
+type ColliderChanged = Or<(Changed<Collider>, Changed<ColliderTransform>)>;
+
+/// Notes colliders that were changed in place, and moved ones that no body takes along.
+pub(crate) fn note_changed_colliders(
+    changed: Query<Entity, (With<ColliderId>, ColliderChanged)>,
+    moved: Query<(Entity, &ColliderId), Or<(Changed<Position>, Changed<Rotation>)>>,
+    colliders: Res<Colliders>,
+    mut queue: ResMut<LifecycleQueue>,
+) {
+    queue.colliders.extend(&changed);
+    let stands_alone = |id: u32| id != NONE && colliders.table[id].def.body == NONE;
+    queue.colliders.extend(moved.iter().filter(|(_, id)| stands_alone(id.0)).map(|(entity, _)| entity));
+}
+
 fn lose_body(
     on: On<Remove, BodyId>,
     ids: Query<&BodyId, Allow<Disabled>>,
     mut queue: ResMut<LifecycleQueue>,
 ) {
     if let Ok(BodyId(id)) = ids.get(on.entity)
-        && *id != kernel::table::NONE
+        && *id != NONE
     {
         queue.lost_bodies.push(*id);
     }
@@ -117,7 +160,7 @@ fn lose_collider(
     mut queue: ResMut<LifecycleQueue>,
 ) {
     if let Ok(ColliderId(id)) = ids.get(on.entity)
-        && *id != kernel::table::NONE
+        && *id != NONE
     {
         queue.lost_colliders.push(*id);
     }

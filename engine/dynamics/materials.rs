@@ -53,7 +53,7 @@ impl SurfaceQuery<'_, '_> {
         let speculative = own.3.or(from_body.3).map_or(self.config.default_speculative_margin, |m| m.0);
         Surfaces {
             material: Material {
-                friction: surface(friction.dynamic_coefficient, friction.combine_rule, f32::MAX),
+                friction: surface(friction.dynamic_coefficient, friction.combine_rule, MAX_FRICTION),
                 restitution: surface(restitution.coefficient, restitution.combine_rule, 1.0),
             },
             margin: length(margin),
@@ -66,6 +66,9 @@ impl SurfaceQuery<'_, '_> {
         self.colliders.get(body).map(|list| list.iter().collect()).unwrap_or_default()
     }
 }
+
+/// Nothing slides at this friction. Larger ones, mixed or multiplied by an impulse of 0, could overflow to NaN.
+const MAX_FRICTION: f32 = 1.0e9;
 
 /// A coefficient, held to what it can physically be.
 fn surface(coefficient: Scalar, rule: CoefficientCombine, max: f32) -> Surface {

@@ -6,6 +6,7 @@ pub(crate) mod drain;
 pub mod integrator;
 pub(crate) mod lifecycle;
 pub(crate) mod materials;
+pub(crate) mod quarantine;
 pub mod rigid_body;
 pub(crate) mod sleep;
 pub mod solver;

@@ -1,13 +1,16 @@
 //! Which islands fall asleep, and the [`Sleeping`] component as their mirror.
 
 use bevy_app::App;
-use bevy_ecs::prelude::*;
-use kernel::{graph::SleepScan, table::NONE};
+use bevy_ecs::{entity_disabling::Disabled, prelude::*};
+use kernel::{
+    graph::SleepScan,
+    table::{BodyKind, NONE},
+};
 
 use crate::dynamics::{
     lifecycle::BodyId,
     rigid_body::sleeping::{Sleeping, TimeToSleep},
-    tables::Tables,
+    tables::{Bodies, Tables},
 };
 
 /// Bodies whose [`Sleeping`] component was added or removed since the last step, by the app or as a mirror.
@@ -33,12 +36,27 @@ pub(crate) struct SleepBuffers(SleepScan);
 pub(crate) fn watch_sleeping(app: &mut App) {
     app.init_resource::<SleepRequests>()
         .init_resource::<SleepBuffers>()
-        .add_observer(|on: On<Add, Sleeping>, mut requests: ResMut<SleepRequests>| {
-            requests.sleep.push(on.entity);
-        })
+        .add_observer(ask_to_sleep)
         .add_observer(|on: On<Remove, Sleeping>, mut requests: ResMut<SleepRequests>| {
-            requests.wake.push(on.entity);
+            requests.wake.push(on.entity)
         });
+}
+
+/// Notes bodies that the app puts to sleep. Not those that sleep already: the component only follows, and
+/// what wakes them until the next step must not be undone.
+fn ask_to_sleep(
+    on: On<Add, Sleeping>,
+    ids: Query<&BodyId, Allow<Disabled>>,
+    bodies: Res<Bodies>,
+    mut requests: ResMut<SleepRequests>,
+) {
+    let sleeps = |id: &BodyId| {
+        let dynamic = id.0 != NONE && bodies.table[id.0].kind == BodyKind::Dynamic;
+        dynamic && !bodies.table[id.0].awake
+    };
+    if !ids.get(on.entity).is_ok_and(sleeps) {
+        requests.sleep.push(on.entity);
+    }
 }
 
 /// Does what the app asked for by adding or removing [`Sleeping`]: with a body sleeps or wakes its island.
@@ -83,7 +101,8 @@ pub(crate) fn sleep_islands(
     }
 }
 
-/// Adds and removes [`Sleeping`] where a body fell asleep or woke, and stops what fell asleep.
+/// Adds and removes [`Sleeping`] where a body fell asleep or woke, and stops what fell asleep. Observers of
+/// one body's `Sleeping` may despawn the next before it gets its own.
 pub(crate) fn mirror_sleeping(
     mut tables: Tables,
     sleeping: Query<Has<Sleeping>>,
@@ -95,14 +114,14 @@ pub(crate) fn mirror_sleeping(
 ) {
     let bodies = &mut *tables.bodies;
     for id in core::mem::take(&mut bodies.table.flipped) {
-        if !bodies.table.ids.is_live(id) || bodies.table[id].kind != kernel::table::BodyKind::Dynamic {
+        if !bodies.table.ids.is_live(id) || bodies.table[id].kind != BodyKind::Dynamic {
             continue;
         }
         let entity = bodies.entities[id as usize];
         let asleep = !bodies.table[id].awake;
         match (asleep, sleeping.get(entity)) {
             (true, Ok(false)) => {
-                commands.entity(entity).insert(Sleeping);
+                commands.entity(entity).try_insert(Sleeping);
                 if let Ok((mut v, mut w)) = velocities.get_mut(entity) {
                     v.0 = Default::default();
                     w.0 = Default::default();
@@ -110,7 +129,7 @@ pub(crate) fn mirror_sleeping(
                 }
             }
             (false, Ok(true)) => {
-                commands.entity(entity).remove::<Sleeping>();
+                commands.entity(entity).try_remove::<Sleeping>();
             }
             _ => {}
         }

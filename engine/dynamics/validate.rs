@@ -12,7 +12,7 @@ use crate::{
     collision::collider::{Collider, ColliderDisabled, collider_hierarchy::ColliderOf},
     dynamics::{
         drain::{kind_of, tree_of},
-        lifecycle::{BodyId, ColliderId, LifecycleQueue},
+        lifecycle::{BodyEssentials, BodyId, ColliderId, LifecycleQueue},
         rigid_body::{RigidBody, RigidBodyDisabled, sleeping::Sleeping},
         sleep::SleepRequests,
         tables::Tables,
@@ -21,17 +21,32 @@ use crate::{
     schedule::{PhysicsSchedule, PhysicsStepSystems},
 };
 
-type BodyWorld<'a> =
-    (Entity, &'a BodyId, Option<&'a RigidBody>, Has<RigidBodyDisabled>, Has<Disabled>, Has<Sleeping>, &'a Position);
+type BodyWorld<'a> = (
+    Entity,
+    &'a BodyId,
+    Option<&'a RigidBody>,
+    Has<RigidBodyDisabled>,
+    Has<Disabled>,
+    Has<Sleeping>,
+    Option<&'a Position>,
+);
 
-type ColliderWorld<'a> =
-    (Entity, &'a ColliderId, Has<Collider>, Option<&'a ColliderOf>, Has<ColliderDisabled>, Has<Disabled>);
+type ColliderWorld<'a> = (
+    Entity,
+    &'a ColliderId,
+    Has<Collider>,
+    Option<&'a ColliderOf>,
+    Has<ColliderDisabled>,
+    Has<Disabled>,
+    Option<&'a Position>,
+);
 
 /// What the checks read.
 #[derive(SystemParam)]
 struct Audit<'w, 's> {
     bodies: Query<'w, 's, BodyWorld<'static>, Allow<Disabled>>,
     colliders: Query<'w, 's, ColliderWorld<'static>, Allow<Disabled>>,
+    complete: Query<'w, 's, (), (With<BodyEssentials>, Allow<Disabled>)>,
     queue: Res<'w, LifecycleQueue>,
     requests: Option<Res<'w, SleepRequests>>,
     tables: Tables<'w>,
@@ -65,7 +80,9 @@ impl Audit<'_, '_> {
             if self.queue.bodies.contains(&entity) {
                 continue;
             }
-            let wanted = body.filter(|_| !body_disabled && !disabled && *position != Position::PLACEHOLDER);
+            let placed =
+                self.complete.contains(entity) && position.is_some_and(|p| *p != Position::PLACEHOLDER);
+            let wanted = body.filter(|_| !body_disabled && !disabled && placed);
             assert_eq!(wanted.is_some(), id != NONE, "{entity} with {body:?} at {position:?} takes part");
             let Some(body) = wanted else { continue };
             let record = &bodies.table[id];
@@ -95,7 +112,7 @@ impl Audit<'_, '_> {
     fn check_colliders(&self) {
         let colliders = &*self.tables.colliders;
         let mut found = 0;
-        for (entity, id, present, of, collider_disabled, disabled) in &self.colliders {
+        for (entity, id, present, of, collider_disabled, disabled, position) in &self.colliders {
             let id = id.0;
             if id != NONE {
                 found += 1;
@@ -105,12 +122,14 @@ impl Audit<'_, '_> {
             if self.queue.colliders.contains(&entity) {
                 continue;
             }
-            let wanted = present && !collider_disabled && !disabled;
+            let body = of.and_then(|of| self.bodies.get(of.body).ok());
+            let placed = position.is_some_and(|p| *p != Position::PLACEHOLDER)
+                || body.is_some_and(|(_, body, ..)| body.0 != NONE);
+            let wanted = present && !collider_disabled && !disabled && placed;
             assert_eq!(wanted, id != NONE, "{entity} with a collider takes part");
             if !wanted {
                 continue;
             }
-            let body = of.and_then(|of| self.bodies.get(of.body).ok());
             if body.is_none_or(|(body, ..)| !self.queue.bodies.contains(&body)) {
                 let body = body.map_or(NONE, |(_, id, ..)| id.0);
                 assert_eq!(colliders.table[id].def.body, body, "{entity} is on its body");
@@ -121,7 +140,9 @@ impl Audit<'_, '_> {
         assert_eq!(live, found + lost, "{live} colliders, of {found} entities and {lost} that are gone");
         let listed = self.tables.bodies.table.ids.iter().map(|body| {
             let of_body = colliders.table.of_body(body, &self.tables.bodies.table);
-            of_body.filter(|c| colliders.table.ids.is_live(*c) && colliders.table[*c].def.body == body).count()
+            of_body
+                .filter(|c| colliders.table.ids.is_live(*c) && colliders.table[*c].def.body == body)
+                .count()
         });
         let attached = colliders.table.ids.iter().filter(|c| colliders.table[*c].def.body != NONE).count();
         assert_eq!(listed.sum::<usize>(), attached, "bodies list their colliders");

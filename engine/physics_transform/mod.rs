@@ -35,6 +35,7 @@ pub(crate) use dim::vector_from_xyz;
 pub use helper::PhysicsTransformHelper;
 pub(crate) use kernel_pose::{set_pose, world_pose};
 pub use position::Position;
+pub(crate) use sync::find_changed_transforms;
 pub use sync::{position_to_transform, transform_to_position};
 
 use crate::dynamics::rigid_body::RigidBody;

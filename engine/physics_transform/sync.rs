@@ -9,6 +9,7 @@
 use bevy_ecs::{
     change_detection::{CheckChangeTicks, Tick},
     entity::EntityHashSet,
+    entity_disabling::Disabled,
     prelude::*,
     system::{SystemChangeTick, SystemParam},
 };
@@ -121,8 +122,9 @@ pub(crate) struct Initialiser<'w, 's> {
         'w,
         's,
         (&'static mut Position, Option<&'static mut Rotation>, Has<RigidBody>, Has<FollowsBody>),
+        Allow<Disabled>,
     >,
-    transforms: Query<'w, 's, &'static mut Transform>,
+    transforms: Query<'w, 's, &'static mut Transform, Allow<Disabled>>,
     parents: Parents<'w, 's>,
     config: Res<'w, PhysicsTransformConfig>,
 }

@@ -39,7 +39,7 @@ const ATAN_EIGHTHS: [f64; 9] = [
     0.5585993153435624,
     0.6435011087932844,
     0.7188299996216245,
-    0.7853981633974483,
+    core::f64::consts::FRAC_PI_4,
 ];
 
 /// The sine and cosine of an angle in radians; NaN for an infinite or NaN angle.

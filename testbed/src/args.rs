@@ -12,6 +12,7 @@ usage: testbed [options]
   --scene NAME    only scenes of that name, 2D and 3D; NAME may also be 2d/NAME, 3d/NAME, 2d or 3d
   --steps N       run N steps of 1/60 s instead of each scene's own number
   --out DIR       where to write the pictures (default: out)
+  --idle          measure worlds in which nothing moves, and exit
   --list          print the scenes
   --help          print this
 
@@ -34,6 +35,8 @@ pub struct Args {
     pub steps: Option<u32>,
     /// Folder for pictures.
     pub out: PathBuf,
+    /// Only measure idle worlds.
+    pub idle: bool,
     /// Only print the scenes.
     pub list: bool,
     /// Only print the help.
@@ -47,6 +50,7 @@ impl Default for Args {
             scene: None,
             steps: None,
             out: PathBuf::from("out"),
+            idle: false,
             list: false,
             help: false,
         }
@@ -69,6 +73,7 @@ impl Args {
             };
             match option.as_str() {
                 "--headless" => args.headless = true,
+                "--idle" => args.idle = true,
                 "--list" => args.list = true,
                 "--help" | "-h" => args.help = true,
                 "--scene" => args.scene = Some(value()?),

@@ -3,6 +3,8 @@
 use avian2d as avian;
 use scenes2d as scenes;
 
+#[path = "idle.rs"]
+pub mod idle;
 #[path = "overlap.rs"]
 mod overlap;
 #[path = "space2.rs"]

@@ -3,6 +3,8 @@
 use avian3d as avian;
 use scenes3d as scenes;
 
+#[path = "idle.rs"]
+pub mod idle;
 #[path = "overlap.rs"]
 mod overlap;
 #[path = "space3.rs"]

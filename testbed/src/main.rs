@@ -29,6 +29,13 @@ fn main() -> ExitCode {
         print!("{}", args::HELP);
         return ExitCode::SUCCESS;
     }
+    if args.idle {
+        println!("2D");
+        dim2::idle::report();
+        println!("3D");
+        dim3::idle::report();
+        return ExitCode::SUCCESS;
+    }
     let entries: Vec<Entry> =
         sim::catalogue().into_iter().filter(|entry| args.selects(entry.dimension, entry.name)).collect();
     if entries.is_empty() {

@@ -19,11 +19,10 @@ use crate::{
     dynamics::rigid_body::RigidBody,
     math::Vector,
     physics_transform::{
-        PhysicsTransformSystems, Position, Rotation,
+        PhysicsTransformSystems, Position, Rotation, find_changed_transforms,
         frame::{Frame, read_pose},
         tree::{
             FollowsBody, HierarchyQueue, Parents, TransformTree, TransformTreePlugin, TreeChanges,
-            update_tree,
         },
         turn_to_rotation, vector_from_xyz,
     },

@@ -3,7 +3,7 @@
 use bevy_app::{App, Plugin};
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
-use bevy_log::warn;
+use bevy_log::{warn, warn_once};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use bevy_time::Time;
 
@@ -15,7 +15,7 @@ use super::{
     substeps::{apply_restitution, prepare_rows, store_impulses},
 };
 use crate::{
-    math::Scalar,
+    math::{Scalar, to_f32},
     schedule::{Physics, PhysicsSchedule, PhysicsStepSystems, TimePrecisionAdjusted},
     step::{self, Stage},
 };
@@ -91,6 +91,16 @@ impl PhysicsLengthUnit {
             warn!("a physics length unit of {unit} is not a positive length, 1 is used instead");
             Self::default()
         }
+    }
+
+    /// The unit as the step uses it: 1, with one warning, where the app set what is no positive length.
+    pub(crate) fn metres(&self) -> f32 {
+        let unit = to_f32(self.0);
+        if unit.is_finite() && unit > 0.0 {
+            return unit;
+        }
+        warn_once!("a physics length unit of {} is not a positive length, 1 is used instead", self.0);
+        1.0
     }
 }
 

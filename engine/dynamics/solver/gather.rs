@@ -1,6 +1,7 @@
 //! From components to rows: the awake bodies of this step, and what the app changed by hand.
 
 use bevy_ecs::{prelude::*, query::QueryData};
+use bevy_log::warn_once;
 use kernel::{
     math::{AxisLocks, InvInertia, Vector as KernelVector, max},
     solver::{BodyRow, MassRow, Motion},
@@ -11,6 +12,7 @@ use crate::{
     dynamics::{
         integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
         lifecycle::BodyId,
+        quarantine::quarantine,
         rigid_body::{
             AngularDamping, AngularVelocity, Dominance, GravityScale, LinearDamping, LinearVelocity,
             LockedAxes, MaxAngularSpeed, MaxLinearSpeed,
@@ -51,9 +53,22 @@ pub(crate) struct MotionInput {
     own_position: Has<CustomPositionIntegration>,
 }
 
-/// A finite value that is not negative; anything else counts as none.
+/// A finite value that is not negative: negative and NaN count as none, infinite as the largest.
 fn positive(value: Option<Scalar>) -> f32 {
-    value.map_or(0.0, to_f32).clamp(0.0, f32::MAX)
+    match value.map(to_f32) {
+        Some(v) if v > 0.0 => v.min(f32::MAX),
+        _ => 0.0,
+    }
+}
+
+/// Gravity for the kernel. One that is not finite would undo every body at once: it counts as none.
+fn finite_gravity(gravity: &Gravity) -> KernelVector {
+    let vector = vector_to_kernel(gravity.0);
+    if vector.is_finite() {
+        return vector;
+    }
+    warn_once!("a gravity of {} is not finite, none is used instead", gravity.0);
+    KernelVector::ZERO
 }
 
 /// A limit: none, negative or NaN do not limit.
@@ -113,16 +128,21 @@ fn read_in(id: u32, body: &BodyInputItem, tables: &mut Tables) -> bool {
 /// themselves wake if they can.
 pub(crate) fn wake_changed(
     changed: Query<
-        BodyInput,
+        (Entity, BodyInput),
         Or<(Changed<Position>, Changed<Rotation>, Changed<LinearVelocity>, Changed<AngularVelocity>)>,
     >,
     gravity: Res<Gravity>,
     scaled: Query<&BodyId, Changed<GravityScale>>,
     mut tables: Tables,
+    mut commands: Commands,
 ) {
-    for body in &changed {
+    for (entity, body) in &changed {
         let id = body.id.0;
-        if id == NONE || tables.bodies.table[id].awake || !body.is_finite() {
+        if id == NONE || tables.bodies.table[id].awake {
+            continue;
+        }
+        if !body.is_finite() {
+            quarantine(entity, Some(tables.bodies.table.frame(id)), &mut commands);
             continue;
         }
         let old = tables.bodies.table.velocities[id as usize];
@@ -202,7 +222,7 @@ pub(crate) fn gather_bodies(
     let kinematic = table.assign_rows(listed);
     let count = listed.len();
     solver.kernel.bodies.reset(kinematic, count - kinematic);
-    let gather = Gather { gravity: vector_to_kernel(gravity.0) };
+    let gather = Gather { gravity: finite_gravity(&gravity) };
     if is_minority(count, &query) {
         let entities: Vec<Entity> =
             tables.bodies.listed.iter().map(|id| tables.bodies.entities[*id as usize]).collect();

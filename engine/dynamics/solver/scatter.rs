@@ -1,7 +1,6 @@
 //! From rows back to components, and which bodies have come to rest.
 
 use bevy_ecs::prelude::*;
-use bevy_log::warn;
 use bevy_time::Time;
 use kernel::{
     math::Vector as KernelVector,
@@ -12,15 +11,16 @@ use crate::{
     dynamics::{
         integrator::CustomPositionIntegration,
         lifecycle::BodyId,
+        quarantine::{is_finite, quarantine},
         rigid_body::{
-            AngularVelocity, LinearVelocity, RigidBodyDisabled,
+            AngularVelocity, LinearVelocity,
             sleeping::{SleepThreshold, SleepTimer, SleepingDisabled},
         },
         solver::{PhysicsLengthUnit, StepSolver},
         tables::Bodies,
     },
-    math::{angular_from_kernel, to_f32, vector_from_kernel},
-    physics_transform::{Position, Rotation, set_pose},
+    math::{angular_from_kernel, vector_from_kernel},
+    physics_transform::{Position, Rotation, set_pose, world_pose},
     schedule::Physics,
 };
 
@@ -51,7 +51,7 @@ pub(crate) fn scatter_bodies(
     mut commands: Commands,
 ) {
     let dt = time.delta_secs();
-    let unit = to_f32(unit.0);
+    let unit = unit.metres();
     let mut write = |item: <Output as bevy_ecs::query::QueryData>::Item<'_, '_>| {
         let (entity, id, position, rotation, linear, angular, threshold, sleepless, timer, own_position) =
             item;
@@ -66,13 +66,13 @@ pub(crate) fn scatter_bodies(
         let mut pose = old;
         pose.center = old.center + moved.to_world();
         pose.rotation = turned.mul(old.rotation).normalized();
-        let finite =
+        let result =
             v.is_finite() && w.is_finite() && pose.center.is_finite_world() && pose.rotation.is_finite();
-        if !finite {
-            warn!("{entity} came to a position or velocity that is not finite; it is put back and disabled");
-            commands.entity(entity).insert(RigidBodyDisabled);
-            write_changed(linear, LinearVelocity::ZERO);
-            write_changed(angular, AngularVelocity::ZERO);
+        // What came in not finite was left out of the step.
+        let given =
+            linear.is_finite() && angular.0.is_finite() && is_finite(&world_pose(&position, &rotation));
+        if !(result && given) {
+            quarantine(entity, Some(bodies.table.frame(id.0)), &mut commands);
             return;
         }
         bodies.table.poses[id.0 as usize] = pose;

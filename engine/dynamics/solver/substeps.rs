@@ -86,7 +86,7 @@ pub(crate) fn prepare_params(
 ) {
     let config = config.map(|c| c.clone()).unwrap_or_default();
     let soft = soft.map(|s| *s).unwrap_or_default();
-    let unit = to_f32(unit.0);
+    let unit = unit.metres();
     let substeps = count.0.max(1);
     let h = time.delta_secs() / substeps as f32;
     solver.substeps = substeps;

@@ -1,0 +1,4 @@
+//! What avian3d makes of input that makes no sense; the file is shared with avian2d.
+
+#[path = "../../../tests/hostile.rs"]
+mod hostile;

@@ -1,0 +1,26 @@
+//! What the whole engine does, in space: physics, snippets, life with the app. The files are shared with avian2d.
+
+#[path = "../../../tests/proof/behaviour.rs"]
+mod behaviour;
+#[path = "../../../tests/proof/crowds.rs"]
+mod crowds;
+#[path = "../../../tests/proof/determinism.rs"]
+mod determinism;
+#[path = "../../../tests/proof/dim3.rs"]
+mod dim;
+#[path = "../../../tests/proof/impacts.rs"]
+mod impacts;
+#[path = "../../../tests/proof/invariance.rs"]
+mod invariance;
+#[path = "../../../tests/proof/mission.rs"]
+mod mission;
+#[path = "../../../tests/proof/mission_dim3.rs"]
+mod mission_dim;
+#[path = "../../../tests/proof/motion.rs"]
+mod motion;
+#[path = "../../../tests/proof/sleep.rs"]
+mod sleep;
+#[path = "../../../tests/proof/stacks.rs"]
+mod stacks;
+#[path = "../../../tests/proof/world.rs"]
+mod world;

@@ -1,0 +1,499 @@
+//! Input that makes no sense is refused with an error, mended or quarantined with a warning; it never ends in a
+//! panic, and never reaches bodies that have nothing to do with it.
+
+use avian::{
+    math::{Scalar, Vector},
+    parry::shape::SharedShape,
+    prelude::*,
+};
+use bevy_app::prelude::*;
+use bevy_ecs::{entity_disabling::Disabled, prelude::*};
+use bevy_time::Time;
+use bevy_transform::{TransformPlugin, components::Transform};
+use core::time::Duration;
+
+const DT: Duration = Duration::from_nanos(1_000_000_000 / 60);
+/// What is no coordinate.
+const WRONG: [Scalar; 3] = [Scalar::NAN, Scalar::INFINITY, Scalar::NEG_INFINITY];
+/// What is no length, mass or density.
+const WRONG_SIZES: [Scalar; 5] = [Scalar::NAN, Scalar::INFINITY, Scalar::NEG_INFINITY, 0.0, -1.0];
+
+fn app() -> App {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update)));
+    app.finish();
+    app.cleanup();
+    app
+}
+
+fn step_by(app: &mut App, dt: Duration) {
+    app.world_mut().resource_mut::<Time>().advance_by(dt);
+    app.update();
+}
+
+fn steps(app: &mut App, count: u32) {
+    (0..count).for_each(|_| step_by(app, DT));
+}
+
+fn ball() -> Collider {
+    SharedShape::ball(0.5).into()
+}
+
+fn at(x: f32, y: f32) -> Transform {
+    Transform::from_xyz(x, y, 0.0)
+}
+
+fn floor(app: &mut App) -> Entity {
+    app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::Y))).id()
+}
+
+/// A ball that lies on the floor.
+fn resting(app: &mut App, x: f32) -> Entity {
+    app.world_mut().spawn((RigidBody::Dynamic, ball(), at(x, 0.5))).id()
+}
+
+fn position(app: &App, entity: Entity) -> Vector {
+    app.world().get::<Position>(entity).expect("a body has a position").0
+}
+
+fn is_disabled(app: &App, entity: Entity) -> bool {
+    app.world().get::<RigidBodyDisabled>(entity).is_some()
+}
+
+/// A floor with a ball at rest on it, which must not notice anything.
+struct Witness {
+    app: App,
+    ball: Entity,
+}
+
+impl Witness {
+    fn new() -> Self {
+        let mut app = app();
+        floor(&mut app);
+        let ball = resting(&mut app, -20.0);
+        Self { app, ball }
+    }
+
+    fn spawn(&mut self, bundle: impl Bundle) -> Entity {
+        self.app.world_mut().spawn(bundle).id()
+    }
+
+    fn insert(&mut self, entity: Entity, bundle: impl Bundle) {
+        self.app.world_mut().entity_mut(entity).insert(bundle);
+    }
+
+    /// Takes steps, after which the witness lies where it lay, and a body that is put there now falls and
+    /// comes to rest, as ever.
+    fn is_undisturbed(&mut self) {
+        steps(&mut self.app, 30);
+        let late = self.spawn((RigidBody::Dynamic, ball(), at(-30.0, 0.7)));
+        steps(&mut self.app, 60);
+        for (entity, x) in [(self.ball, -20.0), (late, -30.0)] {
+            let off = position(&self.app, entity) - (Vector::X * x + Vector::Y * 0.5);
+            assert!(off.length() < 0.02, "the witness is off by {off}");
+            assert!(!is_disabled(&self.app, entity));
+        }
+    }
+}
+
+#[test]
+fn a_position_that_is_not_finite_is_put_back_and_its_body_disabled() {
+    for wrong in WRONG {
+        for body in [RigidBody::Dynamic, RigidBody::Kinematic, RigidBody::Static] {
+            let mut witness = Witness::new();
+            let ill = witness.spawn((body, ball(), at(0.0, 0.5)));
+            let neighbour = witness.spawn((RigidBody::Dynamic, ball(), at(0.0, 1.5)));
+            steps(&mut witness.app, 5);
+            witness.insert(ill, Position(Vector::X * wrong));
+            witness.is_undisturbed();
+            assert!(is_disabled(&witness.app, ill), "{body:?} at {wrong}");
+            assert!(position(&witness.app, ill).length() < 1.0);
+            assert!(position(&witness.app, neighbour).is_finite());
+            // Mended, it takes part again.
+            witness.app.world_mut().entity_mut(ill).remove::<RigidBodyDisabled>();
+            witness.insert(ill, (Position(Vector::Y * 3.0), LinearVelocity(Vector::ZERO)));
+            steps(&mut witness.app, 10);
+            assert_eq!(position(&witness.app, ill).y < 2.9, body.is_dynamic());
+        }
+    }
+}
+
+#[test]
+fn a_body_spawned_where_no_place_is_does_not_enter() {
+    for wrong in WRONG {
+        for body in [RigidBody::Dynamic, RigidBody::Kinematic, RigidBody::Static] {
+            let mut witness = Witness::new();
+            let ill = witness.spawn((body, ball(), Position(Vector::Y * wrong)));
+            witness.spawn((body, ball(), Transform::from_xyz(f32::NAN, 0.0, 0.0)));
+            witness.is_undisturbed();
+            assert!(is_disabled(&witness.app, ill), "{body:?} at {wrong}");
+        }
+    }
+}
+
+#[test]
+fn a_velocity_that_is_not_finite_stops_its_body_and_no_other() {
+    for wrong in WRONG {
+        for body in [RigidBody::Dynamic, RigidBody::Kinematic, RigidBody::Static] {
+            let mut witness = Witness::new();
+            let ill = witness.spawn((body, ball(), at(0.0, 0.5)));
+            let neighbour = witness.spawn((RigidBody::Dynamic, ball(), at(0.0, 1.5)));
+            steps(&mut witness.app, 5);
+            witness.insert(ill, LinearVelocity(Vector::Y * wrong));
+            witness.is_undisturbed();
+            assert!(is_disabled(&witness.app, ill), "{body:?} with {wrong} m/s");
+            assert!(position(&witness.app, ill).is_finite() && position(&witness.app, neighbour).is_finite());
+            let velocity = witness.app.world().get::<LinearVelocity>(ill).expect("a body has a velocity");
+            assert_eq!(velocity.0, Vector::ZERO);
+        }
+    }
+}
+
+#[test]
+fn a_sleeping_body_with_a_velocity_of_nan_is_quarantined() {
+    let mut witness = Witness::new();
+    let ill = resting(&mut witness.app, 0.0);
+    steps(&mut witness.app, 120);
+    assert!(witness.app.world().get::<Sleeping>(ill).is_some());
+    witness.insert(ill, LinearVelocity(Vector::splat(Scalar::NAN)));
+    witness.is_undisturbed();
+    assert!(is_disabled(&witness.app, ill));
+}
+
+#[test]
+fn speeds_and_distances_near_the_limits_of_floats_stay_with_their_body() {
+    for huge in [1.0e12, 1.0e19, 1.0e30, 3.0e38] {
+        let mut witness = Witness::new();
+        witness.spawn((RigidBody::Dynamic, ball(), at(0.0, 0.5), LinearVelocity(Vector::X * huge)));
+        witness.spawn((RigidBody::Kinematic, ball(), at(3.0, 0.5), LinearVelocity(Vector::NEG_Y * huge)));
+        witness.spawn((RigidBody::Dynamic, ball(), Position(Vector::X * huge)));
+        witness.spawn((RigidBody::Dynamic, ball(), Position(Vector::NEG_X * huge)));
+        witness.is_undisturbed();
+    }
+}
+
+#[test]
+fn sizes_that_are_none_make_colliders_that_can_be_lived_with() {
+    for wrong in WRONG_SIZES {
+        let mut witness = Witness::new();
+        let shapes = [
+            Collider::capsule(wrong, 1.0),
+            Collider::capsule(0.5, wrong),
+            Collider::capsule_endpoints(0.5, Vector::splat(wrong), Vector::X),
+            Collider::half_space(Vector::splat(wrong)),
+            Collider::segment(Vector::splat(wrong), Vector::X),
+            Collider::polyline(vec![Vector::splat(wrong), Vector::X, Vector::splat(wrong)], None),
+            Collider::polyline(vec![], None),
+        ];
+        for (i, shape) in shapes.into_iter().enumerate() {
+            witness.spawn((RigidBody::Dynamic, shape, at(4.0 * i as f32, 1.0)));
+        }
+        // Past the constructors, straight from parry.
+        witness.spawn((RigidBody::Dynamic, Collider::from(SharedShape::ball(wrong)), at(40.0, 1.0)));
+        witness.is_undisturbed();
+    }
+}
+
+#[test]
+fn hulls_that_span_nothing_are_refused() {
+    let nan = Vector::splat(Scalar::NAN);
+    let in_a_line = (0..5).map(|i| Vector::X * i as Scalar).collect();
+    for points in [
+        vec![],
+        vec![Vector::ZERO],
+        vec![Vector::ZERO, Vector::X],
+        vec![Vector::X; 10],
+        vec![nan; 10],
+        vec![Vector::ZERO, Vector::X, Vector::Y, nan],
+        in_a_line,
+    ] {
+        assert!(Collider::convex_hull(points.clone()).is_none(), "{points:?}");
+    }
+}
+
+#[test]
+fn masses_that_are_none_leave_the_others_alone() {
+    for wrong in WRONG_SIZES {
+        let mut witness = Witness::new();
+        let bodies = [
+            witness.spawn((RigidBody::Dynamic, ball(), at(0.0, 0.6), Mass(wrong as f32))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(2.0, 0.6), ColliderDensity(wrong as f32))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(4.0, 0.6), GravityScale(wrong))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(6.0, 0.6), LinearDamping(wrong))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(8.0, 0.6), AngularDamping(wrong))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(10.0, 0.6), MaxLinearSpeed(wrong))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(12.0, 0.6), MaxAngularSpeed(wrong))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(14.0, 0.6), Friction::new(wrong))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(16.0, 0.6), Restitution::new(wrong))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(18.0, 0.6), CollisionMargin(wrong.min(1.0)))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(20.0, 0.6), SpeculativeMargin(wrong))),
+        ];
+        witness.is_undisturbed();
+        for (i, body) in bodies.into_iter().enumerate() {
+            assert!(!is_disabled(&witness.app, body), "body {i} with {wrong}");
+            assert!(position(&witness.app, body).is_finite(), "body {i} with {wrong}");
+        }
+    }
+}
+
+#[test]
+fn damping_of_nan_is_no_damping() {
+    let mut app = app();
+    let plain = app.world_mut().spawn((RigidBody::Dynamic, at(0.0, 0.0))).id();
+    let damped = (LinearDamping(Scalar::NAN), AngularDamping(Scalar::NAN));
+    let damped = app.world_mut().spawn((RigidBody::Dynamic, at(0.0, 0.0), damped)).id();
+    steps(&mut app, 30);
+    assert!(!is_disabled(&app, damped));
+    assert_eq!(position(&app, plain), position(&app, damped));
+}
+
+#[test]
+fn friction_without_bounds_sticks() {
+    for mu in [Scalar::INFINITY, Scalar::MAX, 1.0e30] {
+        let mut app = app();
+        let friction = Friction::new(mu).with_combine_rule(CoefficientCombine::Multiply);
+        app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::X + Vector::Y), friction));
+        let block = Collider::convex_hull(corners(0.5)).expect("a box is convex");
+        let body = (RigidBody::Dynamic, block, friction, LockedAxes::ROTATION_LOCKED);
+        let body = app.world_mut().spawn((body, at(0.5, 0.5))).id();
+        steps(&mut app, 60);
+        let moved = position(&app, body) - (Vector::X + Vector::Y) * 0.5;
+        assert!(moved.length() < 0.05, "with friction {mu} it moved by {moved}");
+    }
+}
+
+/// The corners of a square or cube by half its side.
+fn corners(half: Scalar) -> Vec<Vector> {
+    let double = |found: Vec<Vector>, axis: Vector| {
+        found.iter().flat_map(|c| [*c - axis * half, *c + axis * half]).collect()
+    };
+    Vector::AXES.into_iter().fold(vec![Vector::ZERO], double)
+}
+
+#[test]
+fn a_dynamic_body_without_mass_falls() {
+    let mut app = app();
+    let body = app.world_mut().spawn(RigidBody::Dynamic).id();
+    steps(&mut app, 60);
+    assert!(position(&app, body).y < -4.0);
+}
+
+#[test]
+fn locked_axes_hold_a_body_with_its_centre_of_mass_far_off() {
+    let mut app = app();
+    floor(&mut app);
+    let compound = |x: Scalar| Collider::compound(vec![(Vector::X * x, Rotation::IDENTITY, ball())]);
+    let body = (RigidBody::Dynamic, compound(3.0), LockedAxes::ALL_LOCKED, at(0.0, 0.3));
+    let held = app.world_mut().spawn(body).id();
+    let body = (RigidBody::Dynamic, compound(3.0), LockedAxes::ROTATION_LOCKED, at(10.0, 0.7));
+    let upright = app.world_mut().spawn(body).id();
+    steps(&mut app, 120);
+    assert_eq!(position(&app, held), Vector::Y * 0.3 as Scalar);
+    let at_rest = position(&app, upright);
+    assert!((at_rest - Vector::X * 10.0 - Vector::Y * 0.5).length() < 0.02, "{at_rest}");
+    let rotation = app.world().get::<Rotation>(upright).expect("a body has a rotation");
+    assert_eq!(*rotation, Rotation::IDENTITY);
+}
+
+#[test]
+fn gravity_that_is_not_finite_is_none() {
+    for wrong in WRONG {
+        let mut witness = Witness::new();
+        witness.app.insert_resource(Gravity(Vector::Y * wrong));
+        let free = witness.spawn((RigidBody::Dynamic, at(0.0, 5.0)));
+        steps(&mut witness.app, 10);
+        assert_eq!(position(&witness.app, free), Vector::Y * 5.0);
+        witness.app.insert_resource(Gravity::default());
+        witness.is_undisturbed();
+    }
+}
+
+#[test]
+fn a_length_unit_that_is_no_length_counts_as_one() {
+    for wrong in WRONG_SIZES {
+        let mut witness = Witness::new();
+        witness.app.insert_resource(PhysicsLengthUnit(wrong));
+        witness.is_undisturbed();
+    }
+}
+
+#[test]
+fn settings_that_are_none_are_survived() {
+    use avian::dynamics::solver::SolverConfig;
+    for wrong in WRONG_SIZES {
+        let mut witness = Witness::new();
+        witness.app.insert_resource(SolverConfig {
+            max_overlap_solve_speed: wrong,
+            warm_start_coefficient: wrong,
+            restitution_threshold: wrong,
+            ..SolverConfig::default()
+        });
+        let narrow = NarrowPhaseConfig { default_speculative_margin: wrong, ..NarrowPhaseConfig::default() };
+        witness.app.insert_resource(narrow).insert_resource(TimeToSleep(wrong as f32));
+        let falling = witness.spawn((RigidBody::Dynamic, ball(), at(0.0, 1.0)));
+        steps(&mut witness.app, 60);
+        assert!(!is_disabled(&witness.app, falling) && position(&witness.app, falling).is_finite());
+    }
+}
+
+#[test]
+fn a_step_of_no_time_changes_nothing() {
+    let mut witness = Witness::new();
+    let falling = witness.spawn((RigidBody::Dynamic, ball(), at(0.0, 3.0)));
+    let overlapping = witness.spawn((RigidBody::Dynamic, ball(), at(5.0, 0.2)));
+    steps(&mut witness.app, 1);
+    let before = [falling, overlapping, witness.ball].map(|e| position(&witness.app, e));
+    witness.app.world_mut().resource_mut::<Time<Physics>>().advance_by(Duration::ZERO);
+    for _ in 0..3 {
+        witness.app.world_mut().run_schedule(PhysicsSchedule);
+    }
+    let after = [falling, overlapping, witness.ball].map(|e| position(&witness.app, e));
+    assert_eq!(before, after);
+    witness.is_undisturbed();
+}
+
+#[test]
+fn steps_of_ten_seconds_and_of_a_nanosecond_leave_everybody_finite() {
+    for dt in [Duration::from_secs(10), Duration::from_nanos(1), Duration::from_secs(100_000)] {
+        let mut app = app();
+        floor(&mut app);
+        let bodies: Vec<Entity> = (0..10).map(|i| resting(&mut app, 0.4 * i as f32)).collect();
+        (0..20).for_each(|_| step_by(&mut app, dt));
+        assert!(bodies.iter().all(|e| position(&app, *e).is_finite()), "steps of {dt:?}");
+        let late = resting(&mut app, -30.0);
+        steps(&mut app, 60);
+        assert!((position(&app, late).y - 0.5).abs() < 0.02, "after steps of {dt:?}");
+    }
+}
+
+#[test]
+fn no_substeps_count_as_one_and_a_thousand_are_taken() {
+    for count in [0, 1, 1000] {
+        let mut witness = Witness::new();
+        witness.app.insert_resource(SubstepCount(count));
+        witness.is_undisturbed();
+    }
+}
+
+#[test]
+fn a_thousand_colliders_on_one_body_come_and_go() {
+    let mut witness = Witness::new();
+    let body = witness.spawn((RigidBody::Dynamic, at(0.0, 1.0)));
+    for i in 0..1000 {
+        let place = at(0.01 * (i % 100) as f32, 0.02 * (i / 100) as f32);
+        witness.spawn((ball(), place, ChildOf(body)));
+    }
+    witness.is_undisturbed();
+    assert!((position(&witness.app, body).y - 0.5).abs() < 0.05);
+    witness.insert(body, RigidBody::Static);
+    steps(&mut witness.app, 2);
+    witness.app.world_mut().despawn(body);
+    witness.is_undisturbed();
+}
+
+/// Pulls the rug in mid-contact in one way.
+type Change = fn(&mut EntityWorldMut);
+
+const CHANGES: [(&str, Change); 12] = [
+    ("disables its body", |e| drop(e.insert(RigidBodyDisabled))),
+    ("disables its collider", |e| drop(e.insert(ColliderDisabled))),
+    ("disables it", |e| drop(e.insert(Disabled))),
+    ("makes it dynamic", |e| drop(e.insert(RigidBody::Dynamic))),
+    ("makes it kinematic", |e| drop(e.insert(RigidBody::Kinematic))),
+    ("removes its body", |e| drop(e.remove::<RigidBody>())),
+    ("removes its collider", |e| drop(e.remove::<Collider>())),
+    ("makes it a sensor", |e| drop(e.insert(Sensor))),
+    ("gives it other layers", |e| drop(e.insert(CollisionLayers::NONE))),
+    ("moves it", |e| drop(e.insert(Position(Vector::X * 50.0)))),
+    ("moves its transform", |e| drop(e.insert(Transform::from_xyz(50.0, 0.0, 0.0)))),
+    ("gives it another shape", |e| drop(e.insert(Collider::capsule(0.1, 0.1)))),
+];
+
+/// What holds a sleeping ball up goes, changes or moves: the ball must fall.
+#[test]
+fn whatever_happens_to_its_support_a_sleeping_body_falls() {
+    for (name, change) in CHANGES {
+        let mut app = app();
+        let block = Collider::convex_hull(corners(1.0)).expect("a box is convex");
+        let support = app.world_mut().spawn((RigidBody::Static, block, at(0.0, 0.0))).id();
+        let ball = app.world_mut().spawn((RigidBody::Dynamic, ball(), at(0.0, 1.5))).id();
+        steps(&mut app, 120);
+        assert!(app.world().get::<Sleeping>(ball).is_some(), "{name}: it sleeps first");
+        let before = position(&app, ball).y;
+        change(&mut app.world_mut().entity_mut(support));
+        steps(&mut app, 120);
+        let fell = before - position(&app, ball).y;
+        assert_eq!(fell > 0.5, name != "makes it kinematic", "{name}: it fell by {fell}");
+    }
+    let mut app = app();
+    let support = floor(&mut app);
+    let ball = resting(&mut app, 0.0);
+    steps(&mut app, 120);
+    app.world_mut().despawn(support);
+    steps(&mut app, 60);
+    assert!(position(&app, ball).y < -1.0);
+}
+
+/// The same, from inside the observers of sleep, to the very body that falls asleep or wakes.
+#[test]
+fn observers_of_sleep_may_do_anything_to_the_sleeper() {
+    for (_, change) in CHANGES.into_iter().chain([("", despawn as Change)]) {
+        let mut witness = Witness::new();
+        for i in 0..6 {
+            resting(&mut witness.app, 0.99 * i as f32);
+        }
+        let keep = witness.ball;
+        let meddle = move |entity: Entity, mut commands: Commands| {
+            if entity != keep {
+                commands.queue(move |world: &mut World| {
+                    if let Ok(mut entity) = world.get_entity_mut(entity) {
+                        change(&mut entity);
+                    }
+                });
+            }
+        };
+        witness
+            .app
+            .add_observer(move |on: On<Add, Sleeping>, commands: Commands| meddle(on.entity, commands));
+        witness
+            .app
+            .add_observer(move |on: On<Remove, Sleeping>, commands: Commands| meddle(on.entity, commands));
+        steps(&mut witness.app, 120);
+        witness.app.insert_resource(Gravity(Vector::NEG_Y * 10.0));
+        witness.is_undisturbed();
+    }
+}
+
+fn despawn(entity: &mut EntityWorldMut) {
+    let id = entity.id();
+    entity.world_scope(|world| world.despawn(id));
+}
+
+#[test]
+fn whoever_sleeps_first_may_despawn_all_other_sleepers() {
+    let mut witness = Witness::new();
+    for i in 0..6 {
+        resting(&mut witness.app, 0.99 * i as f32);
+    }
+    let keep = witness.ball;
+    witness.app.add_observer(
+        move |on: On<Add, Sleeping>, bodies: Query<(Entity, &RigidBody)>, mut commands: Commands| {
+            for (entity, body) in &bodies {
+                if body.is_dynamic() && entity != on.entity && entity != keep {
+                    commands.entity(entity).try_despawn();
+                }
+            }
+        },
+    );
+    witness.is_undisturbed();
+}
+
+#[test]
+fn two_simulations_in_one_process_do_not_meet() {
+    let (mut one, mut other) = (Witness::new(), Witness::new());
+    let stray = other.spawn((RigidBody::Dynamic, ball(), at(-20.0, 3.0)));
+    one.is_undisturbed();
+    steps(&mut other.app, 20);
+    other.app.world_mut().despawn(stray);
+    one.is_undisturbed();
+}

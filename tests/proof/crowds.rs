@@ -1,0 +1,169 @@
+//! Deep overlap without explosions, and scenes in pixels: row 18 of the physics that the engine is held to.
+
+use avian::{
+    math::{Scalar, Vector},
+    prelude::*,
+};
+use bevy_ecs::prelude::*;
+use bevy_transform::components::Transform;
+use scenes::scene::at;
+
+use super::{dim, world::Lab};
+
+/// A closed box around the origin's upper side, `2 half` wide and high, and in it balls and boxes in turn.
+fn full_container(lab: &mut Lab) -> (Scalar, Vec<Entity>) {
+    let (columns, rows) = dim::LAYER;
+    let half = 0.5 * columns as f32;
+    let long = 2.0 * half + 8.0;
+    for (size, x, y) in [
+        ([long, 4.0], 0.0, -2.0),
+        ([long, 4.0], 0.0, 2.0 * half + 2.0),
+        ([4.0, long], -half - 2.0, half),
+        ([4.0, long], half + 2.0, half),
+    ] {
+        lab.spawn((RigidBody::Static, dim::sized_block(size[0], size[1], long), at(x, y, 0.0)));
+    }
+    for (wall, place) in dim::side_walls(half) {
+        lab.spawn((RigidBody::Static, wall, Position(place), Rotation::default()));
+    }
+    let mut bodies = Vec::new();
+    for layer in 0..columns {
+        for row in 0..rows {
+            for column in 0..columns {
+                let cell = |i: u32, n: u32| i as f32 + 0.5 - 0.5 * n as f32;
+                let pose = at(cell(column, columns), layer as f32 + 0.5, cell(row, rows));
+                let body = lab.spawn((RigidBody::Dynamic, growing(bodies.len(), 0.2), pose));
+                bodies.push(body);
+            }
+        }
+    }
+    (half, bodies)
+}
+
+/// A ball of a radius, or a box of twice its width.
+fn growing(index: usize, radius: f32) -> Collider {
+    match index % 2 {
+        0 => scenes::dim::ball(radius),
+        _ => dim::sized_block(2.0 * radius, 2.0 * radius, 2.0 * radius),
+    }
+}
+
+/// Fails unless all bodies are within the container; gives the greatest speed.
+#[track_caller]
+fn greatest_speed_inside(lab: &Lab, half: Scalar, bodies: &[Entity]) -> Scalar {
+    let mut fastest: Scalar = 0.0;
+    for &body in bodies {
+        let p = lab.at(body) - Vector::Y * half;
+        assert!(p.abs().max_element() < half, "a body left: {p:?} from the middle");
+        fastest = fastest.max(lab.velocity(body).length());
+    }
+    fastest
+}
+
+#[test]
+fn bodies_that_grow_in_a_full_container_neither_explode_nor_leave() {
+    let mut lab = Lab::new();
+    let (half, bodies) = full_container(&mut lab);
+    let mut fastest: Scalar = 0.0;
+    // From loose to half as much again as there is room for, in five seconds.
+    for step in 0..300 {
+        let radius = 0.2 + 0.4 * step as f32 / 300.0;
+        for (i, &body) in bodies.iter().enumerate() {
+            lab.insert(body, growing(i, radius));
+        }
+        lab.steps(1);
+        fastest = fastest.max(greatest_speed_inside(&lab, half, &bodies));
+    }
+    println!("while growing: at most {fastest} m/s");
+    assert!(fastest < 8.0, "flung at {fastest} m/s");
+    let mut later: Scalar = 0.0;
+    for _ in 0..300 {
+        lab.steps(1);
+        later = later.max(greatest_speed_inside(&lab, half, &bodies));
+    }
+    println!("crammed: at most {later} m/s");
+    let end = greatest_speed_inside(&lab, half, &bodies);
+    assert!(end < 0.5, "it does not calm down: {end} m/s");
+}
+
+#[test]
+fn a_collider_grows_by_its_scale_too() {
+    let mut lab = Lab::new();
+    lab.floor();
+    let body = lab.unit_box(at(0.0, 0.5, 0.0));
+    lab.seconds(0.5);
+    for step in 1..=60 {
+        let world = lab.app.world_mut();
+        let mut entity = world.entity_mut(body);
+        let mut collider = entity.get_mut::<Collider>().expect("a collider");
+        collider.set_scale(Vector::ONE * (1.0 + step as Scalar / 60.0), 8);
+        lab.steps(1);
+    }
+    lab.seconds(1.0);
+    assert!((lab.at(body).y - 1.0).abs() < 0.02, "twice as large it rests at {:?}", lab.at(body));
+}
+
+#[test]
+fn a_hundred_bodies_in_one_place_come_apart_at_no_more_than_the_push_out_speed() {
+    for kind in 0..2 {
+        let mut lab = Lab::weightless();
+        let bodies: Vec<Entity> = (0..100)
+            .map(|i| lab.spawn((RigidBody::Dynamic, growing(kind, 0.5), dim::turned(0.01 * i as f32), Position::default())))
+            .collect();
+        let mut fastest: Scalar = 0.0;
+        for _ in 0..300 {
+            lab.steps(1);
+            fastest = bodies.iter().fold(fastest, |most, &b| most.max(lab.velocity(b).length()));
+        }
+        let push_out = lab.app.world().resource::<avian::dynamics::solver::SolverConfig>().max_overlap_solve_speed;
+        println!("kind {kind}: apart at up to {fastest} m/s of {push_out}");
+        assert!(fastest <= push_out, "pushed apart at {fastest} m/s");
+    }
+}
+
+/// Stacks of balls and of boxes, and a ball that rolls into them, all lengths times `unit`.
+fn stacks(unit: Scalar) -> Vec<Vector> {
+    let mut lab = Lab::with_unit(unit);
+    lab.gravity(Vector::Y * -10.0 * unit);
+    let place = |x: f32, y: f32| at(x * unit, y * unit, 0.0);
+    lab.spawn((
+        RigidBody::Static,
+        dim::sized_block(40.0 * unit, 4.0 * unit, 40.0 * unit),
+        place(0.0, -2.0),
+    ));
+    let mut bodies = Vec::new();
+    for i in 0..8 {
+        bodies.push(lab.ball(0.5 * unit, place(-3.0, 0.5 + i as f32)));
+        bodies.push(lab.block([unit; 3], place(3.0, 0.5 + i as f32)));
+    }
+    let ball = lab.ball(0.4 * unit, place(-1.5, 0.4));
+    lab.insert(ball, LinearVelocity(Vector::X * 3.0 * unit));
+    bodies.push(ball);
+    lab.seconds(5.0);
+    bodies.iter().map(|&b| lab.at(b) / unit).collect()
+}
+
+#[test]
+fn a_scene_in_pixels_with_its_length_unit_behaves_as_in_metres() {
+    let metres = stacks(1.0);
+    for unit in [10.0, 100.0] {
+        for (m, p) in metres.iter().zip(stacks(unit)) {
+            assert!((*m - p).length() < 0.01, "{m:?} m, but {p:?} times {unit} pixels");
+        }
+    }
+    // A power of two scales without rounding: then all bits agree, unless some tolerance is not scaled.
+    assert_eq!(metres, stacks(8.0));
+}
+
+#[test]
+fn bodies_may_be_spawned_in_each_other_on_a_floor() {
+    let mut lab = Lab::new();
+    lab.floor();
+    let bodies: Vec<Entity> = (0..20).map(|_| lab.spawn((RigidBody::Dynamic, growing(1, 0.5), Transform::from_xyz(0.0, 0.5, 0.0)))).collect();
+    lab.seconds(10.0);
+    for &body in &bodies {
+        let p = lab.at(body);
+        assert!(p.is_finite() && p.y > 0.45 && p.length() < 30.0, "at {p:?}");
+        assert!(lab.velocity(body).length() < 0.2, "still at {:?} m/s", lab.velocity(body));
+    }
+}

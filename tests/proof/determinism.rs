@@ -1,0 +1,110 @@
+//! The same bits, whatever else is in the app: row 22 for one thread.
+
+use avian::{math::Scalar, prelude::*};
+use bevy_ecs::prelude::*;
+use bevy_transform::components::Transform;
+
+use super::world::Lab;
+
+/// A component that physics does not know.
+#[derive(Component)]
+struct Paint(#[expect(dead_code, reason = "only there to make tables differ")] u64);
+
+/// A heap of every shape with compounds, poured for 200 steps, after `before` and `after` did something to the app.
+fn run(before: impl FnOnce(&mut Lab), after: impl FnOnce(&mut Lab, &[Entity])) -> Vec<u32> {
+    let mut lab = Lab::new();
+    before(&mut lab);
+    scenes::pile::mixed(lab.app.world_mut(), 3);
+    let bodies = bodies_by_place(&mut lab);
+    after(&mut lab, &bodies);
+    lab.steps(200);
+    lab.bits(&bodies)
+}
+
+/// The dynamic bodies in an order that does not depend on entities.
+fn bodies_by_place(lab: &mut Lab) -> Vec<Entity> {
+    let world = lab.app.world_mut();
+    let mut query = world.query::<(Entity, &RigidBody, &Transform)>();
+    let mut bodies: Vec<(Entity, [u32; 3])> = query
+        .iter(world)
+        .filter(|(_, kind, _)| kind.is_dynamic())
+        .map(|(e, _, t)| (e, t.translation.to_array().map(f32::to_bits)))
+        .collect();
+    bodies.sort_by_key(|b| b.1);
+    bodies.into_iter().map(|b| b.0).collect()
+}
+
+fn plain() -> Vec<u32> {
+    run(|_| {}, |_, _| {})
+}
+
+/// Not `assert_eq`: nobody wants to read ten thousand numbers.
+#[track_caller]
+fn assert_same_bits(one: &[u32], two: &[u32], what: &str) {
+    let other = one.iter().zip(two).filter(|(a, b)| a != b).count();
+    assert!(one.len() == two.len() && other == 0, "{what}: {other} of {} numbers differ", one.len());
+    assert!(one.iter().all(|&bits| (Scalar::from_bits(bits)).is_finite()));
+}
+
+#[test]
+fn the_same_bits_twice() {
+    assert_same_bits(&plain(), &plain(), "run twice");
+}
+
+#[test]
+fn entities_without_physics_do_not_matter() {
+    let crowded = run(
+        |lab| (0..100).for_each(|i| drop(lab.spawn((Paint(i), Transform::default())))),
+        |lab, _| (0..57).for_each(|i| drop(lab.spawn(Paint(i)))),
+    );
+    assert_same_bits(&plain(), &crowded, "among other entities");
+}
+
+#[test]
+fn what_else_a_body_has_does_not_matter() {
+    let painted = run(
+        |_| {},
+        |lab, bodies| bodies.iter().step_by(3).for_each(|&b| lab.insert(b, Paint(1))),
+    );
+    assert_same_bits(&plain(), &painted, "with other components");
+}
+
+#[test]
+fn the_numbers_of_entities_do_not_matter() {
+    // Freed entities are used again in another order than they were made in.
+    let reused = run(
+        |lab| {
+            let mut spare: Vec<Entity> = (0..300).map(|i| lab.spawn(Paint(i))).collect();
+            let odd: Vec<Entity> = spare.iter().copied().skip(1).step_by(2).collect();
+            spare.retain(|e| !odd.contains(e));
+            spare.into_iter().chain(odd).for_each(|e| lab.despawn(e));
+        },
+        |_, _| {},
+    );
+    assert_same_bits(&plain(), &reused, "with other entities");
+}
+
+#[test]
+fn a_foreign_system_in_the_substeps_does_not_matter() {
+    #[derive(Resource, Default)]
+    struct Substeps(u32);
+    let counted = run(
+        |lab| {
+            lab.app.init_resource::<Substeps>();
+            lab.app.add_systems(SubstepSchedule, |mut count: ResMut<Substeps>| count.0 += 1);
+        },
+        |_, _| {},
+    );
+    assert_same_bits(&plain(), &counted, "through the schedule");
+}
+
+#[test]
+fn the_foreign_system_does_run_in_every_substep() {
+    #[derive(Resource, Default)]
+    struct Substeps(u32);
+    let mut lab = Lab::new();
+    lab.app.init_resource::<Substeps>();
+    lab.app.add_systems(SubstepSchedule, |mut count: ResMut<Substeps>| count.0 += 1);
+    lab.steps(10);
+    assert_eq!(lab.app.world().resource::<Substeps>().0, 40);
+}

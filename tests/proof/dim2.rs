@@ -1,0 +1,59 @@
+//! What the proofs must know of the plane. `dim3.rs` is the twin.
+
+use avian::{math::Vector, prelude::*};
+
+/// Moment of inertia of a ball over m r²: a disc.
+pub const BALL_INERTIA: f32 = 0.5;
+
+/// A box of a depth that does not count.
+pub fn sized_block(x: f32, y: f32, _depth: f32) -> Collider {
+    Collider::rectangle(x, y)
+}
+
+/// A vector of a depth that does not count.
+pub fn sized(x: f32, y: f32, _depth: f32) -> Vector {
+    Vector::new(x, y)
+}
+
+/// The angular velocity about z.
+pub fn spin_of(velocity: AngularVelocity) -> f32 {
+    velocity.0
+}
+
+/// Unit vectors along the ground in which things can slide.
+pub fn directions() -> Vec<Vector> {
+    vec![Vector::X, Vector::NEG_X]
+}
+
+/// The bits of a rotation.
+pub fn rotation_bits(rotation: Rotation) -> Vec<u32> {
+    [rotation.cos, rotation.sin].map(f32::to_bits).into()
+}
+
+/// The rotation about z as a component.
+pub fn turned(angle: f32) -> Rotation {
+    Rotation::radians(angle)
+}
+
+/// Mass of a disc of density 1.
+pub fn ball_mass(radius: f32) -> f32 {
+    core::f32::consts::PI * radius * radius
+}
+
+/// Every shape that is its own constructor, each about a metre across.
+pub fn shapes() -> Vec<Collider> {
+    (0..scenes::dim::PIECES - 1).map(|kind| scenes::dim::piece(kind).remove(0).0).collect()
+}
+
+/// Shuts the open sides of a flat container: there are none.
+pub fn side_walls(_half_width: f32) -> Vec<(Collider, Vector)> {
+    Vec::new()
+}
+
+/// Boxes across one layer of a container: columns and rows.
+pub const LAYER: (u32, u32) = (8, 1);
+
+/// No turning at all.
+pub fn upright() -> LockedAxes {
+    LockedAxes::new().lock_rotation()
+}
