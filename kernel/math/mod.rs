@@ -53,6 +53,8 @@ macro_rules! componentwise {
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 mod lane;
+#[cfg(target_arch = "x86_64")]
+mod lane_avx;
 #[cfg(not(target_arch = "x86_64"))]
 mod lane_portable;
 #[cfg(target_arch = "x86_64")]
@@ -62,6 +64,8 @@ mod trig;
 
 pub use dim::*;
 pub use lane::{Ids, Lane, Num, Quad};
+#[cfg(target_arch = "x86_64")]
+pub use lane_avx::F32x8;
 #[cfg(not(target_arch = "x86_64"))]
 pub use lane_portable::F32x4;
 #[cfg(target_arch = "x86_64")]

@@ -28,4 +28,4 @@ pub use inv_mass::InvMass;
 pub use prepare::{ContactSource, RowInput};
 pub use row::{ContactRow, PointRow, RestitutionRow};
 pub use softness::{Softness, SubstepParams};
-pub use stages::Solver;
+pub use stages::{Solver, Width};

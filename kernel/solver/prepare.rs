@@ -71,6 +71,17 @@ pub(super) struct StepRows<'a> {
     pub(super) buckets: &'a mut Buckets,
 }
 
+impl StepRows<'_> {
+    /// Whether a body of the contact is held along some, but not all, axes.
+    pub(super) fn is_held(&self, input: &RowInput, contact: u32) -> bool {
+        self.any_held
+            && input.contacts.get(contact).bodies.iter().any(|body| {
+                let row = row_of(input.bodies, *body);
+                self.bodies.motions[row as usize].locks.is_translation_partial()
+            })
+    }
+}
+
 /// Buckets by point class, kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Buckets([Vec<ContactSource>; 3]);
@@ -81,6 +92,7 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
     /// A contact with several manifolds has them solved one after the other: the first manifolds of all
     /// contacts form the first batches, the second ones the next, and so on, so that a batch still holds
     /// no body twice.
+    #[inline(always)]
     pub(super) fn add_color(
         &mut self,
         input: &RowInput,
@@ -119,6 +131,7 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
 }
 
 impl<N: Lane, M: InvMass<N>, const P: usize> Rows<N, M, P> {
+    #[inline(always)]
     fn add(&mut self, input: &RowInput, step: &mut StepRows, sources: &[ContactSource]) -> Batch {
         let start = self.rows.len();
         let len = sources.len().div_ceil(N::WIDTH);
@@ -154,6 +167,7 @@ struct Fill<N, const P: usize> {
 }
 
 impl<N: Lane, const P: usize> Fill<N, P> {
+    #[inline(always)]
     fn new() -> Self {
         Self {
             friction_impulse: Vector::ZERO,

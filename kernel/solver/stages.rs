@@ -6,8 +6,43 @@ use super::prepare::{Buckets, DeepCounts, RowInput, StepRows, store_impulses};
 use super::{BodyRows, InvMass, SubstepParams};
 use crate::contact::ContactTable;
 use crate::graph::{ColorGraph, OVERFLOW};
+#[cfg(target_arch = "x86_64")]
+use crate::math::F32x8;
 use crate::math::{F32x4, Lane, Vector};
-use crate::table::NONE;
+
+/// How many contacts are solved side by side. The results have the same bits with any.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// Every CPU's: SSE2, NEON, or plain arrays.
+    Four,
+    /// AVX2's.
+    Eight,
+}
+
+impl Default for Width {
+    /// The widest that this CPU has.
+    fn default() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            return Self::Eight;
+        }
+        Self::Four
+    }
+}
+
+/// The wide rows of one width.
+#[derive(Clone, Debug)]
+struct WideRows<N: Lane> {
+    free: RowSet<N, N>,
+    /// Contacts of bodies held along some axes.
+    held: RowSet<N, Vector<N>>,
+}
+
+impl<N: Lane> Default for WideRows<N> {
+    fn default() -> Self {
+        Self { free: RowSet::default(), held: RowSet::default() }
+    }
+}
 
 /// The bodies and rows of one step.
 ///
@@ -17,13 +52,15 @@ use crate::table::NONE;
 pub struct Solver {
     /// The bodies; the embedder fills them and reads them back.
     pub bodies: BodyRows,
+    /// How many contacts are solved side by side; [`Width::Eight`] must only be chosen where
+    /// [`Width::default`] does.
+    width: Width,
     special: Special,
-    overflow: RowSet<f32, f32>,
-    overflow_held: RowSet<f32, Vector>,
-    wide: RowSet<F32x4, F32x4>,
-    /// Contacts of bodies held along some axes.
-    wide_held: RowSet<F32x4, Vector<F32x4>>,
-    /// Which of the four sets the next batch of a sweep is in, in order.
+    overflow: WideRows<f32>,
+    four: WideRows<F32x4>,
+    #[cfg(target_arch = "x86_64")]
+    eight: WideRows<F32x8>,
+    /// Which set the next batch of a sweep is in, in order.
     order: Vec<(Set, u32)>,
     buckets: Buckets,
     deep: DeepCounts,
@@ -47,51 +84,48 @@ enum Pass {
 }
 
 impl Solver {
+    /// Solves with four lanes where the CPU has eight: for comparison.
+    pub fn set_narrow(&mut self) {
+        self.width = Width::Four;
+    }
+
     /// Builds the rows of all touching contacts in the colours.
     pub fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
-        let Self { bodies, special, overflow, overflow_held, wide, wide_held, order, buckets, deep } = self;
+        let Self { bodies, special, overflow, four, order, buckets, deep, .. } = self;
         special.find(bodies);
-        overflow.clear();
-        overflow_held.clear();
-        wide.clear();
-        wide_held.clear();
+        overflow.free.clear();
+        overflow.held.clear();
         order.clear();
+        deep.count(input, bodies.rows.len());
         // Body rows were gathered, so only they know what is held.
         let any_held = bodies.motions.iter().any(|m| m.locks.is_translation_partial());
-        let motions = if any_held { bodies.motions.clone() } else { Vec::new() };
-        let held = |id: &u32| {
-            any_held
-                && input.contacts.get(*id).bodies.iter().any(|b| {
-                    *b != NONE
-                        && motions[input.bodies.rows[*b as usize] as usize].locks.is_translation_partial()
-                })
-        };
-        deep.count(input, bodies.rows.len());
         let step = &mut StepRows { bodies, params, deep, any_held, buckets };
         for id in colors.overflow() {
             let one = core::iter::once(*id);
-            if held(id) {
-                overflow_held.add_color(input, step, one);
+            if step.is_held(input, *id) {
+                overflow.held.add_color(input, step, one);
             } else {
-                overflow.add_color(input, step, one);
+                overflow.free.add_color(input, step, one);
             }
-            note(order, Set::Overflow, overflow.batches.len());
-            note(order, Set::OverflowHeld, overflow_held.batches.len());
+            note(order, Set::Overflow, overflow.free.batches.len());
+            note(order, Set::OverflowHeld, overflow.held.batches.len());
         }
-        for color in 0..OVERFLOW {
-            let contacts = colors.contacts(color).iter().copied();
-            if any_held {
-                wide_held.add_color(input, step, contacts.clone().filter(&held));
-            }
-            wide.add_color(input, step, contacts.filter(|id| !held(id)));
-            note(order, Set::WideHeld, wide_held.batches.len());
-            note(order, Set::Wide, wide.batches.len());
+        match self.width {
+            #[cfg(target_arch = "x86_64")]
+            Width::Eight => eight_lanes::build(&mut self.eight, input, colors, step, order),
+            _ => four.build(input, colors, step, order),
         }
     }
 
     /// How many wide and how many scalar rows the step has.
     pub fn row_counts(&self) -> (usize, usize) {
-        (self.wide.len() + self.wide_held.len(), self.overflow.len() + self.overflow_held.len())
+        let count = |rows: (usize, usize)| rows.0 + rows.1;
+        let wide = match self.width {
+            #[cfg(target_arch = "x86_64")]
+            Width::Eight => (self.eight.free.len(), self.eight.held.len()),
+            _ => (self.four.free.len(), self.four.held.len()),
+        };
+        (count(wide), self.overflow.free.len() + self.overflow.held.len())
     }
 
     /// Accelerations, damping, gyroscopic torque, speed limits.
@@ -135,22 +169,116 @@ impl Solver {
 
     /// Puts the impulses back into the manifolds, for the next step to start from.
     pub fn store_impulses(&self, contacts: &mut ContactTable) {
-        store_set(&self.overflow, contacts);
-        store_set(&self.overflow_held, contacts);
-        store_set(&self.wide, contacts);
-        store_set(&self.wide_held, contacts);
+        self.overflow.store(contacts);
+        match self.width {
+            #[cfg(target_arch = "x86_64")]
+            Width::Eight => self.eight.store(contacts),
+            _ => self.four.store(contacts),
+        }
     }
 
     fn sweep(&mut self, pass: Pass, params: &SubstepParams) {
-        let Self { bodies, overflow, overflow_held, wide, wide_held, order, .. } = self;
+        let Self { bodies, overflow, four, order, .. } = self;
         for (set, batch) in order.iter() {
-            match set {
-                Set::Overflow => overflow.run(*batch, pass, bodies, params),
-                Set::OverflowHeld => overflow_held.run(*batch, pass, bodies, params),
-                Set::Wide => wide.run(*batch, pass, bodies, params),
-                Set::WideHeld => wide_held.run(*batch, pass, bodies, params),
+            match (set, self.width) {
+                (Set::Overflow, _) => overflow.free.run(*batch, pass, bodies, params),
+                (Set::OverflowHeld, _) => overflow.held.run(*batch, pass, bodies, params),
+                #[cfg(target_arch = "x86_64")]
+                (Set::Wide, Width::Eight) => {
+                    eight_lanes::run(&mut self.eight.free, *batch, pass, bodies, params);
+                }
+                #[cfg(target_arch = "x86_64")]
+                (Set::WideHeld, Width::Eight) => {
+                    eight_lanes::run(&mut self.eight.held, *batch, pass, bodies, params);
+                }
+                (Set::Wide, _) => four.free.run(*batch, pass, bodies, params),
+                (Set::WideHeld, _) => four.held.run(*batch, pass, bodies, params),
             }
         }
+    }
+}
+
+impl<N: Lane> WideRows<N> {
+    /// Builds the rows of all colours but overflow.
+    #[inline(always)]
+    fn build(
+        &mut self,
+        input: &RowInput,
+        colors: &ColorGraph,
+        step: &mut StepRows,
+        order: &mut Vec<(Set, u32)>,
+    ) {
+        self.free.clear();
+        self.held.clear();
+        for color in 0..OVERFLOW {
+            let contacts = colors.contacts(color);
+            if step.any_held {
+                let (held, free): (Vec<u32>, Vec<u32>) =
+                    contacts.iter().partition(|id| step.is_held(input, **id));
+                self.held.add_color(input, step, held.into_iter());
+                self.free.add_color(input, step, free.into_iter());
+            } else {
+                self.free.add_color(input, step, contacts.iter().copied());
+            }
+            note(order, Set::WideHeld, self.held.batches.len());
+            note(order, Set::Wide, self.free.batches.len());
+        }
+    }
+
+    fn store(&self, contacts: &mut ContactTable) {
+        store_set(&self.free, contacts);
+        store_set(&self.held, contacts);
+    }
+}
+
+/// The entry points of eight lanes: everything below them is inlined and compiled for AVX2.
+#[cfg(target_arch = "x86_64")]
+mod eight_lanes {
+    #![expect(unsafe_code, reason = "entry points for a CPU feature that was looked for")]
+    use super::*;
+
+    pub(super) fn build(
+        rows: &mut WideRows<F32x8>,
+        input: &RowInput,
+        colors: &ColorGraph,
+        step: &mut StepRows,
+        order: &mut Vec<(Set, u32)>,
+    ) {
+        // SAFETY: this width is only chosen where the CPU has AVX2.
+        unsafe { build_avx2(rows, input, colors, step, order) }
+    }
+
+    pub(super) fn run<M: InvMass<F32x8>>(
+        set: &mut RowSet<F32x8, M>,
+        batch: u32,
+        pass: Pass,
+        bodies: &mut BodyRows,
+        params: &SubstepParams,
+    ) {
+        // SAFETY: this width is only chosen where the CPU has AVX2.
+        unsafe { run_avx2(set, batch, pass, bodies, params) }
+    }
+
+    #[target_feature(enable = "avx2")]
+    fn build_avx2(
+        rows: &mut WideRows<F32x8>,
+        input: &RowInput,
+        colors: &ColorGraph,
+        step: &mut StepRows,
+        order: &mut Vec<(Set, u32)>,
+    ) {
+        rows.build(input, colors, step, order);
+    }
+
+    #[target_feature(enable = "avx2")]
+    fn run_avx2<M: InvMass<F32x8>>(
+        set: &mut RowSet<F32x8, M>,
+        batch: u32,
+        pass: Pass,
+        bodies: &mut BodyRows,
+        params: &SubstepParams,
+    ) {
+        set.run(batch, pass, bodies, params);
     }
 }
 
@@ -167,6 +295,9 @@ fn store_set<N: Lane, M: InvMass<N>>(set: &RowSet<N, M>, contacts: &mut ContactT
 }
 
 impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
+    /// Runs one batch. Plain loops, not iterator adaptors: what is to be compiled for the caller's CPU
+    /// feature must be inlined into it.
+    #[inline(always)]
     fn run(&mut self, batch: u32, pass: Pass, bodies: &mut BodyRows, params: &SubstepParams) {
         let batch = self.batches[batch as usize];
         let range = batch.start as usize..(batch.start + batch.len) as usize;
@@ -176,17 +307,32 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
         let view = &bodies.view();
         with_rows!(self, batch.class, |set| {
             let rows = &mut set.rows[range.clone()];
-            let bounces = &mut set.bounces[range];
             match pass {
-                Pass::WarmStart => rows.iter().for_each(|row| row.warm_start(view)),
-                Pass::Solve => rows.iter_mut().for_each(|row| row.solve(view, params)),
-                Pass::Relax => rows.iter_mut().for_each(|row| row.relax(view, params)),
+                Pass::WarmStart => {
+                    for row in rows.iter() {
+                        row.warm_start(view);
+                    }
+                }
+                Pass::Solve => {
+                    for row in rows.iter_mut() {
+                        row.solve(view, params);
+                    }
+                }
+                Pass::Relax => {
+                    for row in rows.iter_mut() {
+                        row.relax(view, params);
+                    }
+                }
                 Pass::Restitute => {
-                    rows.iter_mut().zip(&mut *bounces).for_each(|(row, b)| row.restitute(view, b, params));
+                    for (row, bounce) in rows.iter_mut().zip(&mut set.bounces[range.clone()]) {
+                        row.restitute(view, bounce, params);
+                    }
                 }
             }
-            if batch.bouncy && matches!(pass, Pass::Solve | Pass::Relax) {
-                rows.iter().zip(bounces).for_each(|(row, b)| row.note_impulses(b));
+            if batch.bouncy && (pass == Pass::Solve || pass == Pass::Relax) {
+                for (row, bounce) in rows.iter().zip(&mut set.bounces[range]) {
+                    row.note_impulses(bounce);
+                }
             }
         });
     }
