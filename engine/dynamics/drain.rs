@@ -13,7 +13,7 @@ use crate::{
         collider_transform::ColliderTransform,
     },
     dynamics::{
-        lifecycle::{BodyEssentials, BodyId, ColliderId, LifecycleQueue},
+        lifecycle::{BodyId, ColliderId, IsComplete, LifecycleQueue},
         materials::{SurfaceQuery, Surfaces},
         quarantine::{is_finite, quarantine},
         rigid_body::{
@@ -51,7 +51,7 @@ type ColliderState = (
 /// What the drain reads and writes of the world.
 #[derive(SystemParam)]
 pub(crate) struct Census<'w, 's> {
-    bodies: Query<'w, 's, BodyState, (With<BodyId>, With<BodyEssentials>, Allow<Disabled>)>,
+    bodies: Query<'w, 's, BodyState, (With<BodyId>, IsComplete, Allow<Disabled>)>,
     colliders: Query<'w, 's, ColliderState, (With<ColliderId>, Allow<Disabled>)>,
     body_ids: Query<'w, 's, &'static mut BodyId, Allow<Disabled>>,
     collider_ids: Query<'w, 's, &'static mut ColliderId, Allow<Disabled>>,

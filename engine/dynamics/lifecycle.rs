@@ -81,6 +81,17 @@ pub(crate) type BodyEssentials = (
     ComputedCenterOfMass,
 );
 
+/// The filter for bodies that have them.
+pub(crate) type IsComplete = (
+    With<Position>,
+    With<Rotation>,
+    With<LinearVelocity>,
+    With<AngularVelocity>,
+    With<ComputedMass>,
+    With<ComputedAngularInertia>,
+    With<ComputedCenterOfMass>,
+);
+
 /// Registers the observers, and notes what was spawned before them.
 pub(crate) fn watch(app: &mut App) {
     if app.world().contains_resource::<LifecycleQueue>() {

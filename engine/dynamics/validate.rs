@@ -12,7 +12,7 @@ use crate::{
     collision::collider::{Collider, ColliderDisabled, collider_hierarchy::ColliderOf},
     dynamics::{
         drain::{kind_of, tree_of},
-        lifecycle::{BodyEssentials, BodyId, ColliderId, LifecycleQueue},
+        lifecycle::{BodyId, ColliderId, IsComplete, LifecycleQueue},
         rigid_body::{RigidBody, RigidBodyDisabled, sleeping::Sleeping},
         sleep::SleepRequests,
         tables::Tables,
@@ -46,7 +46,7 @@ type ColliderWorld<'a> = (
 struct Audit<'w, 's> {
     bodies: Query<'w, 's, BodyWorld<'static>, Allow<Disabled>>,
     colliders: Query<'w, 's, ColliderWorld<'static>, Allow<Disabled>>,
-    complete: Query<'w, 's, (), (With<BodyEssentials>, Allow<Disabled>)>,
+    complete: Query<'w, 's, (), (IsComplete, Allow<Disabled>)>,
     queue: Res<'w, LifecycleQueue>,
     requests: Option<Res<'w, SleepRequests>>,
     tables: Tables<'w>,
