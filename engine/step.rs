@@ -8,7 +8,10 @@ use bevy_ecs::prelude::*;
 
 use crate::{
     collider_tree::ColliderTreeSystems,
-    collision::{broad_phase::BroadPhaseSystems, narrow_phase::{NarrowPhaseConfig, NarrowPhaseSystems}},
+    collision::{
+        broad_phase::BroadPhaseSystems,
+        narrow_phase::{NarrowPhaseConfig, NarrowPhaseSystems},
+    },
     dynamics::{
         integrator::IntegrationSystems,
         lifecycle,

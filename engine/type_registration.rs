@@ -58,9 +58,9 @@ fn register_dynamics(app: &mut App) {
 fn register_bodies(app: &mut App) {
     use crate::{
         dynamics::rigid_body::{
-            AngularDamping, AngularVelocity, CoefficientCombine, DefaultFriction, DefaultRestitution, Dominance,
-            Friction, GravityScale, LinearDamping, LinearVelocity, LockedAxes, MaxAngularSpeed, MaxLinearSpeed,
-            Restitution, RigidBody, RigidBodyDisabled,
+            AngularDamping, AngularVelocity, CoefficientCombine, DefaultFriction, DefaultRestitution,
+            Dominance, Friction, GravityScale, LinearDamping, LinearVelocity, LockedAxes, MaxAngularSpeed,
+            MaxLinearSpeed, Restitution, RigidBody, RigidBodyDisabled,
             sleeping::{SleepThreshold, SleepTimer, Sleeping, SleepingDisabled},
         },
         physics_transform::{Position, Rotation},
@@ -94,8 +94,8 @@ fn register_collision(app: &mut App) {
         collision::{
             CollisionDiagnostics,
             collider::{
-                ColliderAabb, ColliderDisabled, ColliderMarker, CollisionLayers, CollisionMargin, EnlargedAabb,
-                LayerMask, Sensor,
+                ColliderAabb, ColliderDisabled, ColliderMarker, CollisionLayers, CollisionMargin,
+                EnlargedAabb, LayerMask, Sensor,
                 collider_hierarchy::{ColliderOf, RigidBodyColliders},
                 collider_transform::ColliderTransform,
             },

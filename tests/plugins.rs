@@ -71,7 +71,7 @@ fn without_schedule_no_step_is_taken() {
     app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin))
         .add_plugins(PhysicsPlugins::default().build().disable::<PhysicsSchedulePlugin>())
         .add_systems(PhysicsSchedule, |mut commands: bevy_ecs::system::Commands| {
-            commands.insert_resource(Stepped)
+            commands.insert_resource(Stepped);
         })
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 64.0)));
     app.update();

@@ -103,7 +103,7 @@ fn remove_lost(queue: &mut LifecycleQueue, tables: &mut Tables, census: &mut Cen
 
 /// Where a collider is on its body.
 fn local_pose(transform: &ColliderTransform) -> Pose {
-    Pose::new(vector_to_kernel(transform.translation), Rotation::from(transform.rotation).to_kernel())
+    Pose::new(vector_to_kernel(transform.translation), transform.rotation.to_kernel())
 }
 
 /// Each entity once, in the order first noted: ids follow that order, never the entities'.

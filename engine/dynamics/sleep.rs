@@ -38,7 +38,7 @@ pub(crate) fn watch_sleeping(app: &mut App) {
         .init_resource::<SleepBuffers>()
         .add_observer(ask_to_sleep)
         .add_observer(|on: On<Remove, Sleeping>, mut requests: ResMut<SleepRequests>| {
-            requests.wake.push(on.entity)
+            requests.wake.push(on.entity);
         });
 }
 
@@ -97,7 +97,9 @@ pub(crate) fn sleep_islands(
         islands.0.split(island);
     }
     for island in scan.0.sleepers().to_vec() {
-        tables.link().sleep_island(island);
+        if !tables.link().is_carried(island) {
+            tables.link().sleep_island(island);
+        }
     }
 }
 

@@ -14,5 +14,5 @@ pub(super) fn linear_vec3(velocity: LinearVelocity) -> Vec3 {
 
 /// About Z.
 pub(super) fn angular_vec3(velocity: AngularVelocity) -> Vec3 {
-    Vec3::Z * velocity.0 as f32
+    Vec3::Z * crate::math::to_f32(velocity.0)
 }

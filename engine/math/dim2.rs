@@ -1,6 +1,6 @@
 //! The plane: what the aliases mean in 2D, and the way to and from the kernel's types. `dim3.rs` is the twin.
 
-use bevy_math::{Dir2, IVec2, Isometry2d, Ray2d, Vec2};
+use bevy_math::{Dir2, Vec2};
 use kernel::math as k;
 
 use super::{AdjustPrecision, Scalar, Vector};
@@ -13,20 +13,12 @@ pub type Dir = Dir2;
 
 /// An orientation as joints and rays take it.
 pub(crate) type Rot = Rotation;
-/// The plainest value a rotation is made from: radians, counter-clockwise.
-pub(crate) type RotationValue = Scalar;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Scalar;
 /// An angular inertia.
 pub(crate) type SymmetricTensor = Scalar;
 /// A vector that is `f32` whatever the public precision.
 pub(crate) type VectorF32 = Vec2;
-/// A vector of whole numbers.
-pub(crate) type IVector = IVec2;
-/// A rotation followed by a translation.
-pub(crate) type Isometry = Isometry2d;
-/// A half-line.
-pub(crate) type Ray = Ray2d;
 pub(crate) use bevy_heavy::{
     ComputeMassProperties2d as ComputeMassProperties, MassProperties2d as MassProperties,
 };
@@ -68,18 +60,6 @@ pub(crate) fn vector_from_kernel(v: k::Vector) -> Vector {
     world_from_kernel(v.to_world())
 }
 
-/// An `f32` vector for the kernel.
-#[inline]
-pub(crate) fn vector_f32_to_kernel(v: VectorF32) -> k::Vector {
-    k::Vector { x: v.x, y: v.y }
-}
-
-/// An `f32` vector from the kernel.
-#[inline]
-pub(crate) fn vector_f32_from_kernel(v: k::Vector) -> VectorF32 {
-    Vec2 { x: v.x, y: v.y }
-}
-
 /// An angular velocity or torque, narrowed for the kernel.
 #[inline]
 #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
@@ -93,30 +73,11 @@ pub(crate) fn angular_from_kernel(v: k::Angular) -> AngularVector {
     v.z.adjust_precision()
 }
 
-/// A rotation, narrowed for the kernel.
-#[inline]
-#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
-pub(crate) fn rotation_to_kernel(r: Rotation) -> k::Rot {
-    k::Rot { cos: r.cos as f32, sin: r.sin as f32 }
-}
-
-/// A rotation, widened to the public precision. Not renormalised: the same bits come back.
-#[inline]
-pub(crate) fn rotation_from_kernel(r: k::Rot) -> Rotation {
-    Rotation { cos: r.cos.adjust_precision(), sin: r.sin.adjust_precision() }
-}
-
 /// An inverse angular inertia, narrowed for the kernel.
 #[inline]
 #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 pub(crate) fn inv_inertia_to_kernel(inverse: SymmetricTensor) -> k::InvInertia {
     k::InvInertia { zz: inverse as f32 }
-}
-
-/// An inverse angular inertia, widened to the public precision.
-#[inline]
-pub(crate) fn inv_inertia_from_kernel(inverse: k::InvInertia) -> SymmetricTensor {
-    inverse.zz.adjust_precision()
 }
 
 #[cfg(test)]
@@ -138,10 +99,6 @@ mod tests {
         let v = Vector::new(1.5, -2.0);
         assert_eq!(world_from_kernel(world_to_kernel(v)), v);
         assert_eq!(vector_from_kernel(vector_to_kernel(v)), v);
-        assert_eq!(vector_f32_from_kernel(vector_f32_to_kernel(Vec2::new(1.5, -2.0))), Vec2::new(1.5, -2.0));
         assert_eq!(angular_from_kernel(angular_to_kernel(0.25)), 0.25);
-        assert_eq!(inv_inertia_from_kernel(inv_inertia_to_kernel(0.25)), 0.25);
-        let r = rotation_from_kernel(rotation_to_kernel(Rotation { cos: 0.0, sin: 1.0 }));
-        assert_eq!((r.cos, r.sin), (0.0, 1.0));
     }
 }

@@ -1,10 +1,9 @@
 //! Space: what the aliases mean in 3D, and the way to and from the kernel's types. `dim2.rs` is the twin.
 
-use bevy_math::{Dir3, IVec3, Isometry3d, Ray3d, Vec3};
+use bevy_math::{Dir3, Vec3};
 use kernel::math as k;
 
-use super::{AdjustPrecision, AsF32, Matrix3, Quaternion, SymmetricMatrix3, Vector, Vector3};
-use crate::physics_transform::Rotation;
+use super::{AsF32, Matrix3, Quaternion, SymmetricMatrix3, Vector, Vector3};
 
 /// The number of spatial dimensions.
 pub const DIM: usize = 3;
@@ -13,20 +12,12 @@ pub type Dir = Dir3;
 
 /// An orientation as joints and rays take it.
 pub(crate) type Rot = Quaternion;
-/// The plainest value a rotation is made from.
-pub(crate) type RotationValue = Quaternion;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Vector;
 /// An angular inertia.
 pub(crate) type SymmetricTensor = SymmetricMatrix3;
 /// A vector that is `f32` whatever the public precision.
 pub(crate) type VectorF32 = Vec3;
-/// A vector of whole numbers.
-pub(crate) type IVector = IVec3;
-/// A rotation followed by a translation.
-pub(crate) type Isometry = Isometry3d;
-/// A half-line.
-pub(crate) type Ray = Ray3d;
 pub(crate) use bevy_heavy::{
     ComputeMassProperties3d as ComputeMassProperties, MassProperties3d as MassProperties,
 };
@@ -82,18 +73,6 @@ pub(crate) fn vector_from_kernel(v: k::Vector) -> Vector {
     world_from_kernel(v.to_world())
 }
 
-/// An `f32` vector for the kernel.
-#[inline]
-pub(crate) fn vector_f32_to_kernel(v: VectorF32) -> k::Vector {
-    k::Vector { x: v.x, y: v.y, z: v.z }
-}
-
-/// An `f32` vector from the kernel.
-#[inline]
-pub(crate) fn vector_f32_from_kernel(v: k::Vector) -> VectorF32 {
-    Vec3 { x: v.x, y: v.y, z: v.z }
-}
-
 /// An angular velocity or torque, narrowed for the kernel.
 #[inline]
 pub(crate) fn angular_to_kernel(v: AngularVector) -> k::Angular {
@@ -106,30 +85,11 @@ pub(crate) fn angular_from_kernel(v: k::Angular) -> AngularVector {
     vector_from_kernel(v)
 }
 
-/// A rotation, narrowed for the kernel.
-#[inline]
-pub(crate) fn rotation_to_kernel(r: Rotation) -> k::Rot {
-    let [x, y, z, w] = r.0.f32().to_array();
-    k::Rot { x, y, z, w }
-}
-
-/// A rotation, widened to the public precision. Not renormalised: the same bits come back.
-#[inline]
-pub(crate) fn rotation_from_kernel(r: k::Rot) -> Rotation {
-    Rotation(bevy_math::Quat::from_xyzw(r.x, r.y, r.z, r.w).adjust_precision())
-}
-
 /// An inverse angular inertia, narrowed for the kernel.
 #[inline]
 pub(crate) fn inv_inertia_to_kernel(inverse: SymmetricTensor) -> k::InvInertia {
     let m = inverse.f32();
     k::InvInertia { xx: m.m00, yy: m.m11, zz: m.m22, xy: m.m01, xz: m.m02, yz: m.m12 }
-}
-
-/// An inverse angular inertia, widened to the public precision.
-#[inline]
-pub(crate) fn inv_inertia_from_kernel(m: k::InvInertia) -> SymmetricTensor {
-    glam_matrix_extras::SymmetricMat3::new(m.xx, m.xy, m.xz, m.yy, m.yz, m.zz).adjust_precision()
 }
 
 #[cfg(test)]
@@ -159,12 +119,7 @@ mod tests {
         assert_eq!(world_from_kernel(world_to_kernel(v)), v);
         assert_eq!(vector_from_kernel(vector_to_kernel(v)), v);
         assert_eq!(angular_from_kernel(angular_to_kernel(v)), v);
-        let narrow = Vec3::new(1.5, -2.0, 8.0);
-        assert_eq!(vector_f32_from_kernel(vector_f32_to_kernel(narrow)), narrow);
-        let q = Quaternion::from_xyzw(0.5, -0.5, 0.5, 0.5);
-        assert_eq!(rotation_from_kernel(rotation_to_kernel(Rotation(q))).0, q);
         let m = SymmetricTensor::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
-        assert_eq!(inv_inertia_from_kernel(inv_inertia_to_kernel(m)), m);
         // The kernel applies it as the matrix does.
         let applied = inv_inertia_to_kernel(m).apply(vector_to_kernel(v));
         assert_eq!(vector_from_kernel(applied), m * v);

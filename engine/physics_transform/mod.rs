@@ -70,6 +70,7 @@ impl Plugin for PhysicsTransformPlugin {
             .register_type::<(Position, Rotation, PhysicsTransformConfig)>()
             .init_resource::<sync::SpawnQueue>()
             .add_observer(sync::initialise_added)
+            .add_observer(sync::note_rotation)
             .add_systems(
                 self.schedule,
                 (

@@ -52,9 +52,9 @@ pub(crate) struct Spawned {
     first: (Position, Option<Rotation>),
 }
 
-/// Entities to initialise, in order of their making.
+/// Entities to initialise, in order of their making, and those that got a [`Rotation`].
 #[derive(Resource, Clone, Debug, Default)]
-pub(crate) struct SpawnQueue(Vec<Spawned>);
+pub(crate) struct SpawnQueue(Vec<Spawned>, Vec<Entity>);
 
 /// The frame an entity's `Transform` is relative to, through all ancestors; `None` for a root. An ancestor
 /// without a transform counts as unmoved.
@@ -179,6 +179,11 @@ pub(crate) fn initialise_added(
     queue.0.push(Spawned { entity, given, first: (*position, rotation.copied()) });
 }
 
+/// Notes new rotations: an entity that had its position before does not get another chance.
+pub(crate) fn note_rotation(added: On<Add, Rotation>, mut queue: ResMut<SpawnQueue>) {
+    queue.1.push(added.event_target());
+}
+
 /// Initialises the poses of new entities, ancestors first.
 pub(crate) fn initialise_poses(
     mut queue: ResMut<SpawnQueue>,
@@ -195,6 +200,12 @@ pub(crate) fn initialise_poses(
         // A pose set after spawning is as good as one given with it.
         let given = [given[0] || *position != first.0, given[1] || rotation.copied() != first.1];
         initialiser.initialise(entity, given);
+    }
+    for entity in core::mem::take(&mut queue.1) {
+        let Ok((_, Some(rotation), ..)) = initialiser.poses.get(entity) else { continue };
+        if *rotation == Rotation::PLACEHOLDER {
+            initialiser.initialise(entity, [true, false]);
+        }
     }
 }
 

@@ -227,6 +227,23 @@ impl Link<'_> {
         }
     }
 
+    /// Whether a body of the island is in contact with a kinematic one that moves: such an island must not
+    /// sleep, however slowly it is carried, or its support would leave without it.
+    pub fn is_carried(&self, island: IslandId) -> bool {
+        let Some(islands) = &self.islands else { return false };
+        let moves = |body: u32| {
+            body != NONE && self.bodies[body].kind == BodyKind::Kinematic && self.bodies[body].awake
+        };
+        islands.bodies(island).iter().any(|&body| {
+            self.colliders.of_body(body, self.bodies).any(|collider| {
+                self.contacts.of_collider(collider, self.colliders).any(|id| {
+                    let contact = self.contacts.get(id);
+                    contact.is_solved() && contact.bodies.into_iter().any(moves)
+                })
+            })
+        })
+    }
+
     /// Puts all bodies of an island to sleep: their contacts keep their impulses, but leave the colours.
     pub fn sleep_island(&mut self, island: IslandId) {
         if self.islands.as_ref().is_some_and(|islands| !islands.is_asleep(island)) {

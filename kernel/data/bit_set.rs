@@ -172,7 +172,8 @@ mod tests {
         b.insert(900);
         assert_ne!(a, b);
         b.remove(900);
-        assert!(a == b && b == a);
+        assert_eq!(a, b);
+        assert_eq!(b, a);
         assert!(!a.contains(u32::MAX) && !a.remove(u32::MAX));
     }
 }

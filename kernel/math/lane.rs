@@ -233,7 +233,7 @@ mod tests {
                 assert_eq!(column.get(lane), rows[*id as usize].0[k]);
             }
         }
-        let mut out = vec![Quad::default(); 9];
+        let mut out = [Quad::default(); 9];
         F32x4::scatter(columns, &ids, |i, q| out[i as usize] = q);
         for id in ids {
             assert_eq!(out[id as usize], rows[id as usize]);

@@ -46,7 +46,12 @@ pub fn report() {
 }
 
 /// A floor of static boxes, each with or without a box at rest on it.
-fn spawn(world: &mut World, fixed: usize, resting: usize, mut add: impl FnMut(&mut World, bool, Vec3)) -> usize {
+fn spawn(
+    world: &mut World,
+    fixed: usize,
+    resting: usize,
+    mut add: impl FnMut(&mut World, bool, Vec3),
+) -> usize {
     for i in 0..fixed.max(resting) {
         let at = Vec3::new((i % 1000) as f32 * 1.5, (i / 1000) as f32 * 4.0, 0.0);
         if i < fixed {

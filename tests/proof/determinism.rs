@@ -54,18 +54,23 @@ fn the_same_bits_twice() {
 #[test]
 fn entities_without_physics_do_not_matter() {
     let crowded = run(
-        |lab| (0..100).for_each(|i| drop(lab.spawn((Paint(i), Transform::default())))),
-        |lab, _| (0..57).for_each(|i| drop(lab.spawn(Paint(i)))),
+        |lab| {
+            for i in 0..100 {
+                lab.spawn((Paint(i), Transform::default()));
+            }
+        },
+        |lab, _| {
+            for i in 0..57 {
+                lab.spawn(Paint(i));
+            }
+        },
     );
     assert_same_bits(&plain(), &crowded, "among other entities");
 }
 
 #[test]
 fn what_else_a_body_has_does_not_matter() {
-    let painted = run(
-        |_| {},
-        |lab, bodies| bodies.iter().step_by(3).for_each(|&b| lab.insert(b, Paint(1))),
-    );
+    let painted = run(|_| {}, |lab, bodies| bodies.iter().step_by(3).for_each(|&b| lab.insert(b, Paint(1))));
     assert_same_bits(&plain(), &painted, "with other components");
 }
 

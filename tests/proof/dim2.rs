@@ -57,3 +57,6 @@ pub const LAYER: (u32, u32) = (8, 1);
 pub fn upright() -> LockedAxes {
     LockedAxes::new().lock_rotation()
 }
+
+/// How far the top of a settled pyramid may still move, in metres: one hundredth of a box.
+pub const PYRAMID_UNREST: f32 = 0.01;

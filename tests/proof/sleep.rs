@@ -1,0 +1,177 @@
+//! Islands fall asleep together and wake when something happens to them.
+
+use avian::{math::Vector, prelude::*};
+use bevy_ecs::prelude::*;
+use bevy_transform::components::Transform;
+use scenes::scene::at;
+
+use super::{
+    dim,
+    world::{G, Lab},
+};
+
+/// A floor and a tower of three boxes on it that sleeps.
+fn sleeping_tower() -> (Lab, Entity, [Entity; 3]) {
+    let mut lab = Lab::new();
+    let floor = lab.floor();
+    let boxes = [0.5, 1.5, 2.5].map(|y| lab.unit_box(at(0.0, y, 0.0)));
+    lab.seconds(3.0);
+    assert_eq!(asleep(&lab, &boxes), 3, "a tower at rest sleeps");
+    (lab, floor, boxes)
+}
+
+fn asleep(lab: &Lab, bodies: &[Entity]) -> usize {
+    bodies.iter().filter(|&&b| lab.has::<Sleeping>(b)).count()
+}
+
+#[test]
+fn a_tower_sleeps_as_one_after_half_a_second_of_rest() {
+    let mut lab = Lab::new();
+    lab.floor();
+    let boxes = [0.5, 1.5, 2.5].map(|y| lab.unit_box(at(0.0, y, 0.0)));
+    let mut counts = Vec::new();
+    let mut fell_asleep = None;
+    for step in 0..180 {
+        lab.steps(1);
+        counts.push(asleep(&lab, &boxes));
+        if counts[step] > 0 && fell_asleep.is_none() {
+            fell_asleep = Some(step);
+        }
+    }
+    let step = fell_asleep.expect("it sleeps");
+    assert!((29..120).contains(&step), "after {step} steps");
+    assert!(counts[..step].iter().all(|&n| n == 0) && counts[step..].iter().all(|&n| n == 3), "{counts:?}");
+    assert!(boxes.iter().all(|&b| lab.velocity(b) == Vector::ZERO), "what sleeps has no velocity");
+}
+
+#[test]
+fn a_hit_wakes_the_whole_tower() {
+    let (mut lab, _, boxes) = sleeping_tower();
+    lab.ball(0.3, at(0.2, 5.0, 0.0));
+    lab.seconds(1.0);
+    assert_eq!(asleep(&lab, &boxes), 0);
+    lab.seconds(5.0);
+    assert_eq!(asleep(&lab, &boxes), 3);
+}
+
+#[test]
+fn taking_the_marker_off_one_wakes_all() {
+    let (mut lab, _, boxes) = sleeping_tower();
+    lab.remove::<Sleeping>(boxes[0]);
+    lab.steps(2);
+    assert_eq!(asleep(&lab, &boxes), 0);
+}
+
+#[test]
+fn putting_the_marker_on_one_puts_all_to_sleep() {
+    let mut lab = Lab::new();
+    lab.floor();
+    let boxes = [0.5, 1.5].map(|y| lab.unit_box(at(0.0, y, 0.0)));
+    lab.steps(5);
+    lab.insert(boxes[0], Sleeping);
+    lab.steps(2);
+    assert_eq!(asleep(&lab, &boxes), 2);
+}
+
+#[test]
+fn a_velocity_wakes() {
+    let (mut lab, _, boxes) = sleeping_tower();
+    lab.insert(boxes[2], LinearVelocity(Vector::Y * 3.0));
+    lab.steps(2);
+    assert_eq!(asleep(&lab, &boxes), 0);
+    assert!(lab.velocity(boxes[2]).y > 2.0, "{:?}", lab.velocity(boxes[2]));
+}
+
+#[test]
+fn a_teleport_wakes_what_is_left_and_what_is_moved() {
+    let (mut lab, _, boxes) = sleeping_tower();
+    lab.insert(boxes[0], Position(dim::sized(10.0, 0.5, 0.0)));
+    lab.seconds(1.5);
+    assert!((lab.at(boxes[1]).y - 0.5).abs() < 0.02, "it fell to {:?}", lab.at(boxes[1]));
+    assert!((lab.at(boxes[0]).x - 10.0).abs() < 0.02, "and the other stays away");
+}
+
+#[test]
+fn a_transform_moves_a_sleeper_too() {
+    let (mut lab, _, boxes) = sleeping_tower();
+    lab.insert(boxes[2], Transform::from_xyz(0.0, 6.0, 0.0));
+    lab.steps(6);
+    let y = lab.at(boxes[2]).y;
+    assert!(y < 6.0 && y > 5.5, "it falls from there: {y}");
+}
+
+#[test]
+fn a_support_that_goes_wakes_what_stood_on_it() {
+    for how in 0..4 {
+        let (mut lab, floor, boxes) = sleeping_tower();
+        match how {
+            0 => lab.despawn(floor),
+            1 => lab.insert(floor, ColliderDisabled),
+            2 => lab.insert(floor, RigidBodyDisabled),
+            _ => lab.remove::<Collider>(floor),
+        }
+        lab.seconds(1.0);
+        let y = lab.at(boxes[0]).y;
+        assert!((y + 0.5 * G - 0.5).abs() < 0.6, "way {how}: it fell freely for a second, to {y}");
+    }
+}
+
+#[test]
+fn a_floor_that_moves_wakes_what_stands_on_it() {
+    let (mut lab, floor, boxes) = sleeping_tower();
+    lab.insert(floor, Position(dim::sized(0.0, -11.0, 0.0)));
+    lab.seconds(1.5);
+    assert!((lab.at(boxes[0]).y + 0.5).abs() < 0.02, "it followed to {:?}", lab.at(boxes[0]));
+}
+
+#[test]
+fn other_gravity_wakes() {
+    let (mut lab, _, boxes) = sleeping_tower();
+    lab.gravity(Vector::Y * 5.0);
+    lab.seconds(1.0);
+    assert_eq!(asleep(&lab, &boxes), 0);
+    assert!(lab.at(boxes[0]).y > 1.0, "it rises: {:?}", lab.at(boxes[0]));
+}
+
+#[test]
+fn who_must_not_sleep_keeps_the_island_awake() {
+    for way in 0..2 {
+        let mut lab = Lab::new();
+        lab.floor();
+        let boxes = [0.5, 1.5].map(|y| lab.unit_box(at(0.0, y, 0.0)));
+        let apart = lab.unit_box(at(5.0, 0.5, 0.0));
+        match way {
+            0 => lab.insert(boxes[1], SleepingDisabled),
+            _ => lab.insert(boxes[1], SleepThreshold { linear: -1.0, angular: -1.0 }),
+        }
+        lab.seconds(3.0);
+        assert_eq!((asleep(&lab, &boxes), asleep(&lab, &[apart])), (0, 1), "way {way}");
+    }
+}
+
+#[test]
+fn a_moving_platform_keeps_its_load_awake() {
+    let mut lab = Lab::new();
+    let platform = lab.spawn((RigidBody::Kinematic, dim::sized_block(8.0, 1.0, 8.0), at(0.0, -0.5, 0.0)));
+    lab.insert(platform, LinearVelocity(Vector::X * 0.01));
+    let load = lab.unit_box(at(0.0, 0.5, 0.0));
+    lab.seconds(3.0);
+    assert_eq!(asleep(&lab, &[load]), 0);
+    lab.insert(platform, LinearVelocity::ZERO);
+    lab.seconds(3.0);
+    assert_eq!(asleep(&lab, &[load]), 1);
+    lab.insert(platform, LinearVelocity(Vector::Y));
+    lab.seconds(1.0);
+    assert!((lab.at(load).y - 1.5).abs() < 0.05, "it is lifted: {:?}", lab.at(load));
+}
+
+#[test]
+fn without_the_sleeping_plugin_nobody_sleeps() {
+    use bevy_app::PluginGroup;
+    let plugins = PhysicsPlugins::default().build().disable::<IslandSleepingPlugin>();
+    let mut lab = Lab { app: scenes::headless_app_with(1.0 / 60.0, 4, plugins), dt: 1.0 / 60.0 };
+    lab.floor();
+    let body = lab.unit_box(at(0.0, 0.5, 0.0));
+    lab.seconds(3.0);
+    assert!(!lab.has::<Sleeping>(body) && (lab.at(body).y - 0.5).abs() < 0.01);
+}

@@ -4,7 +4,7 @@ use avian::{math::Vector, prelude::*};
 use bevy_ecs::prelude::*;
 use scenes::{DT, SUBSTEPS, headless_app, pyramid, scene::at, towers};
 
-use super::world::Lab;
+use super::{dim, world::Lab};
 
 /// How far the top of a pyramid moves in `seconds` after ten seconds of settling, and how far it sagged before.
 fn unrest_of_pyramid(base: u32, seconds: f64) -> (f32, f32) {
@@ -16,14 +16,17 @@ fn unrest_of_pyramid(base: u32, seconds: f64) -> (f32, f32) {
     let sag = (settled - Vector::Y * (base as f32 - 0.5)).length();
     lab.seconds(seconds);
     let moved = (lab.at(top) - settled).length();
-    println!("pyramid of {base}: sagged {sag} m, then moved {moved} m in {seconds} s");
+    println!(
+        "pyramid of {base}: sagged {sag} m to {settled}, then moved {moved} m in {seconds} s to {}",
+        lab.at(top)
+    );
     (moved, sag)
 }
 
 #[test]
 fn a_pyramid_of_base_64_stands() {
     let (moved, sag) = unrest_of_pyramid(64, 10.0);
-    assert!(moved < 0.01, "the top moved {moved} m");
+    assert!(moved < dim::PYRAMID_UNREST, "the top moved {moved} m");
     assert!(sag < 0.5, "the top sagged {sag} m");
 }
 
@@ -31,7 +34,7 @@ fn a_pyramid_of_base_64_stands() {
 #[ignore = "a minute of simulated time: a few minutes without optimisation"]
 fn a_pyramid_of_base_64_stands_for_a_minute() {
     let (moved, _) = unrest_of_pyramid(64, 50.0);
-    assert!(moved < 0.01, "the top moved {moved} m");
+    assert!(moved < dim::PYRAMID_UNREST, "the top moved {moved} m");
 }
 
 /// Lets towers of boxes stand for twenty seconds, and looks whether their tops are where they were.
@@ -82,7 +85,7 @@ fn a_tower_of_balls_stands() {
 #[test]
 fn a_heap_of_balls_comes_to_rest() {
     let mut lab = Lab::new();
-    scenes::pile::spawn_container(lab.app.world_mut(), 4.0, 8.0);
+    scenes::pile::spawn_container(lab.app.world_mut(), 4.0, 30.0);
     let balls: Vec<Entity> = (0..60)
         .map(|i| {
             let (x, y) = ((i % 3) as f32 * 1.1 - 1.1, (i / 3) as f32 * 1.05 + 0.6);
@@ -90,5 +93,10 @@ fn a_heap_of_balls_comes_to_rest() {
         })
         .collect();
     lab.seconds(20.0);
-    assert!(balls.iter().all(|&b| lab.has::<Sleeping>(b)), "all asleep");
+    let fastest = balls.iter().map(|&b| lab.velocity(b).length()).fold(0.0, f32::max);
+    println!(
+        "fastest ball {fastest} m/s, {} asleep",
+        balls.iter().filter(|&&b| lab.has::<Sleeping>(b)).count()
+    );
+    assert!(fastest < 0.1, "still at {fastest} m/s");
 }

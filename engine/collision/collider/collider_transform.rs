@@ -21,9 +21,7 @@ use crate::{
     physics_transform::{
         PhysicsTransformSystems, Position, Rotation, find_changed_transforms,
         frame::{Frame, read_pose},
-        tree::{
-            FollowsBody, HierarchyQueue, Parents, TransformTree, TransformTreePlugin, TreeChanges,
-        },
+        tree::{FollowsBody, HierarchyQueue, Parents, TransformTree, TransformTreePlugin, TreeChanges},
         turn_to_rotation, vector_from_xyz,
     },
 };

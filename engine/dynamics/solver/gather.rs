@@ -73,7 +73,7 @@ fn finite_gravity(gravity: &Gravity) -> KernelVector {
 
 /// A limit: none, negative or NaN do not limit.
 fn limit(value: Option<Scalar>) -> f32 {
-    match value.map(|v| to_f32(v)) {
+    match value.map(to_f32) {
         Some(v) if v >= 0.0 => v,
         _ => f32::INFINITY,
     }
@@ -258,7 +258,7 @@ impl Gather {
         let rows = &mut solver.kernel.bodies;
         let row = row as usize;
         rows.rows[row] = BodyRow::new(velocity.linear, velocity.angular);
-        let locks = AxisLocks(body.options.locks.map_or(0, |l| l.to_bits()));
+        let locks = body.options.locks.map_or(AxisLocks::NONE, |l| l.to_kernel());
         let dynamic = row >= rows.first_dynamic as usize;
         let dominance = body.options.dominance.map_or(0, |d| d.0);
         tables.bodies.table[id].dominance = dominance;

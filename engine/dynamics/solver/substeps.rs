@@ -18,7 +18,7 @@ use crate::{
         },
         tables::{Bodies, Colliders, Contacts},
     },
-    math::to_f32,
+    math::{Scalar, to_f32},
     schedule::{Physics, Substeps},
 };
 
@@ -75,6 +75,12 @@ fn softness(c: SoftnessCoefficients) -> Softness {
     }
 }
 
+/// A setting that is not negative, and small enough to be multiplied; the default instead of one that is
+/// negative or NaN.
+fn setting(value: Scalar, default: Scalar) -> f32 {
+    to_f32(if value >= 0.0 { value.min(1.0e18) } else { default })
+}
+
 /// What all rows of this step share.
 pub(crate) fn prepare_params(
     mut solver: ResMut<StepSolver>,
@@ -85,6 +91,7 @@ pub(crate) fn prepare_params(
     time: Res<Time<Physics>>,
 ) {
     let config = config.map(|c| c.clone()).unwrap_or_default();
+    let default = SolverConfig::default();
     let soft = soft.map(|s| *s).unwrap_or_default();
     let unit = unit.metres();
     let substeps = count.0.max(1);
@@ -95,9 +102,9 @@ pub(crate) fn prepare_params(
         inv_h: if h > 0.0 { 1.0 / h } else { 0.0 },
         soft: softness(soft.dynamic),
         stiff: softness(soft.non_dynamic),
-        max_push_speed: to_f32(config.max_overlap_solve_speed) * unit,
-        warm_start: to_f32(config.warm_start_coefficient),
-        restitution_threshold: to_f32(config.restitution_threshold) * unit,
+        max_push_speed: setting(config.max_overlap_solve_speed, default.max_overlap_solve_speed) * unit,
+        warm_start: setting(config.warm_start_coefficient, default.warm_start_coefficient).min(1.0),
+        restitution_threshold: setting(config.restitution_threshold, default.restitution_threshold) * unit,
         friction_fade: FRICTION_FADE * unit,
     };
 }

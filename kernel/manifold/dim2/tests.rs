@@ -421,7 +421,7 @@ fn lying_capsules_touch_at_two_points() {
     for other in [capsule.clone(), cuboid(1.0, 0.25)] {
         for m in [
             contact(&other, &capsule, &pose),
-            contact(&other, &capsule, &Pose::new(pose.position, Rot::from_angle(3.1415927))),
+            contact(&other, &capsule, &Pose::new(pose.position, Rot::from_angle(core::f32::consts::PI))),
         ] {
             assert_eq!(m.count, 2, "{m:?}");
             assert!((m.normal - Vector::Y).length() < 1e-6);

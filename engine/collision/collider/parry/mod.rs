@@ -106,6 +106,7 @@ impl<T: IntoCollider<Collider>> From<T> for Collider {
 
 impl From<SharedShape> for Collider {
     fn from(shape: SharedShape) -> Self {
+        let shape = usable(shape);
         let native = native_shape(&shape);
         Self { scaled_shape: shape.clone(), shape, native, scale: Vector::ONE, stale: false }
     }
@@ -181,10 +182,23 @@ impl Collider {
             );
             self.scaled_shape = self.shape.clone();
         }
+        self.scaled_shape = usable(self.scaled_shape.clone());
         self.native = native_shape(&self.scaled_shape);
         self.scale = scale;
         self.stale = false;
     }
+}
+
+/// The shape, if it has an extent; parry's own constructors take any number for a size. Else a tiny ball, with
+/// one warning.
+fn usable(shape: SharedShape) -> SharedShape {
+    let aabb = shape.compute_local_aabb();
+    let (low, high) = (aabb.mins, aabb.maxs);
+    if low.is_finite() && high.is_finite() && low.cmple(high).all() {
+        return shape;
+    }
+    bevy_log::warn_once!("a shape of type {:?} has no finite extent; it becomes a point", shape.shape_type());
+    SharedShape::ball(input::MIN_LENGTH)
 }
 
 /// How finely curved shapes are approximated when only the shape was set.

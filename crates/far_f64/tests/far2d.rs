@@ -1,0 +1,31 @@
+//! avian2d in double precision; the file is shared with avian3d.
+
+extern crate avian2d as avian;
+
+#[path = "../../../tests/far.rs"]
+mod far;
+
+use avian::prelude::Collider;
+
+fn floor() -> Collider {
+    Collider::rectangle(100.0, 2.0)
+}
+
+fn unit_box() -> Collider {
+    Collider::rectangle(1.0, 1.0)
+}
+
+#[test]
+fn a_tower_stands() {
+    far::a_tower_stands(floor(), unit_box());
+}
+
+#[test]
+fn a_heap_falls_and_rests() {
+    far::a_heap_falls_and_rests(floor(), unit_box());
+}
+
+#[test]
+fn free_fall_is_exact() {
+    far::free_fall_is_exact(floor(), unit_box());
+}
