@@ -38,7 +38,8 @@ fn drop_all(origin: Vector, floor: Collider, bodies: &[(Collider, Vector)]) -> (
     }
     let world = app.world();
     let component = |e: Entity| world.entity(e);
-    let places = bodies.iter().map(|&e| component(e).get::<Position>().expect("a position").0 - origin).collect();
+    let places =
+        bodies.iter().map(|&e| component(e).get::<Position>().expect("a position").0 - origin).collect();
     let speed = |e: &Entity| component(*e).get::<LinearVelocity>().expect("a velocity").length();
     let asleep = bodies.iter().filter(|&&e| component(e).contains::<Sleeping>()).count();
     (places, bodies.iter().map(speed).fold(0.0, f64::max), asleep)
@@ -82,7 +83,8 @@ pub fn a_heap_falls_and_rests(floor: Collider, unit_box: Collider) {
 pub fn free_fall_is_exact(floor: Collider, unit_box: Collider) {
     let mut app = app(far(), floor);
     let start = far() + Vector::Y * 500.0;
-    let body = app.world_mut().spawn((RigidBody::Dynamic, unit_box, Position(start), Rotation::default())).id();
+    let body =
+        app.world_mut().spawn((RigidBody::Dynamic, unit_box, Position(start), Rotation::default())).id();
     for _ in 0..300 {
         app.update();
     }

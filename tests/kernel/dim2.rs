@@ -13,11 +13,6 @@ pub fn turned(angle: f32) -> Rot {
     Rot::from_angle(angle)
 }
 
-/// The angular velocity in the plane of x and y.
-pub fn spin(speed: f32) -> Angular {
-    Angular { z: speed }
-}
-
 /// The part of an angular velocity in the plane of x and y.
 pub fn spin_of(w: Angular) -> f32 {
     w.z

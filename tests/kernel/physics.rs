@@ -216,6 +216,26 @@ fn a_pile_falls_asleep_and_wakes_together() {
 }
 
 #[test]
+fn a_falling_pile_gains_no_energy() {
+    let mut sim = Sim::new();
+    sim.floor();
+    for i in 0..30 {
+        let p = sized((i % 3) as f32 * 1.2, 1.0 + (i / 3) as f32 * 1.3, 0.2 * (i % 2) as f32);
+        if i % 2 == 0 {
+            sim.ball(0.5, p);
+        } else {
+            sim.cuboid(Vector::ONE * 0.45, p);
+        }
+    }
+    let start = sim.energy();
+    for _ in 0..300 {
+        sim.step();
+        assert!(sim.energy() < 1.001 * start, "{} J from {start} J", sim.energy());
+    }
+    assert!(sim.energy() < 0.7 * start, "it came to rest");
+}
+
+#[test]
 fn the_same_bits_twice() {
     let run = || {
         let mut sim = Sim::new();

@@ -60,3 +60,6 @@ pub fn upright() -> LockedAxes {
 
 /// How far the top of a settled pyramid may still move, in metres: one hundredth of a box.
 pub const PYRAMID_UNREST: f32 = 0.01;
+
+/// Layers of a heap of about a hundred pieces.
+pub const PILE_LAYERS: u32 = 12;

@@ -71,3 +71,6 @@ pub fn upright() -> LockedAxes {
 /// A gap: one hundredth of a box is what is asked for. A wall one box thick still sways out of its plane by
 /// 2.5 cm at the top; along the wall and in height it keeps to 4 mm.
 pub const PYRAMID_UNREST: f32 = 0.05;
+
+/// Layers of a heap of about a hundred pieces.
+pub const PILE_LAYERS: u32 = 3;

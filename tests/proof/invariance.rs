@@ -118,7 +118,7 @@ fn a_scaled_scene_with_its_length_unit_is_the_same_scene() {
 fn rest_is_the_same_in_steps_of_any_length() {
     let rest = |dt: f64| {
         let mut lab = Lab::with_steps(dt, 4);
-        scenes::pile::mixed(lab.app.world_mut(), 3);
+        scenes::pile::mixed(lab.app.world_mut(), dim::PILE_LAYERS);
         lab.seconds(12.0);
         let world = lab.app.world_mut();
         let mut heights = Vec::new();
