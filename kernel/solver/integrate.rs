@@ -101,13 +101,14 @@ fn move_bodies<N: Lane>(view: &super::RowView<BodyRow>, ids: &N::Ids, h: f32) {
     BodyRow::scatter_delta::<N>(view, ids, p, q);
 }
 
-/// The normalised Euler step turns by 2 atan(δ/2) (in 2D: atan δ) instead of δ. Two terms of the
-/// tangent's series beforehand make up for it: δ (1 + (kδ)²/3 + 2(kδ)⁴/15), k = ½ (in 2D: 1).
+/// The normalised Euler step turns by 2 atan(δ/2) (in 2D: atan δ) instead of δ. Terms of the
+/// tangent's series beforehand make up for it: δ (1 + x/3 + 2x²/15 + 17x³/315 + 62x⁴/2835), x = (δ/2)² (in 2D: δ²).
 #[inline(always)]
 fn exact_turn<N: Lane>(turn: Angular<N>) -> Angular<N> {
     let k = if crate::math::DIM == 2 { 1.0 } else { 0.25 };
     let x = turn.length_squared() * N::splat(k);
-    turn * (N::ONE + x * (N::splat(1.0 / 3.0) + x * N::splat(2.0 / 15.0)))
+    let series = N::splat(2.0 / 15.0) + x * (N::splat(17.0 / 315.0) + x * N::splat(62.0 / 2835.0));
+    turn * (N::ONE + x * (N::splat(1.0 / 3.0) + x * series))
 }
 
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]

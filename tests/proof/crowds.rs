@@ -107,8 +107,8 @@ fn a_collider_grows_by_its_scale_too() {
     assert!((lab.at(body).y - 1.0).abs() < 0.02, "twice as large it rests at {:?}", lab.at(body));
 }
 
-/// A gap: a hundred bodies in one place are to part at no more than the push-out speed. Each pair does, but the
-/// outermost is pushed by one that is pushed itself: balls reach 1.7 times that speed, boxes 5.8 times.
+/// A gap: a hundred bodies in one place are to part at no more than the push-out speed. A pair alone does, see
+/// below; in the crowd balls reach 1.7 times that speed, boxes 5.8 times.
 #[test]
 fn a_hundred_bodies_in_one_place_come_apart_gently() {
     for (kind, times) in [(0, 2.0), (1, 6.0)] {
@@ -178,7 +178,7 @@ fn two_bodies_in_each_other_part_at_no_more_than_the_push_out_speed() {
     assert!((lab.at(pair[1]) - lab.at(pair[0])).length() > 0.99, "they did not come apart");
 }
 
-/// A gap: in a row on a floor the pushes of twenty boxes add up, and the outermost slides 31 m.
+/// A gap: pushed apart in a row, the outermost of the twenty boxes slides 31 m in the plane.
 #[test]
 fn bodies_may_be_spawned_in_each_other_on_a_floor() {
     let mut lab = Lab::new();
