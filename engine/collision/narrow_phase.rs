@@ -88,7 +88,7 @@ pub struct NarrowPhaseConfig {
     /// The [`SpeculativeMargin`](crate::dynamics::ccd::SpeculativeMargin) of colliders and bodies without one, in metres. Unbounded by default.
     pub default_speculative_margin: Scalar,
     /// How far apart two shapes at rest may be and still be in contact, times
-    /// [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit); 0.005 by default. At 0 resting contacts flicker.
+    /// [`PhysicsLengthUnit`]; 0.005 by default. At 0 resting contacts flicker.
     pub contact_tolerance: Scalar,
     /// Whether contact points take over the impulses of the points they were in the last step; true by default. Without, stacks sag.
     pub match_contacts: bool,
