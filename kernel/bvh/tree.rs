@@ -7,7 +7,7 @@ use crate::shape::Aabb;
 /// A dynamic tree of boxes with a `u32` of the user's each.
 ///
 /// *Layout.* A node with a box of its own is visited only to find that its box misses. So here a
-/// [`Branch`] holds the boxes of *both* children in one cache line, and a leaf's box stands in its
+/// `Branch` holds the boxes of *both* children in one cache line, and a leaf's box stands in its
 /// parent: a walk touches one line per branch that was hit and none for what was missed, and the whole
 /// takes 72 bytes per leaf. (Bounds turned sideways for four-lane tests made rays some 15 % faster and box
 /// queries, which wait for unpredictable jumps, no faster: not worth it.) Leaves keep their number (the [`ProxyId`]) wherever the branches move, so

@@ -109,7 +109,7 @@ impl Hull {
         if self.radius > 0.0 { best.0 + direction_or(direction, Vector::X) * self.radius } else { best.0 }
     }
 
-    /// Where a ray along the unit vector `direction` hits; see [`Shape::cast_ray`](super::Shape::cast_ray).
+    /// Where a ray along the unit vector `direction` hits; see `Shape::cast_ray`.
     pub fn cast_ray(
         &self,
         origin: Vector,
