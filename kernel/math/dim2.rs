@@ -414,15 +414,11 @@ impl<N: Lane> TangentFrame<N> {
         self.x * t.x
     }
     /// The inverse of the tangent row's K for two bodies of the inverse inertias and arms given:
-    /// K = tᵀ M⁻¹ t + Σ (rᵢ × t)ᵀ Iᵢ⁻¹ (rᵢ × t), where `inv_mass` applies the summed M⁻¹. Zero where
-    /// K is zero.
+    /// K = tᵀ M⁻¹ t + Σ (rᵢ × t)ᵀ Iᵢ⁻¹ (rᵢ × t), where `inv_mass` is the diagonal of the summed M⁻¹. Zero
+    /// where K is zero.
     #[inline(always)]
-    pub fn mass(
-        &self,
-        inv_mass: impl Fn(Vector<N>) -> Vector<N>,
-        bodies: [(InvInertia<N>, Vector<N>); 2],
-    ) -> TangentMass<N> {
-        let mut k = self.x.dot(inv_mass(self.x));
+    pub fn mass(&self, inv_mass: Vector<N>, bodies: [(InvInertia<N>, Vector<N>); 2]) -> TangentMass<N> {
+        let mut k = self.x.dot(self.x.scale(inv_mass));
         for (inertia, arm) in bodies {
             let c = arm.cross(self.x);
             k += c.dot(inertia.apply(c));

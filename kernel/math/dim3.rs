@@ -525,15 +525,11 @@ impl<N: Lane> TangentFrame<N> {
         self.x * t.x + self.y * t.y
     }
     /// The inverse of the coupled tangent rows' 2 × 2 K matrix for two bodies of the inverse inertias
-    /// and arms given: K_ab = t_aᵀ M⁻¹ t_b + Σ (rᵢ × t_a)ᵀ Iᵢ⁻¹ (rᵢ × t_b), where `inv_mass` applies the
-    /// summed M⁻¹. Zero where K is singular.
+    /// and arms given: K_ab = t_aᵀ M⁻¹ t_b + Σ (rᵢ × t_a)ᵀ Iᵢ⁻¹ (rᵢ × t_b), where `inv_mass` is the
+    /// diagonal of the summed M⁻¹. Zero where K is singular.
     #[inline(always)]
-    pub fn mass(
-        &self,
-        inv_mass: impl Fn(Vector<N>) -> Vector<N>,
-        bodies: [(InvInertia<N>, Vector<N>); 2],
-    ) -> TangentMass<N> {
-        let (lx, ly) = (inv_mass(self.x), inv_mass(self.y));
+    pub fn mass(&self, inv_mass: Vector<N>, bodies: [(InvInertia<N>, Vector<N>); 2]) -> TangentMass<N> {
+        let (lx, ly) = (self.x.scale(inv_mass), self.y.scale(inv_mass));
         let (mut xx, mut yy, mut xy) = (self.x.dot(lx), self.y.dot(ly), self.x.dot(ly));
         for (inertia, arm) in bodies {
             let (cx, cy) = (arm.cross(self.x), arm.cross(self.y));

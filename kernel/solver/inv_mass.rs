@@ -9,6 +9,8 @@ pub trait InvMass<N: Lane>: Copy {
     const ZERO: Self;
     /// The change of velocity that an impulse makes.
     fn apply(self, impulse: Vector<N>) -> Vector<N>;
+    /// For each axis of the world.
+    fn diagonal(self) -> Vector<N>;
     /// Whether no impulse moves the body.
     fn is_zero(self) -> N::Mask;
     /// From the inverse mass and 1 along free, 0 along held axes.
@@ -22,6 +24,10 @@ impl<N: Lane> InvMass<N> for N {
     #[inline(always)]
     fn apply(self, impulse: Vector<N>) -> Vector<N> {
         impulse * self
+    }
+    #[inline(always)]
+    fn diagonal(self) -> Vector<N> {
+        Vector::splat(Vector::ONE) * self
     }
     #[inline(always)]
     fn is_zero(self) -> N::Mask {
@@ -42,6 +48,10 @@ impl<N: Lane> InvMass<N> for Vector<N> {
     #[inline(always)]
     fn apply(self, impulse: Vector<N>) -> Vector<N> {
         impulse.scale(self)
+    }
+    #[inline(always)]
+    fn diagonal(self) -> Vector<N> {
+        self
     }
     #[inline(always)]
     fn is_zero(self) -> N::Mask {

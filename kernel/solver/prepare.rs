@@ -289,14 +289,14 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let frame = TangentFrame::new(n);
         let arms = [(row.inv_inertia[0], row.center), (row.inv_inertia[1], row.center - row.offset)];
         let [m0, m1] = row.inv_mass;
-        row.tangent_mass = frame.mass(|t| m0.apply(t) + m1.apply(t), arms);
+        row.tangent_mass = frame.mass(m0.diagonal() + m1.diagonal(), arms);
         row.tangent_impulse = frame.project(self.friction_impulse);
-        let anchors = core::array::from_fn(|i| {
+        let mut anchors = [row.center; P];
+        for i in 0..P {
             // A point that is not there must not add a lever.
-            let there = N::ZERO.lt(self.weights[i]);
-            let anchor = row.points[i].anchor - row.center;
-            row.center + anchor * N::select(there, N::ONE, N::ZERO)
-        });
+            let there = N::select(N::ZERO.lt(self.weights[i]), N::ONE, N::ZERO);
+            anchors[i] += (row.points[i].anchor - row.center) * there;
+        }
         row.twist.prepare(n, row.center, anchors, row.inv_inertia);
     }
 }
@@ -308,6 +308,7 @@ fn row_of(bodies: &BodyTable, body: u32) -> u32 {
 }
 
 /// Puts the rows' impulses back into the manifolds.
+#[inline(always)]
 pub(super) fn store_impulses<N: Lane, M: InvMass<N>, const P: usize>(
     rows: &Rows<N, M, P>,
     contacts: &mut ContactTable,

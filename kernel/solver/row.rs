@@ -152,14 +152,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     pub fn solve(&mut self, rows: &RowView<BodyRow>, params: &SubstepParams) {
         let mut pair = Pair::load(rows, &self.ids);
         let immovable = N::or(self.inv_mass[0].is_zero(), self.inv_mass[1].is_zero());
-        let pick = |f: fn(&Softness) -> f32| {
-            N::select(immovable, N::splat(f(&params.stiff)), N::splat(f(&params.soft)))
-        };
-        let soft = SoftLanes {
-            bias_rate: pick(|s| s.bias_rate),
-            mass_scale: pick(|s| s.mass_scale),
-            impulse_scale: pick(|s| s.impulse_scale),
-        };
+        let soft = SoftLanes::select(immovable, &params.stiff, &params.soft);
         self.solve_normals(rows, &mut pair, params, Some(soft));
         pair.store(rows, &self.ids);
     }
@@ -230,7 +223,10 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     fn solve_friction(&mut self, pair: &mut Pair<N>) {
         let n = self.normal;
         let frame = TangentFrame::new(n);
-        let impulses: [N; P] = core::array::from_fn(|i| self.points[i].impulse);
+        let mut impulses = [N::ZERO; P];
+        for i in 0..P {
+            impulses[i] = self.points[i].impulse;
+        }
         self.twist.solve(n, self.friction, impulses, self.inv_inertia, &mut pair.w);
 
         let mut sum = N::ZERO;
@@ -282,4 +278,15 @@ struct SoftLanes<N> {
     bias_rate: N,
     mass_scale: N,
     impulse_scale: N,
+}
+
+impl<N: Lane> SoftLanes<N> {
+    #[inline(always)]
+    fn select(mask: N::Mask, a: &Softness, b: &Softness) -> Self {
+        Self {
+            bias_rate: N::select(mask, N::splat(a.bias_rate), N::splat(b.bias_rate)),
+            mass_scale: N::select(mask, N::splat(a.mass_scale), N::splat(b.mass_scale)),
+            impulse_scale: N::select(mask, N::splat(a.impulse_scale), N::splat(b.impulse_scale)),
+        }
+    }
 }

@@ -172,7 +172,7 @@ impl Solver {
         self.overflow.store(contacts);
         match self.width {
             #[cfg(target_arch = "x86_64")]
-            Width::Eight => self.eight.store(contacts),
+            Width::Eight => eight_lanes::store(&self.eight, contacts),
             _ => self.four.store(contacts),
         }
     }
@@ -225,6 +225,7 @@ impl<N: Lane> WideRows<N> {
         }
     }
 
+    #[inline(always)]
     fn store(&self, contacts: &mut ContactTable) {
         store_set(&self.free, contacts);
         store_set(&self.held, contacts);
@@ -259,6 +260,16 @@ mod eight_lanes {
         unsafe { run_avx2(set, batch, pass, bodies, params) }
     }
 
+    pub(super) fn store(rows: &WideRows<F32x8>, contacts: &mut ContactTable) {
+        // SAFETY: this width is only chosen where the CPU has AVX2.
+        unsafe { store_avx2(rows, contacts) }
+    }
+
+    #[target_feature(enable = "avx2")]
+    fn store_avx2(rows: &WideRows<F32x8>, contacts: &mut ContactTable) {
+        rows.store(contacts);
+    }
+
     #[target_feature(enable = "avx2")]
     fn build_avx2(
         rows: &mut WideRows<F32x8>,
@@ -288,6 +299,7 @@ fn note(order: &mut Vec<(Set, u32)>, set: Set, batches: usize) {
     order.extend((known..batches as u32).map(|b| (set, b)));
 }
 
+#[inline(always)]
 fn store_set<N: Lane, M: InvMass<N>>(set: &RowSet<N, M>, contacts: &mut ContactTable) {
     store_impulses(&set.one, contacts);
     store_impulses(&set.two, contacts);
