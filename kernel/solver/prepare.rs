@@ -205,7 +205,12 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         }
         let [a, b] = contact.colliders.map(|c| &input.colliders.materials[c as usize]);
         row.friction.set(lane, a.friction.mix(b.friction));
-        bounce.restitution.set(lane, a.restitution.mix(b.restitution));
+        let restitution = a.restitution.mix(b.restitution);
+        bounce.restitution.set(lane, restitution);
+        if restitution > 0.0 {
+            let [a, b] = ids.map(|row| step.bodies.motions[row as usize].acceleration);
+            bounce.gained.set(lane, (a - b).dot(manifold.normal) * step.params.h);
+        }
         let share = step.deep.share(ids, step.bodies.first_dynamic);
         row.push_speed.set(lane, step.params.max_push_speed * share);
         self.copy(manifold, contact.frozen.offset, step.params, lane, row);

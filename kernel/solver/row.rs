@@ -52,13 +52,15 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
     pub points: [PointRow<N>; P],
 }
 
-/// What only the restitution pass needs, apart from the rows that every pass sweeps.
+/// What only bouncing needs, apart from the rows that every pass sweeps.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct RestitutionRow<N: Lane, const P: usize> {
     /// The mixed coefficient of restitution.
     pub restitution: N,
-    /// The normal velocity of each point when the step began, m/s.
+    /// The approach speed that accelerations add in a substep, m/s.
+    pub gained: N,
+    /// The normal velocity of each point when the step began, m/s; 0 once it has bounced.
     pub approach: [N; P],
     /// The largest impulse of each point so far in the step, N·s.
     pub max_impulse: [N; P],
@@ -93,7 +95,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Default for ContactRow<N, M, P> {
 
 impl<N: Lane, const P: usize> Default for RestitutionRow<N, P> {
     fn default() -> Self {
-        Self { restitution: N::ZERO, approach: [N::ZERO; P], max_impulse: [N::ZERO; P] }
+        Self { restitution: N::ZERO, gained: N::ZERO, approach: [N::ZERO; P], max_impulse: [N::ZERO; P] }
     }
 }
 
@@ -110,6 +112,12 @@ impl<N: Lane> Pair<N> {
         let (va, wa) = BodyRow::gather_velocity::<N>(rows, &ids[0]);
         let (vb, wb) = BodyRow::gather_velocity::<N>(rows, &ids[1]);
         Self { v: [va, vb], w: [wa, wb] }
+    }
+
+    /// How fast B leaves A along `n`, at the point whose moments with it are given.
+    #[inline(always)]
+    fn along(&self, n: Vector<N>, [ma, mb]: [Angular<N>; 2]) -> N {
+        (self.v[1] - self.v[0]).dot(n) + self.w[1].dot(mb) - self.w[0].dot(ma)
     }
 
     #[inline(always)]
@@ -153,15 +161,16 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let mut pair = Pair::load(rows, &self.ids);
         let immovable = N::or(self.inv_mass[0].is_zero(), self.inv_mass[1].is_zero());
         let soft = SoftLanes::select(immovable, &params.stiff, &params.soft);
-        self.solve_normals(rows, &mut pair, params, Some(soft));
+        self.solve_normals(rows, &mut pair, params, Some(soft), None);
         pair.store(rows, &self.ids);
     }
 
-    /// The relax pass: non-penetration without bias, then friction.
+    /// The relax pass: non-penetration without bias, then friction. Where `restitution` is given and
+    /// not 0, what closes fast is not slowed down before it meets: the impact pass will see to it.
     #[inline(always)]
-    pub fn relax(&mut self, rows: &RowView<BodyRow>, params: &SubstepParams) {
+    pub fn relax(&mut self, rows: &RowView<BodyRow>, params: &SubstepParams, restitution: Option<N>) {
         let mut pair = Pair::load(rows, &self.ids);
-        self.solve_normals(rows, &mut pair, params, None);
+        self.solve_normals(rows, &mut pair, params, None, restitution);
         self.solve_friction(&mut pair);
         pair.store(rows, &self.ids);
     }
@@ -184,6 +193,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         pair: &mut Pair<N>,
         params: &SubstepParams,
         soft: Option<SoftLanes<N>>,
+        restitution: Option<N>,
     ) {
         let (pa, qa) = BodyRow::gather_delta::<N>(rows, &self.ids[0]);
         let (pb, qb) = BodyRow::gather_delta::<N>(rows, &self.ids[1]);
@@ -208,13 +218,26 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
                 ),
                 None => (N::select(apart, s * inv_h, N::ZERO), N::ONE, N::ZERO),
             };
-            let vn = (pair.v[1] - pair.v[0]).dot(n) + pair.w[1].dot(mb) - pair.w[0].dot(ma);
+            let vn = pair.along(n, [ma, mb]);
             let change = point.mass * (mass_scale * vn + bias) + impulse_scale * point.impulse;
-            let new = (point.impulse - change).max(N::ZERO);
+            let mut new = (point.impulse - change).max(N::ZERO);
+            if let Some(e) = restitution {
+                let fast = vn.lt(N::splat(-params.restitution_threshold));
+                let free = N::and(apart, point.impulse.eq(N::ZERO));
+                new = N::select(N::and(N::and(fast, free), N::ZERO.lt(e)), N::ZERO, new);
+            }
             let delta = new - point.impulse;
             self.points[i].impulse = new;
             self.push(pair, n * delta, [ma * delta, mb * delta]);
         }
+    }
+
+    /// How fast B's surface slides over A's at the friction centre, less the velocity it is driven to.
+    #[inline(always)]
+    fn slip(&self, pair: &Pair<N>, frame: &TangentFrame<N>) -> Tangent<N> {
+        let (ra, rb) = (self.center, self.center - self.offset);
+        let relative = pair.v[1] + pair.w[1].cross(rb) - pair.v[0] - pair.w[0].cross(ra);
+        frame.project(relative) - self.surface_velocity
     }
 
     /// One friction row at the friction centre, limited by μ times the sum of the normal impulses, and
@@ -234,16 +257,114 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             sum += impulse;
         }
         let (ra, rb) = (self.center, self.center - self.offset);
-        let relative = pair.v[1] + pair.w[1].cross(rb) - pair.v[0] - pair.w[0].cross(ra);
-        let slip = frame.project(relative) - self.surface_velocity;
+        let slip = self.slip(pair, &frame);
         let new = (self.tangent_impulse - self.tangent_mass.apply(slip)).clamp_length(self.friction * sum);
         let impulse = frame.expand(new - self.tangent_impulse);
         self.tangent_impulse = new;
         self.push(pair, impulse, [ra.cross(impulse), rb.cross(impulse)]);
     }
 
+    /// The impact pass: points that close within this substep, and faster than the threshold, part again
+    /// before any other pass sees them, as if they had met at the right time within it. Returns whether any
+    /// did.
+    #[inline(always)]
+    pub fn impact(
+        &mut self,
+        rows: &RowView<BodyRow>,
+        bounce: &mut RestitutionRow<N, P>,
+        params: &SubstepParams,
+    ) -> bool {
+        let mut pair = Pair::load(rows, &self.ids);
+        let n = self.normal;
+        let threshold = N::splat(-params.restitution_threshold);
+        let mut moments = [[Angular::ZERO; 2]; P];
+        let mut speeds = [N::ZERO; P];
+        let mut fastest = N::ZERO;
+        for i in 0..P {
+            let anchor = self.points[i].anchor;
+            moments[i] = [anchor.cross(n), (anchor - self.offset).cross(n)];
+            speeds[i] = pair.along(n, moments[i]);
+            fastest = fastest.min(speeds[i] + bounce.gained);
+        }
+        let fast = N::and(fastest.lt(threshold), N::ZERO.lt(bounce.restitution));
+        if !N::any(fast) {
+            return false;
+        }
+        let (mut pa, qa) = BodyRow::gather_delta::<N>(rows, &self.ids[0]);
+        let (mut pb, qb) = BodyRow::gather_delta::<N>(rows, &self.ids[1]);
+        let shift = (pb - pa).dot(n);
+        let mut targets = [N::ZERO; P];
+        let mut early = N::splat(f32::MAX);
+        for i in 0..P {
+            let (ra, rb) = (self.points[i].anchor, self.points[i].anchor - self.offset);
+            let [ma, mb] = moments[i];
+            let moved = shift + qb.shift_along(rb, mb, n) - qa.shift_along(ra, ma, n);
+            let s = self.points[i].separation + moved;
+            let approach = speeds[i] + bounce.gained;
+            let soon = (s + speeds[i] * N::splat(params.h)).lt(N::ZERO);
+            let hit = N::and(N::and(fast, approach.lt(threshold)), soon);
+            let hit = N::and(hit, N::ZERO.lt(self.points[i].mass));
+            let (speed, ahead) =
+                bounce.rebound(s.max(N::ZERO), -approach, -speeds[i], N::splat(params.inv_h));
+            targets[i] = N::select(hit, speed, N::ZERO);
+            early = N::select(hit, early.min(ahead), early);
+            bounce.approach[i] = N::select(hit, N::ZERO, bounce.approach[i]);
+        }
+        let mut any = N::ZERO;
+        for target in targets {
+            any = any.max(target);
+        }
+        let hit = N::ZERO.lt(any);
+        self.collide(&mut pair, bounce, &targets, &moments);
+        pair.store(rows, &self.ids);
+
+        let [ma, mb] = [self.inv_mass[0].apply(n), self.inv_mass[1].apply(n)];
+        let k = (ma + mb).dot(n);
+        let lag = N::select(N::and(hit, N::ZERO.lt(k)), early / k, N::ZERO);
+        pa += ma * lag;
+        pb -= mb * lag;
+        BodyRow::scatter_delta::<N>(rows, &self.ids[0], pa, qa);
+        BodyRow::scatter_delta::<N>(rows, &self.ids[1], pb, qb);
+        N::any(hit)
+    }
+
+    /// Gives each point its target velocity along the normal, where that is not 0, by an impulse that pushes
+    /// only, and then the friction that goes with it.
+    #[inline(always)]
+    fn collide(
+        &mut self,
+        pair: &mut Pair<N>,
+        bounce: &mut RestitutionRow<N, P>,
+        targets: &[N; P],
+        moments: &[[Angular<N>; 2]; P],
+    ) {
+        let n = self.normal;
+        let mut impulses = [N::ZERO; P];
+        // Points of one manifold share the impact: from a few sweeps, to and fro, none comes first.
+        for sweep in 0..if P == 1 { 1 } else { 4 } {
+            for k in 0..P {
+                let i = if sweep % 2 == 0 { k } else { P - 1 - k };
+                let change = self.points[i].mass * (pair.along(n, moments[i]) - targets[i]);
+                let new = N::select(N::ZERO.lt(targets[i]), (impulses[i] - change).max(N::ZERO), N::ZERO);
+                let delta = new - impulses[i];
+                impulses[i] = new;
+                self.push(pair, n * delta, [moments[i][0] * delta, moments[i][1] * delta]);
+            }
+        }
+        let mut sum = N::ZERO;
+        for i in 0..P {
+            bounce.max_impulse[i] = bounce.max_impulse[i].max(impulses[i]);
+            sum += impulses[i];
+        }
+        let frame = TangentFrame::new(n);
+        let wanted = Tangent::ZERO - self.tangent_mass.apply(self.slip(pair, &frame));
+        let rubbed = frame.expand(wanted.clamp_length(self.friction * sum));
+        let (ra, rb) = (self.center, self.center - self.offset);
+        self.push(pair, rubbed, [ra.cross(rubbed), rb.cross(rubbed)]);
+    }
+
     /// The restitution pass: points that approached faster than the threshold and pushed leave with e
-    /// times the approach speed.
+    /// times the approach speed. What the impact pass has seen is done with.
     #[inline(always)]
     pub fn restitute(
         &mut self,
@@ -257,7 +378,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         for i in 0..P {
             let point = self.points[i];
             let (ma, mb) = (point.anchor.cross(n), (point.anchor - self.offset).cross(n));
-            let vn = (pair.v[1] - pair.v[0]).dot(n) + pair.w[1].dot(mb) - pair.w[0].dot(ma);
+            let vn = pair.along(n, [ma, mb]);
             let target = bounce.restitution * bounce.approach[i];
             let new = (point.impulse - point.mass * (vn + target)).max(N::ZERO);
             let hit = N::and(bounce.approach[i].lt(threshold), N::ZERO.lt(bounce.max_impulse[i]));
@@ -269,6 +390,28 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
         }
         pair.store(rows, &self.ids);
+    }
+}
+
+impl<N: Lane, const P: usize> RestitutionRow<N, P> {
+    /// What becomes of a point that meets within a substep: the speed at which it parts, and by how much
+    /// closer it is at the substep's end than that speed would take it, because it meets only after
+    /// `gap` / `speed`. `approach` is the speed before the substep's accelerations, `speed` the one after.
+    ///
+    /// Symplectic Euler keeps E = ½ v² + g y − ½ g h v of a free fall exactly (v upward). The speed w is the
+    /// one that makes E after the substep, at y = w (h − t), e² times what it was before: the rebound is e²
+    /// of the height at any step length, and nothing is gained.
+    #[inline(always)]
+    fn rebound(&self, gap: N, approach: N, speed: N, inv_h: N) -> (N, N) {
+        let half = N::splat(0.5);
+        let time = gap / speed;
+        // g h and g t, with t = gap / speed.
+        let (gh, gt) = (self.gained, self.gained * inv_h * time);
+        let kept = half * approach * approach + speed * gt + half * gh * approach;
+        let b = half * gh - gt;
+        let e2 = self.restitution * self.restitution;
+        let parting = (b * b + (e2 + e2) * kept.max(N::ZERO)).sqrt() - b;
+        (parting, gap + parting * time)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The stages of a step, in the order they run.
 
-use super::batch::{RowSet, with_rows};
+use super::batch::{Batch, RowSet, with_rows};
 use super::integrate::Special;
 use super::prepare::{Buckets, DeepCounts, RowInput, StepRows, store_impulses};
 use super::{BodyRows, InvMass, SubstepParams};
@@ -77,6 +77,7 @@ enum Set {
 /// What a sweep does with each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pass {
+    Impact,
     WarmStart,
     Solve,
     Relax,
@@ -133,9 +134,25 @@ impl Solver {
         self.bodies.integrate_velocities(&self.special, params.h);
     }
 
-    /// Applies the accumulated impulses.
+    /// Lets what closes fast in this substep bounce, then applies the accumulated impulses.
+    ///
+    /// An impact runs on through a row of bodies, as in Newton's cradle: two bodies further with each sweep.
     pub fn warm_start(&mut self, params: &SubstepParams) {
+        if self.any_bouncy() {
+            let mut sweeps = 0;
+            while sweeps < IMPACT_SWEEPS && self.sweep(Pass::Impact, params) {
+                sweeps += 1;
+            }
+        }
         self.sweep(Pass::WarmStart, params);
+    }
+
+    fn any_bouncy(&self) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        if self.eight.any_bouncy() {
+            return true;
+        }
+        self.overflow.any_bouncy() || self.four.any_bouncy()
     }
 
     /// Non-penetration with soft bias.
@@ -177,26 +194,32 @@ impl Solver {
         }
     }
 
-    fn sweep(&mut self, pass: Pass, params: &SubstepParams) {
+    /// Runs all batches in order. Returns whether any of them found an impact.
+    fn sweep(&mut self, pass: Pass, params: &SubstepParams) -> bool {
         let Self { bodies, overflow, four, order, .. } = self;
+        let mut hit = false;
         for (set, batch) in order.iter() {
-            match (set, self.width) {
+            hit |= match (set, self.width) {
                 (Set::Overflow, _) => overflow.free.run(*batch, pass, bodies, params),
                 (Set::OverflowHeld, _) => overflow.held.run(*batch, pass, bodies, params),
                 #[cfg(target_arch = "x86_64")]
                 (Set::Wide, Width::Eight) => {
-                    eight_lanes::run(&mut self.eight.free, *batch, pass, bodies, params);
+                    eight_lanes::run(&mut self.eight.free, *batch, pass, bodies, params)
                 }
                 #[cfg(target_arch = "x86_64")]
                 (Set::WideHeld, Width::Eight) => {
-                    eight_lanes::run(&mut self.eight.held, *batch, pass, bodies, params);
+                    eight_lanes::run(&mut self.eight.held, *batch, pass, bodies, params)
                 }
                 (Set::Wide, _) => four.free.run(*batch, pass, bodies, params),
                 (Set::WideHeld, _) => four.held.run(*batch, pass, bodies, params),
-            }
+            };
         }
+        hit
     }
 }
+
+/// How often a substep looks for impacts that follow from impacts.
+const IMPACT_SWEEPS: usize = 8;
 
 impl<N: Lane> WideRows<N> {
     /// Builds the rows of all colours but overflow.
@@ -223,6 +246,11 @@ impl<N: Lane> WideRows<N> {
             note(order, Set::WideHeld, self.held.batches.len());
             note(order, Set::Wide, self.free.batches.len());
         }
+    }
+
+    fn any_bouncy(&self) -> bool {
+        let any = |batches: &[Batch]| batches.iter().any(|b| b.bouncy);
+        any(&self.free.batches) || any(&self.held.batches)
     }
 
     #[inline(always)]
@@ -255,7 +283,7 @@ mod eight_lanes {
         pass: Pass,
         bodies: &mut BodyRows,
         params: &SubstepParams,
-    ) {
+    ) -> bool {
         // SAFETY: this width is only chosen where the CPU has AVX2.
         unsafe { run_avx2(set, batch, pass, bodies, params) }
     }
@@ -288,8 +316,8 @@ mod eight_lanes {
         pass: Pass,
         bodies: &mut BodyRows,
         params: &SubstepParams,
-    ) {
-        set.run(batch, pass, bodies, params);
+    ) -> bool {
+        set.run(batch, pass, bodies, params)
     }
 }
 
@@ -307,19 +335,25 @@ fn store_set<N: Lane, M: InvMass<N>>(set: &RowSet<N, M>, contacts: &mut ContactT
 }
 
 impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
-    /// Runs one batch. Plain loops, not iterator adaptors: what is to be compiled for the caller's CPU
+    /// Runs one batch, and returns whether it found an impact. Plain loops, not iterator adaptors: what is to be compiled for the caller's CPU
     /// feature must be inlined into it.
     #[inline(always)]
-    fn run(&mut self, batch: u32, pass: Pass, bodies: &mut BodyRows, params: &SubstepParams) {
+    fn run(&mut self, batch: u32, pass: Pass, bodies: &mut BodyRows, params: &SubstepParams) -> bool {
         let batch = self.batches[batch as usize];
         let range = batch.start as usize..(batch.start + batch.len) as usize;
-        if pass == Pass::Restitute && !batch.bouncy {
-            return;
+        if matches!(pass, Pass::Impact | Pass::Restitute) && !batch.bouncy {
+            return false;
         }
+        let mut hit = false;
         let view = &bodies.view();
         with_rows!(self, batch.class, |set| {
             let rows = &mut set.rows[range.clone()];
             match pass {
+                Pass::Impact => {
+                    for (row, bounce) in rows.iter_mut().zip(&mut set.bounces[range.clone()]) {
+                        hit |= row.impact(view, bounce, params);
+                    }
+                }
                 Pass::WarmStart => {
                     for row in rows.iter() {
                         row.warm_start(view);
@@ -330,9 +364,14 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
                         row.solve(view, params);
                     }
                 }
+                Pass::Relax if batch.bouncy => {
+                    for (row, bounce) in rows.iter_mut().zip(&set.bounces[range.clone()]) {
+                        row.relax(view, params, Some(bounce.restitution));
+                    }
+                }
                 Pass::Relax => {
                     for row in rows.iter_mut() {
-                        row.relax(view, params);
+                        row.relax(view, params, None);
                     }
                 }
                 Pass::Restitute => {
@@ -347,5 +386,6 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
                 }
             }
         });
+        hit
     }
 }

@@ -148,6 +148,52 @@ fn a_ball_rebounds_to_e_squared_of_the_height() {
 }
 
 #[test]
+fn an_elastic_ball_keeps_its_height() {
+    let mut sim = Sim::new();
+    let floor = Shape::Cuboid(Cuboid { half: Vector::ONE * 200.0 });
+    sim.add_with(BodyKind::Static, floor, Vector::Y * -200.0, Rot::IDENTITY, 0.5, 1.0);
+    let ball = Shape::Ball(Ball { radius: 0.5 });
+    let id = sim.add_with(BodyKind::Dynamic, ball, Vector::Y * 5.5, Rot::IDENTITY, 0.5, 1.0);
+    let (mut bounces, mut highest, mut last) = (0, 0.0f32, 5.0f32);
+    let mut rising = false;
+    for _ in 0..2400 {
+        sim.step();
+        let (v, y) = (sim.bodies.velocities[id as usize].linear.y, sim.position(id).to_local().y - 0.5);
+        highest = if v > 0.0 && !rising { y } else { highest.max(y) };
+        if rising && v <= 0.0 {
+            bounces += 1;
+            assert!((highest - last).abs() < 1e-5 * last, "{last} m, then {highest} m");
+            last = highest;
+        }
+        rising = v > 0.0;
+    }
+    assert!(bounces > 15, "it went on bouncing: {bounces}");
+}
+
+#[test]
+fn as_many_balls_leave_a_newtons_cradle_as_enter() {
+    for count in 1..5 {
+        let mut sim = Sim::new();
+        sim.gravity = Vector::ZERO;
+        let balls: Vec<u32> = (0..5)
+            .map(|i| {
+                let x = 1.001 * i as f32 - if i < count { 0.1 } else { 0.0 };
+                let ball = Shape::Ball(Ball { radius: 0.5 });
+                let id = sim.add_with(BodyKind::Dynamic, ball, Vector::X * x, Rot::IDENTITY, 0.0, 1.0);
+                sim.bodies.velocities[id as usize].linear = Vector::X * if i < count { 2.0 } else { 0.0 };
+                id
+            })
+            .collect();
+        sim.steps(24);
+        for (i, id) in balls.into_iter().enumerate() {
+            let want = if i >= 5 - count { 2.0 } else { 0.0 };
+            let got = sim.bodies.velocities[id as usize].linear.x;
+            assert!((got - want).abs() <= 0.1, "{count} in: ball {i} has {got} m/s, not {want}");
+        }
+    }
+}
+
+#[test]
 fn a_free_swarm_keeps_its_momentum() {
     let mut sim = Sim::new();
     sim.gravity = Vector::ZERO;

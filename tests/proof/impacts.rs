@@ -45,15 +45,13 @@ fn a_ball_rebounds_to_e_squared_of_its_height() {
     }
 }
 
-/// A gap: at most 2 % per bounce is what is asked for. The rest of the step in which the ball hits is spent on the
-/// ground, at `v dt` of height per bounce in the worst case, 2.2 % here and more the less it flies.
 #[test]
 fn an_elastic_ball_keeps_bouncing_and_never_higher() {
     let heights = bounces(1.0, 10);
     assert_eq!(heights.len(), 11, "it came to rest: {heights:?}");
     for pair in heights.windows(2) {
         assert!(pair[1] <= 10.0 * 1.0001, "above the start: {heights:?}");
-        assert!(pair[1] >= 0.97 * pair[0], "more than 3 % lost: {heights:?}");
+        assert!(pair[1] >= 0.99 * pair[0], "more than 1 % lost: {heights:?}");
     }
 }
 
@@ -117,13 +115,12 @@ fn cradle(count: usize, gap: f32, dt: f64) {
     }
 }
 
-/// A gap: 1 mm between the balls at 60 Hz is what is asked for. There the impulse has to run through all of the
-/// balls within one step, and restitution knows only the speeds at its start: the first ball is thrown back at a
-/// third of its speed. It holds where a ball crosses no more than a gap per step.
 #[test]
 fn as_many_balls_leave_a_newtons_cradle_as_enter() {
     for count in 1..5 {
-        cradle(count, 0.001, 1.0 / 4000.0);
+        for dt in [1.0 / 60.0, 1.0 / 240.0, 1.0 / 4000.0] {
+            cradle(count, 0.001, dt);
+        }
         cradle(count, 0.05, 1.0 / 60.0);
     }
 }
