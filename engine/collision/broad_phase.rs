@@ -4,7 +4,10 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use core::marker::PhantomData;
 
-use super::pairs::{FoundPairs, find_new_pairs};
+use super::{
+    CollisionDiagnostics,
+    pairs::{FoundPairs, find_new_pairs},
+};
 use crate::{
     schedule::{PhysicsSchedule, PhysicsStepSystems},
     step::{self, Stage},
@@ -50,6 +53,7 @@ impl<H: 'static> Plugin for BvhBroadPhasePlugin<H> {
     fn build(&self, app: &mut App) {
         step::install(app);
         app.init_resource::<FoundPairs>()
+            .init_resource::<CollisionDiagnostics>()
             .add_systems(PhysicsSchedule, find_new_pairs.in_set(Stage::FindPairs));
     }
 }

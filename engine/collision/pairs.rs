@@ -5,14 +5,18 @@ use bevy_time::Time;
 use kernel::{
     bvh::{Movers, find_pairs},
     data::BitSet,
-    table::{Fattening, NONE},
+    table::{ColliderTable, Fattening, NONE},
 };
 
 use crate::{
-    collision::collider::{ColliderAabb, EnlargedAabb},
+    collider_tree::ColliderTreeDiagnostics,
+    collision::{
+        collider::{ColliderAabb, EnlargedAabb},
+        diagnostics::CollisionDiagnostics,
+    },
     dynamics::{
         lifecycle::ColliderId,
-        solver::PhysicsLengthUnit,
+        solver::{PhysicsLengthUnit, gather::is_minority},
         tables::{Bodies, Colliders, Tables},
     },
     math::vector_from_kernel,
@@ -27,28 +31,40 @@ fn fattening(unit: &PhysicsLengthUnit, time: &Time<Physics>) -> Fattening {
     Fattening { margin: FAT_MARGIN * unit.metres(), dt: time.delta_secs() }
 }
 
+/// The boxes that the app sees.
+type Boxes = (&'static ColliderId, &'static mut ColliderAabb, &'static mut EnlargedAabb);
+type Item<'a> = (&'a ColliderId, Mut<'a, ColliderAabb>, Mut<'a, EnlargedAabb>);
+
 /// Puts what entered or was changed by hand where it is, and in its tree.
 pub(crate) fn update_stale_boxes(
     unit: Res<PhysicsLengthUnit>,
     time: Res<Time<Physics>>,
     bodies: Res<Bodies>,
     mut colliders: ResMut<Colliders>,
+    mut boxes: Query<Boxes>,
+    mut diagnostics: ResMut<ColliderTreeDiagnostics>,
 ) {
     if colliders.stale.is_empty() {
         return;
     }
+    let start = bevy_platform::time::Instant::now();
     let fattening = fattening(&unit, &time);
-    let Colliders { table, trees, moved, stale, .. } = &mut *colliders;
+    let Colliders { table, trees, moved, stale, entities } = &mut *colliders;
     let mut changed = BitSet::default();
-    for id in stale.iter() {
-        let live = table.ids.is_live(id);
-        if live && (table.refresh(id, &bodies.table, fattening) || trees.is_new(id)) {
+    for id in stale.iter().filter(|id| table.ids.is_live(*id)).collect::<Vec<_>>() {
+        let (outgrown, tight) = table.refresh(id, &bodies.table, fattening);
+        if outgrown || trees.is_new(id) {
             changed.insert(id);
+        }
+        if let Ok((_, mut shown, mut enlarged)) = boxes.get_mut(entities[id as usize]) {
+            *shown = to_public(&tight);
+            *enlarged = EnlargedAabb::new(to_public(&table.fat[id as usize]));
         }
     }
     stale.clear();
     trees.update(&changed, &table.fat);
     moved.union_with(&changed);
+    diagnostics.update += start.elapsed();
 }
 
 /// After the solver: boxes of bodies that moved, in the trees and in the components.
@@ -57,31 +73,45 @@ pub(crate) fn refit_awake(
     time: Res<Time<Physics>>,
     bodies: Res<Bodies>,
     mut colliders: ResMut<Colliders>,
-    mut boxes: Query<(&ColliderId, &mut ColliderAabb, &mut EnlargedAabb)>,
+    mut boxes: Query<Boxes>,
+    mut diagnostics: ResMut<ColliderTreeDiagnostics>,
+    mut changed: Local<BitSet>,
 ) {
+    let start = bevy_platform::time::Instant::now();
     let fattening = fattening(&unit, &time);
-    let Colliders { table, trees, moved, .. } = &mut *colliders;
-    let mut changed = BitSet::default();
-    for (id, mut tight, mut enlarged) in &mut boxes {
-        let id = id.0;
-        if id == NONE {
-            continue;
+    let Colliders { table, trees, moved, entities, .. } = &mut *colliders;
+    let mut refit = |item: Item, table: &mut ColliderTable| {
+        let (id, mut shown, mut enlarged) = item;
+        let (outgrown, tight) = table.refresh(id.0, &bodies.table, fattening);
+        if outgrown {
+            changed.insert(id.0);
+            *enlarged = EnlargedAabb::new(to_public(&table.fat[id.0 as usize]));
         }
-        let body = table[id].def.body;
-        if body == NONE || bodies.table.rows[body as usize] == 0 {
-            if *tight == ColliderAabb::INVALID {
-                *tight = to_public(&table.tight(id));
+        *shown = to_public(&tight);
+    };
+    if is_minority(bodies.listed.len(), boxes.iter().size_hint()) {
+        for body in &bodies.listed {
+            let mut next = bodies.table[*body].first_collider;
+            while next != NONE {
+                if let Ok(item) = boxes.get_mut(entities[next as usize]) {
+                    refit(item, table);
+                }
+                next = table.next_of_body(next);
             }
-            continue;
         }
-        if table.refresh(id, &bodies.table, fattening) {
-            changed.insert(id);
-            *enlarged = EnlargedAabb::new(to_public(&table.fat[id as usize]));
+    } else {
+        for item in &mut boxes {
+            let id = item.0.0;
+            let body = if id == NONE { NONE } else { table[id].def.body };
+            if body != NONE && bodies.table.rows[body as usize] != 0 {
+                refit(item, table);
+            }
         }
-        *tight = to_public(&table.tight(id));
     }
     trees.update(&changed, &table.fat);
     moved.union_with(&changed);
+    changed.clear();
+    diagnostics.update += start.elapsed();
 }
 
 fn to_public(aabb: &kernel::shape::Aabb) -> ColliderAabb {
@@ -97,11 +127,17 @@ pub(crate) struct FoundPairs {
 
 /// Finds the pairs that moved boxes came into, and makes contacts of those that may collide, in the order
 /// of ids.
-pub(crate) fn find_new_pairs(mut found: ResMut<FoundPairs>, mut tables: Tables) {
+pub(crate) fn find_new_pairs(
+    mut found: ResMut<FoundPairs>,
+    mut tables: Tables,
+    mut diagnostics: ResMut<CollisionDiagnostics>,
+) {
+    let start = bevy_platform::time::Instant::now();
     let FoundPairs { pairs, movers } = &mut *found;
     {
         let Colliders { table, trees, moved, .. } = &mut *tables.colliders;
         if moved.is_empty() {
+            diagnostics.broad_phase = start.elapsed();
             return;
         }
         trees.movers(moved, &table.fat, movers);
@@ -114,6 +150,7 @@ pub(crate) fn find_new_pairs(mut found: ResMut<FoundPairs>, mut tables: Tables) 
             tables.link().create(a, b);
         }
     }
+    diagnostics.broad_phase = start.elapsed();
 }
 
 /// Whether two colliders may form a contact: of different bodies, with layers that see each other, and one

@@ -151,6 +151,11 @@ impl BodyTable {
         self.awake_dynamic.iter()
     }
 
+    /// How many bodies are awake.
+    pub fn awake_count(&self) -> usize {
+        self.awake_kinematic.count() + self.awake_dynamic.count()
+    }
+
     /// Gives every awake body its row for this step, kinematic ones first, each kind in the order of
     /// ids, and all others row 0. `listed` receives the bodies in the order of their rows, from row 1.
     /// Returns the number of kinematic bodies.

@@ -241,8 +241,8 @@ impl ColliderTable {
 
     /// Puts a collider where its body is, and enlarges its fat box if it no longer holds the shape, its
     /// margin, and its motion of one step. Returns whether it did. Colliders without a body keep their
-    /// pose.
-    pub fn refresh(&mut self, id: u32, bodies: &BodyTable, fattening: Fattening) -> bool {
+    /// pose. The smallest box around the collider as it stands comes with the answer.
+    pub fn refresh(&mut self, id: u32, bodies: &BodyTable, fattening: Fattening) -> (bool, Aabb) {
         let collider = &self.colliders[id as usize];
         let def = &collider.def;
         let mut motion = Vector::ZERO;
@@ -255,17 +255,13 @@ impl ColliderTable {
                 motion = velocity * (reach / speed);
             }
         }
-        let needed = def.shape.aabb(&self.poses[id as usize]).grown(def.margin).swept(motion);
-        if self.fat[id as usize].contains(&needed) {
-            return false;
+        let tight = def.shape.aabb(&self.poses[id as usize]);
+        let needed = tight.grown(def.margin).swept(motion);
+        let outgrown = !self.fat[id as usize].contains(&needed);
+        if outgrown {
+            self.fat[id as usize] = needed.grown(fattening.margin);
         }
-        self.fat[id as usize] = needed.grown(fattening.margin);
-        true
-    }
-
-    /// The smallest box around a collider as it stands.
-    pub fn tight(&self, id: u32) -> Aabb {
-        self[id].def.shape.aabb(&self.poses[id as usize])
+        (outgrown, tight)
     }
 
     fn attach(&mut self, id: u32, bodies: &mut BodyTable) {

@@ -259,7 +259,7 @@ impl Sim {
             let slow = moved.length() < 0.15 * self.dt && angle < 0.15 * self.dt;
             let body = &mut self.bodies[id];
             body.sleep_timer = if slow { body.sleep_timer + self.dt } else { 0.0 };
-            if self.colliders.refresh(id, &self.bodies, fattening) {
+            if self.colliders.refresh(id, &self.bodies, fattening).0 {
                 let (kind, proxy) = self.proxies[id as usize];
                 let aabb = self.colliders.fat[id as usize];
                 self.trees[kind].set(proxy, aabb);

@@ -3,39 +3,47 @@
 use bevy_ecs::{prelude::*, query::QueryData};
 use bevy_log::warn_once;
 use kernel::{
-    math::{AxisLocks, InvInertia, Vector as KernelVector, max},
-    solver::{BodyRow, MassRow, Motion},
-    table::{BodyKind, NONE, Velocity},
+    math::{AxisLocks, InvInertia, Vector as KernelVector, WorldPose, max},
+    solver::{BodyRow, BodyRows, MassRow, Motion},
+    table::{BodyKind, BodyTable, NONE, Velocity},
 };
 
 use crate::{
     dynamics::{
-        integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
+        integrator::{CustomVelocityIntegration, Gravity},
         lifecycle::BodyId,
-        quarantine::quarantine,
+        quarantine::{is_finite, quarantine},
         rigid_body::{
             AngularDamping, AngularVelocity, Dominance, GravityScale, LinearDamping, LinearVelocity,
-            LockedAxes, MaxAngularSpeed, MaxLinearSpeed,
+            LockedAxes, MaxAngularSpeed, MaxLinearSpeed, RigidBodyDisabled,
             mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
         },
-        solver::StepSolver,
+        solver::{SolverDiagnostics, StepSolver},
         tables::{Bodies, Tables},
     },
     math::{Scalar, angular_to_kernel, inv_inertia_to_kernel, to_f32, vector_to_kernel},
     physics_transform::{Position, Rotation, world_pose},
 };
 
-/// The pose, velocity and mass of a body, as the app sees it.
+/// Where a body is and how it moves, as the app sees it.
 #[derive(QueryData)]
-pub(crate) struct BodyInput {
-    pub(crate) id: &'static BodyId,
+pub(crate) struct StateInput {
+    id: &'static BodyId,
     position: &'static Position,
     rotation: &'static Rotation,
     linear_velocity: &'static LinearVelocity,
     angular_velocity: &'static AngularVelocity,
+    center: &'static ComputedCenterOfMass,
+}
+
+/// What a body's row is made of.
+#[derive(QueryData)]
+pub(crate) struct RowInput {
+    id: &'static BodyId,
+    linear_velocity: &'static LinearVelocity,
+    angular_velocity: &'static AngularVelocity,
     mass: &'static ComputedMass,
     inertia: &'static ComputedAngularInertia,
-    center: &'static ComputedCenterOfMass,
     options: MotionInput,
 }
 
@@ -49,8 +57,8 @@ pub(crate) struct MotionInput {
     max_angular_speed: Option<&'static MaxAngularSpeed>,
     locks: Option<&'static LockedAxes>,
     dominance: Option<&'static Dominance>,
+    disabled: Has<RigidBodyDisabled>,
     own_velocity: Has<CustomVelocityIntegration>,
-    own_position: Has<CustomPositionIntegration>,
 }
 
 /// A finite value that is not negative: negative and NaN count as none, infinite as the largest.
@@ -79,56 +87,65 @@ fn limit(value: Option<Scalar>) -> f32 {
     }
 }
 
-impl BodyInputItem<'_, '_> {
-    fn velocity(&self) -> Velocity {
-        Velocity {
-            linear: vector_to_kernel(self.linear_velocity.0),
-            angular: angular_to_kernel(self.angular_velocity.0),
-        }
-    }
+fn velocity(linear: &LinearVelocity, angular: &AngularVelocity) -> Velocity {
+    Velocity { linear: vector_to_kernel(linear.0), angular: angular_to_kernel(angular.0) }
+}
 
-    /// Whether pose and velocity are numbers; what is not keeps out of the simulation.
-    fn is_finite(&self) -> bool {
-        let velocity = self.velocity();
-        let pose = world_pose(self.position, self.rotation);
-        velocity.linear.is_finite()
-            && velocity.angular.is_finite()
-            && pose.position.is_finite_world()
-            && pose.rotation.is_finite()
-    }
+/// What the app did to a body since the engine last wrote it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Change {
+    moved: bool,
+    pushed: bool,
 }
 
 /// Puts what the app says of a body into the table: its pose if it is another than the engine wrote, its
-/// centre of mass, its velocity. Returns whether it was moved by hand.
-fn read_in(id: u32, body: &BodyInputItem, tables: &mut Tables) -> bool {
-    let bodies = &mut tables.bodies.table;
+/// centre of mass, its velocity. One that is not finite is put back and disabled.
+#[inline]
+fn read_in(entity: Entity, body: &StateInputItem, tables: &mut Tables, commands: &mut Commands) -> Change {
+    let id = body.id.0;
+    let bodies = &tables.bodies.table;
+    let velocity = velocity(body.linear_velocity, body.angular_velocity);
     let center = vector_to_kernel(body.center.0);
     let frame = world_pose(body.position, body.rotation);
-    let moved = bodies.frame(id) != frame;
+    let change =
+        Change { moved: bodies.frame(id) != frame, pushed: bodies.velocities[id as usize] != velocity };
     let recentered = bodies[id].local_center != center && center.is_finite();
-    bodies.set_velocity(id, body.velocity());
-    if moved || recentered {
-        if recentered {
-            bodies[id].local_center = center;
-        }
-        bodies.teleport(id, frame);
-        let Tables { bodies, colliders, .. } = tables;
-        let colliders = &mut **colliders;
-        let mut next = bodies.table[id].first_collider;
-        while next != NONE {
-            colliders.stale.insert(next);
-            colliders.table.update_reach(next, &bodies.table);
-            next = colliders.table.next_of_body(next);
-        }
+    if !(change.moved || change.pushed || recentered) {
+        return change;
     }
-    moved
+    if !(velocity.linear.is_finite() && velocity.angular.is_finite() && is_finite(&frame)) {
+        quarantine(entity, Some(bodies.frame(id)), commands);
+        return Change::default();
+    }
+    tables.bodies.table.set_velocity(id, velocity);
+    if change.moved || recentered {
+        place(id, frame, recentered.then_some(center), tables);
+    }
+    change
+}
+
+/// Puts a body where the app wants it, with all its colliders.
+#[cold]
+fn place(id: u32, frame: WorldPose, center: Option<KernelVector>, tables: &mut Tables) {
+    let Tables { bodies, colliders, .. } = tables;
+    let (bodies, colliders) = (&mut bodies.table, &mut **colliders);
+    if let Some(center) = center {
+        bodies[id].local_center = center;
+    }
+    bodies.teleport(id, frame);
+    let mut next = bodies[id].first_collider;
+    while next != NONE {
+        colliders.stale.insert(next);
+        colliders.table.update_reach(next, bodies);
+        next = colliders.table.next_of_body(next);
+    }
 }
 
 /// Sees what the app did to bodies that are static or asleep: moved ones wake what they touch, and they
 /// themselves wake if they can.
 pub(crate) fn wake_changed(
     changed: Query<
-        (Entity, BodyInput),
+        (Entity, StateInput),
         Or<(Changed<Position>, Changed<Rotation>, Changed<LinearVelocity>, Changed<AngularVelocity>)>,
     >,
     gravity: Res<Gravity>,
@@ -141,16 +158,11 @@ pub(crate) fn wake_changed(
         if id == NONE || tables.bodies.table[id].awake {
             continue;
         }
-        if !body.is_finite() {
-            quarantine(entity, Some(tables.bodies.table.frame(id)), &mut commands);
-            continue;
-        }
-        let old = tables.bodies.table.velocities[id as usize];
-        let moved = read_in(id, &body, &mut tables);
-        if moved {
+        let change = read_in(entity, &body, &mut tables, &mut commands);
+        if change.moved {
             tables.link().wake_touching(id);
         }
-        if moved || old != tables.bodies.table.velocities[id as usize] {
+        if change.moved || change.pushed {
             tables.link().wake_body(id);
         }
     }
@@ -179,33 +191,43 @@ pub(crate) fn wake_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
 }
 
 /// Reads pose and velocity of every awake body, before anything is computed from them.
-pub(crate) fn read_awake(query: Query<BodyInput>, mut tables: Tables) {
-    let awake: Vec<u32> =
-        tables.bodies.table.awake_kinematic().chain(tables.bodies.table.awake_dynamic()).collect();
-    let entities: Vec<Entity> = awake.iter().map(|id| tables.bodies.entities[*id as usize]).collect();
-    let mut read = |body: BodyInputItem| {
+pub(crate) fn read_awake(
+    query: Query<(Entity, StateInput)>,
+    mut tables: Tables,
+    mut commands: Commands,
+    mut some: Local<Vec<Entity>>,
+) {
+    let Bodies { table, entities, .. } = &*tables.bodies;
+    let minority = is_minority(table.awake_count(), query.iter().size_hint());
+    some.clear();
+    if minority {
+        let awake = table.awake_kinematic().chain(table.awake_dynamic());
+        some.extend(awake.map(|id| entities[id as usize]));
+    }
+    let mut read = |(entity, body): (Entity, StateInputItem)| {
         let id = body.id.0;
-        if id == NONE || !tables.bodies.table[id].awake || !body.is_finite() {
+        if id == NONE || !tables.bodies.table[id].awake {
             return;
         }
-        let before = tables.bodies.table.velocities[id as usize];
-        if read_in(id, &body, &mut tables) {
+        let change = read_in(entity, &body, &mut tables, &mut commands);
+        if change.moved {
             tables.link().wake_touching(id);
         }
-        if tables.bodies.table.velocities[id as usize] != before {
+        if change.pushed {
             tables.bodies.table[id].sleep_timer = 0.0;
         }
     };
-    if is_minority(awake.len(), &query) {
-        query.iter_many(entities).for_each(read);
+    if minority {
+        query.iter_many(&*some).for_each(read);
     } else {
         query.iter().for_each(&mut read);
     }
 }
 
-/// Whether so few bodies are awake that looking them up is cheaper than walking the tables of all.
-fn is_minority(awake: usize, query: &Query<BodyInput>) -> bool {
-    4 * awake < query.iter().size_hint().1.unwrap_or(0)
+/// Whether so few of the entities that a query holds are wanted that looking them up is cheaper than walking
+/// through all of them.
+pub(crate) fn is_minority(wanted: usize, all: (usize, Option<usize>)) -> bool {
+    4 * wanted < all.1.unwrap_or(0)
 }
 
 /// Gives every awake body its row and fills it.
@@ -213,27 +235,31 @@ fn is_minority(awake: usize, query: &Query<BodyInput>) -> bool {
 /// Iterates tables where most bodies are awake and looks up entities where most sleep: rows are written
 /// by id either way, so the order of entities does not matter.
 pub(crate) fn gather_bodies(
-    query: Query<BodyInput>,
+    query: Query<(Entity, RowInput)>,
     gravity: Res<Gravity>,
     mut solver: ResMut<StepSolver>,
-    mut tables: Tables,
+    mut bodies: ResMut<Bodies>,
+    mut diagnostics: ResMut<SolverDiagnostics>,
+    mut commands: Commands,
+    mut some: Local<Vec<Entity>>,
 ) {
-    let Bodies { table, listed, .. } = &mut *tables.bodies;
+    let start = bevy_platform::time::Instant::now();
+    let Bodies { table, listed, entities, .. } = &mut *bodies;
     let kinematic = table.assign_rows(listed);
     let count = listed.len();
-    solver.kernel.bodies.reset(kinematic, count - kinematic);
+    let rows = &mut solver.kernel.bodies;
+    rows.reset(kinematic, count - kinematic);
     let gather = Gather { gravity: finite_gravity(&gravity) };
-    if is_minority(count, &query) {
-        let entities: Vec<Entity> =
-            tables.bodies.listed.iter().map(|id| tables.bodies.entities[*id as usize]).collect();
-        for body in query.iter_many(entities) {
-            gather.body(&body, &mut solver, &mut tables);
-        }
+    let mut fill =
+        |(entity, body): (Entity, RowInputItem)| gather.body(entity, &body, rows, table, &mut commands);
+    if is_minority(count, query.iter().size_hint()) {
+        some.clear();
+        some.extend(listed.iter().map(|id| entities[*id as usize]));
+        query.iter_many(&*some).for_each(fill);
     } else {
-        for body in &query {
-            gather.body(&body, &mut solver, &mut tables);
-        }
+        query.iter().for_each(&mut fill);
     }
+    diagnostics.prepare_constraints += start.elapsed();
 }
 
 /// What is the same for all bodies.
@@ -243,36 +269,47 @@ struct Gather {
 
 impl Gather {
     #[inline]
-    fn body(&self, body: &BodyInputItem, solver: &mut StepSolver, tables: &mut Tables) {
+    fn body(
+        &self,
+        entity: Entity,
+        body: &RowInputItem,
+        rows: &mut BodyRows,
+        table: &mut BodyTable,
+        commands: &mut Commands,
+    ) {
         let id = body.id.0;
         if id == NONE {
             return;
         }
-        let row = tables.bodies.table.rows[id as usize];
-        if row == 0 || !body.is_finite() {
+        let row = table.rows[id as usize] as usize;
+        // What was put under quarantine in this step stays put until it leaves.
+        if row == 0 || body.options.disabled {
             return;
         }
         // The velocity may have been changed since it was read; the pose counts from the next step on.
-        let velocity = body.velocity();
-        let pose = tables.bodies.table.poses[id as usize];
-        let rows = &mut solver.kernel.bodies;
-        let row = row as usize;
-        rows.rows[row] = BodyRow::new(velocity.linear, velocity.angular);
+        let Velocity { linear, angular } = velocity(body.linear_velocity, body.angular_velocity);
+        if !(linear.is_finite() && angular.is_finite()) {
+            quarantine(entity, Some(table.frame(id)), commands);
+            return;
+        }
+        rows.rows[row] = BodyRow::new(linear, angular);
         let locks = body.options.locks.map_or(AxisLocks::NONE, |l| l.to_kernel());
-        let dynamic = row >= rows.first_dynamic as usize;
         let dominance = body.options.dominance.map_or(0, |d| d.0);
-        tables.bodies.table[id].dominance = dominance;
-        tables.bodies.table.any_dominance |= dominance != 0;
-        if dynamic {
+        if dominance != 0 || table.any_dominance {
+            table[id].dominance = dominance;
+            table.any_dominance = true;
+        }
+        let motion = &mut rows.motions[row];
+        if row >= rows.first_dynamic as usize {
             let inv_mass = max(to_f32(body.mass.inverse()), 0.0);
             let inv_mass = if locks.is_translation_full() || !inv_mass.is_finite() { 0.0 } else { inv_mass };
             let local = inv_inertia_to_kernel(body.inertia.inverse());
-            let world = local.rotated(pose.rotation).locked(locks);
-            rows.masses[row] = MassRow::new(inv_mass, world);
-            rows.motions[row] = self.motion(&body.options, locks, local);
-            rows.motions[row].rotation = pose.rotation;
+            let rotation = table.poses[id as usize].rotation;
+            rows.masses[row] = MassRow::new(inv_mass, local.rotated(rotation).locked(locks));
+            *motion = self.motion(&body.options, locks, local);
+            motion.rotation = rotation;
         } else {
-            rows.motions[row] = Motion { locks, ..Motion::FREE };
+            *motion = Motion { locks, ..Motion::FREE };
         }
     }
 

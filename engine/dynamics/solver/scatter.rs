@@ -1,42 +1,53 @@
 //! From rows back to components, and which bodies have come to rest.
 
-use bevy_ecs::prelude::*;
+use bevy_ecs::{prelude::*, query::QueryData};
 use bevy_time::Time;
 use kernel::{
-    math::Vector as KernelVector,
-    table::{BodyKind, NONE, Velocity},
+    math::{Rot, Vector as KernelVector},
+    solver::BodyRows,
+    table::{BodyTable, NONE, Velocity},
 };
 
 use crate::{
     dynamics::{
         integrator::CustomPositionIntegration,
         lifecycle::BodyId,
-        quarantine::{is_finite, quarantine},
+        quarantine::quarantine,
         rigid_body::{
-            AngularVelocity, LinearVelocity,
+            AngularVelocity, LinearVelocity, RigidBodyDisabled,
             sleeping::{SleepThreshold, SleepTimer, SleepingDisabled},
         },
-        solver::{PhysicsLengthUnit, StepSolver},
+        solver::{PhysicsLengthUnit, SolverDiagnostics, StepSolver, gather::is_minority},
         tables::Bodies,
     },
     math::{angular_from_kernel, vector_from_kernel},
-    physics_transform::{Position, Rotation, set_pose, world_pose},
+    physics_transform::{Position, Rotation, set_pose},
     schedule::Physics,
 };
 
 /// What a body's motion is written to.
-type Output = (
-    Entity,
-    &'static BodyId,
-    &'static mut Position,
-    &'static mut Rotation,
-    &'static mut LinearVelocity,
-    &'static mut AngularVelocity,
-    Option<&'static SleepThreshold>,
-    Has<SleepingDisabled>,
-    Option<&'static mut SleepTimer>,
-    Has<CustomPositionIntegration>,
-);
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct Output {
+    entity: Entity,
+    id: &'static BodyId,
+    position: &'static mut Position,
+    rotation: &'static mut Rotation,
+    linear: &'static mut LinearVelocity,
+    angular: &'static mut AngularVelocity,
+    options: SleepOptions,
+}
+
+/// What most bodies do not have.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct SleepOptions {
+    threshold: Option<&'static SleepThreshold>,
+    sleepless: Has<SleepingDisabled>,
+    timer: Option<&'static mut SleepTimer>,
+    own_position: Has<CustomPositionIntegration>,
+    disabled: Has<RigidBodyDisabled>,
+}
 
 /// Folds each awake body's motion into its pose, and writes pose and velocity where they changed.
 ///
@@ -48,56 +59,87 @@ pub(crate) fn scatter_bodies(
     time: Res<Time<Physics>>,
     unit: Res<PhysicsLengthUnit>,
     mut bodies: ResMut<Bodies>,
+    mut diagnostics: ResMut<SolverDiagnostics>,
     mut commands: Commands,
+    mut some: Local<Vec<Entity>>,
 ) {
-    let dt = time.delta_secs();
-    let unit = unit.metres();
-    let mut write = |item: <Output as bevy_ecs::query::QueryData>::Item<'_, '_>| {
-        let (entity, id, position, rotation, linear, angular, threshold, sleepless, timer, own_position) =
-            item;
-        let row = if id.0 == NONE { 0 } else { bodies.table.rows[id.0 as usize] };
-        if row == 0 {
+    let start = bevy_platform::time::Instant::now();
+    let Bodies { table, listed, entities, .. } = &mut *bodies;
+    let scatter = Scatter { rows: &solver.kernel.bodies, dt: time.delta_secs(), unit: unit.metres() };
+    if is_minority(listed.len(), query.iter().size_hint()) {
+        some.clear();
+        some.extend(listed.iter().map(|id| entities[*id as usize]));
+        let mut found = query.iter_many_mut(&*some);
+        while let Some(item) = found.fetch_next() {
+            scatter.body(item, table, &mut commands);
+        }
+    } else {
+        for item in &mut query {
+            scatter.body(item, table, &mut commands);
+        }
+    }
+    diagnostics.finalize += start.elapsed();
+}
+
+/// What is the same for all bodies.
+struct Scatter<'a> {
+    rows: &'a BodyRows,
+    dt: f32,
+    unit: f32,
+}
+
+impl Scatter<'_> {
+    #[inline]
+    fn body(&self, item: OutputItem, bodies: &mut BodyTable, commands: &mut Commands) {
+        let OutputItem { entity, id, position, rotation, linear, angular, options } = item;
+        let id = id.0;
+        let row = if id == NONE { 0 } else { bodies.rows[id as usize] };
+        if row == 0 || options.disabled {
             return;
         }
-        let body = &solver.kernel.bodies.rows[row as usize];
+        let body = &self.rows.rows[row as usize];
         let (v, w) = body.velocity();
-        let (moved, turned) = if own_position { Default::default() } else { body.delta() };
-        let old = bodies.table.poses[id.0 as usize];
+        let (moved, turned) = if options.own_position { Default::default() } else { body.delta() };
+        let old = bodies.poses[id as usize];
         let mut pose = old;
         pose.center = old.center + moved.to_world();
         pose.rotation = turned.mul(old.rotation).normalized();
-        let result =
-            v.is_finite() && w.is_finite() && pose.center.is_finite_world() && pose.rotation.is_finite();
-        // What came in not finite was left out of the step.
-        let given =
-            linear.is_finite() && angular.0.is_finite() && is_finite(&world_pose(&position, &rotation));
-        if !(result && given) {
-            quarantine(entity, Some(bodies.table.frame(id.0)), &mut commands);
+        let motion_is_finite = v.is_finite() && w.is_finite();
+        if !(motion_is_finite && pose.center.is_finite_world() && pose.rotation.is_finite()) {
+            quarantine(entity, Some(bodies.frame(id)), commands);
             return;
         }
-        bodies.table.poses[id.0 as usize] = pose;
-        if bodies.table[id.0].kind == BodyKind::Dynamic {
-            bodies.table.set_velocity(id.0, Velocity { linear: v, angular: w });
+        bodies.poses[id as usize] = pose;
+        if row >= self.rows.first_dynamic {
+            bodies.set_velocity(id, Velocity { linear: v, angular: w });
             write_changed(linear, LinearVelocity(vector_from_kernel(v)));
             write_changed(angular, AngularVelocity(angular_from_kernel(w)));
         }
         if pose != old {
-            set_pose(position, rotation, bodies.table.frame(id.0));
+            set_pose(position, rotation, bodies.frame(id));
         }
-        let threshold = threshold.copied().unwrap_or_default();
-        let angle = old.rotation.difference(pose.rotation).length();
-        let rests = !sleepless && is_slow(&threshold, moved, angle, unit, dt);
-        let body = &mut bodies.table[id.0];
-        body.sleep_timer = if rests { body.sleep_timer + dt } else { 0.0 };
-        if sleepless {
-            body.sleep_timer = f32::NEG_INFINITY;
+        let threshold = options.threshold.copied().unwrap_or_default();
+        let rests = self.is_slow(&threshold, moved, turned);
+        let timer = &mut bodies[id].sleep_timer;
+        *timer = if rests { *timer + self.dt } else { 0.0 };
+        if options.sleepless {
+            *timer = f32::NEG_INFINITY;
         }
-        if let Some(mut timer) = timer {
-            timer.0 = body.sleep_timer.max(0.0);
+        if let Some(mut shown) = options.timer {
+            shown.0 = timer.max(0.0);
         }
-    };
-    for item in &mut query {
-        write(item);
+    }
+
+    /// Whether a body has moved and turned less in this step than its thresholds allow. Judged on
+    /// displacement, not velocity: what jitters in place rests.
+    fn is_slow(&self, threshold: &SleepThreshold, moved: KernelVector, turned: Rot) -> bool {
+        let way = threshold.linear * self.unit * self.dt;
+        let angle = threshold.angular * self.dt;
+        // A negative threshold, or NaN, never rests.
+        way >= 0.0
+            && angle >= 0.0
+            && moved.length_squared() <= way * way
+            && Rot::IDENTITY.difference(turned).length_squared() <= angle * angle
     }
 }
 
@@ -106,14 +148,4 @@ fn write_changed<T: PartialEq>(mut target: Mut<T>, value: T) {
     if *target != value {
         *target = value;
     }
-}
-
-/// Whether a body moved and turned less in this step than its thresholds allow. Judged on displacement,
-/// not velocity: what jitters in place rests.
-fn is_slow(threshold: &SleepThreshold, moved: KernelVector, angle: f32, unit: f32, dt: f32) -> bool {
-    // A negative threshold, or NaN, never rests.
-    threshold.linear >= 0.0
-        && threshold.angular >= 0.0
-        && moved.length() <= threshold.linear * unit * dt
-        && angle <= threshold.angular * dt
 }
