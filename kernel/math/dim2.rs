@@ -142,7 +142,8 @@ impl Vector {
     /// Whether no component is infinite or NaN.
     #[inline]
     pub fn is_finite(self) -> bool {
-        self.x.is_finite() && self.y.is_finite()
+        // Infinities and NaN times 0 are NaN: no branches.
+        self.x * 0.0 + self.y * 0.0 == 0.0
     }
 
     /// A unit vector at right angles to this unit vector.
@@ -169,7 +170,8 @@ impl Vector<Scalar> {
     /// Whether no component of a world position is infinite or NaN.
     #[inline]
     pub fn is_finite_world(self) -> bool {
-        self.x.is_finite() && self.y.is_finite()
+        // Infinities and NaN times 0 are NaN: no branches.
+        self.x * 0.0 + self.y * 0.0 == 0.0
     }
 }
 
@@ -347,6 +349,17 @@ impl<N: Num> Rot<N> {
 }
 
 impl Rot {
+    /// Scaled to unit length, cheaply where it is within 0.05 % of it, as after a product: by three terms of
+    /// (1 + e)^-½, exact to rounding.
+    #[inline]
+    pub fn renormalized(self) -> Self {
+        let e = self.cos * self.cos + self.sin * self.sin - 1.0;
+        if e.abs() > 1.0e-3 {
+            return self.normalized();
+        }
+        let factor = 1.0 - e * (0.5 - 0.375 * e);
+        Self { cos: self.cos * factor, sin: self.sin * factor }
+    }
     /// The rotation by an angle in radians, counter-clockwise.
     pub fn from_angle(angle: f32) -> Self {
         let (sin, cos) = super::sin_cos(f64::from(angle));
@@ -355,7 +368,7 @@ impl Rot {
     /// Whether no component is infinite or NaN.
     #[inline]
     pub fn is_finite(self) -> bool {
-        self.cos.is_finite() && self.sin.is_finite()
+        self.cos * 0.0 + self.sin * 0.0 == 0.0
     }
     /// How far two rotations are apart: the sine of the angle between them, about its size when small.
     #[inline]

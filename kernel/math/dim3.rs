@@ -152,7 +152,8 @@ impl Vector {
     /// Whether no component is infinite or NaN.
     #[inline]
     pub fn is_finite(self) -> bool {
-        self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+        // Infinities and NaN times 0 are NaN: no branches.
+        self.x * 0.0 + self.y * 0.0 + self.z * 0.0 == 0.0
     }
 
     /// A unit vector at right angles to this unit vector.
@@ -179,7 +180,8 @@ impl Vector<Scalar> {
     /// Whether no component of a world position is infinite or NaN.
     #[inline]
     pub fn is_finite_world(self) -> bool {
-        self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+        // Infinities and NaN times 0 are NaN: no branches.
+        self.x * 0.0 + self.y * 0.0 + self.z * 0.0 == 0.0
     }
 }
 
@@ -434,6 +436,17 @@ impl<N: Num> Rot<N> {
 }
 
 impl Rot {
+    /// Scaled to unit length, cheaply where it is within 0.05 % of it, as after a product: by three terms of
+    /// (1 + e)^-½, exact to rounding.
+    #[inline]
+    pub fn renormalized(self) -> Self {
+        let e = self.x * self.x + self.y * self.y + self.z * self.z + self.w * self.w - 1.0;
+        if e.abs() > 1.0e-3 {
+            return self.normalized();
+        }
+        let factor = 1.0 - e * (0.5 - 0.375 * e);
+        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor, w: self.w * factor }
+    }
     /// The rotation about the unit vector `axis` by an angle in radians, right-handed.
     pub fn from_axis_angle(axis: Vector, angle: f32) -> Self {
         let (sin, cos) = super::sin_cos(0.5 * f64::from(angle));
@@ -443,7 +456,7 @@ impl Rot {
     /// Whether no component is infinite or NaN.
     #[inline]
     pub fn is_finite(self) -> bool {
-        self.x.is_finite() && self.y.is_finite() && self.z.is_finite() && self.w.is_finite()
+        self.x * 0.0 + self.y * 0.0 + self.z * 0.0 + self.w * 0.0 == 0.0
     }
     /// How far two rotations are apart: twice the imaginary part of the quaternion between them, about
     /// the rotation vector when small.

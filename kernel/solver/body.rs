@@ -59,16 +59,22 @@ pub struct BodyRows {
 }
 
 impl BodyRows {
-    /// Makes room for `kinematic` and `dynamic` bodies after the dummy, all at rest.
+    /// Makes room for `kinematic` and `dynamic` bodies after the dummy. Rows hold what they held before: every
+    /// one of them is to be filled.
     pub fn reset(&mut self, kinematic: usize, dynamic: usize) {
         let count = 1 + kinematic + dynamic;
-        self.rows.clear();
         self.rows.resize(count, BodyRow::REST);
-        self.masses.clear();
         self.masses.resize(count, MassRow::default());
-        self.motions.clear();
         self.motions.resize(count, Motion::FREE);
         self.first_dynamic = 1 + kinematic as u32;
+        self.still(0);
+    }
+
+    /// Fills a row with a body at rest that nothing moves.
+    pub fn still(&mut self, row: usize) {
+        self.rows[row] = BodyRow::REST;
+        self.masses[row] = MassRow::default();
+        self.motions[row] = Motion::FREE;
     }
 
     /// A view through which rows of disjoint bodies can be read and written; only dynamic bodies are.

@@ -207,6 +207,7 @@ impl Sim {
         rows.reset(kinematic, self.listed.len() - kinematic);
         for (i, &id) in self.listed.iter().enumerate() {
             let row = i + 1;
+            rows.still(row);
             let velocity = self.bodies.velocities[id as usize];
             self.bodies.set_velocity(id, velocity);
             rows.rows[row] = BodyRow::new(velocity.linear, velocity.angular);
@@ -254,7 +255,7 @@ impl Sim {
             let pose = &mut self.bodies.poses[id as usize];
             let before = pose.rotation;
             pose.center += moved.to_world();
-            pose.rotation = turned.mul(pose.rotation).normalized();
+            pose.rotation = turned.mul(pose.rotation).renormalized();
             let angle = before.difference(pose.rotation).length();
             let slow = moved.length() < 0.15 * self.dt && angle < 0.15 * self.dt;
             let body = &mut self.bodies[id];

@@ -250,14 +250,22 @@ pub(crate) fn gather_bodies(
     let rows = &mut solver.kernel.bodies;
     rows.reset(kinematic, count - kinematic);
     let gather = Gather { gravity: finite_gravity(&gravity) };
-    let mut fill =
-        |(entity, body): (Entity, RowInputItem)| gather.body(entity, &body, rows, table, &mut commands);
+    let mut filled = 0;
+    let mut fill = |(entity, body): (Entity, RowInputItem)| {
+        filled += usize::from(gather.body(entity, &body, rows, table, &mut commands));
+    };
     if is_minority(count, query.iter().size_hint()) {
         some.clear();
         some.extend(listed.iter().map(|id| entities[*id as usize]));
-        query.iter_many(&*some).for_each(fill);
+        query.iter_many(&*some).for_each(&mut fill);
     } else {
         query.iter().for_each(&mut fill);
+    }
+    if filled < count {
+        // Some body lost a component within the step: nobody knows which.
+        for (i, _) in listed.iter().enumerate().filter(|(_, id)| !query.contains(entities[**id as usize])) {
+            rows.still(1 + i);
+        }
     }
     diagnostics.prepare_constraints += start.elapsed();
 }
@@ -268,7 +276,8 @@ struct Gather {
 }
 
 impl Gather {
-    #[inline]
+    /// Fills a body's row, if it has one. Returns whether it has.
+    #[inline(always)]
     fn body(
         &self,
         entity: Entity,
@@ -276,21 +285,22 @@ impl Gather {
         rows: &mut BodyRows,
         table: &mut BodyTable,
         commands: &mut Commands,
-    ) {
+    ) -> bool {
         let id = body.id.0;
-        if id == NONE {
-            return;
-        }
-        let row = table.rows[id as usize] as usize;
-        // What was put under quarantine in this step stays put until it leaves.
-        if row == 0 || body.options.disabled {
-            return;
+        let row = if id == NONE { 0 } else { table.rows[id as usize] as usize };
+        if row == 0 {
+            return false;
         }
         // The velocity may have been changed since it was read; the pose counts from the next step on.
         let Velocity { linear, angular } = velocity(body.linear_velocity, body.angular_velocity);
-        if !(linear.is_finite() && angular.is_finite()) {
+        let finite = linear.is_finite() && angular.is_finite();
+        if !finite {
             quarantine(entity, Some(table.frame(id)), commands);
-            return;
+        }
+        // What was put under quarantine in this step stays put until it leaves.
+        if !finite || body.options.disabled {
+            rows.still(row);
+            return true;
         }
         rows.rows[row] = BodyRow::new(linear, angular);
         let locks = body.options.locks.map_or(AxisLocks::NONE, |l| l.to_kernel());
@@ -299,18 +309,18 @@ impl Gather {
             table[id].dominance = dominance;
             table.any_dominance = true;
         }
-        let motion = &mut rows.motions[row];
         if row >= rows.first_dynamic as usize {
             let inv_mass = max(to_f32(body.mass.inverse()), 0.0);
             let inv_mass = if locks.is_translation_full() || !inv_mass.is_finite() { 0.0 } else { inv_mass };
             let local = inv_inertia_to_kernel(body.inertia.inverse());
             let rotation = table.poses[id as usize].rotation;
             rows.masses[row] = MassRow::new(inv_mass, local.rotated(rotation).locked(locks));
-            *motion = self.motion(&body.options, locks, local);
-            motion.rotation = rotation;
+            rows.motions[row] = Motion { rotation, ..self.motion(&body.options, locks, local) };
         } else {
-            *motion = Motion { locks, ..Motion::FREE };
+            rows.masses[row] = MassRow::default();
+            rows.motions[row] = Motion { locks, ..Motion::FREE };
         }
+        true
     }
 
     fn motion(&self, options: &MotionInputItem, locks: AxisLocks, local: InvInertia) -> Motion {

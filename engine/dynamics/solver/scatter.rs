@@ -89,7 +89,7 @@ struct Scatter<'a> {
 }
 
 impl Scatter<'_> {
-    #[inline]
+    #[inline(always)]
     fn body(&self, item: OutputItem, bodies: &mut BodyTable, commands: &mut Commands) {
         let OutputItem { entity, id, position, rotation, linear, angular, options } = item;
         let id = id.0;
@@ -103,9 +103,9 @@ impl Scatter<'_> {
         let old = bodies.poses[id as usize];
         let mut pose = old;
         pose.center = old.center + moved.to_world();
-        pose.rotation = turned.mul(old.rotation).normalized();
-        let motion_is_finite = v.is_finite() && w.is_finite();
-        if !(motion_is_finite && pose.center.is_finite_world() && pose.rotation.is_finite()) {
+        pose.rotation = turned.mul(old.rotation).renormalized();
+        let finite = [v.is_finite(), w.is_finite(), pose.center.is_finite_world(), pose.rotation.is_finite()];
+        if finite != [true; 4] {
             quarantine(entity, Some(bodies.frame(id)), commands);
             return;
         }
