@@ -17,8 +17,8 @@ use crate::{
         lifecycle,
         rigid_body::{DefaultFriction, DefaultRestitution},
         solver::{
-            StepSolver,
             schedule::{SolverSystems, SubstepSolverSystems},
+            substeps::StepSolver,
         },
         tables::{Bodies, Colliders, Contacts},
     },

@@ -36,8 +36,8 @@ fn register_dynamics(app: &mut App) {
     use crate::{
         dynamics::{
             ccd::SpeculativeMargin,
+            ids::{BodyId, ColliderId},
             integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
-            lifecycle::{BodyId, ColliderId},
             rigid_body::sleeping::TimeToSleep,
             solver::{
                 ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig, SolverDiagnostics,

@@ -1,76 +1,23 @@
 //! The bounding volume hierarchies over all colliders, which the broad phase and spatial queries search.
 
-mod diagnostics;
+pub(crate) mod diagnostics;
 mod optimization;
-mod proxies;
+mod plugin;
+pub(crate) mod proxies;
 
 pub use diagnostics::ColliderTreeDiagnostics;
-pub(crate) use proxies::ProxyTable;
-
 pub use optimization::{ColliderTreeOptimization, TreeOptimizationMode};
+pub use plugin::ColliderTreePlugin;
 
-use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
-use core::marker::PhantomData;
 
-use crate::{
-    collision::{
-        broad_phase::BroadPhaseSystems,
-        collider::AnyCollider,
-        pairs::{refit_awake, update_stale_boxes},
-    },
-    dynamics::solver::PhysicsLengthUnit,
-    schedule::{PhysicsSchedule, PhysicsStepSystems},
-    step::{self, Stage},
-};
-
-/// Keeps the trees up to date with colliders of type `C`, one instance per type.
-pub struct ColliderTreePlugin<C: AnyCollider>(PhantomData<fn() -> C>);
-
-impl<C: AnyCollider> Default for ColliderTreePlugin<C> {
-    fn default() -> Self {
-        Self(PhantomData)
-    }
-}
-
-impl<C: AnyCollider> Plugin for ColliderTreePlugin<C> {
-    fn build(&self, app: &mut App) {
-        app.init_resource::<ColliderTreeOptimization>()
-            .init_resource::<ColliderTreeDiagnostics>()
-            .init_resource::<PhysicsLengthUnit>();
-        step::install(app);
-        app.add_systems(
-            PhysicsSchedule,
-            (
-                diagnostics::reset_trees.in_set(Stage::ResetDiagnostics),
-                update_stale_boxes.in_set(Stage::UpdateBoxes),
-                refit_awake.in_set(Stage::Refit),
-            ),
-        );
-
-        app.configure_sets(
-            PhysicsSchedule,
-            (
-                ColliderTreeSystems::UpdateAabbs
-                    .in_set(PhysicsStepSystems::BroadPhase)
-                    .after(BroadPhaseSystems::First)
-                    .before(BroadPhaseSystems::CollectCollisions),
-                ColliderTreeSystems::BeginOptimize
-                    .in_set(PhysicsStepSystems::BroadPhase)
-                    .after(BroadPhaseSystems::Last),
-                ColliderTreeSystems::EndOptimize.in_set(PhysicsStepSystems::Finalize),
-            ),
-        );
-    }
-}
-
-/// The stages in which the trees are kept up to date, in this order, in [`PhysicsSchedule`].
+/// The stages in which the trees are kept up to date, in this order, in [`PhysicsSchedule`](crate::schedule::PhysicsSchedule).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ColliderTreeSystems {
     /// Boxes follow their colliders, before pairs are searched.
     UpdateAabbs,
     /// Optimization of the trees starts, after pairs were found.
     BeginOptimize,
-    /// Optimization of the trees is done, in [`PhysicsStepSystems::Finalize`].
+    /// Optimization of the trees is done, in [`PhysicsStepSystems::Finalize`](crate::schedule::PhysicsStepSystems::Finalize).
     EndOptimize,
 }

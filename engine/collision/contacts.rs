@@ -14,7 +14,7 @@ use crate::{
         diagnostics::CollisionDiagnostics,
         narrow_phase::NarrowPhaseConfig,
     },
-    dynamics::{solver::PhysicsLengthUnit, tables::Tables},
+    dynamics::{solver::config::PhysicsLengthUnit, tables::Tables},
     math::to_f32,
     schedule::Physics,
 };

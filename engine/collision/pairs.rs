@@ -9,15 +9,15 @@ use kernel::{
 };
 
 use crate::{
-    collider_tree::ColliderTreeDiagnostics,
+    collider_tree::diagnostics::ColliderTreeDiagnostics,
     collision::{
         collider::{ColliderAabb, EnlargedAabb},
         diagnostics::CollisionDiagnostics,
     },
     dynamics::{
-        lifecycle::ColliderId,
-        solver::{PhysicsLengthUnit, gather::is_minority},
-        tables::{Bodies, Colliders, Tables},
+        ids::ColliderId,
+        solver::config::PhysicsLengthUnit,
+        tables::{Bodies, Colliders, Tables, is_minority},
     },
     math::vector_from_kernel,
     schedule::Physics,

@@ -13,7 +13,8 @@ use crate::{
         collider_transform::ColliderTransform,
     },
     dynamics::{
-        lifecycle::{BodyId, ColliderId, IsComplete, LifecycleQueue},
+        ids::{BodyId, ColliderId},
+        lifecycle::{IsComplete, LifecycleQueue},
         materials::{SurfaceQuery, Surfaces},
         quarantine::{is_finite, quarantine},
         rigid_body::{

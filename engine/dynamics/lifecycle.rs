@@ -15,7 +15,6 @@
 
 use bevy_app::App;
 use bevy_ecs::{entity_disabling::Disabled, prelude::*};
-use bevy_reflect::Reflect;
 use kernel::table::NONE;
 
 use crate::{
@@ -24,6 +23,7 @@ use crate::{
         collider_transform::ColliderTransform,
     },
     dynamics::{
+        ids::{BodyId, ColliderId},
         rigid_body::{
             AngularVelocity, LinearVelocity, RigidBody, RigidBodyDisabled,
             mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
@@ -32,30 +32,6 @@ use crate::{
     },
     physics_transform::{Position, Rotation},
 };
-
-/// A body's number in the tables; `u32::MAX` while it takes no part in the simulation.
-#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
-#[component(clone_behavior = Ignore)]
-#[reflect(Component, Debug, PartialEq)]
-pub struct BodyId(pub(crate) u32);
-
-/// A collider's number in the tables; `u32::MAX` while it takes no part in the simulation.
-#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
-#[component(clone_behavior = Ignore)]
-#[reflect(Component, Debug, PartialEq)]
-pub struct ColliderId(pub(crate) u32);
-
-impl Default for BodyId {
-    fn default() -> Self {
-        Self(NONE)
-    }
-}
-
-impl Default for ColliderId {
-    fn default() -> Self {
-        Self(NONE)
-    }
-}
 
 /// What may have changed since the last step.
 #[derive(Resource, Clone, Debug, Default)]

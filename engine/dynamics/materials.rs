@@ -10,7 +10,7 @@ use crate::{
     },
     dynamics::{
         ccd::SpeculativeMargin,
-        lifecycle::ColliderId,
+        ids::ColliderId,
         rigid_body::{CoefficientCombine, DefaultFriction, DefaultRestitution, Friction, Restitution},
         tables::Tables,
     },

@@ -3,6 +3,7 @@
 
 pub mod ccd;
 pub(crate) mod drain;
+pub(crate) mod ids;
 pub mod integrator;
 pub(crate) mod lifecycle;
 pub(crate) mod materials;

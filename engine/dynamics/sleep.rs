@@ -8,7 +8,7 @@ use kernel::{
 };
 
 use crate::dynamics::{
-    lifecycle::BodyId,
+    ids::BodyId,
     rigid_body::sleeping::{Sleeping, TimeToSleep},
     tables::{Bodies, Tables},
 };

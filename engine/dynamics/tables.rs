@@ -9,7 +9,7 @@ use kernel::{
     table::{BodyTable, ColliderTable},
 };
 
-use crate::collider_tree::ProxyTable;
+use crate::collider_tree::proxies::ProxyTable;
 
 /// All bodies in the simulation.
 #[derive(Resource, Clone, Default)]
@@ -70,4 +70,10 @@ impl Tables<'_> {
             islands: self.islands.as_mut().map(|i| &mut i.0),
         }
     }
+}
+
+/// Whether so few of the entities that a query holds are wanted that looking them up is cheaper than walking
+/// through all of them.
+pub(crate) fn is_minority(wanted: usize, all: (usize, Option<usize>)) -> bool {
+    4 * wanted < all.1.unwrap_or(0)
 }

@@ -12,7 +12,8 @@ use crate::{
     collision::collider::{Collider, ColliderDisabled, collider_hierarchy::ColliderOf},
     dynamics::{
         drain::{kind_of, tree_of},
-        lifecycle::{BodyId, ColliderId, IsComplete, LifecycleQueue},
+        ids::{BodyId, ColliderId},
+        lifecycle::{IsComplete, LifecycleQueue},
         rigid_body::{RigidBody, RigidBodyDisabled, sleeping::Sleeping},
         sleep::SleepRequests,
         tables::Tables,

@@ -4,15 +4,12 @@ use bevy_math::{Dir2, Vec2};
 use kernel::math as k;
 
 use super::{AdjustPrecision, Scalar, Vector};
-use crate::physics_transform::Rotation;
 
 /// The number of spatial dimensions.
 pub const DIM: usize = 2;
 /// A direction of unit length.
 pub type Dir = Dir2;
 
-/// An orientation as joints and rays take it.
-pub(crate) type Rot = Rotation;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Scalar;
 /// An angular inertia.
@@ -23,17 +20,11 @@ pub(crate) use bevy_heavy::{
     ComputeMassProperties2d as ComputeMassProperties, MassProperties2d as MassProperties,
 };
 
-/// The rotation that takes the x axis to `axis`, which need not have unit length; none for a zero vector.
-pub fn orthonormal_basis_from_vec(axis: Vector) -> Rot {
-    match axis.try_normalize() {
-        Some(axis) => Rotation { cos: axis.x, sin: axis.y },
-        None => Rotation::IDENTITY,
-    }
-}
-
-/// The rotation that takes the coordinate axes to `axes`, which must be orthonormal and right-handed.
-pub fn orthonormal_basis(axes: [Vector; DIM]) -> Rot {
-    orthonormal_basis_from_vec(axes[0])
+/// The spatial part of a point.
+#[inline]
+#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+pub(crate) fn vector_from_xyz([x, y, _]: [f64; 3]) -> Vector {
+    Vector::new(x as Scalar, y as Scalar)
 }
 
 /// A position for the kernel, in full precision.
@@ -83,16 +74,6 @@ pub(crate) fn inv_inertia_to_kernel(inverse: SymmetricTensor) -> k::InvInertia {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_basis_of_a_vector_takes_x_to_it() {
-        let basis = orthonormal_basis_from_vec(Vector::new(0.0, 2.0));
-        assert_eq!((basis.cos, basis.sin), (0.0, 1.0));
-        let basis = orthonormal_basis_from_vec(Vector::ZERO);
-        assert_eq!((basis.cos, basis.sin), (1.0, 0.0));
-        let basis = orthonormal_basis([Vector::NEG_X, Vector::NEG_Y]);
-        assert_eq!((basis.cos, basis.sin), (-1.0, 0.0));
-    }
 
     #[test]
     fn the_kernel_gives_back_what_it_got() {

@@ -3,15 +3,13 @@
 use bevy_math::{Dir3, Vec3};
 use kernel::math as k;
 
-use super::{AsF32, Matrix3, Quaternion, SymmetricMatrix3, Vector, Vector3};
+use super::{AsF32, Matrix3, Scalar, SymmetricMatrix3, Vector, Vector3};
 
 /// The number of spatial dimensions.
 pub const DIM: usize = 3;
 /// A direction of unit length.
 pub type Dir = Dir3;
 
-/// An orientation as joints and rays take it.
-pub(crate) type Rot = Quaternion;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Vector;
 /// An angular inertia.
@@ -32,21 +30,11 @@ pub fn skew_symmetric_mat3(v: Vector3) -> Matrix3 {
     )
 }
 
-/// A rotation that takes the x axis to `axis`, which need not have unit length; none for a zero vector. How it
-/// turns about that axis is unspecified, but a function of `axis` alone.
-pub fn orthonormal_basis_from_vec(axis: Vector) -> Rot {
-    match axis.try_normalize() {
-        Some(x) => {
-            let (y, _) = x.any_orthonormal_pair();
-            orthonormal_basis([x, y, x.cross(y)])
-        }
-        None => Quaternion::IDENTITY,
-    }
-}
-
-/// The rotation that takes the coordinate axes to `axes`, which must be orthonormal and right-handed.
-pub fn orthonormal_basis(axes: [Vector; DIM]) -> Rot {
-    Quaternion::from_mat3(&Matrix3::from_cols(axes[0], axes[1], axes[2]))
+/// The spatial part of a point.
+#[inline]
+#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+pub(crate) fn vector_from_xyz([x, y, z]: [f64; 3]) -> Vector {
+    Vector::new(x as Scalar, y as Scalar, z as Scalar)
 }
 
 /// A position for the kernel, in full precision.
@@ -95,17 +83,6 @@ pub(crate) fn inv_inertia_to_kernel(inverse: SymmetricTensor) -> k::InvInertia {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_basis_of_a_vector_takes_x_to_it() {
-        for axis in [Vector::X, Vector::NEG_X, Vector::Y, Vector::NEG_Z, Vector::new(1.0, -2.0, 3.0)] {
-            let basis = orthonormal_basis_from_vec(axis);
-            assert!((basis * Vector::X - axis.normalize()).length() < 1e-6, "{axis}");
-        }
-        assert_eq!(orthonormal_basis_from_vec(Vector::ZERO), Quaternion::IDENTITY);
-        let quarter = orthonormal_basis([Vector::Y, Vector::NEG_X, Vector::Z]);
-        assert!((quarter * Vector::X - Vector::Y).length() < 1e-6);
-    }
 
     #[test]
     fn the_skew_matrix_is_the_cross_product() {

@@ -9,6 +9,9 @@
 //! assert_eq!(1.5_f64.adjust_precision(), 1.5 as Scalar);
 //! ```
 
+#[cfg_attr(feature = "2d", path = "basis2.rs")]
+#[cfg_attr(feature = "3d", path = "basis3.rs")]
+mod basis;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
@@ -17,6 +20,7 @@ mod double;
 #[cfg(feature = "f32")]
 mod single;
 
+pub use basis::*;
 pub use dim::*;
 #[cfg(feature = "f64")]
 pub use double::*;

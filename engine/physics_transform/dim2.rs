@@ -5,12 +5,10 @@ use bevy_math::{DQuat, Quat, Rot2};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
-use kernel::math as km;
 
 use super::{
     Position,
-    frame::{Turn, narrow, wide},
-    rotation_ops::by_reference,
+    turn::{Turn, narrow, wide},
 };
 use crate::math::{FRAC_1_SQRT_2, Matrix, Quaternion, Scalar, Vector, Vector3};
 
@@ -63,7 +61,7 @@ impl Rotation {
 
     /// The rotation by an angle in radians, counter-clockwise. An angle that is not finite gives NaN.
     pub fn radians(radians: Scalar) -> Self {
-        let (sin, cos) = km::sin_cos(wide(radians));
+        let (sin, cos) = kernel::math::sin_cos(wide(radians));
         Self { cos: narrow(cos), sin: narrow(sin) }
     }
 
@@ -78,7 +76,7 @@ impl Rotation {
         let (sin, cos) = if rest.abs() == 45.0 {
             (core::f64::consts::FRAC_1_SQRT_2.copysign(rest), core::f64::consts::FRAC_1_SQRT_2)
         } else {
-            km::sin_cos(rest * (core::f64::consts::PI / 180.0))
+            kernel::math::sin_cos(rest * (core::f64::consts::PI / 180.0))
         };
         // Adding zero keeps −0 out.
         let (sin, cos) = match (quarters as i64).rem_euclid(4) {
@@ -109,12 +107,12 @@ impl Rotation {
 
     /// The angle in radians, in −π … π.
     pub fn as_radians(self) -> Scalar {
-        narrow(km::atan2(wide(self.sin), wide(self.cos)))
+        narrow(kernel::math::atan2(wide(self.sin), wide(self.cos)))
     }
 
     /// The angle in degrees, in −180 … 180.
     pub fn as_degrees(self) -> Scalar {
-        narrow(km::atan2(wide(self.sin), wide(self.cos)) * (180.0 / core::f64::consts::PI))
+        narrow(kernel::math::atan2(wide(self.sin), wide(self.cos)) * (180.0 / core::f64::consts::PI))
     }
 
     /// The sine and the cosine of the angle.
@@ -184,7 +182,7 @@ impl Rotation {
     pub fn angle_between(self, other: Self) -> Scalar {
         let (c, s) = (wide(self.cos), wide(self.sin));
         let (oc, os) = (wide(other.cos), wide(other.sin));
-        narrow(km::atan2(c * os - s * oc, c * oc + s * os))
+        narrow(kernel::math::atan2(c * os - s * oc, c * oc + s * os))
     }
 
     /// The rotation the other way.
@@ -233,13 +231,13 @@ impl Rotation {
     /// The rotation in the kernel's precision.
     #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
-    pub(crate) fn to_kernel(self) -> km::Rot {
-        km::Rot { cos: self.cos as f32, sin: self.sin as f32 }
+    pub(crate) fn to_kernel(self) -> kernel::math::Rot {
+        kernel::math::Rot { cos: self.cos as f32, sin: self.sin as f32 }
     }
 
     /// The rotation of a kernel rotation.
     #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
-    pub(crate) fn from_kernel(rotation: km::Rot) -> Self {
+    pub(crate) fn from_kernel(rotation: kernel::math::Rot) -> Self {
         Self { cos: Scalar::from(rotation.cos), sin: Scalar::from(rotation.sin) }
     }
 
@@ -296,22 +294,9 @@ pub(super) fn is_rounding(read: Rotation, held: Rotation, current: Turn) -> bool
     tilted && (read.cos - held.cos).abs() < 1e-6 && (read.sin - held.sin).abs() < 1e-6
 }
 
-/// The spatial part of a point.
-pub(crate) fn vector_from_xyz([x, y, _]: [f64; 3]) -> Vector {
-    Vector::new(narrow(x), narrow(y))
-}
-
 /// The point with the spatial part `v`; where the plane has no say, as `rest` has it.
 pub(super) fn xyz_with(v: Vector, rest: [f64; 3]) -> [f64; 3] {
     [wide(v.x), wide(v.y), rest[2]]
-}
-
-pub(super) fn vector_to_kernel(v: Vector) -> km::WorldVector {
-    km::Vector { x: v.x, y: v.y }
-}
-
-pub(super) fn vector_from_kernel(v: km::WorldVector) -> Vector {
-    Vector::new(v.x, v.y)
 }
 
 impl Position {

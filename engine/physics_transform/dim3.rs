@@ -7,11 +7,10 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use core::ops::Mul;
-use kernel::math as km;
 
 use super::{
     Position,
-    frame::{Turn, narrow, wide},
+    turn::{Turn, narrow, wide},
 };
 use crate::math::{Quaternion, Scalar, Vector};
 
@@ -61,7 +60,7 @@ impl Rotation {
             return self.nlerp(end, t);
         }
         let t = wide(t);
-        let mix = a.mix(km::sin((1.0 - t) * angle), b, km::sin(t * angle));
+        let mix = a.mix(kernel::math::sin((1.0 - t) * angle), b, kernel::math::sin(t * angle));
         Self::from_turn(mix.normalized()).unwrap_or(self)
     }
 
@@ -112,15 +111,15 @@ impl Rotation {
     /// The rotation in the kernel's precision.
     #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
-    pub(crate) fn to_kernel(self) -> km::Rot {
+    pub(crate) fn to_kernel(self) -> kernel::math::Rot {
         let [x, y, z, w] = self.0.to_array();
-        km::Rot { x: x as f32, y: y as f32, z: z as f32, w: w as f32 }
+        kernel::math::Rot { x: x as f32, y: y as f32, z: z as f32, w: w as f32 }
     }
 
     /// The rotation of a kernel rotation.
     #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
-    pub(crate) fn from_kernel(rotation: km::Rot) -> Self {
-        let km::Rot { x, y, z, w } = rotation;
+    pub(crate) fn from_kernel(rotation: kernel::math::Rot) -> Self {
+        let kernel::math::Rot { x, y, z, w } = rotation;
         Self(Quaternion::from_xyzw(Scalar::from(x), Scalar::from(y), Scalar::from(z), Scalar::from(w)))
     }
 
@@ -151,22 +150,9 @@ pub(super) fn is_rounding(_read: Rotation, _held: Rotation, _current: Turn) -> b
     false
 }
 
-/// The spatial part of a point.
-pub(crate) fn vector_from_xyz([x, y, z]: [f64; 3]) -> Vector {
-    Vector::new(narrow(x), narrow(y), narrow(z))
-}
-
 /// The point with the spatial part `v`.
 pub(super) fn xyz_with(v: Vector, _rest: [f64; 3]) -> [f64; 3] {
     [wide(v.x), wide(v.y), wide(v.z)]
-}
-
-pub(super) fn vector_to_kernel(v: Vector) -> km::WorldVector {
-    km::Vector { x: v.x, y: v.y, z: v.z }
-}
-
-pub(super) fn vector_from_kernel(v: km::WorldVector) -> Vector {
-    Vector::new(v.x, v.y, v.z)
 }
 
 impl Position {

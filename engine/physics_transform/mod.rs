@@ -7,15 +7,29 @@
 //! - Bodies move independently of their parents in the simulation. What is set on a parent's `Transform`
 //!   moves the bodies below along.
 
-use bevy_app::{App, FixedPostUpdate, Plugin};
-use bevy_ecs::{
-    intern::Interned,
-    prelude::*,
-    reflect::ReflectResource,
-    schedule::{ScheduleLabel, SystemSet},
-};
-use bevy_reflect::{Reflect, std_traits::ReflectDefault};
-use bevy_transform::components::Transform;
+/// `$left * $right` for every mix of values, references and mutable references.
+macro_rules! by_reference {
+    ($left:ty, $right:ty => $out:ty, |$a:ident, $b:ident| $body:expr) => {
+        by_reference!(@one $left, $right => $out, |$a, $b| $body);
+        by_reference!(@one $left, &$right => $out, |$a, $b| { let $b = *$b; $body });
+        by_reference!(@one $left, &mut $right => $out, |$a, $b| { let $b = *$b; $body });
+        by_reference!(@one &$left, $right => $out, |$a, $b| $body);
+        by_reference!(@one &$left, &$right => $out, |$a, $b| { let $b = *$b; $body });
+        by_reference!(@one &$left, &mut $right => $out, |$a, $b| { let $b = *$b; $body });
+        by_reference!(@one &mut $left, $right => $out, |$a, $b| $body);
+        by_reference!(@one &mut $left, &$right => $out, |$a, $b| { let $b = *$b; $body });
+        by_reference!(@one &mut $left, &mut $right => $out, |$a, $b| { let $b = *$b; $body });
+    };
+    (@one $left:ty, $right:ty => $out:ty, |$a:ident, $b:ident| $body:expr) => {
+        impl core::ops::Mul<$right> for $left {
+            type Output = $out;
+            fn mul(self, $b: $right) -> $out {
+                let $a = self;
+                $body
+            }
+        }
+    };
+}
 
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -23,70 +37,24 @@ mod dim;
 pub(crate) mod frame;
 mod helper;
 mod kernel_pose;
+pub(crate) mod plugin;
 mod position;
 mod rotation_ops;
-mod sync;
+pub(crate) mod sync;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tree;
+mod turn;
 
 pub use dim::Rotation;
-pub(crate) use dim::vector_from_xyz;
 pub use helper::PhysicsTransformHelper;
 pub(crate) use kernel_pose::{set_pose, world_pose};
+pub use plugin::PhysicsTransformPlugin;
 pub use position::Position;
-pub(crate) use sync::find_changed_transforms;
 pub use sync::{position_to_transform, transform_to_position};
 
-use crate::dynamics::rigid_body::RigidBody;
-use tree::TransformTreePlugin;
-
-/// Keeps [`Position`] and [`Rotation`] in step with `Transform`; see [`PhysicsTransformConfig`].
-pub struct PhysicsTransformPlugin {
-    schedule: Interned<dyn ScheduleLabel>,
-}
-
-impl PhysicsTransformPlugin {
-    /// Runs the sync in `schedule`, where [`PhysicsSystems`](crate::schedule::PhysicsSystems) run.
-    pub fn new(schedule: impl ScheduleLabel) -> Self {
-        Self { schedule: schedule.intern() }
-    }
-}
-
-impl Default for PhysicsTransformPlugin {
-    fn default() -> Self {
-        Self::new(FixedPostUpdate)
-    }
-}
-
-impl Plugin for PhysicsTransformPlugin {
-    fn build(&self, app: &mut App) {
-        TransformTreePlugin::ensure(app, self.schedule);
-        // Each fails only where the requirement is there already.
-        let _ = app.try_register_required_components_with::<RigidBody, Position>(|| Position::PLACEHOLDER);
-        let _ = app.try_register_required_components_with::<RigidBody, Rotation>(|| Rotation::PLACEHOLDER);
-        let _ = app.try_register_required_components::<Position, Transform>();
-        app.init_resource::<PhysicsTransformConfig>()
-            .register_type::<(Position, Rotation, PhysicsTransformConfig)>()
-            .init_resource::<sync::SpawnQueue>()
-            .add_observer(sync::initialise_added)
-            .add_observer(sync::note_rotation)
-            .add_systems(
-                self.schedule,
-                (
-                    sync::initialise_poses,
-                    transform_to_position
-                        .run_if(|config: Res<PhysicsTransformConfig>| config.transform_to_position),
-                )
-                    .chain()
-                    .in_set(PhysicsTransformSystems::TransformToPosition),
-            )
-            .add_systems(
-                self.schedule,
-                position_to_transform.in_set(PhysicsTransformSystems::PositionToTransform),
-            );
-    }
-}
+use bevy_ecs::{prelude::*, reflect::ReflectResource};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
 /// What the sync between transforms and poses does. Everything is on by default.
 #[derive(Resource, Reflect, Clone, Debug, PartialEq, Eq)]
@@ -132,7 +100,7 @@ pub enum PhysicsTransformSystems {
 pub type PhysicsTransformSet = PhysicsTransformSystems;
 
 /// The rotation of a frame; none where it has no direction.
-pub(crate) fn turn_to_rotation(turn: frame::Turn) -> Rotation {
+pub(crate) fn turn_to_rotation(turn: turn::Turn) -> Rotation {
     Rotation::from_turn(turn).unwrap_or(Rotation::IDENTITY)
 }
 

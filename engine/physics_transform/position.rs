@@ -9,8 +9,7 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_transform::components::GlobalTransform;
 use derive_more::From;
 
-use super::dim;
-use crate::math::{Scalar, Vector};
+use crate::math::{Scalar, Vector, vector_from_xyz, world_from_kernel, world_to_kernel};
 
 /// The world position of a rigid body or collider, in metres.
 ///
@@ -39,13 +38,13 @@ impl Position {
     /// The position as the kernel's world vector.
     #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
     pub(crate) fn to_kernel(self) -> kernel::math::WorldVector {
-        dim::vector_to_kernel(self.0)
+        world_to_kernel(self.0)
     }
 
     /// The position of a kernel world vector.
     #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
     pub(crate) fn from_kernel(position: kernel::math::WorldVector) -> Self {
-        Self(dim::vector_from_kernel(position))
+        Self(world_from_kernel(position))
     }
 }
 
@@ -58,7 +57,7 @@ impl From<GlobalTransform> for Position {
 impl From<&GlobalTransform> for Position {
     fn from(transform: &GlobalTransform) -> Self {
         let [x, y, z] = transform.translation().to_array();
-        Self(dim::vector_from_xyz([f64::from(x), f64::from(y), f64::from(z)]))
+        Self(vector_from_xyz([f64::from(x), f64::from(y), f64::from(z)]))
     }
 }
 

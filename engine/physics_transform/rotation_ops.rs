@@ -7,32 +7,6 @@ use core::ops::{Mul, MulAssign};
 use super::Rotation;
 use crate::math::{AdjustPrecision, AsF32, Dir, Scalar, Vector};
 
-/// `$left * $right` for every mix of values, references and mutable references.
-macro_rules! by_reference {
-    ($left:ty, $right:ty => $out:ty, |$a:ident, $b:ident| $body:expr) => {
-        by_reference!(@one $left, $right => $out, |$a, $b| $body);
-        by_reference!(@one $left, &$right => $out, |$a, $b| { let $b = *$b; $body });
-        by_reference!(@one $left, &mut $right => $out, |$a, $b| { let $b = *$b; $body });
-        by_reference!(@one &$left, $right => $out, |$a, $b| $body);
-        by_reference!(@one &$left, &$right => $out, |$a, $b| { let $b = *$b; $body });
-        by_reference!(@one &$left, &mut $right => $out, |$a, $b| { let $b = *$b; $body });
-        by_reference!(@one &mut $left, $right => $out, |$a, $b| $body);
-        by_reference!(@one &mut $left, &$right => $out, |$a, $b| { let $b = *$b; $body });
-        by_reference!(@one &mut $left, &mut $right => $out, |$a, $b| { let $b = *$b; $body });
-    };
-    (@one $left:ty, $right:ty => $out:ty, |$a:ident, $b:ident| $body:expr) => {
-        impl core::ops::Mul<$right> for $left {
-            type Output = $out;
-            fn mul(self, $b: $right) -> $out {
-                let $a = self;
-                $body
-            }
-        }
-    };
-}
-#[allow(unused_imports, reason = "rotations of the plane have more products")]
-pub(super) use by_reference;
-
 by_reference!(Rotation, Vector => Vector, |rotation, v| rotation.rotate_vector(v));
 by_reference!(Rotation, Dir => Dir, |rotation, direction| {
     // A direction stays one even where the rotation is not quite unit; one that is zero or NaN turns

@@ -17,8 +17,9 @@ use bevy_transform::components::Transform;
 
 use super::{
     ApplyPosToTransform, PhysicsTransformConfig, Position, Rotation, dim,
-    frame::{Frame, Turn, read_pose, same_rotation, same_translation, write_pose},
+    frame::{Frame, read_pose, same_rotation, same_translation, write_pose},
     tree::{FollowsBody, Parents, TransformTree, TreeChanges},
+    turn::Turn,
 };
 use crate::{dynamics::rigid_body::RigidBody, math::Vector};
 

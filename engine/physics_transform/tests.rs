@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::{
     ApplyPosToTransform, PhysicsTransformConfig, PhysicsTransformHelper, PhysicsTransformPlugin, Position,
-    Rotation, dim,
+    Rotation,
     frame::{Frame, read_pose, same_rotation, same_translation, write_pose},
     tree::TransformTree,
 };
@@ -56,7 +56,7 @@ fn app() -> App {
 /// The point with x, y and, where there is depth, z.
 #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 fn at(x: Scalar, y: Scalar) -> Vector {
-    dim::vector_from_xyz([f64::from(x as f32), f64::from(y as f32), 0.0])
+    crate::math::vector_from_xyz([f64::from(x as f32), f64::from(y as f32), 0.0])
 }
 
 /// The turn about z by an angle in radians.

@@ -7,19 +7,14 @@
 //! tree, in the order of the queue, by looking at the hierarchy as it is then, so that the order in which
 //! things were spawned, reparented and despawned before does not matter.
 
-use bevy_app::{App, Plugin};
 use bevy_ecs::{
-    change_detection::CheckChangeTicks,
     entity::{EntityHashMap, EntityHashSet},
     entity_disabling::Disabled,
-    intern::Interned,
     prelude::*,
     query::Allow,
-    schedule::ScheduleLabel,
 };
 
-use super::{PhysicsTransformSystems, Position, sync::SyncTicks, sync::find_changed_transforms};
-use crate::schedule::PhysicsSystems;
+use super::Position;
 
 /// On an entity whose pose follows from its body: a collider that is not on the body itself.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -217,7 +212,7 @@ pub(crate) fn enqueue<E: EntityEvent, B: Bundle>(event: On<E, B>, mut queue: Res
 }
 
 /// Appends an entity with another parent, if there is physics in it or below.
-fn enqueue_parented<E: EntityEvent>(
+pub(super) fn enqueue_parented<E: EntityEvent>(
     event: On<E, ChildOf>,
     mut queue: ResMut<HierarchyQueue>,
     tree: Res<TransformTree>,
@@ -226,38 +221,5 @@ fn enqueue_parented<E: EntityEvent>(
     let entity = event.event_target();
     if tree.contains(entity) || physical.contains(entity) {
         queue.0.push(entity);
-    }
-}
-
-/// Owns the tree and the one scan over `Transform`. Added by whichever plugin needs it first.
-pub(crate) struct TransformTreePlugin(pub(crate) Interned<dyn ScheduleLabel>);
-
-impl TransformTreePlugin {
-    /// Adds the plugin unless it is there.
-    pub(crate) fn ensure(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
-        if !app.is_plugin_added::<Self>() {
-            app.add_plugins(Self(schedule));
-        }
-    }
-}
-
-impl Plugin for TransformTreePlugin {
-    fn build(&self, app: &mut App) {
-        use PhysicsTransformSystems::{PositionToTransform, Propagate, TransformToPosition};
-        app.init_resource::<HierarchyQueue>()
-            .init_resource::<TransformTree>()
-            .init_resource::<TreeChanges>()
-            .init_resource::<SyncTicks>()
-            .add_observer(enqueue::<Add, Position>)
-            .add_observer(enqueue::<Remove, Position>)
-            .add_observer(enqueue_parented::<Insert>)
-            .add_observer(enqueue_parented::<Remove>)
-            .add_observer(|check: On<CheckChangeTicks>, mut ticks: ResMut<SyncTicks>| ticks.clamp(*check))
-            .configure_sets(
-                self.0,
-                ((Propagate, TransformToPosition).chain().in_set(PhysicsSystems::Prepare),),
-            )
-            .configure_sets(self.0, PositionToTransform.in_set(PhysicsSystems::Writeback))
-            .add_systems(self.0, (update_tree, find_changed_transforms).chain().in_set(Propagate));
     }
 }

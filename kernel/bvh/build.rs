@@ -1,16 +1,9 @@
 //! Builds many branches at once: whole trees, and the part of a tree above what did not move.
 
 use super::stack::Stack;
-use super::tree::{Branch, Entry, FREE_BRANCH, LEAF, MAX_HEIGHT, NONE, ProxyId, ROOT, Tree, admitted};
+use super::tree::{Branch, Entry, FREE_BRANCH, Item, LEAF, MAX_HEIGHT, NONE, ProxyId, ROOT, Tree, admitted};
 use crate::math::{DIM, Vector};
 use crate::shape::Aabb;
-
-/// What a build takes as given: a leaf, or a subtree that stays as it is.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Item {
-    aabb: Aabb,
-    node: u32,
-}
 
 /// Places tried for a split, plus one. More make builds slower and trees hardly better.
 const BINS: usize = 8;

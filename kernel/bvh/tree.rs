@@ -1,6 +1,5 @@
 //! The tree itself: its layout, and changes of one leaf at a time.
 
-use super::build::Item;
 use crate::math::DIM;
 use crate::shape::Aabb;
 
@@ -84,6 +83,13 @@ pub(super) struct Entry {
     pub aabb: Aabb,
     pub node: u32,
     pub enlarged: bool,
+}
+
+/// What a build takes as given: a leaf, or a subtree that stays as it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Item {
+    pub aabb: Aabb,
+    pub node: u32,
 }
 
 impl Default for Tree {

@@ -131,11 +131,11 @@ impl Lane for f32 {
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        super::max(self, other)
+        max(self, other)
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        super::min(self, other)
+        min(self, other)
     }
     #[inline(always)]
     fn lt(self, other: Self) -> bool {
@@ -173,6 +173,25 @@ impl Lane for f32 {
     fn scatter(values: [Self; 4], ids: &[u32; 1], mut put: impl FnMut(u32, Quad)) {
         put(ids[0], Quad(values));
     }
+}
+
+/// The larger of two values by the rule `a > b ? a : b`, on every instruction set: with a NaN in
+/// either place the result is `b`.
+#[inline(always)]
+pub fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two values by the rule `a < b ? a : b`; a NaN in either place gives `b`.
+#[inline(always)]
+pub fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// `value` held between `low` and `high`; NaN becomes `high`.
+#[inline(always)]
+pub fn clamp(value: f32, low: f32, high: f32) -> f32 {
+    max(min(value, high), low)
 }
 
 #[cfg(test)]

@@ -63,7 +63,7 @@ mod pose;
 mod trig;
 
 pub use dim::*;
-pub use lane::{Ids, Lane, Num, Quad};
+pub use lane::{Ids, Lane, Num, Quad, clamp, max, min};
 #[cfg(target_arch = "x86_64")]
 pub use lane_avx::F32x8;
 #[cfg(not(target_arch = "x86_64"))]
@@ -79,22 +79,3 @@ pub type Scalar = f64;
 /// The precision of world positions: `f64` with the feature `f64`, else `f32`. All else is `f32`.
 #[cfg(not(feature = "f64"))]
 pub type Scalar = f32;
-
-/// The larger of two values by the rule `a > b ? a : b`, on every instruction set: with a NaN in
-/// either place the result is `b`.
-#[inline(always)]
-pub fn max(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-/// The smaller of two values by the rule `a < b ? a : b`; a NaN in either place gives `b`.
-#[inline(always)]
-pub fn min(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// `value` held between `low` and `high`; NaN becomes `high`.
-#[inline(always)]
-pub fn clamp(value: f32, low: f32, high: f32) -> f32 {
-    max(min(value, high), low)
-}

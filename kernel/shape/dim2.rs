@@ -8,7 +8,7 @@ pub(crate) use super::primitives::{direction, direction_or};
 use super::{Ball, Capsule, Cuboid, RayHit, Segment, Triangle};
 use crate::math::{Vector, max, min};
 use core::f64::consts::PI;
-use hull2::cast_ray_polygon;
+use hull2::outline::cast_ray_polygon;
 use hull2::wide::{cross, dot, length, sub, wide};
 
 /// Mass, centre of mass and moment of inertia.

@@ -1,7 +1,9 @@
 //! The plugin that makes a component type a collider of the engine.
 
-use super::{AnyCollider, ColliderAabb, CollisionLayers, EnlargedAabb, ScalableCollider, Sensor};
-use crate::dynamics::lifecycle::ColliderId;
+use super::{
+    AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, ScalableCollider, Sensor,
+};
+use crate::dynamics::ids::ColliderId;
 use crate::dynamics::rigid_body::mass_properties::{
     MassPropertyQueue, MassPropertySystems,
     components::{ColliderDensity, ColliderMassProperties},
@@ -10,13 +12,8 @@ use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::change_detection::DetectChangesMut;
 use bevy_ecs::intern::Interned;
 use bevy_ecs::lifecycle::RemovedComponents;
-use bevy_ecs::prelude::{Changed, Component, Entity, IntoScheduleConfigs, Or, Query, Without};
-use bevy_ecs::reflect::ReflectComponent;
+use bevy_ecs::prelude::{Changed, Entity, IntoScheduleConfigs, Or, Query, Without};
 use bevy_ecs::schedule::ScheduleLabel;
-use bevy_reflect::Reflect;
-use bevy_reflect::std_traits::ReflectDefault;
-#[cfg(feature = "serialize")]
-use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use core::marker::PhantomData;
 
 /// Makes components of type `C` colliders: gives them the components every collider has, and keeps
@@ -60,13 +57,6 @@ impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
         );
     }
 }
-
-/// Marks an entity as having a collider, of whatever type. Added by the engine.
-#[derive(Reflect, Component, Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Debug, Component, Default)]
-pub struct ColliderMarker;
 
 /// Recomputes [`ColliderMassProperties`] where the collider or its density changed, or where it ceased to
 /// be a sensor. Those of sensors are left as they are.

@@ -13,7 +13,7 @@ mod parry;
 
 pub use aabb::{ColliderAabb, EnlargedAabb};
 pub use any_collider::{AabbContext, AnyCollider, IntoCollider, ScalableCollider, SimpleCollider};
-pub use backend::{ColliderBackendPlugin, ColliderMarker, update_collider_mass_properties};
+pub use backend::{ColliderBackendPlugin, update_collider_mass_properties};
 pub use layers::*;
 #[cfg(all(feature = "default-collider", any(feature = "parry-f32", feature = "parry-f64")))]
 pub use parry::*;
@@ -27,6 +27,13 @@ use bevy_reflect::std_traits::ReflectDefault;
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use derive_more::From;
+
+/// Marks an entity as having a collider, of whatever type. Added by the engine.
+#[derive(Reflect, Component, Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default)]
+pub struct ColliderMarker;
 
 /// Takes a collider out of the simulation: no contacts, no queries, no mass.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default)]

@@ -22,7 +22,7 @@ use derive_more::From;
 use self::mass_properties::components::{
     ComputedAngularInertia, ComputedCenterOfMass, ComputedMass, RecomputeMassProperties,
 };
-use crate::dynamics::lifecycle::BodyId;
+use crate::dynamics::ids::BodyId;
 use crate::math::{Scalar, Vector};
 use crate::physics_transform::{Position, Rotation};
 

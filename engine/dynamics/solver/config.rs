@@ -1,6 +1,5 @@
 //! How the solver is tuned: the length unit, [`SolverConfig`], and the softness of contacts derived from it every step.
 
-use bevy_app::{App, Plugin};
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
 use bevy_log::{warn, warn_once};
@@ -8,57 +7,13 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use bevy_time::Time;
 
 use super::{
-    SolverDiagnostics,
-    diagnostics::reset_solver,
     schedule::SubstepCount,
     softness_parameters::{SoftnessCoefficients, SoftnessParameters},
-    substeps::{apply_restitution, prepare_rows, store_impulses},
 };
 use crate::{
     math::{Scalar, to_f32},
-    schedule::{Physics, PhysicsSchedule, PhysicsStepSystems, TimePrecisionAdjusted},
-    step::{self, Stage},
+    schedule::{Physics, TimePrecisionAdjusted},
 };
-
-/// Solves contacts, in the stages of [`SolverSystems`](super::schedule::SolverSystems).
-#[derive(Default)]
-pub struct SolverPlugin {
-    length_unit: Option<Scalar>,
-}
-
-impl SolverPlugin {
-    /// The plugin with a [`PhysicsLengthUnit`] of `unit`; the default leaves the resource as it is, or 1.
-    pub fn new_with_length_unit(unit: Scalar) -> Self {
-        Self { length_unit: Some(unit) }
-    }
-}
-
-impl Plugin for SolverPlugin {
-    fn build(&self, app: &mut App) {
-        if let Some(unit) = self.length_unit {
-            app.insert_resource(PhysicsLengthUnit::valid_or_default(unit));
-        }
-        app.init_resource::<PhysicsLengthUnit>()
-            .init_resource::<SolverConfig>()
-            .init_resource::<ContactSoftnessCoefficients>();
-
-        app.init_resource::<SolverDiagnostics>();
-        step::install(app);
-        step::substep::add_contacts(app);
-        app.add_systems(
-            PhysicsSchedule,
-            (
-                reset_solver.in_set(Stage::ResetDiagnostics),
-                update_contact_softness
-                    .after(PhysicsStepSystems::NarrowPhase)
-                    .before(PhysicsStepSystems::Solver),
-                prepare_rows.in_set(Stage::PrepareRows),
-                apply_restitution.in_set(Stage::Restitution),
-                store_impulses.in_set(Stage::StoreImpulses),
-            ),
-        );
-    }
-}
 
 /// Roughly the length of a metre in the units of the app: the size of a typical object.
 ///
@@ -84,7 +39,7 @@ impl Default for PhysicsLengthUnit {
 
 impl PhysicsLengthUnit {
     /// `unit` if it is a length, 1 with a warning if it is zero, negative, infinite or NaN.
-    fn valid_or_default(unit: Scalar) -> Self {
+    pub(super) fn valid_or_default(unit: Scalar) -> Self {
         if unit.is_finite() && unit > 0.0 {
             Self(unit)
         } else {
@@ -176,7 +131,8 @@ impl ContactSoftnessCoefficients {
     }
 }
 
-fn update_contact_softness(
+/// Derives this step's softness from the settings.
+pub(super) fn update_contact_softness(
     mut softness: ResMut<ContactSoftnessCoefficients>,
     config: Res<SolverConfig>,
     substeps: Option<Res<SubstepCount>>,

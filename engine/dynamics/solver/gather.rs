@@ -10,16 +10,16 @@ use kernel::{
 
 use crate::{
     dynamics::{
+        ids::BodyId,
         integrator::{CustomVelocityIntegration, Gravity},
-        lifecycle::BodyId,
         quarantine::{is_finite, quarantine},
         rigid_body::{
             AngularDamping, AngularVelocity, Dominance, GravityScale, LinearDamping, LinearVelocity,
             LockedAxes, MaxAngularSpeed, MaxLinearSpeed, RigidBodyDisabled,
             mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
         },
-        solver::{SolverDiagnostics, StepSolver},
-        tables::{Bodies, Tables},
+        solver::{diagnostics::SolverDiagnostics, substeps::StepSolver},
+        tables::{Bodies, Tables, is_minority},
     },
     math::{Scalar, angular_to_kernel, inv_inertia_to_kernel, to_f32, vector_to_kernel},
     physics_transform::{Position, Rotation, world_pose},
@@ -222,12 +222,6 @@ pub(crate) fn read_awake(
     } else {
         query.iter().for_each(&mut read);
     }
-}
-
-/// Whether so few of the entities that a query holds are wanted that looking them up is cheaper than walking
-/// through all of them.
-pub(crate) fn is_minority(wanted: usize, all: (usize, Option<usize>)) -> bool {
-    4 * wanted < all.1.unwrap_or(0)
 }
 
 /// Gives every awake body its row and fills it.

@@ -10,15 +10,15 @@ use kernel::{
 
 use crate::{
     dynamics::{
+        ids::BodyId,
         integrator::CustomPositionIntegration,
-        lifecycle::BodyId,
         quarantine::quarantine,
         rigid_body::{
             AngularVelocity, LinearVelocity, RigidBodyDisabled,
             sleeping::{SleepThreshold, SleepTimer, SleepingDisabled},
         },
-        solver::{PhysicsLengthUnit, SolverDiagnostics, StepSolver, gather::is_minority},
-        tables::Bodies,
+        solver::{config::PhysicsLengthUnit, diagnostics::SolverDiagnostics, substeps::StepSolver},
+        tables::{Bodies, is_minority},
     },
     math::{angular_from_kernel, vector_from_kernel},
     physics_transform::{Position, Rotation, set_pose},

@@ -4,7 +4,7 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
 use super::{
-    PhysicsLengthUnit,
+    config::PhysicsLengthUnit,
     gather::{gather_bodies, read_awake, wake_changed, wake_kinematic},
     scatter::scatter_bodies,
 };

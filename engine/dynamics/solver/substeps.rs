@@ -11,8 +11,8 @@ use crate::{
     collision::narrow_phase::ContactResponse,
     dynamics::{
         solver::{
-            PhysicsLengthUnit, SolverConfig, SolverDiagnostics,
-            config::ContactSoftnessCoefficients,
+            config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig},
+            diagnostics::SolverDiagnostics,
             schedule::{SubstepCount, SubstepSchedule},
             softness_parameters::SoftnessCoefficients,
         },

@@ -4,7 +4,6 @@
 mod split;
 
 use super::union_find::DisjointSets;
-use split::Scratch;
 
 /// The name of an island, valid until it is merged away or loses its last body; reused after that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -49,6 +48,25 @@ struct Island {
     removed: u32,
     /// Index in the awake list, `NONE` if asleep.
     awake: u32,
+}
+
+/// One of the connected parts an island fell into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Piece {
+    lowest_body: u32,
+    size: u32,
+    island: u32,
+}
+
+/// Memory of [`Islands::split`], empty between calls except for `created`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Scratch {
+    sets: DisjointSets,
+    /// By index of a body in the island: the index of its piece.
+    piece_of: Vec<u32>,
+    pieces: Vec<Piece>,
+    order: Vec<u32>,
+    created: Vec<IslandId>,
 }
 
 /// The islands of a world.

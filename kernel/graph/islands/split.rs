@@ -1,26 +1,6 @@
 //! The split of an island into its connected parts.
 
-use super::super::union_find::DisjointSets;
-use super::{IslandId, Islands, NONE};
-
-/// One of the connected parts an island fell into.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Piece {
-    lowest_body: u32,
-    size: u32,
-    island: u32,
-}
-
-/// Memory of [`Islands::split`], empty between calls except for `created`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Scratch {
-    sets: DisjointSets,
-    /// By index of a body in the island: the index of its piece.
-    piece_of: Vec<u32>,
-    pieces: Vec<Piece>,
-    order: Vec<u32>,
-    created: Vec<IslandId>,
-}
+use super::{IslandId, Islands, NONE, Piece, Scratch};
 
 impl Islands {
     /// Makes an island for every connected part of this one, so that each has `removed` = 0.

@@ -5,13 +5,19 @@
 //! the choice of points the same from step to step.
 
 use super::clip::{clip, incident_polygon};
+use super::gjk;
 use super::reduce::{Candidate, Candidates, reduce};
 use super::sat::{self, EdgeAxis};
 use super::view::{Frame, View, extents};
-use super::{EDGES, FACE_A, FACE_B, gjk};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector, clamp, max, min};
 
+/// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of a face of A.
+pub(super) const FACE_A: u8 = 1;
+/// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of a face of B.
+pub(super) const FACE_B: u8 = 2;
+/// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of an edge of each.
+pub(super) const EDGES: u8 = 3;
 /// A cached axis is taken again if its separation changed by less than this share of the smaller
 /// shape's extent since the full search: 5 mm for a shape of 1 m.
 pub(super) const CACHE_TOLERANCE: f32 = 0.005;

@@ -3,10 +3,10 @@
 //! Fifteen axes (Gottschalk, Lin and Manocha, "OBBTree", 1996): three face normals each, nine products
 //! of edges. The choice rules are those of [`convex`](super::convex).
 
-use super::convex::{self, CACHE_TOLERANCE, EXACT, PREFER_FACES};
+use super::convex::{self, CACHE_TOLERANCE, EDGES, EXACT, FACE_A, FACE_B, PREFER_FACES};
+use super::gjk;
 use super::reduce::{Planar, reduce_planar};
 use super::view::{Frame, Small};
-use super::{EDGES, FACE_A, FACE_B, gjk};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{F32x4, Lane, Num, Pose, Vector, clamp, max, min};
 

@@ -25,12 +25,6 @@ use crate::math::{Pose, Vector};
 use crate::shape::{Capsule, Segment, Shape};
 use view::{Small, View};
 
-/// [`FeatureCache::kind`] of a face of A.
-const FACE_A: u8 = 1;
-/// [`FeatureCache::kind`] of a face of B.
-const FACE_B: u8 = 2;
-/// [`FeatureCache::kind`] of an edge of each.
-const EDGES: u8 = 3;
 /// Centres farther apart than this, in metres, are not looked at: squares would overflow.
 const FARTHEST: f32 = 1.0e15;
 

@@ -1,7 +1,7 @@
 //! The convex polygon, sharp or rounded, of any number of vertices.
 
 mod mass;
-mod outline;
+pub(super) mod outline;
 #[cfg(test)]
 mod tests;
 pub(super) mod wide;
@@ -11,7 +11,7 @@ use crate::math::{Vector, max, min};
 use crate::shape::primitives::{Stretch, checked_length, direction_or, hit_of_stretch};
 use crate::shape::{Aabb, Capsule, RayHit, ShapeError};
 use mass::mass_of_rounded_polygon;
-use outline::{edges, merge_distance, monotone_chain, simplified, turns_left_once};
+use outline::{cast_ray_polygon, edges, merge_distance, monotone_chain, simplified, turns_left_once};
 use wide::{cross, length, sub, wide};
 
 /// A convex polygon, sharp or rounded: all points within [`radius`](Self::radius) of its core.
@@ -152,33 +152,4 @@ impl Hull {
 /// The radius, if all numbers are usable.
 fn check(points: &[Vector], radius: f32) -> Result<f32, ShapeError> {
     if points.iter().all(|p| p.is_finite()) { checked_length(radius) } else { Err(ShapeError::NotFinite) }
-}
-
-/// Clips the ray by every edge's line (M. Cyrus and J. Beck, 1978).
-pub(super) fn cast_ray_polygon(
-    vertices: &[Vector],
-    normals: &[Vector],
-    origin: Vector,
-    direction: Vector,
-    max_distance: f32,
-    solid: bool,
-) -> Option<RayHit> {
-    let (mut enter, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
-    let (mut first, mut last) = (-direction, direction);
-    for (v, n) in vertices.iter().zip(normals) {
-        let (height, slope) = ((origin - *v).dot(*n), direction.dot(*n));
-        let t = height / -slope;
-        if slope < 0.0 {
-            if t > enter {
-                (enter, first) = (t, *n);
-            }
-        } else if slope > 0.0 {
-            if t < exit {
-                (exit, last) = (t, *n);
-            }
-        } else if height > 0.0 {
-            return None;
-        }
-    }
-    hit_of_stretch((enter, exit), max_distance, solid, |entering, _| if entering { first } else { last })
 }

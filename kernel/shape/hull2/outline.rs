@@ -1,8 +1,10 @@
-//! Outlines of convex polygons: what is left out of them, whether they are convex, and the hull of points.
+//! Outlines of convex polygons: what is left out of them, whether they are convex, the hull of
+//! points, and where a ray meets them.
 
 use super::wide::{Point, cross, dot, length, sub, wide};
 use crate::math::Vector;
-use crate::shape::{Aabb, ShapeError};
+use crate::shape::primitives::hit_of_stretch;
+use crate::shape::{Aabb, RayHit, ShapeError};
 
 /// How close two points, or a point and the line of its neighbours, may be before they count as one
 /// or as on it: 1e-6 of the outline's size, and no less than the spacing of `f32` at its place.
@@ -90,4 +92,33 @@ pub(super) fn monotone_chain(points: &[Vector]) -> Vec<Vector> {
     }
     hull.pop();
     hull
+}
+
+/// Clips the ray by every edge's line (M. Cyrus and J. Beck, 1978).
+pub(in crate::shape) fn cast_ray_polygon(
+    vertices: &[Vector],
+    normals: &[Vector],
+    origin: Vector,
+    direction: Vector,
+    max_distance: f32,
+    solid: bool,
+) -> Option<RayHit> {
+    let (mut enter, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
+    let (mut first, mut last) = (-direction, direction);
+    for (v, n) in vertices.iter().zip(normals) {
+        let (height, slope) = ((origin - *v).dot(*n), direction.dot(*n));
+        let t = height / -slope;
+        if slope < 0.0 {
+            if t > enter {
+                (enter, first) = (t, *n);
+            }
+        } else if slope > 0.0 {
+            if t < exit {
+                (exit, last) = (t, *n);
+            }
+        } else if height > 0.0 {
+            return None;
+        }
+    }
+    hit_of_stretch((enter, exit), max_distance, solid, |entering, _| if entering { first } else { last })
 }

@@ -1,6 +1,6 @@
 //! The mass of a polyhedron by exact integrals over tetrahedra.
 
-use super::{Wide, narrow, widen};
+use super::wide::{Wide, narrow, widen};
 use crate::math::{InvInertia, Vector};
 use crate::shape::MassProperties;
 

@@ -2,7 +2,8 @@
 //!
 //! All checks are relative to the largest extent of the mesh.
 
-use super::{Hull, Wide, mass, narrow, size_of, widen};
+use super::wide::{Wide, narrow, widen};
+use super::{Hull, mass, size_of};
 use crate::math::Vector;
 use crate::shape::ShapeError;
 

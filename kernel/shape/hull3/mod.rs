@@ -5,6 +5,7 @@ mod mesh;
 mod quickhull;
 #[cfg(test)]
 mod tests;
+mod wide;
 
 use super::MassProperties;
 use crate::math::{F32x4, Lane, Num, Vector, max, min};
@@ -284,17 +285,6 @@ fn edge_blocks(vertices: &[Vector], faces: &[Face], edges: &[Edge]) -> Vec<EdgeB
     (0..direction.len())
         .map(|i| EdgeBlock { direction: direction[i], left: left[i], right: right[i], tail: tail[i] })
         .collect()
-}
-
-/// A vector in double precision, for building.
-type Wide = Vector<f64>;
-
-fn widen(v: Vector) -> Wide {
-    Wide { x: f64::from(v.x), y: f64::from(v.y), z: f64::from(v.z) }
-}
-
-fn narrow(v: Wide) -> Vector {
-    Vector { x: v.x as f32, y: v.y as f32, z: v.z as f32 }
 }
 
 /// The largest extent of some points along an axis; 0 for none.

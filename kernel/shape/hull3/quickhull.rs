@@ -3,7 +3,8 @@
 //! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", 1996) in `f64`
 //! with one tolerance: a point in front of a face by less than that is on it.
 
-use super::{Hull, Wide, size_of, widen};
+use super::wide::{Wide, widen};
+use super::{Hull, size_of};
 use crate::math::Vector;
 use crate::shape::ShapeError;
 

@@ -5,6 +5,10 @@
 
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
+#[cfg(feature = "2d")]
+mod collider2d;
+#[cfg(feature = "3d")]
+mod collider3d;
 mod composite;
 mod constructors;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
@@ -42,7 +46,7 @@ use super::{
     AabbContext, AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, IntoCollider,
     ScalableCollider,
 };
-use crate::dynamics::lifecycle::ColliderId;
+use crate::dynamics::ids::ColliderId;
 use crate::dynamics::rigid_body::mass_properties::components::{ColliderDensity, ColliderMassProperties};
 use crate::math::Vector;
 use crate::parry::shape::SharedShape;

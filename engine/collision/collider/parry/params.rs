@@ -45,7 +45,7 @@ impl Default for VhacdParameters {
             resolution: dim::VHACD_RESOLUTION,
             plane_downsampling: 4,
             convex_hull_downsampling: 4,
-            fill_mode: dim::DEFAULT_FILL_MODE,
+            fill_mode: FillMode::USUAL,
             convex_hull_approximation: true,
             max_convex_hulls: 1024,
         }

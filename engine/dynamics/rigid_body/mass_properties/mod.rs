@@ -37,23 +37,26 @@ pub mod components;
 #[cfg(feature = "3d")]
 mod eigen;
 mod inertia;
+mod plugin;
 mod queue;
 mod system_param;
+#[cfg(feature = "3d")]
+mod tensor;
 #[cfg(test)]
 mod tests;
 
 pub use bevy_heavy;
+pub use plugin::MassPropertyPlugin;
 pub(crate) use queue::MassPropertyQueue;
 pub use system_param::MassPropertyHelper;
 
-use bevy_app::{FixedPostUpdate, prelude::*};
-use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel};
+use bevy_ecs::prelude::*;
 
 use self::components::{
     AngularInertia, CenterOfMass, ComputedAngularInertia, ComputedCenterOfMass, ComputedMass, Mass,
     MassPropertiesBundle,
 };
-use crate::{math::MassProperties, physics_transform::PhysicsTransformSystems, schedule::PhysicsSystems};
+use crate::math::MassProperties;
 
 /// Makes components of `bevy_heavy`'s mass properties.
 pub trait MassPropertiesExt {
@@ -71,58 +74,8 @@ impl MassPropertiesExt for MassProperties {
     }
 }
 
-/// Keeps the computed mass properties of bodies up to date. Part of `PhysicsPlugins`.
-///
-/// A body is computed when it carries [`RecomputeMassProperties`](components::RecomputeMassProperties), never
-/// otherwise, so that resting worlds cost nothing. The marker is inserted when the body is spawned or changes
-/// type; when one of its colliders comes, goes, changes shape or density, becomes a sensor, is disabled or is
-/// moved within the body; when one of the components named in the [module](self) comes, goes or changes, on the
-/// body or on a descendant. What goes unseen is a change of place of a descendant *without collider* that comes
-/// from an entity between it and the body: insert the marker then.
-pub struct MassPropertyPlugin {
-    schedule: Interned<dyn ScheduleLabel>,
-}
-
-impl MassPropertyPlugin {
-    /// Computes in `schedule`, in which physics runs; [`FixedPostUpdate`] by default.
-    pub fn new(schedule: impl ScheduleLabel) -> Self {
-        Self { schedule: schedule.intern() }
-    }
-}
-
-impl Default for MassPropertyPlugin {
-    fn default() -> Self {
-        Self::new(FixedPostUpdate)
-    }
-}
-
-impl Plugin for MassPropertyPlugin {
-    fn build(&self, app: &mut App) {
-        queue::observe(app);
-        app.configure_sets(
-            self.schedule,
-            (
-                MassPropertySystems::UpdateColliderMassProperties,
-                MassPropertySystems::QueueRecomputation,
-                MassPropertySystems::UpdateComputedMassProperties,
-            )
-                .chain()
-                .in_set(PhysicsSystems::Prepare)
-                .after(PhysicsTransformSystems::TransformToPosition),
-        );
-        app.add_systems(
-            self.schedule,
-            (
-                queue::queue_changed.in_set(MassPropertySystems::QueueRecomputation),
-                (queue::recompute, queue::warn_of_missing_mass)
-                    .chain()
-                    .in_set(MassPropertySystems::UpdateComputedMassProperties),
-            ),
-        );
-    }
-}
-
-/// What computes mass properties, in this order, within [`PhysicsSystems::Prepare`].
+/// What computes mass properties, in this order, within
+/// [`PhysicsSystems::Prepare`](crate::schedule::PhysicsSystems::Prepare).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MassPropertySystems {
     /// The mass properties of new and changed colliders.

@@ -10,7 +10,7 @@ use glam_matrix_extras::{MatConversionError, SymmetricMat3};
 
 use super::super::{
     eigen::{from_principal_axes, principal_axes},
-    inertia::{Inertia, invert, quaternion_to_matrix},
+    tensor::{invert, quaternion_to_matrix, rotated, shifted},
 };
 use super::{AngularInertiaError, CenterOfMass, ComputedCenterOfMass};
 use crate::math::{
@@ -269,7 +269,7 @@ impl ComputedAngularInertia {
         }
         let [x, y, z, w] = q.map(AdjustDouble::double);
         let rotation = quaternion_to_matrix(bevy_math::DQuat::from_xyzw(x, y, z, w));
-        Self { inverse: Inertia(widen(self.inverse)).rotated(rotation).0.adjust_precision() }
+        Self { inverse: rotated(widen(self.inverse), rotation).adjust_precision() }
     }
 
     /// The tensor of a body of `mass` kg about a point `offset` metres off its centre of mass, by the parallel
@@ -300,7 +300,7 @@ impl ComputedAngularInertia {
 
     fn shifted(&self, mass: Scalar, offset: Vector) -> glam_matrix_extras::SymmetricDMat3 {
         let offset = bevy_math::DVec3::from_array(offset.to_array().map(AdjustDouble::double));
-        Inertia(invert(widen(self.inverse))).shifted(mass.double(), offset).0
+        shifted(invert(widen(self.inverse)), mass.double(), offset)
     }
 }
 

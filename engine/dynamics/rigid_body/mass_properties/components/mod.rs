@@ -1,11 +1,13 @@
 //! What a body weighs: the components users write, those colliders bring, and those the engine computes.
 
+mod bundle;
 mod collider;
 mod computed;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 
+pub use bundle::MassPropertiesBundle;
 pub use collider::{ColliderDensity, ColliderMassProperties};
 pub use computed::{ComputedCenterOfMass, ComputedMass};
 pub use dim::{AngularInertia, ComputedAngularInertia};
@@ -152,27 +154,4 @@ pub struct RecomputeMassProperties;
 
 fn on_remove_no_auto(mut world: DeferredWorld, context: HookContext) {
     world.commands().entity(context.entity).try_insert(RecomputeMassProperties);
-}
-
-/// The mass properties of one entity, to be spawned together.
-#[derive(Bundle, Debug, Default, Clone, PartialEq)]
-pub struct MassPropertiesBundle {
-    /// In kg.
-    pub mass: Mass,
-    /// In kg·m², about the centre of mass.
-    pub angular_inertia: AngularInertia,
-    /// In metres, in the entity's frame.
-    pub center_of_mass: CenterOfMass,
-}
-
-impl MassPropertiesBundle {
-    /// The mass properties of a shape filled with a material of `density`, in kg/m³ (in 2D kg/m²).
-    pub fn from_shape<T: ComputeMassProperties>(shape: &T, density: f32) -> Self {
-        let mass = shape.mass(density);
-        Self {
-            mass: Mass(mass),
-            angular_inertia: AngularInertia::from_shape(shape, mass),
-            center_of_mass: CenterOfMass::from_shape(shape),
-        }
-    }
 }

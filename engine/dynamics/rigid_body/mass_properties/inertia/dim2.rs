@@ -3,17 +3,12 @@
 use bevy_math::{DMat2, DVec2, Vec2};
 use bevy_transform::prelude::Transform;
 
-use super::{Frame, HUGE, narrow, sanitize};
+use super::frame::{Frame, HUGE, Matrix64, Vector64, narrow, sanitize};
 use crate::{
     collision::collider::collider_transform::ColliderTransform,
     dynamics::rigid_body::mass_properties::components::{AngularInertia, ComputedAngularInertia},
     math::{MassProperties, Scalar},
 };
-
-/// A vector in `f64`.
-pub(in super::super) type Vector64 = DVec2;
-/// A matrix in `f64`.
-pub(in super::super) type Matrix64 = DMat2;
 
 /// An angular inertia in kg·m².
 #[derive(Clone, Copy, Debug)]

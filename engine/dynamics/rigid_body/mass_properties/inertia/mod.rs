@@ -7,20 +7,16 @@
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod frame;
 
-pub(super) use dim::*;
+pub(super) use dim::Inertia;
+pub(super) use frame::{Frame, Vector64};
+
+use dim::{mass_properties, narrow_vector, widen_vector};
+use frame::{narrow, sanitize};
 
 use super::components::{AngularInertia, CenterOfMass, ComputedMass, Mass};
 use crate::math::{AdjustPrecision, MassProperties, Scalar, VectorF32};
-
-/// Stands for infinity, so that sums stay defined: what it weighs vanishes beside it, itself in no result.
-pub(super) const HUGE: f64 = 1e60;
-
-/// A user's number that ought to be zero or more, as one that is: NaN and negative give 0, infinity [`HUGE`].
-pub(super) fn sanitize(value: f32) -> f64 {
-    // NaN fails the comparison.
-    if value > 0.0 { f64::from(value).min(HUGE) } else { 0.0 }
-}
 
 /// A share of a body's mass.
 #[derive(Clone, Copy, Debug)]
@@ -117,11 +113,6 @@ impl Part {
     }
 }
 
-/// To `f32`; what is beyond it is infinite.
-pub(super) fn narrow(value: f64) -> f32 {
-    value as f32
-}
-
 /// The centre of mass in the public precision.
 pub(super) fn computed_center(center: Vector64) -> super::components::ComputedCenterOfMass {
     super::components::ComputedCenterOfMass(center.adjust_precision())
@@ -130,27 +121,4 @@ pub(super) fn computed_center(center: Vector64) -> super::components::ComputedCe
 /// A centre that is a place: the origin for what is none.
 fn sanitize_center(center: VectorF32) -> Vector64 {
     if center.is_finite() { widen_vector(center) } else { Vector64::ZERO }
-}
-
-/// Where a part's frame lies in its body's.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    /// In metres.
-    pub(super) translation: Vector64,
-    /// As a matrix, whose products with vectors are the same on every machine.
-    pub(super) rotation: Matrix64,
-    /// What lengths given inside are to be multiplied with.
-    pub(super) scale: Vector64,
-}
-
-impl Frame {
-    /// The frame that `inner` describes within this one. Shear, which a turn inside an uneven scale would make,
-    /// is left out.
-    pub(super) fn then(&self, inner: &Frame) -> Self {
-        Self {
-            translation: self.translation + self.rotation * (self.scale * inner.translation),
-            rotation: self.rotation * inner.rotation,
-            scale: self.scale * inner.scale,
-        }
-    }
 }

@@ -1,22 +1,21 @@
-//! The narrow phase: where the boxes of two colliders overlap, their shapes are compared and contact points computed.
+//! The plugin that computes contacts.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel};
-use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use core::marker::PhantomData;
 
-use super::{
-    collider::AnyCollider,
-    contacts::{NarrowScratch, link_contacts, update_contacts},
-    diagnostics::{CollisionDiagnostics, reset_collision},
-};
+use super::{CollisionEventSystems, ContactResponse, NarrowPhaseConfig, NarrowPhaseSystems};
 use crate::{
+    collision::{
+        collider::AnyCollider,
+        contacts::{NarrowScratch, link_contacts, update_contacts},
+        diagnostics::{CollisionDiagnostics, reset_collision},
+    },
     dynamics::{
         materials::refresh_surfaces,
         rigid_body::{DefaultFriction, DefaultRestitution},
-        solver::PhysicsLengthUnit,
+        solver::config::PhysicsLengthUnit,
     },
-    math::Scalar,
     schedule::{PhysicsSchedule, PhysicsStepSystems},
     step::{self, Stage},
 };
@@ -72,45 +71,3 @@ impl<C: AnyCollider, H: 'static> Plugin for NarrowPhasePlugin<C, H> {
         );
     }
 }
-
-/// Whether contacts push: false leaves detection and events, without a response.
-#[derive(Resource, Clone, Copy, Debug)]
-pub(crate) struct ContactResponse(pub(crate) bool);
-
-/// Where collision events are sent, in [`PhysicsStepSystems::Finalize`].
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct CollisionEventSystems;
-
-/// How contacts are computed.
-#[derive(Resource, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Debug, Resource, Default, PartialEq)]
-pub struct NarrowPhaseConfig {
-    /// The [`SpeculativeMargin`](crate::dynamics::ccd::SpeculativeMargin) of colliders and bodies without one, in metres. Unbounded by default.
-    pub default_speculative_margin: Scalar,
-    /// How far apart two shapes at rest may be and still be in contact, times
-    /// [`PhysicsLengthUnit`]; 0.005 by default. At 0 resting contacts flicker.
-    pub contact_tolerance: Scalar,
-    /// Whether contact points take over the impulses of the points they were in the last step; true by default. Without, stacks sag.
-    pub match_contacts: bool,
-}
-
-impl Default for NarrowPhaseConfig {
-    fn default() -> Self {
-        Self { default_speculative_margin: Scalar::MAX, contact_tolerance: 0.005, match_contacts: true }
-    }
-}
-
-/// The stages of the narrow phase, in this order, in [`PhysicsStepSystems::NarrowPhase`].
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum NarrowPhaseSystems {
-    /// Before contacts are computed.
-    First,
-    /// Contacts are computed.
-    Update,
-    /// After it.
-    Last,
-}
-
-/// The former name of [`NarrowPhaseSystems`].
-#[deprecated(since = "0.4.0", note = "renamed to `NarrowPhaseSystems`")]
-pub type NarrowPhaseSet = NarrowPhaseSystems;

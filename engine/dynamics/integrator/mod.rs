@@ -1,63 +1,26 @@
 //! Gravity, and the stages in which velocities and positions are integrated.
 
-use bevy_app::{App, Plugin};
-use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel};
+mod plugin;
+
+pub use plugin::IntegratorPlugin;
+
+use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
-use crate::{
-    dynamics::solver::schedule::{SolverSystems, SubstepSchedule},
-    math::Vector,
-    schedule::PhysicsSchedule,
-};
-
-/// Integrates velocities and positions, by semi-implicit Euler: velocities first, then positions with the new velocities.
-pub struct IntegratorPlugin {
-    schedule: Interned<dyn ScheduleLabel>,
-}
-
-impl IntegratorPlugin {
-    /// Integrates in `schedule`; the default is [`SubstepSchedule`].
-    pub fn new(schedule: impl ScheduleLabel) -> Self {
-        Self { schedule: schedule.intern() }
-    }
-}
-
-impl Default for IntegratorPlugin {
-    fn default() -> Self {
-        Self::new(SubstepSchedule)
-    }
-}
-
-impl Plugin for IntegratorPlugin {
-    fn build(&self, app: &mut App) {
-        app.init_resource::<Gravity>();
-        crate::step::install(app);
-        crate::step::substep::add_integration(app);
-
-        app.configure_sets(
-            self.schedule,
-            (IntegrationSystems::Velocity, IntegrationSystems::Position).chain(),
-        );
-        app.configure_sets(
-            PhysicsSchedule,
-            (
-                IntegrationSystems::UpdateVelocityIncrements.in_set(SolverSystems::PreSubstep),
-                IntegrationSystems::ClearVelocityIncrements.in_set(SolverSystems::PostSubstep),
-            ),
-        );
-    }
-}
+use crate::math::Vector;
 
 /// The stages of integration.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum IntegrationSystems {
-    /// Gravity, forces and accelerations become velocity increments per substep. Once per step, in [`SolverSystems::PreSubstep`].
+    /// Gravity, forces and accelerations become velocity increments per substep. Once per step, in
+    /// [`SolverSystems::PreSubstep`](crate::dynamics::solver::schedule::SolverSystems::PreSubstep).
     UpdateVelocityIncrements,
     /// Increments and damping are applied to velocities. Once per substep.
     Velocity,
     /// Velocities move the bodies. Once per substep.
     Position,
-    /// The increments are zeroed. Once per step, in [`SolverSystems::PostSubstep`].
+    /// The increments are zeroed. Once per step, in
+    /// [`SolverSystems::PostSubstep`](crate::dynamics::solver::schedule::SolverSystems::PostSubstep).
     ClearVelocityIncrements,
 }
 

@@ -1,14 +1,15 @@
-//! The broad phase: pairs of colliders whose boxes overlap become contacts for the narrow phase to look at.
+//! The plugins of the broad phase: its stages, and the one that finds pairs.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use core::marker::PhantomData;
 
-use super::{
-    CollisionDiagnostics,
-    pairs::{FoundPairs, find_new_pairs},
-};
+use super::BroadPhaseSystems;
 use crate::{
+    collision::{
+        diagnostics::CollisionDiagnostics,
+        pairs::{FoundPairs, find_new_pairs},
+    },
     schedule::{PhysicsSchedule, PhysicsStepSystems},
     step::{self, Stage},
 };
@@ -27,17 +28,6 @@ impl Plugin for BroadPhaseCorePlugin {
                 .in_set(PhysicsStepSystems::BroadPhase),
         );
     }
-}
-
-/// The stages of the broad phase, in this order, in [`PhysicsStepSystems::BroadPhase`].
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum BroadPhaseSystems {
-    /// Before pairs are searched.
-    First,
-    /// Pairs are found, filtered and added as contacts.
-    CollectCollisions,
-    /// After it.
-    Last,
 }
 
 /// Finds pairs with the bounding volume hierarchies of [`ColliderTreePlugin`](crate::collider_tree::ColliderTreePlugin).

@@ -1,67 +1,30 @@
-//! Where a collider sits on its body: [`ColliderTransform`], kept from the transforms between them, and the
-//! world poses of colliders that are children of a body.
+//! Keeps [`ColliderTransform`]s, and the world poses of colliders that are children of a body.
 
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::{
-    change_detection::Tick, intern::Interned, prelude::*, reflect::ReflectComponent, schedule::ScheduleLabel,
-    system::SystemChangeTick,
+    change_detection::Tick, intern::Interned, prelude::*, schedule::ScheduleLabel, system::SystemChangeTick,
 };
-use bevy_reflect::{Reflect, std_traits::ReflectDefault};
-#[cfg(feature = "serialize")]
-use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_transform::components::Transform;
 
-use super::{
-    ColliderMarker,
-    collider_hierarchy::{AttachesColliders, ColliderOf, CompoundBody, RigidBodyColliders, attach_colliders},
-};
+use super::ColliderTransform;
 use crate::{
+    collision::collider::{
+        ColliderMarker,
+        collider_hierarchy::{
+            AttachesColliders, ColliderOf, CompoundBody, RigidBodyColliders, attach_colliders,
+        },
+    },
     dynamics::rigid_body::RigidBody,
-    math::Vector,
+    math::vector_from_xyz,
     physics_transform::{
-        PhysicsTransformSystems, Position, Rotation, find_changed_transforms,
-        frame::{Frame, read_pose},
-        tree::{FollowsBody, HierarchyQueue, Parents, TransformTree, TransformTreePlugin, TreeChanges},
-        turn_to_rotation, vector_from_xyz,
+        PhysicsTransformSystems, Position, Rotation,
+        frame::Frame,
+        plugin::TransformTreePlugin,
+        sync::{find_changed_transforms, position_to_transform, transform_to_position},
+        tree::{FollowsBody, HierarchyQueue, Parents, TransformTree, TreeChanges},
+        turn_to_rotation,
     },
 };
-
-/// The pose and scale of a collider relative to its body, from the transforms between them. On the body
-/// itself, and on colliders without a body, only the scale is of interest.
-#[derive(Reflect, Clone, Copy, Component, Debug, PartialEq)]
-#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Debug, Component, Default, PartialEq)]
-pub struct ColliderTransform {
-    /// From the body's origin to the collider's, in the body's axes, in metres; the body's scale is in it.
-    pub translation: Vector,
-    /// From the body's axes to the collider's.
-    pub rotation: Rotation,
-    /// The scale of the collider in the world, along its own axes.
-    pub scale: Vector,
-}
-
-impl ColliderTransform {
-    /// Takes a point from the collider's space to the body's: scaled, turned, moved.
-    pub fn transform_point(&self, mut point: Vector) -> Vector {
-        point *= self.scale;
-        self.rotation * point + self.translation
-    }
-}
-
-impl Default for ColliderTransform {
-    fn default() -> Self {
-        Self { translation: Vector::ZERO, rotation: Rotation::IDENTITY, scale: Vector::ONE }
-    }
-}
-
-impl From<Transform> for ColliderTransform {
-    fn from(transform: Transform) -> Self {
-        let (translation, rotation) = read_pose(None, &transform);
-        let scale = vector_from_xyz(transform.scale.to_array().map(f64::from));
-        Self { translation, rotation: rotation.unwrap_or(Rotation::IDENTITY), scale }
-    }
-}
 
 /// Keeps [`ColliderTransform`]s, and the poses of colliders that are children of a body.
 pub struct ColliderTransformPlugin {
@@ -105,10 +68,8 @@ impl Plugin for ColliderTransformPlugin {
                     (update_collider_transforms, place_child_colliders)
                         .chain()
                         .in_set(TransformToPosition)
-                        .after(crate::physics_transform::transform_to_position),
-                    place_child_colliders
-                        .in_set(PositionToTransform)
-                        .after(crate::physics_transform::position_to_transform),
+                        .after(transform_to_position),
+                    place_child_colliders.in_set(PositionToTransform).after(position_to_transform),
                 ),
             );
     }

@@ -1,85 +1,26 @@
 //! The stages of the solver in a step, and of a substep.
 
-use bevy_app::{App, Plugin};
+mod plugin;
+
+pub use plugin::SolverSchedulePlugin;
+
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use bevy_time::Time;
 use core::time::Duration;
 
-use super::{
-    PhysicsLengthUnit, SolverDiagnostics,
-    substeps::{OwnSubstepSystems, prepare_params, run_substeps},
-};
-use crate::{
-    dynamics::integrator::IntegrationSystems,
-    schedule::{Physics, PhysicsSchedule, PhysicsStepSystems, Substeps, make_deterministic},
-    step::{self, Stage},
-};
-
-/// Adds [`SubstepSchedule`], [`SubstepCount`] and the order of [`SolverSystems`] and [`SubstepSolverSystems`].
-#[derive(Debug, Default)]
-pub struct SolverSchedulePlugin;
-
-impl Plugin for SolverSchedulePlugin {
-    fn build(&self, app: &mut App) {
-        app.init_resource::<SubstepCount>();
-
-        app.configure_sets(
-            PhysicsSchedule,
-            (
-                SolverSystems::PrepareSolverBodies,
-                SolverSystems::PrepareJoints,
-                SolverSystems::PrepareContactConstraints,
-                SolverSystems::PreSubstep,
-                SolverSystems::Substep,
-                SolverSystems::PostSubstep,
-                SolverSystems::Restitution,
-                SolverSystems::Finalize,
-                SolverSystems::StoreContactImpulses,
-            )
-                .chain()
-                .in_set(PhysicsStepSystems::Solver),
-        );
-        app.init_resource::<SolverDiagnostics>()
-            .init_resource::<OwnSubstepSystems>()
-            .init_resource::<PhysicsLengthUnit>();
-        step::install(app);
-        app.add_systems(
-            PhysicsSchedule,
-            (
-                start_substep_clock.before(PhysicsStepSystems::First),
-                // Bodies move by these parameters also when no contacts are solved.
-                prepare_params.in_set(SolverSystems::PrepareJoints),
-                run_substeps.in_set(Stage::Substeps),
-            ),
-        );
-
-        app.edit_schedule(SubstepSchedule, make_deterministic);
-        app.configure_sets(
-            SubstepSchedule,
-            (
-                IntegrationSystems::Velocity,
-                SubstepSolverSystems::WarmStart,
-                SubstepSolverSystems::SolveConstraints,
-                IntegrationSystems::Position,
-                SubstepSolverSystems::Relax,
-                SubstepSolverSystems::Damping,
-            )
-                .chain(),
-        );
-    }
-}
+use crate::schedule::{Physics, Substeps};
 
 /// One substep, run [`SubstepCount`] times per step in [`SolverSystems::Substep`], in the order
-/// [`Velocity`](IntegrationSystems::Velocity), [`WarmStart`](SubstepSolverSystems::WarmStart),
-/// [`SolveConstraints`](SubstepSolverSystems::SolveConstraints), [`Position`](IntegrationSystems::Position),
+/// [`Velocity`](crate::dynamics::integrator::IntegrationSystems::Velocity), [`WarmStart`](SubstepSolverSystems::WarmStart),
+/// [`SolveConstraints`](SubstepSolverSystems::SolveConstraints), [`Position`](crate::dynamics::integrator::IntegrationSystems::Position),
 /// [`Relax`](SubstepSolverSystems::Relax), [`Damping`](SubstepSolverSystems::Damping).
 ///
 /// Systems run one after the other, and an ambiguous order is an error. The generic [`Time`] shows [`Time<Substeps>`](Substeps) in it.
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub struct SubstepSchedule;
 
-/// The stages of the solver, in this order, in [`PhysicsStepSystems::Solver`].
+/// The stages of the solver, in this order, in [`PhysicsStepSystems::Solver`](crate::schedule::PhysicsStepSystems::Solver).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SolverSystems {
     /// Awake bodies are gathered into rows for the solver.

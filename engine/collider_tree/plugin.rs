@@ -1,0 +1,61 @@
+//! The plugin that keeps the trees.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use core::marker::PhantomData;
+
+use super::{
+    ColliderTreeSystems,
+    diagnostics::{ColliderTreeDiagnostics, reset_trees},
+    optimization::ColliderTreeOptimization,
+};
+use crate::{
+    collision::{
+        broad_phase::BroadPhaseSystems,
+        collider::AnyCollider,
+        pairs::{refit_awake, update_stale_boxes},
+    },
+    dynamics::solver::config::PhysicsLengthUnit,
+    schedule::{PhysicsSchedule, PhysicsStepSystems},
+    step::{self, Stage},
+};
+
+/// Keeps the trees up to date with colliders of type `C`, one instance per type.
+pub struct ColliderTreePlugin<C: AnyCollider>(PhantomData<fn() -> C>);
+
+impl<C: AnyCollider> Default for ColliderTreePlugin<C> {
+    fn default() -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<C: AnyCollider> Plugin for ColliderTreePlugin<C> {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<ColliderTreeOptimization>()
+            .init_resource::<ColliderTreeDiagnostics>()
+            .init_resource::<PhysicsLengthUnit>();
+        step::install(app);
+        app.add_systems(
+            PhysicsSchedule,
+            (
+                reset_trees.in_set(Stage::ResetDiagnostics),
+                update_stale_boxes.in_set(Stage::UpdateBoxes),
+                refit_awake.in_set(Stage::Refit),
+            ),
+        );
+
+        app.configure_sets(
+            PhysicsSchedule,
+            (
+                ColliderTreeSystems::UpdateAabbs
+                    .in_set(PhysicsStepSystems::BroadPhase)
+                    .after(BroadPhaseSystems::First)
+                    .before(BroadPhaseSystems::CollectCollisions),
+                ColliderTreeSystems::BeginOptimize
+                    .in_set(PhysicsStepSystems::BroadPhase)
+                    .after(BroadPhaseSystems::Last),
+                ColliderTreeSystems::EndOptimize.in_set(PhysicsStepSystems::Finalize),
+            ),
+        );
+    }
+}

@@ -1,0 +1,112 @@
+//! Which collider belongs to which body: [`ColliderOf`] and [`RigidBodyColliders`], kept from the hierarchy.
+
+mod plugin;
+
+pub use plugin::ColliderHierarchyPlugin;
+pub(super) use plugin::{AttachesColliders, attach_colliders};
+
+use bevy_ecs::{
+    lifecycle::HookContext,
+    prelude::*,
+    reflect::ReflectComponent,
+    relationship::{Relationship, RelationshipHookMode},
+    world::DeferredWorld,
+};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+
+use super::collider_transform::ColliderTransform;
+use crate::physics_transform::tree::FollowsBody;
+
+/// On a collider: the body it belongs to, which is the nearest of the entity itself and its ancestors that
+/// has a [`RigidBody`](crate::dynamics::rigid_body::RigidBody).
+///
+/// The engine inserts, replaces and removes it at the start of a step. A collider that is detached from its
+/// parent loses it at once, so that it outlives the body. Colliders without a body have none.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component, Debug, PartialEq, FromWorld)]
+#[component(
+    immutable,
+    on_insert = <ColliderOf as Relationship>::on_insert,
+    on_discard = <ColliderOf as Relationship>::on_discard,
+)]
+#[require(ColliderTransform)]
+pub struct ColliderOf {
+    /// The body; the collider's own entity if that is one.
+    #[entities]
+    pub body: Entity,
+}
+
+impl FromWorld for ColliderOf {
+    fn from_world(_: &mut World) -> Self {
+        Self { body: Entity::PLACEHOLDER }
+    }
+}
+
+impl Relationship for ColliderOf {
+    type RelationshipTarget = RigidBodyColliders;
+    const ALLOW_SELF_REFERENTIAL: bool = true;
+
+    fn get(&self) -> Entity {
+        self.body
+    }
+
+    fn from(body: Entity) -> Self {
+        Self { body }
+    }
+
+    fn set_risky(&mut self, body: Entity) {
+        self.body = body;
+    }
+
+    /// Lists the collider on its body, as Bevy's own hook does, but without an error where an observer
+    /// despawns either of them before the list is made.
+    fn on_insert(mut world: DeferredWorld, context: HookContext) {
+        if !matches!(context.relationship_hook_mode, RelationshipHookMode::Run) {
+            return;
+        }
+        let collider = context.entity;
+        world.commands().queue(move |world: &mut World| list_collider(world, collider));
+    }
+}
+
+fn list_collider(world: &mut World, collider: Entity) {
+    let Some(&ColliderOf { body }) = world.get::<ColliderOf>(collider) else { return };
+    let Ok(mut entity) = world.get_entity_mut(body) else {
+        world.entity_mut(collider).remove::<(ColliderOf, FollowsBody)>();
+        return;
+    };
+    match entity.get_mut::<RigidBodyColliders>() {
+        Some(mut colliders) => colliders.0.push(collider),
+        None => {
+            entity.insert(RigidBodyColliders(vec![collider]));
+        }
+    }
+}
+
+/// On a body: the colliders that belong to it, the body's own entity among them if it has a collider.
+/// Despawning the body despawns them.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Debug, Default, PartialEq)]
+#[relationship_target(relationship = ColliderOf, linked_spawn)]
+pub struct RigidBodyColliders(Vec<Entity>);
+
+impl<'a> IntoIterator for &'a RigidBodyColliders {
+    type Item = <Self::IntoIter as Iterator>::Item;
+    type IntoIter = core::iter::Copied<core::slice::Iter<'a, Entity>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter().copied()
+    }
+}
+
+impl core::ops::Deref for RigidBodyColliders {
+    type Target = [Entity];
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+/// On a body that has colliders on other entities than its own.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub(crate) struct CompoundBody;

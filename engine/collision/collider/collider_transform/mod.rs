@@ -1,0 +1,53 @@
+//! Where a collider sits on its body: [`ColliderTransform`], kept from the transforms between them.
+
+mod plugin;
+
+pub use plugin::ColliderTransformPlugin;
+
+use bevy_ecs::{prelude::*, reflect::ReflectComponent};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use bevy_transform::components::Transform;
+
+use crate::{
+    math::{Vector, vector_from_xyz},
+    physics_transform::{Rotation, frame::read_pose},
+};
+
+/// The pose and scale of a collider relative to its body, from the transforms between them. On the body
+/// itself, and on colliders without a body, only the scale is of interest.
+#[derive(Reflect, Clone, Copy, Component, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default, PartialEq)]
+pub struct ColliderTransform {
+    /// From the body's origin to the collider's, in the body's axes, in metres; the body's scale is in it.
+    pub translation: Vector,
+    /// From the body's axes to the collider's.
+    pub rotation: Rotation,
+    /// The scale of the collider in the world, along its own axes.
+    pub scale: Vector,
+}
+
+impl ColliderTransform {
+    /// Takes a point from the collider's space to the body's: scaled, turned, moved.
+    pub fn transform_point(&self, mut point: Vector) -> Vector {
+        point *= self.scale;
+        self.rotation * point + self.translation
+    }
+}
+
+impl Default for ColliderTransform {
+    fn default() -> Self {
+        Self { translation: Vector::ZERO, rotation: Rotation::IDENTITY, scale: Vector::ONE }
+    }
+}
+
+impl From<Transform> for ColliderTransform {
+    fn from(transform: Transform) -> Self {
+        let (translation, rotation) = read_pose(None, &transform);
+        let scale = vector_from_xyz(transform.scale.to_array().map(f64::from));
+        Self { translation, rotation: rotation.unwrap_or(Rotation::IDENTITY), scale }
+    }
+}

@@ -1,0 +1,93 @@
+//! The plugin that solves contacts, and the group of all the plugins of the solver.
+
+use bevy_app::{App, Plugin, PluginGroup, PluginGroupBuilder};
+use bevy_ecs::prelude::*;
+
+use super::{
+    config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig, update_contact_softness},
+    diagnostics::{SolverDiagnostics, reset_solver},
+    islands::{IslandPlugin, IslandSleepingPlugin},
+    schedule::SolverSchedulePlugin,
+    solver_body::SolverBodyPlugin,
+    substeps::{apply_restitution, prepare_rows, store_impulses},
+};
+use crate::{
+    dynamics::integrator::IntegratorPlugin,
+    math::Scalar,
+    schedule::{PhysicsSchedule, PhysicsStepSystems},
+    step::{self, Stage},
+};
+
+/// The plugins of the solver; part of [`PhysicsPlugins`](crate::PhysicsPlugins).
+///
+/// | Plugin | Gives |
+/// | --- | --- |
+/// | [`SolverBodyPlugin`] | the bodies the solver works on |
+/// | [`SolverSchedulePlugin`] | the stages of the solver and the substeps |
+/// | [`IntegratorPlugin`] | gravity, the motion of bodies |
+/// | [`SolverPlugin`] | contacts |
+/// | [`IslandPlugin`] | which bodies rest on which |
+/// | [`IslandSleepingPlugin`] | sleep |
+#[derive(Debug, Default)]
+pub struct SolverPlugins {
+    length_unit: Option<Scalar>,
+}
+
+impl SolverPlugins {
+    /// The plugins with a [`PhysicsLengthUnit`] of `unit`.
+    pub fn new_with_length_unit(unit: Scalar) -> Self {
+        Self { length_unit: Some(unit) }
+    }
+}
+
+impl PluginGroup for SolverPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        PluginGroupBuilder::start::<Self>()
+            .add(SolverBodyPlugin)
+            .add(SolverSchedulePlugin)
+            .add(IntegratorPlugin::default())
+            .add(self.length_unit.map_or_else(SolverPlugin::default, SolverPlugin::new_with_length_unit))
+            .add(IslandPlugin)
+            .add(IslandSleepingPlugin)
+    }
+}
+
+/// Solves contacts, in the stages of [`SolverSystems`](super::schedule::SolverSystems).
+#[derive(Default)]
+pub struct SolverPlugin {
+    length_unit: Option<Scalar>,
+}
+
+impl SolverPlugin {
+    /// The plugin with a [`PhysicsLengthUnit`] of `unit`; the default leaves the resource as it is, or 1.
+    pub fn new_with_length_unit(unit: Scalar) -> Self {
+        Self { length_unit: Some(unit) }
+    }
+}
+
+impl Plugin for SolverPlugin {
+    fn build(&self, app: &mut App) {
+        if let Some(unit) = self.length_unit {
+            app.insert_resource(PhysicsLengthUnit::valid_or_default(unit));
+        }
+        app.init_resource::<PhysicsLengthUnit>()
+            .init_resource::<SolverConfig>()
+            .init_resource::<ContactSoftnessCoefficients>();
+
+        app.init_resource::<SolverDiagnostics>();
+        step::install(app);
+        step::substep::add_contacts(app);
+        app.add_systems(
+            PhysicsSchedule,
+            (
+                reset_solver.in_set(Stage::ResetDiagnostics),
+                update_contact_softness
+                    .after(PhysicsStepSystems::NarrowPhase)
+                    .before(PhysicsStepSystems::Solver),
+                prepare_rows.in_set(Stage::PrepareRows),
+                apply_restitution.in_set(Stage::Restitution),
+                store_impulses.in_set(Stage::StoreImpulses),
+            ),
+        );
+    }
+}

@@ -1,0 +1,95 @@
+//! The plugins that keep the tree, and poses and transforms in step.
+
+use bevy_app::{App, FixedPostUpdate, Plugin};
+use bevy_ecs::{change_detection::CheckChangeTicks, intern::Interned, prelude::*, schedule::ScheduleLabel};
+use bevy_transform::components::Transform;
+
+use super::{
+    PhysicsTransformConfig, PhysicsTransformSystems, Position, Rotation,
+    sync::{
+        SpawnQueue, SyncTicks, find_changed_transforms, initialise_added, initialise_poses, note_rotation,
+        position_to_transform, transform_to_position,
+    },
+    tree::{HierarchyQueue, TransformTree, TreeChanges, enqueue, enqueue_parented, update_tree},
+};
+use crate::{dynamics::rigid_body::RigidBody, schedule::PhysicsSystems};
+
+/// Keeps [`Position`] and [`Rotation`] in step with `Transform`; see [`PhysicsTransformConfig`].
+pub struct PhysicsTransformPlugin {
+    schedule: Interned<dyn ScheduleLabel>,
+}
+
+impl PhysicsTransformPlugin {
+    /// Runs the sync in `schedule`, where [`PhysicsSystems`](crate::schedule::PhysicsSystems) run.
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self { schedule: schedule.intern() }
+    }
+}
+
+impl Default for PhysicsTransformPlugin {
+    fn default() -> Self {
+        Self::new(FixedPostUpdate)
+    }
+}
+
+impl Plugin for PhysicsTransformPlugin {
+    fn build(&self, app: &mut App) {
+        TransformTreePlugin::ensure(app, self.schedule);
+        // Each fails only where the requirement is there already.
+        let _ = app.try_register_required_components_with::<RigidBody, Position>(|| Position::PLACEHOLDER);
+        let _ = app.try_register_required_components_with::<RigidBody, Rotation>(|| Rotation::PLACEHOLDER);
+        let _ = app.try_register_required_components::<Position, Transform>();
+        app.init_resource::<PhysicsTransformConfig>()
+            .register_type::<(Position, Rotation, PhysicsTransformConfig)>()
+            .init_resource::<SpawnQueue>()
+            .add_observer(initialise_added)
+            .add_observer(note_rotation)
+            .add_systems(
+                self.schedule,
+                (
+                    initialise_poses,
+                    transform_to_position
+                        .run_if(|config: Res<PhysicsTransformConfig>| config.transform_to_position),
+                )
+                    .chain()
+                    .in_set(PhysicsTransformSystems::TransformToPosition),
+            )
+            .add_systems(
+                self.schedule,
+                position_to_transform.in_set(PhysicsTransformSystems::PositionToTransform),
+            );
+    }
+}
+
+/// Owns the tree and the one scan over `Transform`. Added by whichever plugin needs it first.
+pub(crate) struct TransformTreePlugin(pub(crate) Interned<dyn ScheduleLabel>);
+
+impl TransformTreePlugin {
+    /// Adds the plugin unless it is there.
+    pub(crate) fn ensure(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
+        if !app.is_plugin_added::<Self>() {
+            app.add_plugins(Self(schedule));
+        }
+    }
+}
+
+impl Plugin for TransformTreePlugin {
+    fn build(&self, app: &mut App) {
+        use PhysicsTransformSystems::{PositionToTransform, Propagate, TransformToPosition};
+        app.init_resource::<HierarchyQueue>()
+            .init_resource::<TransformTree>()
+            .init_resource::<TreeChanges>()
+            .init_resource::<SyncTicks>()
+            .add_observer(enqueue::<Add, Position>)
+            .add_observer(enqueue::<Remove, Position>)
+            .add_observer(enqueue_parented::<Insert>)
+            .add_observer(enqueue_parented::<Remove>)
+            .add_observer(|check: On<CheckChangeTicks>, mut ticks: ResMut<SyncTicks>| ticks.clamp(*check))
+            .configure_sets(
+                self.0,
+                ((Propagate, TransformToPosition).chain().in_set(PhysicsSystems::Prepare),),
+            )
+            .configure_sets(self.0, PositionToTransform.in_set(PhysicsSystems::Writeback))
+            .add_systems(self.0, (update_tree, find_changed_transforms).chain().in_set(Propagate));
+    }
+}

@@ -1,0 +1,38 @@
+//! What shapes answer with: where a ray hits, and why something is no shape.
+
+use crate::math::Vector;
+
+/// Where a ray meets a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit {
+    /// The distance along the (unit) direction, in metres.
+    pub distance: f32,
+    /// The outward unit normal; zero if the ray starts inside of a solid shape.
+    pub normal: Vector,
+}
+
+/// A shape with nothing in it or a value that is not a usable number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeError {
+    /// A coordinate, length or radius is NaN or infinite.
+    NotFinite,
+    /// A radius or half extent is negative.
+    Negative,
+    /// Fewer distinct points than span the shape, or all on a line (or plane).
+    Degenerate,
+    /// The points given as a convex outline or mesh are not convex.
+    NotConvex,
+}
+
+impl core::fmt::Display for ShapeError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "a coordinate, length or radius is NaN or infinite",
+            Self::Negative => "a radius or half extent is negative",
+            Self::Degenerate => "the points do not span a shape",
+            Self::NotConvex => "the points are not in convex position",
+        })
+    }
+}
+
+impl core::error::Error for ShapeError {}
