@@ -64,6 +64,7 @@ pub mod physics_transform;
 pub mod schedule;
 
 mod plugins;
+mod scan;
 mod step;
 mod type_registration;
 

@@ -14,7 +14,7 @@
 //! ```
 
 use bevy_app::App;
-use bevy_ecs::{entity_disabling::Disabled, prelude::*};
+use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemChangeTick};
 use kernel::table::NONE;
 
 use crate::{
@@ -31,6 +31,7 @@ use crate::{
         tables::Colliders,
     },
     physics_transform::{Position, Rotation},
+    scan::{IN_TABLES, Since},
 };
 
 /// What may have changed since the last step.
@@ -114,19 +115,31 @@ fn note_collider<C: Component>(app: &mut App) {
         });
 }
 
-/// What a collider is, and where it is on its body.
-type ColliderChanged = Or<(Changed<Collider>, Changed<ColliderTransform>)>;
-
 /// Notes colliders that were changed in place, and moved ones that no body takes along.
 pub(crate) fn note_changed_colliders(
-    changed: Query<Entity, (With<ColliderId>, ColliderChanged)>,
-    moved: Query<(Entity, &ColliderId), Or<(Changed<Position>, Changed<Rotation>)>>,
+    shapes: Query<(Entity, Ref<Collider>), With<ColliderId>>,
+    places: Query<(Entity, Ref<ColliderTransform>), With<ColliderId>>,
+    poses: Query<(Entity, &ColliderId, Ref<Position>, Ref<Rotation>)>,
     colliders: Res<Colliders>,
     mut queue: ResMut<LifecycleQueue>,
+    system: SystemChangeTick,
 ) {
-    queue.colliders.extend(&changed);
+    let since = Since::last_run(system);
+    let mut note = |entity: Entity| queue.colliders.push(entity);
+    for (entities, shape) in shapes.contiguous_iter().expect(IN_TABLES) {
+        since.rows([shape.changed_ticks_slice()], |row| note(entities[row]));
+    }
+    for (entities, place) in places.contiguous_iter().expect(IN_TABLES) {
+        since.rows([place.changed_ticks_slice()], |row| note(entities[row]));
+    }
     let stands_alone = |id: u32| id != NONE && colliders.table[id].def.body == NONE;
-    queue.colliders.extend(moved.iter().filter(|(_, id)| stands_alone(id.0)).map(|(entity, _)| entity));
+    for (entities, ids, position, rotation) in poses.contiguous_iter().expect(IN_TABLES) {
+        since.rows([position.changed_ticks_slice(), rotation.changed_ticks_slice()], |row| {
+            if stands_alone(ids[row].0) {
+                note(entities[row]);
+            }
+        });
+    }
 }
 
 fn lose_body(

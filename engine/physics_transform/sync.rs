@@ -21,7 +21,11 @@ use super::{
     tree::{FollowsBody, Parents, TransformTree, TreeChanges},
     turn::Turn,
 };
-use crate::{dynamics::rigid_body::RigidBody, math::Vector};
+use crate::{
+    dynamics::rigid_body::RigidBody,
+    math::Vector,
+    scan::{IN_TABLES, Since},
+};
 
 /// When the sync last looked and wrote.
 #[derive(Resource, Clone, Debug, Default)]
@@ -88,30 +92,19 @@ pub(crate) fn find_changed_transforms(
 ) {
     let TreeChanges { reparented, transforms: found, .. } = &mut *changes;
     found.append(&mut reparented.clone());
-    let since = ticks.scan;
-    let is_new = |tick: Tick| tick.is_newer_than(since, system.this_run()) && tick != ticks.writeback;
+    let since = Since::new(ticks.scan, system);
     let matters =
         |entity, physical: bool, has_children: bool| physical || (has_children && tree.contains(entity));
-    match transforms.contiguous_iter() {
-        Ok(tables) => {
-            for (entities, transforms, physical, has_children) in tables {
-                if !physical && !has_children {
-                    continue;
-                }
-                for (&entity, &tick) in entities.iter().zip(transforms.changed_ticks_slice()) {
-                    if is_new(tick) && matters(entity, physical, has_children) {
-                        found.push(entity);
-                    }
-                }
-            }
+    for (entities, transforms, physical, has_children) in transforms.contiguous_iter().expect(IN_TABLES) {
+        if !physical && !has_children {
+            continue;
         }
-        Err(_) => {
-            for (entity, transform, physical, has_children) in &transforms {
-                if is_new(transform.last_changed()) && matters(entity, physical, has_children) {
-                    found.push(entity);
-                }
+        let changed = transforms.changed_ticks_slice();
+        since.rows([changed], |row| {
+            if changed[row] != ticks.writeback && matters(entities[row], physical, has_children) {
+                found.push(entities[row]);
             }
-        }
+        });
     }
     ticks.scan = system.this_run();
 }
@@ -284,12 +277,14 @@ pub struct TransformWriter<'w, 's> {
 /// too. Scale is kept; in 2D also the depth and any tilt.
 pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick) {
     let TransformWriter { mut tree, mut ticks, config, moved, mut transforms, parents, following } = writer;
-    let (since, read) = (ticks.writeback, ticks.read);
+    let (last, read) = (ticks.writeback, ticks.read);
+    let since = Since::new(last, system);
     ticks.writeback = system.this_run();
     if !config.position_to_transform {
         return;
     }
-    let is_new = |tick: Tick| tick.is_newer_than(since, system.this_run()) && !read.contains(&tick);
+    // Not what was read from transforms just now.
+    let is_own = |tick: Tick| since.is_new(tick) && !read.contains(&tick);
     let mut nested: Vec<Entity> = Vec::new();
     let mut write = |entity, position: &Position, rotation: &Rotation| {
         if tree.contains(entity) {
@@ -298,24 +293,13 @@ pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick) 
             write_transform(&mut transforms, entity, None, position, rotation);
         }
     };
-    match moved.contiguous_iter() {
-        Ok(tables) => {
-            for (entities, positions, rotations) in tables {
-                let (at, turned) = (positions.changed_ticks_slice(), rotations.changed_ticks_slice());
-                for (row, &entity) in entities.iter().enumerate() {
-                    if is_new(at[row]) || is_new(turned[row]) {
-                        write(entity, &positions[row], &rotations[row]);
-                    }
-                }
+    for (entities, positions, rotations) in moved.contiguous_iter().expect(IN_TABLES) {
+        let (at, turned) = (positions.changed_ticks_slice(), rotations.changed_ticks_slice());
+        since.rows([at, turned], |row| {
+            if is_own(at[row]) || is_own(turned[row]) {
+                write(entities[row], &positions[row], &rotations[row]);
             }
-        }
-        Err(_) => {
-            for (entity, position, rotation) in &moved {
-                if is_new(position.last_changed()) || is_new(rotation.last_changed()) {
-                    write(entity, &position, &rotation);
-                }
-            }
-        }
+        });
     }
     if nested.is_empty() {
         return;

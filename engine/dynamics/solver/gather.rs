@@ -1,6 +1,6 @@
 //! From components to rows: the awake bodies of this step, and what the app changed by hand.
 
-use bevy_ecs::{prelude::*, query::QueryData};
+use bevy_ecs::{prelude::*, query::QueryData, system::SystemChangeTick};
 use bevy_log::warn_once;
 use kernel::{
     math::{AxisLocks, InvInertia, Vector as KernelVector, WorldPose, max},
@@ -23,6 +23,7 @@ use crate::{
     },
     math::{Scalar, angular_to_kernel, inv_inertia_to_kernel, to_f32, vector_to_kernel},
     physics_transform::{Position, Rotation, world_pose},
+    scan::{IN_TABLES, Since},
 };
 
 /// Where a body is and how it moves, as the app sees it.
@@ -141,22 +142,31 @@ fn place(id: u32, frame: WorldPose, center: Option<KernelVector>, tables: &mut T
     }
 }
 
+/// What is looked at of every body, moving or not, for changes.
+type Watched = (
+    Entity,
+    Ref<'static, Position>,
+    Ref<'static, Rotation>,
+    Ref<'static, LinearVelocity>,
+    Ref<'static, AngularVelocity>,
+);
+
 /// Sees what the app did to bodies that are static or asleep: moved ones wake what they touch, and they
 /// themselves wake if they can.
 pub(crate) fn wake_changed(
-    changed: Query<
-        (Entity, StateInput),
-        Or<(Changed<Position>, Changed<Rotation>, Changed<LinearVelocity>, Changed<AngularVelocity>)>,
-    >,
+    watched: Query<Watched, With<BodyId>>,
+    states: Query<StateInput>,
     gravity: Res<Gravity>,
     scaled: Query<&BodyId, Changed<GravityScale>>,
     mut tables: Tables,
     mut commands: Commands,
+    system: SystemChangeTick,
 ) {
-    for (entity, body) in &changed {
+    let mut wake = |entity: Entity| {
+        let Ok(body) = states.get(entity) else { return };
         let id = body.id.0;
         if id == NONE || tables.bodies.table[id].awake {
-            continue;
+            return;
         }
         let change = read_in(entity, &body, &mut tables, &mut commands);
         if change.moved {
@@ -165,6 +175,15 @@ pub(crate) fn wake_changed(
         if change.moved || change.pushed {
             tables.link().wake_body(id);
         }
+    };
+    for (entities, position, rotation, linear, angular) in watched.contiguous_iter().expect(IN_TABLES) {
+        let columns = [
+            position.changed_ticks_slice(),
+            rotation.changed_ticks_slice(),
+            linear.changed_ticks_slice(),
+            angular.changed_ticks_slice(),
+        ];
+        Since::last_run(system).rows(columns, |row| wake(entities[row]));
     }
     for id in scaled.iter().filter(|id| id.0 != NONE) {
         tables.link().wake_body(id.0);

@@ -1,0 +1,95 @@
+//! Looking for changes over every entity that has a component: whole tables at a time, ticks only.
+
+use bevy_ecs::{change_detection::Tick, system::SystemChangeTick};
+
+/// Why a query can be walked by tables.
+pub(crate) const IN_TABLES: &str = "components of the engine are stored in tables";
+
+/// Older changes count as this old, so that ages compare although ticks wrap around.
+const MAX_AGE: u32 = Tick::MAX.get();
+
+/// What counts as new: what changed after a tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Since {
+    now: u32,
+    age: u32,
+}
+
+impl Since {
+    /// Since `last`, seen from a system that runs now.
+    pub(crate) fn new(last: Tick, system: SystemChangeTick) -> Self {
+        let now = system.this_run().get();
+        Self { now, age: now.wrapping_sub(last.get()).min(MAX_AGE) }
+    }
+
+    /// Since the system last ran.
+    pub(crate) fn last_run(system: SystemChangeTick) -> Self {
+        Self::new(system.last_run(), system)
+    }
+
+    /// As [`Tick::is_newer_than`], without branches.
+    #[inline(always)]
+    pub(crate) fn is_new(self, tick: Tick) -> bool {
+        self.now.wrapping_sub(tick.get()).min(MAX_AGE) < self.age
+    }
+
+    /// Calls `found` with each row at which any of the columns is new.
+    ///
+    /// Nearly always nothing is: stretches of rows are first looked at as a whole, in a loop that the compiler
+    /// makes wide.
+    pub(crate) fn rows<const N: usize>(self, columns: [&[Tick]; N], mut found: impl FnMut(usize)) {
+        let count = columns.iter().map(|column| column.len()).min().unwrap_or(0);
+        for start in (0..count).step_by(STRETCH) {
+            let rows = start..(start + STRETCH).min(count);
+            let any =
+                |column: &[Tick]| column[rows.clone()].iter().fold(false, |any, t| any | self.is_new(*t));
+            if !columns.iter().any(|column| any(column)) {
+                continue;
+            }
+            for row in rows.clone() {
+                if columns.iter().any(|column| self.is_new(column[row])) {
+                    found(row);
+                }
+            }
+        }
+    }
+}
+
+/// How many rows are looked at as a whole.
+const STRETCH: usize = 128;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn since(last: u32, now: u32) -> Since {
+        Since { now, age: now.wrapping_sub(last).min(MAX_AGE) }
+    }
+
+    #[test]
+    fn ages_compare_as_bevy_compares_them() {
+        let ticks = [0, 1, 2, 1000, MAX_AGE, MAX_AGE + 1, u32::MAX - 1, u32::MAX];
+        for last in ticks {
+            for now in ticks {
+                for tick in ticks {
+                    let expected = Tick::new(tick).is_newer_than(Tick::new(last), Tick::new(now));
+                    assert_eq!(since(last, now).is_new(Tick::new(tick)), expected, "{tick} {last} {now}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn exactly_the_new_rows_are_found() {
+        for count in [0, 1, 127, 128, 129, 1000] {
+            let old = vec![Tick::new(5); count];
+            let mut some = old.clone();
+            for row in (0..count).step_by(37) {
+                some[row] = Tick::new(11);
+            }
+            let mut found = Vec::new();
+            since(10, 12).rows([&old, &some], |row| found.push(row));
+            assert_eq!(found, (0..count).step_by(37).collect::<Vec<_>>());
+        }
+    }
+}
