@@ -63,6 +63,13 @@ pub enum Found {
     Computed,
 }
 
+/// Overlap is deep from this share of the smaller side's reach on.
+const DEEP: f32 = 0.1;
+/// What was deep stays so down to this share: overlap that has begun to be pushed out gently is so to its
+/// end. Were it the share above, the last tenth would be pushed out as by springs, and a row of a hundred
+/// bodies would fly apart.
+const NO_LONGER_DEEP: f32 = 0.01;
+
 /// Bodies that turned further than this since the manifold was computed do not recycle: cos 10°.
 const RECYCLE_COS: f32 = 0.985;
 
@@ -84,7 +91,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         if recycled { Found::Recycled } else { Found::Computed }
     }
 
-    /// Whether the shapes overlap by more than a tenth of the smaller one's reach. Half-spaces reach
+    /// Whether the shapes overlap by more than a share of the smaller one's reach. Half-spaces reach
     /// nowhere, and count by the other side.
     fn is_deep(&self, contact: &Contact) -> bool {
         let deepest = contact.manifold.points().iter().fold(0.0, |d, p| min(d, p.separation));
@@ -93,7 +100,8 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         }
         let [a, b] = contact.colliders.map(|c| self.colliders.reaches[c as usize].extent);
         let reach = if a == 0.0 || b == 0.0 { max(a, b) } else { min(a, b) };
-        deepest < -0.1 * reach
+        let limit = if contact.flags.has(ContactFlags::DEEP) { NO_LONGER_DEEP } else { DEEP };
+        deepest < -limit * reach
     }
 
     /// The centre of mass and rotation of a side's body; for a collider without one its own pose.

@@ -1,6 +1,6 @@
 //! Contact rows in memory: arrays by point count, cut into batches that are solved one after the other.
 
-use super::{ContactRow, InvMass, RestitutionRow};
+use super::{ContactRow, DeepRow, InvMass, RestitutionRow};
 use crate::math::Lane;
 
 /// Rows are laid out by the number of points they have room for: 1, 2 or 4.
@@ -40,6 +40,8 @@ pub struct Batch {
     pub len: u32,
     /// Whether any of them can bounce.
     pub bouncy: bool,
+    /// Whether any of them overlaps deeply.
+    pub deep: bool,
 }
 
 /// Where a lane's manifold comes from and its impulses go back to.
@@ -58,13 +60,15 @@ pub struct Rows<N: Lane, M, const P: usize> {
     pub rows: Vec<ContactRow<N, M, P>>,
     /// What the restitution pass needs besides.
     pub bounces: Vec<RestitutionRow<N, P>>,
+    /// What deep overlap needs besides; empty in steps without.
+    pub deeps: Vec<DeepRow<N, P>>,
     /// Where the rows come from.
     pub sources: Vec<Source<N>>,
 }
 
 impl<N: Lane, M, const P: usize> Default for Rows<N, M, P> {
     fn default() -> Self {
-        Self { rows: Vec::new(), bounces: Vec::new(), sources: Vec::new() }
+        Self { rows: Vec::new(), bounces: Vec::new(), deeps: Vec::new(), sources: Vec::new() }
     }
 }
 
@@ -72,6 +76,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Rows<N, M, P> {
     fn clear(&mut self) {
         self.rows.clear();
         self.bounces.clear();
+        self.deeps.clear();
         self.sources.clear();
     }
 }

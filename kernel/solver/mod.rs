@@ -6,8 +6,9 @@
 //!
 //! The method is Erin Catto's (Solver2D, Box2D v3, Box3D): soft constraints, relaxation, positions kept
 //! as deltas over the step. Rows here differ in that both dimensions have one central friction row per
-//! manifold (in 2D the two points of an edge have the same tangent Jacobian up to the edge's slope), and
-//! in that the second anchor is the first less one offset per manifold.
+//! manifold (in 2D the two points of an edge have the same tangent Jacobian up to the edge's slope),
+//! in that the second anchor is the first less one offset per manifold, and in that what pushes deep
+//! overlap out leaves the velocities alone ([`DeepRow`]).
 
 mod batch;
 mod body;
@@ -26,6 +27,6 @@ pub use body::{BodyRows, Motion, RowView};
 pub use dim::{BodyRow, MassRow, Twist};
 pub use inv_mass::InvMass;
 pub use prepare::{ContactSource, RowInput};
-pub use row::{ContactRow, PointRow, RestitutionRow};
+pub use row::{ContactRow, DeepRow, PointRow, RestitutionRow};
 pub use softness::{Softness, SubstepParams};
 pub use stages::{Solver, Width};

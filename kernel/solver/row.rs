@@ -66,6 +66,24 @@ pub struct RestitutionRow<N: Lane, const P: usize> {
     pub max_impulse: [N; P],
 }
 
+/// What only a step with deep overlap needs of a row.
+///
+/// Decision: the push that takes out deep overlap only moves the bodies; what it does to their velocities
+/// is taken back before the relax pass, impulse by impulse, which conserves momentum. That pass alone would
+/// not do so: it lowers an impulse only where bodies come apart, so that inside a crowd, where the pushes
+/// from all sides balance, they add up over the substeps as in a compressed spring, and whatever is at the
+/// edge is flung off. The pass without bias stops what approaches, as ever.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct DeepRow<N: Lane, const P: usize> {
+    /// 1 where a body of the contact overlaps something deeply, else 0.
+    pub deep: N,
+    /// The share of the impulses that a substep starts from.
+    pub warm: N,
+    /// The impulse of each point before overlap is pushed out, N·s.
+    pub before: [N; P],
+}
+
 const _: () = {
     use crate::math::{DIM, F32x4};
     let two = size_of::<ContactRow<F32x4, F32x4, 2>>() / 4;
@@ -96,6 +114,12 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Default for ContactRow<N, M, P> {
 impl<N: Lane, const P: usize> Default for RestitutionRow<N, P> {
     fn default() -> Self {
         Self { restitution: N::ZERO, gained: N::ZERO, approach: [N::ZERO; P], max_impulse: [N::ZERO; P] }
+    }
+}
+
+impl<N: Lane, const P: usize> Default for DeepRow<N, P> {
+    fn default() -> Self {
+        Self { deep: N::ZERO, warm: N::ONE, before: [N::ZERO; P] }
     }
 }
 
@@ -172,6 +196,37 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let mut pair = Pair::load(rows, &self.ids);
         self.solve_normals(rows, &mut pair, params, None, restitution);
         self.solve_friction(&mut pair);
+        pair.store(rows, &self.ids);
+    }
+
+    /// Lets the substep start from the row's share of the impulses.
+    #[inline(always)]
+    pub fn cool(&mut self, deep: &DeepRow<N, P>) {
+        for point in &mut self.points {
+            point.impulse = point.impulse * deep.warm;
+        }
+    }
+
+    /// Notes the impulses that [`take_back`](Self::take_back) returns to.
+    #[inline(always)]
+    pub fn note_before(&self, deep: &mut DeepRow<N, P>) {
+        for (before, point) in deep.before.iter_mut().zip(&self.points) {
+            *before = point.impulse;
+        }
+    }
+
+    /// Takes back the impulses of the soft-bias pass where overlap is deep, once they have moved the bodies.
+    #[inline(always)]
+    pub fn take_back(&mut self, rows: &RowView<BodyRow>, deep: &DeepRow<N, P>) {
+        let mut pair = Pair::load(rows, &self.ids);
+        let n = self.normal;
+        for i in 0..P {
+            let point = self.points[i];
+            let delta = (deep.before[i] - point.impulse) * deep.deep;
+            let (ma, mb) = (point.anchor.cross(n), (point.anchor - self.offset).cross(n));
+            self.points[i].impulse = point.impulse + delta;
+            self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
+        }
         pair.store(rows, &self.ids);
     }
 

@@ -80,6 +80,7 @@ enum Pass {
     Impact,
     WarmStart,
     Solve,
+    TakeBack,
     Relax,
     Restitute,
 }
@@ -97,7 +98,7 @@ impl Solver {
         overflow.free.clear();
         overflow.held.clear();
         order.clear();
-        deep.count(input, bodies.rows.len());
+        deep.count(input, bodies);
         // Body rows were gathered, so only they know what is held.
         let any_held = bodies.motions.iter().any(|m| m.locks.is_translation_partial());
         let step = &mut StepRows { bodies, params, deep, any_held, buckets };
@@ -165,8 +166,12 @@ impl Solver {
         self.bodies.integrate_positions(&self.special, params.h);
     }
 
-    /// Takes out the velocity that the bias added, and applies friction.
+    /// Takes out the velocity that the bias added, and applies friction. What pushed deep overlap out is
+    /// taken back first.
     pub fn relax(&mut self, params: &SubstepParams) {
+        if self.deep.any() {
+            self.sweep(Pass::TakeBack, params);
+        }
         self.sweep(Pass::Relax, params);
     }
 
@@ -335,13 +340,18 @@ fn store_set<N: Lane, M: InvMass<N>>(set: &RowSet<N, M>, contacts: &mut ContactT
 }
 
 impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
-    /// Runs one batch, and returns whether it found an impact. Plain loops, not iterator adaptors: what is to be compiled for the caller's CPU
-    /// feature must be inlined into it.
+    /// Runs one batch, and returns whether it found an impact. Plain loops, not iterator adaptors: what is to
+    /// be compiled for the caller's CPU feature must be inlined into it.
     #[inline(always)]
     fn run(&mut self, batch: u32, pass: Pass, bodies: &mut BodyRows, params: &SubstepParams) -> bool {
         let batch = self.batches[batch as usize];
         let range = batch.start as usize..(batch.start + batch.len) as usize;
-        if matches!(pass, Pass::Impact | Pass::Restitute) && !batch.bouncy {
+        let concerned = match pass {
+            Pass::Impact | Pass::Restitute => batch.bouncy,
+            Pass::TakeBack => batch.deep,
+            _ => true,
+        };
+        if !concerned {
             return false;
         }
         let mut hit = false;
@@ -355,13 +365,28 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
                     }
                 }
                 Pass::WarmStart => {
+                    if batch.deep {
+                        for (row, deep) in rows.iter_mut().zip(&set.deeps[range.clone()]) {
+                            row.cool(deep);
+                        }
+                    }
                     for row in rows.iter() {
                         row.warm_start(view);
                     }
                 }
                 Pass::Solve => {
+                    if batch.deep {
+                        for (row, deep) in rows.iter().zip(&mut set.deeps[range.clone()]) {
+                            row.note_before(deep);
+                        }
+                    }
                     for row in rows.iter_mut() {
                         row.solve(view, params);
+                    }
+                }
+                Pass::TakeBack => {
+                    for (row, deep) in rows.iter_mut().zip(&set.deeps[range.clone()]) {
+                        row.take_back(view, deep);
                     }
                 }
                 Pass::Relax if batch.bouncy => {

@@ -30,3 +30,12 @@ pub const BALL_INERTIA: f32 = 0.5;
 pub fn spin_energy(inverse: InvInertia, _rotation: Rot, w: Angular) -> f64 {
     if inverse.zz > 0.0 { 0.5 * f64::from(w.z * w.z / inverse.zz) } else { 0.0 }
 }
+
+/// A closed box of 8 by 8 metres on y = 0: half its width, its walls by size and place, and the middles of
+/// its cells of a metre.
+pub fn container() -> (f32, Vec<(Vector, Vector)>, Vec<Vector>) {
+    let (long, thick) = (Vector { x: 16.0, y: 4.0 }, Vector { x: 4.0, y: 16.0 });
+    let walls = [(long, 0.0, -2.0), (long, 0.0, 10.0), (thick, -6.0, 4.0), (thick, 6.0, 4.0)];
+    let cells = (0..64).map(|i| Vector { x: (i % 8) as f32 - 3.5, y: (i / 8) as f32 + 0.5 });
+    (4.0, walls.map(|(size, x, y)| (size, Vector { x, y })).into(), cells.collect())
+}

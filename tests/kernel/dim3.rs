@@ -31,3 +31,15 @@ pub fn spin_energy(inverse: InvInertia, rotation: Rot, w: Angular) -> f64 {
     let local = rotation.inverse_rotate(w);
     0.5 * f64::from(local.dot(inverse.inverse().apply(local)))
 }
+
+/// A closed box of 4 by 4 by 4 metres on y = 0: half its width, its walls by size and place, and the middles
+/// of its cells of a metre.
+pub fn container() -> (f32, Vec<(Vector, Vector)>, Vec<Vector>) {
+    let walls = [Vector::X, Vector::Y, Vector::Z].into_iter().flat_map(|axis| {
+        let size = Vector::ONE * 12.0 - axis * 8.0;
+        [-4.0, 4.0].map(|side| (size, Vector::Y * 2.0 + axis * side))
+    });
+    let cell = |i: i32| (i % 4) as f32 + 0.5;
+    let cells = (0..64).map(|i| Vector { x: cell(i) - 2.0, y: cell(i / 16), z: cell(i / 4) - 2.0 });
+    (2.0, walls.collect(), cells.collect())
+}

@@ -1,5 +1,6 @@
 //! Tests of the kernel's parts working together, written once for both dimensions.
 
+mod crowds;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;

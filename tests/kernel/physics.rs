@@ -219,28 +219,6 @@ fn a_free_swarm_keeps_its_momentum() {
 }
 
 #[test]
-fn bodies_in_one_place_come_apart_gently() {
-    let mut sim = Sim::new();
-    sim.gravity = Vector::ZERO;
-    for i in 0..100 {
-        sim.add(
-            BodyKind::Dynamic,
-            Shape::Cuboid(Cuboid { half: Vector::ONE * 0.5 }),
-            Vector::ZERO,
-            turned(0.01 * i as f32),
-        );
-    }
-    let mut fastest: f32 = 0.0;
-    for _ in 0..300 {
-        sim.step();
-        for v in &sim.bodies.velocities {
-            fastest = fastest.max(v.linear.length());
-        }
-    }
-    assert!(fastest.is_finite() && fastest < 40.0, "pushed apart at {fastest} m/s");
-}
-
-#[test]
 fn a_pile_falls_asleep_and_wakes_together() {
     let mut sim = Sim::new();
     sim.sleeping = true;

@@ -138,6 +138,14 @@ impl Sim {
         self.add(BodyKind::Dynamic, Shape::Cuboid(Cuboid { half }), position, Rot::IDENTITY)
     }
 
+    /// Gives a body another shape, and the mass of it.
+    pub fn reshape(&mut self, id: u32, shape: Shape) {
+        let mass = shape.mass_properties(1.0);
+        self.masses[id as usize] = (1.0 / mass.mass, inverse_inertia(&mass));
+        let def = ColliderDef { shape, ..self.colliders[id].def.clone() };
+        self.colliders.redefine(id, def, &mut self.bodies);
+    }
+
     pub fn floor(&mut self) -> u32 {
         let half = Vector::ONE * 200.0;
         self.add(BodyKind::Static, Shape::Cuboid(Cuboid { half }), Vector::Y * -200.0, Rot::IDENTITY)

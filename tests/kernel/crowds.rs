@@ -1,0 +1,191 @@
+//! Bodies deep in one another: they come apart without gaining speed, and what hits them still does.
+
+use super::dim::{container, sized, turned};
+use super::sim::Sim;
+use crate::kernel;
+use kernel::math::{Rot, Vector};
+use kernel::shape::{Ball, Cuboid, Shape};
+use kernel::table::BodyKind;
+
+fn ball(radius: f32) -> Shape {
+    Shape::Ball(Ball { radius })
+}
+
+fn block(half: f32) -> Shape {
+    Shape::Cuboid(Cuboid { half: Vector::ONE * half })
+}
+
+fn speed(sim: &Sim, id: u32) -> f32 {
+    sim.bodies.velocities[id as usize].linear.length()
+}
+
+/// The sum of the bodies' momenta; all are of density 1.
+fn momentum(sim: &Sim, ids: &[u32]) -> Vector {
+    ids.iter().fold(Vector::ZERO, |sum, &id| {
+        let mass = sim.colliders[id].def.shape.mass_properties(1.0).mass;
+        sum + sim.bodies.velocities[id as usize].linear * mass
+    })
+}
+
+/// A hundred bodies of one shape at one point, each turned further than the last. Neither their velocities
+/// nor what they move in a step may exceed the push-out speed.
+fn come_apart(shape: &Shape, angle: f32, substeps: u32) {
+    let mut sim = Sim::new();
+    sim.gravity = Vector::ZERO;
+    sim.substeps = substeps;
+    let ids: Vec<u32> = (0..100)
+        .map(|i| sim.add(BodyKind::Dynamic, shape.clone(), Vector::ZERO, turned(angle * i as f32)))
+        .collect();
+    let (mut fastest, mut moved): (f32, f32) = (0.0, 0.0);
+    for _ in 0..300 {
+        let before: Vec<_> = ids.iter().map(|id| sim.position(*id)).collect();
+        sim.step();
+        for (&id, before) in ids.iter().zip(before) {
+            fastest = fastest.max(speed(&sim, id));
+            moved = moved.max((sim.position(id) - before).to_local().length() / sim.dt);
+        }
+    }
+    let what = format!("{shape:?}, turned by {angle}, {substeps} substeps");
+    assert!(fastest <= 4.0 && moved <= 4.0 * 1.01, "{what}: apart at {fastest} m/s, moved at {moved} m/s");
+    let radius = ids.iter().fold(0.0, |far: f32, id| far.max(sim.position(*id).to_local().length()));
+    assert!(radius > 3.0, "{what}: they do come apart, {radius} m");
+    let p = momentum(&sim, &ids).length();
+    assert!(p < 1e-3, "{what}: momentum {p} out of nothing");
+}
+
+#[test]
+fn bodies_in_one_place_come_apart_gently() {
+    for substeps in [4, 6] {
+        for shape in [ball(0.5), block(0.5)] {
+            for angle in [0.0, 0.01] {
+                come_apart(&shape, angle, substeps);
+            }
+        }
+    }
+}
+
+#[test]
+fn bodies_in_one_place_on_a_floor_come_to_rest_near_it() {
+    let mut sim = Sim::new();
+    let floor = Shape::Cuboid(Cuboid { half: Vector::ONE * 200.0 });
+    sim.add_with(BodyKind::Static, floor, Vector::Y * -200.0, Rot::IDENTITY, 0.5, 0.0);
+    let ids: Vec<u32> = (0..20)
+        .map(|_| sim.add_with(BodyKind::Dynamic, block(0.5), Vector::Y * 0.5, Rot::IDENTITY, 0.5, 0.0))
+        .collect();
+    sim.steps(900);
+    for id in ids {
+        let p = sim.position(id).to_local();
+        assert!(p.y > 0.45 && p.length() < 12.0, "at {p:?}");
+        assert!(speed(&sim, id) < 0.1, "still at {} m/s", speed(&sim, id));
+    }
+}
+
+#[test]
+fn a_row_in_one_another_comes_apart_gently() {
+    let mut sim = Sim::new();
+    sim.gravity = Vector::ZERO;
+    let ids: Vec<u32> =
+        (0..20).map(|i| sim.cuboid(Vector::ONE * 0.5, Vector::X * (0.8 * i as f32))).collect();
+    for _ in 0..600 {
+        sim.step();
+        for &id in &ids {
+            assert!(speed(&sim, id) <= 4.0, "{id} is off at {} m/s", speed(&sim, id));
+        }
+    }
+    let length = sim.position(ids[19]).x - sim.position(ids[0]).x;
+    assert!(length > 0.95 * 19.0, "overlap is left in {length} m");
+}
+
+#[test]
+fn a_ball_deep_in_a_box_transfers_its_momentum() {
+    let mut sim = Sim::new();
+    sim.gravity = Vector::ZERO;
+    let block = sim.cuboid(Vector::ONE * 0.5, Vector::ZERO);
+    let ball = sim.ball(0.25, Vector::X * -0.5);
+    sim.bodies.velocities[ball as usize].linear = Vector::X * 40.0;
+    let before = momentum(&sim, &[ball, block]);
+    sim.step();
+    let gap = sim.bodies.velocities[block as usize].linear - sim.bodies.velocities[ball as usize].linear;
+    assert!(gap.length() < 1e-3, "without restitution they go on together: {gap:?}");
+    sim.steps(59);
+    let change = (momentum(&sim, &[ball, block]) - before).length();
+    assert!(change < 1e-4 * before.length(), "momentum changed by {change} of {before:?}");
+    let apart = (sim.position(block) - sim.position(ball)).to_local().length();
+    assert!(apart > 0.74, "they did not come apart: {apart}");
+}
+
+#[test]
+fn a_fast_ball_transfers_its_momentum_to_a_row_of_boxes() {
+    // From just before the first box, from deep in it, and with the boxes deep in one another.
+    for (start, pitch) in [(-1.5, 1.0), (-0.6, 1.0), (-0.6, 0.7)] {
+        let mut sim = Sim::new();
+        sim.gravity = Vector::ZERO;
+        let mut ids: Vec<u32> =
+            (0..3).map(|i| sim.cuboid(Vector::ONE * 0.5, Vector::X * (pitch * i as f32))).collect();
+        ids.push(sim.ball(0.4, Vector::X * start));
+        sim.bodies.velocities[ids[3] as usize].linear = Vector::X * 60.0;
+        let (before, energy) = (momentum(&sim, &ids), sim.energy());
+        for _ in 0..60 {
+            sim.step();
+            let change = (momentum(&sim, &ids) - before).length();
+            assert!(change < 1e-4 * before.length(), "momentum changed by {change} of {before:?}");
+        }
+        assert!(sim.energy() < energy, "{} J from {energy} J", sim.energy());
+        let x = |id: u32| sim.bodies.velocities[id as usize].linear.x;
+        assert!(x(ids[2]) > 0.9 * x(ids[0]) && x(ids[0]) > 0.9 * x(ids[3]), "all are driven on, in order");
+    }
+}
+
+#[test]
+fn bodies_that_grow_in_a_full_container_do_not_explode() {
+    let mut sim = Sim::new();
+    let (half, walls, cells) = container();
+    for (size, place) in walls {
+        sim.add(BodyKind::Static, Shape::Cuboid(Cuboid { half: size * 0.5 }), place, Rot::IDENTITY);
+    }
+    let shape = |i: usize, radius: f32| if i.is_multiple_of(2) { ball(radius) } else { block(radius) };
+    let place = |(i, cell): (usize, &Vector)| sim.add(BodyKind::Dynamic, shape(i, 0.2), *cell, Rot::IDENTITY);
+    let ids: Vec<u32> = cells.iter().enumerate().map(place).collect();
+    let fastest = |sim: &Sim| {
+        for &id in &ids {
+            let p = sim.position(id).to_local() - Vector::Y * half;
+            assert!(p.abs().max_element() < half, "a body left: {p:?} from the middle");
+        }
+        ids.iter().fold(0.0, |most: f32, id| most.max(speed(sim, *id)))
+    };
+    for step in 0..600 {
+        // From loose to half as much again as there is room for, in five seconds.
+        for (i, &id) in ids.iter().enumerate().filter(|_| step < 300) {
+            sim.reshape(id, shape(i, 0.2 + 0.4 * step as f32 / 300.0));
+        }
+        sim.step();
+        // What falls from lid to floor is faster.
+        let speed = fastest(&sim);
+        assert!(speed < (20.0 * 2.0 * half).sqrt(), "flung at {speed} m/s in step {step}");
+    }
+    let end = fastest(&sim);
+    assert!(end < 0.5, "it does not calm down: {end} m/s");
+}
+
+#[test]
+fn a_crowd_has_the_same_bits_with_four_lanes_and_with_as_many_as_there_are() {
+    let run = |narrow: bool| {
+        let mut sim = Sim::new();
+        if narrow {
+            sim.set_narrow();
+        }
+        sim.floor();
+        for i in 0..40 {
+            let shape = if i % 3 == 0 { ball(0.4) } else { block(0.5) };
+            let id =
+                sim.add(BodyKind::Dynamic, shape, sized(0.01 * i as f32, 1.0, 0.0), turned(0.1 * i as f32));
+            if i == 7 {
+                sim.locks[id as usize] = kernel::math::AxisLocks(0b100_000);
+            }
+        }
+        sim.steps(120);
+        let velocities = sim.bodies.velocities.iter().map(|v| format!("{v:?}"));
+        sim.bodies.poses.iter().map(|p| format!("{p:?}")).chain(velocities).collect::<Vec<_>>()
+    };
+    assert_eq!(run(true), run(false));
+}
