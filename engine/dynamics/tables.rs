@@ -21,6 +21,8 @@ pub(crate) struct Bodies {
     pub(crate) kinematic: BitSet,
     /// The bodies with a solver row in this step, in the order of their rows from row 1.
     pub(crate) listed: Vec<u32>,
+    /// The entities of a few bodies that are looked up one by one, kept for its memory.
+    pub(crate) some: Vec<Entity>,
 }
 
 /// All colliders in the simulation, and the trees they are in.

@@ -107,11 +107,9 @@ fn a_collider_grows_by_its_scale_too() {
     assert!((lab.at(body).y - 1.0).abs() < 0.02, "twice as large it rests at {:?}", lab.at(body));
 }
 
-/// A gap: a hundred bodies in one place are to part at no more than the push-out speed. A pair alone does, see
-/// below; in the crowd balls reach 1.7 times that speed, boxes 5.8 times.
 #[test]
 fn a_hundred_bodies_in_one_place_come_apart_gently() {
-    for (kind, times) in [(0, 2.0), (1, 6.0)] {
+    for kind in [0, 1] {
         let mut lab = Lab::weightless();
         let bodies: Vec<Entity> = (0..100)
             .map(|i| {
@@ -131,7 +129,7 @@ fn a_hundred_bodies_in_one_place_come_apart_gently() {
         let push_out =
             lab.app.world().resource::<avian::dynamics::solver::SolverConfig>().max_overlap_solve_speed;
         println!("kind {kind}: apart at up to {fastest} m/s of {push_out}");
-        assert!(fastest <= times * push_out, "pushed apart at {fastest} m/s");
+        assert!(fastest <= push_out, "pushed apart at {fastest} m/s");
     }
 }
 
@@ -178,7 +176,6 @@ fn two_bodies_in_each_other_part_at_no_more_than_the_push_out_speed() {
     assert!((lab.at(pair[1]) - lab.at(pair[0])).length() > 0.99, "they did not come apart");
 }
 
-/// A gap: pushed apart in a row, the outermost of the twenty boxes slides 31 m in the plane.
 #[test]
 fn bodies_may_be_spawned_in_each_other_on_a_floor() {
     let mut lab = Lab::new();
@@ -186,10 +183,10 @@ fn bodies_may_be_spawned_in_each_other_on_a_floor() {
     let bodies: Vec<Entity> = (0..20)
         .map(|_| lab.spawn((RigidBody::Dynamic, growing(1, 0.5), Transform::from_xyz(0.0, 0.5, 0.0))))
         .collect();
-    lab.seconds(10.0);
+    lab.seconds(15.0);
     for &body in &bodies {
         let p = lab.at(body);
-        assert!(p.is_finite() && p.y > 0.45 && p.length() < 60.0, "at {p:?}");
+        assert!(p.is_finite() && p.y > 0.45 && p.length() < 12.0, "at {p:?}");
         assert!(lab.velocity(body).length() < 0.2, "still at {:?} m/s", lab.velocity(body));
     }
 }

@@ -210,12 +210,8 @@ pub(crate) fn wake_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
 }
 
 /// Reads pose and velocity of every awake body, before anything is computed from them.
-pub(crate) fn read_awake(
-    query: Query<(Entity, StateInput)>,
-    mut tables: Tables,
-    mut commands: Commands,
-    mut some: Local<Vec<Entity>>,
-) {
+pub(crate) fn read_awake(query: Query<(Entity, StateInput)>, mut tables: Tables, mut commands: Commands) {
+    let mut some = core::mem::take(&mut tables.bodies.some);
     let Bodies { table, entities, .. } = &*tables.bodies;
     let minority = is_minority(table.awake_count(), query.iter().size_hint());
     some.clear();
@@ -237,10 +233,11 @@ pub(crate) fn read_awake(
         }
     };
     if minority {
-        query.iter_many(&*some).for_each(read);
+        query.iter_many(&some).for_each(read);
     } else {
         query.iter().for_each(&mut read);
     }
+    tables.bodies.some = some;
 }
 
 /// Gives every awake body its row and fills it.
@@ -254,10 +251,9 @@ pub(crate) fn gather_bodies(
     mut bodies: ResMut<Bodies>,
     mut diagnostics: ResMut<SolverDiagnostics>,
     mut commands: Commands,
-    mut some: Local<Vec<Entity>>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let Bodies { table, listed, entities, .. } = &mut *bodies;
+    let Bodies { table, listed, entities, some, .. } = &mut *bodies;
     let kinematic = table.assign_rows(listed);
     let count = listed.len();
     let rows = &mut solver.kernel.bodies;

@@ -61,10 +61,9 @@ pub(crate) fn scatter_bodies(
     mut bodies: ResMut<Bodies>,
     mut diagnostics: ResMut<SolverDiagnostics>,
     mut commands: Commands,
-    mut some: Local<Vec<Entity>>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let Bodies { table, listed, entities, .. } = &mut *bodies;
+    let Bodies { table, listed, entities, some, .. } = &mut *bodies;
     let scatter = Scatter { rows: &solver.kernel.bodies, dt: time.delta_secs(), unit: unit.metres() };
     if is_minority(listed.len(), query.iter().size_hint()) {
         some.clear();
