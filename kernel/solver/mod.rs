@@ -1,7 +1,7 @@
 //! The TGS-Soft contact solver: dense body rows, wide contact rows, and the stages of a substep.
 //!
 //! One step is: fill [`Solver::bodies`], build the rows from touching manifolds, then per substep
-//! integrate velocities → warm start → solve with soft bias → integrate positions → relax; after the
+//! integrate velocities → impacts → warm start → solve with soft bias → integrate positions → relax; after the
 //! last one restitution, and the impulses go back into the manifolds.
 //!
 //! The method is Erin Catto's (Solver2D, Box2D v3, Box3D): soft constraints, relaxation, positions kept
@@ -21,12 +21,14 @@ mod prepare;
 mod row;
 mod softness;
 mod stages;
+mod view;
 
 pub use batch::{Batch, PointClass, RowSet};
-pub use body::{BodyRows, Motion, RowView};
+pub use body::{BodyRows, Motion};
 pub use dim::{BodyRow, MassRow, Twist};
 pub use inv_mass::InvMass;
 pub use prepare::{ContactSource, RowInput};
 pub use row::{ContactRow, DeepRow, PointRow, RestitutionRow};
 pub use softness::{Softness, SubstepParams};
 pub use stages::{Solver, Width};
+pub use view::RowView;

@@ -365,7 +365,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             let s = self.points[i].separation + moved;
             let approach = speeds[i] + bounce.gained;
             let soon = (s + speeds[i] * N::splat(params.h)).lt(N::ZERO);
-            let hit = N::and(N::and(fast, approach.lt(threshold)), soon);
+            let closing = N::and(approach.lt(threshold), speeds[i].lt(N::ZERO));
+            let hit = N::and(N::and(fast, closing), soon);
             let hit = N::and(hit, N::ZERO.lt(self.points[i].mass));
             let (speed, ahead) =
                 bounce.rebound(s.max(N::ZERO), -approach, -speeds[i], N::splat(params.inv_h));

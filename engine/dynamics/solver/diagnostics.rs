@@ -33,7 +33,7 @@ pub struct SolverDiagnostics {
     pub store_impulses: Duration,
     /// Continuous collision detection.
     pub swept_ccd: Duration,
-    /// How many rows the contacts were solved in; a row holds up to four contacts.
+    /// How many rows the contacts were solved in; a row holds up to eight contacts.
     pub contact_constraint_count: u32,
 }
 
