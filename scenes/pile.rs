@@ -15,7 +15,8 @@ pub const WIDTH: f32 = 12.0;
 /// Pours `layers` layers of bodies, one body of each kind in turn, into a container of [`WIDTH`].
 pub fn mixed(world: &mut World, layers: u32) {
     set_conditions(world);
-    spawn_container(world, WIDTH, 8.0);
+    // Higher than the heap: nothing is to roll off.
+    spawn_container(world, WIDTH, 12.0);
     let mut rng = Rng::new(42);
     let (across, deep) = dim::PILE_GRID;
     let mut kind = 0;
