@@ -6,4 +6,3 @@ mod crowds;
 mod dim;
 mod physics;
 mod sim;
-mod unrest;
