@@ -70,6 +70,9 @@ pub struct Manifold {
     pub points: [ManifoldPoint; MAX_POINTS],
     /// How many points there are.
     pub count: u32,
+    /// How far below the surfaces of A and B their cores are, in metres. As a round shape turns, the contact
+    /// stays where it is on the surface, and keeps its place against the core only.
+    pub rounding: [f32; 2],
     /// The friction impulse in world axes, N·s; the next step starts from it.
     pub friction_impulse: Vector,
     /// The impulse of the friction against turning about the normal, N·m·s; 0 in 2D.

@@ -175,8 +175,9 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         let manifolds = core::iter::once(&mut contact.manifold).chain(extra.iter_mut());
         for m in manifolds {
             let along = change.dot(m.normal);
+            let cores = m.rounding.map(|r| m.normal * r);
             for p in &mut m.points[..m.count as usize] {
-                let (ra, rb) = (p.anchor, p.anchor - offset);
+                let (ra, rb) = (p.anchor - cores[0], p.anchor - offset + cores[1]);
                 let (ma, mb) = (ra.cross(m.normal), rb.cross(m.normal));
                 let turn = world[1].shift_along(rb, mb, m.normal) - world[0].shift_along(ra, ma, m.normal);
                 p.separation = p.frozen_separation + along + turn;
@@ -225,6 +226,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         let mut first = Manifold::default();
         for (i, local) in scratch.local.iter().enumerate() {
             let mut m = to_world(local, pose_a.rotation, to_shape, margin);
+            m.rounding = [ca.def.shape.rounding(), cb.def.shape.rounding()];
             if !m.normal.is_finite()
                 || m.points().iter().any(|p| !p.separation.is_finite() || !p.anchor.is_finite())
             {

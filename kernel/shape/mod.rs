@@ -100,6 +100,17 @@ impl Shape {
         }
     }
 
+    /// The radius that the shape adds to its core, in metres: the surface is that of a ball rolling around a
+    /// point, a segment or a polygon. Zero for sharp and foreign shapes.
+    pub fn rounding(&self) -> f32 {
+        match self {
+            Self::Ball(s) => s.radius,
+            Self::Capsule(s) => s.radius,
+            Self::Hull(s) => s.radius(),
+            Self::Cuboid(_) | Self::Triangle(_) | Self::Segment(_) | Self::HalfSpace(_) | Self::Foreign(_) => 0.0,
+        }
+    }
+
     /// Where a ray from `origin` along the unit vector `direction` first meets the shape within
     /// `max_distance`, all in the shape's frame.
     ///

@@ -220,6 +220,7 @@ impl<N: Lane, const P: usize> DeepRow<N, P> {
 struct Fill<N, const P: usize> {
     friction_impulse: Vector<N>,
     weights: [N; P],
+    rounding: [N; 2],
     free: [Vector<N>; 2],
     dominated: [N; 2],
 }
@@ -230,6 +231,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         Self {
             friction_impulse: Vector::ZERO,
             weights: [N::ZERO; P],
+            rounding: [N::ZERO; 2],
             free: [Vector::splat(Vector::ONE); 2],
             dominated: [N::ZERO; 2],
         }
@@ -300,6 +302,9 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         row.normal.set(lane, manifold.normal);
         row.offset.set(lane, offset);
         self.friction_impulse.set(lane, manifold.friction_impulse * params.warm_start);
+        for (to, from) in self.rounding.iter_mut().zip(manifold.rounding) {
+            to.set(lane, from);
+        }
         row.twist.set_impulse(lane, manifold.twist_impulse * params.warm_start);
         for (i, p) in manifold.points().iter().enumerate() {
             let point = &mut row.points[i];
@@ -337,8 +342,12 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let n = row.normal;
         let linear = n.dot(row.inv_mass[0].apply(n)) + n.dot(row.inv_mass[1].apply(n));
         let (mut total, mut center) = (N::ZERO, Vector::ZERO);
+        let to_surface = n * self.rounding[0];
+        row.rounding = self.rounding[0] + self.rounding[1];
+        row.offset -= n * row.rounding;
         for i in 0..P {
             let point = &mut row.points[i];
+            point.anchor -= to_surface;
             let (ma, mb) = (point.anchor.cross(n), (point.anchor - row.offset).cross(n));
             let k = linear + ma.dot(row.inv_inertia[0].apply(ma)) + mb.dot(row.inv_inertia[1].apply(mb));
             let present = N::and(N::ZERO.lt(k), N::ZERO.lt(point.mass));
@@ -348,19 +357,21 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             center += point.anchor * self.weights[i];
         }
         let total = N::select(N::ZERO.lt(total), total, N::ONE);
-        row.center = center * (N::ONE / total);
+        let core = center * (N::ONE / total);
+        row.center = core + to_surface;
         let frame = TangentFrame::new(n);
-        let arms = [(row.inv_inertia[0], row.center), (row.inv_inertia[1], row.center - row.offset)];
+        let [ra, rb] = row.surface_arms();
+        let arms = [(row.inv_inertia[0], ra), (row.inv_inertia[1], rb)];
         let [m0, m1] = row.inv_mass;
         row.tangent_mass = frame.mass(m0.diagonal() + m1.diagonal(), arms);
         row.tangent_impulse = frame.project(self.friction_impulse);
-        let mut anchors = [row.center; P];
+        let mut anchors = [core; P];
         for i in 0..P {
             // A point that is not there must not add a lever.
             let there = N::select(N::ZERO.lt(self.weights[i]), N::ONE, N::ZERO);
-            anchors[i] += (row.points[i].anchor - row.center) * there;
+            anchors[i] += (row.points[i].anchor - core) * there;
         }
-        row.twist.prepare(n, row.center, anchors, row.inv_inertia);
+        row.twist.prepare(n, core, anchors, row.inv_inertia);
     }
 }
 

@@ -7,7 +7,8 @@ use crate::math::{Angular, Ids, InvInertia, Lane, Tangent, TangentFrame, Tangent
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct PointRow<N> {
-    /// From body A's centre of mass when the step begins; from body B's it is this less the row's offset.
+    /// From body A's centre of mass to A's core (see [`Shape::rounding`](crate::shape::Shape::rounding)) when
+    /// the step begins; from body B's to B's core it is this less the row's offset.
     pub anchor: Vector<N>,
     /// The separation when the step begins, in metres.
     pub separation: N,
@@ -32,8 +33,10 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
     pub inv_inertia: [InvInertia<N>; 2],
     /// From A to B.
     pub normal: Vector<N>,
-    /// From A's to B's centre of mass when the anchors were found.
+    /// Takes a point's anchor from A's centre of mass to one from B's.
     pub offset: Vector<N>,
+    /// How far A's surface is from A's core, plus B's from B's, in metres.
+    pub rounding: N,
     /// The mixed friction coefficient.
     pub friction: N,
     /// The fastest that overlap is pushed out, m/s.
@@ -99,6 +102,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Default for ContactRow<N, M, P> {
             inv_inertia: [InvInertia::ZERO; 2],
             normal: Vector::ZERO,
             offset: Vector::ZERO,
+            rounding: N::ZERO,
             friction: N::ZERO,
             push_speed: N::ZERO,
             surface_velocity: Tangent::ZERO,
@@ -167,7 +171,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let mut pair = Pair::load(rows, &self.ids);
         // All impulses of the manifold as one impulse and one moment for each body.
         let mut impulse = TangentFrame::new(self.normal).expand(self.tangent_impulse);
-        let mut moments = [self.center.cross(impulse), (self.center - self.offset).cross(impulse)];
+        let [ra, rb] = self.surface_arms();
+        let mut moments = [ra.cross(impulse), rb.cross(impulse)];
         for point in &self.points {
             let p = self.normal * point.impulse;
             impulse += p;
@@ -287,10 +292,16 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
     }
 
+    /// The friction centre from either body's centre of mass.
+    #[inline(always)]
+    pub(super) fn surface_arms(&self) -> [Vector<N>; 2] {
+        [self.center, self.center - self.offset - self.normal * self.rounding]
+    }
+
     /// How fast B's surface slides over A's at the friction centre, less the velocity it is driven to.
     #[inline(always)]
     fn slip(&self, pair: &Pair<N>, frame: &TangentFrame<N>) -> Tangent<N> {
-        let (ra, rb) = (self.center, self.center - self.offset);
+        let [ra, rb] = self.surface_arms();
         let relative = pair.v[1] + pair.w[1].cross(rb) - pair.v[0] - pair.w[0].cross(ra);
         frame.project(relative) - self.surface_velocity
     }
@@ -311,7 +322,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         for impulse in impulses {
             sum += impulse;
         }
-        let (ra, rb) = (self.center, self.center - self.offset);
+        let [ra, rb] = self.surface_arms();
         let slip = self.slip(pair, &frame);
         let new = (self.tangent_impulse - self.tangent_mass.apply(slip)).clamp_length(self.friction * sum);
         let impulse = frame.expand(new - self.tangent_impulse);
@@ -415,7 +426,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let frame = TangentFrame::new(n);
         let wanted = Tangent::ZERO - self.tangent_mass.apply(self.slip(pair, &frame));
         let rubbed = frame.expand(wanted.clamp_length(self.friction * sum));
-        let (ra, rb) = (self.center, self.center - self.offset);
+        let [ra, rb] = self.surface_arms();
         self.push(pair, rubbed, [ra.cross(rubbed), rb.cross(rubbed)]);
     }
 

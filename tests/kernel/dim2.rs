@@ -23,6 +23,11 @@ pub fn sized(x: f32, y: f32, _depth: f32) -> Vector {
     Vector { x, y }
 }
 
+/// An angular velocity in the plane.
+pub fn spin(z: f32) -> Angular {
+    Angular { z }
+}
+
 /// The moment of inertia of a solid ball over m r².
 pub const BALL_INERTIA: f32 = 0.5;
 

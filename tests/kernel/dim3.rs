@@ -18,6 +18,11 @@ pub fn spin_of(w: Angular) -> f32 {
     w.z
 }
 
+/// An angular velocity in the plane of x and y.
+pub fn spin(z: f32) -> Angular {
+    Vector { x: 0.0, y: 0.0, z }
+}
+
 /// A box of the given size.
 pub fn sized(x: f32, y: f32, depth: f32) -> Vector {
     Vector { x, y, z: depth }

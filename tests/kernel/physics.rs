@@ -1,10 +1,10 @@
 //! Closed forms and stability, on the kernel alone.
 
-use super::dim::{BALL_INERTIA, sized, spin_of, turned};
+use super::dim::{BALL_INERTIA, sized, spin, spin_of, turned};
 use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Rot, Vector};
-use kernel::shape::{Ball, Cuboid, Shape};
+use kernel::shape::{Ball, Capsule, Cuboid, Shape};
 use kernel::table::BodyKind;
 
 #[test]
@@ -111,6 +111,53 @@ fn a_ball_rolls_down_as_a_solid_ball_does() {
     assert!((f64::from(v1 - v0) - want).abs() < 0.01 * want, "{} is not {want}", v1 - v0);
     let w = spin_of(sim.bodies.velocities[id as usize].angular);
     assert!((w.abs() * 0.5 - v1).abs() < 0.01 * v1, "it rolls without slipping");
+}
+
+#[test]
+fn round_shapes_do_not_sink_as_they_turn() {
+    let ball = Shape::Ball(Ball { radius: 0.5 });
+    let axis = sized(0.0, 0.0, 0.6);
+    let roller = Shape::Capsule(Capsule { a: axis * -1.0, b: axis, radius: 0.5 });
+    for shape in [ball, roller] {
+        // Over a floor that it slides on freely, and on one that it rolls on.
+        for friction in [0.0, 0.5] {
+            let mut sim = Sim::new();
+            let floor = Shape::Cuboid(Cuboid { half: Vector::ONE * 200.0 });
+            sim.add_with(BodyKind::Static, floor, Vector::Y * -200.0, Rot::IDENTITY, friction, 0.0);
+            let y = Vector::Y * 0.5;
+            let id = sim.add_with(BodyKind::Dynamic, shape.clone(), y, Rot::IDENTITY, friction, 0.0);
+            sim.steps(30);
+            let rest = sim.position(id).y;
+            sim.bodies.velocities[id as usize].linear = Vector::X * 7.0;
+            sim.bodies.velocities[id as usize].angular = spin(-14.0);
+            for _ in 0..120 {
+                sim.step();
+                let (y, v) = (sim.position(id).y, sim.bodies.velocities[id as usize]);
+                assert!((y - rest).abs() < 1e-4, "sank from {rest} to {y}");
+                assert!(v.linear.y.abs() < 1e-3 && (v.linear.x - 7.0).abs() < 0.01, "{v:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ball_that_slides_comes_to_roll_in_time() {
+    // It slows by μ g until its surface stands still, at v₀ / (1 + k).
+    let (mu, v0) = (0.2f32, 7.0f32);
+    let mut sim = Sim::new();
+    let floor = Shape::Cuboid(Cuboid { half: Vector::ONE * 200.0 });
+    sim.add_with(BodyKind::Static, floor, Vector::Y * -200.0, Rot::IDENTITY, mu, 0.0);
+    let ball = Shape::Ball(Ball { radius: 0.5 });
+    let id = sim.add_with(BodyKind::Dynamic, ball, Vector::Y * 0.5, Rot::IDENTITY, mu, 0.0);
+    sim.steps(15);
+    sim.bodies.velocities[id as usize].linear = Vector::X * v0;
+    let rolling = v0 / (1.0 + BALL_INERTIA);
+    for i in 1..=120 {
+        sim.step();
+        let want = rolling.max(v0 - mu * 10.0 * i as f32 / 60.0);
+        let got = sim.bodies.velocities[id as usize].linear.x;
+        assert!((got - want).abs() < 5e-3, "step {i}: {got} m/s, not {want}");
+    }
 }
 
 #[test]
