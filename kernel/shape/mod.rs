@@ -107,7 +107,11 @@ impl Shape {
             Self::Ball(s) => s.radius,
             Self::Capsule(s) => s.radius,
             Self::Hull(s) => s.radius(),
-            Self::Cuboid(_) | Self::Triangle(_) | Self::Segment(_) | Self::HalfSpace(_) | Self::Foreign(_) => 0.0,
+            Self::Cuboid(_)
+            | Self::Triangle(_)
+            | Self::Segment(_)
+            | Self::HalfSpace(_)
+            | Self::Foreign(_) => 0.0,
         }
     }
 

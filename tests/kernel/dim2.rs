@@ -44,3 +44,8 @@ pub fn container() -> (f32, Vec<(Vector, Vector)>, Vec<Vector>) {
     let cells = (0..64).map(|i| Vector { x: (i % 8) as f32 - 3.5, y: (i / 8) as f32 + 0.5 });
     (4.0, walls.map(|(size, x, y)| (size, Vector { x, y })).into(), cells.collect())
 }
+
+/// A position's part across the plane of x and y.
+pub fn across(_: Vector) -> f32 {
+    0.0
+}

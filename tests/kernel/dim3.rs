@@ -48,3 +48,8 @@ pub fn container() -> (f32, Vec<(Vector, Vector)>, Vec<Vector>) {
     let cells = (0..64).map(|i| Vector { x: cell(i) - 2.0, y: cell(i / 16), z: cell(i / 4) - 2.0 });
     (2.0, walls.collect(), cells.collect())
 }
+
+/// A position's part across the plane of x and y.
+pub fn across(p: Vector) -> f32 {
+    p.z
+}

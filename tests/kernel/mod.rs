@@ -6,3 +6,4 @@ mod crowds;
 mod dim;
 mod physics;
 mod sim;
+mod unrest;

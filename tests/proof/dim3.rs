@@ -66,11 +66,8 @@ pub fn upright() -> LockedAxes {
     LockedAxes::new().lock_rotation_x().lock_rotation_y().lock_rotation_z()
 }
 
-/// How far the top of a settled pyramid may still move, in metres.
-///
-/// A gap: one hundredth of a box is what is asked for. The top of a wall one box thick is 2.6 cm off after ten
-/// seconds, across the wall, and 3.2 cm after fifty, most of it along the wall.
-pub const PYRAMID_UNREST: f32 = 0.05;
+/// How far the top of a settled pyramid may still move, in metres: one hundredth of a box.
+pub const PYRAMID_UNREST: f32 = 0.01;
 
 /// Layers of a heap of about a hundred pieces.
 pub const PILE_LAYERS: u32 = 3;
