@@ -9,4 +9,4 @@ mod update;
 pub use link::{Link, Status};
 pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
 pub use table::ContactTable;
-pub use update::{ManifoldSource, NarrowPhase, Scratch};
+pub use update::{Found, ManifoldSource, NarrowPhase, Scratch};

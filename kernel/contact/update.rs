@@ -6,8 +6,8 @@
 //! so errors cannot add up. Besides the time saved, frozen anchors are what lets tall towers stand.
 
 use super::record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
-use crate::manifold::{self, LocalManifold};
-use crate::math::{Angular, Rot, Vector, max, min};
+use crate::manifold::{self, FeatureCache, LocalManifold};
+use crate::math::{Angular, MAX_POINTS, Rot, Vector, max, min};
 use crate::shape::Shape;
 use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity};
 
@@ -70,6 +70,9 @@ const DEEP: f32 = 0.1;
 /// bodies would fly apart.
 const NO_LONGER_DEEP: f32 = 0.01;
 
+/// The manifold of small bodies is recycled over this share of the smaller one's reach at most.
+const RECYCLE_SHARE: f32 = 0.25;
+
 /// Bodies that turned further than this since the manifold was computed do not recycle: cos 10°.
 const RECYCLE_COS: f32 = 0.985;
 
@@ -91,15 +94,13 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         if recycled { Found::Recycled } else { Found::Computed }
     }
 
-    /// Whether the shapes overlap by more than a share of the smaller one's reach. Half-spaces reach
-    /// nowhere, and count by the other side.
+    /// Whether the shapes overlap by more than a share of the smaller one's reach.
     fn is_deep(&self, contact: &Contact) -> bool {
         let deepest = contact.manifold.points().iter().fold(0.0, |d, p| min(d, p.separation));
         if deepest == 0.0 {
             return false;
         }
-        let [a, b] = contact.colliders.map(|c| self.colliders.reaches[c as usize].extent);
-        let reach = if a == 0.0 || b == 0.0 { max(a, b) } else { min(a, b) };
+        let reach = smaller(contact.colliders.map(|c| self.colliders.reaches[c as usize].extent));
         let limit = if contact.flags.has(ContactFlags::DEEP) { NO_LONGER_DEEP } else { DEEP };
         deepest < -limit * reach
     }
@@ -160,10 +161,11 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         let shift = poses[0].rotation.inverse_rotate(now) - rotations[0].inverse_rotate(offset);
         let relative = |of: [Rot; 2]| of[0].inverse().mul(of[1]);
         let angle: Angular = relative(rotations).difference(relative(poses.map(|p| p.rotation)));
-        let allowed = match contact.flags.has(ContactFlags::TOUCHING) {
-            true => self.recycle_distance,
-            false => min(self.recycle_distance, self.speculative),
-        };
+        let mut allowed = min(self.recycle_distance, RECYCLE_SHARE * smaller(reaches.map(|r| r.extent)));
+        if contact.manifold.count < MAX_POINTS as u32 {
+            // Points may be missing that were too far apart to be found; none of them may close in this step.
+            allowed = min(allowed, prediction - self.closing(contact, &reaches));
+        }
         let moved = shift.length() + max(reaches[0].turning, reaches[1].turning) * angle.length();
         // A NaN fails the comparison.
         if !(moved < allowed) {
@@ -197,6 +199,11 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         let [a, b] = contact.colliders;
         let (ca, cb) = (&self.colliders[a], &self.colliders[b]);
         let margin = ca.def.margin + cb.def.margin;
+        let revisions = self.revisions(contact, poses);
+        if contact.revisions != revisions {
+            // What is remembered of the features may be of other shapes.
+            contact.cache = FeatureCache::NONE;
+        }
         let reach = self.prediction(contact);
         let prediction = reach + margin;
         let (pose_a, pose_b) = (&self.colliders.poses[a as usize], &self.colliders.poses[b as usize]);
@@ -244,11 +251,18 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         }
         contact.manifold = first;
         contact.frozen = frozen;
-        contact.revisions = self.revisions(contact, poses);
+        contact.revisions = revisions;
         let touching = contact.manifold.count > 0 || !scratch.extra.is_empty();
         contact.flags.set(ContactFlags::TOUCHING, touching);
         let recyclable = self.recycle_distance > 0.0 && !contact.flags.has(ContactFlags::FOREIGN);
         contact.flags.set(ContactFlags::FROZEN, recyclable);
+    }
+
+    /// How far the surfaces of a contact may close in this step, in metres.
+    fn closing(&self, contact: &Contact, reaches: &[&Reach; 2]) -> f32 {
+        let [a, b] = [self.velocity(contact, 0), self.velocity(contact, 1)];
+        let turning = reaches[0].turning * a.angular.length() + reaches[1].turning * b.angular.length();
+        ((b.linear - a.linear).length() + turning) * self.dt
     }
 
     /// How far apart surfaces may be to count as a contact: as far as they can close in this step, but
@@ -260,6 +274,11 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
             (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;
         max(self.tolerance, min(max(self.speculative, closing), limit))
     }
+}
+
+/// The smaller of two reaches. Half-spaces reach nowhere, and count by the other side.
+fn smaller([a, b]: [f32; 2]) -> f32 {
+    if a == 0.0 || b == 0.0 { max(a, b) } else { min(a, b) }
 }
 
 /// A manifold in world axes, with anchors from body A's centre of mass.

@@ -281,7 +281,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
     fn dominate(&mut self, bodies: &BodyTable, contact: &Contact, lane: usize) {
         let [a, b] = contact.bodies;
         if a != NONE && b != NONE {
-            let (a, b) = (bodies[a].dominance, bodies[b].dominance);
+            let (a, b) = (bodies[a].effective_dominance(), bodies[b].effective_dominance());
             if a > b {
                 self.dominated[0].set(lane, 1.0);
             } else if b > a {

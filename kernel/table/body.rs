@@ -23,7 +23,7 @@ pub struct Body {
     pub kind: BodyKind,
     /// Whether it takes part in steps. Static bodies are never awake.
     pub awake: bool,
-    /// Higher dominance acts on lower as if it could not be moved.
+    /// Among dynamic bodies, higher dominance acts on lower as if it could not be moved.
     pub dominance: i8,
     /// The centre of mass in the body's frame, in metres.
     pub local_center: Vector,
@@ -31,6 +31,13 @@ pub struct Body {
     pub first_collider: u32,
     /// Seconds for which it has been slow enough to sleep.
     pub sleep_timer: f32,
+}
+
+impl Body {
+    /// Static and kinematic bodies dominate whatever number a dynamic one has.
+    pub fn effective_dominance(&self) -> i16 {
+        if self.kind == BodyKind::Dynamic { i16::from(self.dominance) } else { i16::from(i8::MAX) + 1 }
+    }
 }
 
 /// Where a body is, and what else the narrow phase asks of a body for every contact: one cache line.

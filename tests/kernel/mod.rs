@@ -5,5 +5,6 @@ mod crowds;
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 mod physics;
+mod recycling;
 mod sim;
 mod unrest;

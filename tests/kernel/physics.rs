@@ -357,6 +357,24 @@ fn a_kinematic_floor_carries_and_is_not_moved() {
 }
 
 #[test]
+fn a_dominant_body_stands_on_what_cannot_be_moved() {
+    for kind in [BodyKind::Static, BodyKind::Kinematic] {
+        let mut sim = Sim::new();
+        let half = sized(5.0, 0.5, 5.0);
+        sim.add(kind, Shape::Cuboid(Cuboid { half }), Vector::Y * -0.5, Rot::IDENTITY);
+        let id = sim.cuboid(Vector::ONE * 0.5, Vector::Y * 0.5);
+        let yielding = sim.cuboid(Vector::ONE * 0.5, Vector::Y * 1.5);
+        sim.bodies[id].dominance = 1;
+        sim.bodies[yielding].dominance = -3;
+        sim.bodies.any_dominance = true;
+        sim.steps(120);
+        let (below, above) = (sim.position(id).y, sim.position(yielding).y);
+        assert!((below - 0.5).abs() < 0.01, "on what is {kind:?} it stands at {below}");
+        assert!((above - 1.5).abs() < 0.01, "on it stands what yields, at {above}");
+    }
+}
+
+#[test]
 fn a_body_held_along_an_axis_only_moves_along_the_others() {
     let mut sim = Sim::new();
     sim.floor();

@@ -4,7 +4,7 @@
 use super::dim::inverse_inertia;
 use crate::kernel;
 use kernel::bvh::{Mover, Movers, PairMask, ProxyId, TreeKind, Trees, find_pairs};
-use kernel::contact::{ContactTable, Link, NarrowPhase, Scratch};
+use kernel::contact::{Contact, ContactTable, Found, Link, NarrowPhase, Scratch};
 use kernel::data::BitSet;
 use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
@@ -14,6 +14,24 @@ use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
     Surface, Velocity,
 };
+
+fn phase<'a>(
+    bodies: &'a BodyTable,
+    colliders: &'a ColliderTable,
+    dt: f32,
+    recycle: bool,
+) -> NarrowPhase<'a, ()> {
+    NarrowPhase {
+        bodies,
+        colliders,
+        source: &(),
+        dt,
+        tolerance: 0.005,
+        speculative: 0.02,
+        recycle_distance: if recycle { 0.05 } else { 0.0 },
+        match_points: true,
+    }
+}
 
 /// A whole simulation.
 #[derive(Clone)]
@@ -155,7 +173,7 @@ impl Sim {
         self.bodies.frame(id).position
     }
 
-    fn fattening(&self) -> Fattening {
+    pub fn fattening(&self) -> Fattening {
         Fattening { margin: 0.05, dt: self.dt }
     }
 
@@ -235,17 +253,16 @@ impl Sim {
         }
     }
 
+    /// What the narrow phase makes of the contact of two bodies as they are now, and the contact.
+    pub fn look(&self, a: u32, b: u32) -> (Found, Contact) {
+        let id = self.contacts.find(a, b).expect("they have a contact");
+        let mut contact = self.contacts.get(id).clone();
+        let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle);
+        (phase.update(&mut contact, &mut [], &mut Scratch::default()), contact)
+    }
+
     fn narrow(&mut self) {
-        let phase = NarrowPhase {
-            bodies: &self.bodies,
-            colliders: &self.colliders,
-            source: &(),
-            dt: self.dt,
-            tolerance: 0.005,
-            speculative: 0.02,
-            recycle_distance: if self.recycle { 0.05 } else { 0.0 },
-            match_points: true,
-        };
+        let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle);
         self.changed.clear();
         self.contacts.update(&phase, &mut self.scratch, &mut self.changed);
         let changed = core::mem::take(&mut self.changed);

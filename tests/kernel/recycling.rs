@@ -1,0 +1,174 @@
+//! When a manifold is kept from step to step, and when it must not be.
+
+use super::dim::{sized, spin, turned};
+use super::sim::Sim;
+use crate::kernel;
+use kernel::contact::Found;
+use kernel::math::{Pose, Rot, Vector, WorldPose};
+use kernel::shape::{Ball, Cuboid, Shape};
+use kernel::table::{BodyKind, ColliderDef, Velocity};
+
+/// A box that has come to rest on a floor: the floor, and the box.
+fn at_rest() -> (Sim, [u32; 2]) {
+    let mut sim = Sim::new();
+    let floor = sim.floor();
+    let id = sim.cuboid(Vector::ONE * 0.5, Vector::Y * 0.5);
+    sim.steps(30);
+    assert_eq!(sim.look(floor, id).0, Found::Recycled, "nothing moves");
+    (sim, [floor, id])
+}
+
+/// Moves a body as a step does, which is not by hand.
+fn shift(sim: &mut Sim, id: u32, by: Vector, turn: Rot) {
+    let pose = &mut sim.bodies.poses[id as usize];
+    pose.center += by.to_world();
+    pose.rotation = turn.mul(pose.rotation);
+    sim.colliders.refresh(id, &sim.bodies, sim.fattening());
+}
+
+fn redefine(sim: &mut Sim, id: u32, change: impl FnOnce(&mut ColliderDef)) {
+    let mut def = sim.colliders[id].def.clone();
+    change(&mut def);
+    sim.colliders.redefine(id, def, &mut sim.bodies);
+}
+
+/// What becomes of the contact of a box at rest after a change to box and floor.
+fn after(change: impl FnOnce(&mut Sim, [u32; 2])) -> Found {
+    let (mut sim, ids) = at_rest();
+    change(&mut sim, ids);
+    sim.look(ids[0], ids[1]).0
+}
+
+#[test]
+fn small_motion_is_followed() {
+    let (mut sim, [floor, id]) = at_rest();
+    shift(&mut sim, id, Vector::Y * 0.002 + Vector::X * 0.01, turned(0.01));
+    let (found, followed) = sim.look(floor, id);
+    assert_eq!(found, Found::Recycled);
+    sim.recycle = false;
+    let (found, computed) = sim.look(floor, id);
+    assert_eq!(found, Found::Computed);
+    assert_eq!(followed.manifold.count, computed.manifold.count);
+    for p in computed.manifold.points() {
+        let same = followed.manifold.points().iter().find(|f| f.feature == p.feature).expect("same corners");
+        assert!((same.separation - p.separation).abs() < 5e-5, "{} for {}", same.separation, p.separation);
+    }
+}
+
+#[test]
+fn motion_beyond_the_limits_is_computed_anew() {
+    assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::X * 0.045, Rot::IDENTITY)), Found::Recycled);
+    assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::X * 0.055, Rot::IDENTITY)), Found::Computed);
+    assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::ZERO, turned(0.09))), Found::Computed);
+    assert_eq!(after(|sim, _| sim.recycle = false), Found::Computed);
+    // Fast enough to need a farther look than the manifold was computed with.
+    let fast = Velocity { linear: Vector::X * 3.0, angular: spin(0.0) };
+    assert_eq!(after(|sim, [_, id]| sim.bodies.set_velocity(id, fast)), Found::Computed);
+}
+
+#[test]
+fn what_makes_a_manifold_wrong_has_it_computed_anew() {
+    let half = Vector::ONE * 0.4;
+    let local = Pose { position: Vector::X * 0.01, rotation: Rot::IDENTITY };
+    type Change = fn(&mut Sim, [u32; 2]);
+    let changes: [(&str, Change); 9] = [
+        ("another shape", |sim, [_, id]| sim.reshape(id, Shape::Ball(Ball { radius: 0.5 }))),
+        ("another shape of the other", |sim, [floor, _]| {
+            let half = Vector::ONE * 199.0;
+            redefine(sim, floor, |def| def.shape = Shape::Cuboid(Cuboid { half }));
+        }),
+        ("collision margin", |sim, [_, id]| redefine(sim, id, |def| def.margin = 0.01)),
+        ("speculative margin", |sim, [_, id]| redefine(sim, id, |def| def.speculative = 0.001)),
+        ("teleport to the same place", |sim, [_, id]| {
+            let frame = sim.bodies.frame(id);
+            sim.bodies.teleport(id, frame);
+        }),
+        ("teleport of the support", |sim, [floor, _]| {
+            let frame = sim.bodies.frame(floor);
+            sim.bodies.teleport(floor, frame);
+        }),
+        ("centre of mass", |sim, [_, id]| {
+            let frame = sim.bodies.frame(id);
+            sim.bodies[id].local_center = Vector::X * 0.02;
+            sim.bodies.teleport(id, frame);
+        }),
+        ("kind", |sim, [_, id]| sim.link().retype(id, BodyKind::Kinematic)),
+        ("kind of the support", |sim, [floor, _]| sim.link().retype(floor, BodyKind::Kinematic)),
+    ];
+    for (what, change) in changes {
+        assert_eq!(after(change), Found::Computed, "{what}");
+    }
+    let found = after(|sim, [_, id]| redefine(sim, id, |def| def.local = local));
+    assert_eq!(found, Found::Computed, "place on the body");
+    let found = after(|sim, [_, id]| sim.reshape(id, Shape::Cuboid(Cuboid { half })));
+    assert_eq!(found, Found::Computed, "another size");
+}
+
+#[test]
+fn a_pair_with_a_new_owner_of_an_id_begins_anew() {
+    let (mut sim, [floor, id]) = at_rest();
+    sim.link().destroy_of_collider(id);
+    let again = sim.link().create(floor, id);
+    assert_eq!(sim.contacts.get(again).manifold.count, 0, "nothing is left of the last owner");
+    assert_eq!(sim.look(floor, id).0, Found::Computed);
+}
+
+#[test]
+fn a_new_surface_takes_effect_on_a_recycled_contact() {
+    let mut sim = Sim::new();
+    let floor = sim.floor();
+    let id = sim.cuboid(Vector::ONE * 0.5, Vector::Y * 0.5);
+    sim.gravity = Vector::Y * -10.0 + Vector::X * 2.0;
+    sim.steps(30);
+    let v = sim.bodies.velocities[id as usize].linear.x;
+    assert!(v.abs() < 1e-3, "friction holds it: {v}");
+    for body in [floor, id] {
+        let mut material = sim.colliders[body].def.material;
+        material.friction.coefficient = 0.0;
+        sim.colliders.set_material(body, material);
+    }
+    assert_eq!(sim.look(floor, id).0, Found::Recycled);
+    sim.step();
+    let v = sim.bodies.velocities[id as usize].linear.x;
+    assert!((v - 2.0 / 60.0).abs() < 1e-3, "it slides: {v}");
+}
+
+/// The lowest point of a square turned in the plane.
+fn lowest(sim: &Sim, id: u32, half: f32) -> f32 {
+    let frame: WorldPose = sim.bodies.frame(id);
+    let corners = [(half, half), (half, -half), (-half, half), (-half, -half)];
+    let heights = corners.map(|(x, y)| frame.rotation.rotate(sized(x, y, 0.0)).y);
+    frame.position.to_local().y + heights.into_iter().fold(f32::MAX, f32::min)
+}
+
+#[test]
+fn what_lands_sinks_no_deeper_for_recycling() {
+    // From heights that differ by less than a step's way, and at all angles: the deepest and the mean.
+    let drops = |recycle: bool, tilted: bool| {
+        let (mut deepest, mut sum) = (0.0f32, 0.0f32);
+        for k in 0..100 {
+            let mut sim = Sim::new();
+            sim.recycle = recycle;
+            sim.floor();
+            let half = Vector::ONE * 0.5;
+            let (height, turn) =
+                if tilted { (0.725, 0.0079 * k as f32) } else { (0.53 + 0.0014 * k as f32, 0.0) };
+            let cuboid = Shape::Cuboid(Cuboid { half });
+            let id = sim.add(BodyKind::Dynamic, cuboid, Vector::Y * height, turned(turn));
+            let mut deep = 0.0f32;
+            for _ in 0..90 {
+                sim.step();
+                deep = deep.max(-lowest(&sim, id, 0.5));
+            }
+            deepest = deepest.max(deep);
+            sum += deep;
+        }
+        (deepest, sum / 100.0)
+    };
+    for tilted in [false, true] {
+        let (deepest, mean) = drops(true, tilted);
+        let (deepest_fresh, mean_fresh) = drops(false, tilted);
+        assert!(deepest < deepest_fresh + 1e-3, "{deepest} m for {deepest_fresh} m, tilted: {tilted}");
+        assert!(mean < mean_fresh + 1e-3, "mean {mean} m for {mean_fresh} m, tilted: {tilted}");
+    }
+}
