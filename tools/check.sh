@@ -16,6 +16,12 @@ stage() {
     "$@"
 }
 
+# Cargo knows the crates of another clone of this tree by the same names, and looks for changes where that one
+# was: with sources outside of a package's folder it would test the other clone. Only dependencies are kept.
+for manifest in Cargo.toml crates/far_f64/Cargo.toml; do
+    stage cargo clean --quiet --workspace --manifest-path "$manifest"
+done
+
 stage cargo fmt --all --check
 
 # The kernel builds in seconds: what is wrong in it is known before Bevy is compiled. Its precisions and
