@@ -320,6 +320,21 @@ fn the_same_bits_twice() {
 }
 
 #[test]
+fn a_copy_goes_on_with_the_same_bits() {
+    let mut sim = Sim::new();
+    sim.sleeping = true;
+    sim.floor();
+    pyramid(&mut sim, 8);
+    sim.ball(0.7, Vector::Y * 12.0 + Vector::X * 0.3);
+    sim.steps(60);
+    let mut copy = sim.clone();
+    sim.steps(240);
+    copy.steps(240);
+    let bits = |sim: &Sim| sim.bodies.poses.iter().map(|p| format!("{p:?}")).collect::<Vec<_>>();
+    assert_eq!(bits(&sim), bits(&copy));
+}
+
+#[test]
 fn the_same_bits_with_four_lanes_and_with_as_many_as_there_are() {
     let run = |narrow: bool| {
         let mut sim = Sim::new();

@@ -46,6 +46,8 @@ pub struct Sim {
     pub substeps: u32,
     pub sleeping: bool,
     pub recycle: bool,
+    /// Whether the tables are checked after each step, where assertions are on.
+    pub checked: bool,
     pub locks: Vec<AxisLocks>,
     trees: Trees,
     proxies: Vec<(TreeKind, ProxyId)>,
@@ -72,6 +74,7 @@ impl Sim {
             substeps: 4,
             sleeping: false,
             recycle: true,
+            checked: true,
             locks: Vec::new(),
             trees: Trees::default(),
             proxies: Vec::new(),
@@ -222,7 +225,7 @@ impl Sim {
         if self.sleeping {
             self.sleep();
         }
-        if cfg!(debug_assertions) {
+        if self.checked && cfg!(debug_assertions) {
             self.link().validate();
         }
     }

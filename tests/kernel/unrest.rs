@@ -34,6 +34,22 @@ fn a_pyramid_does_not_shake_itself() {
 }
 
 #[test]
+fn a_pyramid_of_base_64_stands_for_a_minute() {
+    let mut sim = Sim::new();
+    sim.checked = false;
+    let top = large_pyramid(&mut sim, 64);
+    sim.steps(600);
+    let settled = sim.position(top).to_local();
+    assert!(settled.y > 0.98 * 63.5, "it sagged to {settled:?}");
+    let mut farthest = 0.0f32;
+    for _ in 0..3000 {
+        sim.step();
+        farthest = farthest.max((sim.position(top).to_local() - settled).length());
+    }
+    assert!(farthest < 0.01, "in 50 s the top moved by up to {farthest} m");
+}
+
+#[test]
 fn boxes_that_land_flat_do_not_all_jump_to_one_side() {
     let mut sim = Sim::new();
     sim.floor();
