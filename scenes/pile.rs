@@ -14,10 +14,15 @@ pub const WIDTH: f32 = 12.0;
 
 /// Pours `layers` layers of bodies, one body of each kind in turn, into a container of [`WIDTH`].
 pub fn mixed(world: &mut World, layers: u32) {
+    mixed_by_chance(world, layers, 42);
+}
+
+/// [`mixed`], with other places and angles for each `seed`.
+pub fn mixed_by_chance(world: &mut World, layers: u32, seed: u64) {
     set_conditions(world);
     // Higher than the heap: nothing is to roll off.
     spawn_container(world, WIDTH, 12.0);
-    let mut rng = Rng::new(42);
+    let mut rng = Rng::new(seed);
     let (across, deep) = dim::PILE_GRID;
     let mut kind = 0;
     for layer in 0..layers {
