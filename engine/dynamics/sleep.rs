@@ -2,18 +2,30 @@
 
 use bevy_app::App;
 use bevy_ecs::{entity_disabling::Disabled, prelude::*};
+use bevy_time::Time;
 use kernel::{
     graph::SleepScan,
     table::{BodyKind, NONE},
 };
 
-use crate::dynamics::{
-    ids::BodyId,
-    rigid_body::sleeping::{Sleeping, TimeToSleep},
-    tables::{Bodies, Tables},
+use crate::{
+    dynamics::{
+        ids::BodyId,
+        rigid_body::{
+            AngularVelocity, LinearVelocity,
+            sleeping::{Sleeping, SleepingDisabled, TimeToSleep},
+        },
+        tables::{Bodies, Tables},
+    },
+    schedule::Physics,
 };
 
-/// Bodies whose [`Sleeping`] component was added or removed since the last step, by the app or as a mirror.
+/// For how many steps a body must have rested in any case. Whatever turns in its flight, or has just been let
+/// go, is slow for a moment: with thresholds of 0.15 m/s for two steps of 1/60 s.
+const STEPS_OF_REST: f32 = 4.0;
+
+/// Bodies whose [`Sleeping`] component was added or removed since the last step, by the app or as a mirror,
+/// and those that were forbidden to sleep.
 #[derive(Resource, Default)]
 pub(crate) struct SleepRequests {
     sleep: Vec<Entity>,
@@ -39,6 +51,9 @@ pub(crate) fn watch_sleeping(app: &mut App) {
         .add_observer(ask_to_sleep)
         .add_observer(|on: On<Remove, Sleeping>, mut requests: ResMut<SleepRequests>| {
             requests.wake.push(on.entity);
+        })
+        .add_observer(|on: On<Add, SleepingDisabled>, mut requests: ResMut<SleepRequests>| {
+            requests.wake.push(on.entity);
         });
 }
 
@@ -59,15 +74,16 @@ fn ask_to_sleep(
     }
 }
 
-/// Does what the app asked for by adding or removing [`Sleeping`]: with a body sleeps or wakes its island.
+/// Does what the app asked for by adding or removing [`Sleeping`]: with a body sleeps or wakes its island. Who
+/// must not sleep wakes.
 pub(crate) fn follow_requests(
     mut requests: ResMut<SleepRequests>,
-    ids: Query<(&BodyId, Has<Sleeping>)>,
+    ids: Query<(&BodyId, Has<Sleeping>, Has<SleepingDisabled>)>,
     mut tables: Tables,
 ) {
     for entity in core::mem::take(&mut requests.sleep) {
         // Added and removed again: the state now is what counts.
-        if let Ok((id, true)) = ids.get(entity)
+        if let Ok((id, true, _)) = ids.get(entity)
             && id.0 != NONE
             && let Some(island) = tables.link().island_of(id.0)
         {
@@ -75,7 +91,7 @@ pub(crate) fn follow_requests(
         }
     }
     for entity in core::mem::take(&mut requests.wake) {
-        if let Ok((id, false)) = ids.get(entity)
+        if let Ok((id, false, _) | (id, true, true)) = ids.get(entity)
             && id.0 != NONE
         {
             tables.link().wake_body(id.0);
@@ -87,12 +103,16 @@ pub(crate) fn follow_requests(
 pub(crate) fn sleep_islands(
     mut scan: ResMut<SleepBuffers>,
     time_to_sleep: Res<TimeToSleep>,
+    time: Res<Time<Physics>>,
     mut tables: Tables,
 ) {
     let Tables { bodies, islands, .. } = &mut tables;
     let Some(islands) = islands else { return };
-    let rested = |body: u32| Some(bodies.table[body].sleep_timer).filter(|t| *t >= 0.0);
-    scan.0.scan(&islands.0, time_to_sleep.0, rested);
+    let rested = |body: u32| Some(bodies.table[body].sleep_timer).filter(|t| *t > 0.0);
+    let least = STEPS_OF_REST * time.delta_secs();
+    // A NaN stays one: nobody sleeps.
+    let time_to_sleep = if time_to_sleep.0 < least { least } else { time_to_sleep.0 };
+    scan.0.scan(&islands.0, time_to_sleep, rested);
     if let Some(island) = scan.0.split() {
         islands.0.split(island);
     }
@@ -108,10 +128,7 @@ pub(crate) fn sleep_islands(
 pub(crate) fn mirror_sleeping(
     mut tables: Tables,
     sleeping: Query<Has<Sleeping>>,
-    mut velocities: Query<(
-        &mut crate::dynamics::rigid_body::LinearVelocity,
-        &mut crate::dynamics::rigid_body::AngularVelocity,
-    )>,
+    mut velocities: Query<(&mut LinearVelocity, &mut AngularVelocity)>,
     mut commands: Commands,
 ) {
     let bodies = &mut *tables.bodies;
@@ -121,14 +138,15 @@ pub(crate) fn mirror_sleeping(
         }
         let entity = bodies.entities[id as usize];
         let asleep = !bodies.table[id].awake;
+        // Also those that the app put to sleep, and that bear the marker already.
+        if asleep && let Ok((mut v, mut w)) = velocities.get_mut(entity) {
+            v.0 = Default::default();
+            w.0 = Default::default();
+            bodies.table.set_velocity(id, Default::default());
+        }
         match (asleep, sleeping.get(entity)) {
             (true, Ok(false)) => {
                 commands.entity(entity).try_insert(Sleeping);
-                if let Ok((mut v, mut w)) = velocities.get_mut(entity) {
-                    v.0 = Default::default();
-                    w.0 = Default::default();
-                    bodies.table.set_velocity(id, Default::default());
-                }
             }
             (false, Ok(true)) => {
                 commands.entity(entity).try_remove::<Sleeping>();

@@ -29,7 +29,7 @@ pub struct Body {
     pub local_center: Vector,
     /// The first of its colliders, or [`NONE`].
     pub first_collider: u32,
-    /// Seconds for which it has been slow enough to sleep.
+    /// Seconds for which it has been slow enough to sleep; 0 while it is not, or must not sleep.
     pub sleep_timer: f32,
 }
 

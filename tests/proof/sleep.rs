@@ -175,3 +175,79 @@ fn without_the_sleeping_plugin_nobody_sleeps() {
     lab.seconds(3.0);
     assert!(!lab.has::<Sleeping>(body) && (lab.at(body).y - 0.5).abs() < 0.01);
 }
+
+#[test]
+fn issue_a_body_once_forbidden_to_sleep_never_slept_again() {
+    let mut lab = Lab::new();
+    lab.floor();
+    let boxes = [0.5, 1.5].map(|y| lab.unit_box(at(0.0, y, 0.0)));
+    lab.insert(boxes[0], SleepingDisabled);
+    lab.seconds(2.0);
+    assert_eq!(asleep(&lab, &boxes), 0);
+    lab.remove::<SleepingDisabled>(boxes[0]);
+    lab.steps(20);
+    assert_eq!(asleep(&lab, &boxes), 0, "the half second begins when it is allowed to");
+    lab.seconds(1.0);
+    assert_eq!(asleep(&lab, &boxes), 2);
+    lab.insert(boxes[0], SleepingDisabled);
+    lab.seconds(2.0);
+    assert_eq!(asleep(&lab, &boxes), 0, "forbidding it wakes");
+}
+
+#[test]
+fn issue_bodies_whose_position_is_the_apps_slept_in_motion() {
+    use avian::dynamics::integrator::CustomPositionIntegration;
+    let mut lab = Lab::weightless();
+    let [fast, moved, still] = [0.0, 5.0, 10.0].map(|x| lab.unit_box(at(x, 0.0, 0.0)));
+    for body in [fast, moved, still] {
+        lab.insert(body, CustomPositionIntegration);
+    }
+    lab.insert(fast, LinearVelocity(Vector::Y));
+    for _ in 0..120 {
+        let to = lab.at(moved) + Vector::Y * 0.05;
+        lab.insert(moved, Position(to));
+        lab.steps(1);
+    }
+    assert_eq!((asleep(&lab, &[fast, moved]), asleep(&lab, &[still])), (0, 1));
+    assert_eq!(lab.velocity(fast), Vector::Y);
+    lab.insert(fast, LinearVelocity::ZERO);
+    lab.seconds(1.0);
+    assert_eq!(asleep(&lab, &[fast, moved, still]), 3, "left alone they rest");
+}
+
+/// Thrown up, it turns at the top; let go, it starts slowly: neither is rest.
+#[test]
+fn issue_with_no_time_to_sleep_bodies_froze_in_flight() {
+    for (time, up) in [(0.0, 3.0), (-1.0, 3.0), (0.0, 0.0)] {
+        let mut lab = Lab::new();
+        lab.app.insert_resource(TimeToSleep(time));
+        lab.floor();
+        let body = lab.unit_box(at(0.0, 3.0, 0.0));
+        lab.insert(body, LinearVelocity(Vector::Y * up));
+        for step in 0..40 {
+            lab.steps(1);
+            assert_eq!(asleep(&lab, &[body]), 0, "in step {step} at {}", lab.at(body));
+        }
+        lab.seconds(3.0);
+        assert_eq!(asleep(&lab, &[body]), 1, "on the floor it sleeps");
+        assert!((lab.at(body).y - 0.5).abs() < 0.02, "{}", lab.at(body));
+    }
+}
+
+#[test]
+fn issue_a_body_put_to_sleep_kept_its_velocity() {
+    let mut lab = Lab::new();
+    lab.surfaces(0.0, 0.0);
+    lab.floor();
+    let boxes = [0.5, 1.5].map(|y| lab.unit_box(at(0.0, y, 0.0)));
+    for body in boxes {
+        lab.insert(body, LinearVelocity(Vector::X));
+    }
+    lab.steps(5);
+    lab.insert(boxes[0], Sleeping);
+    lab.steps(2);
+    assert_eq!(asleep(&lab, &boxes), 2);
+    assert_eq!(boxes.map(|b| lab.velocity(b)), [Vector::ZERO; 2]);
+    lab.steps(10);
+    assert_eq!(asleep(&lab, &boxes), 2, "stopping them is no push");
+}

@@ -61,6 +61,9 @@ impl Gravity {
 pub struct CustomVelocityIntegration;
 
 /// Leaves the position of this body to the app: its velocity does not move it. Contacts still see its velocity.
+///
+/// It rests, and may fall asleep, while the app does not move it and its velocity is within its
+/// [`SleepThreshold`](crate::dynamics::rigid_body::sleeping::SleepThreshold).
 #[derive(Component, Debug, Default, Reflect)]
 #[reflect(Debug, Component, Default)]
 pub struct CustomPositionIntegration;

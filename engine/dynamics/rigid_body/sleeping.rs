@@ -9,6 +9,7 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use derive_more::From;
 
 /// Marks a body that sleeps. Inserting or removing it puts the body's whole island to sleep or wakes it.
+/// Whatever falls asleep, by itself or so, loses its velocity.
 ///
 /// A body's table row should not move whenever it falls asleep: the marker is stored apart, as a sparse set.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
@@ -21,7 +22,7 @@ use derive_more::From;
 )]
 pub struct Sleeping;
 
-/// Keeps a body, and with it every island it is part of, from falling asleep.
+/// Keeps a body, and with it every island it is part of, from falling asleep. Inserting it wakes them.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default)]
 #[reflect(Component, Debug, Default)]
 #[cfg_attr(
@@ -71,6 +72,7 @@ pub struct SleepTimer(pub f32);
 pub type TimeSleeping = SleepTimer;
 
 /// How long all bodies of an island must have rested before it falls asleep, in seconds. 0.5 by default.
+/// However short, they must have rested for four steps.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, PartialOrd, From)]
 #[reflect(Resource, Debug, Default, PartialEq)]
 #[cfg_attr(

@@ -228,7 +228,7 @@ pub(crate) fn read_awake(query: Query<(Entity, StateInput)>, mut tables: Tables,
         if change.moved {
             tables.link().wake_touching(id);
         }
-        if change.pushed {
+        if change.moved || change.pushed {
             tables.bodies.table[id].sleep_timer = 0.0;
         }
     };

@@ -118,27 +118,26 @@ impl Scatter<'_> {
             set_pose(position, rotation, bodies.frame(id));
         }
         let threshold = options.threshold.copied().unwrap_or_default();
-        let rests = self.is_slow(&threshold, moved, turned);
+        // Where the app moves the body, this step has not: its velocity says how fast it means to.
+        let (way, angle) = if options.own_position {
+            (v * self.dt, w.length_squared() * self.dt * self.dt)
+        } else {
+            (moved, Rot::IDENTITY.difference(turned).length_squared())
+        };
+        let rests = !options.sleepless && self.is_slow(&threshold, way, angle);
         let timer = &mut bodies[id].sleep_timer;
         *timer = if rests { *timer + self.dt } else { 0.0 };
-        if options.sleepless {
-            *timer = f32::NEG_INFINITY;
-        }
         if let Some(mut shown) = options.timer {
-            shown.0 = timer.max(0.0);
+            shown.0 = *timer;
         }
     }
 
-    /// Whether a body has moved and turned less in this step than its thresholds allow. Judged on
-    /// displacement, not velocity: what jitters in place rests.
-    fn is_slow(&self, threshold: &SleepThreshold, moved: KernelVector, turned: Rot) -> bool {
-        let way = threshold.linear * self.unit * self.dt;
-        let angle = threshold.angular * self.dt;
+    /// Whether a body has moved by `way`, and turned by the root of `angle_squared`, less in this step than
+    /// its thresholds allow. Judged on displacement, not velocity: what jitters in place rests.
+    fn is_slow(&self, threshold: &SleepThreshold, way: KernelVector, angle_squared: f32) -> bool {
+        let (far, wide) = (threshold.linear * self.unit * self.dt, threshold.angular * self.dt);
         // A negative threshold, or NaN, never rests.
-        way >= 0.0
-            && angle >= 0.0
-            && moved.length_squared() <= way * way
-            && Rot::IDENTITY.difference(turned).length_squared() <= angle * angle
+        far >= 0.0 && wide >= 0.0 && way.length_squared() <= far * far && angle_squared <= wide * wide
     }
 }
 
