@@ -139,7 +139,10 @@ pub(crate) mod substep {
     /// Velocities and positions.
     pub(crate) fn add_integration(app: &mut App) {
         app.init_resource::<OwnSubstepSystems>();
-        app.world_mut().resource_mut::<OwnSubstepSystems>().integrates = true;
+        let mut own = app.world_mut().resource_mut::<OwnSubstepSystems>();
+        own.integrates = true;
+        own.note(integrate_velocities);
+        own.note(integrate_positions);
         app.add_systems(
             SubstepSchedule,
             (
@@ -152,7 +155,11 @@ pub(crate) mod substep {
     /// Contacts.
     pub(crate) fn add_contacts(app: &mut App) {
         app.init_resource::<OwnSubstepSystems>();
-        app.world_mut().resource_mut::<OwnSubstepSystems>().solves = true;
+        let mut own = app.world_mut().resource_mut::<OwnSubstepSystems>();
+        own.solves = true;
+        own.note(warm_start);
+        own.note(solve_contacts);
+        own.note(relax_contacts);
         app.add_systems(
             SubstepSchedule,
             (

@@ -172,6 +172,49 @@ fn the_substep_clock_runs_at_a_fraction_of_the_step() {
     }
 }
 
+/// The substep clock as a system in a substep saw it: delta and elapsed, in milliseconds.
+#[derive(Resource, Default)]
+struct Seen(Vec<[u128; 4]>);
+
+#[test]
+fn issue_the_substep_clock_advanced_once_or_never_in_all_substeps_of_a_step() {
+    for watched in [false, true] {
+        let mut app = app();
+        app.init_resource::<Seen>().insert_resource(SubstepCount(4));
+        if watched {
+            let note = |substeps: Res<Time<Substeps>>, generic: Res<Time>, mut seen: ResMut<Seen>| {
+                let times = [substeps.delta(), substeps.elapsed(), generic.delta(), generic.elapsed()];
+                seen.0.push(times.map(|t| t.as_millis()));
+            };
+            app.add_systems(SubstepSchedule, note.in_set(SubstepSolverSystems::Damping));
+        }
+        for step in 1..=3 {
+            tick(&mut app, 12);
+            let clock = app.world().resource::<Time<Substeps>>();
+            assert_eq!(clock.elapsed(), Duration::from_millis(12 * step), "watched: {watched}");
+            assert_eq!(clock.delta(), Duration::from_millis(3));
+        }
+        let expected = (1..=12).map(|i| [3, 3 * i, 3, 3 * i]).collect::<Vec<_>>();
+        assert_eq!(app.world().resource::<Seen>().0, if watched { expected } else { vec![] });
+    }
+}
+
+#[test]
+fn issue_conditions_on_the_sets_of_a_substep_were_ignored() {
+    let mut app = app();
+    app.insert_resource(Gravity::ZERO);
+    let velocity = LinearVelocity(avian::math::Vector::X);
+    let body = app.world_mut().spawn((RigidBody::Dynamic, velocity)).id();
+    tick(&mut app, 10);
+    let before = *app.world().get::<Position>(body).expect("a body has a position");
+    assert!(before.x > 0.0);
+    app.configure_sets(SubstepSchedule, IntegrationSystems::Position.run_if(|| false));
+    for _ in 0..3 {
+        tick(&mut app, 10);
+        assert_eq!(app.world().get::<Position>(body), Some(&before), "it is not moved any more");
+    }
+}
+
 #[test]
 fn only_steps_move_the_last_physics_tick() {
     let mut app = app();

@@ -143,6 +143,9 @@ impl PhysicsTime for Time<Physics> {
 /// The clock of the substeps, a context of [`Time`]: its delta is that of [`Time<Physics>`](Physics) divided by the
 /// [`SubstepCount`](crate::dynamics::solver::schedule::SubstepCount).
 ///
+/// It advances by that once per substep, to its end: from the start of a step it shows the end of the first substep, after the step
+/// that of the last.
+///
 /// Within [`SubstepSchedule`](crate::dynamics::solver::schedule::SubstepSchedule) the generic `Time` shows it too.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Default, Clone, PartialEq)]

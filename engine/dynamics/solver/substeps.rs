@@ -2,6 +2,7 @@
 
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use bevy_time::Time;
+use core::any::TypeId;
 use kernel::{
     graph::ColorGraph,
     solver::{RowInput, Softness, Solver, SubstepParams},
@@ -13,7 +14,7 @@ use crate::{
         solver::{
             config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig},
             diagnostics::SolverDiagnostics,
-            schedule::{SubstepCount, SubstepSchedule},
+            schedule::{SubstepCount, SubstepSchedule, advance_substep, substep_delta},
             softness_parameters::SoftnessCoefficients,
         },
         tables::{Bodies, Colliders, Contacts},
@@ -49,17 +50,33 @@ impl Default for StepSolver {
     }
 }
 
-/// Which of the engine's own systems stand in [`SubstepSchedule`]: while nobody else's do, one fused call of
-/// the kernel replaces them.
-#[derive(Resource, Clone, Copy, Debug, Default)]
+/// Which of the engine's own systems stand in [`SubstepSchedule`]: while they stand there alone and always
+/// run, one fused call of the kernel replaces them.
+#[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct OwnSubstepSystems {
     pub(crate) integrates: bool,
     pub(crate) solves: bool,
+    systems: Vec<TypeId>,
 }
 
 impl OwnSubstepSystems {
-    fn count(self) -> usize {
-        2 * usize::from(self.integrates) + 3 * usize::from(self.solves)
+    /// Notes a system that is added.
+    pub(crate) fn note<M>(&mut self, system: impl IntoSystem<(), (), M>) {
+        self.systems.push(system.system_type_id());
+    }
+
+    /// Whether a schedule holds exactly these systems, on no conditions. Of one that somebody has built that
+    /// cannot be seen any more: then it is run as it is, which gives the same bits.
+    fn are_all_of(&self, schedule: &Schedule) -> bool {
+        if schedule.systems().is_ok() {
+            return false;
+        }
+        let graph = schedule.graph();
+        graph.systems.len() == self.systems.len()
+            && graph.systems.iter().all(|(_, system, conditions)| {
+                conditions.is_empty() && self.systems.contains(&system.system_type())
+            })
+            && graph.system_sets.iter().all(|(.., conditions)| conditions.is_empty())
     }
 }
 
@@ -131,47 +148,50 @@ pub(crate) fn prepare_rows(
     diagnostics.prepare_constraints += start.elapsed();
 }
 
-/// Runs the substeps: fused while only the engine's own systems are in the schedule, else the schedule.
+/// Runs the substeps: fused while only the engine's own systems are in the schedule, else the schedule. The
+/// clock stands at the end of the first substep already.
 pub(crate) fn run_substeps(world: &mut World) {
-    let own = *world.resource::<OwnSubstepSystems>();
-    let substeps = world.resource::<StepSolver>().substeps;
-    let foreign = world
+    let own = world.resource::<OwnSubstepSystems>();
+    let (integrates, solves) = (own.integrates, own.solves);
+    let fused = world
         .get_resource::<Schedules>()
         .and_then(|schedules| schedules.get(SubstepSchedule))
-        .is_some_and(|schedule| schedule.graph().systems.len() != own.count());
-    if foreign {
-        run_schedule(world, substeps);
-    } else {
-        let start = bevy_platform::time::Instant::now();
-        let mut solver = world.resource_mut::<StepSolver>();
-        let StepSolver { kernel, params, .. } = &mut *solver;
-        for _ in 0..substeps {
-            match (own.integrates, own.solves) {
-                (true, true) => kernel.substep(params),
-                (true, false) => {
-                    kernel.integrate_velocities(params);
-                    kernel.integrate_positions(params);
-                }
-                (false, true) => {
-                    kernel.warm_start(params);
-                    kernel.solve(params);
-                    kernel.relax(params);
-                }
-                (false, false) => {}
-            }
-        }
-        world.resource_mut::<SolverDiagnostics>().solve_constraints += start.elapsed();
+        .is_none_or(|schedule| own.are_all_of(schedule));
+    let substeps = world.resource::<StepSolver>().substeps;
+    let delta = substep_delta(world.resource::<Time<Physics>>().delta(), SubstepCount(substeps));
+    let next = |world: &mut World| advance_substep(&mut world.resource_mut::<Time<Substeps>>(), delta);
+    if !fused {
+        return run_schedule(world, substeps, next);
     }
+    let start = bevy_platform::time::Instant::now();
+    let mut solver = world.resource_mut::<StepSolver>();
+    let StepSolver { kernel, params, .. } = &mut *solver;
+    for _ in 0..substeps {
+        match (integrates, solves) {
+            (true, true) => kernel.substep(params),
+            (true, false) => {
+                kernel.integrate_velocities(params);
+                kernel.integrate_positions(params);
+            }
+            (false, true) => {
+                kernel.warm_start(params);
+                kernel.solve(params);
+                kernel.relax(params);
+            }
+            (false, false) => {}
+        }
+    }
+    (1..substeps).for_each(|_| next(world));
+    world.resource_mut::<SolverDiagnostics>().solve_constraints += start.elapsed();
 }
 
 /// The generic clock shows the substeps' while they run.
-fn run_schedule(world: &mut World, substeps: u32) {
-    let step = world.resource::<Time<Physics>>().delta();
+fn run_schedule(world: &mut World, substeps: u32, mut next: impl FnMut(&mut World)) {
     let outer = *world.resource::<Time>();
-    let mut clock = *world.resource::<Time<Substeps>>();
-    clock.advance_by(step / substeps);
-    world.insert_resource(clock);
-    for _ in 0..substeps {
+    for substep in 0..substeps {
+        if substep > 0 {
+            next(world);
+        }
         *world.resource_mut::<Time>() = world.resource::<Time<Substeps>>().as_generic();
         world.run_schedule(SubstepSchedule.intern());
     }

@@ -16,6 +16,8 @@ use crate::schedule::{Physics, Substeps};
 /// [`SolveConstraints`](SubstepSolverSystems::SolveConstraints), [`Position`](crate::dynamics::integrator::IntegrationSystems::Position),
 /// [`Relax`](SubstepSolverSystems::Relax), [`Damping`](SubstepSolverSystems::Damping).
 ///
+/// While only the engine's own systems are in it, without run conditions, they run as one, with the same result.
+///
 /// Systems run one after the other, and an ambiguous order is an error. The generic [`Time`] shows [`Time<Substeps>`](Substeps) in it.
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub struct SubstepSchedule;
@@ -93,12 +95,19 @@ pub(crate) fn substep_delta(step: Duration, count: SubstepCount) -> Duration {
 }
 
 /// Advances [`Time<Substeps>`](Substeps) to the end of the first substep, so that systems before the substeps know how long one is.
+/// The substeps after it advance it to theirs.
 fn start_substep_clock(
     mut substeps: ResMut<Time<Substeps>>,
     physics: Res<Time<Physics>>,
     count: Res<SubstepCount>,
 ) {
-    substeps.advance_by(substep_delta(physics.delta(), *count));
+    advance_substep(&mut substeps, substep_delta(physics.delta(), *count));
+}
+
+/// Advances the clock of the substeps by one, or to the end of time.
+pub(crate) fn advance_substep(clock: &mut Time<Substeps>, delta: Duration) {
+    let left = Duration::MAX - clock.elapsed();
+    clock.advance_by(delta.min(left));
 }
 
 #[cfg(test)]
