@@ -143,24 +143,42 @@ pub(crate) fn find_new_pairs(
         trees.movers(moved, &table.fat, movers);
         moved.clear();
         let contacts = &tables.contacts.table;
-        find_pairs(&trees.trees, movers, |a, b| contacts.find(a, b).is_some(), pairs);
+        // Colliders of one body may overlap by the thousand: they are not even listed.
+        let known = |a: u32, b: u32| {
+            let body = table[a].def.body;
+            (body == table[b].def.body && body != NONE) || contacts.find(a, b).is_some()
+        };
+        find_pairs(&trees.trees, movers, known, pairs);
     }
+    let mut sleepers = Vec::new();
     for &(a, b) in pairs.iter() {
         if may_collide(a, b, &tables) {
-            tables.link().create(a, b);
+            let mut link = tables.link();
+            let id = link.create(a, b);
+            sleepers.extend(link.unseen_sleeper(id));
         }
     }
+    wake_beset(&sleepers, &mut tables);
     diagnostics.broad_phase = start.elapsed();
 }
 
-/// Whether two colliders may form a contact: of different bodies, with layers that see each other, and one
-/// of them can be pushed or detects.
+/// Wakes those who slept when something static, or kinematic at rest, was put beside them. Not those who were
+/// put to sleep in this very step: a level may be spawned asleep.
+fn wake_beset(sleepers: &[u32], tables: &mut Tables) {
+    if sleepers.is_empty() {
+        return;
+    }
+    let flipped = tables.bodies.table.flipped_set();
+    for &body in sleepers.iter().filter(|body| !flipped.contains(**body)) {
+        tables.link().wake_body(body);
+    }
+}
+
+/// Whether two colliders of different bodies may form a contact: with layers that see each other, and one of
+/// them can be pushed or detects.
 fn may_collide(a: u32, b: u32, tables: &Tables) -> bool {
     use kernel::table::BodyKind;
     let [da, db] = [a, b].map(|c| &tables.colliders.table[c].def);
-    if da.body == db.body && da.body != NONE {
-        return false;
-    }
     let kind = |body: u32| (body != NONE).then(|| tables.bodies.table[body].kind);
     let kinds = [kind(da.body), kind(db.body)];
     let pushed = kinds.contains(&Some(BodyKind::Dynamic));

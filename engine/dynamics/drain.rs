@@ -267,6 +267,8 @@ impl Census<'_, '_> {
             let Tables { bodies, colliders, .. } = &mut *tables;
             let id = colliders.table.add(def, world, &mut bodies.table);
             put(&mut colliders.entities, id, entity, Entity::PLACEHOLDER);
+            // What it lies in is not looked at while its body sleeps.
+            tables.link().wake_body(body);
             id
         };
         let kind = match body {

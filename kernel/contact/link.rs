@@ -204,9 +204,26 @@ impl Link<'_> {
         }
     }
 
-    /// Wakes what a body touches, as after it was moved by hand.
+    /// The sleeping body of a contact that nobody else looks at: its other body is at rest, and not by
+    /// sleeping. Such a contact stays unseen until the sleeper wakes.
+    pub fn unseen_sleeper(&self, id: u32) -> Option<u32> {
+        let contact = self.contacts.get(id);
+        if contact.is_inert() || contact.bodies.iter().any(|b| self.is_awake(*b)) {
+            return None;
+        }
+        match self.movable(contact) {
+            [Some(_), Some(_)] => None,
+            [a, b] => a.or(b),
+        }
+    }
+
+    /// Wakes what a body touches, as after it was moved by hand; and what it is near, where the contact is
+    /// [unseen](Self::unseen_sleeper).
     pub fn wake_touching(&mut self, body: u32) {
         for id in self.contacts_of_body(body) {
+            if let Some(sleeper) = self.unseen_sleeper(id).filter(|sleeper| *sleeper != body) {
+                self.wake_body(sleeper);
+            }
             let contact = self.contacts.get(id);
             if contact.is_solved() {
                 for other in contact.bodies {

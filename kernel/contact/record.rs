@@ -151,7 +151,12 @@ impl Contact {
     /// Whether it has points and pushes.
     #[inline(always)]
     pub fn is_solved(&self) -> bool {
-        self.flags.has(ContactFlags::TOUCHING)
-            && !self.flags.any(ContactFlags::SENSOR.union(ContactFlags::IMMOVABLE))
+        self.flags.has(ContactFlags::TOUCHING) && !self.is_inert()
+    }
+
+    /// Whether it would not push if it had points.
+    #[inline(always)]
+    pub fn is_inert(&self) -> bool {
+        self.flags.any(ContactFlags::SENSOR.union(ContactFlags::IMMOVABLE))
     }
 }

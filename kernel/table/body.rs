@@ -158,6 +158,15 @@ impl BodyTable {
         self.awake_dynamic.iter()
     }
 
+    /// The bodies that woke or fell asleep since [`flipped`](Self::flipped) was last emptied, as a set.
+    pub fn flipped_set(&self) -> BitSet {
+        let mut set = BitSet::new();
+        for &id in &self.flipped {
+            set.insert(id);
+        }
+        set
+    }
+
     /// How many bodies are awake.
     pub fn awake_count(&self) -> usize {
         self.awake_kinematic.count() + self.awake_dynamic.count()

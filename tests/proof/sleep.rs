@@ -251,3 +251,85 @@ fn issue_a_body_put_to_sleep_kept_its_velocity() {
     lab.steps(10);
     assert_eq!(asleep(&lab, &boxes), 2, "stopping them is no push");
 }
+
+/// Puts something that does not move into a sleeper, in one of some ways.
+fn beset(lab: &mut Lab, how: usize, place: Vector) {
+    let far = Vector::Y * 50.0;
+    let wall = || dim::sized_block(1.0, 1.0, 1.0);
+    let moved = |lab: &mut Lab, body: RigidBody| {
+        let wall = lab.spawn((body, wall(), Position(far)));
+        lab.steps(1);
+        wall
+    };
+    match how {
+        0 => _ = lab.spawn((RigidBody::Static, wall(), Position(place))),
+        1 => _ = lab.spawn((RigidBody::Kinematic, wall(), Position(place))),
+        2 => {
+            let wall = moved(lab, RigidBody::Static);
+            lab.insert(wall, Position(place));
+        }
+        3 => {
+            let wall = moved(lab, RigidBody::Kinematic);
+            lab.insert(wall, Position(place));
+        }
+        4 => {
+            let body = lab.spawn((RigidBody::Static, Transform::IDENTITY));
+            let wall = lab.spawn((wall(), at(0.0, 50.0, 0.0), ChildOf(body)));
+            lab.steps(1);
+            let [x, y] = [place.x, place.y];
+            lab.insert(wall, at(x, y, 0.0));
+        }
+        5 => {
+            let wall = lab.spawn((RigidBody::Static, wall(), Position(place), ColliderDisabled));
+            lab.steps(1);
+            lab.remove::<ColliderDisabled>(wall);
+        }
+        // Little by little: it is near before it touches.
+        _ => {
+            let wall = lab.spawn((RigidBody::Static, wall(), Position(place + Vector::X * 0.45)));
+            for step in (0..45).rev() {
+                lab.steps(50);
+                lab.insert(wall, Position(place + Vector::X * (0.01 * step as f32)));
+            }
+        }
+    }
+}
+
+#[test]
+fn issue_what_was_put_into_a_sleeper_was_ignored() {
+    for how in 0..7 {
+        let mut lab = Lab::new();
+        lab.floor();
+        let body = lab.unit_box(at(0.0, 0.5, 0.0));
+        lab.seconds(2.0);
+        assert_eq!(asleep(&lab, &[body]), 1);
+        beset(&mut lab, how, Vector::X * 0.7 + Vector::Y * 0.5);
+        lab.steps(3);
+        assert_eq!(asleep(&lab, &[body]), 0, "way {how}");
+        lab.seconds(3.0);
+        let x = lab.at(body).x;
+        assert!(x < -0.28, "way {how}: it is pushed aside, to {x}");
+        assert_eq!(asleep(&lab, &[body]), 1, "way {how}: and sleeps again");
+    }
+}
+
+#[test]
+fn a_level_may_be_spawned_asleep() {
+    let mut lab = Lab::new();
+    lab.floor();
+    let boxes = |lab: &mut Lab, x: f32| {
+        [0.5, 1.5, 2.5].map(|y| {
+            let body = lab.unit_box(at(x, y, 0.0));
+            lab.insert(body, Sleeping);
+            body
+        })
+    };
+    let first = boxes(&mut lab, 0.0);
+    lab.steps(30);
+    // Later, beside the first and on the floor that is there.
+    let later = boxes(&mut lab, 1.01);
+    for _ in 0..60 {
+        lab.steps(1);
+        assert_eq!(asleep(&lab, &first) + asleep(&lab, &later), 6);
+    }
+}

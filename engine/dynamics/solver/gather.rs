@@ -185,11 +185,16 @@ pub(crate) fn wake_changed(
         ];
         Since::last_run(system).rows(columns, |row| wake(entities[row]));
     }
-    for id in scaled.iter().filter(|id| id.0 != NONE) {
+    if scaled.is_empty() && !gravity.is_changed() {
+        return;
+    }
+    // What was put to sleep in this very step was so under this gravity: a level may be spawned asleep.
+    let flipped = tables.bodies.table.flipped_set();
+    for id in scaled.iter().filter(|id| id.0 != NONE && !flipped.contains(id.0)) {
         tables.link().wake_body(id.0);
     }
     if gravity.is_changed() {
-        for id in 0..tables.bodies.entities.len() as u32 {
+        for id in (0..tables.bodies.entities.len() as u32).filter(|id| !flipped.contains(*id)) {
             if tables.bodies.table.ids.is_live(id) && tables.bodies.table[id].kind == BodyKind::Dynamic {
                 tables.link().wake_body(id);
             }
