@@ -1,9 +1,10 @@
 //! Brings the tables in line with what bodies and colliders are now. See [`lifecycle`](super::lifecycle).
 
-use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
+use bevy_ecs::{entity::EntityHashSet, entity_disabling::Disabled, prelude::*, system::SystemParam};
+use bevy_log::warn;
 use kernel::{
     bvh::TreeKind,
-    math::Pose,
+    math::{Pose, WorldPose},
     table::{BodyKind, ColliderDef, ColliderFlags, Layers, NONE},
 };
 
@@ -23,7 +24,7 @@ use crate::{
         tables::Tables,
     },
     math::vector_to_kernel,
-    physics_transform::{Position, Rotation, world_pose},
+    physics_transform::{Position, Rotation, said_pose, unit_rotation, world_pose},
 };
 
 /// What a body's place in the tables follows from.
@@ -79,7 +80,7 @@ pub(crate) fn drain_lifecycle(mut queue: ResMut<LifecycleQueue>, mut tables: Tab
     let mut colliders = core::mem::take(&mut queue.colliders);
     dedup(&mut colliders);
     for entity in colliders.drain(..) {
-        census.settle_collider(entity, &mut tables);
+        census.settle_collider(entity, &mut tables, &mut queue.refused);
     }
     queue.colliders = colliders;
 }
@@ -104,12 +105,12 @@ fn remove_lost(queue: &mut LifecycleQueue, tables: &mut Tables, census: &mut Cen
 
 /// Where a collider is on its body.
 fn local_pose(transform: &ColliderTransform) -> Pose {
-    Pose::new(vector_to_kernel(transform.translation), transform.rotation.to_kernel())
+    Pose::new(vector_to_kernel(transform.translation), unit_rotation(&transform.rotation))
 }
 
 /// Each entity once, in the order first noted: ids follow that order, never the entities'.
 fn dedup(entities: &mut Vec<Entity>) {
-    let mut seen = bevy_ecs::entity::EntityHashSet::default();
+    let mut seen = EntityHashSet::default();
     entities.retain(|e| seen.insert(*e));
 }
 
@@ -171,6 +172,7 @@ impl Census<'_, '_> {
                 // Once set it stays: a static body's dominance is not read again.
                 tables.bodies.table.any_dominance |= dominance != 0;
                 put(&mut tables.bodies.entities, id, entity, Entity::PLACEHOLDER);
+                put(&mut tables.bodies.seen, id, said_pose(position, rotation), WorldPose::IDENTITY);
                 note_kinematic(id, kind, tables);
                 tables.link().enter(id);
                 if let Ok(mut component) = self.body_ids.get_mut(entity) {
@@ -229,7 +231,8 @@ impl Census<'_, '_> {
         }
     }
 
-    fn settle_collider(&mut self, entity: Entity, tables: &mut Tables) {
+    fn settle_collider(&mut self, entity: Entity, tables: &mut Tables, refused: &mut EntityHashSet) {
+        let was_refused = refused.remove(&entity);
         let id = self.collider_ids.get(entity).map_or(NONE, |id| id.0);
         let state = self.colliders.get(entity).ok().filter(|state| !state.6 && !state.7);
         let Some((collider, of, transform, pose, layers, sensor, ..)) = state else {
@@ -250,12 +253,20 @@ impl Census<'_, '_> {
             speculative,
         };
         let world = match pose {
+            _ if body != NONE => tables.bodies.table.frame(body).then(&local),
             Some((position, rotation)) if *position != Position::PLACEHOLDER => {
                 world_pose(position, rotation)
             }
-            _ if body != NONE => tables.bodies.table.frame(body).then(&local),
             _ => return self.dismiss_collider(entity, id, tables),
         };
+        if !is_finite(&world) {
+            refused.insert(entity);
+            // Where its body is out as well, that was told.
+            if !was_refused && (body != NONE || body_entity.is_none()) {
+                warn!("the place of the collider {entity} is not finite; it takes no part until it is");
+            }
+            return self.dismiss_collider(entity, id, tables);
+        }
         // A contact knows its bodies: under another body the collider is a new one.
         if id != NONE && tables.colliders.table[id].def.body != body {
             remove_collider(id, tables);

@@ -14,7 +14,7 @@
 //! ```
 
 use bevy_app::App;
-use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemChangeTick};
+use bevy_ecs::{entity::EntityHashSet, entity_disabling::Disabled, prelude::*, system::SystemChangeTick};
 use kernel::table::NONE;
 
 use crate::{
@@ -45,6 +45,8 @@ pub(crate) struct LifecycleQueue {
     pub(crate) lost_bodies: Vec<u32>,
     /// Ids whose component went with its entity.
     pub(crate) lost_colliders: Vec<u32>,
+    /// Colliders kept out because their place is not finite, of which the app was told.
+    pub(crate) refused: EntityHashSet,
 }
 
 /// Without any of these a body cannot be simulated. They come with it, but may be taken away.
@@ -125,7 +127,8 @@ pub(crate) fn note_changed_colliders(
     system: SystemChangeTick,
 ) {
     let since = Since::last_run(system);
-    let mut note = |entity: Entity| queue.colliders.push(entity);
+    let LifecycleQueue { colliders: noted, refused, .. } = &mut *queue;
+    let mut note = |entity: Entity| noted.push(entity);
     for (entities, shape) in shapes.contiguous_iter().expect(IN_TABLES) {
         since.rows([shape.changed_ticks_slice()], |row| note(entities[row]));
     }
@@ -133,9 +136,11 @@ pub(crate) fn note_changed_colliders(
         since.rows([place.changed_ticks_slice()], |row| note(entities[row]));
     }
     let stands_alone = |id: u32| id != NONE && colliders.table[id].def.body == NONE;
+    // Let in again as soon as it has a place.
+    let waits = |id: u32, entity| id == NONE && refused.contains(&entity);
     for (entities, ids, position, rotation) in poses.contiguous_iter().expect(IN_TABLES) {
         since.rows([position.changed_ticks_slice(), rotation.changed_ticks_slice()], |row| {
-            if stands_alone(ids[row].0) {
+            if stands_alone(ids[row].0) || waits(ids[row].0, entities[row]) {
                 note(entities[row]);
             }
         });

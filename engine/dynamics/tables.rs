@@ -6,6 +6,7 @@ use kernel::{
     contact::{ContactTable, Link},
     data::BitSet,
     graph::{ColorGraph, Islands},
+    math::WorldPose,
     table::{BodyTable, ColliderTable},
 };
 
@@ -17,6 +18,9 @@ pub(crate) struct Bodies {
     pub(crate) table: BodyTable,
     /// The entity of each id.
     pub(crate) entities: Vec<Entity>,
+    /// The pose that the components of each id last said, read or written: what differs, the app changed. The
+    /// table's own, from the centre of mass, would differ in the last bit.
+    pub(crate) seen: Vec<WorldPose>,
     /// All kinematic bodies, at rest or not.
     pub(crate) kinematic: BitSet,
     /// The bodies with a solver row in this step, in the order of their rows from row 1.

@@ -126,7 +126,8 @@ impl Audit<'_, '_> {
             let body = of.and_then(|of| self.bodies.get(of.body).ok());
             let placed = pose.is_some_and(|(p, _)| *p != Position::PLACEHOLDER)
                 || body.is_some_and(|(_, body, ..)| body.0 != NONE);
-            let wanted = present && !collider_disabled && !disabled && placed;
+            let refused = self.queue.refused.contains(&entity);
+            let wanted = present && !collider_disabled && !disabled && placed && !refused;
             assert_eq!(wanted, id != NONE, "{entity} with a collider takes part");
             if !wanted {
                 continue;

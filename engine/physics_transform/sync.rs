@@ -13,6 +13,7 @@ use bevy_ecs::{
     prelude::*,
     system::{SystemChangeTick, SystemParam},
 };
+use bevy_log::warn;
 use bevy_transform::components::Transform;
 
 use super::{
@@ -37,6 +38,8 @@ pub(crate) struct SyncTicks {
     /// The last initialisation and the last reading; what they wrote to poses bears these ticks and came
     /// from transforms, so that it need not go back there.
     read: [Tick; 2],
+    /// Entities whose transform is not finite, of which the app was told.
+    told: EntityHashSet,
 }
 
 impl SyncTicks {
@@ -109,6 +112,17 @@ pub(crate) fn find_changed_transforms(
     ticks.scan = system.this_run();
 }
 
+/// Warns, once until it is mended, of a transform that is no place; the entity stays where it was.
+fn tell_nonsense(entity: Entity, transform: &Transform, read: &Vector, told: &mut EntityHashSet) {
+    if read.is_finite() && transform.rotation.is_finite() {
+        if !told.is_empty() {
+            told.remove(&entity);
+        }
+    } else if told.insert(entity) {
+        warn!("the transform of {entity}, or of an ancestor, is not finite; its pose does not follow it");
+    }
+}
+
 /// Poses, transforms and the hierarchy, as initialising needs them.
 #[derive(SystemParam)]
 pub(crate) struct Initialiser<'w, 's> {
@@ -126,6 +140,15 @@ pub(crate) struct Initialiser<'w, 's> {
 impl Initialiser<'_, '_> {
     fn depth(&self, entity: Entity) -> usize {
         core::iter::successors(Some(entity), |&at| self.parents.get(at).ok().map(ChildOf::parent)).count()
+    }
+
+    /// Warns of a transform from which a pose was to be taken and cannot.
+    fn tell_nonsense(&self, entity: Entity, given: [bool; 2], told: &mut EntityHashSet) {
+        let Ok(transform) = self.transforms.get(entity) else { return };
+        if given != [true; 2] {
+            let parent = parent_frame(entity, &self.parents, |e| self.transforms.get(e).ok().copied());
+            tell_nonsense(entity, transform, &read_pose(parent.as_ref(), transform).0, told);
+        }
     }
 
     /// What the user gave goes to the `Transform`, what the user did not give comes from there.
@@ -194,6 +217,7 @@ pub(crate) fn initialise_poses(
         // A pose set after spawning is as good as one given with it.
         let given = [given[0] || *position != first.0, given[1] || rotation.copied() != first.1];
         initialiser.initialise(entity, given);
+        initialiser.tell_nonsense(entity, given, &mut ticks.told);
     }
     for entity in core::mem::take(&mut queue.1) {
         let Ok((_, Some(rotation), ..)) = initialiser.poses.get(entity) else { continue };
@@ -221,12 +245,14 @@ pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick) 
     let TransformReader { mut tree, changes, mut ticks, config, transforms, parents, mut poses } = reader;
     ticks.read[1] = system.this_run();
     let last = ticks.writeback;
+    let told = &mut ticks.told;
     let mut visit = |entity: Entity, parent: Option<&Frame>, transform: &Transform| {
         let Ok((mut position, rotation)) = poses.get_mut(entity) else { return };
         let held = rotation.as_ref().map_or(Rotation::IDENTITY, |rotation| **rotation);
         let expected = write_pose(parent, transform, position.0, held);
         let is_free = |changed: Tick| !changed.is_newer_than(last, system.this_run());
         let (read, turned) = read_pose(parent, transform);
+        tell_nonsense(entity, transform, &read, told);
         let moved = !same_translation(&expected, transform) && read.is_finite();
         if moved && is_free(position.last_changed()) && position.0 != read {
             position.0 = read;

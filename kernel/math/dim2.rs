@@ -365,6 +365,17 @@ impl Rot {
         let (sin, cos) = super::sin_cos(f64::from(angle));
         Self { cos: cos as f32, sin: sin as f32 }
     }
+    /// Scaled to unit length whatever its length, bit for bit the same where that is 1 to rounding; NaN where
+    /// it has no direction.
+    pub fn admitted(self) -> Self {
+        let [cos, sin] = [self.cos, self.sin].map(f64::from);
+        let square = cos * cos + sin * sin;
+        if (square - 1.0).abs() <= super::UNIT_TOLERANCE {
+            return self;
+        }
+        let length = square.sqrt();
+        Self { cos: (cos / length) as f32, sin: (sin / length) as f32 }
+    }
     /// Whether no component is infinite or NaN.
     #[inline]
     pub fn is_finite(self) -> bool {

@@ -458,6 +458,18 @@ impl Rot {
     pub fn is_finite(self) -> bool {
         self.x * 0.0 + self.y * 0.0 + self.z * 0.0 + self.w * 0.0 == 0.0
     }
+    /// Scaled to unit length whatever its length, bit for bit the same where that is 1 to rounding; NaN where
+    /// it has no direction.
+    pub fn admitted(self) -> Self {
+        let [x, y, z, w] = [self.x, self.y, self.z, self.w].map(f64::from);
+        let square = x * x + y * y + z * z + w * w;
+        if (square - 1.0).abs() <= super::UNIT_TOLERANCE {
+            return self;
+        }
+        let length = square.sqrt();
+        let [x, y, z, w] = [x, y, z, w].map(|c| (c / length) as f32);
+        Self { x, y, z, w }
+    }
     /// How far two rotations are apart: twice the imaginary part of the quaternion between them, about
     /// the rotation vector when small.
     #[inline]

@@ -73,6 +73,10 @@ pub use lane_sse::F32x4;
 pub use pose::{Pose, WorldPose, WorldVector};
 pub use trig::{atan2, cos, sin, sin_cos};
 
+/// How far the square of a rotation's length may be from 1 to count as 1. A product of a few rotations stays
+/// within a tenth of it; the renormalisation of what moves sees to the rest.
+const UNIT_TOLERANCE: f64 = 1.0e-5;
+
 /// The precision of world positions: `f64` with the feature `f64`, else `f32`. All else is `f32`.
 #[cfg(feature = "f64")]
 pub type Scalar = f64;

@@ -333,3 +333,18 @@ fn a_level_may_be_spawned_asleep() {
         assert_eq!(asleep(&lab, &first) + asleep(&lab, &later), 6);
     }
 }
+
+/// Its position, recomputed from its centre of mass, differs from what the app gave in the last bit.
+#[test]
+fn issue_a_body_off_its_centre_was_taken_for_moved_by_the_app_in_every_step() {
+    for i in 0..20 {
+        let mut lab = Lab::new();
+        let turn = 0.037 * i as f32;
+        let pose = Transform::from_xyz(0.3 + 0.17 * i as f32, 0.1, 0.0);
+        let held = lab.block([4.0, 1.0, 4.0], pose);
+        lab.insert(held, (LockedAxes::ALL_LOCKED, dim::turned(turn)));
+        lab.insert(held, CenterOfMass(dim::sized(1.3, 0.71, 0.0)));
+        lab.seconds(2.0);
+        assert_eq!(asleep(&lab, &[held]), 1, "turned by {turn}");
+    }
+}

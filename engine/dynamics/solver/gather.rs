@@ -22,7 +22,7 @@ use crate::{
         tables::{Bodies, Tables, is_minority},
     },
     math::{Scalar, angular_to_kernel, inv_inertia_to_kernel, to_f32, vector_to_kernel},
-    physics_transform::{Position, Rotation, world_pose},
+    physics_transform::{Position, Rotation, said_pose, world_pose},
     scan::{IN_TABLES, Since},
 };
 
@@ -104,21 +104,23 @@ struct Change {
 #[inline]
 fn read_in(entity: Entity, body: &StateInputItem, tables: &mut Tables, commands: &mut Commands) -> Change {
     let id = body.id.0;
-    let bodies = &tables.bodies.table;
+    let Bodies { table: bodies, seen, .. } = &*tables.bodies;
     let velocity = velocity(body.linear_velocity, body.angular_velocity);
     let center = vector_to_kernel(body.center.0);
-    let frame = world_pose(body.position, body.rotation);
+    let said = said_pose(body.position, body.rotation);
     let change =
-        Change { moved: bodies.frame(id) != frame, pushed: bodies.velocities[id as usize] != velocity };
+        Change { moved: seen[id as usize] != said, pushed: bodies.velocities[id as usize] != velocity };
     let recentered = bodies[id].local_center != center && center.is_finite();
     if !(change.moved || change.pushed || recentered) {
         return change;
     }
+    let frame = world_pose(body.position, body.rotation);
     if !(velocity.linear.is_finite() && velocity.angular.is_finite() && is_finite(&frame)) {
         quarantine(entity, Some(bodies.frame(id)), commands);
         return Change::default();
     }
     tables.bodies.table.set_velocity(id, velocity);
+    tables.bodies.seen[id as usize] = said;
     if change.moved || recentered {
         place(id, frame, recentered.then_some(center), tables);
     }

@@ -3,7 +3,7 @@
 use bevy_ecs::{prelude::*, query::QueryData};
 use bevy_time::Time;
 use kernel::{
-    math::{Rot, Vector as KernelVector},
+    math::{Rot, Vector as KernelVector, WorldPose},
     solver::BodyRows,
     table::{BodyTable, NONE, Velocity},
 };
@@ -63,18 +63,18 @@ pub(crate) fn scatter_bodies(
     mut commands: Commands,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let Bodies { table, listed, entities, some, .. } = &mut *bodies;
+    let Bodies { table, seen, listed, entities, some, .. } = &mut *bodies;
     let scatter = Scatter { rows: &solver.kernel.bodies, dt: time.delta_secs(), unit: unit.metres() };
     if is_minority(listed.len(), query.iter().size_hint()) {
         some.clear();
         some.extend(listed.iter().map(|id| entities[*id as usize]));
         let mut found = query.iter_many_mut(&*some);
         while let Some(item) = found.fetch_next() {
-            scatter.body(item, table, &mut commands);
+            scatter.body(item, table, seen, &mut commands);
         }
     } else {
         for item in &mut query {
-            scatter.body(item, table, &mut commands);
+            scatter.body(item, table, seen, &mut commands);
         }
     }
     diagnostics.finalize += start.elapsed();
@@ -89,7 +89,13 @@ struct Scatter<'a> {
 
 impl Scatter<'_> {
     #[inline(always)]
-    fn body(&self, item: OutputItem, bodies: &mut BodyTable, commands: &mut Commands) {
+    fn body(
+        &self,
+        item: OutputItem,
+        bodies: &mut BodyTable,
+        seen: &mut [WorldPose],
+        commands: &mut Commands,
+    ) {
         let OutputItem { entity, id, position, rotation, linear, angular, options } = item;
         let id = id.0;
         let row = if id == NONE { 0 } else { bodies.rows[id as usize] };
@@ -115,7 +121,8 @@ impl Scatter<'_> {
             write_changed(angular, AngularVelocity(angular_from_kernel(w)));
         }
         if pose != old {
-            set_pose(position, rotation, bodies.frame(id));
+            seen[id as usize] = bodies.frame(id);
+            set_pose(position, rotation, seen[id as usize]);
         }
         let threshold = options.threshold.copied().unwrap_or_default();
         // Where the app moves the body, this step has not: its velocity says how fast it means to.

@@ -17,7 +17,7 @@ use crate::{
     dynamics::rigid_body::RigidBody,
     math::vector_from_xyz,
     physics_transform::{
-        PhysicsTransformSystems, Position, Rotation,
+        PhysicsTransformSystems, Position, Rotation, filled_in,
         frame::Frame,
         plugin::TransformTreePlugin,
         sync::{find_changed_transforms, position_to_transform, transform_to_position},
@@ -163,8 +163,9 @@ pub(crate) fn place_child_colliders(
     let mut place = |collider: Entity| {
         let Ok((mut position, mut rotation, offset, of)) = children.get_mut(collider) else { return };
         let Ok((_, at, turned, _)) = bodies.get(of.body) else { return };
-        position.set_if_neq(Position(at.0 + *turned * offset.translation));
-        rotation.set_if_neq(*turned * offset.rotation);
+        let turned = filled_in(*turned);
+        position.set_if_neq(Position(at.0 + turned * offset.translation));
+        rotation.set_if_neq(turned * offset.rotation);
     };
     placement.offset.drain(..).for_each(&mut place);
     for (_, position, rotation, colliders) in &bodies {
