@@ -252,10 +252,20 @@ impl ContactTable {
             assert_eq!(self.find(a, b), Some(id), "a contact is found by its pair");
             for c in [a, b] {
                 assert!(colliders.ids.is_live(c), "a contact's colliders are live");
-                assert!(self.of_collider(c, colliders).any(|k| k == id), "a collider lists its contacts");
             }
             assert_eq!(contact.bodies, [a, b].map(|c| colliders[c].def.body), "a contact knows its bodies");
         }
+        let mut listed = 0;
+        for collider in colliders.ids.iter() {
+            for id in self.of_collider(collider, colliders) {
+                assert!(
+                    self.is_live(id) && self.get(id).colliders.contains(&collider),
+                    "lists hold their own"
+                );
+                listed += 1;
+            }
+        }
+        assert_eq!(listed, 2 * live, "colliders list their contacts");
         assert_eq!(live, self.len());
         assert_eq!(self.pairs.len(), live, "every pair has one contact");
     }
