@@ -36,7 +36,6 @@ fn register_dynamics(app: &mut App) {
     use crate::{
         dynamics::{
             ccd::SpeculativeMargin,
-            ids::{BodyId, ColliderId},
             integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
             rigid_body::sleeping::TimeToSleep,
             solver::{
@@ -51,7 +50,7 @@ fn register_dynamics(app: &mut App) {
     register!(app:
         SpeculativeMargin, Gravity, CustomVelocityIntegration, CustomPositionIntegration,
         PhysicsLengthUnit, SolverConfig, SolverDiagnostics, ContactSoftnessCoefficients, SubstepCount,
-        SoftnessParameters, SoftnessCoefficients, TimeToSleep, PhysicsTransformConfig, BodyId, ColliderId,
+        SoftnessParameters, SoftnessCoefficients, TimeToSleep, PhysicsTransformConfig,
     );
 }
 

@@ -147,8 +147,9 @@ pub(crate) fn note_changed_colliders(
     }
 }
 
+/// An id that is taken away or overwritten leaves; an entity that is still a body enters anew.
 fn lose_body(
-    on: On<Remove, BodyId>,
+    on: On<Discard, BodyId>,
     ids: Query<&BodyId, Allow<Disabled>>,
     mut queue: ResMut<LifecycleQueue>,
 ) {
@@ -156,11 +157,13 @@ fn lose_body(
         && *id != NONE
     {
         queue.lost_bodies.push(*id);
+        queue.bodies.push(on.entity);
     }
 }
 
+/// An id that is taken away or overwritten leaves; an entity that is still a collider enters anew.
 fn lose_collider(
-    on: On<Remove, ColliderId>,
+    on: On<Discard, ColliderId>,
     ids: Query<&ColliderId, Allow<Disabled>>,
     mut queue: ResMut<LifecycleQueue>,
 ) {
@@ -168,5 +171,6 @@ fn lose_collider(
         && *id != NONE
     {
         queue.lost_colliders.push(*id);
+        queue.colliders.push(on.entity);
     }
 }
