@@ -22,7 +22,6 @@ pub(crate) use bevy_heavy::{
 
 /// The spatial part of a point.
 #[inline]
-#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 pub(crate) fn vector_from_xyz([x, y, _]: [f64; 3]) -> Vector {
     Vector::new(x as Scalar, y as Scalar)
 }
@@ -53,7 +52,6 @@ pub(crate) fn vector_from_kernel(v: k::Vector) -> Vector {
 
 /// An angular velocity or torque, narrowed for the kernel.
 #[inline]
-#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 pub(crate) fn angular_to_kernel(v: AngularVector) -> k::Angular {
     k::Angular { z: v as f32 }
 }
@@ -66,7 +64,6 @@ pub(crate) fn angular_from_kernel(v: k::Angular) -> AngularVector {
 
 /// An inverse angular inertia, narrowed for the kernel.
 #[inline]
-#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 pub(crate) fn inv_inertia_to_kernel(inverse: SymmetricTensor) -> k::InvInertia {
     k::InvInertia { zz: inverse as f32 }
 }

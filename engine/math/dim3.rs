@@ -32,7 +32,6 @@ pub fn skew_symmetric_mat3(v: Vector3) -> Matrix3 {
 
 /// The spatial part of a point.
 #[inline]
-#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 pub(crate) fn vector_from_xyz([x, y, z]: [f64; 3]) -> Vector {
     Vector::new(x as Scalar, y as Scalar, z as Scalar)
 }

@@ -32,7 +32,6 @@ use glam_matrix_extras::{SymmetricDMat2, SymmetricDMat3, SymmetricMat2, Symmetri
 
 /// A scalar narrowed for the kernel.
 #[inline(always)]
-#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 pub(crate) fn to_f32(value: Scalar) -> f32 {
     value as f32
 }

@@ -39,7 +39,6 @@ impl Default for Rotation {
     }
 }
 
-#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 impl Rotation {
     /// Stands for "take it from the `Transform`"; replaced when the entity gets its body or collider.
     pub const PLACEHOLDER: Self = Self { cos: Scalar::MAX, sin: Scalar::MAX };
@@ -229,14 +228,11 @@ impl Rotation {
     }
 
     /// The rotation in the kernel's precision.
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
-    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
     pub(crate) fn to_kernel(self) -> kernel::math::Rot {
         kernel::math::Rot { cos: self.cos as f32, sin: self.sin as f32 }
     }
 
     /// The rotation of a kernel rotation.
-    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
     pub(crate) fn from_kernel(rotation: kernel::math::Rot) -> Self {
         Self { cos: Scalar::from(rotation.cos), sin: Scalar::from(rotation.sin) }
     }
@@ -340,7 +336,6 @@ impl From<Rot2> for Rotation {
 }
 
 impl From<Rotation> for Rot2 {
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     fn from(rotation: Rotation) -> Self {
         Rot2 { cos: rotation.cos as f32, sin: rotation.sin as f32 }
     }

@@ -101,23 +101,13 @@ impl Rotation {
         Self(Quaternion::from_xyzw(x / length, y / length, z / length, w / length))
     }
 
-    /// Whether no number is infinite or NaN.
-    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
-    pub(crate) fn is_finite(self) -> bool {
-        let [x, y, z, w] = self.0.to_array();
-        x.is_finite() && y.is_finite() && z.is_finite() && w.is_finite()
-    }
-
     /// The rotation in the kernel's precision.
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
-    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
     pub(crate) fn to_kernel(self) -> kernel::math::Rot {
         let [x, y, z, w] = self.0.to_array();
         kernel::math::Rot { x: x as f32, y: y as f32, z: z as f32, w: w as f32 }
     }
 
     /// The rotation of a kernel rotation.
-    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
     pub(crate) fn from_kernel(rotation: kernel::math::Rot) -> Self {
         let kernel::math::Rot { x, y, z, w } = rotation;
         Self(Quaternion::from_xyzw(Scalar::from(x), Scalar::from(y), Scalar::from(z), Scalar::from(w)))
@@ -202,6 +192,29 @@ impl From<DQuat> for Rotation {
     fn from(rotation: DQuat) -> Self {
         let [x, y, z, w] = rotation.to_array();
         Self(Quaternion::from_xyzw(narrow(x), narrow(y), narrow(z), narrow(w)))
+    }
+}
+
+/// Only what rotations of space need.
+impl Turn {
+    pub(crate) fn negated(self) -> Self {
+        Self { x: -self.x, y: -self.y, z: -self.z, w: -self.w }
+    }
+
+    /// `a self + b other`.
+    pub(crate) fn mix(self, a: f64, other: Self, b: f64) -> Self {
+        Self {
+            x: a * self.x + b * other.x,
+            y: a * self.y + b * other.y,
+            z: a * self.z + b * other.z,
+            w: a * self.w + b * other.w,
+        }
+    }
+
+    /// The angle turned by, in 0 … π.
+    pub(crate) fn angle(self) -> f64 {
+        let sine = (self.x * self.x + self.y * self.y + self.z * self.z).sqrt();
+        2.0 * kernel::math::atan2(sine, self.w.abs())
     }
 }
 

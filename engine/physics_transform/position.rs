@@ -9,7 +9,7 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_transform::components::GlobalTransform;
 use derive_more::From;
 
-use crate::math::{Scalar, Vector, vector_from_xyz, world_from_kernel, world_to_kernel};
+use crate::math::{Scalar, Vector, vector_from_xyz};
 
 /// The world position of a rigid body or collider, in metres.
 ///
@@ -33,18 +33,6 @@ impl Position {
     /// The position at a point, in metres.
     pub fn new(position: Vector) -> Self {
         Self(position)
-    }
-
-    /// The position as the kernel's world vector.
-    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
-    pub(crate) fn to_kernel(self) -> kernel::math::WorldVector {
-        world_to_kernel(self.0)
-    }
-
-    /// The position of a kernel world vector.
-    #[allow(dead_code, reason = "the seam's conversions belong together; the glue uses them as it grows")]
-    pub(crate) fn from_kernel(position: kernel::math::WorldVector) -> Self {
-        Self(world_from_kernel(position))
     }
 }
 

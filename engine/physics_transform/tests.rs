@@ -54,7 +54,6 @@ fn app() -> App {
 }
 
 /// The point with x, y and, where there is depth, z.
-#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 fn at(x: Scalar, y: Scalar) -> Vector {
     crate::math::vector_from_xyz([f64::from(x as f32), f64::from(y as f32), 0.0])
 }

@@ -13,7 +13,6 @@ pub(crate) fn wide(value: Scalar) -> f64 {
 
 /// Rounds to the scalar.
 #[inline(always)]
-#[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 pub(crate) fn narrow(value: f64) -> Scalar {
     value as Scalar
 }
@@ -95,30 +94,6 @@ impl Turn {
             Self { x: z[0] + x[2], y: y[2] + z[1], z: 1.0 - x[0] - y[1] + z[2], w: x[1] - y[0] }
         };
         turn.normalized()
-    }
-}
-
-/// Only what rotations of space need.
-#[allow(dead_code, reason = "rotations of the plane interpolate by angle")]
-impl Turn {
-    pub(crate) fn negated(self) -> Self {
-        Self { x: -self.x, y: -self.y, z: -self.z, w: -self.w }
-    }
-
-    /// `a self + b other`.
-    pub(crate) fn mix(self, a: f64, other: Self, b: f64) -> Self {
-        Self {
-            x: a * self.x + b * other.x,
-            y: a * self.y + b * other.y,
-            z: a * self.z + b * other.z,
-            w: a * self.w + b * other.w,
-        }
-    }
-
-    /// The angle turned by, in 0 … π.
-    pub(crate) fn angle(self) -> f64 {
-        let sine = (self.x * self.x + self.y * self.y + self.z * self.z).sqrt();
-        2.0 * kernel::math::atan2(sine, self.w.abs())
     }
 }
 

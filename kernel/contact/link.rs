@@ -140,16 +140,9 @@ impl Link<'_> {
         }
         self.enter(body);
         for id in contacts {
-            let contact = self.contacts.get(id);
-            let (colliders, bodies, touching) =
-                (contact.colliders, contact.bodies, contact.flags.has(ContactFlags::TOUCHING));
-            let mut flags = self.flags(colliders, bodies);
-            flags.set(ContactFlags::TOUCHING, touching);
-            self.contacts.get_mut(id).flags = flags;
+            self.contacts.get_mut(id).flags = self.fresh_flags(id);
             self.refresh(id);
-            if touching {
-                self.attach(id);
-            }
+            self.attach(id);
         }
     }
 
@@ -157,17 +150,11 @@ impl Link<'_> {
     pub fn reflag_of_collider(&mut self, collider: u32) {
         let ids: Vec<u32> = self.contacts.of_collider(collider, self.colliders).collect();
         for id in ids {
-            let contact = self.contacts.get(id);
-            let (colliders, bodies, touching) =
-                (contact.colliders, contact.bodies, contact.flags.has(ContactFlags::TOUCHING));
-            let mut flags = self.flags(colliders, bodies);
-            flags.set(ContactFlags::TOUCHING, touching);
-            if flags != contact.flags {
+            let flags = self.fresh_flags(id);
+            if flags != self.contacts.get(id).flags {
                 self.detach(id);
                 self.contacts.get_mut(id).flags = flags;
-                if touching {
-                    self.attach(id);
-                }
+                self.attach(id);
             }
         }
     }
@@ -325,6 +312,14 @@ impl Link<'_> {
         let unattached = bodies.contains(&NONE);
         let movable = bodies.iter().any(|b| *b != NONE && self.bodies[*b].kind == BodyKind::Dynamic);
         flags.set(ContactFlags::IMMOVABLE, unattached || !movable);
+        flags
+    }
+
+    /// What a contact's pair is now. It touches as it did; its manifold is computed anew.
+    fn fresh_flags(&self, id: u32) -> ContactFlags {
+        let contact = self.contacts.get(id);
+        let mut flags = self.flags(contact.colliders, contact.bodies);
+        flags.set(ContactFlags::TOUCHING, contact.flags.has(ContactFlags::TOUCHING));
         flags
     }
 

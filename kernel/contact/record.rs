@@ -18,12 +18,12 @@ impl ContactFlags {
     pub const IMMOVABLE: Self = Self(1 << 2);
     /// A shape is known only to the embedder: manifolds come through its source, and are not recycled.
     pub const FOREIGN: Self = Self(1 << 3);
-    /// Overlaps by more than a tenth of the smaller side's reach, or did and has not come apart since.
-    pub const DEEP: Self = Self(1 << 6);
-    /// The fat boxes do not overlap any more: to be destroyed.
-    pub const APART: Self = Self(1 << 5);
     /// The frozen pose is valid, so that the manifold may be recycled.
     pub const FROZEN: Self = Self(1 << 4);
+    /// The fat boxes do not overlap any more: to be destroyed.
+    pub const APART: Self = Self(1 << 5);
+    /// Overlaps by more than a tenth of the smaller side's reach, or did and has not come apart since.
+    pub const DEEP: Self = Self(1 << 6);
 
     /// Whether all bits of `other` are set.
     #[inline(always)]

@@ -92,7 +92,6 @@ impl Vector {
 
     /// Widens a local vector to world precision.
     #[inline(always)]
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     pub fn to_world(self) -> Vector<Scalar> {
         Vector { x: self.x as Scalar, y: self.y as Scalar }
     }
@@ -156,7 +155,6 @@ impl Vector {
 impl Vector<Scalar> {
     /// Narrows a difference of world positions.
     #[inline(always)]
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     pub fn to_local(self) -> Vector {
         Vector { x: self.x as f32, y: self.y as f32 }
     }

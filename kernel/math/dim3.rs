@@ -106,7 +106,6 @@ impl Vector {
 
     /// Widens a local vector to world precision.
     #[inline(always)]
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     pub fn to_world(self) -> Vector<Scalar> {
         Vector { x: self.x as Scalar, y: self.y as Scalar, z: self.z as Scalar }
     }
@@ -166,7 +165,6 @@ impl Vector {
 impl Vector<Scalar> {
     /// Narrows a difference of world positions.
     #[inline(always)]
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     pub fn to_local(self) -> Vector {
         Vector { x: self.x as f32, y: self.y as f32, z: self.z as f32 }
     }

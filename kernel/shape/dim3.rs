@@ -1,6 +1,5 @@
 //! What differs in space: mass properties, rays against flat shapes, and the polyhedron. `dim2.rs`
 //! exports the same names.
-#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must fail these comparisons")]
 
 mod hull3;
 

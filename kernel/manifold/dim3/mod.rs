@@ -2,7 +2,6 @@
 //!
 //! Balls and capsules have closed forms where there are any; two boxes have a path of their own; all
 //! other pairs of polyhedra (with radii) share [`convex`].
-#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must fail these comparisons")]
 
 #[cfg(test)]
 mod bench;

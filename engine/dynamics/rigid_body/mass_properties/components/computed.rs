@@ -110,7 +110,6 @@ impl From<Mass> for ComputedMass {
 }
 
 impl From<ComputedMass> for Mass {
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     fn from(mass: ComputedMass) -> Self {
         Self(mass.value() as f32)
     }

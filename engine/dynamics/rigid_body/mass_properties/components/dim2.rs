@@ -172,7 +172,6 @@ impl From<AngularInertia> for ComputedAngularInertia {
 }
 
 impl From<ComputedAngularInertia> for AngularInertia {
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     fn from(angular_inertia: ComputedAngularInertia) -> Self {
         Self(angular_inertia.value() as f32)
     }

@@ -45,7 +45,6 @@ impl Inertia {
     }
 
     /// For the solver; infinite for none, and for what `f32` cannot hold.
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     pub(in super::super) fn computed(self) -> ComputedAngularInertia {
         if self.0 > 0.0 && self.0 < f64::from(f32::MAX) {
             ComputedAngularInertia::new(self.0 as Scalar)
@@ -69,7 +68,6 @@ pub(super) fn mass_properties(mass: f32, center: Vec2, inertia: Inertia) -> Mass
 
 impl Frame {
     /// Where a collider lies in its body. Its scale is in its mass properties already.
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     pub(in super::super) fn of_collider(transform: &ColliderTransform) -> Self {
         let (cos, sin) = (transform.rotation.cos as f64, transform.rotation.sin as f64);
         Self {

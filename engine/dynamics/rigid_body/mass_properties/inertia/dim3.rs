@@ -86,7 +86,6 @@ pub(super) fn mass_properties(mass: f32, center: Vec3, inertia: Inertia) -> Mass
 
 impl Frame {
     /// Where a collider lies in its body. Its scale is in its mass properties already.
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     pub(in super::super) fn of_collider(transform: &ColliderTransform) -> Self {
         let [x, y, z, w] = transform.rotation.0.to_array().map(|component| component as f64);
         Self {

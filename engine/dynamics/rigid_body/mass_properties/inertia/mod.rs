@@ -98,7 +98,6 @@ impl Part {
     }
 
     /// The mass for the solver; infinite for none, and for what `f32` cannot hold.
-    #[allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
     pub(super) fn computed_mass(&self) -> ComputedMass {
         if self.mass > 0.0 && self.mass < f64::from(f32::MAX) {
             ComputedMass::new(self.mass as Scalar)
