@@ -1,8 +1,8 @@
 //! The TGS-Soft contact solver: dense body rows, wide contact rows, and the stages of a substep.
 //!
-//! One step is: fill [`Solver::bodies`], build the rows from touching manifolds, then per substep
-//! integrate velocities → impacts → warm start → solve with soft bias → integrate positions → relax; after the
-//! last one restitution, and the impulses go back into the manifolds.
+//! One step is: fill [`Solver::bodies`], find the special ones among them, build the rows from touching
+//! manifolds, then per substep integrate velocities → impacts → warm start → solve with soft bias → integrate
+//! positions → relax; after the last one restitution, and the impulses go back into the manifolds.
 //!
 //! The method is Erin Catto's (Solver2D, Box2D v3, Box3D): soft constraints, relaxation, positions kept
 //! as deltas over the step. Rows here differ in that both dimensions have one central friction row per

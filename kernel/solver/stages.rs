@@ -93,8 +93,13 @@ impl Solver {
 
     /// Builds the rows of all touching contacts in the colours.
     pub fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
-        let Self { bodies, special, overflow, four, order, buckets, deep, .. } = self;
-        special.find(bodies);
+    /// Finds which bodies are held, limited in speed or turned by their own spin: once per step, after
+    /// [`bodies`](Self::bodies) were filled, whether or not there are contacts.
+    pub fn find_special(&mut self) {
+        self.special.find(&self.bodies);
+    }
+
+        let Self { bodies, overflow, four, order, buckets, deep, .. } = self;
         overflow.free.clear();
         overflow.held.clear();
         order.clear();

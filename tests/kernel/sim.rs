@@ -215,6 +215,7 @@ impl Sim {
         self.narrow();
         let params = self.params();
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies, colliders: &self.colliders };
+        self.solver.find_special();
         self.solver.build_rows(&input, &self.colors, &params);
         for _ in 0..self.substeps {
             self.solver.substep(&params);

@@ -290,6 +290,7 @@ pub(crate) fn gather_bodies(
 struct Gather {
     gravity: KernelVector,
 }
+    solver.kernel.find_special();
 
 impl Gather {
     /// Fills a body's row, if it has one. Returns whether it has.
