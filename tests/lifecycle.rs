@@ -438,3 +438,18 @@ fn issue_a_rotation_that_came_after_the_position_was_never_initialised() {
     assert_eq!(rotation, Rotation::IDENTITY);
     assert!(height(&app, body) < 1.0);
 }
+
+#[test]
+fn a_kinematic_body_stopped_and_set_off_at_the_same_speed_moves_again() {
+    let mut app = app();
+    let speed = LinearVelocity(Vector::X);
+    let platform = app.world_mut().spawn((RigidBody::Kinematic, block(), speed)).id();
+    let x = |app: &App| app.world().get::<Position>(platform).expect("a body has a position").x;
+    steps(&mut app, 10);
+    app.world_mut().entity_mut(platform).insert(LinearVelocity::ZERO);
+    steps(&mut app, 10);
+    let stopped = x(&app);
+    app.world_mut().entity_mut(platform).insert(speed);
+    steps(&mut app, 10);
+    assert!((x(&app) - stopped - 10.0 * DT.as_secs_f64() as Scalar).abs() < 1.0e-4);
+}

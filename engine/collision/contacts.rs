@@ -10,7 +10,7 @@ use kernel::{
 
 use crate::{
     collision::{
-        collider::{Collider, foreign_manifolds},
+        collider::{Collider, Workspace, foreign_manifolds},
         diagnostics::CollisionDiagnostics,
         narrow_phase::NarrowPhaseConfig,
     },
@@ -28,7 +28,7 @@ const RECYCLE: f32 = 0.05;
 
 /// Buffers of the narrow phase.
 #[derive(Resource, Default)]
-pub(crate) struct NarrowScratch(Scratch);
+pub(crate) struct NarrowScratch(Scratch<Workspace>);
 
 /// Manifolds of pairs that the kernel does not know, by parry.
 struct Foreign<'a, 'w, 's, 'c> {
@@ -38,11 +38,20 @@ struct Foreign<'a, 'w, 's, 'c> {
 }
 
 impl ManifoldSource for Foreign<'_, '_, '_, '_> {
-    fn manifolds(&self, a: u32, b: u32, prediction: f32, out: &mut Vec<LocalManifold>) {
+    type Workspace = Workspace;
+
+    fn manifolds(
+        &self,
+        a: u32,
+        b: u32,
+        prediction: f32,
+        workspace: &mut Workspace,
+        out: &mut Vec<LocalManifold>,
+    ) {
         let entity = |id: u32| self.entities[id as usize];
         if let Ok([ca, cb]) = self.colliders.get_many([entity(a), entity(b)]) {
             let relative = self.table.poses[a as usize].relative(&self.table.poses[b as usize]);
-            foreign_manifolds(ca, cb, &relative, prediction, out);
+            foreign_manifolds(ca, cb, &relative, prediction, workspace, out);
         }
     }
 }

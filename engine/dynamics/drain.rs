@@ -173,7 +173,6 @@ impl Census<'_, '_> {
                 tables.bodies.table.any_dominance |= dominance != 0;
                 put(&mut tables.bodies.entities, id, entity, Entity::PLACEHOLDER);
                 put(&mut tables.bodies.seen, id, said_pose(position, rotation), WorldPose::IDENTITY);
-                note_kinematic(id, kind, tables);
                 tables.link().enter(id);
                 if let Ok(mut component) = self.body_ids.get_mut(entity) {
                     component.0 = id;
@@ -184,7 +183,6 @@ impl Census<'_, '_> {
                 let kind = kind_of(body);
                 if tables.bodies.table[id].kind != kind {
                     tables.link().retype(id, kind);
-                    note_kinematic(id, kind, tables);
                     move_to_tree(id, kind, tables);
                 }
             }
@@ -214,7 +212,6 @@ impl Census<'_, '_> {
                 queue.colliders.push(entity);
             }
         }
-        tables.bodies.kinematic.remove(id);
         tables.link().leave(id);
         let entity = core::mem::replace(&mut tables.bodies.entities[id as usize], Entity::PLACEHOLDER);
         if let Ok(mut component) = self.body_ids.get_mut(entity) {
@@ -322,14 +319,6 @@ fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
         tables.colliders.moved.insert(id);
     }
     tables.link().reflag_of_collider(id);
-}
-
-fn note_kinematic(id: u32, kind: BodyKind, tables: &mut Tables) {
-    if kind == BodyKind::Kinematic {
-        tables.bodies.kinematic.insert(id);
-    } else {
-        tables.bodies.kinematic.remove(id);
-    }
 }
 
 pub(super) fn tree_of(kind: BodyKind) -> TreeKind {

@@ -21,12 +21,12 @@ pub(crate) struct Bodies {
     /// The pose that the components of each id last said, read or written: what differs, the app changed. The
     /// table's own, from the centre of mass, would differ in the last bit.
     pub(crate) seen: Vec<WorldPose>,
-    /// All kinematic bodies, at rest or not.
-    pub(crate) kinematic: BitSet,
     /// The bodies with a solver row in this step, in the order of their rows from row 1.
     pub(crate) listed: Vec<u32>,
     /// The entities of a few bodies that are looked up one by one, kept for its memory.
     pub(crate) some: Vec<Entity>,
+    /// The ids of a few bodies, kept for its memory.
+    pub(crate) ids: Vec<u32>,
 }
 
 /// All colliders in the simulation, and the trees they are in.

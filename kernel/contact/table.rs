@@ -112,7 +112,7 @@ impl ContactTable {
     pub fn update<S: ManifoldSource>(
         &mut self,
         phase: &NarrowPhase<S>,
-        scratch: &mut Scratch,
+        scratch: &mut Scratch<S::Workspace>,
         changed: &mut BitSet,
     ) {
         self.any_deep = false;

@@ -13,19 +13,32 @@ use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity};
 
 /// Whoever computes the manifolds of pairs with a [`Shape::Foreign`] in them.
 pub trait ManifoldSource: Sync {
+    /// Its buffers, kept between calls.
+    type Workspace: Default + Send;
+
     /// Adds the manifolds of colliders `a` and `b`, in `a`'s frame with normals from `a` to `b`, with
     /// points up to `prediction` metres apart.
-    fn manifolds(&self, a: u32, b: u32, prediction: f32, out: &mut Vec<LocalManifold>);
+    fn manifolds(
+        &self,
+        a: u32,
+        b: u32,
+        prediction: f32,
+        workspace: &mut Self::Workspace,
+        out: &mut Vec<LocalManifold>,
+    );
 }
 
 impl ManifoldSource for () {
-    fn manifolds(&self, _: u32, _: u32, _: f32, _: &mut Vec<LocalManifold>) {}
+    type Workspace = ();
+
+    fn manifolds(&self, _: u32, _: u32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
 }
 
-/// Buffers of one worker, kept between steps.
+/// Buffers of one worker, kept between steps; `W` are those of its [`ManifoldSource`].
 #[derive(Clone, Debug, Default)]
-pub struct Scratch {
+pub struct Scratch<W = ()> {
     local: Vec<LocalManifold>,
+    foreign: W,
     /// Where [`NarrowPhase::update`] leaves the manifolds after the first.
     pub extra: Vec<Manifold>,
 }
@@ -79,7 +92,12 @@ const RECYCLE_COS: f32 = 0.985;
 impl<S: ManifoldSource> NarrowPhase<'_, S> {
     /// Brings a contact up to date with where its bodies are now. Manifolds after the first are left in
     /// `scratch.extra`; the caller stores them.
-    pub fn update(&self, contact: &mut Contact, extra: &mut [Manifold], scratch: &mut Scratch) -> Found {
+    pub fn update(
+        &self,
+        contact: &mut Contact,
+        extra: &mut [Manifold],
+        scratch: &mut Scratch<S::Workspace>,
+    ) -> Found {
         let [a, b] = contact.colliders;
         let (fat_a, fat_b) = (&self.colliders.fat[a as usize], &self.colliders.fat[b as usize]);
         if !fat_a.overlaps(fat_b) {
@@ -194,7 +212,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         contact: &mut Contact,
         extra: &[Manifold],
         poses: &[BodyPose; 2],
-        scratch: &mut Scratch,
+        scratch: &mut Scratch<S::Workspace>,
     ) {
         let [a, b] = contact.colliders;
         let (ca, cb) = (&self.colliders[a], &self.colliders[b]);
@@ -210,7 +228,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
 
         scratch.local.clear();
         if contact.flags.has(ContactFlags::FOREIGN) {
-            self.source.manifolds(a, b, prediction, &mut scratch.local);
+            self.source.manifolds(a, b, prediction, &mut scratch.foreign, &mut scratch.local);
         } else {
             let relative = pose_a.relative(pose_b);
             let mut local = LocalManifold::default();

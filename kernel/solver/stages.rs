@@ -36,11 +36,13 @@ struct WideRows<N: Lane> {
     free: RowSet<N, N>,
     /// Contacts of bodies held along some axes.
     held: RowSet<N, Vector<N>>,
+    /// Which contacts of a colour are which, kept for its memory.
+    parts: [Vec<u32>; 2],
 }
 
 impl<N: Lane> Default for WideRows<N> {
     fn default() -> Self {
-        Self { free: RowSet::default(), held: RowSet::default() }
+        Self { free: RowSet::default(), held: RowSet::default(), parts: Default::default() }
     }
 }
 
@@ -91,14 +93,14 @@ impl Solver {
         self.width = Width::Four;
     }
 
-    /// Builds the rows of all touching contacts in the colours.
-    pub fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
     /// Finds which bodies are held, limited in speed or turned by their own spin: once per step, after
     /// [`bodies`](Self::bodies) were filled, whether or not there are contacts.
     pub fn find_special(&mut self) {
         self.special.find(&self.bodies);
     }
 
+    /// Builds the rows of all touching contacts in the colours.
+    pub fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
         let Self { bodies, overflow, four, order, buckets, deep, .. } = self;
         overflow.free.clear();
         overflow.held.clear();
@@ -246,10 +248,13 @@ impl<N: Lane> WideRows<N> {
         for color in 0..OVERFLOW {
             let contacts = colors.contacts(color);
             if step.any_held {
-                let (held, free): (Vec<u32>, Vec<u32>) =
-                    contacts.iter().partition(|id| step.is_held(input, **id));
-                self.held.add_color(input, step, held.into_iter());
-                self.free.add_color(input, step, free.into_iter());
+                self.parts.iter_mut().for_each(Vec::clear);
+                for id in contacts {
+                    self.parts[usize::from(step.is_held(input, *id))].push(*id);
+                }
+                let [free, held] = &self.parts;
+                self.held.add_color(input, step, held.iter().copied());
+                self.free.add_color(input, step, free.iter().copied());
             } else {
                 self.free.add_color(input, step, contacts.iter().copied());
             }

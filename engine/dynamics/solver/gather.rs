@@ -204,16 +204,23 @@ pub(crate) fn wake_changed(
     }
 }
 
-/// A kinematic body is awake exactly while it moves.
-pub(crate) fn wake_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, mut tables: Tables) {
-    let ids: Vec<u32> = tables.bodies.kinematic.iter().collect();
-    for id in ids {
-        let entity = tables.bodies.entities[id as usize];
-        let Ok((v, w)) = query.get(entity) else { continue };
-        let (v, w) = (vector_to_kernel(v.0), angular_to_kernel(w.0));
-        let moves = v != KernelVector::ZERO || w.length_squared() != 0.0;
-        tables.link().set_kinematic_awake(id, moves);
+/// A kinematic body is awake exactly while it moves: one that was stopped rests from now on. One that was set in
+/// motion has been woken for it.
+pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, mut tables: Tables) {
+    let at_rest = |entity: Entity| {
+        let velocity = query.get(entity).map(|(v, w)| (vector_to_kernel(v.0), angular_to_kernel(w.0)));
+        velocity.is_ok_and(|(v, w)| v == KernelVector::ZERO && w.length_squared() == 0.0)
+    };
+    let mut ids = core::mem::take(&mut tables.bodies.ids);
+    ids.clear();
+    let Bodies { table, entities, .. } = &*tables.bodies;
+    ids.extend(table.awake_kinematic().filter(|id| at_rest(entities[*id as usize])));
+    for &id in &ids {
+        tables.link().set_kinematic_awake(id, false);
+        // Nobody reads it while it rests; were the old one kept, setting it again would be no change.
+        tables.bodies.table.set_velocity(id, Velocity::default());
     }
+    tables.bodies.ids = ids;
 }
 
 /// Reads pose and velocity of every awake body, before anything is computed from them.
@@ -283,6 +290,7 @@ pub(crate) fn gather_bodies(
             rows.still(1 + i);
         }
     }
+    solver.kernel.find_special();
     diagnostics.prepare_constraints += start.elapsed();
 }
 
@@ -290,7 +298,6 @@ pub(crate) fn gather_bodies(
 struct Gather {
     gravity: KernelVector,
 }
-    solver.kernel.find_special();
 
 impl Gather {
     /// Fills a body's row, if it has one. Returns whether it has.

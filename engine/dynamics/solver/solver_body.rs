@@ -5,7 +5,7 @@ use bevy_ecs::prelude::*;
 
 use super::{
     config::PhysicsLengthUnit,
-    gather::{gather_bodies, read_awake, wake_changed, wake_kinematic},
+    gather::{gather_bodies, read_awake, rest_kinematic, wake_changed},
     scatter::scatter_bodies,
 };
 use crate::{
@@ -24,7 +24,7 @@ impl Plugin for SolverBodyPlugin {
         app.add_systems(
             PhysicsSchedule,
             (
-                (wake_changed, wake_kinematic).chain().in_set(Stage::FollowApp),
+                (wake_changed, rest_kinematic).chain().in_set(Stage::FollowApp),
                 read_awake.in_set(Stage::ReadAwake),
                 gather_bodies.in_set(Stage::Gather),
                 scatter_bodies.in_set(Stage::Scatter),

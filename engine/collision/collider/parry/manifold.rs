@@ -10,9 +10,9 @@ use crate::parry::shape::SharedShape;
 use kernel::manifold::{LocalManifold, LocalPoint};
 use kernel::math::{MAX_POINTS, Pose};
 
-/// The buffer that parry writes its manifolds to, kept to spare the allocation.
+/// The buffers that parry writes its manifolds to, kept to spare the allocations.
 #[derive(Default)]
-pub(crate) struct ManifoldWorkspace {
+pub(crate) struct Workspace {
     manifolds: Vec<ContactManifold<(), ()>>,
     points: Vec<LocalPoint>,
 }
@@ -25,9 +25,9 @@ pub(crate) fn foreign_manifolds(
     b: &Collider,
     pose: &Pose,
     prediction: f32,
+    workspace: &mut Workspace,
     out: &mut Vec<LocalManifold>,
 ) {
-    let workspace = &mut ManifoldWorkspace::default();
     parry_manifolds(a.shape_scaled(), b.shape_scaled(), pose, prediction, workspace, out);
 }
 
@@ -45,14 +45,14 @@ pub(crate) fn parry_manifolds(
     shape2: &SharedShape,
     pose: &Pose,
     prediction: f32,
-    workspace: &mut ManifoldWorkspace,
+    workspace: &mut Workspace,
     out: &mut Vec<LocalManifold>,
 ) {
     if !(pose.position.is_finite() && pose.rotation.is_finite() && prediction.is_finite()) {
         return;
     }
     let pose = dim::pose_from_kernel(pose);
-    let ManifoldWorkspace { manifolds, points } = workspace;
+    let Workspace { manifolds, points } = workspace;
     manifolds.clear();
     // Composite shapes note here which manifold belongs to which parts; it dies with the manifolds.
     let mut parts: Option<ContactManifoldsWorkspace> = None;

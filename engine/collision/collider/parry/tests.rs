@@ -5,6 +5,18 @@ use super::*;
 use crate::collision::collider::SimpleCollider;
 use crate::math::{ComputeMassProperties, DIM, Scalar};
 use crate::physics_transform::Position;
+use kernel::{manifold::LocalManifold, math::Pose};
+
+/// Appends the manifolds of two colliders.
+pub(super) fn collide(
+    a: &Collider,
+    b: &Collider,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut Vec<LocalManifold>,
+) {
+    foreign_manifolds(a, b, pose, prediction, &mut Workspace::default(), out);
+}
 
 /// A direction for each i, spread around.
 pub(super) fn direction(i: u32) -> Vector {

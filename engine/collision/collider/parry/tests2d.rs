@@ -1,7 +1,6 @@
 //! Closed forms of the plane, its primitives, and contacts of shapes that only parry knows.
 
-use super::manifold::foreign_manifolds;
-use super::tests::{assert_native, assert_usable, close, half_size};
+use super::tests::{assert_native, assert_usable, close, collide, half_size};
 use super::*;
 use crate::math::{PI, Scalar};
 use bevy_heavy::ComputeMassProperties2d;
@@ -171,7 +170,7 @@ fn an_ellipse_lies_on_a_rectangle() {
     for (gap, touches) in [(0.05f32, true), (-0.1, true), (0.3, false)] {
         let above = Pose::new(kernel::math::Vector { x: 0.5, y: 2.0 + gap }, Rot::IDENTITY);
         let mut out = vec![];
-        foreign_manifolds(&ground, &ellipse, &above, 0.1, &mut out);
+        collide(&ground, &ellipse, &above, 0.1, &mut out);
         assert_eq!(out.len(), usize::from(touches), "at {gap}");
         for manifold in &out {
             assert!((manifold.normal - kernel::math::Vector::Y).length() < 1.0e-3, "{manifold:?}");
@@ -191,10 +190,10 @@ fn ellipses_touch_ellipses_and_half_spaces() {
     let ellipse = Collider::ellipse(2.0, 1.0);
     let at = |x: f32, y: f32| Pose::new(kernel::math::Vector { x, y }, Rot::IDENTITY);
     let mut out = vec![];
-    foreign_manifolds(&ellipse, &ellipse, &at(3.9, 0.0), 0.1, &mut out);
+    collide(&ellipse, &ellipse, &at(3.9, 0.0), 0.1, &mut out);
     assert!(!out.is_empty() && (out[0].points()[0].separation + 0.1).abs() < 1.0e-2, "{out:?}");
     out.clear();
-    foreign_manifolds(&Collider::half_space(Vector::Y), &ellipse, &at(7.0, 0.95), 0.1, &mut out);
+    collide(&Collider::half_space(Vector::Y), &ellipse, &at(7.0, 0.95), 0.1, &mut out);
     assert!(!out.is_empty() && (out[0].points()[0].separation + 0.05).abs() < 1.0e-3, "{out:?}");
 }
 
@@ -204,7 +203,7 @@ fn a_box_on_a_polyline_has_a_manifold_per_segment() {
     let square = Collider::rectangle(2.0, 2.0);
     let mut out = vec![];
     let pose = Pose::new(kernel::math::Vector { x: 0.3, y: 0.99 }, Rot::IDENTITY);
-    foreign_manifolds(&line, &square, &pose, 0.02, &mut out);
+    collide(&line, &square, &pose, 0.02, &mut out);
     assert_eq!(out.len(), 2, "{out:?}");
     let features: Vec<_> = out.iter().flat_map(|m| m.points()).map(|p| p.feature).collect();
     for (i, f) in features.iter().enumerate() {
@@ -215,11 +214,11 @@ fn a_box_on_a_polyline_has_a_manifold_per_segment() {
         assert!(manifold.points().iter().all(|p| (p.separation + 0.01).abs() < 1.0e-3), "{manifold:?}");
     }
     let mut flipped = vec![];
-    foreign_manifolds(&square, &line, &pose.inverse(), 0.02, &mut flipped);
+    collide(&square, &line, &pose.inverse(), 0.02, &mut flipped);
     assert_eq!(flipped.len(), 2);
     assert!(flipped.iter().all(|m| (m.normal + kernel::math::Vector::Y).length() < 1.0e-3));
     let mut none = vec![];
     let nan = Pose::new(kernel::math::Vector { x: f32::NAN, y: 0.0 }, Rot::IDENTITY);
-    foreign_manifolds(&line, &square, &nan, 0.02, &mut none);
+    collide(&line, &square, &nan, 0.02, &mut none);
     assert!(none.is_empty());
 }

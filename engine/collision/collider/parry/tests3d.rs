@@ -1,7 +1,6 @@
 //! Closed forms of space, its primitives, and contacts of shapes that only parry knows.
 
-use super::manifold::foreign_manifolds;
-use super::tests::{assert_native, assert_usable, close, half_size};
+use super::tests::{assert_native, assert_usable, close, collide, half_size};
 use super::*;
 use crate::math::{AdjustPrecision, PI, Scalar};
 use crate::physics_transform::Position;
@@ -163,7 +162,7 @@ fn a_cylinder_stands_on_a_cuboid() {
     let (ground, cylinder) = (Collider::cuboid(10.0, 2.0, 10.0), Collider::cylinder(0.5, 2.0));
     for gap in [0.01f32, 0.0, -0.02] {
         let mut out = vec![];
-        foreign_manifolds(&ground, &cylinder, &at(1.0, 2.0 + gap, -1.0), 0.05, &mut out);
+        collide(&ground, &cylinder, &at(1.0, 2.0 + gap, -1.0), 0.05, &mut out);
         assert_eq!(out.len(), 1);
         let manifold = out[0];
         assert!((manifold.normal - kernel::math::Vector::Y).length() < 1.0e-3, "{manifold:?}");
@@ -178,11 +177,11 @@ fn a_cylinder_stands_on_a_cuboid() {
         let mean = sum * (1.0 / manifold.count as f32);
         assert!((mean.x - 1.0).hypot(mean.z + 1.0) < 0.25, "{manifold:?}");
         let mut back = vec![];
-        foreign_manifolds(&cylinder, &ground, &at(1.0, 2.0 + gap, -1.0).inverse(), 0.05, &mut back);
+        collide(&cylinder, &ground, &at(1.0, 2.0 + gap, -1.0).inverse(), 0.05, &mut back);
         assert!((back[0].normal + kernel::math::Vector::Y).length() < 1.0e-3);
     }
     let mut out = vec![];
-    foreign_manifolds(&ground, &cylinder, &at(1.0, 2.2, -1.0), 0.05, &mut out);
+    collide(&ground, &cylinder, &at(1.0, 2.2, -1.0), 0.05, &mut out);
     assert!(out.is_empty());
 }
 
@@ -193,7 +192,7 @@ fn a_cuboid_on_a_mesh_has_a_manifold_per_triangle() {
     let mesh = Collider::trimesh(corners, vec![[0, 2, 1], [0, 3, 2]]);
     let cuboid = Collider::cuboid(2.0, 2.0, 2.0);
     let mut out = vec![];
-    foreign_manifolds(&mesh, &cuboid, &at(0.1, 0.99, 0.0), 0.02, &mut out);
+    collide(&mesh, &cuboid, &at(0.1, 0.99, 0.0), 0.02, &mut out);
     assert_eq!(out.len(), 2, "{out:?}");
     for manifold in &out {
         assert!((manifold.normal - kernel::math::Vector::Y).length() < 1.0e-3, "{manifold:?}");
@@ -203,14 +202,14 @@ fn a_cuboid_on_a_mesh_has_a_manifold_per_triangle() {
     assert!(features.iter().enumerate().all(|(i, f)| !features[..i].contains(f)), "{out:?}");
     let mut compound = vec![];
     let parts = vec![(Position(Vector::Y), Rotation::default(), cuboid)];
-    foreign_manifolds(&mesh, &Collider::compound(parts), &at(0.1, -0.01, 0.0), 0.02, &mut compound);
+    collide(&mesh, &Collider::compound(parts), &at(0.1, -0.01, 0.0), 0.02, &mut compound);
     assert_eq!(compound.len(), 2);
     for (a, b) in out.iter().zip(&compound) {
         assert!((a.normal - b.normal).length() < 1.0e-3 && a.count == b.count);
     }
     for bad in [at(f32::NAN, 0.0, 0.0), at(f32::INFINITY, 0.0, 0.0)] {
         out.clear();
-        foreign_manifolds(&mesh, &Collider::sphere(1.0), &bad, 0.02, &mut out);
+        collide(&mesh, &Collider::sphere(1.0), &bad, 0.02, &mut out);
         assert!(out.is_empty());
     }
 }
