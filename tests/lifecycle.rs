@@ -440,6 +440,24 @@ fn issue_a_rotation_that_came_after_the_position_was_never_initialised() {
 }
 
 #[test]
+fn a_shape_changed_in_place_takes_effect() {
+    let mut app = app();
+    floor(&mut app);
+    let body = app.world_mut().spawn((RigidBody::Dynamic, block(), at(0.0, 0.5))).id();
+    steps(&mut app, 90);
+    assert!(is_asleep(&app, body));
+    let mass = app.world().get::<ComputedMass>(body).expect("a body has a mass").value();
+    let mut collider = app.world_mut().get_mut::<Collider>(body).expect("it has a collider");
+    *collider.shape_mut() = SharedShape::ball(2.0);
+    steps(&mut app, 120);
+    assert!((height(&app, body) - 2.0).abs() < 0.02, "it lies at {}", height(&app, body));
+    let grown = app.world().get::<ComputedMass>(body).expect("a body has a mass").value();
+    assert!(grown > 4.0 * mass, "{grown} kg, {mass} kg before");
+    let shown = app.world().get::<ColliderAabb>(body).expect("it has a box");
+    assert!((shown.size().x - 4.0).abs() < 0.01);
+}
+
+#[test]
 fn a_kinematic_body_stopped_and_set_off_at_the_same_speed_moves_again() {
     let mut app = app();
     let speed = LinearVelocity(Vector::X);

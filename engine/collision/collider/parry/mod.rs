@@ -3,8 +3,6 @@
 //! `constructors`, `dim2`, `dim3` and `primitives` say what a collider is made from, `native` what the kernel
 //! makes of it, `manifold` how the shapes the kernel does not know touch.
 
-#![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
-
 #[cfg(feature = "2d")]
 mod collider2d;
 #[cfg(feature = "3d")]
@@ -53,6 +51,7 @@ use crate::parry::shape::SharedShape;
 use crate::physics_transform::Rotation;
 use bevy_ecs::prelude::Component;
 use native::native_shape;
+use std::sync::OnceLock;
 
 /// Why a mesh collider could not be made.
 pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
@@ -93,13 +92,29 @@ pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
 pub struct Collider {
     /// The shape without scale.
     shape: SharedShape,
-    /// The shape the engine uses.
-    scaled_shape: SharedShape,
-    /// What the kernel makes of `scaled_shape`.
-    native: kernel::shape::Shape,
     scale: Vector,
-    /// Whether `shape` may have changed since `scaled_shape` was made.
-    stale: bool,
+    /// Empty from when `shape` was handed out to be changed until it is next asked for.
+    scaled: OnceLock<Scaled>,
+}
+
+/// The shape the engine uses.
+#[derive(Clone, Debug)]
+struct Scaled {
+    shape: SharedShape,
+    /// What the kernel makes of `shape`.
+    native: kernel::shape::Shape,
+}
+
+impl Scaled {
+    fn new(shape: &SharedShape, scale: Vector, subdivisions: u32) -> Self {
+        let scaled = composite::scaled(shape, scale, subdivisions).unwrap_or_else(|| {
+            let kind = shape.shape_type();
+            bevy_log::warn_once!("a collider of type {kind:?} cannot be scaled by {scale}");
+            shape.clone()
+        });
+        let shape = usable(scaled);
+        Self { native: native_shape(&shape), shape }
+    }
 }
 
 impl<T: IntoCollider<Collider>> From<T> for Collider {
@@ -111,8 +126,9 @@ impl<T: IntoCollider<Collider>> From<T> for Collider {
 impl From<SharedShape> for Collider {
     fn from(shape: SharedShape) -> Self {
         let shape = usable(shape);
-        let native = native_shape(&shape);
-        Self { scaled_shape: shape.clone(), shape, native, scale: Vector::ONE, stale: false }
+        // At once, so that clones share it.
+        let scaled = Scaled { native: native_shape(&shape), shape: shape.clone() };
+        Self { shape, scale: Vector::ONE, scaled: OnceLock::from(scaled) }
     }
 }
 
@@ -129,28 +145,29 @@ impl Collider {
         &self.shape
     }
 
-    /// The shape without scale, to change. The change takes effect with the next
-    /// [`set_scale`](Self::set_scale), which the engine calls for colliders that changed.
+    /// The shape without scale, to change; the scale is kept.
     pub fn shape_mut(&mut self) -> &mut SharedShape {
-        self.stale = true;
+        self.scaled.take();
         &mut self.shape
     }
 
     /// The shape with the scale applied: the one that collides.
     pub fn shape_scaled(&self) -> &SharedShape {
-        &self.scaled_shape
+        &self.scaled().shape
     }
 
     /// The scaled shape as the kernel has it.
     pub(crate) fn native(&self) -> &kernel::shape::Shape {
-        &self.native
+        &self.scaled().native
+    }
+
+    fn scaled(&self) -> &Scaled {
+        self.scaled.get_or_init(|| Scaled::new(&self.shape, self.scale, DEFAULT_SUBDIVISIONS))
     }
 
     /// Replaces the shape, and keeps the scale.
     pub fn set_shape(&mut self, shape: SharedShape) {
-        self.shape = shape;
-        self.stale = true;
-        self.set_scale(self.scale, DEFAULT_SUBDIVISIONS);
+        *self.shape_mut() = shape;
     }
 
     /// The scale along each axis.
@@ -174,22 +191,10 @@ impl Collider {
                 .to_array()
                 .map(|s| if s.abs() < input::MIN_LENGTH { input::MIN_LENGTH.copysign(s) } else { s }),
         );
-        if scale == self.scale && !self.stale {
-            return;
+        if scale != self.scale || self.scaled.get().is_none() {
+            self.scaled = Scaled::new(&self.shape, scale, num_subdivisions).into();
+            self.scale = scale;
         }
-        if let Some(scaled) = composite::scaled(&self.shape, scale, num_subdivisions) {
-            self.scaled_shape = scaled;
-        } else {
-            bevy_log::warn_once!(
-                "a collider of type {:?} cannot be scaled by {scale}",
-                self.shape.shape_type()
-            );
-            self.scaled_shape = self.shape.clone();
-        }
-        self.scaled_shape = usable(self.scaled_shape.clone());
-        self.native = native_shape(&self.scaled_shape);
-        self.scale = scale;
-        self.stale = false;
     }
 }
 
@@ -217,7 +222,7 @@ impl AnyCollider for Collider {
         rotation: impl Into<Rotation>,
         _: AabbContext<()>,
     ) -> ColliderAabb {
-        let aabb = self.scaled_shape.compute_aabb(&dim::pose(position, rotation.into()));
+        let aabb = self.shape_scaled().compute_aabb(&dim::pose(position, rotation.into()));
         ColliderAabb::from_min_max(aabb.mins, aabb.maxs)
     }
 }
