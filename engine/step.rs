@@ -3,7 +3,7 @@
 //! Plugins add the systems to the stages below, so that disabling a plugin takes its systems out; this list
 //! says where each stage stands. The public sets are attached to the same list, so they cannot drift apart.
 
-use bevy_app::App;
+use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
 use crate::{
@@ -125,6 +125,13 @@ pub(crate) fn install(app: &mut App) {
     );
     #[cfg(feature = "validate")]
     crate::dynamics::validate::install(app);
+}
+
+/// Adds what all instances of a generic plugin share: with the first of them.
+pub(crate) fn add_once<P: Plugin>(app: &mut App, shared: P) {
+    if !app.is_plugin_added::<P>() {
+        app.add_plugins(shared);
+    }
 }
 
 /// The engine's own systems of a substep, in the public sets of [`SubstepSchedule`].

@@ -1,9 +1,17 @@
 //! The plugin group: it builds, configures what it says, and does without any one of its plugins.
 
-use avian::{PhysicsTypeRegistrationPlugin, dynamics::solver::SolverConfig, math::Scalar, prelude::*};
+use avian::{
+    PhysicsTypeRegistrationPlugin,
+    collision::collider::{AabbContext, AnyCollider},
+    dynamics::{integrator::IntegrationSystems, solver::SolverConfig},
+    math::{Scalar, Vector},
+    parry::shape::SharedShape,
+    prelude::*,
+};
 use bevy_app::{PluginGroupBuilder, prelude::*};
-use bevy_time::{TimePlugin, TimeUpdateStrategy};
-use bevy_transform::TransformPlugin;
+use bevy_ecs::prelude::*;
+use bevy_time::{Time, TimePlugin, TimeUpdateStrategy};
+use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
 
 /// A headless app with the plugins of `group` that ran for ten ticks.
@@ -25,52 +33,189 @@ fn run(group: impl FnOnce(PluginGroupBuilder) -> PluginGroupBuilder) -> App {
 fn all_of_it_runs() {
     let app = run(|group| group);
     // The first frame has no delta.
-    let elapsed = app.world().resource::<bevy_time::Time<Physics>>().elapsed();
+    let elapsed = app.world().resource::<Time<Physics>>().elapsed();
     assert!(elapsed >= Duration::from_millis(9 * 15), "{elapsed:?}");
 }
 
-/// Runs the group without each of a list of plugins.
-macro_rules! runs_without {
-    ($($test:ident: $plugin:ty),* $(,)?) => {
+/// What became of a few bodies in three seconds: a ball that falls on a floor from 2 m, a body held at a height, one
+/// that may fall at no more than 1 m/s, one that drifts at 1 m/s without gravity, and one with its collider a metre
+/// above it, on a child.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Seen {
+    ball: Scalar,
+    mass: Scalar,
+    asleep: bool,
+    /// The top of the box around the ball, seen from the ball.
+    top: Scalar,
+    /// Where the ball's `Transform` is, seen from its `Position`.
+    drawn: Scalar,
+    held: Scalar,
+    limited: Scalar,
+    drifted: Scalar,
+    /// Where the child's collider is on its body, if it belongs to it.
+    child: Option<Scalar>,
+}
+
+fn watch(group: PluginGroupBuilder) -> Seen {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, group));
+    app.finish();
+    app.cleanup();
+    // With all three, also who looks at some of them only knows where they are.
+    let at = |x: f32, y: f32| {
+        let position = Vector::X * x as Scalar + Vector::Y * y as Scalar;
+        (Transform::from_xyz(x, y, 0.0), Position(position), Rotation::IDENTITY)
+    };
+    let world = app.world_mut();
+    world.spawn((RigidBody::Static, Collider::half_space(Vector::Y), at(0.0, 0.0)));
+    let ball: Collider = SharedShape::ball(0.5).into();
+    let falling = world.spawn((RigidBody::Dynamic, ball.clone(), at(0.0, 2.5))).id();
+    let held = world.spawn((RigidBody::Dynamic, LockedAxes::TRANSLATION_LOCKED, at(5.0, 2.0))).id();
+    let limited = world.spawn((RigidBody::Dynamic, MaxLinearSpeed(1.0), at(10.0, 9.0))).id();
+    let drifting = (RigidBody::Dynamic, GravityScale(0.0), LinearVelocity(Vector::X), at(15.0, 5.0));
+    let drifting = world.spawn(drifting).id();
+    let parent = world.spawn((RigidBody::Dynamic, at(20.0, 3.0))).id();
+    let child = world.spawn((ball, Transform::from_xyz(0.0, 1.0, 0.0), ChildOf(parent))).id();
+    for _ in 0..180 {
+        app.world_mut().resource_mut::<Time>().advance_by(Duration::from_secs_f64(1.0 / 60.0));
+        app.update();
+    }
+    let world = app.world();
+    let position = |entity: Entity| world.get::<Position>(entity).map_or(Vector::NAN, |p| p.0);
+    let limited = world.get::<LinearVelocity>(limited).map_or(Scalar::NAN, |v| v.length());
+    Seen {
+        ball: position(falling).y,
+        mass: world.get::<ComputedMass>(falling).map_or(Scalar::NAN, |m| m.value()),
+        asleep: world.get::<Sleeping>(falling).is_some(),
+        top: world.get::<ColliderAabb>(falling).map_or(Scalar::NAN, |b| b.max.y) - position(falling).y,
+        drawn: world.get::<Transform>(falling).map_or(f32::NAN, |t| t.translation.y) as Scalar
+            - position(falling).y,
+        held: position(held).y,
+        limited,
+        drifted: position(drifting).x - 15.0,
+        child: world
+            .get::<ColliderOf>(child)
+            .filter(|of| of.body == parent)
+            .and(world.get::<ColliderTransform>(child))
+            .map(|place| place.translation.y),
+    }
+}
+
+/// Watches the group without each of a list of plugins.
+macro_rules! without {
+    ($($test:ident: $plugin:ty => $($is:expr),+;)*) => {
         $(
             #[test]
             fn $test() {
-                let app = run(|group| group.disable::<$plugin>());
-                assert!(!app.is_plugin_added::<$plugin>());
+                let seen = watch(PhysicsPlugins::new(Update).build().disable::<$plugin>());
+                for is in [$($is as fn(&Seen) -> bool),+] {
+                    assert!(is(&seen), "{seen:?}");
+                }
             }
         )*
     };
 }
 
-runs_without! {
-    without_type_registration: PhysicsTypeRegistrationPlugin,
-    without_mass_properties: MassPropertyPlugin,
-    without_collider_hierarchy: ColliderHierarchyPlugin,
-    without_collider_transform: ColliderTransformPlugin,
-    without_collider_backend: ColliderBackendPlugin<Collider>,
-    without_collider_tree: ColliderTreePlugin<Collider>,
-    without_narrow_phase: NarrowPhasePlugin<Collider>,
-    without_solver_body: SolverBodyPlugin,
-    without_solver_schedule: SolverSchedulePlugin,
-    without_integrator: IntegratorPlugin,
-    without_solver: SolverPlugin,
-    without_islands: IslandPlugin,
-    without_sleeping: IslandSleepingPlugin,
-    without_broad_phase_stages: BroadPhaseCorePlugin,
-    without_broad_phase: BvhBroadPhasePlugin,
-    without_transforms: PhysicsTransformPlugin,
-    without_interpolation: PhysicsInterpolationPlugin,
+without! {
+    without_type_registration: PhysicsTypeRegistrationPlugin => moves, rests, is_attached;
+    without_mass_properties: MassPropertyPlugin => moves, falls_through, is_massless, is_attached;
+    without_collider_hierarchy: ColliderHierarchyPlugin => moves, falls_through, is_detached;
+    without_collider_transform: ColliderTransformPlugin => moves, falls_through, is_detached;
+    without_collider_backend: ColliderBackendPlugin<Collider> => moves, falls_through, is_massless, is_attached;
+    without_collider_tree: ColliderTreePlugin<Collider> => moves, falls_through, is_attached, has_no_box;
+    without_narrow_phase: NarrowPhasePlugin<Collider> => moves, falls_through, is_attached;
+    without_solver_body: SolverBodyPlugin => stands_still, is_attached;
+    without_solver_schedule: SolverSchedulePlugin => stands_still, is_attached;
+    without_integrator: IntegratorPlugin => stands_still, is_attached;
+    without_solver: SolverPlugin => moves, falls_through, is_attached;
+    without_islands: IslandPlugin => moves, lies_awake, is_attached;
+    without_sleeping: IslandSleepingPlugin => moves, lies_awake, is_attached;
+    without_broad_phase_stages: BroadPhaseCorePlugin => moves, rests, is_attached;
+    without_broad_phase: BvhBroadPhasePlugin => moves, falls_through, is_attached;
+    without_transforms: PhysicsTransformPlugin => moves_unseen, rests, is_attached;
+    without_interpolation: PhysicsInterpolationPlugin => moves, rests, is_attached;
+}
+
+#[test]
+fn without_type_registration_nothing_reflects() {
+    let knows_substeps = |app: &App| {
+        let registry = app.world().get_resource::<AppTypeRegistry>();
+        registry.is_some_and(|r| r.read().contains(std::any::TypeId::of::<SubstepCount>()))
+    };
+    assert!(knows_substeps(&run(|group| group)));
+    assert!(!knows_substeps(&run(|group| group.disable::<PhysicsTypeRegistrationPlugin>())));
+}
+
+#[test]
+fn with_all_of_them_everything_happens() {
+    let seen = watch(PhysicsPlugins::new(Update).build());
+    assert!(moves(&seen) && rests(&seen) && is_attached(&seen), "{seen:?}");
+}
+
+/// Bodies drift, are held and limited, and are drawn where they are.
+fn moves(seen: &Seen) -> bool {
+    go(seen) && seen.drawn.abs() < 1.0e-3
+}
+
+/// They do, but are drawn where they were.
+fn moves_unseen(seen: &Seen) -> bool {
+    go(seen) && (seen.drawn - 2.0).abs() < 0.02
+}
+
+fn go(seen: &Seen) -> bool {
+    (seen.drifted - 3.0).abs() < 1.0e-3 && seen.held == 2.0 && (seen.limited - 1.0).abs() < 1.0e-3
+}
+
+/// Nobody moves.
+fn stands_still(seen: &Seen) -> bool {
+    (seen.ball, seen.drifted, seen.limited) == (2.5, 0.0, 0.0)
+}
+
+/// The ball lies on the floor, in its box, and has a mass.
+fn lies(seen: &Seen) -> bool {
+    (seen.ball - 0.5).abs() < 0.02 && (seen.top - 0.5).abs() < 1.0e-3 && !is_massless(seen)
+}
+
+fn rests(seen: &Seen) -> bool {
+    lies(seen) && seen.asleep
+}
+
+fn lies_awake(seen: &Seen) -> bool {
+    lies(seen) && !seen.asleep
+}
+
+/// The ball falls as if there were no floor.
+fn falls_through(seen: &Seen) -> bool {
+    seen.ball < -40.0 && !seen.asleep
+}
+
+fn is_massless(seen: &Seen) -> bool {
+    seen.mass == 0.0
+}
+
+fn has_no_box(seen: &Seen) -> bool {
+    seen.top == Scalar::NEG_INFINITY
+}
+
+/// The child's collider belongs to nobody.
+fn is_detached(seen: &Seen) -> bool {
+    seen.child.is_none()
+}
+
+/// The child's collider belongs to its parent, a metre above it.
+fn is_attached(seen: &Seen) -> bool {
+    seen.child == Some(1.0)
 }
 
 #[test]
 fn without_schedule_no_step_is_taken() {
-    #[derive(bevy_ecs::resource::Resource)]
+    #[derive(Resource)]
     struct Stepped;
 
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin))
         .add_plugins(PhysicsPlugins::default().build().disable::<PhysicsSchedulePlugin>())
-        .add_systems(PhysicsSchedule, |mut commands: bevy_ecs::system::Commands| {
+        .add_systems(PhysicsSchedule, |mut commands: Commands| {
             commands.insert_resource(Stepped);
         })
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 64.0)));
@@ -124,4 +269,89 @@ fn the_length_unit_is_what_the_group_was_told() {
     for wrong in [0.0, -3.0, Scalar::NAN, Scalar::INFINITY] {
         assert_eq!(unit(PhysicsPlugins::default().with_length_unit(wrong), None), 1.0);
     }
+}
+
+/// A collider type of the app's own.
+#[derive(Component)]
+pub(crate) struct Marble(pub(crate) Collider);
+
+impl AnyCollider for Marble {
+    type Context = ();
+
+    fn aabb_with_context(
+        &self,
+        position: Vector,
+        rotation: impl Into<Rotation>,
+        _: AabbContext<()>,
+    ) -> ColliderAabb {
+        self.0.aabb(position, rotation)
+    }
+}
+
+impl ScalableCollider for Marble {
+    fn scale(&self) -> Vector {
+        self.0.scale()
+    }
+
+    fn set_scale(&mut self, scale: Vector, detail: u32) {
+        self.0.set_scale(scale, detail);
+    }
+}
+
+/// Hooks of the app's own.
+struct Hooks;
+
+#[test]
+fn plugins_for_a_second_collider_type_leave_the_first_as_it_was() {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update))).add_plugins((
+        ColliderBackendPlugin::<Marble>::new(Update),
+        ColliderTreePlugin::<Marble>::default(),
+        NarrowPhasePlugin::<Marble>::default(),
+        NarrowPhasePlugin::<Collider, Hooks>::new(PhysicsSchedule, false),
+        BvhBroadPhasePlugin::<Hooks>::default(),
+    ));
+    app.finish();
+    app.cleanup();
+    let ball = || Collider::from(SharedShape::ball(0.5));
+    app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::Y)));
+    let body = app.world_mut().spawn((RigidBody::Dynamic, ball(), Transform::from_xyz(0.0, 1.0, 0.0))).id();
+    let own = app.world_mut().spawn((RigidBody::Dynamic, Marble(ball()))).id();
+    for _ in 0..120 {
+        app.world_mut().resource_mut::<Time>().advance_by(Duration::from_secs_f64(1.0 / 60.0));
+        app.update();
+    }
+    let height = |entity: Entity| app.world().get::<Position>(entity).expect("a body has a position").y;
+    assert!((height(body) - 0.5).abs() < 0.02);
+    let mass = |entity: Entity| app.world().get::<ComputedMass>(entity).expect("a body has a mass").value();
+    assert_eq!(mass(own), mass(body));
+}
+
+#[derive(bevy_ecs::schedule::ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
+struct Motion;
+
+#[test]
+fn integration_happens_where_the_app_runs_it() {
+    let fall = |group: PluginGroupBuilder, runs_motion: bool| {
+        let mut app = App::new();
+        app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, group));
+        if runs_motion {
+            let run = |world: &mut World| world.run_schedule(Motion);
+            app.add_systems(SubstepSchedule, run.in_set(IntegrationSystems::Velocity));
+        }
+        app.finish();
+        app.cleanup();
+        let body = app.world_mut().spawn(RigidBody::Dynamic).id();
+        for _ in 0..30 {
+            app.world_mut().resource_mut::<Time>().advance_by(Duration::from_secs_f64(1.0 / 60.0));
+            app.update();
+        }
+        app.world().get::<Position>(body).expect("a body has a position").y
+    };
+    let group = || PhysicsPlugins::new(Update).build();
+    let own = || group().set(IntegratorPlugin::new(Motion));
+    assert_eq!(fall(own(), false), 0.0, "nobody runs it");
+    let fallen = fall(group(), false);
+    assert!(fallen < -1.0);
+    assert_eq!(fall(own(), true), fallen);
 }

@@ -20,7 +20,8 @@ use crate::{
     step::{self, Stage},
 };
 
-/// Keeps the trees up to date with colliders of type `C`, one instance per type.
+/// Keeps the trees up to date with colliders of type `C`, one instance per type. What does not depend on the
+/// type is shared by all of them.
 pub struct ColliderTreePlugin<C: AnyCollider>(PhantomData<fn() -> C>);
 
 impl<C: AnyCollider> Default for ColliderTreePlugin<C> {
@@ -30,6 +31,15 @@ impl<C: AnyCollider> Default for ColliderTreePlugin<C> {
 }
 
 impl<C: AnyCollider> Plugin for ColliderTreePlugin<C> {
+    fn build(&self, app: &mut App) {
+        step::add_once(app, SharedTreePlugin);
+    }
+}
+
+/// The trees and their stages.
+struct SharedTreePlugin;
+
+impl Plugin for SharedTreePlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<ColliderTreeOptimization>()
             .init_resource::<ColliderTreeDiagnostics>()

@@ -31,6 +31,8 @@ impl Plugin for BroadPhaseCorePlugin {
 }
 
 /// Finds pairs with the bounding volume hierarchies of [`ColliderTreePlugin`](crate::collider_tree::ColliderTreePlugin).
+///
+/// `H` will be the app's collision hooks; until then it says nothing.
 pub struct BvhBroadPhasePlugin<H = ()>(PhantomData<fn() -> H>);
 
 impl<H> Default for BvhBroadPhasePlugin<H> {
@@ -40,6 +42,15 @@ impl<H> Default for BvhBroadPhasePlugin<H> {
 }
 
 impl<H: 'static> Plugin for BvhBroadPhasePlugin<H> {
+    fn build(&self, app: &mut App) {
+        step::add_once(app, SharedBroadPhasePlugin);
+    }
+}
+
+/// The search for pairs.
+struct SharedBroadPhasePlugin;
+
+impl Plugin for SharedBroadPhasePlugin {
     fn build(&self, app: &mut App) {
         step::install(app);
         app.init_resource::<FoundPairs>()

@@ -20,17 +20,27 @@ use crate::{
     step::{self, Stage},
 };
 
-/// Computes the contacts between colliders of type `C`, one instance per type.
+/// Computes the contacts between colliders of type `C`, one instance per type. What does not depend on the
+/// type is shared by all of them, with the settings of the first.
+///
+/// `H` will be the app's collision hooks; until then it says nothing.
 pub struct NarrowPhasePlugin<C: AnyCollider, H = ()> {
+    shared: SharedNarrowPhasePlugin,
+    backend: PhantomData<fn() -> (C, H)>,
+}
+
+/// The stages of the narrow phase, and the contacts in them.
+#[derive(Clone, Copy)]
+struct SharedNarrowPhasePlugin {
     schedule: Interned<dyn ScheduleLabel>,
     generate_constraints: bool,
-    backend: PhantomData<fn() -> (C, H)>,
 }
 
 impl<C: AnyCollider, H> NarrowPhasePlugin<C, H> {
     /// Computes contacts in `schedule`, by default [`PhysicsSchedule`], and, unless `generate_constraints` is false, hands them to the solver.
     pub fn new(schedule: impl ScheduleLabel, generate_constraints: bool) -> Self {
-        Self { schedule: schedule.intern(), generate_constraints, backend: PhantomData }
+        let shared = SharedNarrowPhasePlugin { schedule: schedule.intern(), generate_constraints };
+        Self { shared, backend: PhantomData }
     }
 }
 
@@ -41,6 +51,12 @@ impl<C: AnyCollider, H> Default for NarrowPhasePlugin<C, H> {
 }
 
 impl<C: AnyCollider, H: 'static> Plugin for NarrowPhasePlugin<C, H> {
+    fn build(&self, app: &mut App) {
+        step::add_once(app, self.shared);
+    }
+}
+
+impl Plugin for SharedNarrowPhasePlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<NarrowPhaseConfig>()
             .init_resource::<DefaultFriction>()

@@ -1,5 +1,7 @@
 //! What avian2d does within an app; the files are shared with avian3d.
 
+#[path = "../../../../tests/marble2.rs"]
+mod marble;
 #[path = "../../../../tests/plugins.rs"]
 mod plugins;
 #[path = "../../../../tests/reflection.rs"]

@@ -1,5 +1,7 @@
 //! What avian3d does within an app; the files are shared with avian2d.
 
+#[path = "../../../../tests/marble3.rs"]
+mod marble;
 #[path = "../../../../tests/plugins.rs"]
 mod plugins;
 #[path = "../../../../tests/reflection.rs"]
