@@ -139,19 +139,22 @@ pub(crate) fn add_once<P: Plugin>(app: &mut App, shared: P) {
 /// [`SubstepSchedule`]: crate::dynamics::solver::schedule::SubstepSchedule
 pub(crate) mod substep {
     use super::{IntegrationSystems, SubstepSolverSystems};
-    use crate::dynamics::solver::{schedule::SubstepSchedule, substeps::*};
+    use crate::dynamics::solver::{SolverDiagnostics, schedule::SubstepSchedule, substeps::*};
     use bevy_app::App;
-    use bevy_ecs::prelude::*;
+    use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel};
 
-    /// Velocities and positions.
-    pub(crate) fn add_integration(app: &mut App) {
+    /// Velocities and positions, in the schedule of the substeps or one that the app runs itself.
+    pub(crate) fn add_integration(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
         app.init_resource::<OwnSubstepSystems>();
-        let mut own = app.world_mut().resource_mut::<OwnSubstepSystems>();
-        own.integrates = true;
-        own.note(integrate_velocities);
-        own.note(integrate_positions);
+        if schedule == SubstepSchedule.intern() {
+            let mut own = app.world_mut().resource_mut::<OwnSubstepSystems>();
+            own.integrates = true;
+            own.note(integrate_velocities);
+            own.note(integrate_positions);
+        }
+        app.init_resource::<SolverDiagnostics>();
         app.add_systems(
-            SubstepSchedule,
+            schedule,
             (
                 integrate_velocities.in_set(IntegrationSystems::Velocity),
                 integrate_positions.in_set(IntegrationSystems::Position),

@@ -16,7 +16,8 @@ pub struct IntegratorPlugin {
 }
 
 impl IntegratorPlugin {
-    /// Integrates in `schedule`; the default is [`SubstepSchedule`].
+    /// Integrates in `schedule`; the default is [`SubstepSchedule`]. Another is for the app to run, once per
+    /// substep: each run integrates by the length of one.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern() }
     }
@@ -32,7 +33,7 @@ impl Plugin for IntegratorPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Gravity>();
         step::install(app);
-        step::substep::add_integration(app);
+        step::substep::add_integration(app, self.schedule);
 
         app.configure_sets(
             self.schedule,
