@@ -1,7 +1,7 @@
 //! The bounding volume hierarchies over all colliders, which the broad phase and spatial queries search.
 
 pub(crate) mod diagnostics;
-mod optimization;
+pub(crate) mod optimization;
 mod plugin;
 pub(crate) mod proxies;
 

@@ -4,14 +4,16 @@ use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
 /// How the trees of colliders are optimized after they moved.
+///
+/// Everything runs on one thread so far: trees are always optimized in place, within the step.
 #[derive(Resource, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Debug, Default, PartialEq)]
 pub struct ColliderTreeOptimization {
     /// What is done; [`TreeOptimizationMode::Adaptive`] by default.
     pub optimization_mode: TreeOptimizationMode,
-    /// Whether trees are optimized where they are; true by default. When false a copy is, and swapped in when done.
+    /// Whether trees are optimized where they are; true by default. When false a copy is to be, and swapped in when done: *not yet*.
     pub optimize_in_place: bool,
-    /// Whether optimization runs beside the rest of the step where there are threads for it; true by default.
+    /// Whether optimization may run beside the rest of the step where there are threads for it; true by default. *Not yet*.
     pub use_async_tasks: bool,
 }
 
@@ -31,11 +33,12 @@ impl Default for ColliderTreeOptimization {
 pub enum TreeOptimizationMode {
     /// Leaves that moved are taken out and inserted where they fit best.
     Reinsert,
-    /// The parts of the tree with leaves that moved are rebuilt.
+    /// Leaves that moved grow in place; when one in 16 has, the parts of the tree above them are rebuilt.
     PartialRebuild,
-    /// The tree is rebuilt.
+    /// Leaves that moved grow in place; when one in 16 has, the tree is rebuilt.
     FullRebuild,
-    /// Chosen by the share of leaves that moved.
+    /// Chosen by the share of leaves that moved. Where it says to reinsert, this engine rebuilds in part too,
+    /// which costs as much as what moved.
     Adaptive {
         /// Up to this share leaves are [reinserted](Self::Reinsert); 0.15 by default.
         reinsert_threshold: f32,

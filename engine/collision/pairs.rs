@@ -1,6 +1,6 @@
 //! The broad phase's systems: boxes that outgrew their fat box, and the pairs they came into.
 
-use bevy_ecs::prelude::*;
+use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
 use kernel::{
     bvh::{Movers, find_pairs},
@@ -9,7 +9,7 @@ use kernel::{
 };
 
 use crate::{
-    collider_tree::diagnostics::ColliderTreeDiagnostics,
+    collider_tree::{diagnostics::ColliderTreeDiagnostics, optimization::ColliderTreeOptimization},
     collision::{
         collider::{ColliderAabb, EnlargedAabb},
         diagnostics::CollisionDiagnostics,
@@ -27,8 +27,17 @@ use crate::{
 /// less often but make more pairs.
 const FAT_MARGIN: f32 = 0.05;
 
-fn fattening(unit: &PhysicsLengthUnit, time: &Time<Physics>) -> Fattening {
-    Fattening { margin: FAT_MARGIN * unit.metres(), dt: time.delta_secs() }
+/// What the size of fat boxes follows from.
+#[derive(SystemParam)]
+pub(crate) struct FatBoxes<'w> {
+    unit: Res<'w, PhysicsLengthUnit>,
+    time: Res<'w, Time<Physics>>,
+}
+
+impl FatBoxes<'_> {
+    fn fattening(&self) -> Fattening {
+        Fattening { margin: FAT_MARGIN * self.unit.metres(), dt: self.time.delta_secs() }
+    }
 }
 
 /// The boxes that the app sees.
@@ -37,18 +46,18 @@ type Item<'a> = (&'a ColliderId, Mut<'a, ColliderAabb>, Mut<'a, EnlargedAabb>);
 
 /// Puts what entered or was changed by hand where it is, and in its tree.
 pub(crate) fn update_stale_boxes(
-    unit: Res<PhysicsLengthUnit>,
-    time: Res<Time<Physics>>,
+    fat_boxes: FatBoxes,
     bodies: Res<Bodies>,
     mut colliders: ResMut<Colliders>,
     mut boxes: Query<Boxes>,
+    optimization: Res<ColliderTreeOptimization>,
     mut diagnostics: ResMut<ColliderTreeDiagnostics>,
 ) {
     if colliders.stale.is_empty() {
         return;
     }
     let start = bevy_platform::time::Instant::now();
-    let fattening = fattening(&unit, &time);
+    let fattening = fat_boxes.fattening();
     let Colliders { table, trees, moved, stale, entities } = &mut *colliders;
     let mut changed = BitSet::default();
     for id in stale.iter().filter(|id| table.ids.is_live(*id)).collect::<Vec<_>>() {
@@ -62,23 +71,23 @@ pub(crate) fn update_stale_boxes(
         }
     }
     stale.clear();
-    trees.update(&changed, &table.fat);
+    trees.update(&changed, &table.fat, optimization.optimization_mode);
     moved.union_with(&changed);
     diagnostics.update += start.elapsed();
 }
 
 /// After the solver: boxes of bodies that moved, in the trees and in the components.
 pub(crate) fn refit_awake(
-    unit: Res<PhysicsLengthUnit>,
-    time: Res<Time<Physics>>,
+    fat_boxes: FatBoxes,
     bodies: Res<Bodies>,
     mut colliders: ResMut<Colliders>,
     mut boxes: Query<Boxes>,
+    optimization: Res<ColliderTreeOptimization>,
     mut diagnostics: ResMut<ColliderTreeDiagnostics>,
     mut changed: Local<BitSet>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let fattening = fattening(&unit, &time);
+    let fattening = fat_boxes.fattening();
     let Colliders { table, trees, moved, entities, .. } = &mut *colliders;
     let mut refit = |item: Item, table: &mut ColliderTable| {
         let (id, mut shown, mut enlarged) = item;
@@ -108,7 +117,7 @@ pub(crate) fn refit_awake(
             }
         }
     }
-    trees.update(&changed, &table.fat);
+    trees.update(&changed, &table.fat, optimization.optimization_mode);
     moved.union_with(&changed);
     changed.clear();
     diagnostics.update += start.elapsed();
