@@ -458,6 +458,35 @@ fn a_shape_changed_in_place_takes_effect() {
 }
 
 #[test]
+fn commands_put_to_sleep_and_wake_whole_islands() {
+    use bevy_ecs::system::Command;
+
+    let mut app = app();
+    floor(&mut app);
+    let [low, high] =
+        [0.5, 1.5].map(|y| app.world_mut().spawn((RigidBody::Dynamic, block(), at(0.0, y))).id());
+    let aside = app.world_mut().spawn((RigidBody::Dynamic, block(), at(5.0, 0.5))).id();
+    steps(&mut app, 10);
+    SleepBody(high).apply(app.world_mut()).expect("it is a body");
+    step(&mut app);
+    assert_eq!([low, high, aside].map(|e| is_asleep(&app, e)), [true, true, false]);
+    WakeBody(low).apply(app.world_mut()).expect("it is a body");
+    step(&mut app);
+    assert_eq!([low, high, aside].map(|e| is_asleep(&app, e)), [false; 3]);
+
+    // Whoever is woken while awake does not fall asleep for another half second.
+    steps(&mut app, 20);
+    WakeBody(low).apply(app.world_mut()).expect("it is a body");
+    steps(&mut app, 20);
+    assert_eq!([low, high, aside].map(|e| is_asleep(&app, e)), [false, false, true]);
+
+    let stranger = app.world_mut().spawn_empty().id();
+    assert!(SleepBody(stranger).apply(app.world_mut()).is_err());
+    app.world_mut().despawn(stranger);
+    assert!(WakeBody(stranger).apply(app.world_mut()).is_err());
+}
+
+#[test]
 fn a_kinematic_body_stopped_and_set_off_at_the_same_speed_moves_again() {
     let mut app = app();
     let speed = LinearVelocity(Vector::X);

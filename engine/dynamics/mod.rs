@@ -38,7 +38,7 @@ pub mod prelude {
         },
         solver::{
             PhysicsLengthUnit, SolverPlugin, SolverPlugins,
-            islands::{IslandPlugin, IslandSleepingPlugin},
+            islands::{IslandPlugin, IslandSleepingPlugin, SleepBody, WakeBody},
             schedule::{SolverSchedulePlugin, SolverSystems, SubstepCount, SubstepSchedule},
             solver_body::SolverBodyPlugin,
         },

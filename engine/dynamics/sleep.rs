@@ -1,7 +1,7 @@
 //! Which islands fall asleep, and the [`Sleeping`] component as their mirror.
 
 use bevy_app::App;
-use bevy_ecs::{entity_disabling::Disabled, prelude::*};
+use bevy_ecs::{entity_disabling::Disabled, error::Result, prelude::*, system::Command};
 use bevy_time::Time;
 use kernel::{
     graph::SleepScan,
@@ -12,7 +12,7 @@ use crate::{
     dynamics::{
         ids::BodyId,
         rigid_body::{
-            AngularVelocity, LinearVelocity,
+            AngularVelocity, LinearVelocity, RigidBody,
             sleeping::{Sleeping, SleepingDisabled, TimeToSleep},
         },
         tables::{Bodies, Tables},
@@ -38,6 +38,52 @@ impl SleepRequests {
     pub(crate) fn concern(&self, entity: Entity) -> bool {
         self.sleep.contains(&entity) || self.wake.contains(&entity)
     }
+}
+
+/// Puts a body to sleep, and with it the island it is in, at the start of the next step. An error if the entity
+/// is no body.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// fn freeze(bodies: Query<Entity, With<RigidBody>>, mut commands: Commands) {
+///     bodies.iter().for_each(|body| commands.queue(SleepBody(body)));
+/// }
+/// ```
+pub struct SleepBody(pub Entity);
+
+impl Command for SleepBody {
+    type Out = Result;
+
+    fn apply(self, world: &mut World) -> Result {
+        body_mut(world, self.0)?.insert(Sleeping);
+        Ok(())
+    }
+}
+
+/// Wakes a body, and with it the island it is in, at the start of the next step; one that is awake is so for
+/// another [`TimeToSleep`]. An error if the entity is no body.
+pub struct WakeBody(pub Entity);
+
+impl Command for WakeBody {
+    type Out = Result;
+
+    fn apply(self, world: &mut World) -> Result {
+        body_mut(world, self.0)?.remove::<Sleeping>();
+        // Nobody sleeps without the plugin that makes it.
+        if let Some(mut requests) = world.get_resource_mut::<SleepRequests>() {
+            requests.wake.push(self.0);
+        }
+        Ok(())
+    }
+}
+
+fn body_mut(world: &mut World, entity: Entity) -> Result<EntityWorldMut<'_>> {
+    let body = world.get_entity_mut(entity)?;
+    if !body.contains::<RigidBody>() {
+        return Err(format!("{entity} has no `RigidBody`: only bodies sleep and wake").into());
+    }
+    Ok(body)
 }
 
 /// Buffers of the sleep scan.

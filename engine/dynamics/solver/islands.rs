@@ -1,5 +1,7 @@
 //! Islands: bodies that rest on each other fall asleep and wake together.
 
+pub use crate::dynamics::sleep::{SleepBody, WakeBody};
+
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
