@@ -45,6 +45,9 @@ for dimension in 2d 3d; do
     stage cargo check --package "avian$dimension" --no-default-features --features "$dimension,f64,parry-f64,parallel"
 done
 
+# Without the default collider, as crates ask for that bring none.
+stage cargo check --package avian3d --no-default-features --features 3d,f32,parallel
+
 RUSTDOCFLAGS="-D warnings" stage cargo doc --no-deps \
     --package avian2d --package avian3d --package avian_kernel2d --package avian_kernel3d
 

@@ -44,7 +44,7 @@ impl ColliderAabb {
     }
 
     /// The box around a shape at the origin.
-    #[cfg(all(feature = "default-collider", any(feature = "parry-f32", feature = "parry-f64")))]
+    #[cfg(feature = "default-collider")]
     pub fn from_shape(shape: &crate::parry::shape::SharedShape) -> Self {
         let aabb = shape.compute_local_aabb();
         Self { min: aabb.mins, max: aabb.maxs }

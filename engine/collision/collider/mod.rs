@@ -3,19 +3,23 @@
 //! [`Collider`] is the default one; any component can be a collider through [`AnyCollider`].
 
 mod aabb;
+#[cfg(not(feature = "default-collider"))]
+mod absent;
 mod any_collider;
 mod backend;
 pub mod collider_hierarchy;
 pub mod collider_transform;
 mod layers;
-#[cfg(all(feature = "default-collider", any(feature = "parry-f32", feature = "parry-f64")))]
+#[cfg(feature = "default-collider")]
 mod parry;
 
 pub use aabb::{ColliderAabb, EnlargedAabb};
+#[cfg(not(feature = "default-collider"))]
+pub(crate) use absent::{Collider, Workspace, foreign_manifolds};
 pub use any_collider::{AabbContext, AnyCollider, IntoCollider, ScalableCollider, SimpleCollider};
 pub use backend::{ColliderBackendPlugin, update_collider_mass_properties};
 pub use layers::*;
-#[cfg(all(feature = "default-collider", any(feature = "parry-f32", feature = "parry-f64")))]
+#[cfg(feature = "default-collider")]
 pub use parry::*;
 
 use crate::math::Scalar;
