@@ -456,6 +456,16 @@ fn nothing_is_left_for_later_in_the_code() {
     assert_none(&found, "what is missing is missing openly, not as a mark in the code");
 }
 
+/// What the README shows compiles: it is an example, word for word.
+#[test]
+fn the_readme_shows_an_example() {
+    let read = |path: &str| fs::read_to_string(root().join(path)).expect("the file stands in the tree");
+    let readme = read("README.md");
+    let shown = readme.split("```rust\n").nth(1).and_then(|rest| rest.split("```").next());
+    let example = read("examples/examples3d/examples/readme.rs");
+    assert_eq!(shown, example.split_once("\n\n").map(|(_, code)| code));
+}
+
 /// The rules would hold of any tree if nothing were ever found.
 #[test]
 fn what_is_shipped_is_told_from_what_is_not() {
