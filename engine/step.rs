@@ -19,6 +19,7 @@ use crate::{
         solver::{
             schedule::{SolverSystems, SubstepSolverSystems},
             substeps::StepSolver,
+            workers::WorkerCount,
         },
         tables::{Bodies, Colliders, Contacts},
     },
@@ -80,6 +81,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<Colliders>()
         .init_resource::<Contacts>()
         .init_resource::<StepSolver>()
+        .init_resource::<WorkerCount>()
         // Colliders have a surface whether or not the narrow phase is there to use it.
         .init_resource::<DefaultFriction>()
         .init_resource::<DefaultRestitution>()

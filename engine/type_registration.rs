@@ -39,7 +39,7 @@ fn register_dynamics(app: &mut App) {
             integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
             rigid_body::sleeping::TimeToSleep,
             solver::{
-                ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig, SolverDiagnostics,
+                ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig, SolverDiagnostics, WorkerCount,
                 schedule::SubstepCount,
                 softness_parameters::{SoftnessCoefficients, SoftnessParameters},
             },
@@ -49,7 +49,7 @@ fn register_dynamics(app: &mut App) {
 
     register!(app:
         SpeculativeMargin, Gravity, CustomVelocityIntegration, CustomPositionIntegration,
-        PhysicsLengthUnit, SolverConfig, SolverDiagnostics, ContactSoftnessCoefficients, SubstepCount,
+        PhysicsLengthUnit, SolverConfig, SolverDiagnostics, ContactSoftnessCoefficients, SubstepCount, WorkerCount,
         SoftnessParameters, SoftnessCoefficients, TimeToSleep, PhysicsTransformConfig,
     );
 }

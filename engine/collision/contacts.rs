@@ -1,6 +1,6 @@
 //! The narrow phase's systems: manifolds of awake contacts, and what follows from those that changed.
 
-use bevy_ecs::prelude::*;
+use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
 use kernel::{
     contact::{ManifoldSource, NarrowPhase, Scratch},
@@ -14,7 +14,10 @@ use crate::{
         diagnostics::CollisionDiagnostics,
         narrow_phase::NarrowPhaseConfig,
     },
-    dynamics::{solver::config::PhysicsLengthUnit, tables::Tables},
+    dynamics::{
+        solver::{WorkerCount, config::PhysicsLengthUnit, substeps::StepSolver},
+        tables::Tables,
+    },
     math::to_f32,
     schedule::Physics,
 };
@@ -28,7 +31,7 @@ const RECYCLE: f32 = 0.05;
 
 /// Buffers of the narrow phase.
 #[derive(Resource, Default)]
-pub(crate) struct NarrowScratch(Scratch<Workspace>);
+pub(crate) struct NarrowScratch(Vec<Scratch<Workspace>>);
 
 /// Manifolds of pairs that the kernel does not know, by parry.
 struct Foreign<'a, 'w, 's, 'c> {
@@ -56,12 +59,20 @@ impl ManifoldSource for Foreign<'_, '_, '_, '_> {
     }
 }
 
+/// What the app sets for the narrow phase.
+#[derive(SystemParam)]
+pub(crate) struct Settings<'w> {
+    config: Res<'w, NarrowPhaseConfig>,
+    unit: Res<'w, PhysicsLengthUnit>,
+    time: Res<'w, Time<Physics>>,
+    workers: Res<'w, WorkerCount>,
+}
+
 /// Brings the manifolds of all awake contacts up to date.
 pub(crate) fn update_contacts(
     shapes: Query<&Collider>,
-    config: Res<NarrowPhaseConfig>,
-    unit: Res<PhysicsLengthUnit>,
-    time: Res<Time<Physics>>,
+    Settings { config, unit, time, workers }: Settings,
+    mut solver: ResMut<StepSolver>,
     mut scratch: ResMut<NarrowScratch>,
     mut diagnostics: ResMut<CollisionDiagnostics>,
     mut tables: Tables,
@@ -82,7 +93,8 @@ pub(crate) fn update_contacts(
     };
     let contacts = &mut *tables.contacts;
     contacts.changed.clear();
-    contacts.table.update(&phase, &mut scratch.0, &mut contacts.changed);
+    solver.call_team(contacts.table.active().len(), *workers);
+    contacts.table.update(&phase, &solver.kernel.team, &mut scratch.0, &mut contacts.changed);
     diagnostics.contact_count = contacts.table.len() as u32;
     diagnostics.narrow_phase += start.elapsed();
 }

@@ -3,10 +3,12 @@
 
 mod link;
 mod record;
+mod shared;
 mod table;
 mod update;
 
 pub use link::{Link, Status};
 pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
+pub(crate) use shared::ManifoldsView;
 pub use table::ContactTable;
 pub use update::{Found, ManifoldSource, NarrowPhase, Scratch};

@@ -1,8 +1,7 @@
 //! All contacts by id, the pairs they are of, and the list of the awake ones.
 
-use super::record::{Contact, ContactFlags, Manifold};
-use super::update::{Found, ManifoldSource, NarrowPhase, Scratch};
-use crate::data::{BitSet, IdPool, PairSet};
+use super::record::{Contact, Manifold};
+use crate::data::{IdPool, PairSet};
 use crate::table::{ColliderTable, NONE};
 
 /// All contacts.
@@ -12,13 +11,13 @@ use crate::table::{ColliderTable, NONE};
 #[derive(Clone, Debug, Default)]
 pub struct ContactTable {
     ids: IdPool,
-    contacts: Vec<Contact>,
+    pub(super) contacts: Vec<Contact>,
     pairs: PairSet,
     /// Contacts with an awake body, in no particular order.
-    active: Vec<u32>,
+    pub(super) active: Vec<u32>,
     /// Whether the last update found a deeply overlapping contact.
-    any_deep: bool,
-    extra: Vec<Vec<Manifold>>,
+    pub(super) any_deep: bool,
+    pub(super) extra: Vec<Vec<Manifold>>,
     free_extra: Vec<u32>,
 }
 
@@ -84,16 +83,6 @@ impl ContactTable {
         }
     }
 
-    /// A contact's manifold by its number, which must exist.
-    #[inline(always)]
-    pub fn manifold_mut(&mut self, id: u32, index: u32) -> &mut Manifold {
-        let contact = &mut self.contacts[id as usize];
-        match index {
-            0 => &mut contact.manifold,
-            _ => &mut self.extra[contact.extra as usize][index as usize - 1],
-        }
-    }
-
     /// The manifolds of a contact after the first.
     pub fn extra_of(&self, contact: &Contact) -> &[Manifold] {
         match contact.extra {
@@ -107,43 +96,7 @@ impl ContactTable {
         self.ids.recycle();
     }
 
-    /// Updates all awake contacts. `changed` receives those that began or ended to touch or whose boxes
-    /// came apart.
-    pub fn update<S: ManifoldSource>(
-        &mut self,
-        phase: &NarrowPhase<S>,
-        scratch: &mut Scratch<S::Workspace>,
-        changed: &mut BitSet,
-    ) {
-        self.any_deep = false;
-        for i in 0..self.active.len() {
-            let id = self.active[i];
-            let contact = &mut self.contacts[id as usize];
-            let touched = contact.flags.has(ContactFlags::TOUCHING);
-            let extra: &mut [Manifold] = match contact.extra {
-                NONE => &mut [],
-                slot => &mut self.extra[slot as usize][..usize::from(contact.extra_count)],
-            };
-            match phase.update(contact, extra, scratch) {
-                Found::Apart => {
-                    contact.flags.set(ContactFlags::APART, true);
-                    changed.insert(id);
-                }
-                Found::Recycled => {}
-                Found::Computed => {
-                    if touched != contact.flags.has(ContactFlags::TOUCHING) {
-                        changed.insert(id);
-                    }
-                    if contact.extra != NONE || !scratch.extra.is_empty() {
-                        self.store_extra(id, &scratch.extra);
-                    }
-                }
-            }
-            self.any_deep |= self.contacts[id as usize].flags.has(ContactFlags::DEEP);
-        }
-    }
-
-    fn store_extra(&mut self, id: u32, manifolds: &[Manifold]) {
+    pub(super) fn store_extra(&mut self, id: u32, manifolds: &[Manifold]) {
         let contact = &mut self.contacts[id as usize];
         if contact.extra == NONE {
             contact.extra = self.free_extra.pop().unwrap_or_else(|| {

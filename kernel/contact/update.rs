@@ -41,6 +41,14 @@ pub struct Scratch<W = ()> {
     foreign: W,
     /// Where [`NarrowPhase::update`] leaves the manifolds after the first.
     pub extra: Vec<Manifold>,
+    /// What the table is to be told when all contacts are updated: which began or ended to touch, ...
+    pub(super) changed: Vec<u32>,
+    /// ... which have how many manifolds after the first, ...
+    pub(super) stored: Vec<(u32, usize)>,
+    /// ... these one after the other, ...
+    pub(super) pool: Vec<Manifold>,
+    /// ... and whether any overlaps deeply.
+    pub(super) any_deep: bool,
 }
 
 /// What the update of any contact reads; constant over the narrow phase.
@@ -95,7 +103,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
     pub fn update(
         &self,
         contact: &mut Contact,
-        extra: &mut [Manifold],
+        extra: &[Manifold],
         scratch: &mut Scratch<S::Workspace>,
     ) -> Found {
         let [a, b] = contact.colliders;
@@ -104,7 +112,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
             return Found::Apart;
         }
         let poses = [self.pose(contact, 0), self.pose(contact, 1)];
-        let recycled = self.recycle(contact, extra, &poses);
+        let recycled = self.recycle(contact, &poses);
         if !recycled {
             self.compute(contact, extra, &poses, scratch);
         }
@@ -156,7 +164,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
 
     /// Keeps the manifold if the bodies moved little enough against each other, and lets its
     /// separations follow: s = s₀ + n · (Δoffset + (R_B − 1) r_B − (R_A − 1) r_A).
-    fn recycle(&self, contact: &mut Contact, extra: &mut [Manifold], poses: &[BodyPose; 2]) -> bool {
+    fn recycle(&self, contact: &mut Contact, poses: &[BodyPose; 2]) -> bool {
         let reaches = contact.colliders.map(|c| &self.colliders.reaches[c as usize]);
         let Frozen { rotations, offset, prediction } = contact.frozen;
         // Neither can close faster than both together: that settles it without asking for the velocities
@@ -192,16 +200,15 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         // In world axes the turn since freezing is R Rᶠ⁻¹.
         let world = [0, 1].map(|i| poses[i].rotation.mul(rotations[i].inverse()));
         let change = now - offset;
-        let manifolds = core::iter::once(&mut contact.manifold).chain(extra.iter_mut());
-        for m in manifolds {
-            let along = change.dot(m.normal);
-            let cores = m.rounding.map(|r| m.normal * r);
-            for p in &mut m.points[..m.count as usize] {
-                let (ra, rb) = (p.anchor - cores[0], p.anchor - offset + cores[1]);
-                let (ma, mb) = (ra.cross(m.normal), rb.cross(m.normal));
-                let turn = world[1].shift_along(rb, mb, m.normal) - world[0].shift_along(ra, ma, m.normal);
-                p.separation = p.frozen_separation + along + turn;
-            }
+        // Only native pairs are recycled, which have no manifolds after the first.
+        let m = &mut contact.manifold;
+        let along = change.dot(m.normal);
+        let cores = m.rounding.map(|r| m.normal * r);
+        for p in &mut m.points[..m.count as usize] {
+            let (ra, rb) = (p.anchor - cores[0], p.anchor - offset + cores[1]);
+            let (ma, mb) = (ra.cross(m.normal), rb.cross(m.normal));
+            let turn = world[1].shift_along(rb, mb, m.normal) - world[0].shift_along(ra, ma, m.normal);
+            p.separation = p.frozen_separation + along + turn;
         }
         true
     }

@@ -7,7 +7,9 @@
 mod bit_set;
 mod id_pool;
 mod pair_set;
+mod parts;
 
 pub use bit_set::BitSet;
 pub use id_pool::IdPool;
 pub use pair_set::PairSet;
+pub(crate) use parts::Parts;

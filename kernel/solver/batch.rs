@@ -1,6 +1,8 @@
-//! Contact rows in memory: arrays by point count, cut into batches that are solved one after the other.
+//! Contact rows in memory: arrays by point count, cut into blocks that are solved stage by stage.
+#![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
 use super::{ContactRow, DeepRow, InvMass, RestitutionRow};
+use crate::data::Parts;
 use crate::math::Lane;
 
 /// Rows are laid out by the number of points they have room for: 1, 2 or 4.
@@ -15,7 +17,7 @@ pub enum PointClass {
 }
 
 impl PointClass {
-    /// All classes, in the order in which a colour's batches are solved.
+    /// All classes, in the order in which a colour's rows are laid out.
     pub const ALL: [Self; 3] = [Self::Four, Self::Two, Self::One];
 
     /// The smallest class with room for `count` points.
@@ -28,20 +30,70 @@ impl PointClass {
     }
 }
 
-/// Consecutive rows of one class whose dynamic bodies are all different, so that they may be solved in
-/// any order or at once.
+/// Which of the solver's sets of rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Set {
+    Overflow,
+    OverflowHeld,
+    Wide,
+    WideHeld,
+}
+
+/// Consecutive rows of one class in one set. The dynamic bodies of all blocks of a stage are different, so
+/// that they may be solved in any order or at once.
 #[derive(Clone, Copy, Debug)]
-pub struct Batch {
-    /// Which array.
-    pub class: PointClass,
-    /// The first row.
-    pub start: u32,
-    /// How many rows.
-    pub len: u32,
+pub(super) struct Block {
+    pub(super) set: Set,
+    pub(super) class: PointClass,
+    pub(super) start: u32,
+    pub(super) len: u32,
     /// Whether any of them can bounce.
-    pub bouncy: bool,
+    pub(super) bouncy: bool,
     /// Whether any of them overlaps deeply.
-    pub deep: bool,
+    pub(super) deep: bool,
+}
+
+/// The order in which blocks are solved.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Plan {
+    pub(super) blocks: Vec<Block>,
+    /// Where each stage ends among the blocks.
+    ends: Vec<u32>,
+    /// How many rows a block may have.
+    block_rows: u32,
+}
+
+impl Plan {
+    /// Forgets everything. From now on blocks have up to so many rows.
+    pub(super) fn begin(&mut self, block_rows: u32) {
+        self.blocks.clear();
+        self.ends.clear();
+        self.block_rows = block_rows;
+    }
+
+    /// Cuts rows into blocks of the stage that is being planned.
+    pub(super) fn add(&mut self, set: Set, class: PointClass, rows: core::ops::Range<u32>) {
+        let mut start = rows.start;
+        while start < rows.end {
+            let len = self.block_rows.min(rows.end - start);
+            self.blocks.push(Block { set, class, start, len, bouncy: false, deep: false });
+            start += len;
+        }
+    }
+
+    /// Ends a stage: what is added from now on waits for what was added before.
+    pub(super) fn end_stage(&mut self) {
+        let end = self.blocks.len() as u32;
+        if self.ends.last().copied().unwrap_or(0) < end {
+            self.ends.push(end);
+        }
+    }
+
+    /// Each stage's blocks.
+    pub(super) fn stages(&self) -> impl Iterator<Item = &[Block]> {
+        let starts = core::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(start, end)| &self.blocks[start as usize..*end as usize])
+    }
 }
 
 /// Where a lane's manifold comes from and its impulses go back to.
@@ -56,13 +108,13 @@ pub struct Source<N: Lane> {
 /// The rows of one class.
 #[derive(Clone, Debug)]
 pub struct Rows<N: Lane, M, const P: usize> {
-    /// What every pass sweeps.
+    /// What every pass sweeps. Here and in the next two there may be more than are in use.
     pub rows: Vec<ContactRow<N, M, P>>,
     /// What the restitution pass needs besides.
     pub bounces: Vec<RestitutionRow<N, P>>,
-    /// What deep overlap needs besides; empty in steps without.
+    /// What deep overlap needs besides.
     pub deeps: Vec<DeepRow<N, P>>,
-    /// Where the rows come from.
+    /// Where the rows come from: one for each that is in use.
     pub sources: Vec<Source<N>>,
 }
 
@@ -73,11 +125,25 @@ impl<N: Lane, M, const P: usize> Default for Rows<N, M, P> {
 }
 
 impl<N: Lane, M: InvMass<N>, const P: usize> Rows<N, M, P> {
-    fn clear(&mut self) {
-        self.rows.clear();
-        self.bounces.clear();
-        self.deeps.clear();
-        self.sources.clear();
+    /// Makes room for as many rows as there are sources. What they hold is old.
+    fn make_room(&mut self, any_deep: bool) {
+        let count = self.sources.len();
+        if self.rows.len() < count {
+            self.rows.resize(count, ContactRow::default());
+            self.bounces.resize(count, RestitutionRow::default());
+        }
+        if any_deep && self.deeps.len() < count {
+            self.deeps.resize(count, DeepRow::default());
+        }
+    }
+
+    fn view(&mut self) -> RowsView<'_, N, M, P> {
+        RowsView {
+            rows: Parts::of(&mut self.rows),
+            bounces: Parts::of(&mut self.bounces),
+            deeps: Parts::of(&mut self.deeps),
+            sources: &self.sources,
+        }
     }
 }
 
@@ -90,37 +156,87 @@ pub struct RowSet<N: Lane, M> {
     pub two: Rows<N, M, 2>,
     /// Manifolds of three or four points.
     pub four: Rows<N, M, 4>,
-    /// What is solved, in this order.
-    pub batches: Vec<Batch>,
 }
 
 impl<N: Lane, M: InvMass<N>> Default for RowSet<N, M> {
     fn default() -> Self {
-        Self { one: Rows::default(), two: Rows::default(), four: Rows::default(), batches: Vec::new() }
+        Self { one: Rows::default(), two: Rows::default(), four: Rows::default() }
     }
 }
 
 impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
     /// Forgets all rows; keeps the memory.
     pub fn clear(&mut self) {
-        self.one.clear();
-        self.two.clear();
-        self.four.clear();
-        self.batches.clear();
+        self.one.sources.clear();
+        self.two.sources.clear();
+        self.four.sources.clear();
     }
 
     /// How many rows there are.
     pub fn len(&self) -> usize {
-        self.one.rows.len() + self.two.rows.len() + self.four.rows.len()
+        self.one.sources.len() + self.two.sources.len() + self.four.sources.len()
     }
 
     /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    pub(super) fn make_room(&mut self, any_deep: bool) {
+        self.one.make_room(any_deep);
+        self.two.make_room(any_deep);
+        self.four.make_room(any_deep);
+    }
+
+    pub(super) fn view(&mut self) -> RowSetView<'_, N, M> {
+        RowSetView { one: self.one.view(), two: self.two.view(), four: self.four.view() }
+    }
 }
 
-/// Runs `$body` with `$rows` bound to the array of a batch's class, whatever its number of points.
+/// [`Rows`], changed block by block.
+pub(super) struct RowsView<'a, N: Lane, M, const P: usize> {
+    rows: Parts<'a, ContactRow<N, M, P>>,
+    bounces: Parts<'a, RestitutionRow<N, P>>,
+    deeps: Parts<'a, DeepRow<N, P>>,
+    sources: &'a [Source<N>],
+}
+
+/// The rows of one block.
+pub(super) struct BlockRows<'a, N: Lane, M, const P: usize> {
+    pub(super) rows: &'a mut [ContactRow<N, M, P>],
+    pub(super) bounces: &'a mut [RestitutionRow<N, P>],
+    /// Empty in steps without deep overlap.
+    pub(super) deeps: &'a mut [DeepRow<N, P>],
+    pub(super) sources: &'a [Source<N>],
+}
+
+impl<'a, N: Lane, M, const P: usize> RowsView<'a, N, M, P> {
+    /// # Safety
+    /// While the block is in use nobody may take one that overlaps it.
+    #[inline(always)]
+    pub(super) unsafe fn take(&self, block: &Block) -> BlockRows<'a, N, M, P> {
+        let range = block.start as usize..(block.start + block.len) as usize;
+        let deeps = if self.deeps.len() < range.end { 0..0 } else { range.clone() };
+        // SAFETY: by the contract.
+        unsafe {
+            BlockRows {
+                rows: self.rows.take(range.clone()),
+                bounces: self.bounces.take(range.clone()),
+                deeps: self.deeps.take(deeps),
+                sources: &self.sources[range],
+            }
+        }
+    }
+}
+
+/// [`RowSet`], changed block by block.
+pub(super) struct RowSetView<'a, N: Lane, M> {
+    pub(super) one: RowsView<'a, N, M, 1>,
+    pub(super) two: RowsView<'a, N, M, 2>,
+    pub(super) four: RowsView<'a, N, M, 4>,
+}
+
+/// Runs `$body` with `$rows` bound to the array of a class, whatever its number of points.
 macro_rules! with_rows {
     ($set:expr, $class:expr, |$rows:ident| $body:expr) => {
         match $class {
@@ -140,3 +256,27 @@ macro_rules! with_rows {
     };
 }
 pub(super) use with_rows;
+
+/// Runs `$body` with `$rows` bound to the rows of a block, whatever their number of points.
+macro_rules! with_block {
+    ($set:expr, $block:expr, |$rows:ident| $body:expr) => {
+        match $block.class {
+            $crate::solver::PointClass::One => {
+                // SAFETY: who runs blocks runs each once at a time, and no two share rows.
+                let $rows = unsafe { $set.one.take($block) };
+                $body
+            }
+            $crate::solver::PointClass::Two => {
+                // SAFETY: as above.
+                let $rows = unsafe { $set.two.take($block) };
+                $body
+            }
+            $crate::solver::PointClass::Four => {
+                // SAFETY: as above.
+                let $rows = unsafe { $set.four.take($block) };
+                $body
+            }
+        }
+    };
+}
+pub(super) use with_block;

@@ -1,7 +1,11 @@
 //! Free motion: velocities from accelerations and damping, positions from velocities.
 
-use super::{BodyRow, BodyRows, Motion};
+use super::{BodyRow, BodyRows, Motion, RowView};
 use crate::math::{Angular, F32x4, Lane};
+use crate::team::Team;
+
+/// How many bodies a member of the team moves at a stretch: a multiple of the lanes.
+const BLOCK: usize = 256;
 
 /// Row ids of bodies whose velocity needs more than acceleration and damping.
 #[derive(Clone, Debug, Default)]
@@ -28,10 +32,10 @@ impl Special {
         }
     }
 
-    fn limit(&self, bodies: &mut BodyRows) {
-        for &id in &self.limited {
-            let motion = &bodies.motions[id as usize];
-            let row = &mut bodies.rows[id as usize];
+    fn limit(&self, bodies: &mut BodyRows, team: &Team) {
+        let BodyRows { rows, motions, .. } = bodies;
+        each_of(&self.limited, rows, team, |id, row| {
+            let motion = &motions[id as usize];
             let (v, w) = row.velocity();
             let v = v.scale(motion.locks.translation_factors());
             let w = hold(w, motion);
@@ -39,8 +43,18 @@ impl Special {
                 v * limit_factor(v.length(), motion.max_speed),
                 w * limit_factor(w.length(), motion.max_angular_speed),
             );
-        }
+        });
     }
+}
+
+/// Changes the listed rows, each of which is listed once.
+fn each_of(ids: &[u32], rows: &mut [BodyRow], team: &Team, change: impl Fn(u32, &mut BodyRow) + Sync) {
+    let view = RowView::over(rows, 0);
+    team.run(ids.len().div_ceil(BLOCK), |block, _| {
+        for &id in &ids[block * BLOCK..ids.len().min((block + 1) * BLOCK)] {
+            view.put(id, |row| change(id, row));
+        }
+    });
 }
 
 /// The angular velocity without its part about held axes.
@@ -56,39 +70,48 @@ fn limit_factor(speed: f32, max: f32) -> f32 {
 impl BodyRows {
     /// v ← v / (1 + c h) + h a for every dynamic body; the damping acts on the old velocity, so that
     /// without forces v falls by exactly 1 / (1 + c h). In 3D then one step of the gyroscopic torque.
-    pub(super) fn integrate_velocities(&mut self, special: &Special, h: f32) {
-        let first = self.first_dynamic as usize;
-        for (row, motion) in self.rows[first..].iter_mut().zip(&self.motions[first..]) {
-            let (v, w) = row.velocity();
-            row.set_velocity(
-                v * (1.0 / (1.0 + motion.linear_damping * h)) + motion.acceleration * h,
-                w * (1.0 / (1.0 + motion.angular_damping * h)) + motion.angular_acceleration * h,
-            );
-        }
-        for &id in &special.gyroscopic {
-            let motion = &self.motions[id as usize];
-            let row = &mut self.rows[id as usize];
+    pub(super) fn integrate_velocities(&mut self, special: &Special, h: f32, team: &Team) {
+        let Self { rows, motions, first_dynamic, .. } = self;
+        let (first, count) = (*first_dynamic as usize, rows.len());
+        let view = RowView::over(rows, 0);
+        team.run((count - first).div_ceil(BLOCK), |block, _| {
+            let start = first + block * BLOCK;
+            for id in start..count.min(start + BLOCK) {
+                let motion = &motions[id];
+                view.put(id as u32, |row| {
+                    let (v, w) = row.velocity();
+                    row.set_velocity(
+                        v * (1.0 / (1.0 + motion.linear_damping * h)) + motion.acceleration * h,
+                        w * (1.0 / (1.0 + motion.angular_damping * h)) + motion.angular_acceleration * h,
+                    );
+                });
+            }
+        });
+        each_of(&special.gyroscopic, rows, team, |id, row| {
+            let motion = &motions[id as usize];
             let (v, w) = row.velocity();
             let rotation = world_rotation(row.delta().1, motion.rotation);
             row.set_velocity(v, gyroscopic(w, rotation, motion.local_inv_inertia, h));
-        }
-        special.limit(self);
+        });
+        special.limit(self, team);
     }
 
     /// Δx ← Δx + h v and Δθ ← Δθ turned by h ω, for every body.
-    pub(super) fn integrate_positions(&mut self, special: &Special, h: f32) {
-        special.limit(self);
-        let count = self.rows.len() as u32;
+    pub(super) fn integrate_positions(&mut self, special: &Special, h: f32, team: &Team) {
+        special.limit(self, team);
+        let count = self.rows.len();
         let view = self.view_all();
-        let mut id = 0;
-        while id + F32x4::WIDTH as u32 <= count {
-            let ids = core::array::from_fn(|k| id + k as u32);
-            move_bodies::<F32x4>(&view, &ids, h);
-            id += F32x4::WIDTH as u32;
-        }
-        for id in id..count {
-            move_bodies::<f32>(&view, &[id], h);
-        }
+        team.run(count.div_ceil(BLOCK), |block, _| {
+            let (mut id, end) = (block * BLOCK, count.min((block + 1) * BLOCK));
+            while id + F32x4::WIDTH <= end {
+                let ids = core::array::from_fn(|k| (id + k) as u32);
+                move_bodies::<F32x4>(&view, &ids, h);
+                id += F32x4::WIDTH;
+            }
+            for id in id..end {
+                move_bodies::<f32>(&view, &[id as u32], h);
+            }
+        });
     }
 }
 
@@ -136,8 +159,8 @@ mod tests {
         let (h, n) = (1.0 / 256.0, 512);
         let special = Special::default();
         for _ in 0..n {
-            bodies.integrate_velocities(&special, h);
-            bodies.integrate_positions(&special, h);
+            bodies.integrate_velocities(&special, h, &Team::default());
+            bodies.integrate_positions(&special, h, &Team::default());
         }
         let t = h * n as f32;
         let (v, p) = (bodies.rows[1].velocity().0, bodies.rows[1].delta().0);
@@ -151,7 +174,7 @@ mod tests {
         let mut bodies = one_body(Motion { linear_damping: 0.7, ..Motion::FREE }, Vector::X * 5.0);
         let h = 1.0 / 60.0;
         for _ in 0..100 {
-            bodies.integrate_velocities(&Special::default(), h);
+            bodies.integrate_velocities(&Special::default(), h, &Team::default());
         }
         let want = 5.0 / (1.0f64 + 0.7 / 60.0).powi(100);
         assert!((f64::from(bodies.rows[1].velocity().0.x) - want).abs() < 1e-4 * want);
@@ -181,8 +204,8 @@ mod tests {
         let mut special = Special::default();
         special.find(&bodies);
         for _ in 0..60 {
-            bodies.integrate_velocities(&special, 1.0 / 60.0);
-            bodies.integrate_positions(&special, 1.0 / 60.0);
+            bodies.integrate_velocities(&special, 1.0 / 60.0, &Team::default());
+            bodies.integrate_positions(&special, 1.0 / 60.0, &Team::default());
         }
         let (v, _) = bodies.rows[1].velocity();
         assert_eq!(v.x, 0.0);

@@ -11,6 +11,7 @@
 //! overlap out leaves the velocities alone ([`DeepRow`]).
 
 mod batch;
+mod block;
 mod body;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -19,11 +20,12 @@ mod integrate;
 mod inv_mass;
 mod prepare;
 mod row;
+mod rows;
 mod softness;
 mod stages;
 mod view;
 
-pub use batch::{Batch, PointClass, RowSet};
+pub use batch::{PointClass, RowSet};
 pub use body::{BodyRows, Motion};
 pub use dim::{BodyRow, MassRow, Twist};
 pub use inv_mass::InvMass;

@@ -1,9 +1,9 @@
-//! Manifolds become rows: each colour's contacts are sorted by point count, lanes are filled, and the
-//! effective masses computed for all lanes of a row at once.
+//! Manifolds become rows: each colour's contacts are sorted by point count and laid out, then lanes are
+//! filled, block by block, and the effective masses computed for all lanes of a row at once.
 
-use super::batch::{Batch, PointClass, RowSet, Rows, Source, with_rows};
+use super::batch::{BlockRows, Plan, PointClass, RowSet, Rows, Set, Source, with_rows};
 use super::{
-    BodyRow, BodyRows, ContactRow, DeepRow, InvMass, MassRow, RestitutionRow, RowView, SubstepParams,
+    BodyRow, BodyRows, ContactRow, DeepRow, InvMass, MassRow, Motion, RestitutionRow, RowView, SubstepParams,
 };
 use crate::contact::{Contact, ContactFlags, ContactTable, Manifold};
 use crate::math::{Ids, Lane, TangentFrame, Vector};
@@ -95,25 +95,12 @@ pub struct ContactSource {
     manifold: u32,
 }
 
-/// What the rows of a step are built with besides their input.
-pub(super) struct StepRows<'a> {
-    pub(super) bodies: &'a mut BodyRows,
-    pub(super) params: &'a SubstepParams,
-    pub(super) deep: &'a DeepCounts,
-    /// Whether any body is held along some axes.
-    pub(super) any_held: bool,
-    pub(super) buckets: &'a mut Buckets,
-}
-
-impl StepRows<'_> {
-    /// Whether a body of the contact is held along some, but not all, axes.
-    pub(super) fn is_held(&self, input: &RowInput, contact: u32) -> bool {
-        self.any_held
-            && input.contacts.get(contact).bodies.iter().any(|body| {
-                let row = row_of(input.bodies, *body);
-                self.bodies.motions[row as usize].locks.is_translation_partial()
-            })
-    }
+/// Whether a body of the contact is held along some, but not all, axes.
+pub(super) fn is_held(input: &RowInput, motions: &[Motion], contact: u32) -> bool {
+    input.contacts.get(contact).bodies.iter().any(|body| {
+        let row = row_of(input.bodies, *body);
+        motions[row as usize].locks.is_translation_partial()
+    })
 }
 
 /// Buckets by point class, kept between steps.
@@ -121,41 +108,39 @@ impl StepRows<'_> {
 pub(super) struct Buckets([Vec<ContactSource>; 3]);
 
 impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
-    /// Adds the rows of contacts whose dynamic bodies are all different.
+    /// Lays out the rows of contacts whose dynamic bodies are all different.
     ///
     /// A contact with several manifolds has them solved one after the other: the first manifolds of all
-    /// contacts form the first batches, the second ones the next, and so on, so that a batch still holds
+    /// contacts form the first stage, the second ones the next, and so on, so that a stage still holds
     /// no body twice.
-    #[inline(always)]
-    pub(super) fn add_color(
+    pub(super) fn lay(
         &mut self,
-        input: &RowInput,
-        step: &mut StepRows,
-        contacts: impl Iterator<Item = u32> + Clone,
+        set: Set,
+        contacts: &[u32],
+        table: &ContactTable,
+        buckets: &mut Buckets,
+        plan: &mut Plan,
     ) {
         let mut layer = 0;
         loop {
             let mut more = false;
-            for bucket in &mut step.buckets.0 {
+            for bucket in &mut buckets.0 {
                 bucket.clear();
             }
-            for id in contacts.clone() {
-                let contact = input.contacts.get(id);
+            for &id in contacts {
+                let contact = table.get(id);
                 more |= u32::from(contact.extra_count) > layer;
-                let Some(manifold) = input.contacts.manifold(contact, layer) else { continue };
+                let Some(manifold) = table.manifold(contact, layer) else { continue };
                 if manifold.count > 0 {
                     let source = ContactSource { contact: id, manifold: layer };
-                    step.buckets.0[PointClass::of(manifold.count) as usize].push(source);
+                    buckets.0[PointClass::of(manifold.count) as usize].push(source);
                 }
             }
             for class in PointClass::ALL {
-                let sources = core::mem::take(&mut step.buckets.0[class as usize]);
-                if !sources.is_empty() {
-                    let batch = with_rows!(self, class, |rows| rows.add(input, step, &sources));
-                    self.batches.push(Batch { class, ..batch });
-                }
-                step.buckets.0[class as usize] = sources;
+                let range = with_rows!(self, class, |rows| rows.lay(&buckets.0[class as usize]));
+                plan.add(set, class, range);
             }
+            plan.end_stage();
             if !more {
                 return;
             }
@@ -165,37 +150,63 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
 }
 
 impl<N: Lane, M: InvMass<N>, const P: usize> Rows<N, M, P> {
-    #[inline(always)]
-    fn add(&mut self, input: &RowInput, step: &mut StepRows, sources: &[ContactSource]) -> Batch {
-        let start = self.rows.len();
-        let len = sources.len().div_ceil(N::WIDTH);
-        self.rows.resize(start + len, ContactRow::default());
-        self.bounces.resize(start + len, RestitutionRow::default());
-        self.sources.reserve(len);
-        let (mut bouncy, mut any_deep) = (false, false);
-        if step.deep.any() {
-            self.deeps.resize(start + len, DeepRow::default());
-        }
-        for (i, chunk) in sources.chunks(N::WIDTH).enumerate() {
-            let (row, bounce) = (&mut self.rows[start + i], &mut self.bounces[start + i]);
+    /// Appends rows for manifolds, and returns which.
+    fn lay(&mut self, manifolds: &[ContactSource]) -> core::ops::Range<u32> {
+        let start = self.sources.len() as u32;
+        for chunk in manifolds.chunks(N::WIDTH) {
             let mut source = Source::<N> { contacts: N::Ids::splat(NONE), manifolds: N::Ids::splat(0) };
-            let mut fill = Fill::<N, P>::new();
             for (lane, from) in chunk.iter().enumerate() {
                 source.contacts.set(lane, from.contact);
                 source.manifolds.set(lane, from.manifold);
-                fill.lane(input, step, *from, lane, row, bounce);
-            }
-            let BodyRows { rows, masses, first_dynamic, .. } = &mut *step.bodies;
-            let first_dynamic = *first_dynamic;
-            let view = RowView::over(rows, first_dynamic);
-            fill.finish(row, bounce, masses, &view);
-            bouncy |= N::any(N::ZERO.lt(bounce.restitution));
-            if step.deep.any() {
-                any_deep |= self.deeps[start + i].mark(step.deep, &row.ids, first_dynamic);
             }
             self.sources.push(source);
         }
-        Batch { class: PointClass::One, start: start as u32, len: len as u32, bouncy, deep: any_deep }
+        start..self.sources.len() as u32
+    }
+}
+
+/// What rows are filled from.
+pub(super) struct Filler<'a> {
+    pub(super) input: &'a RowInput<'a>,
+    pub(super) view: RowView<'a, BodyRow>,
+    pub(super) masses: &'a [MassRow],
+    pub(super) motions: &'a [Motion],
+    pub(super) first_dynamic: u32,
+    pub(super) params: &'a SubstepParams,
+    pub(super) deep: &'a DeepCounts,
+    /// Whether any body is held along some axes.
+    pub(super) any_held: bool,
+}
+
+impl Filler<'_> {
+    /// Fills the rows of a block. Returns whether any of them can bounce, and whether any overlaps deeply.
+    #[inline(always)]
+    pub(super) fn fill<N: Lane, M: InvMass<N>, const P: usize>(
+        &self,
+        block: BlockRows<N, M, P>,
+    ) -> (bool, bool) {
+        let (mut bouncy, mut any_deep) = (false, false);
+        for (i, source) in block.sources.iter().enumerate() {
+            let (row, bounce) = (&mut block.rows[i], &mut block.bounces[i]);
+            *row = ContactRow::default();
+            *bounce = RestitutionRow::default();
+            let mut fill = Fill::<N, P>::new();
+            for lane in 0..N::WIDTH {
+                let contact = source.contacts.lanes()[lane];
+                if contact != NONE {
+                    let from = ContactSource { contact, manifold: source.manifolds.lanes()[lane] };
+                    fill.lane(self, from, lane, row, bounce);
+                }
+            }
+            fill.finish(row, bounce, self.masses, &self.view);
+            bouncy |= N::any(N::ZERO.lt(bounce.restitution));
+            if self.deep.any() {
+                let deep = &mut block.deeps[i];
+                *deep = DeepRow::default();
+                any_deep |= deep.mark(self.deep, &row.ids, self.first_dynamic);
+            }
+        }
+        (bouncy, any_deep)
     }
 }
 
@@ -241,20 +252,20 @@ impl<N: Lane, const P: usize> Fill<N, P> {
     #[inline(always)]
     fn lane<M: InvMass<N>>(
         &mut self,
-        input: &RowInput,
-        step: &StepRows,
+        filler: &Filler,
         from: ContactSource,
         lane: usize,
         row: &mut ContactRow<N, M, P>,
         bounce: &mut RestitutionRow<N, P>,
     ) {
+        let input = filler.input;
         let contact = input.contacts.get(from.contact);
         let manifold = input.contacts.manifold(contact, from.manifold).expect("it was there to be counted");
         let ids = contact.bodies.map(|body| row_of(input.bodies, body));
         for side in 0..2 {
             row.ids[side].set(lane, ids[side]);
-            if step.any_held {
-                let locks = step.bodies.motions[ids[side] as usize].locks;
+            if filler.any_held {
+                let locks = filler.motions[ids[side] as usize].locks;
                 if locks.is_translation_partial() {
                     self.free[side].set(lane, locks.translation_factors());
                 }
@@ -268,12 +279,12 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let restitution = a.restitution.mix(b.restitution);
         bounce.restitution.set(lane, restitution);
         if restitution > 0.0 {
-            let [a, b] = ids.map(|row| step.bodies.motions[row as usize].acceleration);
-            bounce.gained.set(lane, (a - b).dot(manifold.normal) * step.params.h);
+            let [a, b] = ids.map(|row| filler.motions[row as usize].acceleration);
+            bounce.gained.set(lane, (a - b).dot(manifold.normal) * filler.params.h);
         }
-        let share = step.deep.share(ids, step.bodies.first_dynamic);
-        row.push_speed.set(lane, step.params.max_push_speed * share);
-        self.copy(manifold, contact.frozen.offset, step.params, lane, row);
+        let share = filler.deep.share(ids, filler.first_dynamic);
+        row.push_speed.set(lane, filler.params.max_push_speed * share);
+        self.copy(manifold, contact.frozen.offset, filler.params, lane, row);
     }
 
     /// Marks the side that cannot be moved by the other because it dominates it.
@@ -379,27 +390,4 @@ impl<N: Lane, const P: usize> Fill<N, P> {
 #[inline(always)]
 fn row_of(bodies: &BodyTable, body: u32) -> u32 {
     if body == NONE { 0 } else { bodies.rows[body as usize] }
-}
-
-/// Puts the rows' impulses back into the manifolds.
-#[inline(always)]
-pub(super) fn store_impulses<N: Lane, M: InvMass<N>, const P: usize>(
-    rows: &Rows<N, M, P>,
-    contacts: &mut ContactTable,
-) {
-    for (row, source) in rows.rows.iter().zip(&rows.sources) {
-        let friction = TangentFrame::new(row.normal).expand(row.tangent_impulse);
-        for (lane, contact) in source.contacts.lanes().iter().enumerate() {
-            if *contact == NONE {
-                continue;
-            }
-            let manifold = contacts.manifold_mut(*contact, source.manifolds.lanes()[lane]);
-            manifold.friction_impulse = friction.get(lane);
-            manifold.twist_impulse = row.twist.impulse(lane);
-            let count = manifold.count as usize;
-            for (p, point) in manifold.points[..count].iter_mut().zip(&row.points) {
-                p.impulse = point.impulse.get(lane);
-            }
-        }
-    }
 }

@@ -1,14 +1,23 @@
 //! The stages of a step, in the order they run.
+#![expect(unsafe_code, reason = "blocks are filled at once, each by one member of the team")]
 
-use super::batch::{Batch, RowSet, with_rows};
+use super::batch::Plan;
+use super::block::Pass;
 use super::integrate::Special;
-use super::prepare::{Buckets, DeepCounts, RowInput, StepRows, store_impulses};
-use super::{BodyRows, InvMass, SubstepParams};
+use super::prepare::{DeepCounts, Filler, RowInput};
+use super::rows::{AllRows, Buffers, Layout};
+use super::{BodyRows, RowView, SubstepParams};
 use crate::contact::ContactTable;
-use crate::graph::{ColorGraph, OVERFLOW};
-#[cfg(target_arch = "x86_64")]
-use crate::math::F32x8;
-use crate::math::{F32x4, Lane, Vector};
+use crate::data::Parts;
+use crate::graph::ColorGraph;
+use crate::team::Team;
+use core::sync::atomic::{AtomicBool, Ordering};
+
+/// How many rows a member of a team solves at a stretch: some microseconds of work.
+const BLOCK_ROWS: u32 = 32;
+
+/// From so many blocks on helpers are woken to solve them: that takes as long as one of them's sweeps.
+const WORTH_WAKING: usize = 8;
 
 /// How many contacts are solved side by side. The results have the same bits with any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,22 +39,6 @@ impl Default for Width {
     }
 }
 
-/// The wide rows of one width.
-#[derive(Clone, Debug)]
-struct WideRows<N: Lane> {
-    free: RowSet<N, N>,
-    /// Contacts of bodies held along some axes.
-    held: RowSet<N, Vector<N>>,
-    /// Which contacts of a colour are which, kept for its memory.
-    parts: [Vec<u32>; 2],
-}
-
-impl<N: Lane> Default for WideRows<N> {
-    fn default() -> Self {
-        Self { free: RowSet::default(), held: RowSet::default(), parts: Default::default() }
-    }
-}
-
 /// The bodies and rows of one step.
 ///
 /// The order within every sweep: overflow contacts one by one, then the colours from low to high, so
@@ -54,43 +47,19 @@ impl<N: Lane> Default for WideRows<N> {
 pub struct Solver {
     /// The bodies; the embedder fills them and reads them back.
     pub bodies: BodyRows,
-    /// How many contacts are solved side by side; [`Width::Eight`] must only be chosen where
-    /// [`Width::default`] does.
-    width: Width,
+    /// Who solves. The result does not depend on how many they are.
+    pub team: Team,
     special: Special,
-    overflow: WideRows<f32>,
-    four: WideRows<F32x4>,
-    #[cfg(target_arch = "x86_64")]
-    eight: WideRows<F32x8>,
-    /// Which set the next batch of a sweep is in, in order.
-    order: Vec<(Set, u32)>,
-    buckets: Buckets,
+    rows: AllRows,
+    plan: Plan,
+    buffers: Buffers,
     deep: DeepCounts,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Set {
-    Overflow,
-    OverflowHeld,
-    Wide,
-    WideHeld,
-}
-
-/// What a sweep does with each row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Pass {
-    Impact,
-    WarmStart,
-    Solve,
-    TakeBack,
-    Relax,
-    Restitute,
 }
 
 impl Solver {
     /// Solves with four lanes where the CPU has eight: for comparison.
     pub fn set_narrow(&mut self) {
-        self.width = Width::Four;
+        self.rows.width = Width::Four;
     }
 
     /// Finds which bodies are held, limited in speed or turned by their own spin: once per step, after
@@ -101,66 +70,56 @@ impl Solver {
 
     /// Builds the rows of all touching contacts in the colours.
     pub fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
-        let Self { bodies, overflow, four, order, buckets, deep, .. } = self;
-        overflow.free.clear();
-        overflow.held.clear();
-        order.clear();
+        let Self { bodies, team, rows, plan, buffers, deep, .. } = self;
         deep.count(input, bodies);
         // Body rows were gathered, so only they know what is held.
         let any_held = bodies.motions.iter().any(|m| m.locks.is_translation_partial());
-        let step = &mut StepRows { bodies, params, deep, any_held, buckets };
-        for id in colors.overflow() {
-            let one = core::iter::once(*id);
-            if step.is_held(input, *id) {
-                overflow.held.add_color(input, step, one);
-            } else {
-                overflow.free.add_color(input, step, one);
-            }
-            note(order, Set::Overflow, overflow.free.batches.len());
-            note(order, Set::OverflowHeld, overflow.held.batches.len());
+        let BodyRows { rows: body_rows, masses, motions, first_dynamic } = bodies;
+        plan.begin(if team.members() > 1 { BLOCK_ROWS } else { u32::MAX });
+        let any_deep = deep.any();
+        rows.lay_out(colors, &mut Layout { input, motions, any_held, any_deep, buffers, plan });
+        let filler = &Filler {
+            input,
+            view: RowView::over(body_rows, *first_dynamic),
+            masses,
+            motions,
+            first_dynamic: *first_dynamic,
+            params,
+            deep,
+            any_held,
+        };
+        let many = plan.blocks.len() >= WORTH_WAKING;
+        let (sets, blocks) = (rows.view(), Parts::of(&mut plan.blocks));
+        if many {
+            team.wake();
         }
-        match self.width {
-            #[cfg(target_arch = "x86_64")]
-            Width::Eight => eight_lanes::build(&mut self.eight, input, colors, step, order),
-            _ => four.build(input, colors, step, order),
-        }
+        team.run(blocks.len(), |block, _| {
+            // SAFETY: each block is run once.
+            sets.fill(unsafe { blocks.one(block) }, filler);
+        });
     }
 
     /// How many wide and how many scalar rows the step has.
     pub fn row_counts(&self) -> (usize, usize) {
-        let count = |rows: (usize, usize)| rows.0 + rows.1;
-        let wide = match self.width {
-            #[cfg(target_arch = "x86_64")]
-            Width::Eight => (self.eight.free.len(), self.eight.held.len()),
-            _ => (self.four.free.len(), self.four.held.len()),
-        };
-        (count(wide), self.overflow.free.len() + self.overflow.held.len())
+        self.rows.counts()
     }
 
     /// Accelerations, damping, gyroscopic torque, speed limits.
     pub fn integrate_velocities(&mut self, params: &SubstepParams) {
-        self.bodies.integrate_velocities(&self.special, params.h);
+        self.bodies.integrate_velocities(&self.special, params.h, &self.team);
     }
 
     /// Lets what closes fast in this substep bounce, then applies the accumulated impulses.
     ///
     /// An impact runs on through a row of bodies, as in Newton's cradle: two bodies further with each sweep.
     pub fn warm_start(&mut self, params: &SubstepParams) {
-        if self.any_bouncy() {
+        if self.plan.blocks.iter().any(|block| block.bouncy) {
             let mut sweeps = 0;
             while sweeps < IMPACT_SWEEPS && self.sweep(Pass::Impact, params) {
                 sweeps += 1;
             }
         }
         self.sweep(Pass::WarmStart, params);
-    }
-
-    fn any_bouncy(&self) -> bool {
-        #[cfg(target_arch = "x86_64")]
-        if self.eight.any_bouncy() {
-            return true;
-        }
-        self.overflow.any_bouncy() || self.four.any_bouncy()
     }
 
     /// Non-penetration with soft bias.
@@ -170,7 +129,7 @@ impl Solver {
 
     /// Moves the bodies.
     pub fn integrate_positions(&mut self, params: &SubstepParams) {
-        self.bodies.integrate_positions(&self.special, params.h);
+        self.bodies.integrate_positions(&self.special, params.h, &self.team);
     }
 
     /// Takes out the velocity that the bias added, and applies friction. What pushed deep overlap out is
@@ -197,230 +156,27 @@ impl Solver {
     }
 
     /// Puts the impulses back into the manifolds, for the next step to start from.
-    pub fn store_impulses(&self, contacts: &mut ContactTable) {
-        self.overflow.store(contacts);
-        match self.width {
-            #[cfg(target_arch = "x86_64")]
-            Width::Eight => eight_lanes::store(&self.eight, contacts),
-            _ => self.four.store(contacts),
+    pub fn store_impulses(&mut self, contacts: &mut ContactTable) {
+        let (sets, manifolds) = (self.rows.view(), contacts.manifolds_view());
+        for stage in self.plan.stages() {
+            self.team.run(stage.len(), |block, _| sets.store(&stage[block], &manifolds));
         }
     }
 
-    /// Runs all batches in order. Returns whether any of them found an impact.
+    /// Runs all blocks, stage by stage. Returns whether any of them found an impact.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams) -> bool {
-        let Self { bodies, overflow, four, order, .. } = self;
-        let mut hit = false;
-        for (set, batch) in order.iter() {
-            hit |= match (set, self.width) {
-                (Set::Overflow, _) => overflow.free.run(*batch, pass, bodies, params),
-                (Set::OverflowHeld, _) => overflow.held.run(*batch, pass, bodies, params),
-                #[cfg(target_arch = "x86_64")]
-                (Set::Wide, Width::Eight) => {
-                    eight_lanes::run(&mut self.eight.free, *batch, pass, bodies, params)
+        let (sets, bodies) = (self.rows.view(), self.bodies.view());
+        let hit = AtomicBool::new(false);
+        for stage in self.plan.stages() {
+            self.team.run(stage.len(), |block, _| {
+                if sets.run(&stage[block], pass, &bodies, params) {
+                    hit.store(true, Ordering::Relaxed);
                 }
-                #[cfg(target_arch = "x86_64")]
-                (Set::WideHeld, Width::Eight) => {
-                    eight_lanes::run(&mut self.eight.held, *batch, pass, bodies, params)
-                }
-                (Set::Wide, _) => four.free.run(*batch, pass, bodies, params),
-                (Set::WideHeld, _) => four.held.run(*batch, pass, bodies, params),
-            };
+            });
         }
-        hit
+        hit.into_inner()
     }
 }
 
 /// How often a substep looks for impacts that follow from impacts.
 const IMPACT_SWEEPS: usize = 8;
-
-impl<N: Lane> WideRows<N> {
-    /// Builds the rows of all colours but overflow.
-    #[inline(always)]
-    fn build(
-        &mut self,
-        input: &RowInput,
-        colors: &ColorGraph,
-        step: &mut StepRows,
-        order: &mut Vec<(Set, u32)>,
-    ) {
-        self.free.clear();
-        self.held.clear();
-        for color in 0..OVERFLOW {
-            let contacts = colors.contacts(color);
-            if step.any_held {
-                self.parts.iter_mut().for_each(Vec::clear);
-                for id in contacts {
-                    self.parts[usize::from(step.is_held(input, *id))].push(*id);
-                }
-                let [free, held] = &self.parts;
-                self.held.add_color(input, step, held.iter().copied());
-                self.free.add_color(input, step, free.iter().copied());
-            } else {
-                self.free.add_color(input, step, contacts.iter().copied());
-            }
-            note(order, Set::WideHeld, self.held.batches.len());
-            note(order, Set::Wide, self.free.batches.len());
-        }
-    }
-
-    fn any_bouncy(&self) -> bool {
-        let any = |batches: &[Batch]| batches.iter().any(|b| b.bouncy);
-        any(&self.free.batches) || any(&self.held.batches)
-    }
-
-    #[inline(always)]
-    fn store(&self, contacts: &mut ContactTable) {
-        store_set(&self.free, contacts);
-        store_set(&self.held, contacts);
-    }
-}
-
-/// The entry points of eight lanes: everything below them is inlined and compiled for AVX2.
-#[cfg(target_arch = "x86_64")]
-mod eight_lanes {
-    #![expect(unsafe_code, reason = "entry points for a CPU feature that was looked for")]
-    use super::*;
-
-    pub(super) fn build(
-        rows: &mut WideRows<F32x8>,
-        input: &RowInput,
-        colors: &ColorGraph,
-        step: &mut StepRows,
-        order: &mut Vec<(Set, u32)>,
-    ) {
-        // SAFETY: this width is only chosen where the CPU has AVX2.
-        unsafe { build_avx2(rows, input, colors, step, order) }
-    }
-
-    pub(super) fn run<M: InvMass<F32x8>>(
-        set: &mut RowSet<F32x8, M>,
-        batch: u32,
-        pass: Pass,
-        bodies: &mut BodyRows,
-        params: &SubstepParams,
-    ) -> bool {
-        // SAFETY: this width is only chosen where the CPU has AVX2.
-        unsafe { run_avx2(set, batch, pass, bodies, params) }
-    }
-
-    pub(super) fn store(rows: &WideRows<F32x8>, contacts: &mut ContactTable) {
-        // SAFETY: this width is only chosen where the CPU has AVX2.
-        unsafe { store_avx2(rows, contacts) }
-    }
-
-    #[target_feature(enable = "avx2")]
-    fn store_avx2(rows: &WideRows<F32x8>, contacts: &mut ContactTable) {
-        rows.store(contacts);
-    }
-
-    #[target_feature(enable = "avx2")]
-    fn build_avx2(
-        rows: &mut WideRows<F32x8>,
-        input: &RowInput,
-        colors: &ColorGraph,
-        step: &mut StepRows,
-        order: &mut Vec<(Set, u32)>,
-    ) {
-        rows.build(input, colors, step, order);
-    }
-
-    #[target_feature(enable = "avx2")]
-    fn run_avx2<M: InvMass<F32x8>>(
-        set: &mut RowSet<F32x8, M>,
-        batch: u32,
-        pass: Pass,
-        bodies: &mut BodyRows,
-        params: &SubstepParams,
-    ) -> bool {
-        set.run(batch, pass, bodies, params)
-    }
-}
-
-/// Appends the batches of a set that are not in the order yet.
-fn note(order: &mut Vec<(Set, u32)>, set: Set, batches: usize) {
-    let known = order.iter().rev().find(|(s, _)| *s == set).map_or(0, |(_, b)| b + 1);
-    order.extend((known..batches as u32).map(|b| (set, b)));
-}
-
-#[inline(always)]
-fn store_set<N: Lane, M: InvMass<N>>(set: &RowSet<N, M>, contacts: &mut ContactTable) {
-    store_impulses(&set.one, contacts);
-    store_impulses(&set.two, contacts);
-    store_impulses(&set.four, contacts);
-}
-
-impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
-    /// Runs one batch, and returns whether it found an impact. Plain loops, not iterator adaptors: what is to
-    /// be compiled for the caller's CPU feature must be inlined into it.
-    #[inline(always)]
-    fn run(&mut self, batch: u32, pass: Pass, bodies: &mut BodyRows, params: &SubstepParams) -> bool {
-        let batch = self.batches[batch as usize];
-        let range = batch.start as usize..(batch.start + batch.len) as usize;
-        let concerned = match pass {
-            Pass::Impact | Pass::Restitute => batch.bouncy,
-            Pass::TakeBack => batch.deep,
-            _ => true,
-        };
-        if !concerned {
-            return false;
-        }
-        let mut hit = false;
-        let view = &bodies.view();
-        with_rows!(self, batch.class, |set| {
-            let rows = &mut set.rows[range.clone()];
-            match pass {
-                Pass::Impact => {
-                    for (row, bounce) in rows.iter_mut().zip(&mut set.bounces[range.clone()]) {
-                        hit |= row.impact(view, bounce, params);
-                    }
-                }
-                Pass::WarmStart => {
-                    if batch.deep {
-                        for (row, deep) in rows.iter_mut().zip(&set.deeps[range.clone()]) {
-                            row.cool(deep);
-                        }
-                    }
-                    for row in rows.iter() {
-                        row.warm_start(view);
-                    }
-                }
-                Pass::Solve => {
-                    if batch.deep {
-                        for (row, deep) in rows.iter().zip(&mut set.deeps[range.clone()]) {
-                            row.note_before(deep);
-                        }
-                    }
-                    for row in rows.iter_mut() {
-                        row.solve(view, params);
-                    }
-                }
-                Pass::TakeBack => {
-                    for (row, deep) in rows.iter_mut().zip(&set.deeps[range.clone()]) {
-                        row.take_back(view, deep);
-                    }
-                }
-                Pass::Relax if batch.bouncy => {
-                    for (row, bounce) in rows.iter_mut().zip(&set.bounces[range.clone()]) {
-                        row.relax(view, params, Some(bounce.restitution));
-                    }
-                }
-                Pass::Relax => {
-                    for row in rows.iter_mut() {
-                        row.relax(view, params, None);
-                    }
-                }
-                Pass::Restitute => {
-                    for (row, bounce) in rows.iter_mut().zip(&mut set.bounces[range.clone()]) {
-                        row.restitute(view, bounce, params);
-                    }
-                }
-            }
-            if batch.bouncy && (pass == Pass::Solve || pass == Pass::Relax) {
-                for (row, bounce) in rows.iter().zip(&mut set.bounces[range]) {
-                    row.note_impulses(bounce);
-                }
-            }
-        });
-        hit
-    }
-}

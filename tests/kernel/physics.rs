@@ -355,6 +355,29 @@ fn the_same_bits_with_four_lanes_and_with_as_many_as_there_are() {
 }
 
 #[test]
+fn the_same_bits_with_any_number_of_workers() {
+    let run = |members: usize| {
+        let mut sim = Sim::new();
+        sim.set_workers(members);
+        sim.floor();
+        pyramid(&mut sim, 40);
+        for i in 0..40 {
+            let p = Vector::Y * (45.0 + i as f32) + Vector::X * (0.3 * i as f32 - 6.0);
+            let ball = Shape::Ball(Ball { radius: 0.7 });
+            let id = sim.add_with(BodyKind::Dynamic, ball, p, Rot::IDENTITY, 0.3, 0.5);
+            sim.locks[id as usize] = kernel::math::AxisLocks(if i % 5 == 0 { 0b100_000 } else { 0 });
+        }
+        sim.steps(200);
+        let velocities = sim.bodies.velocities.iter().map(|v| format!("{v:?}"));
+        sim.bodies.poses.iter().map(|p| format!("{p:?}")).chain(velocities).collect::<Vec<_>>()
+    };
+    let alone = run(1);
+    for members in [2, 4, 8] {
+        assert!(run(members) == alone, "{members} members");
+    }
+}
+
+#[test]
 fn a_kinematic_floor_carries_and_is_not_moved() {
     let mut sim = Sim::new();
     let floor = sim.add(
@@ -413,6 +436,9 @@ fn pyramid_speed() {
     sim.floor();
     if std::env::var_os("NARROW").is_some() {
         sim.set_narrow();
+    }
+    if let Some(workers) = std::env::var_os("WORKERS") {
+        sim.set_workers(workers.to_str().and_then(|s| s.parse().ok()).expect("a number"));
     }
     pyramid(&mut sim, 100);
     sim.steps(5);

@@ -14,6 +14,7 @@ use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
     Surface, Velocity,
 };
+use kernel::team::Team;
 
 fn phase<'a>(
     bodies: &'a BodyTable,
@@ -55,7 +56,7 @@ pub struct Sim {
     movers: Movers,
     pairs: Vec<(u32, u32)>,
     solver: Solver,
-    scratch: Scratch,
+    scratch: Vec<Scratch>,
     scan: SleepScan,
     listed: Vec<u32>,
     changed: BitSet,
@@ -82,7 +83,7 @@ impl Sim {
             movers: Movers::default(),
             pairs: Vec::new(),
             solver: Solver::default(),
-            scratch: Scratch::default(),
+            scratch: Vec::new(),
             scan: SleepScan::new(),
             listed: Vec::new(),
             changed: BitSet::default(),
@@ -92,6 +93,11 @@ impl Sim {
     /// Solves four contacts side by side, also where the CPU could do eight.
     pub fn set_narrow(&mut self) {
         self.solver.set_narrow();
+    }
+
+    /// Has a team of so many update and solve contacts.
+    pub fn set_workers(&mut self, members: usize) {
+        self.solver.team = Team::new(members);
     }
 
     pub fn link(&mut self) -> Link<'_> {
@@ -215,7 +221,6 @@ impl Sim {
         self.narrow();
         let params = self.params();
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies, colliders: &self.colliders };
-        self.solver.find_special();
         self.solver.build_rows(&input, &self.colors, &params);
         for _ in 0..self.substeps {
             self.solver.substep(&params);
@@ -262,13 +267,14 @@ impl Sim {
         let id = self.contacts.find(a, b).expect("they have a contact");
         let mut contact = self.contacts.get(id).clone();
         let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle);
-        (phase.update(&mut contact, &mut [], &mut Scratch::default()), contact)
+        (phase.update(&mut contact, &[], &mut Scratch::default()), contact)
     }
 
     fn narrow(&mut self) {
         let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle);
         self.changed.clear();
-        self.contacts.update(&phase, &mut self.scratch, &mut self.changed);
+        self.solver.team.wake();
+        self.contacts.update(&phase, &self.solver.team, &mut self.scratch, &mut self.changed);
         let changed = core::mem::take(&mut self.changed);
         self.link().apply(&changed, |_, _, _| {});
         self.changed = changed;

@@ -1,10 +1,15 @@
-//! The same bits, whatever else is in the app: row 22 for one thread.
+//! The same bits, whatever else is in the app and however many threads solve: row 22.
 
-use avian::{math::Scalar, prelude::*};
+use avian::{
+    dynamics::solver::WorkerCount,
+    math::{Scalar, Vector},
+    prelude::*,
+};
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
 
 use super::world::Lab;
+use scenes::scene::at;
 
 /// A component that physics does not know.
 #[derive(Component)]
@@ -112,4 +117,23 @@ fn the_foreign_system_does_run_in_every_substep() {
     lab.app.add_systems(SubstepSchedule, |mut count: ResMut<Substeps>| count.0 += 1);
     lab.steps(10);
     assert_eq!(lab.app.world().resource::<Substeps>().0, 40);
+}
+
+#[test]
+fn the_number_of_workers_does_not_matter() {
+    // Enough contacts for all to be called: a pyramid that a ball hits.
+    let run = |workers: usize| {
+        let mut lab = Lab::new();
+        lab.app.insert_resource(WorkerCount(workers));
+        let mut bodies = scenes::pyramid::large(lab.app.world_mut(), 36);
+        let ball = lab.ball(1.5, at(-30.0, 6.0, 0.0));
+        lab.insert(ball, LinearVelocity(Vector::X * 40.0));
+        bodies.push(ball);
+        lab.steps(120);
+        lab.bits(&bodies)
+    };
+    let alone = run(1);
+    for workers in [0, 2, 3, 8] {
+        assert_same_bits(&alone, &run(workers), "by a team");
+    }
 }

@@ -11,7 +11,9 @@ pub(crate) mod gather;
 mod plugin;
 pub(crate) mod scatter;
 pub(crate) mod substeps;
+pub(crate) mod workers;
 
 pub use config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig};
 pub use diagnostics::SolverDiagnostics;
 pub use plugin::{SolverPlugin, SolverPlugins};
+pub use workers::WorkerCount;

@@ -16,6 +16,7 @@ use crate::{
             diagnostics::SolverDiagnostics,
             schedule::{SubstepCount, SubstepSchedule, advance_substep, substep_delta},
             softness_parameters::SoftnessCoefficients,
+            workers::{Crew, WorkerCount},
         },
         tables::{Bodies, Colliders, Contacts},
     },
@@ -29,6 +30,14 @@ pub(crate) struct StepSolver {
     pub(crate) kernel: Solver,
     pub(crate) params: SubstepParams,
     pub(crate) substeps: u32,
+    crew: Crew,
+}
+
+impl StepSolver {
+    /// Has the team's helpers come, where there is much to do.
+    pub(crate) fn call_team(&mut self, contacts: usize, count: WorkerCount) {
+        self.crew.call(&mut self.kernel.team, contacts, count);
+    }
 }
 
 impl Default for StepSolver {
@@ -46,6 +55,7 @@ impl Default for StepSolver {
                 friction_fade: 0.02,
             },
             substeps: 1,
+            crew: Crew::default(),
         }
     }
 }
@@ -247,7 +257,7 @@ pub(crate) fn apply_restitution(
 
 /// Keeps the impulses for the next step to start from.
 pub(crate) fn store_impulses(
-    solver: Res<StepSolver>,
+    mut solver: ResMut<StepSolver>,
     mut contacts: ResMut<Contacts>,
     mut diagnostics: ResMut<SolverDiagnostics>,
 ) {

@@ -1,0 +1,59 @@
+//! How many threads a step uses.
+
+use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
+use bevy_tasks::ComputeTaskPool;
+use kernel::team::Team;
+
+/// How many threads a step uses, the one that runs the schedule among them. The result has the same bits with
+/// any number.
+///
+/// With 0, the default, they are as many as the machine has cores for this process, but no more than Bevy's
+/// compute task pool has threads, plus one: on two cores Bevy gives that pool one thread, so a step uses both.
+/// 1 keeps physics on the calling thread.
+///
+/// The threads are the engine's own. They are started by the first step with more than a thousand contacts of
+/// awake bodies, work in such steps only, and sleep otherwise. Without the feature `parallel` there are none.
+#[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[reflect(Resource, Debug, Default, PartialEq)]
+pub struct WorkerCount(pub usize);
+
+impl WorkerCount {
+    fn resolve(self) -> usize {
+        if !cfg!(feature = "parallel") {
+            return 1;
+        }
+        match self.0 {
+            0 => {
+                let cores = std::thread::available_parallelism().map_or(1, usize::from);
+                let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
+                cores.min(pool + 1)
+            }
+            count => count.min(MOST),
+        }
+    }
+}
+
+/// More threads than this are a slip of the keyboard.
+const MOST: usize = 256;
+
+/// Waking a helper takes as long as some hundred contacts.
+const MANY_CONTACTS: usize = 1024;
+
+/// The team of the engine's steps, and the setting it was made for.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Crew(Option<WorkerCount>);
+
+impl Crew {
+    /// Has helpers come, where there is much to do.
+    pub(crate) fn call(&mut self, team: &mut Team, contacts: usize, count: WorkerCount) {
+        if contacts < MANY_CONTACTS {
+            return;
+        }
+        if self.0 != Some(count) {
+            self.0 = Some(count);
+            *team = Team::new(count.resolve());
+        }
+        team.wake();
+    }
+}

@@ -1,0 +1,117 @@
+//! What a team does to the contacts together.
+#![expect(unsafe_code, reason = "contacts are changed by several threads, each its own")]
+
+use super::record::{Contact, ContactFlags, Manifold};
+use super::table::ContactTable;
+use super::update::{Found, ManifoldSource, NarrowPhase, Scratch};
+use crate::data::{BitSet, Parts};
+use crate::table::NONE;
+use crate::team::Team;
+
+/// How many contacts are updated at a stretch: recycled ones take some microseconds.
+const BLOCK: usize = 64;
+
+impl ContactTable {
+    /// Updates all awake contacts; `scratches` is kept between steps. `changed` receives those that began or
+    /// ended to touch or whose boxes came apart.
+    pub fn update<S: ManifoldSource>(
+        &mut self,
+        phase: &NarrowPhase<S>,
+        team: &Team,
+        scratches: &mut Vec<Scratch<S::Workspace>>,
+        changed: &mut BitSet,
+    ) {
+        if scratches.len() < team.members() {
+            scratches.resize_with(team.members(), Scratch::default);
+        }
+        let Self { contacts, active, extra, .. } = self;
+        let (contacts, of_members) = (Parts::of(contacts), Parts::of(scratches));
+        team.run(active.len().div_ceil(BLOCK), |block, member| {
+            let ids = &active[block * BLOCK..active.len().min((block + 1) * BLOCK)];
+            // SAFETY: no two blocks run at once with the same member.
+            let scratch = unsafe { of_members.one(member) };
+            for &id in ids {
+                // SAFETY: a contact is in the list once.
+                let contact = unsafe { contacts.one(id as usize) };
+                scratch.update(id, contact, extra, phase);
+            }
+        });
+        self.any_deep = false;
+        for scratch in scratches {
+            self.any_deep |= core::mem::take(&mut scratch.any_deep);
+            for id in scratch.changed.drain(..) {
+                changed.insert(id);
+            }
+            let mut start = 0;
+            for (id, count) in scratch.stored.drain(..) {
+                self.store_extra(id, &scratch.pool[start..start + count]);
+                start += count;
+            }
+            scratch.pool.clear();
+        }
+    }
+
+    /// The manifolds, changed by several threads at once.
+    pub(crate) fn manifolds_view(&mut self) -> ManifoldsView<'_> {
+        ManifoldsView { contacts: Parts::of(&mut self.contacts), extra: Parts::of(&mut self.extra) }
+    }
+}
+
+impl<W> Scratch<W> {
+    /// Updates one contact, and notes what only the table can do.
+    fn update<S: ManifoldSource<Workspace = W>>(
+        &mut self,
+        id: u32,
+        contact: &mut Contact,
+        extra: &[Vec<Manifold>],
+        phase: &NarrowPhase<S>,
+    ) {
+        let touched = contact.flags.has(ContactFlags::TOUCHING);
+        let extra: &[Manifold] = match contact.extra {
+            NONE => &[],
+            slot => &extra[slot as usize][..usize::from(contact.extra_count)],
+        };
+        match phase.update(contact, extra, self) {
+            Found::Apart => {
+                contact.flags.set(ContactFlags::APART, true);
+                self.changed.push(id);
+            }
+            Found::Recycled => {}
+            Found::Computed => {
+                if touched != contact.flags.has(ContactFlags::TOUCHING) {
+                    self.changed.push(id);
+                }
+                if contact.extra != NONE || !self.extra.is_empty() {
+                    self.stored.push((id, self.extra.len()));
+                    self.pool.extend_from_slice(&self.extra);
+                }
+            }
+        }
+        self.any_deep |= contact.flags.has(ContactFlags::DEEP);
+    }
+}
+
+/// The manifolds of all contacts, changed by several threads at once.
+pub(crate) struct ManifoldsView<'a> {
+    contacts: Parts<'a, Contact>,
+    extra: Parts<'a, Vec<Manifold>>,
+}
+
+impl ManifoldsView<'_> {
+    /// A contact's manifold by its number, which must exist.
+    ///
+    /// # Safety
+    /// While it is in use nobody may take a manifold of the same contact.
+    #[inline(always)]
+    #[expect(clippy::mut_from_ref, reason = "that is what it is for")]
+    pub(crate) unsafe fn manifold(&self, id: u32, index: u32) -> &mut Manifold {
+        // SAFETY: by the contract nobody else has the contact, nor its manifolds in the side pool.
+        unsafe {
+            let contact = self.contacts.one(id as usize);
+            match index {
+                0 => &mut contact.manifold,
+                _ => &mut self.extra.one(contact.extra as usize)[index as usize - 1],
+            }
+        }
+    }
+}

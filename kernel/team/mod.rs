@@ -1,0 +1,260 @@
+//! The kernel's own threads. A stage of a step is cut into blocks; whoever is awake claims them.
+#![expect(unsafe_code, reason = "threads borrow what the caller has on its stack")]
+
+#[cfg(test)]
+mod tests;
+
+use core::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::cell::UnsafeCell;
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// How long a helper looks for work before it goes to sleep. Waking it takes about as long.
+const PATIENCE: Duration = Duration::from_micros(50);
+
+/// The caller and its helpers, who run the blocks of one stage at a time.
+///
+/// Blocks must not depend on the order in which they run, nor on who runs them; then the result does not
+/// depend on how many there are in the team.
+///
+/// Clones share the helpers. While one clone is at work another runs its blocks alone. Helpers end with the
+/// last clone.
+#[derive(Clone, Debug, Default)]
+pub struct Team(Option<Arc<Helpers>>);
+
+/// The threads, which end when this is dropped.
+#[derive(Debug)]
+struct Helpers {
+    board: Arc<Board>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+/// What caller and helpers share.
+#[derive(Debug, Default)]
+struct Board {
+    /// The number of the next block to claim in the upper half, how many there are in the lower.
+    claims: AtomicU64,
+    /// How many blocks of the stage are done.
+    done: AtomicU32,
+    /// The stage. Written only while all its blocks are done, read only by who has claimed one that is not.
+    job: UnsafeCell<Option<Job>>,
+    /// Whether some clone of the team is at work.
+    busy: AtomicBool,
+    /// Which helpers sleep. Who wakes one says so before it is awake.
+    asleep: Vec<AtomicBool>,
+    /// How many do not.
+    awake: AtomicU32,
+    panicked: AtomicBool,
+    quit: AtomicBool,
+}
+
+/// A closure on the caller's stack.
+#[derive(Clone, Copy, Debug)]
+struct Job {
+    data: *const (),
+    /// # Safety
+    /// The first argument must be `data`, and the closure must still be there.
+    run: unsafe fn(*const (), u32, usize),
+}
+
+// SAFETY: `job` is only accessed as its comment says, which the claims see to; what it points to is `Sync`.
+unsafe impl Sync for Board {}
+// SAFETY: as above; the pointers in `job` are of no thread.
+unsafe impl Send for Board {}
+
+impl Team {
+    /// A team of `members`, the caller among them: with 1 or 0 there are no threads. Should the system
+    /// refuse a thread, the team is smaller.
+    pub fn new(members: usize) -> Self {
+        let asleep = (1..members).map(|_| AtomicBool::new(true)).collect();
+        let board = Arc::new(Board { asleep, ..Board::default() });
+        let threads: Vec<_> = (1..members)
+            .map_while(|member| {
+                let board = Arc::clone(&board);
+                let name = format!("physics {member}");
+                thread::Builder::new().name(name).spawn(move || board.help(member)).ok()
+            })
+            .collect();
+        if threads.is_empty() { Self(None) } else { Self(Some(Arc::new(Helpers { board, threads }))) }
+    }
+
+    /// How many there are, the caller among them.
+    pub fn members(&self) -> usize {
+        1 + self.0.as_ref().map_or(0, |helpers| helpers.threads.len())
+    }
+
+    /// Has the helpers look for work, for a short while. To be called where there is much of it; without, blocks
+    /// are run by the caller alone.
+    pub fn wake(&self) {
+        let Some(helpers) = &self.0 else { return };
+        let Board { asleep, awake, .. } = &*helpers.board;
+        for (asleep, handle) in asleep.iter().zip(&helpers.threads) {
+            if asleep.load(Ordering::Relaxed) && asleep.swap(false, Ordering::AcqRel) {
+                awake.fetch_add(1, Ordering::Relaxed);
+                handle.thread().unpark();
+            }
+        }
+    }
+
+    /// Runs `job(block, member)` for every block below `blocks`, and returns when all are done. Members are
+    /// numbered from 0, the caller; no two blocks run at once with the same member.
+    ///
+    /// # Panics
+    /// If a block does.
+    pub fn run(&self, blocks: usize, job: impl Fn(usize, usize) + Sync) {
+        let board = self.0.as_ref().map(|helpers| &*helpers.board);
+        let alone = || (0..blocks).for_each(|block| job(block, 0));
+        match board {
+            Some(board) if blocks > 1 && board.awake.load(Ordering::Relaxed) > 0 && board.begin() => {
+                let count = u32::try_from(blocks).expect("fewer blocks than there are bytes of memory");
+                let ours = Ours(board);
+                board.share(count, &|block, member| job(block as usize, member));
+                let panicked = board.panicked.load(Ordering::Acquire);
+                drop(ours);
+                assert!(!panicked, "a block panicked in a helper");
+            }
+            _ => alone(),
+        }
+    }
+}
+
+impl Drop for Helpers {
+    fn drop(&mut self) {
+        self.board.quit.store(true, Ordering::SeqCst);
+        for handle in self.threads.drain(..) {
+            handle.thread().unpark();
+            // A helper panics only within a block, and there it is caught.
+            let _ = handle.join();
+        }
+    }
+}
+
+impl Board {
+    /// Takes the board, unless a clone of the team or a job that runs jobs has it.
+    fn begin(&self) -> bool {
+        self.busy.compare_exchange(false, true, Ordering::Acquire, Ordering::Relaxed).is_ok()
+    }
+
+    /// Puts a job up, takes part in it, and waits for its end.
+    fn share<F: Fn(u32, usize) + Sync>(&self, blocks: u32, job: &F) {
+        unsafe fn run<F: Fn(u32, usize)>(data: *const (), block: u32, member: usize) {
+            // SAFETY: `data` is the `F` that it was made from (see `Job::run`).
+            unsafe { (*data.cast::<F>())(block, member) }
+        }
+        /// Waits, also when the caller's own block panics: helpers may be using its stack.
+        struct Wait<'a>(&'a Board, u32);
+        impl Drop for Wait<'_> {
+            fn drop(&mut self) {
+                // What nobody has claimed when the caller panics is nobody's.
+                let left = self.0.close();
+                self.0.wait_for(self.1 - left);
+            }
+        }
+        self.done.store(0, Ordering::Relaxed);
+        // SAFETY: all blocks of the last job are done, and nobody can have claimed one of this.
+        unsafe { *self.job.get() = Some(Job { data: core::ptr::from_ref(job).cast(), run: run::<F> }) };
+        self.claims.store(u64::from(blocks), Ordering::Release);
+        let _wait = Wait(self, blocks);
+        while let Some(block) = self.claim() {
+            // Done or not, the block counts: whoever waits must not wait for ever.
+            let _done = Done(self);
+            job(block, 0);
+        }
+    }
+
+    /// Lets nobody claim any more. Returns how many blocks were left.
+    fn close(&self) -> u32 {
+        let claims = self.claims.swap(0, Ordering::AcqRel);
+        claims as u32 - (claims >> 32) as u32
+    }
+
+    /// Waits until so many blocks are done.
+    fn wait_for(&self, blocks: u32) {
+        let mut looks = 0u32;
+        while self.done.load(Ordering::Acquire) < blocks {
+            looks += 1;
+            // Who has the last block may have lost its core.
+            if looks.is_multiple_of(1 << 10) { thread::yield_now() } else { core::hint::spin_loop() }
+        }
+    }
+
+    /// A block that nobody else has or will have.
+    fn claim(&self) -> Option<u32> {
+        let mut claims = self.claims.load(Ordering::Acquire);
+        loop {
+            let (next, count) = ((claims >> 32) as u32, claims as u32);
+            if next >= count {
+                return None;
+            }
+            // If it succeeds the board is as it was seen, were it another job's by now.
+            let claimed = claims + (1 << 32);
+            match self.claims.compare_exchange_weak(claims, claimed, Ordering::AcqRel, Ordering::Acquire) {
+                Ok(_) => return Some(next),
+                Err(now) => claims = now,
+            }
+        }
+    }
+
+    /// What a helper does with its life.
+    fn help(&self, member: usize) {
+        let asleep = &self.asleep[member - 1];
+        while !self.quit.load(Ordering::Acquire) {
+            // Awake by chance or by a call that is over: only what is said counts.
+            if asleep.load(Ordering::Acquire) {
+                thread::park();
+                continue;
+            }
+            self.work(member);
+            self.awake.fetch_sub(1, Ordering::Relaxed);
+            asleep.store(true, Ordering::Release);
+        }
+    }
+
+    /// Claims and runs blocks until there have been none for some time.
+    fn work(&self, member: usize) {
+        let mut idle_since = None;
+        let mut looks = 0u32;
+        loop {
+            if let Some(block) = self.claim() {
+                let _done = Done(self);
+                // SAFETY: it has a block that is not done: nobody writes the job, and its closure is there.
+                let Some(job) = (unsafe { *self.job.get() }) else { continue };
+                // SAFETY: as above.
+                let run = || unsafe { (job.run)(job.data, block, member) };
+                if std::panic::catch_unwind(core::panic::AssertUnwindSafe(run)).is_err() {
+                    self.panicked.store(true, Ordering::Release);
+                }
+                idle_since = None;
+                continue;
+            }
+            looks = looks.wrapping_add(1);
+            if looks.is_multiple_of(64) {
+                let now = Instant::now();
+                if self.quit.load(Ordering::Relaxed) || now - *idle_since.get_or_insert(now) > PATIENCE {
+                    return;
+                }
+            }
+            core::hint::spin_loop();
+        }
+    }
+}
+
+/// Gives the board back when the job ends, however it does.
+struct Ours<'a>(&'a Board);
+
+impl Drop for Ours<'_> {
+    fn drop(&mut self) {
+        self.0.panicked.store(false, Ordering::Relaxed);
+        self.0.busy.store(false, Ordering::Release);
+    }
+}
+
+/// Counts a block as done when it ends, however it does.
+struct Done<'a>(&'a Board);
+
+impl Drop for Done<'_> {
+    fn drop(&mut self) {
+        self.0.done.fetch_add(1, Ordering::Release);
+    }
+}

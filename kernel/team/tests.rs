@@ -1,0 +1,116 @@
+//! Every block once, whoever runs it.
+
+use super::Team;
+use core::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+
+fn counts(team: &Team, blocks: usize) -> Vec<u32> {
+    let counts: Vec<AtomicU32> = (0..blocks).map(|_| AtomicU32::new(0)).collect();
+    team.run(blocks, |block, member| {
+        assert!(member < team.members());
+        counts[block].fetch_add(1, Ordering::Relaxed);
+    });
+    counts.into_iter().map(AtomicU32::into_inner).collect()
+}
+
+#[test]
+fn every_block_runs_once() {
+    for members in [0, 1, 2, 3, 8] {
+        let team = Team::new(members);
+        assert_eq!(team.members(), members.max(1));
+        for round in 0..200 {
+            if round % 3 == 0 {
+                team.wake();
+            }
+            for blocks in [0, 1, 2, 3, 17, 200] {
+                assert_eq!(counts(&team, blocks), vec![1; blocks], "{members} members");
+            }
+        }
+    }
+}
+
+#[test]
+fn jobs_in_quick_succession_do_not_mix() {
+    let team = Team::new(3);
+    let mut values = vec![0usize; 64];
+    for round in 0..20_000 {
+        if round % 64 == 0 {
+            team.wake();
+        }
+        let cells: Vec<AtomicUsize> = values.iter().map(|v| AtomicUsize::new(*v)).collect();
+        team.run(8, |block, _| {
+            for cell in &cells[block * 8..][..8] {
+                cell.fetch_add(block + round, Ordering::Relaxed);
+            }
+        });
+        values = cells.into_iter().map(AtomicUsize::into_inner).collect();
+    }
+    let rounds: usize = (0..20_000).sum();
+    for (i, v) in values.into_iter().enumerate() {
+        assert_eq!(v, rounds + 20_000 * (i / 8));
+    }
+}
+
+#[test]
+fn no_member_runs_two_blocks_at_once() {
+    let team = Team::new(4);
+    let inside: Vec<AtomicU32> = (0..4).map(|_| AtomicU32::new(0)).collect();
+    for _ in 0..200 {
+        team.wake();
+        team.run(64, |_, member| {
+            assert_eq!(inside[member].fetch_add(1, Ordering::SeqCst), 0);
+            std::hint::black_box((0..100).sum::<u32>());
+            inside[member].fetch_sub(1, Ordering::SeqCst);
+        });
+    }
+}
+
+#[test]
+fn clones_and_jobs_within_jobs_run_alone() {
+    let team = Team::new(2);
+    team.wake();
+    let total = AtomicU32::new(0);
+    team.run(4, |_, _| {
+        team.run(5, |_, _| {
+            total.fetch_add(1, Ordering::Relaxed);
+        });
+    });
+    assert_eq!(total.load(Ordering::Relaxed), 20);
+    let copy = team.clone();
+    std::thread::scope(|scope| {
+        scope.spawn(|| (0..500).for_each(|_| assert_eq!(counts(&copy, 16), [1; 16])));
+        (0..500).for_each(|_| assert_eq!(counts(&team, 16), [1; 16]));
+    });
+}
+
+#[test]
+fn a_panic_reaches_the_caller_and_the_team_goes_on() {
+    for members in [1, 2, 4] {
+        let team = Team::new(members);
+        for round in 0..50 {
+            team.wake();
+            let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+                team.run(16, |block, _| assert!(block != round % 16, "on purpose"));
+            }));
+            assert!(result.is_err());
+            assert_eq!(counts(&team, 16), [1; 16]);
+        }
+    }
+}
+
+#[test]
+fn helpers_come_to_a_job_that_has_begun() {
+    let team = Team::new(2);
+    let by: [AtomicU32; 2] = Default::default();
+    for _ in 0..1000 {
+        team.wake();
+        // Some milliseconds of work in one job.
+        team.run(20, |_, member| {
+            by[member].fetch_add(1, Ordering::Relaxed);
+            (0..30_000u32).for_each(|i| _ = std::hint::black_box(i));
+        });
+        if by[1].load(Ordering::Relaxed) > 0 {
+            return;
+        }
+    }
+    panic!("nobody came to help: {by:?}");
+}
