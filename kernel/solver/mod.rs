@@ -31,6 +31,7 @@ pub use dim::{BodyRow, MassRow, Twist};
 pub use inv_mass::InvMass;
 pub use prepare::{ContactSource, RowInput};
 pub use row::{ContactRow, DeepRow, PointRow, RestitutionRow};
+pub use rows::Width;
 pub use softness::{Softness, SubstepParams};
-pub use stages::{Solver, Width};
+pub use stages::Solver;
 pub use view::RowView;

@@ -5,7 +5,7 @@ use super::batch::Plan;
 use super::block::Pass;
 use super::integrate::Special;
 use super::prepare::{DeepCounts, Filler, RowInput};
-use super::rows::{AllRows, Buffers, Layout};
+use super::rows::{AllRows, Buffers, Layout, Width};
 use super::{BodyRows, RowView, SubstepParams};
 use crate::contact::ContactTable;
 use crate::data::Parts;
@@ -18,26 +18,6 @@ const BLOCK_ROWS: u32 = 32;
 
 /// From so many blocks on helpers are woken to solve them: that takes as long as one of them's sweeps.
 const WORTH_WAKING: usize = 8;
-
-/// How many contacts are solved side by side. The results have the same bits with any.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Width {
-    /// Every CPU's: SSE2, NEON, or plain arrays.
-    Four,
-    /// AVX2's.
-    Eight,
-}
-
-impl Default for Width {
-    /// The widest that this CPU has.
-    fn default() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            return Self::Eight;
-        }
-        Self::Four
-    }
-}
 
 /// The bodies and rows of one step.
 ///
