@@ -9,19 +9,25 @@ use avian::{
     prelude::*,
 };
 use bevy_app::{PluginGroupBuilder, prelude::*};
-use bevy_ecs::prelude::*;
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use bevy_time::{Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
 
-/// A headless app with the plugins of `group` that ran for ten ticks.
-fn run(group: impl FnOnce(PluginGroupBuilder) -> PluginGroupBuilder) -> App {
+/// A headless app with the plugins of `group`.
+fn build(group: impl FnOnce(PluginGroupBuilder) -> PluginGroupBuilder) -> App {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin))
         .add_plugins(group(PhysicsPlugins::default().build()))
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 64.0)));
     app.finish();
     app.cleanup();
+    app
+}
+
+/// It, after ten ticks.
+fn run(group: impl FnOnce(PluginGroupBuilder) -> PluginGroupBuilder) -> App {
+    let mut app = build(group);
     app.world_mut().spawn(RigidBody::Dynamic);
     for _ in 0..10 {
         app.update();
@@ -35,6 +41,47 @@ fn all_of_it_runs() {
     // The first frame has no delta.
     let elapsed = app.world().resource::<Time<Physics>>().elapsed();
     assert!(elapsed >= Duration::from_millis(9 * 15), "{elapsed:?}");
+}
+
+#[test]
+fn an_eased_body_is_drawn_between_its_steps() {
+    let mut app = run(|group| group);
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(5)))
+        .insert_resource(Gravity(Vector::ZERO));
+    let mut spawn = |ease: bool| {
+        let mut body = app.world_mut().spawn((RigidBody::Dynamic, LinearVelocity(Vector::X)));
+        if ease {
+            body.insert(TransformInterpolation);
+        }
+        body.id()
+    };
+    let (eased, plain) = (spawn(true), spawn(false));
+    let mut way = |body: Entity| {
+        let mut last = None;
+        let steps = (0..40).map(|_| {
+            app.update();
+            let x = app.world().get::<Transform>(body).map_or(f32::NAN, |t| t.translation.x);
+            last.replace(x).map_or(0.005, |last| x - last)
+        });
+        // The first ticks ease from nothing.
+        steps.skip(10).map(|way| (way - 0.005).abs()).fold(0.0, f32::max)
+    };
+    assert!(way(eased) < 1.0e-4, "{}", way(eased));
+    assert!(way(plain) > 4.0e-3, "drawn where the last tick left it: {}", way(plain));
+}
+
+#[test]
+fn easing_is_left_out_while_there_is_nothing_to_ease() {
+    let app = build(|group| group);
+    for label in [FixedFirst.intern(), FixedLast.intern(), RunFixedMainLoop.intern()] {
+        let systems = |schedule: &Schedule| {
+            let systems = schedule.graph().systems.iter();
+            systems.filter(|(.., conditions)| conditions.is_empty()).count()
+        };
+        let own = app.get_schedule(label).map_or(0, systems);
+        // Bevy runs the fixed loop in it.
+        assert_eq!(own, usize::from(label == RunFixedMainLoop.intern()), "{label:?}");
+    }
 }
 
 /// What became of a few bodies in three seconds: a ball that falls on a floor from 2 m, a body held at a height, one

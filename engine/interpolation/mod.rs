@@ -16,12 +16,18 @@ pub use bevy_transform_interpolation::{
     },
 };
 
-use bevy_app::{App, FixedFirst, Plugin};
-use bevy_ecs::{prelude::*, query::QueryData};
+use bevy_app::{App, FixedFirst, FixedLast, Plugin, RunFixedMainLoop};
+use bevy_ecs::{
+    prelude::*,
+    query::QueryData,
+    schedule::{ConditionWithAccess, ScheduleLabel, SystemKey},
+};
 use bevy_math::Vec3;
+use bevy_platform::collections::HashSet;
 use bevy_time::{Fixed, Time};
 use bevy_transform_interpolation::{
-    VelocitySource, extrapolation::TransformExtrapolationPlugin, hermite::TransformHermiteEasingPlugin,
+    RotationEasingState, ScaleEasingState, TransformEasingPlugin, TranslationEasingState, VelocitySource,
+    extrapolation::TransformExtrapolationPlugin, hermite::TransformHermiteEasingPlugin,
     interpolation::TransformInterpolationPlugin,
 };
 
@@ -95,11 +101,14 @@ impl Plugin for PhysicsInterpolationPlugin {
     fn build(&self, app: &mut App) {
         // Easing reads how far the frame is past the last fixed tick; apps without `TimePlugin` have no such clock.
         app.init_resource::<Time<Fixed>>();
-        app.add_plugins((
-            TransformInterpolationPlugin::default(),
-            TransformExtrapolationPlugin::<LinVelSource, AngVelSource>::default(),
-            TransformHermiteEasingPlugin::<LinVelSource, AngVelSource>::default(),
-        ));
+        skip_while_nothing_eases(app, |app| {
+            app.add_plugins((
+                TransformInterpolationPlugin::default(),
+                TransformExtrapolationPlugin::<LinVelSource, AngVelSource>::default(),
+                TransformHermiteEasingPlugin::<LinVelSource, AngVelSource>::default(),
+            ))
+            .add_systems(FixedFirst, store_previous_velocities.in_set(TransformEasingSystems::UpdateStart));
+        });
 
         // Registering a requirement twice is the one error, and then there is nothing left to do.
         if self.interpolate_translation {
@@ -116,9 +125,45 @@ impl Plugin for PhysicsInterpolationPlugin {
         }
         let _ = app.try_register_required_components::<TranslationHermiteEasing, PreviousLinearVelocity>();
         let _ = app.try_register_required_components::<RotationHermiteEasing, PreviousAngularVelocity>();
-
-        app.add_systems(FixedFirst, store_previous_velocities.in_set(TransformEasingSystems::UpdateStart));
     }
+
+    fn finish(&self, app: &mut App) {
+        // The plugins above would add it next, without the condition.
+        if !app.is_plugin_added::<TransformEasingPlugin>() {
+            skip_while_nothing_eases(app, |app| {
+                app.add_plugins(TransformEasingPlugin);
+            });
+        }
+    }
+}
+
+/// Adds systems that are left out of a frame as long as no entity is eased: handing two dozen of them from thread to
+/// thread would be most of what physics costs an empty world.
+fn skip_while_nothing_eases(app: &mut App, add_systems: impl FnOnce(&mut App)) {
+    let eased = [FixedFirst.intern(), FixedLast.intern(), RunFixedMainLoop.intern()];
+    let keys = |app: &App| {
+        let systems = |schedule: &Schedule| schedule.graph().systems.iter().map(|(key, ..)| key).collect();
+        eased.map(|label| app.get_schedule(label).map_or_else(HashSet::<SystemKey>::default, systems))
+    };
+    let before = keys(app);
+    add_systems(app);
+    let after = keys(app);
+    for ((label, before), after) in eased.into_iter().zip(before).zip(after) {
+        app.edit_schedule(label, |schedule| {
+            for key in after.difference(&before) {
+                if let Some(conditions) = schedule.graph_mut().systems.get_conditions_mut(*key) {
+                    let condition = IntoSystem::into_system(anything_eases);
+                    conditions.push(ConditionWithAccess::new(Box::new(condition)));
+                }
+            }
+        });
+    }
+}
+
+fn anything_eases(
+    eased: Query<(), Or<(With<TranslationEasingState>, With<RotationEasingState>, With<ScaleEasingState>)>>,
+) -> bool {
+    !eased.is_empty()
 }
 
 /// The linear velocity at the start of the fixed tick, where Hermite easing starts from.

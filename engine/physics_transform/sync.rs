@@ -26,6 +26,7 @@ use crate::{
     dynamics::rigid_body::RigidBody,
     math::Vector,
     scan::{IN_TABLES, Since},
+    schedule::OnThisThread,
 };
 
 /// When the sync last looked and wrote.
@@ -92,6 +93,7 @@ pub(crate) fn find_changed_transforms(
     mut changes: ResMut<TreeChanges>,
     mut ticks: ResMut<SyncTicks>,
     system: SystemChangeTick,
+    _: OnThisThread,
 ) {
     let TreeChanges { reparented, transforms: found, .. } = &mut *changes;
     found.append(&mut reparented.clone());
@@ -207,6 +209,7 @@ pub(crate) fn initialise_poses(
     mut initialiser: Initialiser,
     mut ticks: ResMut<SyncTicks>,
     system: SystemChangeTick,
+    _: OnThisThread,
 ) {
     ticks.read[0] = system.this_run();
     let mut spawned: Vec<(usize, Spawned)> =
@@ -241,7 +244,7 @@ pub struct TransformReader<'w, 's> {
 
 /// Reads the transforms that users changed since the last step, their own or an ancestor's, into
 /// [`Position`] and [`Rotation`]. A position or rotation that was itself set since then is left alone.
-pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick) {
+pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick, _: OnThisThread) {
     let TransformReader { mut tree, changes, mut ticks, config, transforms, parents, mut poses } = reader;
     ticks.read[1] = system.this_run();
     let last = ticks.writeback;
@@ -301,7 +304,7 @@ pub struct TransformWriter<'w, 's> {
 /// Writes the poses that moved since the last write-back into `Transform`: of bodies, and of entities with
 /// [`ApplyPosToTransform`]. Bodies below a moved one keep their pose in the world, so theirs are written
 /// too. Scale is kept; in 2D also the depth and any tilt.
-pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick) {
+pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick, _: OnThisThread) {
     let TransformWriter { mut tree, mut ticks, config, moved, mut transforms, parents, following } = writer;
     let (last, read) = (ticks.writeback, ticks.read);
     let since = Since::new(last, system);

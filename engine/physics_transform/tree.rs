@@ -15,6 +15,7 @@ use bevy_ecs::{
 };
 
 use super::Position;
+use crate::schedule::OnThisThread;
 
 /// On an entity whose pose follows from its body: a collider that is not on the body itself.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -193,6 +194,7 @@ pub(crate) fn update_tree(
     parents: Parents,
     physical: Physical,
     mut seen: Local<EntityHashSet>,
+    _: OnThisThread,
 ) {
     let TreeChanges { queued, reparented, transforms } = &mut *changes;
     queued.clear();

@@ -79,6 +79,10 @@ impl Plugin for PhysicsSchedulePlugin {
     }
 }
 
+/// A parameter that keeps a system of the hosting schedule on the thread that runs the schedule. Most have so little
+/// to do that handing them over to another thread, and waiting for it, would take a hundred times as long.
+pub(crate) use bevy_ecs::system::NonSendMarker as OnThisThread;
+
 /// Makes a schedule run its systems one after the other, and fail to build if their order is not determined.
 ///
 /// A step is parallel inside its systems; a task per system would cost more than it wins, twelve times a tick.

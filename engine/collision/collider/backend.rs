@@ -8,6 +8,7 @@ use crate::dynamics::rigid_body::mass_properties::{
     MassPropertyQueue, MassPropertySystems,
     components::{ColliderDensity, ColliderMassProperties},
 };
+use crate::schedule::OnThisThread;
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::change_detection::DetectChangesMut;
 use bevy_ecs::intern::Interned;
@@ -65,6 +66,7 @@ pub fn update_collider_mass_properties<C: AnyCollider>(
     mut former_sensors: RemovedComponents<Sensor>,
     mut colliders: Query<(&C, &ColliderDensity, &mut ColliderMassProperties), Without<Sensor>>,
     mut queue: MassPropertyQueue,
+    _: OnThisThread,
 ) {
     for entity in changed.iter().chain(former_sensors.read()) {
         let Ok((collider, density, mut properties)) = colliders.get_mut(entity) else {

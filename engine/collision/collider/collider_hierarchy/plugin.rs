@@ -8,6 +8,7 @@ use crate::{
     collision::collider::ColliderMarker,
     dynamics::rigid_body::RigidBody,
     physics_transform::tree::{FollowsBody, HierarchyQueue, Parents, TransformTree, TreeChanges, enqueue},
+    schedule::OnThisThread,
 };
 
 /// Keeps [`ColliderOf`] and [`RigidBodyColliders`] as the hierarchy says. The links are made by a system in
@@ -60,6 +61,7 @@ pub(crate) fn attach_colliders(
     colliders: Query<(Has<ColliderMarker>, Option<&ColliderOf>), Allow<Disabled>>,
     mut commands: Commands,
     mut seen: Local<EntityHashSet>,
+    _: OnThisThread,
 ) {
     seen.clear();
     let mut links: Vec<(Entity, Option<Entity>)> = Vec::new();

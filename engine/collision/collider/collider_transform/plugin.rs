@@ -24,6 +24,7 @@ use crate::{
         tree::{FollowsBody, HierarchyQueue, Parents, TransformTree, TreeChanges},
         turn_to_rotation,
     },
+    schedule::OnThisThread,
 };
 
 /// Keeps [`ColliderTransform`]s, and the poses of colliders that are children of a body.
@@ -122,6 +123,7 @@ pub(crate) fn update_collider_transforms(
     transforms: Query<(&Transform, Has<RigidBody>)>,
     parents: Parents,
     mut colliders: Query<&mut ColliderTransform>,
+    _: OnThisThread,
 ) {
     let attached = core::mem::take(&mut placement.attached);
     tree.begin_walk();
@@ -158,6 +160,7 @@ pub(crate) fn place_child_colliders(
     >,
     mut children: Query<(&mut Position, &mut Rotation, &ColliderTransform, &ColliderOf), With<FollowsBody>>,
     system: SystemChangeTick,
+    _: OnThisThread,
 ) {
     let last = core::mem::replace(&mut placement.last, system.this_run());
     let mut place = |collider: Entity| {

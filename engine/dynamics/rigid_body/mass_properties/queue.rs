@@ -14,6 +14,7 @@ use crate::{
         ColliderDisabled, Sensor, collider_hierarchy::ColliderOf, collider_transform::ColliderTransform,
     },
     dynamics::rigid_body::RigidBody,
+    schedule::OnThisThread,
 };
 
 /// Entities with a mass property that the user gave.
@@ -97,6 +98,7 @@ pub(super) fn queue_changed(
     moved_colliders: Query<&ColliderOf, (With<ChildOf>, Changed<ColliderTransform>)>,
     mut queue: MassPropertyQueue,
     mut warned: Local<EntityHashSet>,
+    _: OnThisThread,
 ) {
     for (entity, mass, inertia, center, name) in &changed {
         queue.push(entity);
@@ -128,6 +130,7 @@ pub(super) fn recompute(
     marked: Query<Entity, With<RecomputeMassProperties>>,
     mut helper: MassPropertyHelper,
     mut commands: Commands,
+    _: OnThisThread,
 ) {
     if marked.is_empty() {
         return;
@@ -155,6 +158,7 @@ pub(super) fn warn_of_missing_mass(
         With<RecomputeMassProperties>,
     >,
     mut warned: Local<EntityHashSet>,
+    _: OnThisThread,
 ) {
     for (entity, body, computed, mass, no_auto, name) in &marked {
         // Infinite mass may be wanted.
