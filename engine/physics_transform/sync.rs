@@ -249,6 +249,7 @@ pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick, 
     ticks.read[1] = system.this_run();
     let last = ticks.writeback;
     let told = &mut ticks.told;
+    told.retain(|entity| transforms.contains(*entity));
     let mut visit = |entity: Entity, parent: Option<&Frame>, transform: &Transform| {
         let Ok((mut position, rotation)) = poses.get_mut(entity) else { return };
         let held = rotation.as_ref().map_or(Rotation::IDENTITY, |rotation| **rotation);

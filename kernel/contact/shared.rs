@@ -21,6 +21,7 @@ impl ContactTable {
         scratches: &mut Vec<Scratch<S::Workspace>>,
         changed: &mut BitSet,
     ) {
+        scratches.iter_mut().for_each(Scratch::clear);
         if scratches.len() < team.members() {
             scratches.resize_with(team.members(), Scratch::default);
         }
@@ -38,16 +39,15 @@ impl ContactTable {
         });
         self.any_deep = false;
         for scratch in scratches {
-            self.any_deep |= core::mem::take(&mut scratch.any_deep);
-            for id in scratch.changed.drain(..) {
-                changed.insert(id);
+            self.any_deep |= scratch.any_deep;
+            for id in &scratch.changed {
+                changed.insert(*id);
             }
             let mut start = 0;
-            for (id, count) in scratch.stored.drain(..) {
+            for &(id, count) in &scratch.stored {
                 self.store_extra(id, &scratch.pool[start..start + count]);
                 start += count;
             }
-            scratch.pool.clear();
         }
     }
 
@@ -58,6 +58,14 @@ impl ContactTable {
 }
 
 impl<W> Scratch<W> {
+    /// Forgets what the table was to be told.
+    fn clear(&mut self) {
+        self.changed.clear();
+        self.stored.clear();
+        self.pool.clear();
+        self.any_deep = false;
+    }
+
     /// Updates one contact, and notes what only the table can do.
     fn update<S: ManifoldSource<Workspace = W>>(
         &mut self,

@@ -1,7 +1,7 @@
 //! Containers of ids, without a dimension: a pool that hands ids out, a set of them, a map from pairs
-//! of them.
+//! of them; and slices that several threads change at once.
 //!
-//! All three are plain values: `Clone` is a snapshot, and what they answer depends only on the calls
+//! The containers are plain values: `Clone` is a snapshot, and what they answer depends only on the calls
 //! made, never on addresses, hash seeds or threads.
 
 mod bit_set;

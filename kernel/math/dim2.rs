@@ -483,16 +483,10 @@ impl AxisLocks {
     pub fn rotation_factors(self) -> Angular {
         Angular { z: if self.rotation() == 0 { 1.0 } else { 0.0 } }
     }
-    /// Whether some, but not all, translation axes are held.
+    /// Whether any translation axis is held.
     #[inline]
-    pub fn is_translation_partial(self) -> bool {
-        let t = self.0 & 0b110_000;
-        t != 0 && t != 0b110_000
-    }
-    /// Whether every translation axis is held.
-    #[inline]
-    pub fn is_translation_full(self) -> bool {
-        self.0 & 0b110_000 == 0b110_000
+    pub fn is_translation_held(self) -> bool {
+        self.0 & 0b110_000 != 0
     }
 }
 

@@ -524,6 +524,10 @@ impl<N: Lane> Tangent<N> {
     }
 }
 
+/// A symmetric 2 × 2 matrix whose determinant is a smaller share of its squared trace counts as singular: what is
+/// left then is rounding.
+const SINGULAR: f32 = 1.0e-5;
+
 impl<N: Lane> TangentFrame<N> {
     /// Two unit tangents of a unit normal, without a branch (Duff et al., "Building an Orthonormal
     /// Basis, Revisited", JCGT 2017).
@@ -549,7 +553,8 @@ impl<N: Lane> TangentFrame<N> {
     }
     /// The inverse of the coupled tangent rows' 2 × 2 K matrix for two bodies of the inverse inertias
     /// and arms given: K_ab = t_aᵀ M⁻¹ t_b + Σ (rᵢ × t_a)ᵀ Iᵢ⁻¹ (rᵢ × t_b), where `inv_mass` is the
-    /// diagonal of the summed M⁻¹. Zero where K is singular.
+    /// diagonal of the summed M⁻¹. Where K has one direction only, as between bodies that are held in a plane,
+    /// the inverse in that direction; zero where it has none.
     #[inline(always)]
     pub fn mass(&self, inv_mass: Vector<N>, bodies: [(InvInertia<N>, Vector<N>); 2]) -> TangentMass<N> {
         let (lx, ly) = (self.x.scale(inv_mass), self.y.scale(inv_mass));
@@ -561,9 +566,13 @@ impl<N: Lane> TangentFrame<N> {
             yy += cy.dot(iy);
             xy += cx.dot(iy);
         }
-        let determinant = xx * yy - xy * xy;
-        let k = N::select(N::ZERO.lt(determinant), N::ONE / determinant, N::ZERO);
-        TangentMass { xx: yy * k, yy: xx * k, xy: -(xy * k) }
+        let (determinant, trace) = (xx * yy - xy * xy, xx + yy);
+        let regular = (trace * trace * N::splat(SINGULAR)).lt(determinant);
+        let k = N::ONE / N::select(regular, determinant, trace * trace);
+        let k = N::select(N::ZERO.lt(trace), k, N::ZERO);
+        let [xx, yy, xy] =
+            [(yy, xx), (xx, yy), (-xy, xy)].map(|(inverse, own)| N::select(regular, inverse, own) * k);
+        TangentMass { xx, yy, xy }
     }
 }
 
@@ -602,16 +611,10 @@ impl AxisLocks {
         let free = |bit: u8| if self.0 & bit == 0 { 1.0 } else { 0.0 };
         Vector { x: free(0b100), y: free(0b010), z: free(0b001) }
     }
-    /// Whether some, but not all, translation axes are held.
+    /// Whether any translation axis is held.
     #[inline]
-    pub fn is_translation_partial(self) -> bool {
-        let t = self.0 & 0b111_000;
-        t != 0 && t != 0b111_000
-    }
-    /// Whether every translation axis is held.
-    #[inline]
-    pub fn is_translation_full(self) -> bool {
-        self.0 & 0b111_000 == 0b111_000
+    pub fn is_translation_held(self) -> bool {
+        self.0 & 0b111_000 != 0
     }
 }
 

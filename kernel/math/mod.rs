@@ -6,6 +6,13 @@
 /// Implements `+`, `-`, unary `-`, `* N`, `+=` and `-=` field by field.
 macro_rules! componentwise {
     ($($type:ident { $($field:ident),+ })+) => {$(
+        impl<N: Lane> $type<N> {
+            /// `a` where the mask is set, else `b`.
+            #[inline(always)]
+            pub fn select(mask: N::Mask, a: Self, b: Self) -> Self {
+                Self { $($field: N::select(mask, a.$field, b.$field)),+ }
+            }
+        }
         impl<N: Num> core::ops::Add for $type<N> {
             type Output = Self;
             #[inline(always)]

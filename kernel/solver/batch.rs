@@ -89,6 +89,11 @@ impl Plan {
         }
     }
 
+    /// How many rows there are.
+    pub(super) fn rows(&self) -> u32 {
+        self.blocks.iter().map(|block| block.len).sum()
+    }
+
     /// Each stage's blocks.
     pub(super) fn stages(&self) -> impl Iterator<Item = &[Block]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());

@@ -2,7 +2,7 @@
 
 use crate::math::{Lane, Num, Vector};
 
-/// How an impulse changes a velocity. A body held along some, but not all, axes has another inverse mass
+/// How an impulse changes a velocity. A body held along some axes has another inverse mass
 /// along each, so its rows carry a vector; all other rows carry a number.
 pub trait InvMass<N: Lane>: Copy {
     /// Immovable.
@@ -15,8 +15,6 @@ pub trait InvMass<N: Lane>: Copy {
     fn is_zero(self) -> N::Mask;
     /// From the inverse mass and 1 along free, 0 along held axes.
     fn new(inv_mass: N, free: Vector<N>) -> Self;
-    /// This where the mask is not set, immovable where it is.
-    fn zero_where(self, mask: N::Mask) -> Self;
 }
 
 impl<N: Lane> InvMass<N> for N {
@@ -37,10 +35,6 @@ impl<N: Lane> InvMass<N> for N {
     fn new(inv_mass: N, _free: Vector<N>) -> Self {
         inv_mass
     }
-    #[inline(always)]
-    fn zero_where(self, mask: N::Mask) -> Self {
-        N::select(mask, <N as Num>::ZERO, self)
-    }
 }
 
 impl<N: Lane> InvMass<N> for Vector<N> {
@@ -60,9 +54,5 @@ impl<N: Lane> InvMass<N> for Vector<N> {
     #[inline(always)]
     fn new(inv_mass: N, free: Vector<N>) -> Self {
         free * inv_mass
-    }
-    #[inline(always)]
-    fn zero_where(self, mask: N::Mask) -> Self {
-        self * N::select(mask, <N as Num>::ZERO, N::ONE)
     }
 }

@@ -95,11 +95,11 @@ pub struct ContactSource {
     manifold: u32,
 }
 
-/// Whether a body of the contact is held along some, but not all, axes.
+/// Whether a body of the contact is held along some axes.
 pub(super) fn is_held(input: &RowInput, motions: &[Motion], contact: u32) -> bool {
     input.contacts.get(contact).bodies.iter().any(|body| {
         let row = row_of(input.bodies, *body);
-        motions[row as usize].locks.is_translation_partial()
+        motions[row as usize].locks.is_translation_held()
     })
 }
 
@@ -227,6 +227,14 @@ impl<N: Lane, const P: usize> DeepRow<N, P> {
     }
 }
 
+/// A point whose K is a smaller share of what it were if no body was held along an axis cannot be pushed along
+/// the normal: what is left is rounding.
+const HELD: f32 = 1.0e-6;
+
+/// It is not taken for a smaller share than this. A normal nearly along the axis on which a body is held would
+/// else throw it out sideways.
+const HARDLY: f32 = 0.1;
+
 /// What is needed of a row only while it is prepared.
 struct Fill<N, const P: usize> {
     friction_impulse: Vector<N>,
@@ -266,7 +274,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             row.ids[side].set(lane, ids[side]);
             if filler.any_held {
                 let locks = filler.motions[ids[side] as usize].locks;
-                if locks.is_translation_partial() {
+                if locks.is_translation_held() {
                     self.free[side].set(lane, locks.translation_factors());
                 }
             }
@@ -341,12 +349,14 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         masses: &[MassRow],
         view: &RowView<BodyRow>,
     ) {
+        let mut unheld = N::ZERO;
         for side in 0..2 {
-            let (inv_mass, mut inertia) = MassRow::gather::<N>(masses, &row.ids[side]);
-            let dominated = N::ZERO.lt(self.dominated[side]);
-            row.inv_mass[side] = M::new(inv_mass, self.free[side]).zero_where(dominated);
-            inertia = inertia.scaled(N::select(dominated, N::ZERO, N::ONE));
-            row.inv_inertia[side] = inertia;
+            let (inv_mass, inertia) = MassRow::gather::<N>(masses, &row.ids[side]);
+            let movable = N::select(N::ZERO.lt(self.dominated[side]), N::ZERO, N::ONE);
+            let inv_mass = inv_mass * movable;
+            row.inv_mass[side] = M::new(inv_mass, self.free[side]);
+            row.inv_inertia[side] = inertia.scaled(movable);
+            unheld += inv_mass;
         }
         let (va, wa) = BodyRow::gather_velocity::<N>(view, &row.ids[0]);
         let (vb, wb) = BodyRow::gather_velocity::<N>(view, &row.ids[1]);
@@ -361,8 +371,8 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             point.anchor -= to_surface;
             let (ma, mb) = (point.anchor.cross(n), (point.anchor - row.offset).cross(n));
             let k = linear + ma.dot(row.inv_inertia[0].apply(ma)) + mb.dot(row.inv_inertia[1].apply(mb));
-            let present = N::and(N::ZERO.lt(k), N::ZERO.lt(point.mass));
-            point.mass = N::select(present, N::ONE / k, N::ZERO);
+            let present = N::and((unheld * N::splat(HELD)).lt(k), N::ZERO.lt(point.mass));
+            point.mass = N::select(present, N::ONE / k.max(unheld * N::splat(HARDLY)), N::ZERO);
             bounce.approach[i] = (vb - va).dot(n) + wb.dot(mb) - wa.dot(ma);
             total += self.weights[i];
             center += point.anchor * self.weights[i];

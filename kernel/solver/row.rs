@@ -142,6 +142,15 @@ impl<N: Lane> Pair<N> {
         Self { v: [va, vb], w: [wa, wb] }
     }
 
+    /// This where the mask is set, else `other`.
+    #[inline(always)]
+    fn or_where_not(self, mask: N::Mask, other: Self) -> Self {
+        Self {
+            v: core::array::from_fn(|i| Vector::select(mask, self.v[i], other.v[i])),
+            w: core::array::from_fn(|i| Angular::select(mask, self.w[i], other.w[i])),
+        }
+    }
+
     /// How fast B leaves A along `n`, at the point whose moments with it are given.
     #[inline(always)]
     fn along(&self, n: Vector<N>, [ma, mb]: [Angular<N>; 2]) -> N {
@@ -230,7 +239,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// Takes back the impulses of the soft-bias pass where overlap is deep, once they have moved the bodies.
     #[inline(always)]
     pub fn take_back(&mut self, rows: &RowView<BodyRow>, deep: &DeepRow<N, P>) {
-        let mut pair = Pair::load(rows, &self.ids);
+        let before = Pair::load(rows, &self.ids);
+        let mut pair = before;
         let n = self.normal;
         for i in 0..P {
             let point = self.points[i];
@@ -239,7 +249,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             self.points[i].impulse = point.impulse + delta;
             self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
         }
-        pair.store(rows, &self.ids);
+        pair.or_where_not(N::ZERO.lt(deep.deep), before).store(rows, &self.ids);
     }
 
     /// Notes the impulses that the restitution pass looks back on.
@@ -393,8 +403,9 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             any = any.max(target);
         }
         let hit = N::ZERO.lt(any);
+        let before = pair;
         self.collide(&mut pair, bounce, &targets, &moments);
-        pair.store(rows, &self.ids);
+        pair.or_where_not(hit, before).store(rows, &self.ids);
 
         let [ma, mb] = [self.inv_mass[0].apply(n), self.inv_mass[1].apply(n)];
         let k = (ma + mb).dot(n);
@@ -450,7 +461,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         bounce: &mut RestitutionRow<N, P>,
         params: &SubstepParams,
     ) {
-        let mut pair = Pair::load(rows, &self.ids);
+        let before = Pair::load(rows, &self.ids);
+        let mut pair = before;
         let n = self.normal;
         let threshold = N::splat(-params.restitution_threshold);
         for i in 0..P {
@@ -467,7 +479,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             bounce.max_impulse[i] = bounce.max_impulse[i].max(new);
             self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
         }
-        pair.store(rows, &self.ids);
+        pair.or_where_not(N::ZERO.lt(bounce.restitution), before).store(rows, &self.ids);
     }
 }
 

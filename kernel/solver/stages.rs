@@ -16,8 +16,8 @@ use core::sync::atomic::{AtomicBool, Ordering};
 /// How many rows a member of a team solves at a stretch: some microseconds of work.
 const BLOCK_ROWS: u32 = 32;
 
-/// From so many blocks on helpers are woken to solve them: that takes as long as one of them's sweeps.
-const WORTH_WAKING: usize = 8;
+/// From so many rows on helpers are woken to fill and solve them.
+const WORTH_WAKING: u32 = 256;
 
 /// The bodies and rows of one step.
 ///
@@ -45,6 +45,8 @@ impl Solver {
     /// Finds which bodies are held, limited in speed or turned by their own spin: once per step, after
     /// [`bodies`](Self::bodies) were filled, whether or not there are contacts.
     pub fn find_special(&mut self) {
+        // The rows of the last step name other bodies by now.
+        self.plan.begin(0);
         self.special.find(&self.bodies);
     }
 
@@ -53,7 +55,7 @@ impl Solver {
         let Self { bodies, team, rows, plan, buffers, deep, .. } = self;
         deep.count(input, bodies);
         // Body rows were gathered, so only they know what is held.
-        let any_held = bodies.motions.iter().any(|m| m.locks.is_translation_partial());
+        let any_held = bodies.motions.iter().any(|m| m.locks.is_translation_held());
         let BodyRows { rows: body_rows, masses, motions, first_dynamic } = bodies;
         plan.begin(if team.members() > 1 { BLOCK_ROWS } else { u32::MAX });
         let any_deep = deep.any();
@@ -68,7 +70,7 @@ impl Solver {
             deep,
             any_held,
         };
-        let many = plan.blocks.len() >= WORTH_WAKING;
+        let many = plan.rows() >= WORTH_WAKING;
         let (sets, blocks) = (rows.view(), Parts::of(&mut plan.blocks));
         if many {
             team.wake();
@@ -141,6 +143,7 @@ impl Solver {
         for stage in self.plan.stages() {
             self.team.run(stage.len(), |block, _| sets.store(&stage[block], &manifolds));
         }
+        self.plan.begin(0);
     }
 
     /// Runs all blocks, stage by stage. Returns whether any of them found an impact.

@@ -4,9 +4,10 @@
 #[cfg(test)]
 mod tests;
 
+use core::any::Any;
 use core::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::cell::UnsafeCell;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -45,7 +46,8 @@ struct Board {
     asleep: Vec<AtomicBool>,
     /// How many do not.
     awake: AtomicU32,
-    panicked: AtomicBool,
+    /// What the first block that panicked in a helper said.
+    panic: Mutex<Option<Box<dyn Any + Send>>>,
     quit: AtomicBool,
 }
 
@@ -84,8 +86,8 @@ impl Team {
         1 + self.0.as_ref().map_or(0, |helpers| helpers.threads.len())
     }
 
-    /// Has the helpers look for work, for a short while. To be called where there is much of it; without, blocks
-    /// are run by the caller alone.
+    /// Has the helpers that sleep look for work, for a short while. To be called where there is much of it;
+    /// without, blocks are run by the caller alone.
     pub fn wake(&self) {
         let Some(helpers) = &self.0 else { return };
         let Board { asleep, awake, .. } = &*helpers.board;
@@ -98,7 +100,7 @@ impl Team {
     }
 
     /// Runs `job(block, member)` for every block below `blocks`, and returns when all are done. Members are
-    /// numbered from 0, the caller; no two blocks run at once with the same member.
+    /// numbered from 0, the caller; no two blocks of one run are run at once with the same member.
     ///
     /// # Panics
     /// If a block does.
@@ -107,12 +109,14 @@ impl Team {
         let alone = || (0..blocks).for_each(|block| job(block, 0));
         match board {
             Some(board) if blocks > 1 && board.awake.load(Ordering::Relaxed) > 0 && board.begin() => {
-                let count = u32::try_from(blocks).expect("fewer blocks than there are bytes of memory");
                 let ours = Ours(board);
+                let count = u32::try_from(blocks).expect("a block is many bytes of memory");
                 board.share(count, &|block, member| job(block as usize, member));
-                let panicked = board.panicked.load(Ordering::Acquire);
+                let panic = board.panic().take();
                 drop(ours);
-                assert!(!panicked, "a block panicked in a helper");
+                if let Some(panic) = panic {
+                    std::panic::resume_unwind(panic);
+                }
             }
             _ => alone(),
         }
@@ -131,6 +135,10 @@ impl Drop for Helpers {
 }
 
 impl Board {
+    fn panic(&self) -> MutexGuard<'_, Option<Box<dyn Any + Send>>> {
+        self.panic.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Takes the board, unless a clone of the team or a job that runs jobs has it.
     fn begin(&self) -> bool {
         self.busy.compare_exchange(false, true, Ordering::Acquire, Ordering::Relaxed).is_ok()
@@ -222,8 +230,9 @@ impl Board {
                 let Some(job) = (unsafe { *self.job.get() }) else { continue };
                 // SAFETY: as above.
                 let run = || unsafe { (job.run)(job.data, block, member) };
-                if std::panic::catch_unwind(core::panic::AssertUnwindSafe(run)).is_err() {
-                    self.panicked.store(true, Ordering::Release);
+                if let Err(panic) = std::panic::catch_unwind(core::panic::AssertUnwindSafe(run)) {
+                    // Dropping another could panic again, out of the block.
+                    core::mem::forget(self.panic().replace(panic));
                 }
                 idle_since = None;
                 continue;
@@ -245,7 +254,8 @@ struct Ours<'a>(&'a Board);
 
 impl Drop for Ours<'_> {
     fn drop(&mut self) {
-        self.0.panicked.store(false, Ordering::Relaxed);
+        // If the caller's own block panicked, that is what is told.
+        core::mem::forget(self.0.panic().take());
         self.0.busy.store(false, Ordering::Release);
     }
 }

@@ -91,7 +91,8 @@ fn a_panic_reaches_the_caller_and_the_team_goes_on() {
             let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
                 team.run(16, |block, _| assert!(block != round % 16, "on purpose"));
             }));
-            assert!(result.is_err());
+            let said = result.unwrap_err();
+            assert_eq!(said.downcast_ref::<&str>(), Some(&"on purpose"));
             assert_eq!(counts(&team, 16), [1; 16]);
         }
     }

@@ -4,6 +4,7 @@ mod crowds;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod held;
 mod physics;
 mod recycling;
 mod sim;

@@ -49,6 +49,8 @@ pub struct Sim {
     pub recycle: bool,
     /// Whether the tables are checked after each step, where assertions are on.
     pub checked: bool,
+    /// Whether contacts are solved.
+    pub builds_rows: bool,
     pub locks: Vec<AxisLocks>,
     trees: Trees,
     proxies: Vec<(TreeKind, ProxyId)>,
@@ -76,6 +78,7 @@ impl Sim {
             sleeping: false,
             recycle: true,
             checked: true,
+            builds_rows: true,
             locks: Vec::new(),
             trees: Trees::default(),
             proxies: Vec::new(),
@@ -221,7 +224,9 @@ impl Sim {
         self.narrow();
         let params = self.params();
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies, colliders: &self.colliders };
-        self.solver.build_rows(&input, &self.colors, &params);
+        if self.builds_rows {
+            self.solver.build_rows(&input, &self.colors, &params);
+        }
         for _ in 0..self.substeps {
             self.solver.substep(&params);
         }
@@ -260,6 +265,7 @@ impl Sim {
                 };
             }
         }
+        self.solver.find_special();
     }
 
     /// What the narrow phase makes of the contact of two bodies as they are now, and the contact.

@@ -335,7 +335,7 @@ impl Gather {
         }
         if row >= rows.first_dynamic as usize {
             let inv_mass = max(to_f32(body.mass.inverse()), 0.0);
-            let inv_mass = if locks.is_translation_full() || !inv_mass.is_finite() { 0.0 } else { inv_mass };
+            let inv_mass = if inv_mass.is_finite() { inv_mass } else { 0.0 };
             let local = inv_inertia_to_kernel(body.inertia.inverse());
             let rotation = table.poses[id as usize].rotation;
             rows.masses[row] = MassRow::new(inv_mass, local.rotated(rotation).locked(locks));

@@ -10,7 +10,7 @@ use kernel::team::Team;
 ///
 /// With 0, the default, they are as many as the machine has cores for this process, but no more than Bevy's
 /// compute task pool has threads, plus one: on two cores Bevy gives that pool one thread, so a step uses both.
-/// 1 keeps physics on the calling thread.
+/// 1 keeps physics on the calling thread; more than 256 count as 256.
 ///
 /// The threads are the engine's own. They are started by the first step with more than a thousand contacts of
 /// awake bodies, work in such steps only, and sleep otherwise. Without the feature `parallel` there are none.
@@ -47,13 +47,14 @@ pub(crate) struct Crew(Option<WorkerCount>);
 impl Crew {
     /// Has helpers come, where there is much to do.
     pub(crate) fn call(&mut self, team: &mut Team, contacts: usize, count: WorkerCount) {
-        if contacts < MANY_CONTACTS {
-            return;
-        }
-        if self.0 != Some(count) {
+        let many = contacts >= MANY_CONTACTS;
+        // Until there is much to do for the first time there is no team.
+        if self.0 != Some(count) && (many || self.0.is_some()) {
             self.0 = Some(count);
             *team = Team::new(count.resolve());
         }
-        team.wake();
+        if many {
+            team.wake();
+        }
     }
 }

@@ -136,8 +136,8 @@ mod tests {
     #[test]
     fn the_kernel_sees_the_same_locks() {
         assert_eq!(LockedAxes::from_bits(0b1101_0000).to_kernel(), AxisLocks(0b010_000));
-        assert!(LockedAxes::TRANSLATION_LOCKED.to_kernel().is_translation_full());
-        assert!(LockedAxes::new().lock_translation_x().to_kernel().is_translation_partial());
+        assert!(LockedAxes::TRANSLATION_LOCKED.to_kernel().is_translation_held());
+        assert!(LockedAxes::new().lock_translation_x().to_kernel().is_translation_held());
         assert_eq!(LockedAxes::TRANSLATION_LOCKED.to_kernel().rotation(), 0);
     }
 }
