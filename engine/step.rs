@@ -23,12 +23,25 @@ use crate::{
         },
         tables::{Bodies, Colliders, Contacts},
     },
-    schedule::{PhysicsSchedule, PhysicsStepSystems},
+    schedule::{PhysicsSchedule, PhysicsStepSystems, StepTimes},
 };
 
-/// The stages of a step, in order.
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Stage {
+macro_rules! stages {
+    ($($(#[$doc:meta])* $stage:ident,)+) => {
+        /// The stages of a step, in order.
+        #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub(crate) enum Stage {
+            $($(#[$doc])* $stage,)+
+        }
+
+        impl Stage {
+            /// All of them, with their names.
+            const ALL: &[(Self, &str)] = &[$((Self::$stage, stringify!($stage))),+];
+        }
+    };
+}
+
+stages! {
     /// Counters and timers start anew.
     ResetDiagnostics,
     /// Bodies and colliders enter and leave.
@@ -82,6 +95,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<Contacts>()
         .init_resource::<StepSolver>()
         .init_resource::<WorkerCount>()
+        .init_resource::<StepTimes>()
         // Colliders have a surface whether or not the narrow phase is there to use it.
         .init_resource::<DefaultFriction>()
         .init_resource::<DefaultRestitution>()
@@ -125,6 +139,16 @@ pub(crate) fn install(app: &mut App) {
             crate::dynamics::drain::remove_lost_late.in_set(Stage::RemoveLost),
         ),
     );
+    for (i, &(stage, name)) in Stage::ALL.iter().enumerate() {
+        let end = (move |mut times: ResMut<StepTimes>| times.end(name)).after(stage);
+        app.add_systems(
+            PhysicsSchedule,
+            match Stage::ALL.get(i + 1) {
+                Some((next, _)) => end.before(*next),
+                None => end.before(PhysicsStepSystems::Last),
+            },
+        );
+    }
     #[cfg(feature = "validate")]
     crate::dynamics::validate::install(app);
 }

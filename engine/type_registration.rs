@@ -26,10 +26,10 @@ impl Plugin for PhysicsTypeRegistrationPlugin {
 }
 
 fn register_schedule(app: &mut App) {
-    use crate::schedule::{LastPhysicsTick, Physics, Substeps};
+    use crate::schedule::{LastPhysicsTick, Physics, StepTimes, Substeps};
     use bevy_time::Time;
 
-    register!(app: Physics, Substeps, Time<Physics>, Time<Substeps>, LastPhysicsTick);
+    register!(app: Physics, Substeps, Time<Physics>, Time<Substeps>, LastPhysicsTick, StepTimes);
 }
 
 fn register_dynamics(app: &mut App) {

@@ -3,14 +3,14 @@
 use avian::{
     dynamics::{integrator::IntegrationSystems, solver::schedule::SubstepSolverSystems},
     prelude::*,
-    schedule::LastPhysicsTick,
+    schedule::{LastPhysicsTick, StepTimes},
 };
 use bevy_app::prelude::*;
 use bevy_ecs::{
     prelude::*,
     schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel},
 };
-use bevy_time::prelude::*;
+use bevy_time::{TimePlugin, TimeUpdateStrategy, prelude::*};
 use bevy_transform::{TransformPlugin, TransformSystems, prelude::GlobalTransform};
 use core::time::Duration;
 
@@ -392,4 +392,28 @@ fn an_ambiguous_order_of_systems_in_a_step_or_substep_is_an_error() {
             assert!(schedule.initialize(world).is_err(), "{:?}", schedule.label());
         });
     }
+}
+
+#[test]
+fn the_parts_of_a_step_are_timed_in_their_order() {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin, PhysicsPlugins::default()))
+        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(20)));
+    app.finish();
+    for _ in 0..3 {
+        app.world_mut().spawn((RigidBody::Dynamic, Collider::default()));
+        app.update();
+    }
+    let times = app.world().resource::<StepTimes>().clone();
+    let parts: Vec<_> = times.parts().collect();
+    let place = |name: &str| parts.iter().position(|(part, _)| *part == name);
+    let order =
+        ["Prepare", "DrainLifecycle", "Gather", "Substeps", "Scatter", "Refit", "Writeback"].map(place);
+    assert!(order.iter().all(Option::is_some) && order.is_sorted(), "{parts:?}");
+    assert_eq!(times.total(), parts.iter().map(|(_, time)| *time).sum());
+    assert!(times.total() > Duration::ZERO && times.total() < Duration::from_secs(1));
+    for _ in 0..3 {
+        app.update();
+    }
+    assert_eq!(app.world().resource::<StepTimes>().parts().count(), parts.len(), "they do not pile up");
 }

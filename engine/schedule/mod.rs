@@ -1,8 +1,10 @@
 //! When physics runs: [`PhysicsSchedule`] is one step, [`PhysicsSystems`] are its place in the schedule that hosts it,
 //! [`PhysicsStepSystems`] are its stages, and the [clocks](Physics) say how long a step is.
 
+mod step_times;
 mod time;
 
+pub use step_times::StepTimes;
 pub use time::*;
 
 use bevy_app::{App, FixedPostUpdate, Plugin};
@@ -45,7 +47,8 @@ impl Plugin for PhysicsSchedulePlugin {
             .init_resource::<Time<Physics>>()
             .init_resource::<Time<Substeps>>()
             .init_resource::<LastPhysicsTick>()
-            .init_resource::<SimulatedTime>();
+            .init_resource::<SimulatedTime>()
+            .init_resource::<StepTimes>();
 
         app.configure_sets(
             self.schedule,
@@ -59,7 +62,18 @@ impl Plugin for PhysicsSchedulePlugin {
                 .chain()
                 .before(TransformSystems::Propagate),
         );
-        app.add_systems(self.schedule, run_physics_schedule.in_set(PhysicsSystems::StepSimulation));
+        app.add_systems(
+            self.schedule,
+            (
+                (|mut times: ResMut<StepTimes>, _: OnThisThread| times.begin())
+                    .after(PhysicsSystems::First)
+                    .before(PhysicsSystems::Prepare),
+                run_physics_schedule.in_set(PhysicsSystems::StepSimulation),
+                (|mut times: ResMut<StepTimes>, _: OnThisThread| times.end("Writeback"))
+                    .after(PhysicsSystems::Writeback)
+                    .before(PhysicsSystems::Last),
+            ),
+        );
 
         app.edit_schedule(PhysicsSchedule, make_deterministic);
         app.configure_sets(
@@ -186,6 +200,7 @@ fn run_physics_schedule(world: &mut World) {
     }
 
     let generic = clock.as_generic();
+    world.resource_mut::<StepTimes>().end("Prepare");
     with_generic_time(world, generic, |world| world.run_schedule(PhysicsSchedule));
 
     let mut clock = world.resource_mut::<Time<Physics>>();

@@ -1,0 +1,57 @@
+//! How long each part of a step took.
+
+use bevy_ecs::prelude::*;
+use bevy_platform::time::Instant;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use core::time::Duration;
+
+/// How long each part of the last step took, in the order in which they ran: from `Prepare`, where transforms are
+/// read, through the stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
+///
+/// What the app's own systems do between two parts counts for the later one. The parts that only stand between the
+/// ECS and the engine's own tables are `DrainLifecycle`, `ReadAwake`, `Gather`, `Scatter` and `MirrorSleep`, besides
+/// `Prepare` and `Writeback`. The names are for people to read: they may change.
+///
+/// ```
+/// # use avian::schedule::StepTimes;
+/// # use bevy_ecs::prelude::*;
+/// fn print(times: Res<StepTimes>) {
+///     for (part, time) in times.parts() {
+///         println!("{part}: {:.3} ms", time.as_secs_f64() * 1e3);
+///     }
+/// }
+/// ```
+#[derive(Resource, Reflect, Clone, Debug, Default)]
+#[reflect(Resource, Debug, Default)]
+pub struct StepTimes {
+    parts: Vec<(&'static str, Duration)>,
+    #[reflect(ignore)]
+    last: Option<Instant>,
+}
+
+impl StepTimes {
+    /// The parts and their times.
+    pub fn parts(&self) -> impl Iterator<Item = (&'static str, Duration)> + '_ {
+        self.parts.iter().copied()
+    }
+
+    /// The time of all parts.
+    pub fn total(&self) -> Duration {
+        self.parts.iter().map(|(_, time)| *time).sum()
+    }
+
+    /// The next part begins now.
+    pub(crate) fn begin(&mut self) {
+        self.last = Some(Instant::now());
+    }
+
+    /// What happened since the last part ended was this one.
+    pub(crate) fn end(&mut self, part: &'static str) {
+        let now = Instant::now();
+        let Some(last) = self.last.replace(now) else { return };
+        match self.parts.iter_mut().find(|(name, _)| *name == part) {
+            Some((_, time)) => *time = now - last,
+            None => self.parts.push((part, now - last)),
+        }
+    }
+}
