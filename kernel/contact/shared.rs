@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "contacts are changed by several threads, each its own")]
 
 use super::record::{Contact, ContactFlags, Manifold};
-use super::table::ContactTable;
+use super::table::{ContactTable, PointCount};
 use super::update::{Found, ManifoldSource, NarrowPhase, Scratch};
 use crate::data::{BitSet, Parts};
 use crate::table::NONE;
@@ -25,16 +25,18 @@ impl ContactTable {
         if scratches.len() < team.members() {
             scratches.resize_with(team.members(), Scratch::default);
         }
-        let Self { contacts, active, extra, .. } = self;
-        let (contacts, of_members) = (Parts::of(contacts), Parts::of(scratches));
+        let Self { contacts, points, active, extra, .. } = self;
+        let (contacts, points) = (Parts::of(contacts), Parts::of(points));
+        let of_members = Parts::of(scratches);
         team.run(active.len().div_ceil(BLOCK), |block, member| {
             let ids = &active[block * BLOCK..active.len().min((block + 1) * BLOCK)];
             // SAFETY: no two blocks run at once with the same member.
             let scratch = unsafe { of_members.one(member) };
             for &id in ids {
                 // SAFETY: a contact is in the list once.
-                let contact = unsafe { contacts.one(id as usize) };
+                let (contact, count) = unsafe { (contacts.one(id as usize), points.one(id as usize)) };
                 scratch.update(id, contact, extra, phase);
+                *count = PointCount::of(contact);
             }
         });
         self.any_deep = false;
@@ -106,6 +108,12 @@ pub(crate) struct ManifoldsView<'a> {
 }
 
 impl ManifoldsView<'_> {
+    /// Has contacts brought near that are needed soon; those that do not exist are left out.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, ids: &[u32]) {
+        ids.iter().for_each(|id| self.contacts.prefetch(*id));
+    }
+
     /// A contact's manifold by its number, which must exist.
     ///
     /// # Safety

@@ -1,7 +1,7 @@
 //! All contacts by id, the pairs they are of, and the list of the awake ones.
 
 use super::record::{Contact, Manifold};
-use crate::data::{IdPool, PairSet};
+use crate::data::{IdPool, PairSet, prefetch};
 use crate::table::{ColliderTable, NONE};
 
 /// All contacts.
@@ -12,6 +12,8 @@ use crate::table::{ColliderTable, NONE};
 pub struct ContactTable {
     ids: IdPool,
     pub(super) contacts: Vec<Contact>,
+    /// What [`PointCount`] says of each contact.
+    pub(super) points: Vec<PointCount>,
     pairs: PairSet,
     /// Contacts with an awake body, in no particular order.
     pub(super) active: Vec<u32>,
@@ -19,6 +21,25 @@ pub struct ContactTable {
     pub(super) any_deep: bool,
     pub(super) extra: Vec<Vec<Manifold>>,
     free_extra: Vec<u32>,
+}
+
+/// How many points a contact has, beside the record: who only counts need not have the records come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct PointCount(u8);
+
+impl PointCount {
+    const IN_RECORD: u8 = u8::MAX;
+
+    /// The points of the first manifold; `None` if there may be more manifolds, and the record must be asked.
+    #[inline(always)]
+    pub(crate) fn of_only_manifold(self) -> Option<u32> {
+        (self.0 != Self::IN_RECORD).then_some(u32::from(self.0))
+    }
+
+    #[inline(always)]
+    pub(super) fn of(contact: &Contact) -> Self {
+        Self(if contact.extra == NONE { contact.manifold.count as u8 } else { Self::IN_RECORD })
+    }
 }
 
 impl ContactTable {
@@ -60,6 +81,20 @@ impl ContactTable {
     /// The contact of two colliders, in either order.
     pub fn find(&self, a: u32, b: u32) -> Option<u32> {
         self.pairs.get(a.min(b), a.max(b))
+    }
+
+    /// How many points a contact has.
+    #[inline(always)]
+    pub(crate) fn point_count(&self, id: u32) -> PointCount {
+        self.points[id as usize]
+    }
+
+    /// Has contacts brought near that are needed soon; those that do not exist are left out.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, ids: &[u32]) {
+        for id in ids {
+            prefetch(&self.contacts, *id);
+        }
     }
 
     /// A contact.
@@ -109,6 +144,7 @@ impl ContactTable {
         let stored = &mut self.extra[contact.extra as usize];
         stored.clear();
         stored.extend_from_slice(&manifolds[..count]);
+        self.points[id as usize] = PointCount::of(&self.contacts[id as usize]);
     }
 
     /// Adds the contact of a pair that has none, not active yet, and enters it in both colliders' lists.
@@ -118,8 +154,10 @@ impl ContactTable {
         self.pairs.insert(a, b, id);
         if id as usize == self.contacts.len() {
             self.contacts.push(contact);
+            self.points.push(PointCount::default());
         } else {
             self.contacts[id as usize] = contact;
+            self.points[id as usize] = PointCount::default();
         }
         for side in 0..2 {
             let collider = self.contacts[id as usize].colliders[side];
@@ -200,6 +238,7 @@ impl ContactTable {
         let mut live = 0;
         for (id, contact) in self.iter() {
             live += 1;
+            assert_eq!(self.points[id as usize], PointCount::of(contact), "points are counted");
             let [a, b] = contact.colliders;
             assert!(a < b, "the lower collider comes first");
             assert_eq!(self.find(a, b), Some(id), "a contact is found by its pair");

@@ -8,8 +8,10 @@ mod bit_set;
 mod id_pool;
 mod pair_set;
 mod parts;
+mod prefetch;
 
 pub use bit_set::BitSet;
 pub use id_pool::IdPool;
 pub use pair_set::PairSet;
 pub(crate) use parts::Parts;
+pub(crate) use prefetch::prefetch;

@@ -1,6 +1,7 @@
 //! A slice that several threads change at once, each its own part.
 #![expect(unsafe_code, reason = "who takes parts answers for their being disjoint")]
 
+use super::prefetch::prefetch;
 use core::{cell::UnsafeCell, ops::Range};
 
 /// A slice whose parts are changed at once.
@@ -17,6 +18,12 @@ impl<'a, T> Parts<'a, T> {
 
     pub(crate) fn len(&self) -> usize {
         self.0.len()
+    }
+
+    /// Has an element brought near, if there is one.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, index: u32) {
+        prefetch(self.0, index);
     }
 
     /// # Safety

@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "blocks are run at once; entry points for a CPU feature that was looked for")]
 
 use super::batch::{Block, BlockRows, RowSetView, Set, with_block};
-use super::prepare::Filler;
+use super::prepare::{AHEAD, Filler};
 use super::{BodyRow, InvMass, RowView, SubstepParams};
 use crate::contact::ManifoldsView;
 #[cfg(target_arch = "x86_64")]
@@ -238,7 +238,10 @@ fn store<N: Lane, M: InvMass<N>>(set: &RowSetView<N, M>, block: &Block, contacts
 
 #[inline(always)]
 fn store_rows<N: Lane, M: InvMass<N>, const P: usize>(rows: &BlockRows<N, M, P>, contacts: &ManifoldsView) {
-    for (row, source) in rows.rows.iter().zip(rows.sources) {
+    for (i, (row, source)) in rows.rows.iter().zip(rows.sources).enumerate() {
+        if let Some(next) = rows.sources.get(i + AHEAD) {
+            contacts.prefetch(next.contacts.lanes());
+        }
         let friction = TangentFrame::new(row.normal).expand(row.tangent_impulse);
         for (lane, contact) in source.contacts.lanes().iter().enumerate() {
             if *contact == NONE {

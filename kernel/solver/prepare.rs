@@ -128,12 +128,18 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
                 bucket.clear();
             }
             for &id in contacts {
-                let contact = table.get(id);
-                more |= u32::from(contact.extra_count) > layer;
-                let Some(manifold) = table.manifold(contact, layer) else { continue };
-                if manifold.count > 0 {
+                let count = match table.point_count(id).of_only_manifold() {
+                    Some(count) if layer == 0 => count,
+                    Some(_) => 0,
+                    None => {
+                        let contact = table.get(id);
+                        more |= u32::from(contact.extra_count) > layer;
+                        table.manifold(contact, layer).map_or(0, |manifold| manifold.count)
+                    }
+                };
+                if count > 0 {
                     let source = ContactSource { contact: id, manifold: layer };
-                    buckets.0[PointClass::of(manifold.count) as usize].push(source);
+                    buckets.0[PointClass::of(count) as usize].push(source);
                 }
             }
             for class in PointClass::ALL {
@@ -187,6 +193,9 @@ impl Filler<'_> {
     ) -> (bool, bool) {
         let (mut bouncy, mut any_deep) = (false, false);
         for (i, source) in block.sources.iter().enumerate() {
+            if let Some(next) = block.sources.get(i + AHEAD) {
+                self.input.contacts.prefetch(next.contacts.lanes());
+            }
             let (row, bounce) = (&mut block.rows[i], &mut block.bounces[i]);
             *row = ContactRow::default();
             *bounce = RestitutionRow::default();
@@ -234,6 +243,9 @@ const HELD: f32 = 1.0e-6;
 /// It is not taken for a smaller share than this. A normal nearly along the axis on which a body is held would
 /// else throw it out sideways.
 const HARDLY: f32 = 0.1;
+
+/// For so many rows ahead contacts are brought near: a colour's contacts stand anywhere in the table.
+pub(super) const AHEAD: usize = 1;
 
 /// What is needed of a row only while it is prepared.
 struct Fill<N, const P: usize> {

@@ -20,11 +20,11 @@ fn a_box_comes_to_rest_on_the_floor() {
 }
 
 /// Builds a pyramid of unit boxes and returns its top.
-fn pyramid(sim: &mut Sim, base: usize) -> u32 {
+fn pyramid(sim: &mut Sim, base: usize, x: f32) -> u32 {
     let mut top = 0;
     for row in 0..base {
         for col in 0..base - row {
-            let x = 0.5 * row as f32 + col as f32 - 0.5 * base as f32;
+            let x = x + 0.5 * row as f32 + col as f32 - 0.5 * base as f32;
             top = sim.cuboid(Vector::ONE * 0.5, Vector::X * x + Vector::Y * (0.5 + row as f32));
         }
     }
@@ -35,7 +35,7 @@ fn pyramid(sim: &mut Sim, base: usize) -> u32 {
 fn a_pyramid_stands() {
     let mut sim = Sim::new();
     sim.floor();
-    let top = pyramid(&mut sim, 20);
+    let top = pyramid(&mut sim, 20, 0.0);
     sim.steps(300);
     let before = sim.position(top);
     sim.steps(300);
@@ -270,7 +270,7 @@ fn a_pile_falls_asleep_and_wakes_together() {
     let mut sim = Sim::new();
     sim.sleeping = true;
     sim.floor();
-    let top = pyramid(&mut sim, 5);
+    let top = pyramid(&mut sim, 5, 0.0);
     sim.steps(240);
     assert_eq!(sim.bodies.awake_dynamic().count(), 0, "all asleep");
     assert_eq!(sim.contacts.active().len(), 0, "sleeping contacts cost nothing");
@@ -311,7 +311,7 @@ fn the_same_bits_twice() {
     let run = || {
         let mut sim = Sim::new();
         sim.floor();
-        pyramid(&mut sim, 8);
+        pyramid(&mut sim, 8, 0.0);
         sim.ball(0.7, Vector::Y * 12.0 + Vector::X * 0.3);
         sim.steps(200);
         sim.bodies.poses.iter().map(|p| format!("{p:?}")).collect::<Vec<_>>()
@@ -324,7 +324,7 @@ fn a_copy_goes_on_with_the_same_bits() {
     let mut sim = Sim::new();
     sim.sleeping = true;
     sim.floor();
-    pyramid(&mut sim, 8);
+    pyramid(&mut sim, 8, 0.0);
     sim.ball(0.7, Vector::Y * 12.0 + Vector::X * 0.3);
     sim.steps(60);
     let mut copy = sim.clone();
@@ -342,7 +342,7 @@ fn the_same_bits_with_four_lanes_and_with_as_many_as_there_are() {
             sim.set_narrow();
         }
         sim.floor();
-        pyramid(&mut sim, 9);
+        pyramid(&mut sim, 9, 0.0);
         let ball = Shape::Ball(Ball { radius: 0.7 });
         let held = sim.cuboid(Vector::ONE * 0.5, Vector::X * 9.0 + Vector::Y * 0.5);
         sim.locks[held as usize] = kernel::math::AxisLocks(0b100_000);
@@ -360,7 +360,7 @@ fn the_same_bits_with_any_number_of_workers() {
         let mut sim = Sim::new();
         sim.set_workers(members);
         sim.floor();
-        pyramid(&mut sim, 40);
+        pyramid(&mut sim, 40, 0.0);
         for i in 0..40 {
             let p = Vector::Y * (45.0 + i as f32) + Vector::X * (0.3 * i as f32 - 6.0);
             let ball = Shape::Ball(Ball { radius: 0.7 });
@@ -428,7 +428,8 @@ fn a_body_held_along_an_axis_only_moves_along_the_others() {
     assert!(b.x < -0.85, "the ball stopped at what it could not move: {b:?}");
 }
 
-/// How long a step of a large pyramid takes: `cargo test --release -- --ignored --nocapture pyramid_speed`.
+/// How long a step of a large pyramid takes, or of `COUNT` of base `BASE`:
+/// `cargo test --release -- --ignored --nocapture pyramid_speed`.
 #[test]
 #[ignore = "prints a time"]
 fn pyramid_speed() {
@@ -437,10 +438,14 @@ fn pyramid_speed() {
     if std::env::var_os("NARROW").is_some() {
         sim.set_narrow();
     }
-    if let Some(workers) = std::env::var_os("WORKERS") {
-        sim.set_workers(workers.to_str().and_then(|s| s.parse().ok()).expect("a number"));
+    let number = |name: &str| std::env::var(name).ok().and_then(|n| n.parse().ok());
+    if let Some(workers) = number("WORKERS") {
+        sim.set_workers(workers);
     }
-    pyramid(&mut sim, 100);
+    let base = number("BASE").unwrap_or(100);
+    for i in 0..number("COUNT").unwrap_or(1) {
+        pyramid(&mut sim, base, (i * (base + 1)) as f32);
+    }
     sim.steps(5);
     let start = std::time::Instant::now();
     let steps = 200;
