@@ -109,13 +109,13 @@ pub(crate) fn refit_awake(
             }
         }
     } else {
-        for item in &mut boxes {
+        boxes.iter_mut().for_each(|item| {
             let id = item.0.0;
             let body = if id == NONE { NONE } else { table[id].def.body };
             if body != NONE && bodies.table.rows[body as usize] != 0 {
                 refit(item, table);
             }
-        }
+        });
     }
     trees.update(&changed, &table.fat, optimization.optimization_mode);
     moved.union_with(&changed);

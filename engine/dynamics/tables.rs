@@ -1,7 +1,7 @@
 //! What persists between steps and has no component: the kernel's tables, as resources that can be cloned
 //! for a snapshot.
 
-use bevy_ecs::{prelude::*, system::SystemParam};
+use bevy_ecs::{change_detection::Tick, prelude::*, system::SystemParam};
 use kernel::{
     contact::{ContactTable, Link},
     data::BitSet,
@@ -21,6 +21,8 @@ pub(crate) struct Bodies {
     /// The pose that the components of each id last said, read or written: what differs, the app changed. The
     /// table's own, from the centre of mass, would differ in the last bit.
     pub(crate) seen: Vec<WorldPose>,
+    /// When the engine last wrote poses and velocities: what bears this tick the app did not change.
+    pub(crate) written: Tick,
     /// The bodies with a solver row in this step, in the order of their rows from row 1.
     pub(crate) listed: Vec<u32>,
     /// The entities of a few bodies that are looked up one by one, kept for its memory.

@@ -164,6 +164,7 @@ pub(crate) fn wake_changed(
     mut commands: Commands,
     system: SystemChangeTick,
 ) {
+    let written = tables.bodies.written;
     let mut wake = |entity: Entity| {
         let Ok(body) = states.get(entity) else { return };
         let id = body.id.0;
@@ -185,7 +186,12 @@ pub(crate) fn wake_changed(
             linear.changed_ticks_slice(),
             angular.changed_ticks_slice(),
         ];
-        Since::last_run(system).rows(columns, |row| wake(entities[row]));
+        let since = Since::last_run(system);
+        since.rows(columns, |row| {
+            if columns.iter().any(|column| since.is_new(column[row]) && column[row] != written) {
+                wake(entities[row]);
+            }
+        });
     }
     if scaled.is_empty() && !gravity.is_changed() {
         return;
@@ -233,7 +239,7 @@ pub(crate) fn read_awake(query: Query<(Entity, StateInput)>, mut tables: Tables,
         let awake = table.awake_kinematic().chain(table.awake_dynamic());
         some.extend(awake.map(|id| entities[id as usize]));
     }
-    let mut read = |(entity, body): (Entity, StateInputItem)| {
+    let read = |(entity, body): (Entity, StateInputItem)| {
         let id = body.id.0;
         if id == NONE || !tables.bodies.table[id].awake {
             return;
@@ -249,7 +255,7 @@ pub(crate) fn read_awake(query: Query<(Entity, StateInput)>, mut tables: Tables,
     if minority {
         query.iter_many(&some).for_each(read);
     } else {
-        query.iter().for_each(&mut read);
+        query.iter().for_each(read);
     }
     tables.bodies.some = some;
 }
@@ -274,15 +280,15 @@ pub(crate) fn gather_bodies(
     rows.reset(kinematic, count - kinematic);
     let gather = Gather { gravity: finite_gravity(&gravity) };
     let mut filled = 0;
-    let mut fill = |(entity, body): (Entity, RowInputItem)| {
+    let fill = |(entity, body): (Entity, RowInputItem)| {
         filled += usize::from(gather.body(entity, &body, rows, table, &mut commands));
     };
     if is_minority(count, query.iter().size_hint()) {
         some.clear();
         some.extend(listed.iter().map(|id| entities[*id as usize]));
-        query.iter_many(&*some).for_each(&mut fill);
+        query.iter_many(&*some).for_each(fill);
     } else {
-        query.iter().for_each(&mut fill);
+        query.iter().for_each(fill);
     }
     if filled < count {
         // Some body lost a component within the step: nobody knows which.

@@ -1,6 +1,6 @@
 //! From rows back to components, and which bodies have come to rest.
 
-use bevy_ecs::{prelude::*, query::QueryData};
+use bevy_ecs::{prelude::*, query::QueryData, system::SystemChangeTick};
 use bevy_time::Time;
 use kernel::{
     math::{Rot, Vector as KernelVector, WorldPose},
@@ -61,8 +61,10 @@ pub(crate) fn scatter_bodies(
     mut bodies: ResMut<Bodies>,
     mut diagnostics: ResMut<SolverDiagnostics>,
     mut commands: Commands,
+    system: SystemChangeTick,
 ) {
     let start = bevy_platform::time::Instant::now();
+    bodies.written = system.this_run();
     let Bodies { table, seen, listed, entities, some, .. } = &mut *bodies;
     let scatter = Scatter { rows: &solver.kernel.bodies, dt: time.delta_secs(), unit: unit.metres() };
     if is_minority(listed.len(), query.iter().size_hint()) {
@@ -73,9 +75,7 @@ pub(crate) fn scatter_bodies(
             scatter.body(item, table, seen, &mut commands);
         }
     } else {
-        for item in &mut query {
-            scatter.body(item, table, seen, &mut commands);
-        }
+        query.iter_mut().for_each(|item| scatter.body(item, table, seen, &mut commands));
     }
     diagnostics.finalize += start.elapsed();
 }
@@ -126,12 +126,11 @@ impl Scatter<'_> {
         }
         let threshold = options.threshold.copied().unwrap_or_default();
         // Where the app moves the body, this step has not: its velocity says how fast it means to.
-        let (way, angle) = if options.own_position {
-            (v * self.dt, w.length_squared() * self.dt * self.dt)
-        } else {
-            (moved, Rot::IDENTITY.difference(turned).length_squared())
+        let motion = || match options.own_position {
+            true => (v * self.dt, w.length_squared() * self.dt * self.dt),
+            false => (moved, Rot::IDENTITY.difference(turned).length_squared()),
         };
-        let rests = !options.sleepless && self.is_slow(&threshold, way, angle);
+        let rests = !options.sleepless && self.is_slow(&threshold, motion());
         let timer = &mut bodies[id].sleep_timer;
         *timer = if rests { *timer + self.dt } else { 0.0 };
         if let Some(mut shown) = options.timer {
@@ -141,7 +140,7 @@ impl Scatter<'_> {
 
     /// Whether a body has moved by `way`, and turned by the root of `angle_squared`, less in this step than
     /// its thresholds allow. Judged on displacement, not velocity: what jitters in place rests.
-    fn is_slow(&self, threshold: &SleepThreshold, way: KernelVector, angle_squared: f32) -> bool {
+    fn is_slow(&self, threshold: &SleepThreshold, (way, angle_squared): (KernelVector, f32)) -> bool {
         let (far, wide) = (threshold.linear * self.unit * self.dt, threshold.angular * self.dt);
         // A negative threshold, or NaN, never rests.
         far >= 0.0 && wide >= 0.0 && way.length_squared() <= far * far && angle_squared <= wide * wide
