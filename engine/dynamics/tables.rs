@@ -80,6 +80,11 @@ impl Tables<'_> {
     }
 }
 
+/// How many entities two queries hold together.
+pub(crate) fn at_most(a: (usize, Option<usize>), b: (usize, Option<usize>)) -> (usize, Option<usize>) {
+    (a.0 + b.0, a.1.zip(b.1).map(|(a, b)| a + b))
+}
+
 /// Whether so few of the entities that a query holds are wanted that looking them up is cheaper than walking
 /// through all of them.
 pub(crate) fn is_minority(wanted: usize, all: (usize, Option<usize>)) -> bool {

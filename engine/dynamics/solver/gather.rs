@@ -19,7 +19,7 @@ use crate::{
             mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
         },
         solver::{diagnostics::SolverDiagnostics, substeps::StepSolver},
-        tables::{Bodies, Tables, is_minority},
+        tables::{Bodies, Tables, at_most, is_minority},
     },
     math::{Scalar, angular_to_kernel, inv_inertia_to_kernel, to_f32, vector_to_kernel},
     physics_transform::{Position, Rotation, said_pose, world_pose},
@@ -45,7 +45,6 @@ pub(crate) struct RowInput {
     angular_velocity: &'static AngularVelocity,
     mass: &'static ComputedMass,
     inertia: &'static ComputedAngularInertia,
-    options: MotionInput,
 }
 
 /// What most bodies do not have.
@@ -61,6 +60,47 @@ pub(crate) struct MotionInput {
     disabled: Has<RigidBodyDisabled>,
     own_velocity: Has<CustomVelocityIntegration>,
 }
+
+impl MotionInputItem<'_, '_> {
+    /// None of it.
+    const NONE: Self = Self {
+        gravity_scale: None,
+        linear_damping: None,
+        angular_damping: None,
+        max_speed: None,
+        max_angular_speed: None,
+        locks: None,
+        dominance: None,
+        disabled: false,
+        own_velocity: false,
+    };
+}
+
+/// The bodies that have none of that. Bodies are walked through in two loops: asking each for what nearly none has
+/// would be a quarter of the work.
+type Plain = (
+    Without<GravityScale>,
+    Without<LinearDamping>,
+    Without<AngularDamping>,
+    Without<MaxLinearSpeed>,
+    Without<MaxAngularSpeed>,
+    Without<LockedAxes>,
+    Without<Dominance>,
+    Without<RigidBodyDisabled>,
+    Without<CustomVelocityIntegration>,
+);
+/// All others.
+type Special = Or<(
+    With<GravityScale>,
+    With<LinearDamping>,
+    With<AngularDamping>,
+    With<MaxLinearSpeed>,
+    With<MaxAngularSpeed>,
+    With<LockedAxes>,
+    With<Dominance>,
+    With<RigidBodyDisabled>,
+    With<CustomVelocityIntegration>,
+)>;
 
 /// A finite value that is not negative: negative and NaN count as none, infinite as the largest.
 fn positive(value: Option<Scalar>) -> f32 {
@@ -265,7 +305,8 @@ pub(crate) fn read_awake(query: Query<(Entity, StateInput)>, mut tables: Tables,
 /// Iterates tables where most bodies are awake and looks up entities where most sleep: rows are written
 /// by id either way, so the order of entities does not matter.
 pub(crate) fn gather_bodies(
-    query: Query<(Entity, RowInput)>,
+    plain: Query<(Entity, RowInput), Plain>,
+    special: Query<(Entity, RowInput, MotionInput), Special>,
     gravity: Res<Gravity>,
     mut solver: ResMut<StepSolver>,
     mut bodies: ResMut<Bodies>,
@@ -280,19 +321,24 @@ pub(crate) fn gather_bodies(
     rows.reset(kinematic, count - kinematic);
     let gather = Gather { gravity: finite_gravity(&gravity) };
     let mut filled = 0;
-    let fill = |(entity, body): (Entity, RowInputItem)| {
-        filled += usize::from(gather.body(entity, &body, rows, table, &mut commands));
+    let mut fill = |entity, body: RowInputItem, options: &MotionInputItem| {
+        filled += usize::from(gather.body(entity, &body, options, rows, table, &mut commands));
     };
-    if is_minority(count, query.iter().size_hint()) {
+    if is_minority(count, at_most(plain.iter().size_hint(), special.iter().size_hint())) {
         some.clear();
         some.extend(listed.iter().map(|id| entities[*id as usize]));
-        query.iter_many(&*some).for_each(fill);
+        plain.iter_many(&*some).for_each(|(entity, body)| fill(entity, body, &MotionInputItem::NONE));
+        special.iter_many(&*some).for_each(|(entity, body, options)| fill(entity, body, &options));
     } else {
-        query.iter().for_each(fill);
+        plain.iter().for_each(|(entity, body)| fill(entity, body, &MotionInputItem::NONE));
+        special.iter().for_each(|(entity, body, options)| fill(entity, body, &options));
     }
     if filled < count {
         // Some body lost a component within the step: nobody knows which.
-        for (i, _) in listed.iter().enumerate().filter(|(_, id)| !query.contains(entities[**id as usize])) {
+        for (i, _) in listed.iter().enumerate().filter(|(_, id)| {
+            let entity = entities[**id as usize];
+            !plain.contains(entity) && !special.contains(entity)
+        }) {
             rows.still(1 + i);
         }
     }
@@ -312,6 +358,7 @@ impl Gather {
         &self,
         entity: Entity,
         body: &RowInputItem,
+        options: &MotionInputItem,
         rows: &mut BodyRows,
         table: &mut BodyTable,
         commands: &mut Commands,
@@ -328,13 +375,13 @@ impl Gather {
             quarantine(entity, Some(table.frame(id)), commands);
         }
         // What was put under quarantine in this step stays put until it leaves.
-        if !finite || body.options.disabled {
+        if !finite || options.disabled {
             rows.still(row);
             return true;
         }
         rows.rows[row] = BodyRow::new(linear, angular);
-        let locks = body.options.locks.map_or(AxisLocks::NONE, |l| l.to_kernel());
-        let dominance = body.options.dominance.map_or(0, |d| d.0);
+        let locks = options.locks.map_or(AxisLocks::NONE, |l| l.to_kernel());
+        let dominance = options.dominance.map_or(0, |d| d.0);
         if dominance != 0 || table.any_dominance {
             table[id].dominance = dominance;
             table.any_dominance = true;
@@ -345,7 +392,7 @@ impl Gather {
             let local = inv_inertia_to_kernel(body.inertia.inverse());
             let rotation = table.poses[id as usize].rotation;
             rows.masses[row] = MassRow::new(inv_mass, local.rotated(rotation).locked(locks));
-            rows.motions[row] = Motion { rotation, ..self.motion(&body.options, locks, local) };
+            rows.motions[row] = Motion { rotation, ..self.motion(options, locks, local) };
         } else {
             rows.masses[row] = MassRow::default();
             rows.motions[row] = Motion { locks, ..Motion::FREE };

@@ -18,7 +18,7 @@ use crate::{
             sleeping::{SleepThreshold, SleepTimer, SleepingDisabled},
         },
         solver::{config::PhysicsLengthUnit, diagnostics::SolverDiagnostics, substeps::StepSolver},
-        tables::{Bodies, is_minority},
+        tables::{Bodies, at_most, is_minority},
     },
     math::{angular_from_kernel, vector_from_kernel},
     physics_transform::{Position, Rotation, set_pose},
@@ -35,29 +35,44 @@ pub(crate) struct Output {
     rotation: &'static mut Rotation,
     linear: &'static mut LinearVelocity,
     angular: &'static mut AngularVelocity,
-    options: SleepOptions,
+    sleepless: Has<SleepingDisabled>,
 }
 
 /// What most bodies do not have.
 #[derive(QueryData)]
 #[query_data(mutable)]
-pub(crate) struct SleepOptions {
+pub(crate) struct OutputOptions {
     threshold: Option<&'static SleepThreshold>,
-    sleepless: Has<SleepingDisabled>,
     timer: Option<&'static mut SleepTimer>,
     own_position: Has<CustomPositionIntegration>,
     disabled: Has<RigidBodyDisabled>,
 }
+
+impl OutputOptionsItem<'_, '_> {
+    /// None of it.
+    const NONE: Self = Self { threshold: None, timer: None, own_position: false, disabled: false };
+}
+
+/// The bodies that have none of the options. Bodies are walked through in two loops: asking each for what nearly none
+/// has would be a quarter of the work.
+type Plain = (
+    Without<SleepThreshold>,
+    Without<SleepTimer>,
+    Without<CustomPositionIntegration>,
+    Without<RigidBodyDisabled>,
+);
+/// All others.
+type Special =
+    Or<(With<SleepThreshold>, With<SleepTimer>, With<CustomPositionIntegration>, With<RigidBodyDisabled>)>;
 
 /// Folds each awake body's motion into its pose, and writes pose and velocity where they changed.
 ///
 /// A body whose result is not finite keeps the pose it had, stops, and is disabled with one warning: a NaN
 /// must not spread.
 pub(crate) fn scatter_bodies(
-    mut query: Query<Output>,
+    (mut plain, mut special): (Query<Output, Plain>, Query<(Output, OutputOptions), Special>),
     solver: Res<StepSolver>,
-    time: Res<Time<Physics>>,
-    unit: Res<PhysicsLengthUnit>,
+    (time, unit): (Res<Time<Physics>>, Res<PhysicsLengthUnit>),
     mut bodies: ResMut<Bodies>,
     mut diagnostics: ResMut<SolverDiagnostics>,
     mut commands: Commands,
@@ -67,15 +82,24 @@ pub(crate) fn scatter_bodies(
     bodies.written = system.this_run();
     let Bodies { table, seen, listed, entities, some, .. } = &mut *bodies;
     let scatter = Scatter { rows: &solver.kernel.bodies, dt: time.delta_secs(), unit: unit.metres() };
-    if is_minority(listed.len(), query.iter().size_hint()) {
+    if is_minority(listed.len(), at_most(plain.iter().size_hint(), special.iter().size_hint())) {
         some.clear();
         some.extend(listed.iter().map(|id| entities[*id as usize]));
-        let mut found = query.iter_many_mut(&*some);
+        let mut found = plain.iter_many_mut(&*some);
         while let Some(item) = found.fetch_next() {
-            scatter.body(item, table, seen, &mut commands);
+            scatter.body(item, OutputOptionsItem::NONE, table, seen, &mut commands);
+        }
+        let mut found = special.iter_many_mut(&*some);
+        while let Some((item, options)) = found.fetch_next() {
+            scatter.body(item, options, table, seen, &mut commands);
         }
     } else {
-        query.iter_mut().for_each(|item| scatter.body(item, table, seen, &mut commands));
+        for item in &mut plain {
+            scatter.body(item, OutputOptionsItem::NONE, table, seen, &mut commands);
+        }
+        for (item, options) in &mut special {
+            scatter.body(item, options, table, seen, &mut commands);
+        }
     }
     diagnostics.finalize += start.elapsed();
 }
@@ -92,11 +116,12 @@ impl Scatter<'_> {
     fn body(
         &self,
         item: OutputItem,
+        options: OutputOptionsItem,
         bodies: &mut BodyTable,
         seen: &mut [WorldPose],
         commands: &mut Commands,
     ) {
-        let OutputItem { entity, id, position, rotation, linear, angular, options } = item;
+        let OutputItem { entity, id, position, rotation, linear, angular, sleepless } = item;
         let id = id.0;
         let row = if id == NONE { 0 } else { bodies.rows[id as usize] };
         if row == 0 || options.disabled {
@@ -130,7 +155,7 @@ impl Scatter<'_> {
             true => (v * self.dt, w.length_squared() * self.dt * self.dt),
             false => (moved, Rot::IDENTITY.difference(turned).length_squared()),
         };
-        let rests = !options.sleepless && self.is_slow(&threshold, motion());
+        let rests = !sleepless && self.is_slow(&threshold, motion());
         let timer = &mut bodies[id].sleep_timer;
         *timer = if rests { *timer + self.dt } else { 0.0 };
         if let Some(mut shown) = options.timer {

@@ -60,8 +60,7 @@ pub(crate) fn attach_colliders(
     bodies: Query<(), (With<RigidBody>, Allow<Disabled>)>,
     colliders: Query<(Has<ColliderMarker>, Option<&ColliderOf>), Allow<Disabled>>,
     mut commands: Commands,
-    mut seen: Local<EntityHashSet>,
-    _: OnThisThread,
+    (mut seen, _): (Local<EntityHashSet>, OnThisThread),
 ) {
     seen.clear();
     let mut links: Vec<(Entity, Option<Entity>)> = Vec::new();
