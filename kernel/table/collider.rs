@@ -249,10 +249,13 @@ impl ColliderTable {
         if def.body != NONE {
             self.poses[id as usize] = bodies.frame(def.body).then(&def.local);
             let velocity = bodies.velocities[def.body as usize].linear;
-            let speed = velocity.length();
-            let reach = crate::math::min(speed * fattening.dt, def.speculative);
-            if reach > 0.0 && reach.is_finite() {
-                motion = velocity * (reach / speed);
+            let speed = bodies.poses[def.body as usize].speed;
+            motion = velocity * fattening.dt;
+            if speed * fattening.dt > def.speculative {
+                motion = velocity * (def.speculative / speed);
+            }
+            if !motion.is_finite() {
+                motion = Vector::ZERO;
             }
         }
         let tight = def.shape.aabb(&self.poses[id as usize]);
