@@ -1,0 +1,106 @@
+//! What an engine has to do to be measured.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    dim2::D2,
+    dim3::D3,
+    scene::Need,
+    world::{Body, Dimension, Joint, Ray, State},
+};
+
+/// The length of a step in seconds.
+pub const DT: f32 = 1.0 / 60.0;
+/// How many substeps a step has, in every engine.
+pub const SUBSTEPS: u32 = 4;
+
+/// What every engine is made with; the rest is in the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// How many threads it may use.
+    pub threads: usize,
+    /// Whether bodies may fall asleep.
+    pub sleeping: bool,
+    /// Whether clocks are to be put between the stages. They cost a little.
+    pub stages: bool,
+}
+
+/// Whose time a stage is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Share {
+    /// The simulation's.
+    Kernel,
+    /// The copying between components and simulation, and looking for what the app changed.
+    Ecs,
+    /// Bevy's, around the physics.
+    Bevy,
+    /// What the engine says of itself. It overlaps with the rest and is not part of a sum.
+    Own,
+}
+
+/// How long a part of the last step took.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Stage {
+    /// What it is.
+    pub name: String,
+    /// Whose time it is.
+    pub share: Share,
+    /// In milliseconds.
+    pub ms: f64,
+}
+
+impl Stage {
+    /// A timer of the engine's own.
+    pub fn own(name: &str, ms: f64) -> Self {
+        Self { name: name.to_owned(), share: Share::Own, ms }
+    }
+}
+
+/// One engine's world. Bodies are numbered in the order they are added.
+pub trait Engine<D: Dimension> {
+    /// What this build leaves out. It is never asked for it, and need not implement it.
+    fn lacks(&self) -> &'static [Need] {
+        &[]
+    }
+    /// Adds a body with all its shapes.
+    fn add_body(&mut self, body: &Body<D>);
+    /// Adds a joint between bodies that were added before.
+    fn add_joint(&mut self, _joint: &Joint<D>) {
+        unreachable!("an engine without joints is given none");
+    }
+    /// Called once, after what the scene begins with is added and before the first step.
+    fn ready(&mut self) {}
+    /// Sets the velocity of a kinematic body.
+    fn push(&mut self, body: usize, vel: D::Vec);
+    /// Takes all bodies out of the world, one after the other.
+    fn clear(&mut self);
+    /// Steps the world once.
+    fn step(&mut self);
+    /// Where the bodies are, in the order they were added.
+    fn states(&mut self, out: &mut Vec<State<D>>);
+    /// How many dynamic bodies are awake.
+    fn awake(&mut self) -> usize;
+    /// The distance to the closest hit of each ray, or infinity.
+    fn raycast(&mut self, _rays: &[Ray<D>], _out: &mut Vec<f32>) {
+        unreachable!("an engine without queries is given none");
+    }
+    /// How far a ball of that radius gets along each ray, or infinity.
+    fn ballcast(&mut self, _radius: f32, _rays: &[Ray<D>], _out: &mut Vec<f32>) {
+        unreachable!("an engine without queries is given none");
+    }
+    /// The parts of the last step, in order.
+    fn stages(&mut self) -> Vec<Stage> {
+        Vec::new()
+    }
+}
+
+/// Makes a world with that gravity.
+pub type Make<D> = fn(gravity: <D as Dimension>::Vec, settings: &Settings) -> Box<dyn Engine<D>>;
+
+/// The engines that one binary carries, by name.
+pub struct Engines {
+    /// In two dimensions.
+    pub d2: &'static [(&'static str, Make<D2>)],
+    /// In three dimensions.
+    pub d3: &'static [(&'static str, Make<D3>)],
+}

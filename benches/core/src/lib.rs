@@ -1,0 +1,17 @@
+//! The half of the benches that knows no engine: what a world is made of, the scenes, the clock, the ruler that
+//! judges how a world stands at the end, and the worker that runs one scene on one engine.
+//!
+//! Everything is written once for both dimensions, over the types of a [`world::Dimension`].
+
+pub mod dim2;
+pub mod dim3;
+pub mod engine;
+pub mod machine;
+pub mod measure;
+mod random;
+mod ruler;
+pub mod scene;
+mod scenes2d;
+mod scenes3d;
+pub mod worker;
+pub mod world;

@@ -1,0 +1,61 @@
+//! The 3D scenes. Those named as in Box3D's benchmark have its set-up, at most with fewer bodies, which their line
+//! then says.
+
+use std::sync::Arc;
+
+use crate::{
+    dim3::{Body3, D3, Shape3, V3},
+    scene::{Entry, Family, Scene},
+};
+
+mod box_pile;
+mod joint_grid;
+mod mesh_terrain;
+mod pyramids;
+mod queries;
+
+/// All of them.
+pub(crate) const ALL: &[Entry<D3>] = &[
+    speed("large_pyramid", pyramids::large),
+    speed("many_pyramids", pyramids::many),
+    speed("box_pile", box_pile::scene),
+    speed("mesh_terrain", mesh_terrain::scene),
+    speed("joint_grid", joint_grid::scene),
+    Entry { name: "raycast", family: Family::Queries, build: queries::raycast },
+    Entry { name: "ballcast", family: Family::Queries, build: queries::ballcast },
+];
+
+const fn speed(name: &'static str, build: fn() -> Scene<D3>) -> Entry<D3> {
+    Entry { name, family: Family::Speed, build }
+}
+
+/// A body of 100 kg/m³.
+fn light(pos: V3, shape: Shape3) -> Body3 {
+    Body3 { density: 100.0, ..Body3::dynamic(pos, shape) }
+}
+
+/// Adds a pyramid of unit boxes, one box deep. Returns the index of its top box.
+fn add_pyramid(bodies: &mut Vec<Body3>, base: usize, left: f32, z: f32) -> usize {
+    for row in 0..base {
+        for column in 0..base - row {
+            let x = left + 0.5 * (row + 1) as f32 + column as f32;
+            bodies.push(light([x, 0.5 + row as f32, z], Shape3::Box(0.5, 0.5, 0.5)));
+        }
+    }
+    bodies.len() - 1
+}
+
+/// A lumpy convex body of 12 points around a radius: a stretched icosahedron.
+fn rock(radius: f32) -> Shape3 {
+    let golden = 1.618_034_f32;
+    let k = radius / (1.0 + golden * golden).sqrt();
+    let mut points = Vec::new();
+    for a in [-1.0, 1.0] {
+        for b in [-golden, golden] {
+            points.push([0.0, k * a, k * b]);
+            points.push([k * a, k * b * 0.8, 0.0]);
+            points.push([k * b, 0.0, k * a]);
+        }
+    }
+    Shape3::Hull(Arc::new(points))
+}

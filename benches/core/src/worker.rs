@@ -1,0 +1,217 @@
+//! One run of one scene on one engine, in a process of its own: task pools are global in some engines, and a crash
+//! or a leak in one run must not touch the next.
+
+use std::time::Instant;
+
+use crate::{
+    engine::{DT, Engine, Engines, Make, Settings},
+    machine::{Usage, pin},
+    measure::{Clock, Quality, Report, StageSums},
+    ruler::judge,
+    scene::{Need, Scene, Work, find},
+    world::Dimension,
+};
+
+/// How the error begins that makes the parent skip the scene for this engine.
+pub const UNSUPPORTED: &str = "not supported by this build";
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// 2 or 3.
+    pub dim: u32,
+    /// The engine.
+    pub engine: String,
+    /// The scene.
+    pub scene: String,
+    /// How many threads, and cores.
+    pub threads: usize,
+    /// How many steps are timed, if not as many as the scene says.
+    pub steps: Option<usize>,
+    /// Whether stages are timed.
+    pub stages: bool,
+}
+
+impl Job {
+    /// The arguments from which a worker reads the job.
+    pub fn to_args(&self) -> Vec<String> {
+        let steps = self.steps.map_or("-".to_owned(), |steps| steps.to_string());
+        let stages = if self.stages { "stages" } else { "plain" };
+        let (dim, threads) = (self.dim.to_string(), self.threads.to_string());
+        vec![dim, self.engine.clone(), self.scene.clone(), threads, steps, stages.to_owned()]
+    }
+
+    fn from_args(args: &[String]) -> Option<Self> {
+        let [dim, engine, scene, threads, steps, stages] = args else {
+            return None;
+        };
+        Some(Self {
+            dim: dim.parse().ok()?,
+            engine: engine.clone(),
+            scene: scene.clone(),
+            threads: threads.parse().ok()?,
+            steps: steps.parse().ok(),
+            stages: stages == "stages",
+        })
+    }
+}
+
+/// Runs the job that the arguments say, and prints its report as one line of JSON.
+pub fn main(engines: &Engines, args: &[String]) -> Result<(), String> {
+    let job = Job::from_args(args).ok_or("worker DIM ENGINE SCENE THREADS STEPS|- stages|plain")?;
+    pin(job.threads);
+    let report = match job.dim {
+        2 => run(engines.d2, &job)?,
+        3 => run(engines.d3, &job)?,
+        _ => return Err("there are two and three dimensions".to_owned()),
+    };
+    println!("{}", serde_json::to_string(&report).map_err(|e| e.to_string())?);
+    Ok(())
+}
+
+fn run<D: Dimension>(engines: &[(&str, Make<D>)], job: &Job) -> Result<Report, String> {
+    let entry = find::<D>(&job.scene).ok_or_else(|| format!("no scene {}", job.scene))?;
+    let make = engines.iter().find(|engine| engine.0 == job.engine);
+    let make = make.ok_or_else(|| format!("no engine {} in {}D here", job.engine, D::NUMBER))?.1;
+    let scene = (entry.build)();
+    let start = Instant::now();
+    let settings = Settings { threads: job.threads, sleeping: scene.sleeping, stages: job.stages };
+    let mut engine = make(scene.gravity, &settings);
+    refuse(engine.lacks(), |need| entry.needs(&scene, need))?;
+    let timed = job.steps.unwrap_or(scene.plan.timed);
+    let in_batches = matches!(scene.plan.work, Work::Spawn | Work::Despawn);
+    if !in_batches {
+        fill(&mut *engine, &scene);
+    }
+    engine.ready();
+    let setup_ms = start.elapsed().as_secs_f64() * 1e3;
+    let mut bench =
+        Bench { engine, scene, job, clock: Clock::default(), stages: StageSums::default(), out: Vec::new() };
+    if in_batches {
+        bench.time_batches(timed)
+    } else {
+        bench.time_steps(timed)
+    }
+    let peak_mb = Usage::own().peak_mb;
+    let quality = bench.quality();
+    let Bench { scene, clock, stages, .. } = bench;
+    let times = clock.times();
+    Ok(Report {
+        engine: job.engine.clone(),
+        dim: D::NUMBER,
+        scene: job.scene.clone(),
+        family: entry.family,
+        threads: job.threads,
+        bodies: scene.bodies.len(),
+        timed,
+        batch: scene.rays.len(),
+        setup_ms,
+        mean: times.mean,
+        median: times.median,
+        p95: times.p95,
+        max: times.max,
+        stages: stages.means(),
+        quality,
+        foreign: 0.0,
+        peak_mb,
+    })
+}
+
+/// Says no to a scene that needs something the engine's build lacks.
+fn refuse(lacks: &[Need], needs: impl Fn(Need) -> bool) -> Result<(), String> {
+    let missing: Vec<String> =
+        lacks.iter().filter(|need| needs(**need)).map(|need| format!("{need:?}").to_lowercase()).collect();
+    if missing.is_empty() { Ok(()) } else { Err(format!("{UNSUPPORTED}: {}", missing.join(", "))) }
+}
+
+fn fill<D: Dimension>(engine: &mut dyn Engine<D>, scene: &Scene<D>) {
+    scene.bodies.iter().for_each(|body| engine.add_body(body));
+    scene.joints.iter().for_each(|joint| engine.add_joint(joint));
+}
+
+/// A run.
+struct Bench<'a, D: Dimension> {
+    engine: Box<dyn Engine<D>>,
+    scene: Scene<D>,
+    job: &'a Job,
+    clock: Clock,
+    stages: StageSums,
+    /// What queries found.
+    out: Vec<f32>,
+}
+
+impl<D: Dimension> Bench<'_, D> {
+    /// One after the other: steps, each with what the scene does in it, or batches of queries.
+    fn time_steps(&mut self, timed: usize) {
+        let Self { engine, scene, clock, stages, out, .. } = self;
+        let settle = scene.plan.settle;
+        for steps in 0..settle {
+            step(&mut **engine, scene, steps);
+        }
+        for steps in settle..settle + timed {
+            match scene.plan.work {
+                Work::Raycasts => clock.time(|| engine.raycast(&scene.rays, out)),
+                Work::Ballcasts => clock.time(|| engine.ballcast(scene.cast_radius, &scene.rays, out)),
+                _ => clock.time(|| step(&mut **engine, scene, steps)),
+            }
+            if self.job.stages && scene.plan.work == Work::Steps {
+                stages.add(engine.stages());
+            }
+        }
+    }
+
+    /// Fills and empties the world again and again; one of the two is timed. The world is left full.
+    fn time_batches(&mut self, timed: usize) {
+        let Self { engine, scene, clock, .. } = self;
+        engine.step();
+        let warm_up = scene.plan.settle;
+        let mut unused = Clock::default();
+        for batch in 0..warm_up + timed {
+            let clock = if batch < warm_up { &mut unused } else { &mut *clock };
+            let mut spawn = || {
+                fill(&mut **engine, scene);
+                engine.step();
+            };
+            if scene.plan.work == Work::Spawn {
+                clock.time(spawn)
+            } else {
+                spawn()
+            }
+            if batch + 1 == warm_up + timed && scene.plan.work == Work::Spawn {
+                break;
+            }
+            let mut despawn = || {
+                engine.clear();
+                engine.step();
+            };
+            if scene.plan.work == Work::Despawn { clock.time(despawn) } else { despawn() }
+        }
+        if scene.plan.work == Work::Despawn {
+            fill(&mut **engine, scene);
+            engine.step();
+        }
+    }
+
+    fn quality(&mut self) -> Quality {
+        if self.engine.lacks().contains(&Need::Physics) {
+            return Quality::default();
+        }
+        let mut states = Vec::new();
+        self.engine.states(&mut states);
+        let mut quality = judge(&self.scene, &states, self.engine.awake());
+        if matches!(self.scene.plan.work, Work::Raycasts | Work::Ballcasts) {
+            let hits: Vec<f64> = self.out.iter().filter(|t| t.is_finite()).map(|t| *t as f64).collect();
+            quality.hits = Some(hits.len());
+            quality.mean_hit = Some(hits.iter().sum::<f64>() / hits.len().max(1) as f64);
+        }
+        quality
+    }
+}
+
+/// Steps once, after sending the driven body on its way.
+fn step<D: Dimension>(engine: &mut dyn Engine<D>, scene: &Scene<D>, steps: usize) {
+    if let Some(drive) = &scene.drive {
+        engine.push(drive.body, drive.velocity(steps, DT));
+    }
+    engine.step();
+}

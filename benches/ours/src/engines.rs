@@ -1,0 +1,8 @@
+//! The adapters, by path: the very files that upstream is measured with.
+
+#[path = "../../cli/src/engines/app.rs"]
+pub mod app;
+#[path = "../../cli/src/engines/avian2d.rs"]
+pub mod avian2d;
+#[path = "../../cli/src/engines/avian3d.rs"]
+pub mod avian3d;

@@ -1,0 +1,26 @@
+//! A worker with nothing but this engine in it. The adapters are the very files that Avian 0.7 is measured with;
+//! only the crates behind `backend` differ.
+
+mod backend {
+    pub use avian2d as d2;
+    pub use avian3d as d3;
+}
+mod engines;
+
+use std::process::ExitCode;
+
+use bench_core::{engine::Engines, worker};
+
+const ENGINES: Engines =
+    Engines { d2: &[("ours", engines::avian2d::make)], d3: &[("ours", engines::avian3d::make)] };
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(2).collect();
+    match worker::main(&ENGINES, &args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
