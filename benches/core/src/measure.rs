@@ -96,12 +96,22 @@ pub struct Times {
     pub max: f64,
 }
 
+/// How long something takes, in milliseconds.
+pub fn time_of(work: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    work();
+    start.elapsed().as_secs_f64() * 1e3
+}
+
 impl Clock {
     /// Does something and notes how long it took.
     pub fn time(&mut self, work: impl FnOnce()) {
-        let start = Instant::now();
-        work();
-        self.0.push(start.elapsed().as_secs_f64() * 1e3);
+        self.note(time_of(work));
+    }
+
+    /// Notes a time in milliseconds.
+    pub fn note(&mut self, ms: f64) {
+        self.0.push(ms);
     }
 
     /// What the times come to.

@@ -6,9 +6,9 @@ use std::time::Instant;
 use crate::{
     engine::{DT, Engine, Engines, Make, Settings},
     machine::{Usage, pin},
-    measure::{Clock, Quality, Report, StageSums},
+    measure::{Clock, Quality, Report, StageSums, time_of},
     ruler::judge,
-    scene::{Need, Scene, Work, find},
+    scene::{Need, Plan, Scene, Work, find},
     world::Dimension,
 };
 
@@ -78,8 +78,10 @@ fn run<D: Dimension>(engines: &[(&str, Make<D>)], job: &Job) -> Result<Report, S
     let settings = Settings { threads: job.threads, sleeping: scene.sleeping, stages: job.stages };
     let mut engine = make(scene.gravity, &settings);
     refuse(engine.lacks(), |need| entry.needs(&scene, need))?;
-    let timed = job.steps.unwrap_or(scene.plan.timed);
-    let in_batches = matches!(scene.plan.work, Work::Spawn | Work::Despawn);
+    let Plan { work, timed, .. } = scene.plan;
+    // A batch is worth many steps.
+    let timed = job.steps.map_or(timed, |n| if work == Work::Steps { n } else { timed.min(n.div_ceil(10)) });
+    let in_batches = matches!(work, Work::Spawn | Work::Despawn);
     if !in_batches {
         fill(&mut *engine, &scene);
     }
@@ -88,9 +90,9 @@ fn run<D: Dimension>(engines: &[(&str, Make<D>)], job: &Job) -> Result<Report, S
     let mut bench =
         Bench { engine, scene, job, clock: Clock::default(), stages: StageSums::default(), out: Vec::new() };
     if in_batches {
-        bench.time_batches(timed)
+        bench.time_batches(timed);
     } else {
-        bench.time_steps(timed)
+        bench.time_steps(timed);
     }
     let peak_mb = Usage::own().peak_mb;
     let quality = bench.quality();
@@ -160,35 +162,24 @@ impl<D: Dimension> Bench<'_, D> {
         }
     }
 
-    /// Fills and empties the world again and again; one of the two is timed. The world is left full.
+    /// Empties and fills the world again and again; one of the two counts. The world is left full.
     fn time_batches(&mut self, timed: usize) {
         let Self { engine, scene, clock, .. } = self;
+        let Plan { work, settle, .. } = scene.plan;
+        fill(&mut **engine, scene);
         engine.step();
-        let warm_up = scene.plan.settle;
-        let mut unused = Clock::default();
-        for batch in 0..warm_up + timed {
-            let clock = if batch < warm_up { &mut unused } else { &mut *clock };
-            let mut spawn = || {
-                fill(&mut **engine, scene);
-                engine.step();
-            };
-            if scene.plan.work == Work::Spawn {
-                clock.time(spawn)
-            } else {
-                spawn()
-            }
-            if batch + 1 == warm_up + timed && scene.plan.work == Work::Spawn {
-                break;
-            }
-            let mut despawn = || {
+        for batch in 0..settle + timed {
+            let despawn = time_of(|| {
                 engine.clear();
                 engine.step();
-            };
-            if scene.plan.work == Work::Despawn { clock.time(despawn) } else { despawn() }
-        }
-        if scene.plan.work == Work::Despawn {
-            fill(&mut **engine, scene);
-            engine.step();
+            });
+            let spawn = time_of(|| {
+                fill(&mut **engine, scene);
+                engine.step();
+            });
+            if batch >= settle {
+                clock.note(if work == Work::Spawn { spawn } else { despawn });
+            }
         }
     }
 

@@ -21,6 +21,13 @@ pub(super) fn many() -> Scene<D2> {
     scene
 }
 
+/// Small pyramids, however many.
+pub(super) fn field(columns: usize, rows: usize) -> Scene<D2> {
+    let mut scene = Scene::new(format!("{columns} x {rows} pyramids with a base of 10"), Plan::steps(60));
+    add_field(&mut scene, columns, rows);
+    scene
+}
+
 /// Rows of pyramids with a base of 10, each row on a long floor.
 pub(super) fn add_field(scene: &mut Scene<D2>, columns: usize, rows: usize) {
     const BASE: usize = 10;

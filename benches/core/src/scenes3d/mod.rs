@@ -5,14 +5,18 @@ use std::sync::Arc;
 
 use crate::{
     dim3::{Body3, D3, Shape3, V3},
-    scene::{Entry, Family, Scene},
+    scene::{Entry, Family, Scene, Work},
 };
 
 mod box_pile;
+mod convex_pile;
 mod joint_grid;
+mod junkyard;
 mod mesh_terrain;
 mod pyramids;
 mod queries;
+mod still;
+mod washer;
 
 /// All of them.
 pub(crate) const ALL: &[Entry<D3>] = &[
@@ -21,12 +25,39 @@ pub(crate) const ALL: &[Entry<D3>] = &[
     speed("box_pile", box_pile::scene),
     speed("mesh_terrain", mesh_terrain::scene),
     speed("joint_grid", joint_grid::scene),
+    speed("convex_pile", convex_pile::scene),
+    speed("junkyard", junkyard::scene),
+    speed("washer", washer::scene),
     Entry { name: "raycast", family: Family::Queries, build: queries::raycast },
     Entry { name: "ballcast", family: Family::Queries, build: queries::ballcast },
+    idle("empty", still::empty),
+    idle("sleeping", still::sleeping),
+    idle("static", still::fixed),
+    idle("static_and_awake", still::awake),
+    Entry { name: "one", family: Family::Small, build: || still::few(1) },
+    Entry { name: "ten", family: Family::Small, build: || still::few(10) },
+    Entry { name: "hundred", family: Family::Small, build: || still::few(100) },
+    Entry { name: "spawn", family: Family::Bulk, build: || still::bulk(Work::Spawn) },
+    Entry { name: "despawn", family: Family::Bulk, build: || still::bulk(Work::Despawn) },
+    growth("growth_100", || pyramids::field(2, 1)),
+    growth("growth_300", || pyramids::field(6, 1)),
+    growth("growth_1000", || pyramids::field(6, 3)),
+    growth("growth_3000", || pyramids::field(9, 6)),
+    growth("growth_10000", || pyramids::field(18, 10)),
+    growth("growth_30000", || pyramids::field(27, 20)),
+    growth("growth_50000", || pyramids::field(30, 30)),
 ];
 
 const fn speed(name: &'static str, build: fn() -> Scene<D3>) -> Entry<D3> {
     Entry { name, family: Family::Speed, build }
+}
+
+const fn idle(name: &'static str, build: fn() -> Scene<D3>) -> Entry<D3> {
+    Entry { name, family: Family::Idle, build }
+}
+
+const fn growth(name: &'static str, build: fn() -> Scene<D3>) -> Entry<D3> {
+    Entry { name, family: Family::Growth, build }
 }
 
 /// A body of 100 kg/m³.

@@ -22,6 +22,13 @@ pub(super) fn many() -> Scene<D3> {
     scene
 }
 
+/// Small pyramids, however many.
+pub(super) fn field(columns: usize, rows: usize) -> Scene<D3> {
+    let mut scene = Scene::new(format!("{columns} x {rows} pyramids with a base of 10"), Plan::steps(60));
+    add_field(&mut scene, columns, rows);
+    scene
+}
+
 /// Rows of flat pyramids with a base of 10 on one floor.
 pub(super) fn add_field(scene: &mut Scene<D3>, columns: usize, rows: usize) {
     const BASE: usize = 10;
