@@ -11,7 +11,7 @@ use bench_core::{
 };
 
 use crate::{
-    ours,
+    docs, ours,
     results::Results,
     runner::{BARE, Chosen, Plan, Runner},
     table,
@@ -20,7 +20,9 @@ use crate::{
 const USAGE: &str = "cargo run --release -- COMMAND [OPTIONS], in the folder benches/
 
 quick     every scene on every engine for ten steps each, in some minutes: does everything run? (the default)
+all       everything, then docs/benchmarks.md and its pictures; hours, with --threads 1,2 --repeats 3
 run       the scenes that the options choose; prints a table
+docs      the page and the pictures again, from the results in a file
 scenes    what there is
 
 --scenes A,B      a dimension (2d), a family (idle), a name (tumbler), or both (2d/idle, 3d/washer)
@@ -33,13 +35,16 @@ scenes    what there is
 --wait SECONDS    the longest wait for a quiet machine before a run
 --foreign SHARE   runs during which others used more of a core than this are repeated, twice at most
 --ours FILE       another build of ../ours than the present one
---out FILE        where the results go, out/results.json if not given";
+--out FILE        where the results are, out/results.json if not given
+--docs FOLDER     where the page and the pictures go, ../docs if not given";
 
 /// What is to be done.
 pub enum Command {
     Help,
     Scenes,
     Run(Plan),
+    All(Plan),
+    Docs(Plan),
 }
 
 impl Command {
@@ -55,7 +60,7 @@ impl Command {
             "help" => return Ok(Self::Help),
             "scenes" => return Ok(Self::Scenes),
             "quick" => plan.make_quick(),
-            "run" => {}
+            "run" | "all" | "docs" => {}
             _ => return Err(format!("no command {name}\n\n{USAGE}")),
         }
         let mut rest = rest.iter();
@@ -67,7 +72,11 @@ impl Command {
             let value = rest.next().ok_or_else(|| format!("{option} wants a value\n\n{USAGE}"))?;
             set(&mut plan, option, value).ok_or_else(|| format!("{option} {value}?\n\n{USAGE}"))?;
         }
-        Ok(Self::Run(plan))
+        Ok(match name {
+            "all" => Self::All(plan),
+            "docs" => Self::Docs(plan),
+            _ => Self::Run(plan),
+        })
     }
 
     /// Does it.
@@ -79,8 +88,13 @@ impl Command {
                 list::<D3>();
             }
             Self::Run(plan) => {
-                measure(engines, &plan)?;
+                let reports = measure(engines, &plan, false)?.reports;
+                println!("{}", table::markdown(&reports, plan.baseline.as_deref()));
+                println!("{}", table::stage_lines(&reports));
+                println!("all runs: {}", plan.out.display());
             }
+            Self::All(plan) => docs::write_all(&measure(engines, &plan, true)?, &plan.docs)?,
+            Self::Docs(plan) => docs::write_all(&Results::load(&plan.out)?, &plan.docs)?,
         }
         Ok(())
     }
@@ -99,6 +113,7 @@ fn set(plan: &mut Plan, option: &str, value: &str) -> Option<()> {
         "--foreign" => plan.foreign_limit = value.parse().ok()?,
         "--ours" => plan.ours = Some(PathBuf::from(value)),
         "--out" => plan.out = PathBuf::from(value),
+        "--docs" => plan.docs = PathBuf::from(value),
         _ => return None,
     }
     Some(())
@@ -112,16 +127,18 @@ fn list<D: Dimension>() {
     }
 }
 
-/// Builds what is missing, runs, prints a table.
-fn measure(engines: &Engines, plan: &Plan) -> Result<Results, String> {
+/// Builds what is missing and runs what the plan says, with `split` a second time for the stages of where much moves
+/// and where nothing does.
+fn measure(engines: &Engines, plan: &Plan, split: bool) -> Result<Results, String> {
     if cfg!(debug_assertions) {
         return Err("only what is built with --release is worth measuring".to_owned());
     }
-    let chosen = [
-        choose::<D2>(plan, engines.d2.iter().map(|e| e.0)),
-        choose::<D3>(plan, engines.d3.iter().map(|e| e.0)),
-    ];
-    let chosen: Vec<Chosen> = chosen.into_iter().flatten().collect();
+    // Cargo gives rustc what it gives the C compiler.
+    if cfg!(feature = "box2d") && !option_env!("CFLAGS").unwrap_or("").contains("NDEBUG") {
+        eprintln!("Box2D has its assertions on: build in the folder benches/");
+    }
+    let mut chosen = choose::<D2>(plan, engines.d2.iter().map(|e| e.0));
+    chosen.extend(choose::<D3>(plan, engines.d3.iter().map(|e| e.0)));
     if chosen.is_empty() {
         return Err("the options choose no scene; `scenes` lists them".to_owned());
     }
@@ -131,11 +148,15 @@ fn measure(engines: &Engines, plan: &Plan) -> Result<Results, String> {
         None if wants_ours => Some(ours::build()?),
         None => None,
     };
-    let results = Runner::new(plan, ours).run(&chosen)?;
-    println!("{}", table::markdown(&results.reports, plan.baseline.as_deref()));
-    println!("{}", table::stage_lines(&results.reports));
-    println!("all runs: {}", plan.out.display());
-    Ok(results)
+    let mut runner = Runner::new(plan, ours);
+    runner.run(&chosen, plan.repeats, plan.stages)?;
+    if split {
+        chosen.retain(|scene| [Family::Speed, Family::Idle].contains(&scene.family));
+        let in_bevy = |engine: &String| ["avian", "ours"].contains(&engine.as_str());
+        chosen.iter_mut().for_each(|scene| scene.engines.retain(in_bevy));
+        runner.run(&chosen, 1, true)?;
+    }
+    Ok(runner.results)
 }
 
 /// The scenes of a dimension that the options choose, and for each the engines.

@@ -7,8 +7,10 @@ mod backend {
     pub use up_avian3d as d3;
 }
 mod args;
+mod docs;
 mod engines;
 mod ours;
+mod plots;
 mod results;
 mod runner;
 mod table;

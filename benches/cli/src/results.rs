@@ -31,6 +31,12 @@ impl Results {
         Self { facts: facts(), reports: Vec::new() }
     }
 
+    /// Reads a file.
+    pub fn load(path: &Path) -> Result<Self, String> {
+        let text = fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))
+    }
+
     /// Writes a file, and the folder it is in.
     pub fn save(&self, path: &Path) -> Result<(), String> {
         let text = serde_json::to_string(self).map_err(|e| e.to_string())?;
@@ -50,7 +56,7 @@ fn facts() -> Vec<(String, String)> {
     let mut facts = vec![
         ("date", said(&["date", "-u", "+%-d %B %Y"])),
         ("processor", processor()),
-        ("system", said(&["uname", "-srm"])),
+        ("system", said(&["uname", "-sm"])),
         ("compiler", said(&["rustc", "--version"])),
         ("this engine", said(&["git", "describe", "--always", "--dirty"])),
     ];

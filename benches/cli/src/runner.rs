@@ -44,6 +44,8 @@ pub struct Plan {
     pub ours: Option<PathBuf>,
     /// Where the results go.
     pub out: PathBuf,
+    /// Where the page and the pictures go.
+    pub docs: PathBuf,
 }
 
 impl Default for Plan {
@@ -60,6 +62,7 @@ impl Default for Plan {
             foreign_limit: 0.05,
             ours: None,
             out: root().join("out/results.json"),
+            docs: root().join("../docs"),
         }
     }
 }
@@ -90,7 +93,8 @@ pub struct Chosen {
 pub struct Runner<'a> {
     plan: &'a Plan,
     ours: Option<PathBuf>,
-    results: Results,
+    /// All runs so far.
+    pub results: Results,
     /// Engines that said that they cannot run a scene.
     unable: HashSet<(u32, String, String)>,
 }
@@ -102,9 +106,9 @@ impl<'a> Runner<'a> {
     }
 
     /// Runs scenes, and saves all that is known after each run.
-    pub fn run(mut self, scenes: &[Chosen]) -> Result<Results, String> {
+    pub fn run(&mut self, scenes: &[Chosen], repeats: usize, stages: bool) -> Result<(), String> {
         for scene in scenes {
-            for repeat in 0..self.plan.repeats {
+            for repeat in 0..repeats {
                 for &threads in &self.plan.threads {
                     // Queries are asked by one thread.
                     if threads > 1 && scene.family == Family::Queries {
@@ -117,14 +121,14 @@ impl<'a> Runner<'a> {
                             scene: scene.name.to_owned(),
                             threads,
                             steps: self.plan.steps,
-                            stages: self.plan.stages,
+                            stages,
                         };
                         self.run_job(&job, repeat)?;
                     }
                 }
             }
         }
-        Ok(self.results)
+        Ok(())
     }
 
     /// Runs a job until nobody disturbs it, three times at most. An engine that fails does not stop the others.

@@ -5,9 +5,28 @@ use std::fmt::Write as _;
 use bench_core::{
     engine::Share,
     measure::{Report, middle, sum_of},
+    scene::Family,
 };
 
+use crate::runner::BARE;
+
+/// The engines in the order of columns and pictures.
+pub const ENGINES: [&str; 5] = ["ours", "box2d", "box3d", "rapier", "avian"];
+
+/// The name of an engine as it is shown.
+pub fn shown(engine: &str) -> &str {
+    match engine {
+        "ours" => "this",
+        "box2d" => "Box2D",
+        "box3d" => "Box3D",
+        "rapier" => "Rapier",
+        "avian" => "Avian",
+        _ => engine,
+    }
+}
+
 /// What ran with the same scene, engine and number of threads, in the order in which it first ran.
+#[derive(Clone)]
 pub struct Cell<'a> {
     /// Any of the runs.
     pub first: &'a Report,
@@ -30,11 +49,34 @@ impl Cell<'_> {
         self.is_beside(other) && self.first.engine == other.engine
     }
 
+    /// Whether it is of that kind.
+    pub fn is(&self, dim: u32, family: Family, threads: usize) -> bool {
+        let Report { dim: own, family: of, threads: with, .. } = self.first;
+        (*own, *of, *with) == (dim, family, threads)
+    }
+
     /// Whether that is the same but for the engine.
-    fn is_beside(&self, other: &Report) -> bool {
+    pub fn is_beside(&self, other: &Report) -> bool {
         let key = |r: &Report| (r.dim, r.scene.clone(), r.threads);
         key(self.first) == key(other)
     }
+}
+
+/// The cell of an engine among some.
+pub fn engine_cell<'a, 'b>(
+    mut cells: impl Iterator<Item = &'b Cell<'a>>,
+    engine: &str,
+) -> Option<&'b Cell<'a>>
+where
+    'a: 'b,
+{
+    cells.find(|cell| cell.first.engine == engine)
+}
+
+/// The time of the fastest of the peers among some, in milliseconds.
+pub fn best_peer<'a: 'b, 'b>(cells: impl Iterator<Item = &'b Cell<'a>>) -> Option<f64> {
+    let peers = cells.filter(|cell| !cell.first.engine.starts_with("ours") && cell.first.engine != BARE);
+    peers.map(Cell::mean).min_by(f64::total_cmp)
 }
 
 /// Folds repeated runs. What had its stages timed counts only if nothing else is wanted.
