@@ -53,6 +53,15 @@ pub struct BodyPose {
     pub revision: u32,
 }
 
+impl BodyPose {
+    /// The frame of a body whose centre of mass is at `local_center` in it.
+    #[inline(always)]
+    pub fn frame(&self, local_center: Vector) -> WorldPose {
+        let center = self.rotation.rotate(local_center);
+        WorldPose { position: self.center - center.to_world(), rotation: self.rotation }
+    }
+}
+
 /// How fast a body moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Velocity {
@@ -192,9 +201,7 @@ impl BodyTable {
 
     /// The body's frame in the world: its pose less its centre of mass.
     pub fn frame(&self, id: u32) -> WorldPose {
-        let pose = self.poses[id as usize];
-        let center = pose.rotation.rotate(self[id].local_center);
-        WorldPose { position: pose.center - center.to_world(), rotation: pose.rotation }
+        self.poses[id as usize].frame(self[id].local_center)
     }
 
     /// Moves a body by hand. Cached contacts are invalidated.

@@ -134,20 +134,23 @@ impl Scatter<'_> {
         let mut pose = old;
         pose.center = old.center + moved.to_world();
         pose.rotation = turned.mul(old.rotation).renormalized();
-        let finite = [v.is_finite(), w.is_finite(), pose.center.is_finite_world(), pose.rotation.is_finite()];
-        if finite != [true; 4] {
+        let placed = pose.center.is_finite_world() & pose.rotation.is_finite();
+        if !(placed & v.is_finite() & w.is_finite()) {
             quarantine(entity, Some(bodies.frame(id)), commands);
             return;
         }
-        bodies.poses[id as usize] = pose;
         if row >= self.rows.first_dynamic {
-            bodies.set_velocity(id, Velocity { linear: v, angular: w });
+            pose.speed = v.length();
+            bodies.velocities[id as usize] = Velocity { linear: v, angular: w };
             write_changed(linear, LinearVelocity(vector_from_kernel(v)));
             write_changed(angular, AngularVelocity(angular_from_kernel(w)));
         }
-        if pose != old {
-            seen[id as usize] = bodies.frame(id);
-            set_pose(position, rotation, seen[id as usize]);
+        bodies.poses[id as usize] = pose;
+        let body = &mut bodies[id];
+        if (pose.center, pose.rotation) != (old.center, old.rotation) {
+            let frame = pose.frame(body.local_center);
+            seen[id as usize] = frame;
+            set_pose(position, rotation, frame);
         }
         let threshold = options.threshold.copied().unwrap_or_default();
         // Where the app moves the body, this step has not: its velocity says how fast it means to.
@@ -156,7 +159,7 @@ impl Scatter<'_> {
             false => (moved, Rot::IDENTITY.difference(turned).length_squared()),
         };
         let rests = !sleepless && self.is_slow(&threshold, motion());
-        let timer = &mut bodies[id].sleep_timer;
+        let timer = &mut body.sleep_timer;
         *timer = if rests { *timer + self.dt } else { 0.0 };
         if let Some(mut shown) = options.timer {
             shown.0 = *timer;
