@@ -112,7 +112,7 @@ pub(crate) fn refit_awake(
         boxes.iter_mut().for_each(|item| {
             let id = item.0.0;
             let body = if id == NONE { NONE } else { table[id].def.body };
-            if body != NONE && bodies.table.rows[body as usize] != 0 {
+            if body != NONE && bodies.table.row(body) != 0 {
                 refit(item, table);
             }
         });

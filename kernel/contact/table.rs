@@ -105,7 +105,7 @@ impl ContactTable {
 
     /// A contact.
     #[inline(always)]
-    pub fn get_mut(&mut self, id: u32) -> &mut Contact {
+    pub(crate) fn get_mut(&mut self, id: u32) -> &mut Contact {
         &mut self.contacts[id as usize]
     }
 

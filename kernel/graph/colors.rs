@@ -60,7 +60,7 @@ impl ColorGraph {
     ///
     /// Two distinct dynamic bodies are expected. A body with itself goes to the overflow; a contact
     /// without a dynamic body can share a colour with anything and takes the highest.
-    pub fn assign(&mut self, contact: u32, bodies: [Option<u32>; 2]) -> ColorSlot {
+    pub(crate) fn assign(&mut self, contact: u32, bodies: [Option<u32>; 2]) -> ColorSlot {
         let color = self.take_color(bodies);
         let list = &mut self.colors[usize::from(color)].contacts;
         list.push(contact);
@@ -71,7 +71,7 @@ impl ColorGraph {
     ///
     /// Returns the contact that was moved into its slot, if any: the caller must store `slot` as that
     /// one's new slot.
-    pub fn release(&mut self, slot: ColorSlot, bodies: [Option<u32>; 2]) -> Option<u32> {
+    pub(crate) fn release(&mut self, slot: ColorSlot, bodies: [Option<u32>; 2]) -> Option<u32> {
         let list = self.colors.get_mut(usize::from(slot.color)).map(|color| &mut color.contacts);
         let Some(list) = list.filter(|list| (slot.index as usize) < list.len()) else {
             debug_assert!(false, "no contact lies in the slot to release: {slot:?}");
@@ -81,14 +81,6 @@ impl ColorGraph {
         let moved = list.get(slot.index as usize).copied();
         self.give_back_color(slot.color, bodies);
         moved
-    }
-
-    /// Removes all contacts and keeps the memory.
-    pub fn clear(&mut self) {
-        self.used.clear();
-        for color in &mut self.colors {
-            color.contacts.clear();
-        }
     }
 
     /// The contacts of a colour; none for a colour that does not exist.
@@ -282,7 +274,7 @@ mod tests {
             [(0, 50), (1, 49), (22, 1)]
         );
         world.check();
-        world.graph.clear();
+        (0..100).for_each(|contact| world.release(contact));
         assert!(world.graph.is_empty() && world.graph.colors_of(3) == 0);
     }
 

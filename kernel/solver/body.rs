@@ -53,7 +53,7 @@ pub struct BodyRows {
     /// What changes velocities.
     pub motions: Vec<Motion>,
     /// The first row of a dynamic body.
-    pub first_dynamic: u32,
+    pub(super) first_dynamic: u32,
 }
 
 impl BodyRows {
@@ -68,6 +68,11 @@ impl BodyRows {
         self.still(0);
     }
 
+    /// The first row of a dynamic body.
+    pub fn first_dynamic(&self) -> u32 {
+        self.first_dynamic
+    }
+
     /// Fills a row with a body at rest that nothing moves.
     pub fn still(&mut self, row: usize) {
         self.rows[row] = BodyRow::REST;
@@ -76,12 +81,12 @@ impl BodyRows {
     }
 
     /// A view through which rows of disjoint bodies can be read and written; only dynamic bodies are.
-    pub fn view(&mut self) -> RowView<'_, BodyRow> {
+    pub(super) fn view(&mut self) -> RowView<'_, BodyRow> {
         RowView::over(&mut self.rows, self.first_dynamic)
     }
 
     /// A view that writes kinematic bodies too, for integrating positions.
-    pub fn view_all(&mut self) -> RowView<'_, BodyRow> {
+    pub(super) fn view_all(&mut self) -> RowView<'_, BodyRow> {
         RowView::over(&mut self.rows, 1)
     }
 }

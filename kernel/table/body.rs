@@ -82,7 +82,7 @@ pub struct BodyTable {
     /// Velocities by id; written through [`set_velocity`](Self::set_velocity).
     pub velocities: Vec<Velocity>,
     /// The solver row of each body in this step; 0, the immovable dummy, if it has none.
-    pub rows: Vec<u32>,
+    pub(crate) rows: Vec<u32>,
     /// Bodies that woke or fell asleep since the embedder last emptied this; some may be back.
     pub flipped: Vec<u32>,
     /// Whether any body's dominance is not 0: what rows need not ask otherwise. Set by whoever sets it.
@@ -197,6 +197,12 @@ impl BodyTable {
             self.rows[*id as usize] = 1 + i as u32;
         }
         kinematic
+    }
+
+    /// The solver row of a body in this step; 0 if it has none.
+    #[inline(always)]
+    pub fn row(&self, id: u32) -> u32 {
+        self.rows[id as usize]
     }
 
     /// The body's frame in the world: its pose less its centre of mass.

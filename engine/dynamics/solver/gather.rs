@@ -364,7 +364,7 @@ impl Gather {
         commands: &mut Commands,
     ) -> bool {
         let id = body.id.0;
-        let row = if id == NONE { 0 } else { table.rows[id as usize] as usize };
+        let row = if id == NONE { 0 } else { table.row(id) as usize };
         if row == 0 {
             return false;
         }
@@ -386,7 +386,7 @@ impl Gather {
             table[id].dominance = dominance;
             table.any_dominance = true;
         }
-        if row >= rows.first_dynamic as usize {
+        if row >= rows.first_dynamic() as usize {
             let inv_mass = max(to_f32(body.mass.inverse()), 0.0);
             let inv_mass = if inv_mass.is_finite() { inv_mass } else { 0.0 };
             let local = inv_inertia_to_kernel(body.inertia.inverse());

@@ -123,7 +123,7 @@ impl Scatter<'_> {
     ) {
         let OutputItem { entity, id, position, rotation, linear, angular, sleepless } = item;
         let id = id.0;
-        let row = if id == NONE { 0 } else { bodies.rows[id as usize] };
+        let row = if id == NONE { 0 } else { bodies.row(id) };
         if row == 0 || options.disabled {
             return;
         }
@@ -139,7 +139,7 @@ impl Scatter<'_> {
             quarantine(entity, Some(bodies.frame(id)), commands);
             return;
         }
-        if row >= self.rows.first_dynamic {
+        if row >= self.rows.first_dynamic() {
             pose.speed = v.length();
             bodies.velocities[id as usize] = Velocity { linear: v, angular: w };
             write_changed(linear, LinearVelocity(vector_from_kernel(v)));
