@@ -98,7 +98,7 @@ pub(crate) fn refit_awake(
         }
         *shown = to_public(&tight);
     };
-    if is_minority(bodies.listed.len(), boxes.iter().size_hint()) {
+    if is_minority(bodies.listed.len(), [boxes.iter().size_hint()]) {
         for body in &bodies.listed {
             let mut next = bodies.table[*body].first_collider;
             while next != NONE {

@@ -80,13 +80,8 @@ impl Tables<'_> {
     }
 }
 
-/// How many entities two queries hold together.
-pub(crate) fn at_most(a: (usize, Option<usize>), b: (usize, Option<usize>)) -> (usize, Option<usize>) {
-    (a.0 + b.0, a.1.zip(b.1).map(|(a, b)| a + b))
-}
-
-/// Whether so few of the entities that a query holds are wanted that looking them up is cheaper than walking
-/// through all of them.
-pub(crate) fn is_minority(wanted: usize, all: (usize, Option<usize>)) -> bool {
-    4 * wanted < all.1.unwrap_or(0)
+/// Whether so few of the entities that some queries hold are wanted that looking them up is cheaper than walking
+/// through all of them. `all` are the size hints of the queries.
+pub(crate) fn is_minority<const N: usize>(wanted: usize, all: [(usize, Option<usize>); N]) -> bool {
+    4 * wanted < all.iter().map(|hint| hint.1.unwrap_or(0)).sum()
 }

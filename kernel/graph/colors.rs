@@ -13,8 +13,7 @@ const DYNAMIC_COLORS: u32 = (1 << 20) - 1;
 /// Where contacts with one dynamic body may go: 1..=22, from the top.
 const STATIC_COLORS: u32 = ((1 << OVERFLOW) - 1) & !1;
 
-/// Where a contact lies: stored by the caller, and kept up to date from what
-/// [`release`](ColorGraph::release) returns.
+/// Where a contact lies among the contacts of its colour; another one may move here when one before it leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColorSlot {
     /// The colour, below [`COLOR_COUNT`].

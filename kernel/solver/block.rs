@@ -85,60 +85,30 @@ impl SetsView<'_> {
 mod eight_lanes {
     use super::*;
 
-    pub(super) fn fill<M: InvMass<F32x8>>(
-        set: &RowSetView<F32x8, M>,
-        block: &Block,
-        filler: &Filler,
-    ) -> (bool, bool) {
-        #[target_feature(enable = "avx2")]
-        fn fill_avx2<M: InvMass<F32x8>>(
-            set: &RowSetView<F32x8, M>,
-            block: &Block,
-            filler: &Filler,
-        ) -> (bool, bool) {
-            super::fill(set, block, filler)
-        }
-        // SAFETY: rows of this width are only made where the CPU has AVX2.
-        unsafe { fill_avx2(set, block, filler) }
+    macro_rules! entry {
+        ($name:ident($($argument:ident: $type:ty),*) -> $result:ty) => {
+            pub(super) fn $name<M: InvMass<F32x8>>(
+                set: &RowSetView<F32x8, M>,
+                block: &Block,
+                $($argument: $type),*
+            ) -> $result {
+                #[target_feature(enable = "avx2")]
+                fn avx2<M: InvMass<F32x8>>(
+                    set: &RowSetView<F32x8, M>,
+                    block: &Block,
+                    $($argument: $type),*
+                ) -> $result {
+                    super::$name(set, block, $($argument),*)
+                }
+                // SAFETY: rows of this width are only made where the CPU has AVX2.
+                unsafe { avx2(set, block, $($argument),*) }
+            }
+        };
     }
 
-    pub(super) fn run<M: InvMass<F32x8>>(
-        set: &RowSetView<F32x8, M>,
-        block: &Block,
-        pass: Pass,
-        bodies: &RowView<BodyRow>,
-        params: &SubstepParams,
-    ) -> bool {
-        #[target_feature(enable = "avx2")]
-        fn run_avx2<M: InvMass<F32x8>>(
-            set: &RowSetView<F32x8, M>,
-            block: &Block,
-            pass: Pass,
-            bodies: &RowView<BodyRow>,
-            params: &SubstepParams,
-        ) -> bool {
-            super::run(set, block, pass, bodies, params)
-        }
-        // SAFETY: as above.
-        unsafe { run_avx2(set, block, pass, bodies, params) }
-    }
-
-    pub(super) fn store<M: InvMass<F32x8>>(
-        set: &RowSetView<F32x8, M>,
-        block: &Block,
-        contacts: &ManifoldsView,
-    ) {
-        #[target_feature(enable = "avx2")]
-        fn store_avx2<M: InvMass<F32x8>>(
-            set: &RowSetView<F32x8, M>,
-            block: &Block,
-            contacts: &ManifoldsView,
-        ) {
-            super::store(set, block, contacts);
-        }
-        // SAFETY: as above.
-        unsafe { store_avx2(set, block, contacts) }
-    }
+    entry!(fill(filler: &Filler) -> (bool, bool));
+    entry!(run(pass: Pass, bodies: &RowView<BodyRow>, params: &SubstepParams) -> bool);
+    entry!(store(contacts: &ManifoldsView) -> ());
 }
 
 #[inline(always)]

@@ -42,10 +42,10 @@ impl Solver {
         self.rows.width = Width::Four;
     }
 
-    /// Finds which bodies are held, limited in speed or turned by their own spin: once per step, after
-    /// [`bodies`](Self::bodies) were filled, whether or not there are contacts.
-    pub fn find_special(&mut self) {
-        // The rows of the last step name other bodies by now.
+    /// Forgets the contact rows of the last step, which name other bodies by now, and finds which bodies are held,
+    /// limited in speed or turned by their own spin: once per step, after [`bodies`](Self::bodies) were filled,
+    /// whether or not there are contacts.
+    pub fn begin_step(&mut self) {
         self.plan.begin(0);
         self.special.find(&self.bodies);
     }

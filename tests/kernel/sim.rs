@@ -265,7 +265,7 @@ impl Sim {
                 };
             }
         }
-        self.solver.find_special();
+        self.solver.begin_step();
     }
 
     /// What the narrow phase makes of the contact of two bodies as they are now, and the contact.

@@ -19,7 +19,7 @@ use crate::{
             mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
         },
         solver::{diagnostics::SolverDiagnostics, substeps::StepSolver},
-        tables::{Bodies, Tables, at_most, is_minority},
+        tables::{Bodies, Tables, is_minority},
     },
     math::{Scalar, angular_to_kernel, inv_inertia_to_kernel, to_f32, vector_to_kernel},
     physics_transform::{Position, Rotation, said_pose, world_pose},
@@ -273,7 +273,7 @@ pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
 pub(crate) fn read_awake(query: Query<(Entity, StateInput)>, mut tables: Tables, mut commands: Commands) {
     let mut some = core::mem::take(&mut tables.bodies.some);
     let Bodies { table, entities, .. } = &*tables.bodies;
-    let minority = is_minority(table.awake_count(), query.iter().size_hint());
+    let minority = is_minority(table.awake_count(), [query.iter().size_hint()]);
     some.clear();
     if minority {
         let awake = table.awake_kinematic().chain(table.awake_dynamic());
@@ -324,7 +324,7 @@ pub(crate) fn gather_bodies(
     let mut fill = |entity, body: RowInputItem, options: &MotionInputItem| {
         filled += usize::from(gather.body(entity, &body, options, rows, table, &mut commands));
     };
-    if is_minority(count, at_most(plain.iter().size_hint(), special.iter().size_hint())) {
+    if is_minority(count, [plain.iter().size_hint(), special.iter().size_hint()]) {
         some.clear();
         some.extend(listed.iter().map(|id| entities[*id as usize]));
         plain.iter_many(&*some).for_each(|(entity, body)| fill(entity, body, &MotionInputItem::NONE));
@@ -342,7 +342,7 @@ pub(crate) fn gather_bodies(
             rows.still(1 + i);
         }
     }
-    solver.kernel.find_special();
+    solver.kernel.begin_step();
     diagnostics.prepare_constraints += start.elapsed();
 }
 

@@ -18,7 +18,7 @@ use crate::{
             sleeping::{SleepThreshold, SleepTimer, SleepingDisabled},
         },
         solver::{config::PhysicsLengthUnit, diagnostics::SolverDiagnostics, substeps::StepSolver},
-        tables::{Bodies, at_most, is_minority},
+        tables::{Bodies, is_minority},
     },
     math::{angular_from_kernel, vector_from_kernel},
     physics_transform::{Position, Rotation, set_pose},
@@ -82,7 +82,7 @@ pub(crate) fn scatter_bodies(
     bodies.written = system.this_run();
     let Bodies { table, seen, listed, entities, some, .. } = &mut *bodies;
     let scatter = Scatter { rows: &solver.kernel.bodies, dt: time.delta_secs(), unit: unit.metres() };
-    if is_minority(listed.len(), at_most(plain.iter().size_hint(), special.iter().size_hint())) {
+    if is_minority(listed.len(), [plain.iter().size_hint(), special.iter().size_hint()]) {
         some.clear();
         some.extend(listed.iter().map(|id| entities[*id as usize]));
         let mut found = plain.iter_many_mut(&*some);
