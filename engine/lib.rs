@@ -63,6 +63,7 @@ pub mod math;
 pub mod physics_transform;
 pub mod schedule;
 
+mod columns;
 mod plugins;
 mod scan;
 mod step;

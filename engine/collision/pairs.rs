@@ -5,7 +5,7 @@ use bevy_time::Time;
 use kernel::{
     bvh::{Movers, find_pairs},
     data::BitSet,
-    table::{ColliderTable, Fattening, NONE},
+    table::{BodyTable, ColliderTable, Fattening, NONE},
 };
 
 use crate::{
@@ -14,12 +14,14 @@ use crate::{
         collider::{ColliderAabb, EnlargedAabb},
         diagnostics::CollisionDiagnostics,
     },
+    columns::{Column, PIECE, Put, is_change_tracked},
     dynamics::{
         ids::ColliderId,
-        solver::config::PhysicsLengthUnit,
+        solver::{config::PhysicsLengthUnit, substeps::StepSolver},
         tables::{Bodies, Colliders, Tables, is_minority},
     },
     math::vector_from_kernel,
+    scan::IN_TABLES,
     schedule::Physics,
 };
 
@@ -42,7 +44,6 @@ impl FatBoxes<'_> {
 
 /// The boxes that the app sees.
 type Boxes = (&'static ColliderId, &'static mut ColliderAabb, &'static mut EnlargedAabb);
-type Item<'a> = (&'a ColliderId, Mut<'a, ColliderAabb>, Mut<'a, EnlargedAabb>);
 
 /// Puts what entered or was changed by hand where it is, and in its tree.
 pub(crate) fn update_stale_boxes(
@@ -61,12 +62,12 @@ pub(crate) fn update_stale_boxes(
     let Colliders { table, trees, moved, stale, entities } = &mut *colliders;
     let mut changed = BitSet::default();
     for id in stale.iter().filter(|id| table.ids.is_live(*id)).collect::<Vec<_>>() {
-        let (outgrown, tight) = table.refresh(id, &bodies.table, fattening);
+        let outgrown = table.refresh(id, &bodies.table, fattening);
         if outgrown || trees.is_new(id) {
             changed.insert(id);
         }
         if let Ok((_, mut shown, mut enlarged)) = boxes.get_mut(entities[id as usize]) {
-            *shown = to_public(&tight);
+            *shown = to_public(&table.tight[id as usize]);
             *enlarged = EnlargedAabb::new(to_public(&table.fat[id as usize]));
         }
     }
@@ -78,7 +79,7 @@ pub(crate) fn update_stale_boxes(
 
 /// After the solver: boxes of bodies that moved, in the trees and in the components.
 pub(crate) fn refit_awake(
-    fat_boxes: FatBoxes,
+    (fat_boxes, solver): (FatBoxes, Res<StepSolver>),
     bodies: Res<Bodies>,
     mut colliders: ResMut<Colliders>,
     mut boxes: Query<Boxes>,
@@ -87,40 +88,56 @@ pub(crate) fn refit_awake(
     mut changed: Local<BitSet>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let fattening = fat_boxes.fattening();
+    let team = &solver.kernel.team;
     let Colliders { table, trees, moved, entities, .. } = &mut *colliders;
-    let mut refit = |item: Item, table: &mut ColliderTable| {
-        let (id, mut shown, mut enlarged) = item;
-        let (outgrown, tight) = table.refresh(id.0, &bodies.table, fattening);
-        if outgrown {
-            changed.insert(id.0);
-            *enlarged = EnlargedAabb::new(to_public(&table.fat[id.0 as usize]));
-        }
-        *shown = to_public(&tight);
-    };
-    if is_minority(bodies.listed.len(), [boxes.iter().size_hint()]) {
-        for body in &bodies.listed {
-            let mut next = bodies.table[*body].first_collider;
-            while next != NONE {
-                if let Ok(item) = boxes.get_mut(entities[next as usize]) {
-                    refit(item, table);
-                }
-                next = table.next_of_body(next);
-            }
+    table.refresh_listed(&bodies.listed, &bodies.table, fat_boxes.fattening(), team, &mut changed);
+
+    let shown = Shown { bodies: &bodies.table, colliders: table };
+    if is_minority(bodies.listed.len(), [boxes.iter().size_hint()]) || is_change_tracked() {
+        let of_body = |body: &u32| table.of_body(*body, &bodies.table);
+        let mut found =
+            boxes.iter_many_mut(bodies.listed.iter().flat_map(of_body).map(|id| entities[id as usize]));
+        while let Some((id, tight, fat)) = found.fetch_next() {
+            shown.put(*id, tight, fat);
         }
     } else {
-        boxes.iter_mut().for_each(|item| {
-            let id = item.0.0;
-            let body = if id == NONE { NONE } else { table[id].def.body };
-            if body != NONE && bodies.table.row(body) != 0 {
-                refit(item, table);
-            }
-        });
+        for (mut ids, tight, fat) in boxes.contiguous_iter_mut().expect(IN_TABLES) {
+            let mut ticks = (None, None);
+            let (mut tight, mut fat) = (Column::new(tight, &mut ticks.0), Column::new(fat, &mut ticks.1));
+            let pieces = core::iter::from_fn(|| {
+                let ids = ids.split_off(..PIECE.min(ids.len())).filter(|ids| !ids.is_empty())?;
+                Some((ids, tight.cut(), fat.cut()))
+            });
+            team.each(pieces, |(ids, tight, fat)| {
+                for ((id, tight), fat) in ids.iter().zip(tight.slots()).zip(fat.slots()) {
+                    shown.put(*id, tight, fat);
+                }
+            });
+        }
     }
     trees.update(&changed, &table.fat, optimization.optimization_mode);
     moved.union_with(&changed);
     changed.clear();
     diagnostics.update += start.elapsed();
+}
+
+/// The boxes as they are.
+struct Shown<'a> {
+    bodies: &'a BodyTable,
+    colliders: &'a ColliderTable,
+}
+
+impl Shown<'_> {
+    /// Shows the boxes of one collider, if its body took part in the step.
+    #[inline(always)]
+    fn put(&self, id: ColliderId, tight: impl Put<ColliderAabb>, fat: impl Put<EnlargedAabb>) {
+        let id = id.0;
+        let body = if id == NONE { NONE } else { self.colliders[id].def.body };
+        if body != NONE && self.bodies.row(body) != 0 {
+            tight.put(to_public(&self.colliders.tight[id as usize]));
+            fat.put(EnlargedAabb::new(to_public(&self.colliders.fat[id as usize])));
+        }
+    }
 }
 
 fn to_public(aabb: &kernel::shape::Aabb) -> ColliderAabb {

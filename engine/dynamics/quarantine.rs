@@ -7,8 +7,7 @@ use kernel::math::WorldPose;
 
 use crate::{
     dynamics::rigid_body::{AngularVelocity, LinearVelocity, RigidBodyDisabled},
-    math::world_from_kernel,
-    physics_transform::{Position, Rotation},
+    physics_transform::pose_from_kernel,
 };
 
 /// Whether a pose consists of numbers.
@@ -22,6 +21,6 @@ pub(crate) fn quarantine(entity: Entity, last: Option<WorldPose>, commands: &mut
     let mut body = commands.entity(entity);
     body.try_insert((RigidBodyDisabled, LinearVelocity::ZERO, AngularVelocity::ZERO));
     if let Some(pose) = last {
-        body.try_insert((Position(world_from_kernel(pose.position)), Rotation::from_kernel(pose.rotation)));
+        body.try_insert(pose_from_kernel(pose));
     }
 }

@@ -1,6 +1,5 @@
 //! Poses to and from the kernel.
 
-use bevy_ecs::change_detection::{DetectChangesMut, Mut};
 use kernel::math::{Rot, WorldPose};
 
 use super::{Position, Rotation};
@@ -28,9 +27,8 @@ pub(crate) fn filled_in(rotation: Rotation) -> Rotation {
     if rotation == Rotation::PLACEHOLDER { Rotation::IDENTITY } else { rotation }
 }
 
-/// Writes a pose from the kernel; each component is marked as changed only if it does.
-#[inline]
-pub(crate) fn set_pose(mut position: Mut<Position>, mut rotation: Mut<Rotation>, pose: WorldPose) {
-    position.set_if_neq(Position(world_from_kernel(pose.position)));
-    rotation.set_if_neq(Rotation::from_kernel(pose.rotation));
+/// The pose of the components for one of the kernel.
+#[inline(always)]
+pub(crate) fn pose_from_kernel(pose: WorldPose) -> (Position, Rotation) {
+    (Position(world_from_kernel(pose.position)), Rotation::from_kernel(pose.rotation))
 }

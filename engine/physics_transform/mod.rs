@@ -48,7 +48,7 @@ mod turn;
 
 pub use dim::Rotation;
 pub use helper::PhysicsTransformHelper;
-pub(crate) use kernel_pose::{filled_in, said_pose, set_pose, unit_rotation, world_pose};
+pub(crate) use kernel_pose::{filled_in, pose_from_kernel, said_pose, unit_rotation, world_pose};
 pub use plugin::PhysicsTransformPlugin;
 pub use position::Position;
 pub use sync::{position_to_transform, transform_to_position};

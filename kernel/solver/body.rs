@@ -73,6 +73,11 @@ impl BodyRows {
         self.first_dynamic
     }
 
+    /// Forgets how far a body has moved and turned in this step.
+    pub fn put_back(&mut self, row: u32) {
+        self.rows[row as usize].set_delta(Vector::ZERO, Rot::IDENTITY);
+    }
+
     /// Fills a row with a body at rest that nothing moves.
     pub fn still(&mut self, row: usize) {
         self.rows[row] = BodyRow::REST;

@@ -49,6 +49,11 @@ impl BodyRow {
         let [x, y, cos, sin] = self.delta.0;
         (Vector { x, y }, Rot { cos, sin })
     }
+    /// Whether the body has moved or turned since the step began.
+    #[inline]
+    pub fn is_moved(&self) -> bool {
+        self.delta() != (Vector::ZERO, Rot::IDENTITY)
+    }
     /// Sets how far the body has moved and turned since the step began.
     #[inline]
     pub fn set_delta(&mut self, position: Vector, rotation: Rot) {

@@ -62,6 +62,11 @@ impl BodyRow {
         let ([x, y, z, _], [a, b, c, w]) = (self.position.0, self.rotation.0);
         (Vector { x, y, z }, Rot { x: a, y: b, z: c, w })
     }
+    /// Whether the body has moved or turned since the step began.
+    #[inline]
+    pub fn is_moved(&self) -> bool {
+        self.delta() != (Vector::ZERO, Rot::IDENTITY)
+    }
     /// Sets how far the body has moved and turned since the step began.
     #[inline]
     pub fn set_delta(&mut self, position: Vector, rotation: Rot) {

@@ -16,6 +16,7 @@ mod body;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod finish;
 mod integrate;
 mod inv_mass;
 mod prepare;

@@ -1,7 +1,7 @@
 //! Bodies by id: what kind, where, how fast, and which row they have in this step.
 
 use super::NONE;
-use crate::data::{BitSet, IdPool};
+use crate::data::{BitSet, IdPool, Parts};
 use crate::math::{Angular, Rot, Vector, WorldPose, WorldVector};
 
 /// What moves a body.
@@ -14,6 +14,28 @@ pub enum BodyKind {
     /// Forces, contacts and joints.
     #[default]
     Dynamic,
+}
+
+/// How slow a body must be to count as at rest: over a whole step, by how far it got, not by its velocity, so that
+/// what jitters in place rests. Negative values and NaN never count as at rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RestSpeed {
+    /// Of the centre of mass, m/s.
+    pub linear: f32,
+    /// rad/s.
+    pub angular: f32,
+}
+
+impl RestSpeed {
+    /// Never at rest.
+    pub const NEVER: Self = Self { linear: -1.0, angular: -1.0 };
+
+    /// Whether a body rests that got `way` far in `dt` seconds, and turned by the root of `angle_squared`.
+    #[inline(always)]
+    pub fn admits(self, way: Vector, angle_squared: f32, dt: f32) -> bool {
+        let (far, wide) = (self.linear * dt, self.angular * dt);
+        far >= 0.0 && wide >= 0.0 && way.length_squared() <= far * far && angle_squared <= wide * wide
+    }
 }
 
 /// What is rarely needed of a body.
@@ -29,7 +51,9 @@ pub struct Body {
     pub local_center: Vector,
     /// The first of its colliders, or [`NONE`].
     pub first_collider: u32,
-    /// Seconds for which it has been slow enough to sleep; 0 while it is not, or must not sleep.
+    /// What counts as at rest.
+    pub rest_speed: RestSpeed,
+    /// Seconds for which it has been at rest; 0 while it is not.
     pub sleep_timer: f32,
 }
 
@@ -95,8 +119,15 @@ impl BodyTable {
     /// Adds a body, awake unless static.
     pub fn add(&mut self, kind: BodyKind, local_center: Vector, pose: WorldPose) -> u32 {
         let id = self.ids.allocate();
-        let body =
-            Body { kind, awake: false, dominance: 0, local_center, first_collider: NONE, sleep_timer: 0.0 };
+        let body = Body {
+            kind,
+            awake: false,
+            dominance: 0,
+            local_center,
+            first_collider: NONE,
+            rest_speed: RestSpeed::NEVER,
+            sleep_timer: 0.0,
+        };
         let mut placed = BodyPose {
             center: pose.transform(local_center),
             rotation: pose.rotation,
@@ -205,6 +236,16 @@ impl BodyTable {
         self.rows[id as usize]
     }
 
+    /// What a team changes of bodies at once, each of its own.
+    pub(crate) fn parts(&mut self) -> BodyParts<'_> {
+        BodyParts {
+            bodies: Parts::of(&mut self.bodies),
+            poses: Parts::of(&mut self.poses),
+            velocities: Parts::of(&mut self.velocities),
+            rows: &self.rows,
+        }
+    }
+
     /// The body's frame in the world: its pose less its centre of mass.
     pub fn frame(&self, id: u32) -> WorldPose {
         self.poses[id as usize].frame(self[id].local_center)
@@ -230,6 +271,15 @@ impl BodyTable {
         let pose = &mut self.poses[id as usize];
         pose.revision = pose.revision.wrapping_add(1);
     }
+}
+
+/// Bodies by id, changed by several threads at once.
+pub(crate) struct BodyParts<'a> {
+    pub(crate) bodies: Parts<'a, Body>,
+    pub(crate) poses: Parts<'a, BodyPose>,
+    pub(crate) velocities: Parts<'a, Velocity>,
+    /// The row of each in this step; no two have the same but 0.
+    pub(crate) rows: &'a [u32],
 }
 
 impl core::ops::Index<u32> for BodyTable {

@@ -1,10 +1,16 @@
-//! Colliders by id: native shape, world pose, fat box, surface, layers and revision.
+//! Colliders by id: native shape, world pose, boxes, surface, layers and revision.
+#![expect(unsafe_code, reason = "colliders are changed by several threads, each its own")]
 
 use super::{BodyKind, BodyTable, NONE};
-use crate::data::IdPool;
+use crate::data::{BitSet, IdPool, Parts};
 use crate::math::{Pose, Vector, WorldPose};
 use crate::shape::{Aabb, Shape};
+use crate::team::Team;
 use core::ops::{Index, IndexMut};
+use std::sync::{Mutex, PoisonError};
+
+/// Of how many bodies a member of a team refreshes the colliders at a stretch.
+const BLOCK: usize = 128;
 
 /// How two surfaces' coefficients make one. Of two different rules the greater wins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -136,6 +142,8 @@ pub struct ColliderTable {
     colliders: Vec<Collider>,
     /// World poses by id.
     pub poses: Vec<WorldPose>,
+    /// The smallest boxes around the colliders as they stood when last refreshed, by id.
+    pub tight: Vec<Aabb>,
     /// Fat boxes by id: what the trees hold.
     pub fat: Vec<Aabb>,
     /// Reaches by id.
@@ -163,12 +171,14 @@ impl ColliderTable {
         if i == self.colliders.len() {
             self.colliders.push(collider);
             self.poses.push(pose);
+            self.tight.push(Aabb::EMPTY);
             self.fat.push(Aabb::EMPTY);
             self.reaches.push(Reach::default());
             self.materials.push(Material::default());
         } else {
             self.colliders[i] = collider;
             self.poses[i] = pose;
+            self.tight[i] = Aabb::EMPTY;
             self.fat[i] = Aabb::EMPTY;
         }
         self.attach(id, bodies);
@@ -241,30 +251,47 @@ impl ColliderTable {
 
     /// Puts a collider where its body is, and enlarges its fat box if it no longer holds the shape, its
     /// margin, and its motion of one step. Returns whether it did. Colliders without a body keep their
-    /// pose. The smallest box around the collider as it stands comes with the answer.
-    pub fn refresh(&mut self, id: u32, bodies: &BodyTable, fattening: Fattening) -> (bool, Aabb) {
-        let collider = &self.colliders[id as usize];
-        let def = &collider.def;
-        let mut motion = Vector::ZERO;
-        if def.body != NONE {
-            self.poses[id as usize] = bodies.frame(def.body).then(&def.local);
-            let velocity = bodies.velocities[def.body as usize].linear;
-            let speed = bodies.poses[def.body as usize].speed;
-            motion = velocity * fattening.dt;
-            if speed * fattening.dt > def.speculative {
-                motion = velocity * (def.speculative / speed);
+    /// pose.
+    pub fn refresh(&mut self, id: u32, bodies: &BodyTable, fattening: Fattening) -> bool {
+        let i = id as usize;
+        let places = (&mut self.poses[i], &mut self.tight[i], &mut self.fat[i]);
+        self.colliders[i].fit(bodies, fattening, places)
+    }
+
+    /// Refreshes the colliders of the bodies that have a row in this step, `listed` in the order of their rows from
+    /// row 1. `outgrown` receives those whose fat box was enlarged.
+    pub fn refresh_listed(
+        &mut self,
+        listed: &[u32],
+        bodies: &BodyTable,
+        fattening: Fattening,
+        team: &Team,
+        outgrown: &mut BitSet,
+    ) {
+        let Self { colliders, poses, tight, fat, .. } = self;
+        let (poses, tight, fat) = (Parts::of(poses), Parts::of(tight), Parts::of(fat));
+        let outgrown = Mutex::new(outgrown);
+        team.each(listed.chunks(BLOCK).enumerate(), |(block, ids)| {
+            for (i, &body) in ids.iter().enumerate() {
+                if bodies.row(body) as usize != 1 + block * BLOCK + i {
+                    continue;
+                }
+                let mut id = bodies[body].first_collider;
+                while id != NONE {
+                    let collider = &colliders[id as usize];
+                    if collider.def.body != body {
+                        break;
+                    }
+                    let i = id as usize;
+                    // SAFETY: a collider is of one body, and no two bodies have one row.
+                    let places = unsafe { (poses.one(i), tight.one(i), fat.one(i)) };
+                    if collider.fit(bodies, fattening, places) {
+                        outgrown.lock().unwrap_or_else(PoisonError::into_inner).insert(id);
+                    }
+                    id = collider.next;
+                }
             }
-            if !motion.is_finite() {
-                motion = Vector::ZERO;
-            }
-        }
-        let tight = def.shape.aabb(&self.poses[id as usize]);
-        let needed = tight.grown(def.margin).swept(motion);
-        let outgrown = !self.fat[id as usize].contains(&needed);
-        if outgrown {
-            self.fat[id as usize] = needed.grown(fattening.margin);
-        }
-        (outgrown, tight)
+        });
     }
 
     fn attach(&mut self, id: u32, bodies: &mut BodyTable) {
@@ -293,6 +320,39 @@ impl ColliderTable {
         if next != NONE {
             self[next].previous = previous;
         }
+    }
+}
+
+impl Collider {
+    /// Finds pose and box of a collider as it stands, and enlarges the fat box if it must. Returns whether it did.
+    #[inline]
+    fn fit(
+        &self,
+        bodies: &BodyTable,
+        fattening: Fattening,
+        (pose, tight, fat): (&mut WorldPose, &mut Aabb, &mut Aabb),
+    ) -> bool {
+        let def = &self.def;
+        let mut motion = Vector::ZERO;
+        if def.body != NONE {
+            *pose = bodies.frame(def.body).then(&def.local);
+            let velocity = bodies.velocities[def.body as usize].linear;
+            let speed = bodies.poses[def.body as usize].speed;
+            motion = velocity * fattening.dt;
+            if speed * fattening.dt > def.speculative {
+                motion = velocity * (def.speculative / speed);
+            }
+            if !motion.is_finite() {
+                motion = Vector::ZERO;
+            }
+        }
+        *tight = def.shape.aabb(pose);
+        let needed = tight.grown(def.margin).swept(motion);
+        let outgrown = !fat.contains(&needed);
+        if outgrown {
+            *fat = needed.grown(fattening.margin);
+        }
+        outgrown
     }
 }
 

@@ -4,7 +4,7 @@
 mod body;
 mod collider;
 
-pub use body::{Body, BodyKind, BodyPose, BodyTable, Velocity};
+pub use body::{Body, BodyKind, BodyPose, BodyTable, RestSpeed, Velocity};
 pub use collider::{
     Collider, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material, Reach, Surface,
 };

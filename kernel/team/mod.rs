@@ -123,6 +123,22 @@ impl Team {
     }
 }
 
+impl Team {
+    /// Runs `job` for each of some items; which member gets which is left to chance.
+    ///
+    /// # Panics
+    /// If a job or the iterator does.
+    pub fn each<I: Iterator + Send>(&self, items: I, job: impl Fn(I::Item) + Sync) {
+        let items = Mutex::new(items);
+        let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
+        self.run(self.members(), |_, _| {
+            while let Some(item) = next() {
+                job(item);
+            }
+        });
+    }
+}
+
 impl Drop for Helpers {
     fn drop(&mut self) {
         self.board.quit.store(true, Ordering::SeqCst);

@@ -12,7 +12,7 @@ use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::solver::{BodyRow, MassRow, Motion, RowInput, Softness, Solver, SubstepParams};
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
-    Surface, Velocity,
+    RestSpeed, Surface,
 };
 use kernel::team::Team;
 
@@ -61,6 +61,8 @@ pub struct Sim {
     scratch: Vec<Scratch>,
     scan: SleepScan,
     listed: Vec<u32>,
+    frames: Vec<WorldPose>,
+    outgrown: BitSet,
     changed: BitSet,
 }
 
@@ -89,6 +91,8 @@ impl Sim {
             scratch: Vec::new(),
             scan: SleepScan::new(),
             listed: Vec::new(),
+            frames: Vec::new(),
+            outgrown: BitSet::default(),
             changed: BitSet::default(),
         }
     }
@@ -130,6 +134,8 @@ impl Sim {
         let mass = shape.mass_properties(1.0);
         let pose = WorldPose::new(position.to_world(), rotation);
         let id = self.bodies.add(kind, mass.center, pose);
+        self.bodies[id].rest_speed = RestSpeed { linear: 0.15, angular: 0.15 };
+        self.frames.push(pose);
         self.link().enter(id);
         let inverse = if mass.mass > 0.0 { 1.0 / mass.mass } else { 0.0 };
         self.masses.push((inverse, inverse_inertia(&mass)));
@@ -287,27 +293,18 @@ impl Sim {
     }
 
     fn scatter(&mut self) {
+        let lost = self.solver.finish(&mut self.bodies, &self.listed, &mut self.frames, self.dt);
+        assert_eq!(lost, [], "nothing is lost");
         let fattening = self.fattening();
-        for (i, &id) in self.listed.iter().enumerate() {
-            let row = &self.solver.bodies.rows[i + 1];
-            let (moved, turned) = row.delta();
-            let (v, w) = row.velocity();
-            self.bodies.set_velocity(id, Velocity { linear: v, angular: w });
-            let pose = &mut self.bodies.poses[id as usize];
-            let before = pose.rotation;
-            pose.center += moved.to_world();
-            pose.rotation = turned.mul(pose.rotation).renormalized();
-            let angle = before.difference(pose.rotation).length();
-            let slow = moved.length() < 0.15 * self.dt && angle < 0.15 * self.dt;
-            let body = &mut self.bodies[id];
-            body.sleep_timer = if slow { body.sleep_timer + self.dt } else { 0.0 };
-            if self.colliders.refresh(id, &self.bodies, fattening).0 {
-                let (kind, proxy) = self.proxies[id as usize];
-                let aabb = self.colliders.fat[id as usize];
-                self.trees[kind].set(proxy, aabb);
-                self.movers.insert(Mover { id, kind, mask: PairMask::solid(kind), aabb });
-            }
+        let Self { colliders, listed, bodies, solver, outgrown, .. } = self;
+        colliders.refresh_listed(listed, bodies, fattening, &solver.team, outgrown);
+        for id in outgrown.iter() {
+            let (kind, proxy) = self.proxies[id as usize];
+            let aabb = self.colliders.fat[id as usize];
+            self.trees[kind].set(proxy, aabb);
+            self.movers.insert(Mover { id, kind, mask: PairMask::solid(kind), aabb });
         }
+        self.outgrown.clear();
     }
 
     fn sleep(&mut self) {

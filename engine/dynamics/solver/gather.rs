@@ -5,7 +5,7 @@ use bevy_log::warn_once;
 use kernel::{
     math::{AxisLocks, InvInertia, Vector as KernelVector, WorldPose, max},
     solver::{BodyRow, BodyRows, MassRow, Motion},
-    table::{BodyKind, BodyTable, NONE, Velocity},
+    table::{BodyKind, BodyTable, NONE, RestSpeed, Velocity},
 };
 
 use crate::{
@@ -17,8 +17,9 @@ use crate::{
             AngularDamping, AngularVelocity, Dominance, GravityScale, LinearDamping, LinearVelocity,
             LockedAxes, MaxAngularSpeed, MaxLinearSpeed, RigidBodyDisabled,
             mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
+            sleeping::{SleepThreshold, SleepingDisabled},
         },
-        solver::{diagnostics::SolverDiagnostics, substeps::StepSolver},
+        solver::{config::PhysicsLengthUnit, diagnostics::SolverDiagnostics, substeps::StepSolver},
         tables::{Bodies, Tables, is_minority},
     },
     math::{Scalar, angular_to_kernel, inv_inertia_to_kernel, to_f32, vector_to_kernel},
@@ -269,8 +270,17 @@ pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
     tables.bodies.ids = ids;
 }
 
-/// Reads pose and velocity of every awake body, before anything is computed from them.
-pub(crate) fn read_awake(query: Query<(Entity, StateInput)>, mut tables: Tables, mut commands: Commands) {
+/// What says when a body counts as at rest.
+type RestInput = (Option<&'static SleepThreshold>, Has<SleepingDisabled>);
+
+/// Reads pose and velocity of every awake body, before anything is computed from them, and what counts as at rest.
+pub(crate) fn read_awake(
+    query: Query<(Entity, StateInput, RestInput)>,
+    unit: Res<PhysicsLengthUnit>,
+    mut tables: Tables,
+    mut commands: Commands,
+) {
+    let unit = unit.metres();
     let mut some = core::mem::take(&mut tables.bodies.some);
     let Bodies { table, entities, .. } = &*tables.bodies;
     let minority = is_minority(table.awake_count(), [query.iter().size_hint()]);
@@ -279,11 +289,12 @@ pub(crate) fn read_awake(query: Query<(Entity, StateInput)>, mut tables: Tables,
         let awake = table.awake_kinematic().chain(table.awake_dynamic());
         some.extend(awake.map(|id| entities[id as usize]));
     }
-    let read = |(entity, body): (Entity, StateInputItem)| {
+    let read = |(entity, body, (threshold, sleepless)): (Entity, StateInputItem, _)| {
         let id = body.id.0;
         if id == NONE || !tables.bodies.table[id].awake {
             return;
         }
+        tables.bodies.table[id].rest_speed = rest_speed(threshold, sleepless, unit);
         let change = read_in(entity, &body, &mut tables, &mut commands);
         if change.moved {
             tables.link().wake_touching(id);
@@ -298,6 +309,14 @@ pub(crate) fn read_awake(query: Query<(Entity, StateInput)>, mut tables: Tables,
         query.iter().for_each(read);
     }
     tables.bodies.some = some;
+}
+
+fn rest_speed(threshold: Option<&SleepThreshold>, sleepless: bool, unit: f32) -> RestSpeed {
+    if sleepless {
+        return RestSpeed::NEVER;
+    }
+    let SleepThreshold { linear, angular } = threshold.copied().unwrap_or_default();
+    RestSpeed { linear: linear * unit, angular }
 }
 
 /// Gives every awake body its row and fills it.

@@ -1,183 +1,174 @@
 //! From rows back to components, and which bodies have come to rest.
 
-use bevy_ecs::{prelude::*, query::QueryData, system::SystemChangeTick};
+use bevy_ecs::{change_detection::ContiguousMut, prelude::*, system::SystemChangeTick};
 use bevy_time::Time;
 use kernel::{
-    math::{Rot, Vector as KernelVector, WorldPose},
-    solver::BodyRows,
-    table::{BodyTable, NONE, Velocity},
+    solver::{BodyRows, Solver},
+    table::NONE,
 };
 
 use crate::{
+    columns::{Column, PIECE, Put, is_change_tracked},
     dynamics::{
         ids::BodyId,
         integrator::CustomPositionIntegration,
         quarantine::quarantine,
-        rigid_body::{
-            AngularVelocity, LinearVelocity, RigidBodyDisabled,
-            sleeping::{SleepThreshold, SleepTimer, SleepingDisabled},
-        },
-        solver::{config::PhysicsLengthUnit, diagnostics::SolverDiagnostics, substeps::StepSolver},
+        rigid_body::{AngularVelocity, LinearVelocity, RigidBodyDisabled, sleeping::SleepTimer},
+        solver::{diagnostics::SolverDiagnostics, substeps::StepSolver},
         tables::{Bodies, is_minority},
     },
     math::{angular_from_kernel, vector_from_kernel},
-    physics_transform::{Position, Rotation, set_pose},
+    physics_transform::{Position, Rotation, pose_from_kernel},
+    scan::IN_TABLES,
     schedule::Physics,
 };
 
 /// What a body's motion is written to.
-#[derive(QueryData)]
-#[query_data(mutable)]
-pub(crate) struct Output {
-    entity: Entity,
-    id: &'static BodyId,
-    position: &'static mut Position,
-    rotation: &'static mut Rotation,
-    linear: &'static mut LinearVelocity,
-    angular: &'static mut AngularVelocity,
-    sleepless: Has<SleepingDisabled>,
-}
-
-/// What most bodies do not have.
-#[derive(QueryData)]
-#[query_data(mutable)]
-pub(crate) struct OutputOptions {
-    threshold: Option<&'static SleepThreshold>,
-    timer: Option<&'static mut SleepTimer>,
-    own_position: Has<CustomPositionIntegration>,
-    disabled: Has<RigidBodyDisabled>,
-}
-
-impl OutputOptionsItem<'_, '_> {
-    /// None of it.
-    const NONE: Self = Self { threshold: None, timer: None, own_position: false, disabled: false };
-}
-
-/// The bodies that have none of the options. Bodies are walked through in two loops: asking each for what nearly none
-/// has would be a quarter of the work.
-type Plain = (
-    Without<SleepThreshold>,
-    Without<SleepTimer>,
-    Without<CustomPositionIntegration>,
-    Without<RigidBodyDisabled>,
+type Output = (
+    &'static BodyId,
+    &'static mut Position,
+    &'static mut Rotation,
+    &'static mut LinearVelocity,
+    &'static mut AngularVelocity,
+    Option<&'static mut SleepTimer>,
 );
-/// All others.
-type Special =
-    Or<(With<SleepThreshold>, With<SleepTimer>, With<CustomPositionIntegration>, With<RigidBodyDisabled>)>;
 
 /// Folds each awake body's motion into its pose, and writes pose and velocity where they changed.
 ///
 /// A body whose result is not finite keeps the pose it had, stops, and is disabled with one warning: a NaN
 /// must not spread.
 pub(crate) fn scatter_bodies(
-    (mut plain, mut special): (Query<Output, Plain>, Query<(Output, OutputOptions), Special>),
-    solver: Res<StepSolver>,
-    (time, unit): (Res<Time<Physics>>, Res<PhysicsLengthUnit>),
-    mut bodies: ResMut<Bodies>,
+    mut outputs: Query<Output, Without<RigidBodyDisabled>>,
+    own: Query<&BodyId, (With<CustomPositionIntegration>, Without<RigidBodyDisabled>)>,
+    mut solver: ResMut<StepSolver>,
+    time: Res<Time<Physics>>,
+    (mut bodies, system): (ResMut<Bodies>, SystemChangeTick),
     mut diagnostics: ResMut<SolverDiagnostics>,
     mut commands: Commands,
-    system: SystemChangeTick,
 ) {
     let start = bevy_platform::time::Instant::now();
     bodies.written = system.this_run();
+    let dt = time.delta_secs();
+    let kept = own.iter().filter_map(|id| keep_in_place(id.0, &mut solver.kernel, &bodies, dt));
+    let kept: Vec<_> = kept.collect();
+
     let Bodies { table, seen, listed, entities, some, .. } = &mut *bodies;
-    let scatter = Scatter { rows: &solver.kernel.bodies, dt: time.delta_secs(), unit: unit.metres() };
-    if is_minority(listed.len(), [plain.iter().size_hint(), special.iter().size_hint()]) {
+    let mut lost = solver.kernel.finish(table, listed, seen, dt);
+    for (id, timer) in kept {
+        table[id].sleep_timer = timer;
+    }
+    lost.sort_unstable();
+    for row in lost {
+        let id = listed[row as usize - 1];
+        solver.kernel.bodies.still(row as usize);
+        quarantine(entities[id as usize], Some(table.frame(id)), &mut commands);
+    }
+
+    let looks_up = is_minority(listed.len(), [outputs.iter().size_hint()]) || is_change_tracked();
+    let mut some = core::mem::take(some);
+    if looks_up {
         some.clear();
         some.extend(listed.iter().map(|id| entities[*id as usize]));
-        let mut found = plain.iter_many_mut(&*some);
-        while let Some(item) = found.fetch_next() {
-            scatter.body(item, OutputOptionsItem::NONE, table, seen, &mut commands);
-        }
-        let mut found = special.iter_many_mut(&*some);
-        while let Some((item, options)) = found.fetch_next() {
-            scatter.body(item, options, table, seen, &mut commands);
+    }
+    let results = Results { bodies: &bodies, rows: &solver.kernel.bodies };
+    if looks_up {
+        let mut found = outputs.iter_many_mut(&*some);
+        while let Some((id, position, rotation, linear, angular, timer)) = found.fetch_next() {
+            results.put(*id, (position, rotation), (linear, angular), timer);
         }
     } else {
-        for item in &mut plain {
-            scatter.body(item, OutputOptionsItem::NONE, table, seen, &mut commands);
-        }
-        for (item, options) in &mut special {
-            scatter.body(item, options, table, seen, &mut commands);
+        for table in outputs.contiguous_iter_mut().expect(IN_TABLES) {
+            put_table(table, &results, &solver.kernel);
         }
     }
+    bodies.some = some;
     diagnostics.finalize += start.elapsed();
 }
 
-/// What is the same for all bodies.
-struct Scatter<'a> {
+/// Has a body that the app moves stay where it is; its velocity says how fast it means to move. Returns its id and
+/// for how long it has been at rest.
+fn keep_in_place(id: u32, solver: &mut Solver, bodies: &Bodies, dt: f32) -> Option<(u32, f32)> {
+    let row = if id == NONE { 0 } else { bodies.table.row(id) };
+    if row == 0 {
+        return None;
+    }
+    let (v, w) = solver.bodies.rows[row as usize].velocity();
+    solver.bodies.put_back(row);
+    let body = &bodies.table[id];
+    let rests = body.rest_speed.admits(v * dt, w.length_squared() * dt * dt, dt);
+    Some((id, if rests { body.sleep_timer + dt } else { 0.0 }))
+}
+
+/// Writes the bodies of one table of components, by the team.
+#[expect(clippy::type_complexity, reason = "an item of a query")]
+fn put_table(
+    (mut ids, position, rotation, linear, angular, timer): (
+        &[BodyId],
+        ContiguousMut<Position>,
+        ContiguousMut<Rotation>,
+        ContiguousMut<LinearVelocity>,
+        ContiguousMut<AngularVelocity>,
+        Option<ContiguousMut<SleepTimer>>,
+    ),
+    results: &Results,
+    solver: &Solver,
+) {
+    let mut ticks = (None, None, None, None, None);
+    let mut position = Column::new(position, &mut ticks.0);
+    let mut rotation = Column::new(rotation, &mut ticks.1);
+    let mut linear = Column::new(linear, &mut ticks.2);
+    let mut angular = Column::new(angular, &mut ticks.3);
+    let mut timer = timer.map(|timer| Column::new(timer, &mut ticks.4));
+    let pieces = core::iter::from_fn(|| {
+        let ids = ids.split_off(..PIECE.min(ids.len())).filter(|ids| !ids.is_empty())?;
+        let timer = timer.as_mut().map(Column::cut);
+        Some((ids, position.cut(), rotation.cut(), linear.cut(), angular.cut(), timer))
+    });
+    solver.team.each(pieces, |(ids, position, rotation, linear, angular, timer)| {
+        let poses = position.slots().zip(rotation.slots());
+        let velocities = linear.slots().zip(angular.slots());
+        let mut timers = timer.map(Column::slots);
+        for ((id, pose), velocity) in ids.iter().zip(poses).zip(velocities) {
+            let timer = timers.as_mut().and_then(Iterator::next);
+            results.put(*id, pose, velocity, timer);
+        }
+    });
+}
+
+/// What came of the bodies' motion.
+struct Results<'a> {
+    bodies: &'a Bodies,
     rows: &'a BodyRows,
-    dt: f32,
-    unit: f32,
 }
 
-impl Scatter<'_> {
+impl Results<'_> {
+    /// Writes what became of one body, if it took part.
     #[inline(always)]
-    fn body(
+    fn put(
         &self,
-        item: OutputItem,
-        options: OutputOptionsItem,
-        bodies: &mut BodyTable,
-        seen: &mut [WorldPose],
-        commands: &mut Commands,
+        id: BodyId,
+        (position, rotation): (impl Put<Position>, impl Put<Rotation>),
+        (linear, angular): (impl Put<LinearVelocity>, impl Put<AngularVelocity>),
+        timer: Option<impl Put<SleepTimer>>,
     ) {
-        let OutputItem { entity, id, position, rotation, linear, angular, sleepless } = item;
-        let id = id.0;
-        let row = if id == NONE { 0 } else { bodies.row(id) };
-        if row == 0 || options.disabled {
+        let Self { bodies: Bodies { table, seen, .. }, rows } = self;
+        let row = if id.0 == NONE { 0 } else { table.row(id.0) };
+        if row == 0 {
             return;
         }
-        let body = &self.rows.rows[row as usize];
-        let (v, w) = body.velocity();
-        let (moved, turned) = if options.own_position { Default::default() } else { body.delta() };
-        let old = bodies.poses[id as usize];
-        let mut pose = old;
-        pose.center = old.center + moved.to_world();
-        pose.rotation = turned.mul(old.rotation).renormalized();
-        let placed = pose.center.is_finite_world() & pose.rotation.is_finite();
-        if !(placed & v.is_finite() & w.is_finite()) {
-            quarantine(entity, Some(bodies.frame(id)), commands);
-            return;
+        let body = &rows.rows[row as usize];
+        if row >= rows.first_dynamic() {
+            let (v, w) = body.velocity();
+            linear.put(LinearVelocity(vector_from_kernel(v)));
+            angular.put(AngularVelocity(angular_from_kernel(w)));
         }
-        if row >= self.rows.first_dynamic() {
-            pose.speed = v.length();
-            bodies.velocities[id as usize] = Velocity { linear: v, angular: w };
-            write_changed(linear, LinearVelocity(vector_from_kernel(v)));
-            write_changed(angular, AngularVelocity(angular_from_kernel(w)));
+        if body.is_moved() {
+            let (at, turned) = pose_from_kernel(seen[id.0 as usize]);
+            position.put(at);
+            rotation.put(turned);
         }
-        bodies.poses[id as usize] = pose;
-        let body = &mut bodies[id];
-        if (pose.center, pose.rotation) != (old.center, old.rotation) {
-            let frame = pose.frame(body.local_center);
-            seen[id as usize] = frame;
-            set_pose(position, rotation, frame);
+        if let Some(timer) = timer {
+            timer.put(SleepTimer(table[id.0].sleep_timer));
         }
-        let threshold = options.threshold.copied().unwrap_or_default();
-        // Where the app moves the body, this step has not: its velocity says how fast it means to.
-        let motion = || match options.own_position {
-            true => (v * self.dt, w.length_squared() * self.dt * self.dt),
-            false => (moved, Rot::IDENTITY.difference(turned).length_squared()),
-        };
-        let rests = !sleepless && self.is_slow(&threshold, motion());
-        let timer = &mut body.sleep_timer;
-        *timer = if rests { *timer + self.dt } else { 0.0 };
-        if let Some(mut shown) = options.timer {
-            shown.0 = *timer;
-        }
-    }
-
-    /// Whether a body has moved by `way`, and turned by the root of `angle_squared`, less in this step than
-    /// its thresholds allow. Judged on displacement, not velocity: what jitters in place rests.
-    fn is_slow(&self, threshold: &SleepThreshold, (way, angle_squared): (KernelVector, f32)) -> bool {
-        let (far, wide) = (threshold.linear * self.unit * self.dt, threshold.angular * self.dt);
-        // A negative threshold, or NaN, never rests.
-        far >= 0.0 && wide >= 0.0 && way.length_squared() <= far * far && angle_squared <= wide * wide
-    }
-}
-
-/// Writes, and marks as changed, only what differs.
-fn write_changed<T: PartialEq>(mut target: Mut<T>, value: T) {
-    if *target != value {
-        *target = value;
     }
 }

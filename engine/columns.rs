@@ -1,0 +1,75 @@
+//! Components written by whole tables, in pieces that a team's members take.
+
+use bevy_ecs::change_detection::{ContiguousComponentTicksMut, ContiguousMut, MaybeLocation, Mut, Tick};
+use bevy_ecs::prelude::DetectChangesMut;
+
+/// How many rows are a piece.
+pub(crate) const PIECE: usize = 256;
+
+/// Whether Bevy notes who changed what (its feature `track_location`). Pieces of tables cannot: what is written
+/// then has to be looked up one by one.
+pub(crate) fn is_change_tracked() -> bool {
+    MaybeLocation::caller().into_option().is_some()
+}
+
+/// A component of some rows of a table.
+pub(crate) struct Column<'a, T> {
+    values: &'a mut [T],
+    changed: &'a mut [Tick],
+    now: Tick,
+}
+
+impl<'a, T> Column<'a, T> {
+    /// The values of a table, and a place for their ticks.
+    pub(crate) fn new(
+        column: ContiguousMut<'a, T>,
+        ticks: &'a mut Option<ContiguousComponentTicksMut<'a>>,
+    ) -> Self {
+        let now = column.this_run_tick();
+        let (values, all) = ContiguousMut::bypass_change_detection_split(column);
+        Self { values, changed: ticks.insert(all).changed_mut(), now }
+    }
+
+    /// Takes the first [`PIECE`] rows, or what there is.
+    pub(crate) fn cut(&mut self) -> Self {
+        let count = PIECE.min(self.values.len());
+        let (values, changed) = (self.values.split_off_mut(..count), self.changed.split_off_mut(..count));
+        Self { values: values.unwrap_or_default(), changed: changed.unwrap_or_default(), now: self.now }
+    }
+
+    /// The rows one by one.
+    pub(crate) fn slots(self) -> impl Iterator<Item = Slot<'a, T>> {
+        let now = self.now;
+        self.values.iter_mut().zip(self.changed).map(move |(value, changed)| Slot { value, changed, now })
+    }
+}
+
+/// One entity's component in a [`Column`].
+pub(crate) struct Slot<'a, T> {
+    value: &'a mut T,
+    changed: &'a mut Tick,
+    now: Tick,
+}
+
+/// What a component can be written to.
+pub(crate) trait Put<T> {
+    /// Writes, and marks as changed, only what differs.
+    fn put(self, value: T);
+}
+
+impl<T: PartialEq> Put<T> for Slot<'_, T> {
+    #[inline(always)]
+    fn put(self, value: T) {
+        if *self.value != value {
+            *self.value = value;
+            *self.changed = self.now;
+        }
+    }
+}
+
+impl<T: PartialEq> Put<T> for Mut<'_, T> {
+    #[inline(always)]
+    fn put(mut self, value: T) {
+        self.set_if_neq(value);
+    }
+}
