@@ -37,8 +37,9 @@ pub enum TreeOptimizationMode {
     PartialRebuild,
     /// Leaves that moved grow in place; when one in 16 has, the tree is rebuilt.
     FullRebuild,
-    /// Chosen by the share of leaves that moved. Where it says to reinsert, this engine rebuilds in part too,
-    /// which costs as much as what moved.
+    /// Leaves that moved grow in place; when one in 16 has, the boxes above them are fitted to what is below. Only when
+    /// all boxes together have grown by a quarter the tree is rebuilt, in part or in full by the share of leaves that
+    /// moved. Where that says to reinsert, this engine rebuilds in part too, which costs as much as what moved.
     Adaptive {
         /// Up to this share leaves are [reinserted](Self::Reinsert); 0.15 by default.
         reinsert_threshold: f32,

@@ -12,8 +12,19 @@ use kernel::{
 pub(crate) struct ProxyTable {
     pub(crate) trees: Trees,
     places: Vec<Option<Place>>,
-    /// How many leaves of each tree grew in place since it was last rebuilt.
-    grown: [usize; 4],
+    /// How good each tree is.
+    states: [TreeState; 4],
+}
+
+/// What happened to a tree since it was last put in order.
+#[derive(Clone, Copy, Default)]
+struct TreeState {
+    /// How many leaves grew in place since the boxes above them were last fitted.
+    grown: usize,
+    /// How many leaves moved since the tree's cost was last looked at.
+    moved: usize,
+    /// The cost after the last rebuild.
+    rebuilt: f32,
 }
 
 #[derive(Clone, Copy)]
@@ -25,8 +36,14 @@ struct Place {
 /// New leaves from this many on are entered at once.
 const BULK: usize = 256;
 
-/// A tree is rebuilt when one of so many leaves has grown.
-const REBUILD: usize = 16;
+/// A tree is put in order when one of so many leaves has grown.
+const GROWN: usize = 16;
+
+/// A tree's cost is looked at when one of so many leaves has moved.
+const MOVED: usize = 4;
+
+/// A tree is rebuilt when its cost has grown by this factor.
+const WORSE: f32 = 1.25;
 
 impl ProxyTable {
     /// Says in which tree a collider belongs; its leaf leaves any other.
@@ -62,36 +79,64 @@ impl ProxyTable {
 
     /// Gives the leaves of the colliders in `moved` their fat boxes, and keeps the trees good to search.
     ///
-    /// Unless the app wants every leaf reinserted, leaves grow in place until one in [`REBUILD`] has: rebuilding
-    /// above them then costs as much as what grew.
+    /// Unless the app wants every leaf reinserted, leaves grow in place until one in [`GROWN`] has: fitting the
+    /// boxes above them, or rebuilding, then costs as much as what grew.
     pub(crate) fn update(&mut self, moved: &BitSet, fat: &[Aabb], mode: TreeOptimizationMode) {
         let mut fresh: [Vec<(u32, Aabb)>; 4] = Default::default();
+        let many = moved.count() * GROWN;
+        let mut placed = [false; 4];
         for id in moved.iter() {
             let Some(Some(place)) = self.places.get(id as usize) else { continue };
-            let aabb = fat[id as usize];
+            let (aabb, kind) = (fat[id as usize], place.kind);
+            let tree = &mut self.trees[kind];
             match place.leaf {
-                Some(leaf) if mode == TreeOptimizationMode::Reinsert => {
-                    self.trees[place.kind].set(leaf, aabb);
-                }
+                None => fresh[kind as usize].push((id, aabb)),
+                Some(leaf) if mode == TreeOptimizationMode::Reinsert => tree.set(leaf, aabb),
                 Some(leaf) => {
-                    self.trees[place.kind].enlarge(leaf, aabb);
-                    self.grown[place.kind as usize] += 1;
+                    if many > tree.len() {
+                        tree.place(leaf, aabb);
+                        placed[kind as usize] = true;
+                    } else {
+                        tree.enlarge(leaf, aabb);
+                    }
+                    self.states[kind as usize].grown += 1;
                 }
-                None => fresh[place.kind as usize].push((id, aabb)),
             }
         }
         for kind in TreeKind::ALL {
+            if placed[kind as usize] {
+                self.trees[kind].refit();
+            }
             self.enter(kind, &fresh[kind as usize]);
-            let (tree, grown) = (&mut self.trees[kind], &mut self.grown[kind as usize]);
-            if *grown * REBUILD <= tree.len() {
-                continue;
-            }
-            match mode.resolve(*grown as f32 / tree.len() as f32) {
-                TreeOptimizationMode::FullRebuild => tree.rebuild_full(),
-                _ => _ = tree.rebuild_partial(),
-            }
-            *grown = 0;
+            self.put_in_order(kind, mode, placed[kind as usize]);
         }
+    }
+
+    /// Optimizes a tree if it is time; `fitted` says whether its boxes have just been fitted.
+    fn put_in_order(&mut self, kind: TreeKind, mode: TreeOptimizationMode, fitted: bool) {
+        let (tree, state) = (&mut self.trees[kind], &mut self.states[kind as usize]);
+        if state.grown * GROWN <= tree.len() {
+            return;
+        }
+        let share = state.grown as f32 / tree.len() as f32;
+        state.moved += core::mem::take(&mut state.grown);
+        if let TreeOptimizationMode::Adaptive { .. } = mode {
+            if !fitted {
+                tree.refit();
+            }
+            if state.moved * MOVED <= tree.len() {
+                return;
+            }
+            state.moved = 0;
+            if tree.cost() <= WORSE * state.rebuilt {
+                return;
+            }
+        }
+        match mode.resolve(share) {
+            TreeOptimizationMode::FullRebuild => tree.rebuild_full(),
+            _ => _ = tree.rebuild_partial(),
+        }
+        state.rebuilt = tree.cost();
     }
 
     fn enter(&mut self, kind: TreeKind, leaves: &[(u32, Aabb)]) {

@@ -3,7 +3,7 @@
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
 use kernel::{
-    bvh::{Movers, find_pairs},
+    bvh::{FoundPairs, Movers},
     data::BitSet,
     table::{BodyTable, ColliderTable, Fattening, NONE},
 };
@@ -132,7 +132,7 @@ impl Shown<'_> {
     #[inline(always)]
     fn put(&self, id: ColliderId, tight: impl Put<ColliderAabb>, fat: impl Put<EnlargedAabb>) {
         let id = id.0;
-        let body = if id == NONE { NONE } else { self.colliders[id].def.body };
+        let body = if id == NONE { NONE } else { self.colliders.body(id) };
         if body != NONE && self.bodies.row(body) != 0 {
             tight.put(to_public(&self.colliders.tight[id as usize]));
             fat.put(EnlargedAabb::new(to_public(&self.colliders.fat[id as usize])));
@@ -144,22 +144,26 @@ fn to_public(aabb: &kernel::shape::Aabb) -> ColliderAabb {
     ColliderAabb { min: vector_from_kernel(aabb.min), max: vector_from_kernel(aabb.max) }
 }
 
+/// From so many movers on the team's helpers are woken.
+const MANY_MOVERS: usize = 256;
+
 /// Pairs found in a step, kept for their memory.
 #[derive(Resource, Default)]
-pub(crate) struct FoundPairs {
-    pairs: Vec<(u32, u32)>,
+pub(crate) struct PairSearch {
+    found: FoundPairs,
     movers: Movers,
 }
 
 /// Finds the pairs that moved boxes came into, and makes contacts of those that may collide, in the order
 /// of ids.
 pub(crate) fn find_new_pairs(
-    mut found: ResMut<FoundPairs>,
+    mut search: ResMut<PairSearch>,
+    solver: Res<StepSolver>,
     mut tables: Tables,
     mut diagnostics: ResMut<CollisionDiagnostics>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let FoundPairs { pairs, movers } = &mut *found;
+    let PairSearch { found, movers } = &mut *search;
     {
         let Colliders { table, trees, moved, .. } = &mut *tables.colliders;
         if moved.is_empty() {
@@ -171,13 +175,17 @@ pub(crate) fn find_new_pairs(
         let contacts = &tables.contacts.table;
         // Colliders of one body may overlap by the thousand: they are not even listed.
         let known = |a: u32, b: u32| {
-            let body = table[a].def.body;
-            (body == table[b].def.body && body != NONE) || contacts.find(a, b).is_some()
+            let body = table.body(a);
+            (body == table.body(b) && body != NONE) || contacts.find(a, b).is_some()
         };
-        find_pairs(&trees.trees, movers, known, pairs);
+        let team = &solver.kernel.team;
+        if movers.list().len() >= MANY_MOVERS {
+            team.wake();
+        }
+        found.find(&trees.trees, movers, known, team);
     }
     let mut sleepers = Vec::new();
-    for &(a, b) in pairs.iter() {
+    for &(a, b) in found.pairs() {
         if may_collide(a, b, &tables) {
             let mut link = tables.link();
             let id = link.create(a, b);

@@ -5,6 +5,7 @@ use super::*;
 use crate::data::PairSet;
 use crate::math::{DIM, Vector};
 use crate::shape::Aabb;
+use crate::team::Team;
 use std::time::Instant;
 
 /// The fastest of many rounds, printed per item: rounds are short, so that on a busy machine some run
@@ -115,7 +116,7 @@ fn measure_steps(leaves: &[(u32, Aabb)], side: f32, noise: &mut Noise) {
         if !together {
             (0..ids.len()).for_each(|i| ids.swap(i, noise.below(leaves.len())));
         }
-        let (mut movers, mut pairs, mut known) = (Movers::default(), Vec::new(), PairSet::new());
+        let (mut movers, mut search, mut known) = (Movers::default(), FoundPairs::default(), PairSet::new());
         let (mut best, mut items, mut found) = ([f64::INFINITY; 3], 0, 0);
         for step in 0..STEPS {
             movers.clear();
@@ -130,7 +131,8 @@ fn measure_steps(leaves: &[(u32, Aabb)], side: f32, noise: &mut Noise) {
             let enlarged = Instant::now();
             items += trees[KIND].rebuild_partial();
             let rebuilt = Instant::now();
-            find_pairs(&trees, &movers, |a, b| known.contains(a, b), &mut pairs);
+            search.find(&trees, &movers, |a, b| known.contains(a, b), &Team::default());
+            let pairs = search.pairs();
             let ends = [start, enlarged, rebuilt, Instant::now()];
             if step > 0 {
                 (0..3).for_each(|i| best[i] = best[i].min((ends[i + 1] - ends[i]).as_secs_f64()));

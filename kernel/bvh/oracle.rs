@@ -4,6 +4,7 @@ use super::query::Sweep;
 use super::*;
 use crate::math::{DIM, Vector};
 use crate::shape::Aabb;
+use crate::team::Team;
 use proptest::prelude::*;
 
 /// Numbers that look random: splitmix64.
@@ -112,7 +113,7 @@ impl Twin {
                     self.list[i].2 = stored;
                 }
             }
-            80..140 => {
+            110..140 => {
                 if let Some(i) = self.pick(noise) {
                     // Mostly near where it was, as bodies move.
                     let near = self.list[i].2.swept(noise.vector(-0.5, 0.5));
@@ -120,6 +121,15 @@ impl Twin {
                     self.tree.enlarge(self.list[i].0, aabb);
                     self.list[i].2 = tree::admitted(aabb);
                 }
+            }
+            80..110 => {
+                for _ in 0..noise.below(20) {
+                    let Some(i) = self.pick(noise) else { break };
+                    let aabb = self.list[i].2.swept(noise.vector(-0.5, 0.5));
+                    self.tree.place(self.list[i].0, aabb);
+                    self.list[i].2 = tree::admitted(aabb);
+                }
+                self.tree.refit();
             }
             140..143 => self.tree.rebuild_full(),
             143..146 => {
@@ -344,9 +354,12 @@ proptest! {
                 }
             }
         }
-        let mut found = vec![(9, 9)];
-        find_pairs(&trees, &movers, is_known, &mut found);
-        prop_assert_eq!(found, expected);
+        let mut found = FoundPairs::default();
+        for team in [Team::default(), Team::new(3)] {
+            team.wake();
+            found.find(&trees, &movers, is_known, &team);
+            prop_assert_eq!(found.pairs(), &expected);
+        }
         movers.clear();
         prop_assert!(listed.iter().all(|id| !movers.contains(*id)) && movers.list().is_empty());
     }

@@ -3,6 +3,11 @@
 use super::tree::Tree;
 use crate::data::BitSet;
 use crate::shape::Aabb;
+use crate::team::Team;
+use std::sync::{Mutex, PoisonError};
+
+/// How many movers a member of the team asks for at a stretch.
+const BLOCK: usize = 32;
 
 /// What moves a collider decides in which tree it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -166,17 +171,42 @@ pub fn pairs_of(
     }
 }
 
-/// The pairs of all movers, sorted, each once, in `out` (cleared first). Every id must stand in one tree
-/// only, once.
-pub fn find_pairs(
-    trees: &Trees,
-    movers: &Movers,
-    is_known: impl Fn(u32, u32) -> bool,
-    out: &mut Vec<(u32, u32)>,
-) {
-    out.clear();
-    for mover in movers.list() {
-        pairs_of(mover, trees, movers, &is_known, out);
+/// The pairs that movers came into, and the memory to find them with.
+#[derive(Debug, Default)]
+pub struct FoundPairs {
+    sorted: Vec<(u32, u32)>,
+    /// What each member of the team found.
+    by_member: Vec<Mutex<Vec<(u32, u32)>>>,
+}
+
+impl FoundPairs {
+    /// Finds the pairs of all movers anew: sorted, each once. Every id must stand in one tree only, once.
+    pub fn find(
+        &mut self,
+        trees: &Trees,
+        movers: &Movers,
+        is_known: impl Fn(u32, u32) -> bool + Sync,
+        team: &Team,
+    ) {
+        if self.by_member.len() < team.members() {
+            self.by_member.resize_with(team.members(), Mutex::default);
+        }
+        let (list, by_member) = (movers.list(), &self.by_member);
+        team.run(list.len().div_ceil(BLOCK), |block, member| {
+            let mut found = by_member[member].lock().unwrap_or_else(PoisonError::into_inner);
+            for mover in &list[block * BLOCK..list.len().min((block + 1) * BLOCK)] {
+                pairs_of(mover, trees, movers, &is_known, &mut found);
+            }
+        });
+        self.sorted.clear();
+        for found in &mut self.by_member {
+            self.sorted.append(found.get_mut().unwrap_or_else(PoisonError::into_inner));
+        }
+        self.sorted.sort_unstable();
     }
-    out.sort_unstable();
+
+    /// The pairs found last, `(lower id, higher id)`, sorted.
+    pub fn pairs(&self) -> &[(u32, u32)] {
+        &self.sorted
+    }
 }

@@ -224,6 +224,63 @@ impl Tree {
         self.root_box = self.root_box.union(&aabb);
     }
 
+    /// Gives a leaf another box in place and leaves the boxes above it as they are: until [`refit`](Self::refit)
+    /// queries may miss it. Cheaper than [`enlarge`](Self::enlarge) where many leaves move.
+    pub fn place(&mut self, proxy: ProxyId, aabb: Aabb) {
+        if !self.is_checked(proxy) {
+            return;
+        }
+        let slot = self.leaves[proxy.0 as usize].slot;
+        if slot == ROOT {
+            self.root_box = admitted(aabb);
+            return;
+        }
+        self.branches[slot as usize >> 1].boxes[slot as usize & 1] = admitted(aabb);
+        let mut slot = slot;
+        while slot != ROOT {
+            let (branch, bit) = (&mut self.branches[slot as usize >> 1], 1 << (slot & 1));
+            if branch.enlarged & bit != 0 {
+                return;
+            }
+            branch.enlarged |= bit;
+            slot = branch.parent;
+        }
+    }
+
+    /// Fits the boxes above leaves that were inserted or got another box since the last rebuild: they may shrink.
+    pub fn refit(&mut self) {
+        if self.root & LEAF != 0 || self.branches[self.root as usize].enlarged == 0 {
+            return;
+        }
+        self.order.push(self.root);
+        let mut opened = 0;
+        while let Some(&branch) = self.order.get(opened) {
+            opened += 1;
+            let b = &self.branches[branch as usize];
+            for side in 0..2 {
+                if b.children[side] & LEAF == 0 && b.enlarged >> side & 1 != 0 {
+                    self.order.push(b.children[side]);
+                }
+            }
+        }
+        // Children come after their parents, so backwards every box is there when it is needed.
+        while let Some(branch) = self.order.pop() {
+            let b = &self.branches[branch as usize];
+            let (slot, joined) = (b.parent, b.boxes[0].union(&b.boxes[1]));
+            match slot {
+                ROOT => self.root_box = joined,
+                _ => self.branches[slot as usize >> 1].boxes[slot as usize & 1] = joined,
+            }
+        }
+    }
+
+    /// What queries cost, to compare: the surface of all boxes (in 2D their perimeter), m² (m). Infinite ones are left
+    /// out. Takes O(n).
+    pub fn cost(&self) -> f32 {
+        let costs = self.branches.iter().filter(|b| b.height > 0).flat_map(|b| b.boxes.map(|b| b.cost()));
+        costs.filter(|cost| cost.is_finite()).sum()
+    }
+
     #[inline(always)]
     fn is_checked(&self, proxy: ProxyId) -> bool {
         let is_live = self.is_live(proxy);

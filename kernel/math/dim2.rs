@@ -346,18 +346,41 @@ impl<N: Num> Rot<N> {
     }
 }
 
-impl Rot {
+impl<N: Lane> Rot<N> {
     /// Scaled to unit length, cheaply where it is within 0.05 % of it, as after a product: by three terms of
     /// (1 + e)^-½, exact to rounding.
-    #[inline]
+    #[inline(always)]
     pub fn renormalized(self) -> Self {
-        let e = self.cos * self.cos + self.sin * self.sin - 1.0;
-        if e.abs() > 1.0e-3 {
-            return self.normalized();
-        }
-        let factor = 1.0 - e * (0.5 - 0.375 * e);
+        let e = self.cos * self.cos + self.sin * self.sin - N::ONE;
+        let near = self.scaled(N::ONE - e * (N::splat(0.5) - N::splat(0.375) * e));
+        let far = N::lt(N::splat(1.0e-6), e * e);
+        if N::any(far) { Self::select(far, self.normalized(), near) } else { near }
+    }
+    /// The rotation vector of a small turn: the sine of its angle.
+    #[inline(always)]
+    pub fn small_turn(self) -> Angular<N> {
+        Angular { z: self.sin }
+    }
+    /// The rotation of lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Rot {
+        Rot { cos: self.cos.get(i), sin: self.sin.get(i) }
+    }
+    /// Sets the rotation of lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: Rot) {
+        self.cos.set(i, v.cos);
+        self.sin.set(i, v.sin);
+    }
+    fn scaled(self, factor: N) -> Self {
         Self { cos: self.cos * factor, sin: self.sin * factor }
     }
+    fn select(mask: N::Mask, a: Self, b: Self) -> Self {
+        Self { cos: N::select(mask, a.cos, b.cos), sin: N::select(mask, a.sin, b.sin) }
+    }
+}
+
+impl Rot {
     /// The rotation by an angle in radians, counter-clockwise.
     pub fn from_angle(angle: f32) -> Self {
         let (sin, cos) = super::sin_cos(f64::from(angle));
@@ -379,10 +402,10 @@ impl Rot {
     pub fn is_finite(self) -> bool {
         self.cos * 0.0 + self.sin * 0.0 == 0.0
     }
-    /// How far two rotations are apart: the sine of the angle between them, about its size when small.
+    /// The turn from one rotation to another, if small.
     #[inline]
     pub fn difference(self, other: Self) -> Angular {
-        Angular { z: self.inverse().mul(other).sin }
+        self.inverse().mul(other).small_turn()
     }
     /// The cosine of the angle between two rotations.
     #[inline]

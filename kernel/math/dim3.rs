@@ -433,18 +433,48 @@ impl<N: Num> Rot<N> {
     }
 }
 
-impl Rot {
+impl<N: Lane> Rot<N> {
     /// Scaled to unit length, cheaply where it is within 0.05 % of it, as after a product: by three terms of
     /// (1 + e)^-½, exact to rounding.
-    #[inline]
+    #[inline(always)]
     pub fn renormalized(self) -> Self {
-        let e = self.x * self.x + self.y * self.y + self.z * self.z + self.w * self.w - 1.0;
-        if e.abs() > 1.0e-3 {
-            return self.normalized();
-        }
-        let factor = 1.0 - e * (0.5 - 0.375 * e);
+        let e = self.x * self.x + self.y * self.y + self.z * self.z + self.w * self.w - N::ONE;
+        let near = self.scaled(N::ONE - e * (N::splat(0.5) - N::splat(0.375) * e));
+        let far = N::lt(N::splat(1.0e-6), e * e);
+        if N::any(far) { Self::select(far, self.normalized(), near) } else { near }
+    }
+    /// The rotation vector of a small turn: twice the imaginary part of the quaternion.
+    #[inline(always)]
+    pub fn small_turn(self) -> Angular<N> {
+        Vector { x: self.x, y: self.y, z: self.z } * N::splat(2.0)
+    }
+    /// The rotation of lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Rot {
+        Rot { x: self.x.get(i), y: self.y.get(i), z: self.z.get(i), w: self.w.get(i) }
+    }
+    /// Sets the rotation of lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: Rot) {
+        self.x.set(i, v.x);
+        self.y.set(i, v.y);
+        self.z.set(i, v.z);
+        self.w.set(i, v.w);
+    }
+    fn scaled(self, factor: N) -> Self {
         Self { x: self.x * factor, y: self.y * factor, z: self.z * factor, w: self.w * factor }
     }
+    fn select(mask: N::Mask, a: Self, b: Self) -> Self {
+        Self {
+            x: N::select(mask, a.x, b.x),
+            y: N::select(mask, a.y, b.y),
+            z: N::select(mask, a.z, b.z),
+            w: N::select(mask, a.w, b.w),
+        }
+    }
+}
+
+impl Rot {
     /// The rotation about the unit vector `axis` by an angle in radians, right-handed.
     pub fn from_axis_angle(axis: Vector, angle: f32) -> Self {
         let (sin, cos) = super::sin_cos(0.5 * f64::from(angle));
@@ -468,12 +498,10 @@ impl Rot {
         let [x, y, z, w] = [x, y, z, w].map(|c| (c / length) as f32);
         Self { x, y, z, w }
     }
-    /// How far two rotations are apart: twice the imaginary part of the quaternion between them, about
-    /// the rotation vector when small.
+    /// The turn from one rotation to another, if small.
     #[inline]
     pub fn difference(self, other: Self) -> Angular {
-        let d = self.inverse().mul(other);
-        Vector { x: d.x, y: d.y, z: d.z } * 2.0
+        self.inverse().mul(other).small_turn()
     }
     /// The cosine of the angle between two rotations.
     #[inline]

@@ -1,13 +1,13 @@
 //! After the last substep: from rows back to the tables.
 #![expect(unsafe_code, reason = "bodies are changed by several threads, each its own")]
 
-use super::{BodyRow, Solver};
+use super::{BodyRow, RowView, Solver};
 use crate::data::Parts;
-use crate::math::{Rot, WorldPose};
-use crate::table::{BodyTable, Velocity};
+use crate::math::{F32x4, Ids, Lane, Rot, Vector, WorldPose};
+use crate::table::{BodyParts, BodyTable, Velocity};
 use std::sync::{Mutex, PoisonError};
 
-/// How many bodies a member of the team finishes at a stretch.
+/// How many bodies a member of the team finishes at a stretch: a multiple of the lanes.
 const BLOCK: usize = 256;
 
 impl Solver {
@@ -15,7 +15,8 @@ impl Solver {
     /// which it has been at rest. `listed` are the bodies in the order of their rows, from row 1; `frames` receives
     /// the frame of each that [moved](BodyRow::is_moved), by its id.
     ///
-    /// Returns the rows whose result is not finite, in no order: these bodies keep pose and velocity.
+    /// Returns the rows whose result is not finite, in no order: these bodies keep pose and velocity. Left out are
+    /// bodies whose row has become another's.
     pub fn finish(
         &mut self,
         bodies: &mut BodyTable,
@@ -23,48 +24,87 @@ impl Solver {
         frames: &mut [WorldPose],
         dt: f32,
     ) -> Vec<u32> {
-        let first_dynamic = self.bodies.first_dynamic as usize;
-        let rows = &self.bodies.rows[1..];
-        let parts = bodies.parts();
-        let frames = Parts::of(frames);
-        let lost = Mutex::new(Vec::new());
-        let finish = |row: usize, id: usize, motion: &BodyRow| {
-            if parts.rows[id] as usize != row {
-                return;
-            }
-            // SAFETY: no two bodies have one row, and each row is finished once.
-            let (body, pose, velocity, frame) = unsafe {
-                (parts.bodies.one(id), parts.poses.one(id), parts.velocities.one(id), frames.one(id))
-            };
-            let ((v, w), (moved, turned)) = (motion.velocity(), motion.delta());
-            let mut new = *pose;
-            if motion.is_moved() {
-                new.center = pose.center + moved.to_world();
-                new.rotation = turned.mul(pose.rotation).renormalized();
-            }
-            let placed = new.center.is_finite_world() & new.rotation.is_finite();
-            if !(placed & v.is_finite() & w.is_finite()) {
-                lost.lock().unwrap_or_else(PoisonError::into_inner).push(row as u32);
-                return;
-            }
-            if row >= first_dynamic {
-                new.speed = v.length();
-                *velocity = Velocity { linear: v, angular: w };
-            }
-            *pose = new;
-            if motion.is_moved() {
-                *frame = new.frame(body.local_center);
-            }
-            let angle_squared = Rot::IDENTITY.difference(turned).length_squared();
-            let rests = body.rest_speed.admits(moved, angle_squared, dt);
-            body.sleep_timer = if rests { body.sleep_timer + dt } else { 0.0 };
+        let listed = &listed[..listed.len().min(self.bodies.rows.len().saturating_sub(1))];
+        let finish = Finish {
+            first_dynamic: self.bodies.first_dynamic,
+            rows: RowView::over(&mut self.bodies.rows, u32::MAX),
+            bodies: bodies.parts(),
+            frames: Parts::of(frames),
+            dt,
+            lost: Mutex::new(Vec::new()),
         };
-        let blocks = listed.chunks(BLOCK).zip(rows.chunks(BLOCK)).enumerate();
-        self.team.each(blocks, |(block, (ids, rows))| {
-            for (i, (id, motion)) in ids.iter().zip(rows).enumerate() {
-                finish(1 + block * BLOCK + i, *id as usize, motion);
+        self.team.each(listed.chunks(BLOCK).enumerate(), |(block, ids)| {
+            let first = (1 + block * BLOCK) as u32;
+            let (fours, rest) = ids.as_chunks();
+            for (i, ids) in fours.iter().enumerate() {
+                finish.bodies::<F32x4>(first + (F32x4::WIDTH * i) as u32, ids);
+            }
+            for (i, id) in rest.iter().enumerate() {
+                finish.bodies::<f32>(first + (F32x4::WIDTH * fours.len() + i) as u32, &[*id]);
             }
         });
-        lost.into_inner().unwrap_or_else(PoisonError::into_inner)
+        finish.lost.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Where bodies are read from and written to.
+struct Finish<'a> {
+    rows: RowView<'a, BodyRow>,
+    first_dynamic: u32,
+    bodies: BodyParts<'a>,
+    frames: Parts<'a, WorldPose>,
+    dt: f32,
+    lost: Mutex<Vec<u32>>,
+}
+
+impl Finish<'_> {
+    /// Finishes a body for each lane, with rows from `first` on. Each row is finished once.
+    #[inline(always)]
+    fn bodies<N: Lane>(&self, first: u32, ids: &N::Ids) {
+        let &Self { ref rows, ref bodies, dt, .. } = self;
+        let ids = ids.lanes();
+        if !ids.iter().zip(first..).all(|(id, row)| bodies.rows[*id as usize] == row) {
+            if N::WIDTH > 1 {
+                ids.iter().zip(first..).for_each(|(id, row)| self.bodies::<f32>(row, &[*id]));
+            }
+            return;
+        }
+        let mut lanes = N::Ids::splat(first);
+        let mut before = Rot::<N>::default();
+        for (i, id) in ids.iter().enumerate() {
+            lanes.set(i, first + i as u32);
+            // SAFETY: no two bodies have one row, so this one is nobody else's.
+            before.set(i, unsafe { bodies.poses.one(*id as usize) }.rotation);
+        }
+        let (v, _) = BodyRow::gather_velocity::<N>(rows, &lanes);
+        let (way, turn) = BodyRow::gather_delta::<N>(rows, &lanes);
+        let rotation = turn.mul(before).renormalized();
+        let (speed, way_squared) = (v.length(), way.length_squared());
+        let angle_squared = turn.small_turn().length_squared();
+        for (i, id) in ids.iter().enumerate() {
+            let (row, id) = (first + i as u32, *id as usize);
+            // SAFETY: as above.
+            let (body, pose) = unsafe { (bodies.bodies.one(id), bodies.poses.one(id)) };
+            let motion = rows.get(row);
+            let (linear, angular) = motion.velocity();
+            let (center, rotation) = (pose.center + Vector::get(&way, i).to_world(), Rot::get(&rotation, i));
+            let placed = center.is_finite_world() & rotation.is_finite();
+            if !(placed & linear.is_finite() & angular.is_finite()) {
+                self.lost.lock().unwrap_or_else(PoisonError::into_inner).push(row);
+                continue;
+            }
+            if row >= self.first_dynamic {
+                pose.speed = speed.get(i);
+                // SAFETY: as above.
+                *unsafe { bodies.velocities.one(id) } = Velocity { linear, angular };
+            }
+            if motion.is_moved() {
+                (pose.center, pose.rotation) = (center, rotation);
+                // SAFETY: as above.
+                *unsafe { self.frames.one(id) } = pose.frame(body.local_center);
+            }
+            let rests = body.rest_speed.admits(way_squared.get(i), angle_squared.get(i), dt);
+            body.sleep_timer = if rests { body.sleep_timer + dt } else { 0.0 };
+        }
     }
 }

@@ -30,11 +30,12 @@ impl RestSpeed {
     /// Never at rest.
     pub const NEVER: Self = Self { linear: -1.0, angular: -1.0 };
 
-    /// Whether a body rests that got `way` far in `dt` seconds, and turned by the root of `angle_squared`.
+    /// Whether a body rests that in `dt` seconds got as far as the root of `way_squared`, and turned by that of
+    /// `angle_squared`.
     #[inline(always)]
-    pub fn admits(self, way: Vector, angle_squared: f32, dt: f32) -> bool {
+    pub fn admits(self, way_squared: f32, angle_squared: f32, dt: f32) -> bool {
         let (far, wide) = (self.linear * dt, self.angular * dt);
-        far >= 0.0 && wide >= 0.0 && way.length_squared() <= far * far && angle_squared <= wide * wide
+        far >= 0.0 && wide >= 0.0 && way_squared <= far * far && angle_squared <= wide * wide
     }
 }
 

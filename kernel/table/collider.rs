@@ -140,6 +140,8 @@ pub struct ColliderTable {
     /// Which ids are in use.
     pub ids: IdPool,
     colliders: Vec<Collider>,
+    /// Bodies by id: what else would have to be looked up in the colliders, a line of memory each.
+    owners: Vec<u32>,
     /// World poses by id.
     pub poses: Vec<WorldPose>,
     /// The smallest boxes around the colliders as they stood when last refreshed, by id.
@@ -170,6 +172,7 @@ impl ColliderTable {
         let i = id as usize;
         if i == self.colliders.len() {
             self.colliders.push(collider);
+            self.owners.push(NONE);
             self.poses.push(pose);
             self.tight.push(Aabb::EMPTY);
             self.fat.push(Aabb::EMPTY);
@@ -244,6 +247,12 @@ impl ColliderTable {
         })
     }
 
+    /// The body of a collider, or [`NONE`].
+    #[inline(always)]
+    pub fn body(&self, id: u32) -> u32 {
+        self.owners[id as usize]
+    }
+
     /// The collider after `id` in its body's list, or [`NONE`].
     pub fn next_of_body(&self, id: u32) -> u32 {
         self[id].next
@@ -296,6 +305,7 @@ impl ColliderTable {
 
     fn attach(&mut self, id: u32, bodies: &mut BodyTable) {
         let body = self[id].def.body;
+        self.owners[id as usize] = body;
         if body == NONE {
             return;
         }

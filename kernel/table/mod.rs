@@ -4,6 +4,7 @@
 mod body;
 mod collider;
 
+pub(crate) use body::BodyParts;
 pub use body::{Body, BodyKind, BodyPose, BodyTable, RestSpeed, Velocity};
 pub use collider::{
     Collider, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material, Reach, Surface,

@@ -3,7 +3,7 @@
 
 use super::dim::inverse_inertia;
 use crate::kernel;
-use kernel::bvh::{Mover, Movers, PairMask, ProxyId, TreeKind, Trees, find_pairs};
+use kernel::bvh::{FoundPairs, Mover, Movers, PairMask, ProxyId, TreeKind, Trees};
 use kernel::contact::{Contact, ContactTable, Found, Link, NarrowPhase, Scratch};
 use kernel::data::BitSet;
 use kernel::graph::{ColorGraph, Islands, SleepScan};
@@ -56,7 +56,6 @@ pub struct Sim {
     proxies: Vec<(TreeKind, ProxyId)>,
     masses: Vec<(f32, InvInertia)>,
     movers: Movers,
-    pairs: Vec<(u32, u32)>,
     solver: Solver,
     scratch: Vec<Scratch>,
     scan: SleepScan,
@@ -86,7 +85,6 @@ impl Sim {
             proxies: Vec::new(),
             masses: Vec::new(),
             movers: Movers::default(),
-            pairs: Vec::new(),
             solver: Solver::default(),
             scratch: Vec::new(),
             scan: SleepScan::new(),
@@ -222,9 +220,10 @@ impl Sim {
         self.contacts.recycle_ids();
         self.gather();
         let contacts = &self.contacts;
-        find_pairs(&self.trees, &self.movers, |a, b| contacts.find(a, b).is_some(), &mut self.pairs);
+        let mut found = FoundPairs::default();
+        found.find(&self.trees, &self.movers, |a, b| contacts.find(a, b).is_some(), &self.solver.team);
         self.movers.clear();
-        for (a, b) in core::mem::take(&mut self.pairs) {
+        for &(a, b) in found.pairs() {
             self.link().create(a, b);
         }
         self.narrow();

@@ -8,7 +8,7 @@ use super::BroadPhaseSystems;
 use crate::{
     collision::{
         diagnostics::CollisionDiagnostics,
-        pairs::{FoundPairs, find_new_pairs},
+        pairs::{PairSearch, find_new_pairs},
     },
     schedule::{PhysicsSchedule, PhysicsStepSystems},
     step::{self, Stage},
@@ -53,7 +53,7 @@ struct SharedBroadPhasePlugin;
 impl Plugin for SharedBroadPhasePlugin {
     fn build(&self, app: &mut App) {
         step::install(app);
-        app.init_resource::<FoundPairs>()
+        app.init_resource::<PairSearch>()
             .init_resource::<CollisionDiagnostics>()
             .add_systems(PhysicsSchedule, find_new_pairs.in_set(Stage::FindPairs));
     }

@@ -40,7 +40,9 @@ pub(crate) struct StateInput {
 
 /// What a body's row is made of.
 #[derive(QueryData)]
+#[query_data(contiguous(mutable))]
 pub(crate) struct RowInput {
+    entity: Entity,
     id: &'static BodyId,
     linear_velocity: &'static LinearVelocity,
     angular_velocity: &'static AngularVelocity,
@@ -50,6 +52,7 @@ pub(crate) struct RowInput {
 
 /// What most bodies do not have.
 #[derive(QueryData)]
+#[query_data(contiguous(mutable))]
 pub(crate) struct MotionInput {
     gravity_scale: Option<&'static GravityScale>,
     linear_damping: Option<&'static LinearDamping>,
@@ -77,31 +80,45 @@ impl MotionInputItem<'_, '_> {
     };
 }
 
-/// The bodies that have none of that. Bodies are walked through in two loops: asking each for what nearly none has
-/// would be a quarter of the work.
-type Plain = (
-    Without<GravityScale>,
-    Without<LinearDamping>,
-    Without<AngularDamping>,
-    Without<MaxLinearSpeed>,
-    Without<MaxAngularSpeed>,
-    Without<LockedAxes>,
-    Without<Dominance>,
-    Without<RigidBodyDisabled>,
-    Without<CustomVelocityIntegration>,
-);
-/// All others.
-type Special = Or<(
-    With<GravityScale>,
-    With<LinearDamping>,
-    With<AngularDamping>,
-    With<MaxLinearSpeed>,
-    With<MaxAngularSpeed>,
-    With<LockedAxes>,
-    With<Dominance>,
-    With<RigidBodyDisabled>,
-    With<CustomVelocityIntegration>,
-)>;
+impl<'w, 's> RowInputContiguousItem<'w, 's> {
+    /// The body at a row of the table.
+    #[inline(always)]
+    fn row(&self, i: usize) -> RowInputItem<'w, 's> {
+        RowInputItem {
+            entity: self.entity[i],
+            id: &self.id[i],
+            linear_velocity: &self.linear_velocity[i],
+            angular_velocity: &self.angular_velocity[i],
+            mass: &self.mass[i],
+            inertia: &self.inertia[i],
+        }
+    }
+}
+
+impl<'w, 's> MotionInputContiguousItem<'w, 's> {
+    /// Whether the bodies of the table have none of it: asking each would be a quarter of the work.
+    fn is_none(&self) -> bool {
+        let speeds = self.max_speed.is_none() && self.max_angular_speed.is_none();
+        let damping = self.linear_damping.is_none() && self.angular_damping.is_none();
+        let rest = self.gravity_scale.is_none() && self.locks.is_none() && self.dominance.is_none();
+        speeds && damping && rest && !self.disabled && !self.own_velocity
+    }
+
+    /// The body at a row of the table.
+    fn row(&self, i: usize) -> MotionInputItem<'w, 's> {
+        MotionInputItem {
+            gravity_scale: self.gravity_scale.map(|all| &all[i]),
+            linear_damping: self.linear_damping.map(|all| &all[i]),
+            angular_damping: self.angular_damping.map(|all| &all[i]),
+            max_speed: self.max_speed.map(|all| &all[i]),
+            max_angular_speed: self.max_angular_speed.map(|all| &all[i]),
+            locks: self.locks.map(|all| &all[i]),
+            dominance: self.dominance.map(|all| &all[i]),
+            disabled: self.disabled,
+            own_velocity: self.own_velocity,
+        }
+    }
+}
 
 /// A finite value that is not negative: negative and NaN count as none, infinite as the largest.
 fn positive(value: Option<Scalar>) -> f32 {
@@ -324,8 +341,7 @@ fn rest_speed(threshold: Option<&SleepThreshold>, sleepless: bool, unit: f32) ->
 /// Iterates tables where most bodies are awake and looks up entities where most sleep: rows are written
 /// by id either way, so the order of entities does not matter.
 pub(crate) fn gather_bodies(
-    plain: Query<(Entity, RowInput), Plain>,
-    special: Query<(Entity, RowInput, MotionInput), Special>,
+    query: Query<(RowInput, MotionInput)>,
     gravity: Res<Gravity>,
     mut solver: ResMut<StepSolver>,
     mut bodies: ResMut<Bodies>,
@@ -340,26 +356,27 @@ pub(crate) fn gather_bodies(
     rows.reset(kinematic, count - kinematic);
     let gather = Gather { gravity: finite_gravity(&gravity) };
     let mut filled = 0;
-    let mut fill = |entity, body: RowInputItem, options: &MotionInputItem| {
-        filled += usize::from(gather.body(entity, &body, options, rows, table, &mut commands));
+    let mut fill = |body: RowInputItem, options: &MotionInputItem| {
+        filled += usize::from(gather.body(&body, options, rows, table, &mut commands));
     };
-    if is_minority(count, [plain.iter().size_hint(), special.iter().size_hint()]) {
+    if is_minority(count, [query.iter().size_hint()]) {
         some.clear();
         some.extend(listed.iter().map(|id| entities[*id as usize]));
-        plain.iter_many(&*some).for_each(|(entity, body)| fill(entity, body, &MotionInputItem::NONE));
-        special.iter_many(&*some).for_each(|(entity, body, options)| fill(entity, body, &options));
+        query.iter_many(&*some).for_each(|(body, options)| fill(body, &options));
     } else {
-        plain.iter().for_each(|(entity, body)| fill(entity, body, &MotionInputItem::NONE));
-        special.iter().for_each(|(entity, body, options)| fill(entity, body, &options));
+        for (bodies, options) in query.contiguous_iter().expect(IN_TABLES) {
+            let all = 0..bodies.id.len();
+            if options.is_none() {
+                all.for_each(|i| fill(bodies.row(i), &MotionInputItem::NONE));
+            } else {
+                all.for_each(|i| fill(bodies.row(i), &options.row(i)));
+            }
+        }
     }
     if filled < count {
         // Some body lost a component within the step: nobody knows which.
-        for (i, _) in listed.iter().enumerate().filter(|(_, id)| {
-            let entity = entities[**id as usize];
-            !plain.contains(entity) && !special.contains(entity)
-        }) {
-            rows.still(1 + i);
-        }
+        let is_there = |id: &u32| query.contains(entities[*id as usize]);
+        listed.iter().enumerate().filter(|(_, id)| !is_there(id)).for_each(|(i, _)| rows.still(1 + i));
     }
     solver.kernel.begin_step();
     diagnostics.prepare_constraints += start.elapsed();
@@ -375,7 +392,6 @@ impl Gather {
     #[inline(always)]
     fn body(
         &self,
-        entity: Entity,
         body: &RowInputItem,
         options: &MotionInputItem,
         rows: &mut BodyRows,
@@ -391,7 +407,7 @@ impl Gather {
         let Velocity { linear, angular } = velocity(body.linear_velocity, body.angular_velocity);
         let finite = linear.is_finite() && angular.is_finite();
         if !finite {
-            quarantine(entity, Some(table.frame(id)), commands);
+            quarantine(body.entity, Some(table.frame(id)), commands);
         }
         // What was put under quarantine in this step stays put until it leaves.
         if !finite || options.disabled {

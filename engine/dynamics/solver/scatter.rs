@@ -95,7 +95,7 @@ fn keep_in_place(id: u32, solver: &mut Solver, bodies: &Bodies, dt: f32) -> Opti
     let (v, w) = solver.bodies.rows[row as usize].velocity();
     solver.bodies.put_back(row);
     let body = &bodies.table[id];
-    let rests = body.rest_speed.admits(v * dt, w.length_squared() * dt * dt, dt);
+    let rests = body.rest_speed.admits(v.length_squared() * dt * dt, w.length_squared() * dt * dt, dt);
     Some((id, if rests { body.sleep_timer + dt } else { 0.0 }))
 }
 
