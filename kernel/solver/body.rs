@@ -1,9 +1,9 @@
 //! The dense bodies of one step: rows that contact rows refer to by index.
 
-use super::{BodyRow, MassRow, RowView};
+use super::{BodyRow, MassRow, RowView, gyro::is_isotropic};
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
 
-/// How a body's velocity changes by itself, and what limits it. Constant over a step.
+/// How a body's velocity changes by itself. Constant over a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
     /// m/s², gravity included.
@@ -14,31 +14,47 @@ pub struct Motion {
     pub linear_damping: f32,
     /// 1/s.
     pub angular_damping: f32,
-    /// m/s; infinity for no limit.
-    pub max_speed: f32,
-    /// rad/s; infinity for no limit.
-    pub max_angular_speed: f32,
-    /// Axes along or about which the body does not move.
-    pub locks: AxisLocks,
-    /// The inverse inertia in the body's frame, for the gyroscopic torque.
-    pub local_inv_inertia: InvInertia,
-    /// The body's rotation when the step begins.
-    pub rotation: Rot,
 }
 
 impl Motion {
-    /// No acceleration, no damping, no limit.
+    /// No acceleration and no damping.
     pub const FREE: Self = Self {
         acceleration: Vector::ZERO,
         angular_acceleration: Angular::ZERO,
         linear_damping: 0.0,
         angular_damping: 0.0,
-        max_speed: f32::INFINITY,
-        max_angular_speed: f32::INFINITY,
-        locks: AxisLocks::NONE,
-        local_inv_inertia: InvInertia::ZERO,
-        rotation: Rot::IDENTITY,
     };
+}
+
+/// What few bodies have: something that limits their velocity. Constant over a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Axes along or about which the body does not move.
+    pub locks: AxisLocks,
+    /// m/s; infinity for no limit.
+    pub max_speed: f32,
+    /// rad/s; infinity for no limit.
+    pub max_angular_speed: f32,
+}
+
+impl Limits {
+    /// No limit.
+    pub const NONE: Self =
+        Self { locks: AxisLocks::NONE, max_speed: f32::INFINITY, max_angular_speed: f32::INFINITY };
+
+    fn is_none(&self) -> bool {
+        self.locks.0 == 0 && !self.max_speed.is_finite() && !self.max_angular_speed.is_finite()
+    }
+}
+
+/// A body that its own spin turns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spin {
+    pub(super) row: u32,
+    /// In the body's frame.
+    pub(super) inv_inertia: InvInertia,
+    /// When the step begins.
+    pub(super) rotation: Rot,
 }
 
 /// The bodies of one step. Row 0 is the immovable dummy that static partners and padding refer to; then
@@ -52,18 +68,27 @@ pub struct BodyRows {
     pub masses: Vec<MassRow>,
     /// What changes velocities.
     pub motions: Vec<Motion>,
+    /// What limits the few that are limited.
+    pub(super) limits: Vec<(u32, Limits)>,
+    /// Those that their own spin turns: none in 2D.
+    pub(super) spins: Vec<Spin>,
+    /// Which axes are held, by row; empty where nobody is held along any.
+    pub(super) locks: Vec<AxisLocks>,
     /// The first row of a dynamic body.
     pub(super) first_dynamic: u32,
 }
 
 impl BodyRows {
     /// Makes room for `kinematic` and `dynamic` bodies after the dummy. Rows hold what they held before: every
-    /// one of them is to be filled.
-    pub fn reset(&mut self, kinematic: usize, dynamic: usize) {
+    /// one of them is to be filled. Nobody is limited.
+    pub(super) fn reset(&mut self, kinematic: usize, dynamic: usize) {
         let count = 1 + kinematic + dynamic;
         self.rows.resize(count, BodyRow::REST);
         self.masses.resize(count, MassRow::default());
         self.motions.resize(count, Motion::FREE);
+        self.limits.clear();
+        self.spins.clear();
+        self.locks.clear();
         self.first_dynamic = 1 + kinematic as u32;
         self.still(0);
     }
@@ -71,6 +96,27 @@ impl BodyRows {
     /// The first row of a dynamic body.
     pub fn first_dynamic(&self) -> u32 {
         self.first_dynamic
+    }
+
+    /// Limits a body's velocity: at most once a step.
+    pub fn limit(&mut self, row: usize, limits: Limits) {
+        if limits.is_none() {
+            return;
+        }
+        self.limits.push((row as u32, limits));
+        if limits.locks.is_translation_held() {
+            self.locks.resize(self.rows.len(), AxisLocks::NONE);
+            self.locks[row] = limits.locks;
+        }
+    }
+
+    /// Has a dynamic body turn by its own spin, if its inverse inertia, in its own frame, makes it: at most once a
+    /// step. `rotation` is the body's when the step begins.
+    #[inline]
+    pub fn spin(&mut self, row: usize, inv_inertia: InvInertia, rotation: Rot) {
+        if !is_isotropic(inv_inertia) {
+            self.spins.push(Spin { row: row as u32, inv_inertia, rotation });
+        }
     }
 
     /// Forgets how far a body has moved and turned in this step.

@@ -1,66 +1,26 @@
 //! Free motion: velocities from accelerations and damping, positions from velocities.
 
-use super::{BodyRow, BodyRows, Motion, RowView};
+use super::{BodyRow, BodyRows, RowView, gyro::*};
 use crate::math::{Angular, F32x4, Lane};
 use crate::team::Team;
 
 /// How many bodies a member of the team moves at a stretch: a multiple of the lanes.
 const BLOCK: usize = 256;
 
-/// Row ids of bodies whose velocity needs more than acceleration and damping.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Special {
-    /// Held along or about axes, or limited in speed.
-    limited: Vec<u32>,
-    /// Turned by its own spin (3D).
-    gyroscopic: Vec<u32>,
-}
-
-impl Special {
-    /// Finds the bodies of this step that need it.
-    pub(super) fn find(&mut self, bodies: &BodyRows) {
-        self.limited.clear();
-        self.gyroscopic.clear();
-        for (i, motion) in bodies.motions.iter().enumerate().skip(1) {
-            let id = i as u32;
-            if motion.locks.0 != 0 || motion.max_speed.is_finite() || motion.max_angular_speed.is_finite() {
-                self.limited.push(id);
-            }
-            if id >= bodies.first_dynamic && !is_isotropic(motion.local_inv_inertia) {
-                self.gyroscopic.push(id);
-            }
-        }
-    }
-
-    fn limit(&self, bodies: &mut BodyRows, team: &Team) {
-        let BodyRows { rows, motions, .. } = bodies;
-        each_of(&self.limited, rows, team, |id, row| {
-            let motion = &motions[id as usize];
-            let (v, w) = row.velocity();
-            let v = v.scale(motion.locks.translation_factors());
-            let w = hold(w, motion);
-            row.set_velocity(
-                v * limit_factor(v.length(), motion.max_speed),
-                w * limit_factor(w.length(), motion.max_angular_speed),
-            );
-        });
-    }
-}
-
-/// Changes the listed rows, each of which is listed once.
-fn each_of(ids: &[u32], rows: &mut [BodyRow], team: &Team, change: impl Fn(u32, &mut BodyRow) + Sync) {
+/// Changes the rows of some bodies, each of which is listed once.
+fn each_of<T: Sync>(
+    list: &[T],
+    row: impl Fn(&T) -> u32 + Sync,
+    rows: &mut [BodyRow],
+    team: &Team,
+    change: impl Fn(&T, &mut BodyRow) + Sync,
+) {
     let view = RowView::over(rows, 0);
-    team.run(ids.len().div_ceil(BLOCK), |block, _| {
-        for &id in &ids[block * BLOCK..ids.len().min((block + 1) * BLOCK)] {
-            view.put(id, |row| change(id, row));
+    team.run(list.len().div_ceil(BLOCK), |block, _| {
+        for item in &list[block * BLOCK..list.len().min((block + 1) * BLOCK)] {
+            view.put(row(item), |row| change(item, row));
         }
     });
-}
-
-/// The angular velocity without its part about held axes.
-fn hold(w: Angular, motion: &Motion) -> Angular {
-    let free = motion.locks.rotation_factors();
-    scale_angular(w, free)
 }
 
 fn limit_factor(speed: f32, max: f32) -> f32 {
@@ -70,8 +30,8 @@ fn limit_factor(speed: f32, max: f32) -> f32 {
 impl BodyRows {
     /// v ← v / (1 + c h) + h a for every dynamic body; the damping acts on the old velocity, so that
     /// without forces v falls by exactly 1 / (1 + c h). In 3D then one step of the gyroscopic torque.
-    pub(super) fn integrate_velocities(&mut self, special: &Special, h: f32, team: &Team) {
-        let Self { rows, motions, first_dynamic, .. } = self;
+    pub(super) fn integrate_velocities(&mut self, h: f32, team: &Team) {
+        let Self { rows, motions, spins, first_dynamic, .. } = self;
         let (first, count) = (*first_dynamic as usize, rows.len());
         let view = RowView::over(rows, 0);
         team.run((count - first).div_ceil(BLOCK), |block, _| {
@@ -87,18 +47,23 @@ impl BodyRows {
                 });
             }
         });
-        each_of(&special.gyroscopic, rows, team, |id, row| {
-            let motion = &motions[id as usize];
-            let (v, w) = row.velocity();
-            let rotation = world_rotation(row.delta().1, motion.rotation);
-            row.set_velocity(v, gyroscopic(w, rotation, motion.local_inv_inertia, h));
-        });
-        special.limit(self, team);
+        each_of(
+            spins,
+            |spin| spin.row,
+            rows,
+            team,
+            |spin, row| {
+                let (v, w) = row.velocity();
+                let rotation = world_rotation(row.delta().1, spin.rotation);
+                row.set_velocity(v, gyroscopic(w, rotation, spin.inv_inertia, h));
+            },
+        );
+        self.hold_back(team);
     }
 
     /// Δx ← Δx + h v and Δθ ← Δθ turned by h ω, for every body.
-    pub(super) fn integrate_positions(&mut self, special: &Special, h: f32, team: &Team) {
-        special.limit(self, team);
+    pub(super) fn integrate_positions(&mut self, h: f32, team: &Team) {
+        self.hold_back(team);
         let count = self.rows.len();
         let view = self.view_all();
         team.run(count.div_ceil(BLOCK), |block, _| {
@@ -112,6 +77,25 @@ impl BodyRows {
                 move_bodies::<f32>(&view, &[id as u32], h);
             }
         });
+    }
+
+    /// Keeps velocities within their limits.
+    fn hold_back(&mut self, team: &Team) {
+        each_of(
+            &self.limits,
+            |limited| limited.0,
+            &mut self.rows,
+            team,
+            |(_, limits), row| {
+                let (v, w) = row.velocity();
+                let v = v.scale(limits.locks.translation_factors());
+                let w = scale_angular(w, limits.locks.rotation_factors());
+                row.set_velocity(
+                    v * limit_factor(v.length(), limits.max_speed),
+                    w * limit_factor(w.length(), limits.max_angular_speed),
+                );
+            },
+        );
     }
 }
 
@@ -134,15 +118,11 @@ fn exact_turn<N: Lane>(turn: Angular<N>) -> Angular<N> {
     turn * (N::ONE + x * (N::splat(1.0 / 3.0) + x * series))
 }
 
-#[cfg_attr(feature = "2d", path = "gyro2.rs")]
-#[cfg_attr(feature = "3d", path = "gyro3.rs")]
-mod gyro;
-use gyro::{gyroscopic, is_isotropic, scale_angular, world_rotation};
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::{Rot, Vector};
+    use crate::solver::{Limits, Motion};
 
     fn one_body(motion: Motion, v: Vector) -> BodyRows {
         let mut bodies = BodyRows::default();
@@ -157,10 +137,9 @@ mod tests {
         let g = Vector::Y * -9.81;
         let mut bodies = one_body(Motion { acceleration: g, ..Motion::FREE }, Vector::X * 3.0);
         let (h, n) = (1.0 / 256.0, 512);
-        let special = Special::default();
         for _ in 0..n {
-            bodies.integrate_velocities(&special, h, &Team::default());
-            bodies.integrate_positions(&special, h, &Team::default());
+            bodies.integrate_velocities(h, &Team::default());
+            bodies.integrate_positions(h, &Team::default());
         }
         let t = h * n as f32;
         let (v, p) = (bodies.rows[1].velocity().0, bodies.rows[1].delta().0);
@@ -174,7 +153,7 @@ mod tests {
         let mut bodies = one_body(Motion { linear_damping: 0.7, ..Motion::FREE }, Vector::X * 5.0);
         let h = 1.0 / 60.0;
         for _ in 0..100 {
-            bodies.integrate_velocities(&Special::default(), h, &Team::default());
+            bodies.integrate_velocities(h, &Team::default());
         }
         let want = 5.0 / (1.0f64 + 0.7 / 60.0).powi(100);
         assert!((f64::from(bodies.rows[1].velocity().0.x) - want).abs() < 1e-4 * want);
@@ -194,24 +173,16 @@ mod tests {
 
     #[test]
     fn held_axes_do_not_move_and_speeds_stay_limited() {
-        let motion = Motion {
-            acceleration: Vector::ONE,
-            locks: crate::math::AxisLocks(0b100_000),
-            max_speed: 0.25,
-            ..Motion::FREE
-        };
-        let mut bodies = one_body(motion, Vector::ZERO);
-        let mut special = Special::default();
-        special.find(&bodies);
+        let mut bodies = one_body(Motion { acceleration: Vector::ONE, ..Motion::FREE }, Vector::ZERO);
+        let locks = crate::math::AxisLocks(0b100_000);
+        bodies.limit(1, Limits { locks, max_speed: 0.25, ..Limits::NONE });
         for _ in 0..60 {
-            bodies.integrate_velocities(&special, 1.0 / 60.0, &Team::default());
-            bodies.integrate_positions(&special, 1.0 / 60.0, &Team::default());
+            bodies.integrate_velocities(1.0 / 60.0, &Team::default());
+            bodies.integrate_positions(1.0 / 60.0, &Team::default());
         }
         let (v, _) = bodies.rows[1].velocity();
         assert_eq!(v.x, 0.0);
         assert!((v.length() - 0.25).abs() < 1e-6);
         assert_eq!(bodies.rows[1].delta().0.x, 0.0);
     }
-
-    use gyro::spin;
 }

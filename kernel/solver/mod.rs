@@ -17,6 +17,9 @@ mod body;
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 mod finish;
+#[cfg_attr(feature = "2d", path = "gyro2.rs")]
+#[cfg_attr(feature = "3d", path = "gyro3.rs")]
+mod gyro;
 mod integrate;
 mod inv_mass;
 mod prepare;
@@ -27,7 +30,7 @@ mod stages;
 mod view;
 
 pub use batch::{PointClass, RowSet};
-pub use body::{BodyRows, Motion};
+pub use body::{BodyRows, Limits, Motion};
 pub use dim::{BodyRow, MassRow, Twist};
 pub use inv_mass::InvMass;
 pub use prepare::{ContactSource, RowInput};

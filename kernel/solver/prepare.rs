@@ -6,7 +6,7 @@ use super::{
     BodyRow, BodyRows, ContactRow, DeepRow, InvMass, MassRow, Motion, RestitutionRow, RowView, SubstepParams,
 };
 use crate::contact::{Contact, ContactFlags, ContactTable, Manifold};
-use crate::math::{Ids, Lane, TangentFrame, Vector};
+use crate::math::{AxisLocks, Ids, Lane, TangentFrame, Vector};
 use crate::table::{BodyTable, ColliderTable, NONE};
 
 /// What rows are made from.
@@ -96,10 +96,10 @@ pub struct ContactSource {
 }
 
 /// Whether a body of the contact is held along some axes.
-pub(super) fn is_held(input: &RowInput, motions: &[Motion], contact: u32) -> bool {
+pub(super) fn is_held(input: &RowInput, locks: &[AxisLocks], contact: u32) -> bool {
     input.contacts.get(contact).bodies.iter().any(|body| {
         let row = row_of(input.bodies, *body);
-        motions[row as usize].locks.is_translation_held()
+        locks[row as usize].is_translation_held()
     })
 }
 
@@ -180,8 +180,8 @@ pub(super) struct Filler<'a> {
     pub(super) first_dynamic: u32,
     pub(super) params: &'a SubstepParams,
     pub(super) deep: &'a DeepCounts,
-    /// Whether any body is held along some axes.
-    pub(super) any_held: bool,
+    /// Which axes are held, by body row; empty where nobody is held along any.
+    pub(super) locks: &'a [AxisLocks],
 }
 
 impl Filler<'_> {
@@ -284,11 +284,10 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let ids = contact.bodies.map(|body| row_of(input.bodies, body));
         for side in 0..2 {
             row.ids[side].set(lane, ids[side]);
-            if filler.any_held {
-                let locks = filler.motions[ids[side] as usize].locks;
-                if locks.is_translation_held() {
-                    self.free[side].set(lane, locks.translation_factors());
-                }
+            if let Some(locks) = filler.locks.get(ids[side] as usize)
+                && locks.is_translation_held()
+            {
+                self.free[side].set(lane, locks.translation_factors());
             }
         }
         if input.bodies.any_dominance {

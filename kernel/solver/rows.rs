@@ -1,13 +1,12 @@
 //! All contact rows of a step, and how they are laid out.
 
-use super::Motion;
 use super::batch::{Plan, RowSet, Set};
 use super::block::{SetsView, Wide, WideView};
 use super::prepare::{Buckets, RowInput, is_held};
 use crate::graph::{ColorGraph, OVERFLOW};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
-use crate::math::{F32x4, Lane, Vector};
+use crate::math::{AxisLocks, F32x4, Lane, Vector};
 
 /// How many contacts are solved side by side. The results have the same bits with any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,9 +55,8 @@ impl<N: Lane> Default for WideRows<N> {
 /// What rows are laid out from, and buffers kept between steps.
 pub(super) struct Layout<'a> {
     pub(super) input: &'a RowInput<'a>,
-    pub(super) motions: &'a [Motion],
-    /// Whether any body is held along some axes.
-    pub(super) any_held: bool,
+    /// Which axes are held, by body row; empty where nobody is held along any.
+    pub(super) locks: &'a [AxisLocks],
     pub(super) any_deep: bool,
     pub(super) buffers: &'a mut Buffers,
     pub(super) plan: &'a mut Plan,
@@ -133,16 +131,16 @@ impl<N: Lane> WideRows<N> {
 
     /// Lays out the rows of contacts whose dynamic bodies are all different.
     fn lay(&mut self, [held_set, free_set]: [Set; 2], contacts: &[u32], layout: &mut Layout) {
-        let Layout { input, motions, any_held, buffers, plan, .. } = layout;
+        let Layout { input, locks, buffers, plan, .. } = layout;
         let Buffers { buckets, held, free } = &mut **buffers;
-        if !*any_held {
+        if locks.is_empty() {
             self.free.lay(free_set, contacts, input.contacts, buckets, plan);
             return;
         }
         held.clear();
         free.clear();
         for id in contacts {
-            if is_held(input, motions, *id) { held.push(*id) } else { free.push(*id) }
+            if is_held(input, locks, *id) { held.push(*id) } else { free.push(*id) }
         }
         self.held.lay(held_set, held, input.contacts, buckets, plan);
         self.free.lay(free_set, free, input.contacts, buckets, plan);

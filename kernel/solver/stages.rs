@@ -3,7 +3,6 @@
 
 use super::batch::Plan;
 use super::block::Pass;
-use super::integrate::Special;
 use super::prepare::{DeepCounts, Filler, RowInput};
 use super::rows::{AllRows, Buffers, Layout, Width};
 use super::{BodyRows, RowView, SubstepParams};
@@ -29,7 +28,6 @@ pub struct Solver {
     pub bodies: BodyRows,
     /// Who solves. The result does not depend on how many they are.
     pub team: Team,
-    special: Special,
     rows: AllRows,
     plan: Plan,
     buffers: Buffers,
@@ -42,24 +40,21 @@ impl Solver {
         self.rows.width = Width::Four;
     }
 
-    /// Forgets the contact rows of the last step, which name other bodies by now, and finds which bodies are held,
-    /// limited in speed or turned by their own spin: once per step, after [`bodies`](Self::bodies) were filled,
-    /// whether or not there are contacts.
-    pub fn begin_step(&mut self) {
+    /// Forgets the rows of the last step, and makes room for so many [`bodies`](Self::bodies): every one of their rows is
+    /// to be filled, whether or not there are contacts.
+    pub fn begin_step(&mut self, kinematic: usize, dynamic: usize) {
         self.plan.begin(0);
-        self.special.find(&self.bodies);
+        self.bodies.reset(kinematic, dynamic);
     }
 
     /// Builds the rows of all touching contacts in the colours.
     pub fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
         let Self { bodies, team, rows, plan, buffers, deep, .. } = self;
         deep.count(input, bodies);
-        // Body rows were gathered, so only they know what is held.
-        let any_held = bodies.motions.iter().any(|m| m.locks.is_translation_held());
-        let BodyRows { rows: body_rows, masses, motions, first_dynamic } = bodies;
+        let BodyRows { rows: body_rows, masses, motions, locks, first_dynamic, .. } = bodies;
         plan.begin(if team.members() > 1 { BLOCK_ROWS } else { u32::MAX });
         let any_deep = deep.any();
-        rows.lay_out(colors, &mut Layout { input, motions, any_held, any_deep, buffers, plan });
+        rows.lay_out(colors, &mut Layout { input, locks, any_deep, buffers, plan });
         let filler = &Filler {
             input,
             view: RowView::over(body_rows, *first_dynamic),
@@ -68,7 +63,7 @@ impl Solver {
             first_dynamic: *first_dynamic,
             params,
             deep,
-            any_held,
+            locks,
         };
         let many = plan.rows() >= WORTH_WAKING;
         let (sets, blocks) = (rows.view(), Parts::of(&mut plan.blocks));
@@ -88,7 +83,7 @@ impl Solver {
 
     /// Accelerations, damping, gyroscopic torque, speed limits.
     pub fn integrate_velocities(&mut self, params: &SubstepParams) {
-        self.bodies.integrate_velocities(&self.special, params.h, &self.team);
+        self.bodies.integrate_velocities(params.h, &self.team);
     }
 
     /// Lets what closes fast in this substep bounce, then applies the accumulated impulses.
@@ -111,7 +106,7 @@ impl Solver {
 
     /// Moves the bodies.
     pub fn integrate_positions(&mut self, params: &SubstepParams) {
-        self.bodies.integrate_positions(&self.special, params.h, &self.team);
+        self.bodies.integrate_positions(params.h, &self.team);
     }
 
     /// Takes out the velocity that the bias added, and applies friction. What pushed deep overlap out is

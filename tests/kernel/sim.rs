@@ -9,7 +9,7 @@ use kernel::data::BitSet;
 use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
 use kernel::shape::{Ball, Cuboid, Shape};
-use kernel::solver::{BodyRow, MassRow, Motion, RowInput, Softness, Solver, SubstepParams};
+use kernel::solver::{BodyRow, Limits, MassRow, Motion, RowInput, Softness, Solver, SubstepParams};
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
     RestSpeed, Surface,
@@ -248,8 +248,8 @@ impl Sim {
 
     fn gather(&mut self) {
         let kinematic = self.bodies.assign_rows(&mut self.listed);
+        self.solver.begin_step(kinematic, self.listed.len() - kinematic);
         let rows = &mut self.solver.bodies;
-        rows.reset(kinematic, self.listed.len() - kinematic);
         for (i, &id) in self.listed.iter().enumerate() {
             let row = i + 1;
             rows.still(row);
@@ -261,16 +261,11 @@ impl Sim {
                 let rotation = self.bodies.poses[id as usize].rotation;
                 let locks = self.locks[id as usize];
                 rows.masses[row] = MassRow::new(mass, local.rotated(rotation).locked(locks));
-                rows.motions[row] = Motion {
-                    acceleration: self.gravity,
-                    local_inv_inertia: local,
-                    locks,
-                    rotation,
-                    ..Motion::FREE
-                };
+                rows.motions[row] = Motion { acceleration: self.gravity, ..Motion::FREE };
+                rows.limit(row, Limits { locks, ..Limits::NONE });
+                rows.spin(row, local, rotation);
             }
         }
-        self.solver.begin_step();
     }
 
     /// What the narrow phase makes of the contact of two bodies as they are now, and the contact.

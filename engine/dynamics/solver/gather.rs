@@ -3,8 +3,8 @@
 use bevy_ecs::{prelude::*, query::QueryData, system::SystemChangeTick};
 use bevy_log::warn_once;
 use kernel::{
-    math::{AxisLocks, InvInertia, Vector as KernelVector, WorldPose, max},
-    solver::{BodyRow, BodyRows, MassRow, Motion},
+    math::{AxisLocks, Vector as KernelVector, WorldPose, max},
+    solver::{BodyRow, BodyRows, Limits, MassRow, Motion},
     table::{BodyKind, BodyTable, NONE, RestSpeed, Velocity},
 };
 
@@ -352,8 +352,8 @@ pub(crate) fn gather_bodies(
     let Bodies { table, listed, entities, some, .. } = &mut *bodies;
     let kinematic = table.assign_rows(listed);
     let count = listed.len();
+    solver.kernel.begin_step(kinematic, count - kinematic);
     let rows = &mut solver.kernel.bodies;
-    rows.reset(kinematic, count - kinematic);
     let gather = Gather { gravity: finite_gravity(&gravity) };
     let mut filled = 0;
     let mut fill = |body: RowInputItem, options: &MotionInputItem| {
@@ -378,7 +378,6 @@ pub(crate) fn gather_bodies(
         let is_there = |id: &u32| query.contains(entities[*id as usize]);
         listed.iter().enumerate().filter(|(_, id)| !is_there(id)).for_each(|(i, _)| rows.still(1 + i));
     }
-    solver.kernel.begin_step();
     diagnostics.prepare_constraints += start.elapsed();
 }
 
@@ -427,17 +426,31 @@ impl Gather {
             let local = inv_inertia_to_kernel(body.inertia.inverse());
             let rotation = table.poses[id as usize].rotation;
             rows.masses[row] = MassRow::new(inv_mass, local.rotated(rotation).locked(locks));
-            rows.motions[row] = Motion { rotation, ..self.motion(options, locks, local) };
+            rows.motions[row] = self.motion(options);
+            if !options.own_velocity {
+                let (max_speed, max_angular_speed) = (options.max_speed, options.max_angular_speed);
+                rows.spin(row, local, rotation);
+                rows.limit(
+                    row,
+                    Limits {
+                        locks,
+                        max_speed: limit(max_speed.map(|m| m.0)),
+                        max_angular_speed: limit(max_angular_speed.map(|m| m.0)),
+                    },
+                );
+                return true;
+            }
         } else {
             rows.masses[row] = MassRow::default();
-            rows.motions[row] = Motion { locks, ..Motion::FREE };
+            rows.motions[row] = Motion::FREE;
         }
+        rows.limit(row, Limits { locks, ..Limits::NONE });
         true
     }
 
-    fn motion(&self, options: &MotionInputItem, locks: AxisLocks, local: InvInertia) -> Motion {
+    fn motion(&self, options: &MotionInputItem) -> Motion {
         if options.own_velocity {
-            return Motion { locks, ..Motion::FREE };
+            return Motion::FREE;
         }
         let scale: f32 = options.gravity_scale.map_or(1.0, |s| to_f32(s.0));
         let scale = if scale.is_finite() { scale } else { 1.0 };
@@ -445,10 +458,6 @@ impl Gather {
             acceleration: self.gravity * scale,
             linear_damping: positive(options.linear_damping.map(|d| d.0)),
             angular_damping: positive(options.angular_damping.map(|d| d.0)),
-            max_speed: limit(options.max_speed.map(|m| m.0)),
-            max_angular_speed: limit(options.max_angular_speed.map(|m| m.0)),
-            locks,
-            local_inv_inertia: local,
             ..Motion::FREE
         }
     }
