@@ -6,7 +6,7 @@ use bench_core::{
     dim2::D2,
     dim3::D3,
     engine::Engines,
-    scene::{Entry, Family},
+    scene::{Entry, Family, Scenes},
     world::Dimension,
 };
 
@@ -119,8 +119,8 @@ fn set(plan: &mut Plan, option: &str, value: &str) -> Option<()> {
     Some(())
 }
 
-fn list<D: Dimension>() {
-    for entry in D::scenes() {
+fn list<D: Scenes>() {
+    for entry in D::ALL {
         let scene = (entry.build)();
         let (number, name, bodies, about) = (D::NUMBER, entry.name, scene.bodies.len(), scene.about);
         println!("{number}d/{name} ({}), {bodies} bodies: {about}", family_name(entry.family));
@@ -160,14 +160,14 @@ fn measure(engines: &Engines, plan: &Plan, split: bool) -> Result<Results, Strin
 }
 
 /// The scenes of a dimension that the options choose, and for each the engines.
-fn choose<D: Dimension>(plan: &Plan, known: impl Iterator<Item = &'static str>) -> Vec<Chosen> {
+fn choose<D: Scenes>(plan: &Plan, known: impl Iterator<Item = &'static str>) -> Vec<Chosen> {
     let known: Vec<String> = known.chain(["ours"]).map(str::to_owned).collect();
     let engines = if plan.engines.is_empty() {
         known
     } else {
         plan.engines.iter().filter(|name| known.contains(name)).cloned().collect()
     };
-    let scenes = D::scenes().iter().filter(|entry| is_chosen(plan, entry));
+    let scenes = D::ALL.iter().filter(|entry| is_chosen(plan, entry));
     let choose = |entry: &Entry<D>| {
         let may = |name: &&String| *name != BARE || entry.family.is_mostly_still();
         let engines = engines.iter().filter(may).cloned().collect();

@@ -6,11 +6,7 @@ use parry2d::{
     shape::SharedShape,
 };
 
-use crate::{
-    scene::Entry,
-    scenes2d,
-    world::{self, Dimension},
-};
+use crate::world::{self, Dimension};
 
 /// A point or a direction.
 pub type V2 = [f32; 2];
@@ -59,10 +55,6 @@ impl Dimension for D2 {
     const ZERO: V2 = [0.0; 2];
     const UPRIGHT: f32 = 0.0;
     const STILL: f32 = 0.0;
-
-    fn scenes() -> &'static [Entry<Self>] {
-        scenes2d::ALL
-    }
 
     fn is_finite(turn: f32) -> bool {
         turn.is_finite()

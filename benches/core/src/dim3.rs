@@ -8,11 +8,7 @@ use parry3d::{
     shape::SharedShape,
 };
 
-use crate::{
-    scene::Entry,
-    scenes3d,
-    world::{self, Dimension},
-};
+use crate::world::{self, Dimension};
 
 /// A point or a direction.
 pub type V3 = [f32; 3];
@@ -84,10 +80,6 @@ impl Dimension for D3 {
     const ZERO: V3 = [0.0; 3];
     const UPRIGHT: Q4 = [0.0, 0.0, 0.0, 1.0];
     const STILL: V3 = [0.0; 3];
-
-    fn scenes() -> &'static [Entry<Self>] {
-        scenes3d::ALL
-    }
 
     fn is_finite(turn: Q4) -> bool {
         turn.iter().all(|x| x.is_finite())

@@ -178,7 +178,13 @@ impl<D: Dimension> Entry<D> {
     }
 }
 
+/// A dimension that has scenes.
+pub trait Scenes: Dimension {
+    /// All of them.
+    const ALL: &'static [Entry<Self>];
+}
+
 /// The scene of that name.
-pub fn find<D: Dimension>(name: &str) -> Option<&'static Entry<D>> {
-    D::scenes().iter().find(|entry| entry.name == name)
+pub fn find<D: Scenes>(name: &str) -> Option<&'static Entry<D>> {
+    D::ALL.iter().find(|entry| entry.name == name)
 }

@@ -8,7 +8,7 @@ use crate::{
     machine::{Usage, pin},
     measure::{Clock, Quality, Report, StageSums, time_of},
     ruler::judge,
-    scene::{Need, Plan, Scene, Work, find},
+    scene::{Need, Plan, Scene, Scenes, Work, find},
     world::Dimension,
 };
 
@@ -69,7 +69,7 @@ pub fn main(engines: &Engines, args: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-fn run<D: Dimension>(engines: &[(&str, Make<D>)], job: &Job) -> Result<Report, String> {
+fn run<D: Scenes>(engines: &[(&str, Make<D>)], job: &Job) -> Result<Report, String> {
     let entry = find::<D>(&job.scene).ok_or_else(|| format!("no scene {}", job.scene))?;
     let make = engines.iter().find(|engine| engine.0 == job.engine);
     let make = make.ok_or_else(|| format!("no engine {} in {}D here", job.engine, D::NUMBER))?.1;

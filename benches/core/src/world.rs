@@ -3,8 +3,6 @@
 use std::fmt::Debug;
 use std::ops::Mul;
 
-use crate::scene::Entry;
-
 /// What differs between two and three dimensions.
 pub trait Dimension: Copy + Debug + 'static {
     /// A point or a direction.
@@ -29,8 +27,6 @@ pub trait Dimension: Copy + Debug + 'static {
     /// Not turning.
     const STILL: Self::Spin;
 
-    /// The scenes of this dimension.
-    fn scenes() -> &'static [Entry<Self>];
     /// Whether an orientation has no NaN and nothing infinite in it.
     fn is_finite(turn: Self::Turn) -> bool;
     /// Whether the shape is a triangle mesh.

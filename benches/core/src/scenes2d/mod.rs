@@ -3,7 +3,7 @@
 
 use crate::{
     dim2::{Body2, D2, Shape2, V2},
-    scene::{Entry, Family, Scene, Work},
+    scene::{Entry, Family, Scene, Scenes, Work},
 };
 
 mod compounds;
@@ -18,34 +18,35 @@ mod washer;
 
 pub(crate) use washer::sections as drum_sections;
 
-/// All of them.
-pub(crate) const ALL: &[Entry<D2>] = &[
-    speed("large_pyramid", pyramids::large),
-    speed("many_pyramids", pyramids::many),
-    speed("joint_grid", joint_grid::scene),
-    speed("tumbler", tumbler::scene),
-    speed("smash", smash::scene),
-    speed("compounds", compounds::scene),
-    speed("junkyard", junkyard::scene),
-    speed("washer", washer::scene),
-    Entry { name: "raycast", family: Family::Queries, build: raycast::scene },
-    idle("empty", still::empty),
-    idle("sleeping", still::sleeping),
-    idle("static", still::fixed),
-    idle("static_and_awake", still::awake),
-    Entry { name: "one", family: Family::Small, build: || still::few(1) },
-    Entry { name: "ten", family: Family::Small, build: || still::few(10) },
-    Entry { name: "hundred", family: Family::Small, build: || still::few(100) },
-    Entry { name: "spawn", family: Family::Bulk, build: || still::bulk(Work::Spawn) },
-    Entry { name: "despawn", family: Family::Bulk, build: || still::bulk(Work::Despawn) },
-    growth("growth_100", || pyramids::field(2, 1)),
-    growth("growth_300", || pyramids::field(6, 1)),
-    growth("growth_1000", || pyramids::field(9, 2)),
-    growth("growth_3000", || pyramids::field(18, 3)),
-    growth("growth_10000", || pyramids::field(20, 9)),
-    growth("growth_30000", || pyramids::field(20, 27)),
-    growth("growth_50000", || pyramids::field(20, 45)),
-];
+impl Scenes for D2 {
+    const ALL: &'static [Entry<Self>] = &[
+        speed("large_pyramid", pyramids::large),
+        speed("many_pyramids", pyramids::many),
+        speed("joint_grid", joint_grid::scene),
+        speed("tumbler", tumbler::scene),
+        speed("smash", smash::scene),
+        speed("compounds", compounds::scene),
+        speed("junkyard", junkyard::scene),
+        speed("washer", washer::scene),
+        Entry { name: "raycast", family: Family::Queries, build: raycast::scene },
+        idle("empty", still::empty),
+        idle("sleeping", still::sleeping),
+        idle("static", still::fixed),
+        idle("static_and_awake", still::awake),
+        Entry { name: "one", family: Family::Small, build: || still::few(1) },
+        Entry { name: "ten", family: Family::Small, build: || still::few(10) },
+        Entry { name: "hundred", family: Family::Small, build: || still::few(100) },
+        Entry { name: "spawn", family: Family::Bulk, build: || still::bulk(Work::Spawn) },
+        Entry { name: "despawn", family: Family::Bulk, build: || still::bulk(Work::Despawn) },
+        growth("growth_100", || pyramids::field(2, 1)),
+        growth("growth_300", || pyramids::field(6, 1)),
+        growth("growth_1000", || pyramids::field(9, 2)),
+        growth("growth_3000", || pyramids::field(18, 3)),
+        growth("growth_10000", || pyramids::field(20, 9)),
+        growth("growth_30000", || pyramids::field(20, 27)),
+        growth("growth_50000", || pyramids::field(20, 45)),
+    ];
+}
 
 const fn speed(name: &'static str, build: fn() -> Scene<D2>) -> Entry<D2> {
     Entry { name, family: Family::Speed, build }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::{
     dim3::{Body3, D3, Shape3, V3},
-    scene::{Entry, Family, Scene, Work},
+    scene::{Entry, Family, Scene, Scenes, Work},
 };
 
 mod box_pile;
@@ -18,35 +18,36 @@ mod queries;
 mod still;
 mod washer;
 
-/// All of them.
-pub(crate) const ALL: &[Entry<D3>] = &[
-    speed("large_pyramid", pyramids::large),
-    speed("many_pyramids", pyramids::many),
-    speed("box_pile", box_pile::scene),
-    speed("mesh_terrain", mesh_terrain::scene),
-    speed("joint_grid", joint_grid::scene),
-    speed("convex_pile", convex_pile::scene),
-    speed("junkyard", junkyard::scene),
-    speed("washer", washer::scene),
-    Entry { name: "raycast", family: Family::Queries, build: queries::raycast },
-    Entry { name: "ballcast", family: Family::Queries, build: queries::ballcast },
-    idle("empty", still::empty),
-    idle("sleeping", still::sleeping),
-    idle("static", still::fixed),
-    idle("static_and_awake", still::awake),
-    Entry { name: "one", family: Family::Small, build: || still::few(1) },
-    Entry { name: "ten", family: Family::Small, build: || still::few(10) },
-    Entry { name: "hundred", family: Family::Small, build: || still::few(100) },
-    Entry { name: "spawn", family: Family::Bulk, build: || still::bulk(Work::Spawn) },
-    Entry { name: "despawn", family: Family::Bulk, build: || still::bulk(Work::Despawn) },
-    growth("growth_100", || pyramids::field(2, 1)),
-    growth("growth_300", || pyramids::field(6, 1)),
-    growth("growth_1000", || pyramids::field(6, 3)),
-    growth("growth_3000", || pyramids::field(9, 6)),
-    growth("growth_10000", || pyramids::field(18, 10)),
-    growth("growth_30000", || pyramids::field(27, 20)),
-    growth("growth_50000", || pyramids::field(30, 30)),
-];
+impl Scenes for D3 {
+    const ALL: &'static [Entry<Self>] = &[
+        speed("large_pyramid", pyramids::large),
+        speed("many_pyramids", pyramids::many),
+        speed("box_pile", box_pile::scene),
+        speed("mesh_terrain", mesh_terrain::scene),
+        speed("joint_grid", joint_grid::scene),
+        speed("convex_pile", convex_pile::scene),
+        speed("junkyard", junkyard::scene),
+        speed("washer", washer::scene),
+        Entry { name: "raycast", family: Family::Queries, build: queries::raycast },
+        Entry { name: "ballcast", family: Family::Queries, build: queries::ballcast },
+        idle("empty", still::empty),
+        idle("sleeping", still::sleeping),
+        idle("static", still::fixed),
+        idle("static_and_awake", still::awake),
+        Entry { name: "one", family: Family::Small, build: || still::few(1) },
+        Entry { name: "ten", family: Family::Small, build: || still::few(10) },
+        Entry { name: "hundred", family: Family::Small, build: || still::few(100) },
+        Entry { name: "spawn", family: Family::Bulk, build: || still::bulk(Work::Spawn) },
+        Entry { name: "despawn", family: Family::Bulk, build: || still::bulk(Work::Despawn) },
+        growth("growth_100", || pyramids::field(2, 1)),
+        growth("growth_300", || pyramids::field(6, 1)),
+        growth("growth_1000", || pyramids::field(6, 3)),
+        growth("growth_3000", || pyramids::field(9, 6)),
+        growth("growth_10000", || pyramids::field(18, 10)),
+        growth("growth_30000", || pyramids::field(27, 20)),
+        growth("growth_50000", || pyramids::field(30, 30)),
+    ];
+}
 
 const fn speed(name: &'static str, build: fn() -> Scene<D3>) -> Entry<D3> {
     Entry { name, family: Family::Speed, build }
