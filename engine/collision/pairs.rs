@@ -3,8 +3,8 @@
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
 use kernel::{
-    bvh::{FoundPairs, Movers},
-    data::BitSet,
+    bvh::{FoundPairs, Known, Movers},
+    data::{BitSet, PairSet},
     table::{BodyTable, ColliderTable, Fattening, NONE},
 };
 
@@ -154,6 +154,31 @@ pub(crate) struct PairSearch {
     movers: Movers,
 }
 
+/// The pairs that are no news: of one body, or with a contact already.
+struct Contacted<'a> {
+    colliders: &'a ColliderTable,
+    pairs: &'a PairSet,
+}
+
+impl Known for Contacted<'_> {
+    /// Colliders of one body may overlap by the thousand: they are not even listed.
+    #[inline]
+    fn is_plain(&self, a: u32, b: u32) -> bool {
+        let body = self.colliders.body(a);
+        body == self.colliders.body(b) && body != NONE
+    }
+
+    #[inline]
+    fn prefetch(&self, a: u32, b: u32) {
+        self.pairs.prefetch(a, b);
+    }
+
+    #[inline]
+    fn contains(&self, a: u32, b: u32) -> bool {
+        self.pairs.contains(a, b)
+    }
+}
+
 /// Finds the pairs that moved boxes came into, and makes contacts of those that may collide, in the order
 /// of ids.
 pub(crate) fn find_new_pairs(
@@ -172,17 +197,12 @@ pub(crate) fn find_new_pairs(
         }
         trees.movers(moved, &table.fat, movers);
         moved.clear();
-        let contacts = &tables.contacts.table;
-        // Colliders of one body may overlap by the thousand: they are not even listed.
-        let known = |a: u32, b: u32| {
-            let body = table.body(a);
-            (body == table.body(b) && body != NONE) || contacts.find(a, b).is_some()
-        };
+        let known = Contacted { colliders: table, pairs: tables.contacts.table.pairs() };
         let team = &solver.kernel.team;
         if movers.list().len() >= MANY_MOVERS {
             team.wake();
         }
-        found.find(&trees.trees, movers, known, team);
+        found.find(&trees.trees, movers, &known, team);
     }
     let mut sleepers = Vec::new();
     for &(a, b) in found.pairs() {

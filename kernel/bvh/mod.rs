@@ -1,7 +1,7 @@
 //! Bounding-volume trees: which boxes may touch a box, a ray or a swept box, and which pairs may touch.
 //!
 //! A [`Tree`] holds one kind of collider; [`Trees`] all kinds. Broad phase: moving leaves
-//! [`enlarge`](Tree::enlarge), [`pairs_of`] or [`FoundPairs::find`] asks for the partners of what moved, and
+//! [`enlarge`](Tree::enlarge), [`FoundPairs::find`] asks for the partners of what moved, and
 //! [`rebuild_partial`](Tree::rebuild_partial) mends the tree while nobody asks.
 //!
 //! After Catto, "Dynamic Bounding Volume Hierarchies" (GDC 2019), and the partial rebuild of his
@@ -19,5 +19,5 @@ mod stack;
 mod tree;
 mod validate;
 
-pub use pairs::{FoundPairs, Mover, Movers, PairMask, TreeKind, Trees, pairs_of};
+pub use pairs::{FoundPairs, Known, Mover, Movers, PairMask, TreeKind, Trees};
 pub use tree::{ProxyId, Tree};

@@ -267,6 +267,19 @@ fn met(b: &Aabb, half: Vector, origin: Vector, direction: Vector, reach: f32, ha
     enter <= exit
 }
 
+/// Known are the pairs for which this holds; some of them it is plain to see.
+struct Where<F>(F);
+
+impl<F: Fn(u32, u32) -> bool + Sync> Known for Where<F> {
+    fn is_plain(&self, a: u32, b: u32) -> bool {
+        a.is_multiple_of(2) && (self.0)(a, b)
+    }
+    fn prefetch(&self, _: u32, _: u32) {}
+    fn contains(&self, a: u32, b: u32) -> bool {
+        (self.0)(a, b)
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 6, max_shrink_iters: 200, ..Default::default() })]
 
@@ -357,7 +370,7 @@ proptest! {
         let mut found = FoundPairs::default();
         for team in [Team::default(), Team::new(3)] {
             team.wake();
-            found.find(&trees, &movers, is_known, &team);
+            found.find(&trees, &movers, &Where(is_known), &team);
             prop_assert_eq!(found.pairs(), &expected);
         }
         movers.clear();

@@ -1,7 +1,7 @@
 //! Which pairs of boxes came to touch: every mover asks the trees it may touch.
 
 use super::tree::Tree;
-use crate::data::BitSet;
+use crate::data::{BitSet, PairSet};
 use crate::shape::Aabb;
 use crate::team::Team;
 use std::sync::{Mutex, PoisonError};
@@ -149,26 +149,60 @@ impl Movers {
     }
 }
 
+/// Which pairs are of no interest.
+pub trait Known: Sync {
+    /// Whether it is plain to see that a pair, lower id first, is none: asked for every two boxes that touch.
+    fn is_plain(&self, a: u32, b: u32) -> bool;
+    /// Has the memory brought near that [`contains`](Self::contains) looks at.
+    fn prefetch(&self, a: u32, b: u32);
+    /// Whether the pair is known.
+    fn contains(&self, a: u32, b: u32) -> bool;
+}
+
+impl Known for PairSet {
+    #[inline]
+    fn is_plain(&self, _: u32, _: u32) -> bool {
+        false
+    }
+
+    #[inline]
+    fn prefetch(&self, a: u32, b: u32) {
+        Self::prefetch(self, a, b);
+    }
+
+    #[inline]
+    fn contains(&self, a: u32, b: u32) -> bool {
+        Self::contains(self, a, b)
+    }
+}
+
 /// Appends the pairs `(lower id, higher id)` that one mover is to report: what its box touches in the trees
-/// its mask names, less itself, less the pairs of two movers that the lower one reports, less those
-/// `is_known`. Order as the trees have it.
+/// its mask names, less itself, less the pairs of two movers that the lower one reports, less those that are
+/// [plain](Known::is_plain). Order as the trees have it.
 #[inline]
-pub fn pairs_of(
-    mover: &Mover,
-    trees: &Trees,
-    movers: &Movers,
-    is_known: &impl Fn(u32, u32) -> bool,
-    out: &mut Vec<(u32, u32)>,
-) {
+fn pairs_of(mover: &Mover, trees: &Trees, movers: &Movers, known: &impl Known, out: &mut Vec<(u32, u32)>) {
     for kind in TreeKind::ALL.into_iter().filter(|k| mover.mask.contains(*k)) {
         trees[kind].query(&mover.aabb, |found| {
             let pair = (found.min(mover.id), found.max(mover.id));
-            if found != mover.id && !movers.is_left_to(found, mover) && !is_known(pair.0, pair.1) {
+            if found != mover.id && !movers.is_left_to(found, mover) && !known.is_plain(pair.0, pair.1) {
                 out.push(pair);
             }
             true
         });
     }
+}
+
+/// Takes the pairs from `start` on out that are known: first all are asked for, then looked at, so that the
+/// memory's answers need not be waited for one by one.
+fn drop_known(found: &mut Vec<(u32, u32)>, start: usize, known: &impl Known) {
+    found[start..].iter().for_each(|(a, b)| known.prefetch(*a, *b));
+    let mut kept = start;
+    for i in start..found.len() {
+        let (a, b) = found[i];
+        found[kept] = (a, b);
+        kept += usize::from(!known.contains(a, b));
+    }
+    found.truncate(kept);
 }
 
 /// The pairs that movers came into, and the memory to find them with.
@@ -181,22 +215,18 @@ pub struct FoundPairs {
 
 impl FoundPairs {
     /// Finds the pairs of all movers anew: sorted, each once. Every id must stand in one tree only, once.
-    pub fn find(
-        &mut self,
-        trees: &Trees,
-        movers: &Movers,
-        is_known: impl Fn(u32, u32) -> bool + Sync,
-        team: &Team,
-    ) {
+    pub fn find(&mut self, trees: &Trees, movers: &Movers, known: &impl Known, team: &Team) {
         if self.by_member.len() < team.members() {
             self.by_member.resize_with(team.members(), Mutex::default);
         }
         let (list, by_member) = (movers.list(), &self.by_member);
         team.run(list.len().div_ceil(BLOCK), |block, member| {
             let mut found = by_member[member].lock().unwrap_or_else(PoisonError::into_inner);
+            let start = found.len();
             for mover in &list[block * BLOCK..list.len().min((block + 1) * BLOCK)] {
-                pairs_of(mover, trees, movers, &is_known, &mut found);
+                pairs_of(mover, trees, movers, known, &mut found);
             }
+            drop_known(&mut found, start, known);
         });
         self.sorted.clear();
         for found in &mut self.by_member {

@@ -83,6 +83,11 @@ impl ContactTable {
         self.pairs.get(a.min(b), a.max(b))
     }
 
+    /// The pairs of colliders that have a contact, and which.
+    pub fn pairs(&self) -> &PairSet {
+        &self.pairs
+    }
+
     /// How many points a contact has.
     #[inline(always)]
     pub(crate) fn point_count(&self, id: u32) -> PointCount {

@@ -1,5 +1,7 @@
 //! A hash map from unordered pairs of ids, for "do these two already have a contact?".
 
+use super::prefetch;
+
 /// Maps pairs of `u32` ids to a `u32`. `(a, b)` and `(b, a)` are the same pair.
 ///
 /// Open addressing at a load of at most one half with linear probing: one cache line answers most
@@ -59,6 +61,14 @@ impl PairSet {
         }
         let slot = self.slots[find(&self.slots, pair)];
         (slot.pair == pair).then_some(slot.value)
+    }
+
+    /// Has the pair's place brought near, to be looked at soon.
+    #[inline]
+    pub fn prefetch(&self, a: u32, b: u32) {
+        if !self.slots.is_empty() {
+            prefetch(&self.slots, (mix(ordered(a, b)) as usize & (self.slots.len() - 1)) as u32);
+        }
     }
 
     /// Whether the pair has a value.

@@ -9,9 +9,10 @@ pub(crate) fn prefetch<T>(slice: &[T], index: u32) {
     if let Some(element) = slice.get(index as usize) {
         use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         let start = core::ptr::from_ref(element).cast::<i8>();
-        for line in (0..size_of::<T>()).step_by(64) {
+        // It need not begin where a line does: the last byte may be in one line more.
+        for byte in (0..size_of::<T>()).step_by(64).chain([size_of::<T>().saturating_sub(1)]) {
             // SAFETY: a prefetch of any address is harmless, and this is within the element.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line)) };
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(byte)) };
         }
     }
     #[cfg(not(target_arch = "x86_64"))]

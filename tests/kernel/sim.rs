@@ -219,9 +219,8 @@ impl Sim {
         self.colliders.ids.recycle();
         self.contacts.recycle_ids();
         self.gather();
-        let contacts = &self.contacts;
         let mut found = FoundPairs::default();
-        found.find(&self.trees, &self.movers, |a, b| contacts.find(a, b).is_some(), &self.solver.team);
+        found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.solver.team);
         self.movers.clear();
         for &(a, b) in found.pairs() {
             self.link().create(a, b);
