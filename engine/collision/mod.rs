@@ -13,7 +13,7 @@ pub use diagnostics::CollisionDiagnostics;
 /// The names of this module that most apps use.
 pub mod prelude {
     #[cfg(feature = "default-collider")]
-    pub use super::collider::Collider;
+    pub use super::collider::{Collider, FillMode, TrimeshFlags, VhacdParameters};
     #[expect(deprecated, reason = "former names stay importable")]
     pub use super::narrow_phase::NarrowPhaseSet;
     pub use super::{

@@ -1,5 +1,9 @@
 //! What avian2d does within an app; the files are shared with avian3d.
 
+#[path = "../../../../tests/contract.rs"]
+mod contract;
+#[path = "../../../../tests/contract2.rs"]
+mod contract_dim;
 #[path = "../../../../tests/marble2.rs"]
 mod marble;
 #[path = "../../../../tests/plugins.rs"]

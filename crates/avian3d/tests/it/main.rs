@@ -1,5 +1,9 @@
 //! What avian3d does within an app; the files are shared with avian2d.
 
+#[path = "../../../../tests/contract.rs"]
+mod contract;
+#[path = "../../../../tests/contract3.rs"]
+mod contract_dim;
 #[path = "../../../../tests/marble3.rs"]
 mod marble;
 #[path = "../../../../tests/plugins.rs"]
