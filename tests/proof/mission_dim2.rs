@@ -33,3 +33,39 @@ fn every_primitive_is_a_collider() {
     let bounds = Collider::from(shapes::Rhombus::new(2.0, 1.0)).shape().compute_local_aabb();
     assert!((bounds.maxs - Vector::new(1.0, 0.5)).length() < 1e-6);
 }
+
+/// As they stand there, but that what is called from outside is public.
+mod as_written {
+    pub mod length_unit {
+        use avian2d::prelude::*;
+        use bevy::prelude::*;
+
+        pub fn main() {
+            App::new()
+                .add_plugins((
+                    DefaultPlugins,
+                    // A 2D game with 10 pixels per meter
+                    PhysicsPlugins::default().with_length_unit(10.0),
+                ))
+                .run();
+        }
+    }
+
+    pub mod rotation {
+        use avian2d::prelude::*;
+        use bevy::prelude::*;
+
+        pub fn main() {
+            let rotation = Rotation::degrees(45.0);
+            assert_eq!(rotation * rotation * Vec2::X, Vec2::Y);
+        }
+    }
+}
+
+#[test]
+fn its_snippets_run_as_written() {
+    // Nobody closes an app without a window: it is to leave after its first frame.
+    bevy::app::TerminalCtrlCHandlerPlugin::gracefully_exit();
+    as_written::length_unit::main();
+    as_written::rotation::main();
+}

@@ -42,3 +42,61 @@ fn every_primitive_is_a_collider() {
     let bounds = Collider::from(shapes::Tetrahedron::default()).shape().compute_local_aabb();
     assert!((bounds.maxs - Vector::splat(0.5)).length() < 1e-5, "{bounds:?}");
 }
+
+/// As they stand there, but that what is called from outside is public.
+mod as_written {
+    pub mod plugins {
+        use avian3d::prelude::*;
+        use bevy::prelude::*;
+
+        pub fn main() {
+            App::new().add_plugins((DefaultPlugins, PhysicsPlugins::default())).run();
+        }
+    }
+
+    pub mod spawning {
+        use avian3d::prelude::*;
+        use bevy::prelude::*;
+
+        pub fn setup(mut commands: Commands) {
+            commands.spawn((RigidBody::Dynamic, Collider::sphere(0.5), LinearVelocity(Vec3::X)));
+        }
+    }
+
+    pub mod speculative_margin {
+        use avian3d::prelude::*;
+        use bevy::prelude::*;
+
+        pub fn setup(mut commands: Commands) {
+            // Spawn a rigid body with a maximum bound for the speculative margin.
+            commands.spawn((RigidBody::Dynamic, Collider::capsule(0.5, 2.0), SpeculativeMargin(2.0)));
+        }
+    }
+}
+
+#[test]
+fn its_snippets_run_as_written() {
+    // Nobody closes an app without a window: it is to leave after its first frame.
+    bevy::app::TerminalCtrlCHandlerPlugin::gracefully_exit();
+    as_written::plugins::main();
+
+    use bevy::prelude::*;
+    let mut app = App::new();
+    app.add_plugins((DefaultPlugins, PhysicsPlugins::default()))
+        .add_systems(Startup, (as_written::spawning::setup, as_written::speculative_margin::setup))
+        .insert_resource(bevy::time::TimeUpdateStrategy::FixedTimesteps(1));
+    app.finish();
+    app.cleanup();
+    for _ in 0..64 {
+        app.update();
+    }
+    let world = app.world_mut();
+    let mut bodies = world.query::<(&Collider, &Transform, &LinearVelocity)>();
+    let mut seen: Vec<(f32, f32, f32)> =
+        bodies.iter(world).map(|(_, at, v)| (at.translation.x, v.x, at.translation.y)).collect();
+    seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // In each other from the start, they part; together they move as one of them was sent.
+    assert_eq!(seen.len(), 2);
+    assert!(seen.iter().all(|s| (-5.5..-4.0).contains(&s.2)), "they fell: {seen:?}");
+    assert!(seen[1].0 > 0.5, "one was sent along x: {seen:?}");
+}
