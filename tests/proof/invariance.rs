@@ -105,7 +105,7 @@ fn a_scene_a_kilometre_away_is_the_same_scene() {
 
 #[test]
 fn a_scaled_scene_with_its_length_unit_is_the_same_scene() {
-    for scale in [0.1, 0.3, 3.0, 10.0] {
+    for scale in [0.01, 0.1, 0.3, 3.0, 10.0, 100.0] {
         assert_same(Frame { scale, ..HERE }, 0.02, &format!("scaled by {scale}"));
     }
     // Powers of two scale without rounding.
