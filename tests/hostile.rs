@@ -3,7 +3,7 @@
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
 use avian::{
-    math::{Scalar, Vector},
+    math::{AsF32, Scalar, Vector},
     parry::shape::SharedShape,
     prelude::*,
 };
@@ -324,6 +324,76 @@ fn sizes_that_are_none_make_colliders_that_can_be_lived_with() {
 }
 
 #[test]
+fn a_scale_that_is_none_is_ignored_or_tiny() {
+    for wrong in WRONG_SIZES {
+        let mut witness = Witness::new();
+        let shapes = [(0.0, ball()), (3.0, block()), (6.0, Collider::capsule(0.2, 0.3))];
+        let scaled = shapes.map(|(x, shape)| witness.spawn((RigidBody::Dynamic, shape, at(x, 1.0))));
+        steps(&mut witness.app, 30);
+        for body in scaled {
+            let mut collider = witness.app.world_mut().get_mut::<Collider>(body).expect("a collider");
+            collider.set_scale(Vector::splat(wrong), 8);
+        }
+        witness.is_undisturbed();
+        for body in scaled {
+            assert!(!is_disabled(&witness.app, body) && position(&witness.app, body).is_finite(), "{wrong}");
+        }
+    }
+}
+
+#[test]
+fn meshes_of_nothing_can_be_lived_with() {
+    let (zero, nan) = (Vector::ZERO, Vector::splat(Scalar::NAN));
+    // In a line, in one point, at no place, out of range, none at all.
+    let line: Vec<Vector> = (0..3).map(|i| Vector::X * i as Scalar).collect();
+    let meshes = [
+        (line, vec![[0, 1, 2]]),
+        (vec![zero; 3], vec![[0, 1, 2], [2, 1, 0]]),
+        (vec![zero, Vector::X, nan], vec![[0, 1, 2]]),
+        (vec![zero, Vector::X, Vector::Y], vec![[0, 1, 2], [0, 1, 7], [u32::MAX; 3]]),
+        (vec![], vec![]),
+        (vec![], vec![[0, 1, 2]]),
+    ];
+    for (vertices, indices) in meshes {
+        for flags in [TrimeshFlags::empty(), TrimeshFlags::FIX_INTERNAL_EDGES, TrimeshFlags::all()] {
+            let mut witness = Witness::new();
+            for (i, body) in [RigidBody::Static, RigidBody::Dynamic].into_iter().enumerate() {
+                let x = 5.0 * i as f32;
+                let mesh = Collider::trimesh_with_config(vertices.clone(), indices.clone(), flags);
+                let mesh = witness.spawn((body, mesh, at(x, 1.0)));
+                let above = witness.spawn((RigidBody::Dynamic, block(), at(x + 0.3, 2.0)));
+                steps(&mut witness.app, 30);
+                let given = format!("{vertices:?} {indices:?} {flags:?}");
+                assert!(position(&witness.app, mesh).is_finite(), "{given}");
+                assert!(
+                    position(&witness.app, above).is_finite() && !is_disabled(&witness.app, above),
+                    "{given}"
+                );
+            }
+            witness.is_undisturbed();
+        }
+    }
+}
+
+#[test]
+fn boxes_written_by_the_app_are_not_believed() {
+    for (min, max) in
+        [(Vector::X, Vector::NEG_X), (Vector::NAN, Vector::NAN), (Vector::NEG_INFINITY, Vector::INFINITY)]
+    {
+        for body in [RigidBody::Dynamic, RigidBody::Static] {
+            let mut witness = Witness::new();
+            let ill = witness.spawn((body, ball(), at(0.0, 0.5), ColliderAabb::from_min_max(min, max)));
+            steps(&mut witness.app, 5);
+            witness.insert(ill, ColliderAabb::from_min_max(min, max));
+            let on_it =
+                witness.spawn((RigidBody::Dynamic, ball(), at(0.0, 1.6), LockedAxes::ROTATION_LOCKED));
+            witness.is_undisturbed();
+            assert!(position(&witness.app, on_it).is_finite() && !is_disabled(&witness.app, ill));
+        }
+    }
+}
+
+#[test]
 fn hulls_that_span_nothing_are_refused() {
     let nan = Vector::splat(Scalar::NAN);
     let in_a_line = (0..5).map(|i| Vector::X * i as Scalar).collect();
@@ -356,6 +426,19 @@ fn masses_that_are_none_leave_the_others_alone() {
             witness.spawn((RigidBody::Dynamic, ball(), at(16.0, 0.6), Restitution::new(wrong))),
             witness.spawn((RigidBody::Dynamic, ball(), at(18.0, 0.6), CollisionMargin(wrong.min(1.0)))),
             witness.spawn((RigidBody::Dynamic, ball(), at(20.0, 0.6), SpeculativeMargin(wrong))),
+            witness.spawn((RigidBody::Dynamic, ball(), at(22.0, 0.6), dim::inertia(wrong as f32))),
+            witness.spawn((
+                RigidBody::Dynamic,
+                ball(),
+                at(26.0, 0.6),
+                CenterOfMass(Vector::splat(wrong).f32()),
+            )),
+            witness.spawn((
+                RigidBody::Dynamic,
+                ball(),
+                at(30.0, 0.6),
+                SleepThreshold { linear: wrong as f32, angular: wrong as f32 },
+            )),
         ];
         witness.is_undisturbed();
         for (i, body) in bodies.into_iter().enumerate() {
@@ -452,12 +535,18 @@ fn settings_that_are_none_are_survived() {
     for wrong in WRONG_SIZES {
         let mut witness = Witness::new();
         witness.app.insert_resource(SolverConfig {
+            contact_damping_ratio: wrong,
+            contact_frequency_factor: wrong,
             max_overlap_solve_speed: wrong,
             warm_start_coefficient: wrong,
             restitution_threshold: wrong,
-            ..SolverConfig::default()
+            restitution_iterations: 0,
         });
-        let narrow = NarrowPhaseConfig { default_speculative_margin: wrong, ..NarrowPhaseConfig::default() };
+        let narrow = NarrowPhaseConfig {
+            default_speculative_margin: wrong,
+            contact_tolerance: wrong,
+            match_contacts: false,
+        };
         witness.app.insert_resource(narrow).insert_resource(TimeToSleep(wrong as f32));
         let falling = witness.spawn((RigidBody::Dynamic, ball(), at(0.0, 1.0)));
         steps(&mut witness.app, 60);

@@ -11,3 +11,8 @@ pub fn scaled(length: Scalar) -> Rotation {
 pub fn spin(spin: Scalar) -> AngularVelocity {
     AngularVelocity(spin)
 }
+
+/// An angular inertia of this value.
+pub fn inertia(value: f32) -> AngularInertia {
+    AngularInertia(value)
+}

@@ -14,3 +14,8 @@ pub fn scaled(length: Scalar) -> Rotation {
 pub fn spin(spin: Scalar) -> AngularVelocity {
     AngularVelocity(Vector::Z * spin)
 }
+
+/// An angular inertia of this value about all axes.
+pub fn inertia(value: f32) -> AngularInertia {
+    AngularInertia { principal: bevy_math::Vec3::splat(value), local_frame: bevy_math::Quat::IDENTITY }
+}
