@@ -40,7 +40,7 @@ pub trait Simulation {
 pub struct Counts {
     /// Dynamic and kinematic bodies.
     pub bodies: usize,
-    /// Touching pairs of colliders in the last step, if the engine tells.
+    /// Pairs of colliders in the last step that touch or are near, if the engine tells.
     pub contacts: Option<u32>,
     /// Sleeping bodies.
     pub asleep: usize,

@@ -18,6 +18,9 @@ mod mission;
 mod mission_dim;
 #[path = "../../../tests/proof/motion.rs"]
 mod motion;
+#[expect(dead_code, reason = "the README's example is to compile; it would not end")]
+#[path = "../../../examples/examples3d/examples/readme.rs"]
+mod readme;
 #[path = "../../../tests/proof/sleep.rs"]
 mod sleep;
 #[path = "../../../tests/proof/stacks.rs"]
