@@ -23,6 +23,8 @@ mod motion;
 mod readme;
 #[path = "../../../tests/proof/sleep.rs"]
 mod sleep;
+#[path = "../../../tests/proof/spin3.rs"]
+mod spin;
 #[path = "../../../tests/proof/stacks.rs"]
 mod stacks;
 #[path = "../../../tests/proof/world.rs"]
