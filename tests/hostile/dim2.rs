@@ -1,4 +1,4 @@
-//! What hostile input must know of the plane. `hostile_dim3.rs` is the twin.
+//! What hostile input must know of the plane. `dim3.rs` is the twin.
 
 use avian::{math::Scalar, prelude::*};
 

@@ -1,4 +1,4 @@
-//! What hostile input must know of space. `hostile_dim2.rs` is the twin.
+//! What hostile input must know of space. `dim2.rs` is the twin.
 
 use avian::{
     math::{Scalar, Vector},
