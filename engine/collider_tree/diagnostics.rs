@@ -8,9 +8,10 @@ use core::time::Duration;
 #[derive(Resource, Debug, Default, Reflect)]
 #[reflect(Resource, Debug, Default)]
 pub struct ColliderTreeDiagnostics {
-    /// Improving the trees.
+    /// Improving the trees. Zero until trees are optimized beside the step: within it, that is part of
+    /// [`update`](Self::update).
     pub optimize: Duration,
-    /// Moving boxes.
+    /// Moving boxes, and keeping the trees good to search.
     pub update: Duration,
 }
 

@@ -13,7 +13,8 @@ use core::time::Duration;
 pub struct SolverDiagnostics {
     /// Gathering bodies and building the rows of contacts.
     pub prepare_constraints: Duration,
-    /// Summing up accelerations.
+    /// Summing up accelerations. Zero until there are forces: gravity is part of
+    /// [`integrate_velocities`](Self::integrate_velocities).
     pub update_velocity_increments: Duration,
     /// Integrating velocities.
     pub integrate_velocities: Duration,
@@ -31,7 +32,7 @@ pub struct SolverDiagnostics {
     pub finalize: Duration,
     /// Storing impulses.
     pub store_impulses: Duration,
-    /// Continuous collision detection.
+    /// Swept continuous collision detection. Zero until there is such.
     pub swept_ccd: Duration,
     /// How many rows the contacts were solved in; a row holds up to eight contacts.
     pub contact_constraint_count: u32,
