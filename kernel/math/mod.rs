@@ -67,6 +67,9 @@ mod lane_portable;
 #[cfg(target_arch = "x86_64")]
 mod lane_sse;
 mod pose;
+#[cfg_attr(feature = "2d", path = "tangent2.rs")]
+#[cfg_attr(feature = "3d", path = "tangent3.rs")]
+mod tangent;
 mod trig;
 
 pub use dim::*;
@@ -78,6 +81,7 @@ pub use lane_portable::F32x4;
 #[cfg(target_arch = "x86_64")]
 pub use lane_sse::F32x4;
 pub use pose::{Pose, WorldPose, WorldVector};
+pub use tangent::{Tangent, TangentFrame, TangentMass};
 pub use trig::{atan2, cos, sin, sin_cos};
 
 /// How far the square of a rotation's length may be from 1 to count as 1. A product of a few rotations stays

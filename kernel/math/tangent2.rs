@@ -1,0 +1,96 @@
+//! The tangent space of a contact in the plane: its direction, and the effective mass along it. `tangent3.rs` has
+//! the same types with the same operations.
+
+use super::{InvInertia, Lane, Num, Vector};
+
+/// A vector in the tangent space of a contact: one number along the tangent.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Tangent<N = f32> {
+    /// Along the tangent.
+    pub x: N,
+}
+
+/// The tangent directions of a contact normal.
+#[derive(Clone, Copy, Debug)]
+pub struct TangentFrame<N = f32> {
+    x: Vector<N>,
+}
+
+/// The effective mass of a contact's tangent row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct TangentMass<N = f32> {
+    xx: N,
+}
+
+impl Vector {
+    /// A unit vector at right angles to this unit vector.
+    #[inline]
+    pub fn any_orthonormal(self) -> Self {
+        self.perp()
+    }
+}
+
+impl<N: Num> Tangent<N> {
+    /// Nothing along the tangent.
+    pub const ZERO: Self = Self { x: N::ZERO };
+}
+
+impl<N: Lane> Tangent<N> {
+    /// Shortened to at most `limit` (≥ 0).
+    #[inline(always)]
+    pub fn clamp_length(self, limit: N) -> Self {
+        Self { x: self.x.max(-limit).min(limit) }
+    }
+    /// Writes lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: Tangent) {
+        self.x.set(i, v.x);
+    }
+    /// Reads lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Tangent {
+        Tangent { x: self.x.get(i) }
+    }
+}
+
+impl<N: Lane> TangentFrame<N> {
+    /// The tangent of a unit normal: the normal turned clockwise by a quarter.
+    #[inline(always)]
+    pub fn new(normal: Vector<N>) -> Self {
+        Self { x: Vector { x: normal.y, y: -normal.x } }
+    }
+    /// The part of `v` in the tangent space.
+    #[inline(always)]
+    pub fn project(&self, v: Vector<N>) -> Tangent<N> {
+        Tangent { x: self.x.dot(v) }
+    }
+    /// The vector of a tangent-space vector.
+    #[inline(always)]
+    pub fn expand(&self, t: Tangent<N>) -> Vector<N> {
+        self.x * t.x
+    }
+    /// The inverse of the tangent row's K for two bodies of the inverse inertias and arms given:
+    /// K = tᵀ M⁻¹ t + Σ (rᵢ × t)ᵀ Iᵢ⁻¹ (rᵢ × t), where `inv_mass` is the diagonal of the summed M⁻¹. Zero
+    /// where K is zero.
+    #[inline(always)]
+    pub fn mass(&self, inv_mass: Vector<N>, bodies: [(InvInertia<N>, Vector<N>); 2]) -> TangentMass<N> {
+        let mut k = self.x.dot(self.x.scale(inv_mass));
+        for (inertia, arm) in bodies {
+            let c = arm.cross(self.x);
+            k += c.dot(inertia.apply(c));
+        }
+        TangentMass { xx: N::select(N::ZERO.lt(k), N::ONE / k, N::ZERO) }
+    }
+}
+
+impl<N: Num> TangentMass<N> {
+    /// The impulse that makes the tangent velocity `v` vanish, but for its sign.
+    #[inline(always)]
+    pub fn apply(self, v: Tangent<N>) -> Tangent<N> {
+        Tangent { x: self.xx * v.x }
+    }
+}
+
+componentwise! { Tangent { x } }

@@ -1,0 +1,127 @@
+//! The tangent space of a contact in space: its directions, and the effective mass along them. `tangent2.rs` has
+//! the same types with the same operations.
+
+use super::{InvInertia, Lane, Num, Vector};
+
+/// A vector in the tangent plane of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Tangent<N = f32> {
+    /// Along the first tangent.
+    pub x: N,
+    /// Along the second tangent.
+    pub y: N,
+}
+
+/// The tangent directions of a contact normal.
+#[derive(Clone, Copy, Debug)]
+pub struct TangentFrame<N = f32> {
+    x: Vector<N>,
+    y: Vector<N>,
+}
+
+/// The effective mass of a contact's coupled tangent rows, a symmetric 2 × 2 matrix.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct TangentMass<N = f32> {
+    xx: N,
+    yy: N,
+    xy: N,
+}
+
+impl Vector {
+    /// A unit vector at right angles to this unit vector.
+    #[inline]
+    pub fn any_orthonormal(self) -> Self {
+        TangentFrame::new(self).x
+    }
+}
+
+impl<N: Num> Tangent<N> {
+    /// Nothing in the tangent plane.
+    pub const ZERO: Self = Self { x: N::ZERO, y: N::ZERO };
+}
+
+impl<N: Lane> Tangent<N> {
+    /// Shortened to at most `limit` (≥ 0), along its direction: a circular cone.
+    #[inline(always)]
+    pub fn clamp_length(self, limit: N) -> Self {
+        let square = self.x * self.x + self.y * self.y;
+        let long = (limit * limit).lt(square);
+        let factor = N::select(long, limit / square.sqrt(), N::ONE);
+        Self { x: self.x * factor, y: self.y * factor }
+    }
+    /// Writes lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: Tangent) {
+        self.x.set(i, v.x);
+        self.y.set(i, v.y);
+    }
+    /// Reads lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Tangent {
+        Tangent { x: self.x.get(i), y: self.y.get(i) }
+    }
+}
+
+/// A symmetric 2 × 2 matrix whose determinant is a smaller share of its squared trace counts as singular: what is
+/// left then is rounding.
+const SINGULAR: f32 = 1.0e-5;
+
+impl<N: Lane> TangentFrame<N> {
+    /// Two unit tangents of a unit normal, without a branch (Duff et al., "Building an Orthonormal
+    /// Basis, Revisited", JCGT 2017).
+    #[inline(always)]
+    pub fn new(n: Vector<N>) -> Self {
+        let sign = N::select(n.z.lt(N::ZERO), -N::ONE, N::ONE);
+        let a = -N::ONE / (sign + n.z);
+        let b = n.x * n.y * a;
+        Self {
+            x: Vector { x: N::ONE + sign * n.x * n.x * a, y: sign * b, z: -(sign * n.x) },
+            y: Vector { x: b, y: sign + n.y * n.y * a, z: -n.y },
+        }
+    }
+    /// The part of `v` in the tangent plane.
+    #[inline(always)]
+    pub fn project(&self, v: Vector<N>) -> Tangent<N> {
+        Tangent { x: self.x.dot(v), y: self.y.dot(v) }
+    }
+    /// The vector of a tangent-plane vector.
+    #[inline(always)]
+    pub fn expand(&self, t: Tangent<N>) -> Vector<N> {
+        self.x * t.x + self.y * t.y
+    }
+    /// The inverse of the coupled tangent rows' 2 × 2 K matrix for two bodies of the inverse inertias
+    /// and arms given: K_ab = t_aᵀ M⁻¹ t_b + Σ (rᵢ × t_a)ᵀ Iᵢ⁻¹ (rᵢ × t_b), where `inv_mass` is the
+    /// diagonal of the summed M⁻¹. Where K has one direction only, as between bodies that are held in a plane,
+    /// the inverse in that direction; zero where it has none.
+    #[inline(always)]
+    pub fn mass(&self, inv_mass: Vector<N>, bodies: [(InvInertia<N>, Vector<N>); 2]) -> TangentMass<N> {
+        let (lx, ly) = (self.x.scale(inv_mass), self.y.scale(inv_mass));
+        let (mut xx, mut yy, mut xy) = (self.x.dot(lx), self.y.dot(ly), self.x.dot(ly));
+        for (inertia, arm) in bodies {
+            let (cx, cy) = (arm.cross(self.x), arm.cross(self.y));
+            let (ix, iy) = (inertia.apply(cx), inertia.apply(cy));
+            xx += cx.dot(ix);
+            yy += cy.dot(iy);
+            xy += cx.dot(iy);
+        }
+        let (determinant, trace) = (xx * yy - xy * xy, xx + yy);
+        let regular = (trace * trace * N::splat(SINGULAR)).lt(determinant);
+        let k = N::ONE / N::select(regular, determinant, trace * trace);
+        let k = N::select(N::ZERO.lt(trace), k, N::ZERO);
+        let [xx, yy, xy] =
+            [(yy, xx), (xx, yy), (-xy, xy)].map(|(inverse, own)| N::select(regular, inverse, own) * k);
+        TangentMass { xx, yy, xy }
+    }
+}
+
+impl<N: Num> TangentMass<N> {
+    /// The impulse that makes the tangent velocity `v` vanish, but for its sign.
+    #[inline(always)]
+    pub fn apply(self, v: Tangent<N>) -> Tangent<N> {
+        Tangent { x: self.xx * v.x + self.xy * v.y, y: self.xy * v.x + self.yy * v.y }
+    }
+}
+
+componentwise! { Tangent { x, y } }
