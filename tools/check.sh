@@ -32,12 +32,14 @@ for dimension in 2d 3d; do
 done
 
 # The libraries with the features of the README's command, so that Bevy is compiled once for lints and once
-# for tests. What draws is linted without a window: no renderer is built here.
+# for tests. What draws is linted and tested without a window: no renderer is built here.
 stage cargo clippy --workspace --exclude examples2d --exclude examples3d --exclude testbed --all-targets -- -D warnings
 stage cargo clippy --package testbed --no-default-features -- -D warnings
+stage cargo test --quiet --package testbed --no-default-features
 stage cargo test --quiet
 
-# World positions in f64 exclude f32 in one build, so their tests are a workspace of their own.
+# World positions in f64 exclude f32 in one build, so their tests, and the engine's unit tests in f64, are a workspace
+# of their own.
 stage cargo test --quiet --manifest-path crates/far_f64/Cargo.toml
 
 # `parallel` changes nothing here but Bevy's features: with it, what clippy compiled of Bevy serves again.
