@@ -9,6 +9,7 @@ The scenes of the physics engine, in a window or without one.
 usage: testbed [options]
 
   --headless      no window: run the scenes one after the other, print a table, draw pictures
+  --window        the window in this process, whether it can open or not
   --scene NAME    only scenes of that name, 2D and 3D; NAME may also be 2d/NAME, 3d/NAME, 2d or 3d
   --steps N       run N steps of 1/60 s instead of each scene's own number
   --out DIR       where to write the pictures (default: out)
@@ -16,7 +17,8 @@ usage: testbed [options]
   --list          print the scenes
   --help          print this
 
-Without --headless a window opens if there is an X11 display and a Vulkan driver. In the window:
+Without --headless and --window a window opens in a process of its own, if there is an X11 display and a Vulkan
+driver; if it ends before it has drawn, the scenes run headless. In the window:
 
   up, down        choose a scene (or click on it)     space    pause, go on
   enter, r        start again                         s        a single step, when paused
@@ -29,6 +31,8 @@ Without --headless a window opens if there is an X11 display and a Vulkan driver
 pub struct Args {
     /// No window, whatever there is.
     pub headless: bool,
+    /// The window in this process, without looking first whether it can open.
+    pub window: bool,
     /// Only what matches this; see [`Args::selects`].
     pub scene: Option<String>,
     /// Instead of each scene's own number of steps.
@@ -47,6 +51,7 @@ impl Default for Args {
     fn default() -> Self {
         Self {
             headless: false,
+            window: false,
             scene: None,
             steps: None,
             out: PathBuf::from("out"),
@@ -73,6 +78,7 @@ impl Args {
             };
             match option.as_str() {
                 "--headless" => args.headless = true,
+                "--window" => args.window = true,
                 "--idle" => args.idle = true,
                 "--list" => args.list = true,
                 "--help" | "-h" => args.help = true,
@@ -115,12 +121,13 @@ mod tests {
     #[test]
     fn options_are_understood_in_both_spellings() {
         let args = parse("--headless --scene=3d/tumbler --steps 20 --out pictures").unwrap();
-        assert!(args.headless && !args.list);
+        assert!(args.headless && !args.window && !args.list);
         assert_eq!(args.steps, Some(20));
         assert_eq!(args.out, PathBuf::from("pictures"));
         assert!(args.selects(3, "tumbler") && !args.selects(2, "tumbler") && !args.selects(3, "towers"));
         assert!(parse("--scene towers").unwrap().selects(2, "towers"));
         assert!(parse("--scene 2d").unwrap().selects(2, "dominoes"));
+        assert!(parse("--window").unwrap().window);
         assert_eq!(parse("").unwrap(), Args::default());
     }
 

@@ -2,11 +2,14 @@
 #![allow(clippy::duplicate_mod, reason = "some files are compiled once for each dimension, on purpose")]
 
 mod args;
+#[cfg(any(feature = "window", test))]
+mod child;
 mod dim2;
 mod dim3;
 mod draw;
 mod headless;
-#[cfg(feature = "window")]
+#[cfg(any(feature = "window", test))]
+#[cfg_attr(not(feature = "window"), expect(dead_code, reason = "tested even where no window is built"))]
 mod probe;
 mod sim;
 #[cfg(feature = "window")]
@@ -48,37 +51,34 @@ fn main() -> ExitCode {
         }
         return ExitCode::SUCCESS;
     }
-    match reason_for_no_window(&args) {
-        Some(reason) => {
-            eprintln!("{reason}: running headless");
-            match headless::tour(&args, &entries) {
-                Ok(()) => ExitCode::SUCCESS,
-                Err(error) => {
-                    eprintln!("{}: {error}", args.out.display());
-                    ExitCode::FAILURE
-                }
-            }
+    let reason = match show(&args, &entries) {
+        Ok(code) => return code,
+        Err(reason) => reason,
+    };
+    eprintln!("{reason}: running headless");
+    match headless::tour(&args, &entries) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{}: {error}", args.out.display());
+            ExitCode::FAILURE
         }
-        None => open_window(entries),
     }
 }
 
+/// Shows the scenes in a window until that is closed. `Err` says why there is no window.
 #[cfg(feature = "window")]
-fn reason_for_no_window(args: &Args) -> Option<String> {
-    if args.headless { Some("--headless".into()) } else { probe::window_possible().err() }
+fn show(args: &Args, entries: &[Entry]) -> Result<ExitCode, String> {
+    if args.headless {
+        return Err("--headless".into());
+    }
+    if args.window {
+        return Ok(window::run(entries.to_vec()));
+    }
+    probe::window_possible()?;
+    child::open_window()
 }
 
 #[cfg(not(feature = "window"))]
-fn reason_for_no_window(_args: &Args) -> Option<String> {
-    Some("built without the window".into())
-}
-
-#[cfg(feature = "window")]
-fn open_window(entries: Vec<Entry>) -> ExitCode {
-    window::run(entries)
-}
-
-#[cfg(not(feature = "window"))]
-fn open_window(_entries: Vec<Entry>) -> ExitCode {
-    ExitCode::FAILURE
+fn show(_args: &Args, _entries: &[Entry]) -> Result<ExitCode, String> {
+    Err("built without the window".into())
 }

@@ -1,7 +1,8 @@
 //! Finds out whether a window can open, before anything is started that would panic if not.
 //!
 //! The window needs an X11 display that accepts connections, the X libraries, the Vulkan loader, and at least one
-//! Vulkan driver. Each is looked for by files, sockets and environment variables alone.
+//! Vulkan driver. Each is looked for by files, sockets and environment variables alone; what these do not tell,
+//! [`crate::child`] catches.
 
 use std::path::{Path, PathBuf};
 

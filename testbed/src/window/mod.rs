@@ -12,7 +12,7 @@ use std::process::ExitCode;
 
 use bevy::prelude::*;
 
-use crate::sim::Entry;
+use crate::{child, sim::Entry};
 use stage::Stage;
 
 /// Opens the window and stays until it is closed.
@@ -37,6 +37,7 @@ pub fn run(entries: Vec<Entry>) -> ExitCode {
                 camera::place,
                 browser::show_numbers,
                 browser::mark_chosen,
+                say_drawn,
             )
                 .chain(),
         )
@@ -44,5 +45,14 @@ pub fn run(entries: Vec<Entry>) -> ExitCode {
     match exit {
         AppExit::Success => ExitCode::SUCCESS,
         AppExit::Error(code) => ExitCode::from(code.get()),
+    }
+}
+
+/// Tells whoever started this process that the window has come up. Drawing is a frame behind, and in its first frame
+/// opens the surface: at the third, the first has been drawn.
+fn say_drawn(mut frame: Local<u32>) {
+    *frame = frame.saturating_add(1);
+    if *frame == 3 {
+        child::say_drawn();
     }
 }
