@@ -8,10 +8,9 @@ use core::time::Duration;
 #[derive(Resource, Debug, Default, Reflect)]
 #[reflect(Resource, Debug, Default)]
 pub struct ColliderTreeDiagnostics {
-    /// Improving the trees. Zero until trees are optimized beside the step: within it, that is part of
-    /// [`update`](Self::update).
+    /// Keeping the trees good to search.
     pub optimize: Duration,
-    /// Moving boxes, and keeping the trees good to search.
+    /// Moving boxes in the trees, [`optimize`](Self::optimize) included.
     pub update: Duration,
 }
 

@@ -1,6 +1,8 @@
 //! Where each collider's box stands: the trees by what moves a collider, and its leaf in one of them.
 
 use super::optimization::TreeOptimizationMode;
+use bevy_platform::time::Instant;
+use core::time::Duration;
 use kernel::{
     bvh::{Mover, Movers, PairMask, ProxyId, TreeKind, Trees},
     data::BitSet,
@@ -80,8 +82,8 @@ impl ProxyTable {
     /// Gives the leaves of the colliders in `moved` their fat boxes, and keeps the trees good to search.
     ///
     /// Unless the app wants every leaf reinserted, leaves grow in place until one in [`GROWN`] has: fitting the
-    /// boxes above them, or rebuilding, then costs as much as what grew.
-    pub(crate) fn update(&mut self, moved: &BitSet, fat: &[Aabb], mode: TreeOptimizationMode) {
+    /// boxes above them, or rebuilding, then costs as much as what grew. Returns how long that took.
+    pub(crate) fn update(&mut self, moved: &BitSet, fat: &[Aabb], mode: TreeOptimizationMode) -> Duration {
         let mut fresh: [Vec<(u32, Aabb)>; 4] = Default::default();
         let many = moved.count() * GROWN;
         let mut placed = [false; 4];
@@ -103,13 +105,17 @@ impl ProxyTable {
                 }
             }
         }
+        let mut optimizing = Duration::ZERO;
         for kind in TreeKind::ALL {
             if placed[kind as usize] {
                 self.trees[kind].refit();
             }
             self.enter(kind, &fresh[kind as usize]);
+            let start = Instant::now();
             self.put_in_order(kind, mode, placed[kind as usize]);
+            optimizing += start.elapsed();
         }
+        optimizing
     }
 
     /// Optimizes a tree if it is time; `fitted` says whether its boxes have just been fitted.

@@ -72,7 +72,7 @@ pub(crate) fn update_stale_boxes(
         }
     }
     stale.clear();
-    trees.update(&changed, &table.fat, optimization.optimization_mode);
+    diagnostics.optimize += trees.update(&changed, &table.fat, optimization.optimization_mode);
     moved.union_with(&changed);
     diagnostics.update += start.elapsed();
 }
@@ -115,7 +115,7 @@ pub(crate) fn refit_awake(
             });
         }
     }
-    trees.update(&changed, &table.fat, optimization.optimization_mode);
+    diagnostics.optimize += trees.update(&changed, &table.fat, optimization.optimization_mode);
     moved.union_with(&changed);
     changed.clear();
     diagnostics.update += start.elapsed();
