@@ -22,7 +22,7 @@ impl ContactFlags {
     pub const FROZEN: Self = Self(1 << 4);
     /// The fat boxes do not overlap any more: to be destroyed.
     pub const APART: Self = Self(1 << 5);
-    /// Overlaps by more than a tenth of the smaller side's reach, or did and has not come apart since.
+    /// Was put to overlap by more than a tenth of the smaller side's reach, and has not come apart since.
     pub const DEEP: Self = Self(1 << 6);
 
     /// Whether all bits of `other` are set.

@@ -84,7 +84,8 @@ pub enum Found {
     Computed,
 }
 
-/// Overlap is deep from this share of the smaller side's reach on.
+/// Overlap is deep from this share of the smaller side's reach on, where bodies were put into one another. What load or
+/// a blow presses together is not: it has to be borne, or a heap would sink into itself.
 const DEEP: f32 = 0.1;
 /// What was deep stays so down to this share: overlap that has begun to be pushed out gently is so to its
 /// end. Were it the share above, the last tenth would be pushed out as by springs, and a row of a hundred
@@ -112,23 +113,29 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
             return Found::Apart;
         }
         let poses = [self.pose(contact, 0), self.pose(contact, 1)];
-        let recycled = self.recycle(contact, &poses);
-        if !recycled {
-            self.compute(contact, extra, &poses, scratch);
+        if self.recycle(contact, &poses) {
+            if contact.flags.has(ContactFlags::DEEP) {
+                contact.flags.set(ContactFlags::DEEP, self.overlaps_by(NO_LONGER_DEEP, contact));
+            }
+            return Found::Recycled;
         }
-        contact.flags.set(ContactFlags::DEEP, self.is_deep(contact));
-        if recycled { Found::Recycled } else { Found::Computed }
+        // What has just come together, or was changed by hand, was put where it is; all else was pressed there.
+        let placed = contact.revisions != self.revisions(contact, &poses);
+        self.compute(contact, extra, &poses, scratch);
+        let deep = match (contact.flags.has(ContactFlags::DEEP), placed) {
+            (true, _) => self.overlaps_by(NO_LONGER_DEEP, contact),
+            (false, true) => self.overlaps_by(DEEP, contact),
+            (false, false) => false,
+        };
+        contact.flags.set(ContactFlags::DEEP, deep);
+        Found::Computed
     }
 
     /// Whether the shapes overlap by more than a share of the smaller one's reach.
-    fn is_deep(&self, contact: &Contact) -> bool {
+    fn overlaps_by(&self, share: f32, contact: &Contact) -> bool {
         let deepest = contact.manifold.points().iter().fold(0.0, |d, p| min(d, p.separation));
-        if deepest == 0.0 {
-            return false;
-        }
         let reach = smaller(contact.colliders.map(|c| self.colliders.reaches[c as usize].extent));
-        let limit = if contact.flags.has(ContactFlags::DEEP) { NO_LONGER_DEEP } else { DEEP };
-        deepest < -limit * reach
+        deepest < 0.0 && deepest < -share * reach
     }
 
     /// The centre of mass and rotation of a side's body; for a collider without one its own pose.

@@ -189,3 +189,53 @@ fn a_crowd_has_the_same_bits_with_four_lanes_and_with_as_many_as_there_are() {
     };
     assert_eq!(run(true), run(false));
 }
+
+/// What falls on what lies is pressed into it deeply, and has to be borne all the same: only bodies that were put into
+/// one another are parted without force.
+#[test]
+fn a_heap_of_boxes_that_fell_far_does_not_sink_into_itself() {
+    let mut sim = Sim::new();
+    sim.checked = false;
+    sim.gravity = Vector::Y * -30.0;
+    let (wide, high, half) = (6, 21, 0.25);
+    let deep = if kernel::math::DIM == 2 { 1 } else { wide };
+    let room = 0.33 * wide as f32;
+    let wall = |half: Vector, at: Vector, sim: &mut Sim| {
+        sim.add(BodyKind::Static, Shape::Cuboid(Cuboid { half }), at, Rot::IDENTITY);
+    };
+    wall(sized(4.0, 1.0, 4.0), sized(0.0, -1.0, 0.0), &mut sim);
+    for side in [-1.0, 1.0] {
+        let away = side * (room + 1.0);
+        wall(sized(1.0, 12.0, 4.0), sized(away, 12.0, 0.0), &mut sim);
+        if deep > 1 {
+            wall(sized(4.0, 12.0, 1.0), sized(0.0, 12.0, away), &mut sim);
+        }
+    }
+    let mut turns = 0u32;
+    for y in 0..high {
+        for x in 0..wide {
+            for z in 0..deep {
+                let [x, z] = [x, z].map(|i| 0.66 * (i as f32 + 0.5) - room);
+                turns = turns.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let angle = (turns >> 8) as f32 / (1 << 25) as f32 - 0.25;
+                let at = sized(x, 0.6 + 0.75 * y as f32, z);
+                sim.add(BodyKind::Dynamic, block(half), at, turned(angle));
+            }
+        }
+    }
+    let depths = |sim: &Sim| -> Vec<f32> {
+        let contacts = sim.contacts.active().iter().map(|id| sim.contacts.get(*id));
+        contacts.flat_map(|c| c.manifold.points().iter().map(|p| -p.separation).collect::<Vec<_>>()).collect()
+    };
+    let deepest = |sim: &Sim| depths(sim).into_iter().fold(0.0, f32::max);
+    let mut pressed: f32 = 0.0;
+    for _ in 0..80 {
+        sim.step();
+        pressed = pressed.max(deepest(&sim));
+    }
+    assert!(pressed > 0.1 * half, "the fall presses them deep, {pressed} m");
+    sim.steps(120);
+    // That much soft contacts yield under sixteen layers at three times the weight.
+    let left = deepest(&sim);
+    assert!(left < 0.021, "{left} m deep when it has come to rest");
+}
