@@ -235,7 +235,7 @@ fn a_heap_of_boxes_that_fell_far_does_not_sink_into_itself() {
     }
     assert!(pressed > 0.1 * half, "the fall presses them deep, {pressed} m");
     sim.steps(120);
-    // That much soft contacts yield under sixteen layers at three times the weight.
+    // Soft contacts yield two centimetres under twenty layers of three times the weight.
     let left = deepest(&sim);
-    assert!(left < 0.021, "{left} m deep when it has come to rest");
+    assert!(left < 0.03, "{left} m deep when it has come to rest");
 }
