@@ -5,7 +5,7 @@ use super::record::{Contact, ContactFlags, Manifold};
 use super::table::{ContactTable, PointCount};
 use super::update::{Found, ManifoldSource, NarrowPhase, Scratch};
 use crate::data::{BitSet, Parts};
-use crate::table::NONE;
+use crate::table::{BodyKind, BodyTable, NONE};
 use crate::team::Team;
 
 /// How many contacts are updated at a stretch: recycled ones take some microseconds.
@@ -28,7 +28,9 @@ impl ContactTable {
         if scratches.len() < team.members() {
             scratches.resize_with(team.members(), Scratch::default);
         }
+        self.find_crowded(phase.bodies);
         let Self { contacts, points, active, extra, .. } = self;
+        let crowded = self.any_deep.then_some(&self.crowded);
         let (contacts, points) = (Parts::of(contacts), Parts::of(points));
         let of_members = Parts::of(scratches);
         team.run(active.len().div_ceil(BLOCK), |block, member| {
@@ -42,7 +44,7 @@ impl ContactTable {
                 }
                 // SAFETY: a contact is in the list once.
                 let (contact, count) = unsafe { (contacts.one(id as usize), points.one(id as usize)) };
-                scratch.update(id, contact, extra, phase);
+                scratch.update(id, contact, extra, crowded, phase);
                 *count = PointCount::of(contact);
             }
         });
@@ -56,6 +58,21 @@ impl ContactTable {
             for &(id, count) in &scratch.stored {
                 self.store_extra(id, &scratch.pool[start..start + count]);
                 start += count;
+            }
+        }
+    }
+
+    /// Finds the dynamic bodies that overlap others deeply.
+    fn find_crowded(&mut self, bodies: &BodyTable) {
+        self.crowded.clear();
+        if !self.any_deep {
+            return;
+        }
+        for id in &self.active {
+            let contact = &self.contacts[*id as usize];
+            if contact.flags.has(ContactFlags::DEEP) {
+                let dynamic = |body: &u32| *body != NONE && bodies[*body].kind == BodyKind::Dynamic;
+                contact.bodies.into_iter().filter(dynamic).for_each(|body| _ = self.crowded.insert(body));
             }
         }
     }
@@ -81,14 +98,17 @@ impl<W> Scratch<W> {
         id: u32,
         contact: &mut Contact,
         extra: &[Vec<Manifold>],
+        crowded: Option<&BitSet>,
         phase: &NarrowPhase<S>,
     ) {
+        let is_among = |crowd: &BitSet| contact.bodies.iter().any(|b| *b != NONE && crowd.contains(*b));
+        let is_crowded = crowded.is_some_and(is_among);
         let touched = contact.flags.has(ContactFlags::TOUCHING);
         let extra: &[Manifold] = match contact.extra {
             NONE => &[],
             slot => &extra[slot as usize][..usize::from(contact.extra_count)],
         };
-        match phase.update(contact, extra, self) {
+        match phase.update(contact, extra, is_crowded, self) {
             Found::Apart => {
                 contact.flags.set(ContactFlags::APART, true);
                 self.changed.push(id);

@@ -1,7 +1,7 @@
 //! All contacts by id, the pairs they are of, and the list of the awake ones.
 
 use super::record::{Contact, Manifold};
-use crate::data::{IdPool, PairSet, prefetch};
+use crate::data::{BitSet, IdPool, PairSet, prefetch};
 use crate::table::{ColliderTable, NONE};
 
 /// All contacts.
@@ -19,6 +19,8 @@ pub struct ContactTable {
     pub(super) active: Vec<u32>,
     /// Whether the last update found a deeply overlapping contact.
     pub(super) any_deep: bool,
+    /// The dynamic bodies that overlapped others deeply when contacts were last updated.
+    pub(super) crowded: BitSet,
     pub(super) extra: Vec<Vec<Manifold>>,
     free_extra: Vec<u32>,
 }

@@ -99,12 +99,14 @@ const RECYCLE_SHARE: f32 = 0.25;
 const RECYCLE_COS: f32 = 0.985;
 
 impl<S: ManifoldSource> NarrowPhase<'_, S> {
-    /// Brings a contact up to date with where its bodies are now. Manifolds after the first are left in
+    /// Brings a contact up to date with where its bodies are now. `crowded` says that one of them overlapped another
+    /// deeply before. Manifolds after the first are left in
     /// `scratch.extra`; the caller stores them.
     pub fn update(
         &self,
         contact: &mut Contact,
         extra: &[Manifold],
+        crowded: bool,
         scratch: &mut Scratch<S::Workspace>,
     ) -> Found {
         let [a, b] = contact.colliders;
@@ -119,8 +121,9 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
             }
             return Found::Recycled;
         }
-        // What has just come together, or was changed by hand, was put where it is; all else was pressed there.
-        let placed = contact.revisions != self.revisions(contact, &poses);
+        // What has just come together, or was changed by hand, was put where it is; all else was pressed there, if not
+        // by those that were put there.
+        let placed = crowded || contact.revisions != self.revisions(contact, &poses);
         self.compute(contact, extra, &poses, scratch);
         let deep = match (contact.flags.has(ContactFlags::DEEP), placed) {
             (true, _) => self.overlaps_by(NO_LONGER_DEEP, contact),

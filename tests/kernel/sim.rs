@@ -272,7 +272,7 @@ impl Sim {
         let id = self.contacts.find(a, b).expect("they have a contact");
         let mut contact = self.contacts.get(id).clone();
         let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle);
-        (phase.update(&mut contact, &[], &mut Scratch::default()), contact)
+        (phase.update(&mut contact, &[], false, &mut Scratch::default()), contact)
     }
 
     fn narrow(&mut self) {
