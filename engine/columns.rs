@@ -37,6 +37,12 @@ impl<'a, T> Column<'a, T> {
         Self { values: values.unwrap_or_default(), changed: changed.unwrap_or_default(), now: self.now }
     }
 
+    /// One row; a row beyond the last panics.
+    #[inline(always)]
+    pub(crate) fn slot(&mut self, row: usize) -> Slot<'_, T> {
+        Slot { value: &mut self.values[row], changed: &mut self.changed[row], now: self.now }
+    }
+
     /// The rows one by one.
     pub(crate) fn slots(self) -> impl Iterator<Item = Slot<'a, T>> {
         let now = self.now;
@@ -51,6 +57,21 @@ pub(crate) struct Slot<'a, T> {
     now: Tick,
 }
 
+impl<T> Slot<'_, T> {
+    /// What stands there.
+    #[inline(always)]
+    pub(crate) fn get(&self) -> &T {
+        self.value
+    }
+
+    /// Writes, and marks as changed.
+    #[inline(always)]
+    pub(crate) fn set(self, value: T) {
+        *self.value = value;
+        *self.changed = self.now;
+    }
+}
+
 /// What a component can be written to.
 pub(crate) trait Put<T> {
     /// Writes, and marks as changed, only what differs.
@@ -61,8 +82,7 @@ impl<T: PartialEq> Put<T> for Slot<'_, T> {
     #[inline(always)]
     fn put(self, value: T) {
         if *self.value != value {
-            *self.value = value;
-            *self.changed = self.now;
+            self.set(value);
         }
     }
 }

@@ -70,7 +70,9 @@ stages! {
     Substeps,
     /// What hit fast bounces.
     Restitution,
-    /// Rows become poses and velocities.
+    /// What bodies did in the substeps is folded into their poses.
+    FinishBodies,
+    /// Poses and velocities become components.
     Scatter,
     /// Impulses go back into the manifolds.
     StoreImpulses,
@@ -121,7 +123,7 @@ pub(crate) fn install(app: &mut App) {
             Stage::PrepareRows.in_set(SolverSystems::PrepareContactConstraints),
             Stage::Substeps.in_set(SolverSystems::Substep),
             Stage::Restitution.in_set(SolverSystems::Restitution),
-            Stage::Scatter.in_set(SolverSystems::Finalize),
+            (Stage::FinishBodies, Stage::Scatter).chain().in_set(SolverSystems::Finalize),
             Stage::StoreImpulses.in_set(SolverSystems::StoreContactImpulses),
             Stage::Sleep.in_set(PhysicsStepSystems::Sleeping),
             (Stage::Refit, Stage::RemoveLost, Stage::MirrorSleep)

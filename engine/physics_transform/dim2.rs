@@ -273,6 +273,7 @@ fn twist(turn: Turn) -> (f64, f64) {
 
 /// The world turn of something that should have the rotation `rotation` and now has the turn `current`:
 /// only the part about z is replaced, a tilt stays.
+#[inline]
 pub(super) fn world_turn(rotation: Rotation, current: Turn) -> Turn {
     let wanted = rotation.to_turn();
     if current.x == 0.0 && current.y == 0.0 {

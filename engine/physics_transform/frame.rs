@@ -209,6 +209,7 @@ pub(crate) fn read_pose(parent: Option<&Frame>, t: &Transform) -> (Vector, Optio
 
 /// The `Transform` that puts the thing now at `t` to a world pose: translation and rotation replaced,
 /// scale kept, in 2D also the depth and any tilt. In a parent that is flat, `t` stays.
+#[inline]
 pub(crate) fn write_pose(
     parent: Option<&Frame>,
     t: &Transform,
@@ -239,4 +240,9 @@ pub(crate) fn same_translation(a: &Transform, b: &Transform) -> bool {
 /// Whether two transforms have the same rotation, bit for bit.
 pub(crate) fn same_rotation(a: &Transform, b: &Transform) -> bool {
     a.rotation.to_array().map(f32::to_bits) == b.rotation.to_array().map(f32::to_bits)
+}
+
+/// Whether two transforms have the same translation and rotation, bit for bit.
+pub(crate) fn same_pose(a: &Transform, b: &Transform) -> bool {
+    same_translation(a, b) && same_rotation(a, b)
 }

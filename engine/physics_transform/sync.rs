@@ -18,11 +18,12 @@ use bevy_transform::components::Transform;
 
 use super::{
     ApplyPosToTransform, PhysicsTransformConfig, Position, Rotation, dim,
-    frame::{Frame, read_pose, same_rotation, same_translation, write_pose},
+    frame::{Frame, read_pose, same_pose, same_rotation, same_translation, write_pose},
     tree::{FollowsBody, Parents, TransformTree, TreeChanges},
     turn::Turn,
 };
 use crate::{
+    columns::{Column, is_change_tracked},
     dynamics::rigid_body::RigidBody,
     math::Vector,
     scan::{IN_TABLES, Since},
@@ -285,19 +286,26 @@ pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick, 
     }
 }
 
+/// Whose poses are written to transforms.
+type Written = Or<(With<RigidBody>, With<ApplyPosToTransform>)>;
+
+/// A pose, and what says when it changed.
+type Pose = (Entity, Ref<'static, Position>, Ref<'static, Rotation>);
+
 /// What writing transforms needs.
 #[derive(SystemParam)]
 pub struct TransformWriter<'w, 's> {
     tree: ResMut<'w, TransformTree>,
     ticks: ResMut<'w, SyncTicks>,
     config: Res<'w, PhysicsTransformConfig>,
-    moved: Query<
+    queries: ParamSet<
         'w,
         's,
-        (Entity, Ref<'static, Position>, Ref<'static, Rotation>),
-        Or<(With<RigidBody>, With<ApplyPosToTransform>)>,
+        (
+            Query<'w, 's, (Pose, &'static mut Transform), Written>,
+            (Query<'w, 's, Pose, Written>, Query<'w, 's, &'static mut Transform>),
+        ),
     >,
-    transforms: Query<'w, 's, &'static mut Transform>,
     parents: Parents<'w, 's>,
     following: Query<'w, 's, (), With<FollowsBody>>,
 }
@@ -306,7 +314,7 @@ pub struct TransformWriter<'w, 's> {
 /// [`ApplyPosToTransform`]. Bodies below a moved one keep their pose in the world, so theirs are written
 /// too. Scale is kept; in 2D also the depth and any tilt.
 pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick, _: OnThisThread) {
-    let TransformWriter { mut tree, mut ticks, config, moved, mut transforms, parents, following } = writer;
+    let TransformWriter { mut tree, mut ticks, config, mut queries, parents, following } = writer;
     let (last, read) = (ticks.writeback, ticks.read);
     let since = Since::new(last, system);
     ticks.writeback = system.this_run();
@@ -315,55 +323,51 @@ pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick, 
     }
     // Not what was read from transforms just now.
     let is_own = |tick: Tick| since.is_new(tick) && !read.contains(&tick);
-    let mut nested: Vec<Entity> = Vec::new();
-    let mut write = |entity, position: &Position, rotation: &Rotation| {
-        if tree.contains(entity) {
-            nested.push(entity);
-        } else {
-            write_transform(&mut transforms, entity, None, position, rotation);
-        }
-    };
-    for (entities, positions, rotations) in moved.contiguous_iter().expect(IN_TABLES) {
+    let looks_up = is_change_tracked();
+    let mut late: Vec<Entity> = Vec::new();
+    for (pose, transforms) in queries.p0().contiguous_iter_mut().expect(IN_TABLES) {
+        let (entities, positions, rotations) = pose;
         let (at, turned) = (positions.changed_ticks_slice(), rotations.changed_ticks_slice());
+        let mut ticks = None;
+        let mut transforms = Column::new(transforms, &mut ticks);
         since.rows([at, turned], |row| {
-            if is_own(at[row]) || is_own(turned[row]) {
-                write(entities[row], &positions[row], &rotations[row]);
+            if !is_own(at[row]) && !is_own(turned[row]) {
+                return;
+            }
+            if looks_up || tree.contains(entities[row]) {
+                late.push(entities[row]);
+                return;
+            }
+            let slot = transforms.slot(row);
+            let written = write_pose(None, slot.get(), positions[row].0, rotations[row]);
+            if !same_pose(slot.get(), &written) {
+                slot.set(written);
             }
         });
     }
-    if nested.is_empty() {
+    if late.is_empty() {
         return;
     }
-    let set: EntityHashSet = nested.iter().copied().collect();
+    let (poses, mut transforms) = queries.p1();
+    let set: EntityHashSet = late.iter().copied().collect();
     tree.begin_walk();
-    for &entity in &nested {
+    for &entity in &late {
         let above = |at: &Entity| tree.parent(*at);
         let line = core::iter::successors(Some(entity), above);
         let top = line.filter(|ancestor| set.contains(ancestor)).last().unwrap_or(entity);
         let parent = parent_frame(top, &parents, |e| transforms.get(e).ok().copied());
         tree.descend(top, parent, |entity, parent: &Option<Frame>| {
-            if let Ok((_, position, rotation)) = moved.get(entity)
+            if let Ok((_, position, rotation)) = poses.get(entity)
                 && !following.contains(entity)
+                && let Ok(mut transform) = transforms.get_mut(entity)
             {
-                write_transform(&mut transforms, entity, parent.as_ref(), &position, &rotation);
+                let written = write_pose(parent.as_ref(), &transform, position.0, *rotation);
+                if !same_pose(&transform, &written) {
+                    *transform = written;
+                }
             }
             let transform = transforms.get(entity).ok()?;
             Some(Some(parent.unwrap_or(Frame::IDENTITY).child(transform)))
         });
-    }
-}
-
-/// Writes one pose, if it differs from what stands there.
-fn write_transform(
-    transforms: &mut Query<&mut Transform>,
-    entity: Entity,
-    parent: Option<&Frame>,
-    position: &Position,
-    rotation: &Rotation,
-) {
-    let Ok(mut transform) = transforms.get_mut(entity) else { return };
-    let written = write_pose(parent, &transform, position.0, *rotation);
-    if !same_translation(&transform, &written) || !same_rotation(&transform, &written) {
-        *transform = written;
     }
 }

@@ -443,8 +443,9 @@ fn pyramid_speed() {
         sim.set_workers(workers);
     }
     let base = number("BASE").unwrap_or(100);
-    for i in 0..number("COUNT").unwrap_or(1) {
-        pyramid(&mut sim, base, (i * (base + 1)) as f32);
+    let count = number("COUNT").unwrap_or(1);
+    for i in 0..count {
+        pyramid(&mut sim, base, (i as f32 - 0.5 * count as f32) * (base as f32 + 1.0));
     }
     sim.steps(5);
     let start = std::time::Instant::now();

@@ -28,7 +28,7 @@ pub struct SolverDiagnostics {
     pub relax_velocities: Duration,
     /// Applying restitution.
     pub apply_restitution: Duration,
-    /// Writing bodies back.
+    /// Finishing bodies and writing them back.
     pub finalize: Duration,
     /// Storing impulses.
     pub store_impulses: Duration,

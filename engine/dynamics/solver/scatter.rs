@@ -33,26 +33,23 @@ type Output = (
     Option<&'static mut SleepTimer>,
 );
 
-/// Folds each awake body's motion into its pose, and writes pose and velocity where they changed.
+/// Folds each awake body's motion into its pose, and notes for how long it has been at rest.
 ///
 /// A body whose result is not finite keeps the pose it had, stops, and is disabled with one warning: a NaN
 /// must not spread.
-pub(crate) fn scatter_bodies(
-    mut outputs: Query<Output, Without<RigidBodyDisabled>>,
+pub(crate) fn finish_bodies(
     own: Query<&BodyId, (With<CustomPositionIntegration>, Without<RigidBodyDisabled>)>,
     mut solver: ResMut<StepSolver>,
     time: Res<Time<Physics>>,
-    (mut bodies, system): (ResMut<Bodies>, SystemChangeTick),
+    mut bodies: ResMut<Bodies>,
     mut diagnostics: ResMut<SolverDiagnostics>,
     mut commands: Commands,
 ) {
     let start = bevy_platform::time::Instant::now();
-    bodies.written = system.this_run();
     let dt = time.delta_secs();
     let kept = own.iter().filter_map(|id| keep_in_place(id.0, &mut solver.kernel, &bodies, dt));
     let kept: Vec<_> = kept.collect();
-
-    let Bodies { table, seen, listed, entities, some, .. } = &mut *bodies;
+    let Bodies { table, seen, listed, entities, .. } = &mut *bodies;
     let mut lost = solver.kernel.finish(table, listed, seen, dt);
     for (id, timer) in kept {
         table[id].sleep_timer = timer;
@@ -63,7 +60,20 @@ pub(crate) fn scatter_bodies(
         solver.kernel.bodies.still(row as usize);
         quarantine(entities[id as usize], Some(table.frame(id)), &mut commands);
     }
+    diagnostics.finalize += start.elapsed();
+}
 
+/// Writes pose and velocity of each awake body where they changed.
+pub(crate) fn scatter_bodies(
+    mut outputs: Query<Output, Without<RigidBodyDisabled>>,
+    solver: Res<StepSolver>,
+    mut bodies: ResMut<Bodies>,
+    system: SystemChangeTick,
+    mut diagnostics: ResMut<SolverDiagnostics>,
+) {
+    let start = bevy_platform::time::Instant::now();
+    bodies.written = system.this_run();
+    let Bodies { listed, entities, some, .. } = &mut *bodies;
     let looks_up = is_minority(listed.len(), [outputs.iter().size_hint()]) || is_change_tracked();
     let mut some = core::mem::take(some);
     if looks_up {

@@ -6,7 +6,7 @@ use bevy_ecs::prelude::*;
 use super::{
     config::PhysicsLengthUnit,
     gather::{gather_bodies, read_awake, rest_kinematic, wake_changed},
-    scatter::scatter_bodies,
+    scatter::{finish_bodies, scatter_bodies},
 };
 use crate::{
     dynamics::integrator::Gravity,
@@ -27,6 +27,7 @@ impl Plugin for SolverBodyPlugin {
                 (wake_changed, rest_kinematic).chain().in_set(Stage::FollowApp),
                 read_awake.in_set(Stage::ReadAwake),
                 gather_bodies.in_set(Stage::Gather),
+                finish_bodies.in_set(Stage::FinishBodies),
                 scatter_bodies.in_set(Stage::Scatter),
             ),
         );
