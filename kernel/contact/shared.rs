@@ -45,7 +45,11 @@ impl ContactTable {
                 // SAFETY: a contact is in the list once.
                 let (contact, count) = unsafe { (contacts.one(id as usize), points.one(id as usize)) };
                 scratch.update(id, contact, extra, crowded, phase);
-                *count = PointCount::of(contact);
+                // Counts of contacts of different blocks share cache lines, so they are left alone where they may be.
+                let now = PointCount::of(contact);
+                if *count != now {
+                    *count = now;
+                }
             }
         });
         self.any_deep = false;

@@ -5,6 +5,7 @@
 mod tests;
 
 use core::any::Any;
+use core::ops::Range;
 use core::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::cell::UnsafeCell;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -34,8 +35,8 @@ struct Helpers {
 /// What caller and helpers share.
 #[derive(Debug, Default)]
 struct Board {
-    /// The number of the next block to claim in the upper half, how many there are in the lower.
-    claims: AtomicU64,
+    /// The blocks that nobody has claimed, by the member who is to claim them first.
+    claims: Box<[Claims]>,
     /// How many blocks of the stage are done.
     done: AtomicU32,
     /// The stage. Written only while all its blocks are done, read only by who has claimed one that is not.
@@ -49,6 +50,42 @@ struct Board {
     /// What the first block that panicked in a helper said.
     panic: Mutex<Option<Box<dyn Any + Send>>>,
     quit: AtomicBool,
+}
+
+/// Consecutive blocks to be claimed: the first in the upper half, one beyond the last in the lower. A cache line,
+/// for members mostly look at their own.
+#[derive(Debug, Default)]
+#[repr(align(64))]
+struct Claims(AtomicU64);
+
+impl Claims {
+    fn put(&self, blocks: Range<u32>) {
+        self.0.store(u64::from(blocks.start) << 32 | u64::from(blocks.end), Ordering::Release);
+    }
+
+    /// A block that nobody else has or will have: the first for whom they are, the last for others.
+    #[inline]
+    fn take(&self, is_own: bool) -> Option<u32> {
+        let mut claims = self.0.load(Ordering::Acquire);
+        loop {
+            let (start, end) = ((claims >> 32) as u32, claims as u32);
+            if start >= end {
+                return None;
+            }
+            let (block, rest) = if is_own { (start, claims + (1 << 32)) } else { (end - 1, claims - 1) };
+            // If it succeeds the board is as it was seen, were it another job's by now.
+            match self.0.compare_exchange_weak(claims, rest, Ordering::AcqRel, Ordering::Acquire) {
+                Ok(_) => return Some(block),
+                Err(now) => claims = now,
+            }
+        }
+    }
+
+    /// Lets nobody claim any more. Returns how many blocks were left.
+    fn close(&self) -> u32 {
+        let claims = self.0.swap(0, Ordering::AcqRel);
+        (claims as u32).saturating_sub((claims >> 32) as u32)
+    }
 }
 
 /// A closure on the caller's stack.
@@ -70,7 +107,8 @@ impl Team {
     /// refuse a thread, the team is smaller.
     pub fn new(members: usize) -> Self {
         let asleep = (1..members).map(|_| AtomicBool::new(true)).collect();
-        let board = Arc::new(Board { asleep, ..Board::default() });
+        let claims = (0..members).map(|_| Claims::default()).collect();
+        let board = Arc::new(Board { asleep, claims, ..Board::default() });
         let threads: Vec<_> = (1..members)
             .map_while(|member| {
                 let board = Arc::clone(&board);
@@ -171,26 +209,24 @@ impl Board {
         impl Drop for Wait<'_> {
             fn drop(&mut self) {
                 // What nobody has claimed when the caller panics is nobody's.
-                let left = self.0.close();
+                let left = self.0.claims.iter().map(Claims::close).sum::<u32>();
                 self.0.wait_for(self.1 - left);
             }
         }
         self.done.store(0, Ordering::Relaxed);
         // SAFETY: all blocks of the last job are done, and nobody can have claimed one of this.
         unsafe { *self.job.get() = Some(Job { data: core::ptr::from_ref(job).cast(), run: run::<F> }) };
-        self.claims.store(u64::from(blocks), Ordering::Release);
         let _wait = Wait(self, blocks);
-        while let Some(block) = self.claim() {
+        let members = self.claims.len() as u64;
+        let share = |member: u64| (u64::from(blocks) * member / members) as u32;
+        for (member, claims) in (0..members).zip(&self.claims) {
+            claims.put(share(member)..share(member + 1));
+        }
+        while let Some(block) = self.claim(0) {
             // Done or not, the block counts: whoever waits must not wait for ever.
             let _done = Done(self);
             job(block, 0);
         }
-    }
-
-    /// Lets nobody claim any more. Returns how many blocks were left.
-    fn close(&self) -> u32 {
-        let claims = self.claims.swap(0, Ordering::AcqRel);
-        claims as u32 - (claims >> 32) as u32
     }
 
     /// Waits until so many blocks are done.
@@ -203,21 +239,13 @@ impl Board {
         }
     }
 
-    /// A block that nobody else has or will have.
-    fn claim(&self) -> Option<u32> {
-        let mut claims = self.claims.load(Ordering::Acquire);
-        loop {
-            let (next, count) = ((claims >> 32) as u32, claims as u32);
-            if next >= count {
-                return None;
-            }
-            // If it succeeds the board is as it was seen, were it another job's by now.
-            let claimed = claims + (1 << 32);
-            match self.claims.compare_exchange_weak(claims, claimed, Ordering::AcqRel, Ordering::Acquire) {
-                Ok(_) => return Some(next),
-                Err(now) => claims = now,
-            }
-        }
+    /// A block that nobody else has or will have. Members begin with the same part of the blocks in every run: what
+    /// runs over the same data one after another finds it in the cache of its core.
+    #[inline]
+    fn claim(&self, member: usize) -> Option<u32> {
+        let (before, from) = self.claims.split_at(member);
+        let (own, after) = from.split_first()?;
+        own.take(true).or_else(|| after.iter().chain(before).find_map(|others| others.take(false)))
     }
 
     /// What a helper does with its life.
@@ -240,7 +268,7 @@ impl Board {
         let mut idle_since = None;
         let mut looks = 0u32;
         loop {
-            if let Some(block) = self.claim() {
+            if let Some(block) = self.claim(member) {
                 let _done = Done(self);
                 // SAFETY: it has a block that is not done: nobody writes the job, and its closure is there.
                 let Some(job) = (unsafe { *self.job.get() }) else { continue };
