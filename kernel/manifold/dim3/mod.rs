@@ -3,8 +3,6 @@
 //! Balls and capsules have closed forms where there are any; two boxes have a path of their own; all
 //! other pairs of polyhedra (with radii) share [`convex`].
 
-#[cfg(test)]
-mod bench;
 mod clip;
 mod convex;
 mod cuboids;

@@ -1,0 +1,86 @@
+//! Contacts of pairs that lie each by itself.
+
+use super::pairs::{PREDICTION, Pair};
+use crate::kernel;
+use kernel::contact::{ContactTable, Link, NarrowPhase, Scratch};
+use kernel::data::BitSet;
+use kernel::graph::ColorGraph;
+use kernel::math::{Pose, Vector, WorldPose};
+use kernel::table::{
+    BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Fattening, Layers, Material,
+};
+use kernel::team::Team;
+
+/// Bodies in pairs, and what updates their contacts.
+pub struct Contacts {
+    pub bodies: BodyTable,
+    pub colliders: ColliderTable,
+    pub contacts: ContactTable,
+    team: Team,
+    scratches: Vec<Scratch>,
+    changed: BitSet,
+}
+
+impl Contacts {
+    /// Puts each pair where no other is.
+    pub fn of(pairs: &[Pair]) -> Self {
+        let (mut bodies, mut colliders) = (BodyTable::default(), ColliderTable::default());
+        let mut contacts = ContactTable::default();
+        let mut colors = ColorGraph::new();
+        for (i, pair) in pairs.iter().enumerate() {
+            let at = Vector::X * (4.0 * (i % 256) as f32) + Vector::Y * (4.0 * (i / 256) as f32);
+            let frame = WorldPose::new(at.to_world(), pair.poses[0].rotation);
+            for (shape, pose) in pair.shapes.iter().zip([Pose::IDENTITY, pair.poses[0]]) {
+                let place = frame.then(&pose);
+                let center = shape.mass_properties(1.0).center;
+                let body = bodies.add(BodyKind::Dynamic, center, place);
+                let def = ColliderDef {
+                    shape: shape.clone(),
+                    body,
+                    local: Pose::IDENTITY,
+                    material: Material::default(),
+                    layers: Layers { memberships: 1, filters: 1 },
+                    flags: ColliderFlags::default(),
+                    margin: 0.0,
+                    speculative: f32::MAX,
+                };
+                let id = colliders.add(def, place, &mut bodies);
+                colliders.refresh(id, &bodies, Fattening { margin: 0.1, dt: 1.0 / 60.0 });
+            }
+            let mut link = Link {
+                bodies: &mut bodies,
+                colliders: &mut colliders,
+                contacts: &mut contacts,
+                colors: &mut colors,
+                islands: None,
+            };
+            link.create(2 * i as u32, 2 * i as u32 + 1);
+        }
+        let (team, scratches) = (Team::default(), Vec::new());
+        Self { bodies, colliders, contacts, team, scratches, changed: BitSet::default() }
+    }
+
+    /// Moves every second body a little.
+    pub fn nudge(&mut self) {
+        for id in (1..self.bodies.poses.len()).step_by(2) {
+            self.bodies.poses[id].center += (Vector::ONE * 0.0005).to_world();
+            self.colliders.refresh(id as u32, &self.bodies, Fattening { margin: 0.1, dt: 1.0 / 60.0 });
+        }
+    }
+
+    /// Updates all contacts, and recycles those that may be if `recycle` says so.
+    pub fn update(&mut self, recycle: bool) {
+        let phase = NarrowPhase {
+            bodies: &self.bodies,
+            colliders: &self.colliders,
+            source: &(),
+            dt: 1.0 / 60.0,
+            tolerance: 0.005,
+            speculative: PREDICTION,
+            recycle_distance: if recycle { 0.05 } else { 0.0 },
+            match_points: true,
+        };
+        self.changed.clear();
+        self.contacts.update(&phase, &self.team, &mut self.scratches, &mut self.changed);
+    }
+}
