@@ -114,8 +114,24 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         if !fat_a.overlaps(fat_b) {
             return Found::Apart;
         }
-        let poses = [self.pose(contact, 0), self.pose(contact, 1)];
-        if self.recycle(contact, &poses) {
+        // By reference: a copy is written in other pieces than it is read in, which a processor waits for.
+        let (fixed_a, fixed_b);
+        let pose_a = match contact.bodies[0] {
+            NONE => {
+                fixed_a = self.fixed_pose(a);
+                &fixed_a
+            }
+            body => &self.bodies.poses[body as usize],
+        };
+        let pose_b = match contact.bodies[1] {
+            NONE => {
+                fixed_b = self.fixed_pose(b);
+                &fixed_b
+            }
+            body => &self.bodies.poses[body as usize],
+        };
+        let poses = [pose_a, pose_b];
+        if self.recycle(contact, poses) {
             if contact.flags.has(ContactFlags::DEEP) {
                 contact.flags.set(ContactFlags::DEEP, self.overlaps_by(NO_LONGER_DEEP, contact));
             }
@@ -123,8 +139,8 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         }
         // What has just come together, or was changed by hand, was put where it is; all else was pressed there, if not
         // by those that were put there.
-        let placed = crowded || contact.revisions != self.revisions(contact, &poses);
-        self.compute(contact, extra, &poses, scratch);
+        let placed = crowded || contact.revisions != self.revisions(contact, poses);
+        self.compute(contact, extra, poses, scratch);
         let deep = match (contact.flags.has(ContactFlags::DEEP), placed) {
             (true, _) => self.overlaps_by(NO_LONGER_DEEP, contact),
             (false, true) => self.overlaps_by(DEEP, contact),
@@ -137,20 +153,15 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
     /// Whether the shapes overlap by more than a share of the smaller one's reach.
     fn overlaps_by(&self, share: f32, contact: &Contact) -> bool {
         let deepest = contact.manifold.points().iter().fold(0.0, |d, p| min(d, p.separation));
-        let reach = smaller(contact.colliders.map(|c| self.colliders.reaches[c as usize].extent));
+        let [a, b] = self.reaches(contact);
+        let reach = smaller([a.extent, b.extent]);
         deepest < 0.0 && deepest < -share * reach
     }
 
-    /// The centre of mass and rotation of a side's body; for a collider without one its own pose.
-    #[inline(always)]
-    fn pose(&self, contact: &Contact, side: usize) -> BodyPose {
-        match contact.bodies[side] {
-            NONE => {
-                let pose = self.colliders.poses[contact.colliders[side] as usize];
-                BodyPose { center: pose.position, rotation: pose.rotation, speed: 0.0, revision: 0 }
-            }
-            body => self.bodies.poses[body as usize],
-        }
+    /// The pose of a collider without a body, as that of a body.
+    fn fixed_pose(&self, collider: u32) -> BodyPose {
+        let pose = self.colliders.poses[collider as usize];
+        BodyPose { center: pose.position, rotation: pose.rotation, speed: 0.0, revision: 0 }
     }
 
     fn velocity(&self, contact: &Contact, side: usize) -> Velocity {
@@ -166,16 +177,23 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         reach.revision.wrapping_add(pose.revision.wrapping_mul(0x9E37_79B1))
     }
 
+    /// The reaches of both sides. Not by `map`, which the compiler makes a call of.
     #[inline(always)]
-    fn revisions(&self, contact: &Contact, poses: &[BodyPose; 2]) -> [u32; 2] {
-        let reaches = contact.colliders.map(|c| &self.colliders.reaches[c as usize]);
-        [Self::revision(reaches[0], &poses[0]), Self::revision(reaches[1], &poses[1])]
+    fn reaches(&self, contact: &Contact) -> [&Reach; 2] {
+        let [a, b] = contact.colliders;
+        [&self.colliders.reaches[a as usize], &self.colliders.reaches[b as usize]]
+    }
+
+    #[inline(always)]
+    fn revisions(&self, contact: &Contact, poses: [&BodyPose; 2]) -> [u32; 2] {
+        let [a, b] = self.reaches(contact);
+        [Self::revision(a, poses[0]), Self::revision(b, poses[1])]
     }
 
     /// Keeps the manifold if the bodies moved little enough against each other, and lets its
     /// separations follow: s = s₀ + n · (Δoffset + (R_B − 1) r_B − (R_A − 1) r_A).
-    fn recycle(&self, contact: &mut Contact, poses: &[BodyPose; 2]) -> bool {
-        let reaches = contact.colliders.map(|c| &self.colliders.reaches[c as usize]);
+    fn recycle(&self, contact: &mut Contact, poses: [&BodyPose; 2]) -> bool {
+        let reaches = self.reaches(contact);
         let Frozen { rotations, offset, prediction } = contact.frozen;
         // Neither can close faster than both together: that settles it without asking for the velocities
         // of all but fast bodies.
@@ -186,18 +204,19 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         {
             return false;
         }
-        let now = (poses[1].center - poses[0].center).to_local();
-        for i in 0..2 {
-            if rotations[i].cos_between(poses[i].rotation) < RECYCLE_COS {
-                return false;
-            }
+        // In world axes: how far each turned since freezing, R Rᶠ⁻¹, and how far B's centre of mass shifted against A's.
+        let turn = |i: usize| poses[i].rotation.mul(rotations[i].inverse());
+        let turns = [turn(0), turn(1)];
+        if !(turns[0].cos_angle() >= RECYCLE_COS && turns[1].cos_angle() >= RECYCLE_COS) {
+            return false;
         }
-        // The motion of B relative to A: how far it shifted in A's frame, and the angle between how far
-        // each turned, times the farther reach of the two.
-        let shift = poses[0].rotation.inverse_rotate(now) - rotations[0].inverse_rotate(offset);
-        let relative = |of: [Rot; 2]| of[0].inverse().mul(of[1]);
-        let angle: Angular = relative(rotations).difference(relative(poses.map(|p| p.rotation)));
-        let mut allowed = min(self.recycle_distance, RECYCLE_SHARE * smaller(reaches.map(|r| r.extent)));
+        let change = (poses[1].center - poses[0].center).to_local() - offset;
+        // The motion of B relative to A: how far it shifted in A's frame, which length is the same in world axes, and
+        // the angle between how far each turned, times the farther reach of the two.
+        let shift = change - turns[0].inverse().unturn(offset);
+        let angle: Angular = turns[0].difference(turns[1]);
+        let mut allowed =
+            min(self.recycle_distance, RECYCLE_SHARE * smaller([reaches[0].extent, reaches[1].extent]));
         if contact.manifold.count < MAX_POINTS as u32 {
             // Points may be missing that were too far apart to be found; none of them may close in this step.
             allowed = min(allowed, prediction - self.closing(contact, &reaches));
@@ -207,17 +226,14 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         if !(moved < allowed) {
             return false;
         }
-        // In world axes the turn since freezing is R Rᶠ⁻¹.
-        let world = [0, 1].map(|i| poses[i].rotation.mul(rotations[i].inverse()));
-        let change = now - offset;
         // Only native pairs are recycled, which have no manifolds after the first.
         let m = &mut contact.manifold;
         let along = change.dot(m.normal);
-        let cores = m.rounding.map(|r| m.normal * r);
+        let cores = [m.normal * m.rounding[0], offset - m.normal * m.rounding[1]];
+        // n · (R r − r) = (R⁻¹ n − n) · r, of which only r differs from point to point.
+        let leans = [turns[0].unturn(m.normal), turns[1].unturn(m.normal)];
         for p in &mut m.points[..m.count as usize] {
-            let (ra, rb) = (p.anchor - cores[0], p.anchor - offset + cores[1]);
-            let (ma, mb) = (ra.cross(m.normal), rb.cross(m.normal));
-            let turn = world[1].shift_along(rb, mb, m.normal) - world[0].shift_along(ra, ma, m.normal);
+            let turn = leans[1].dot(p.anchor - cores[1]) - leans[0].dot(p.anchor - cores[0]);
             p.separation = p.frozen_separation + along + turn;
         }
         true
@@ -228,7 +244,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         &self,
         contact: &mut Contact,
         extra: &[Manifold],
-        poses: &[BodyPose; 2],
+        poses: [&BodyPose; 2],
         scratch: &mut Scratch<S::Workspace>,
     ) {
         let [a, b] = contact.colliders;
@@ -303,8 +319,8 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
     /// How far apart surfaces may be to count as a contact: as far as they can close in this step, but
     /// not beyond the colliders' speculative margins.
     fn prediction(&self, contact: &Contact) -> f32 {
-        let limit = [0, 1].map(|i| self.colliders.reaches[contact.colliders[i] as usize].speculative);
-        let limit = limit[0] + limit[1];
+        let [a, b] = self.reaches(contact);
+        let limit = a.speculative + b.speculative;
         let closing =
             (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;
         max(self.tolerance, min(max(self.speculative, closing), limit))

@@ -306,6 +306,12 @@ impl<N: Num> Rot<N> {
     pub fn shift_along(self, arm: Vector<N>, arm_cross_normal: Angular<N>, normal: Vector<N>) -> N {
         (self.cos - N::ONE) * arm.dot(normal) + self.sin * arm_cross_normal.z
     }
+    /// How far a vector moves when it is turned the other way: R⁻¹ v − v.
+    #[inline(always)]
+    pub fn unturn(self, v: Vector<N>) -> Vector<N> {
+        let less = self.cos - N::ONE;
+        Vector { x: less * v.x + self.sin * v.y, y: less * v.y - self.sin * v.x }
+    }
     /// Scaled to unit length.
     #[inline(always)]
     pub fn normalized(self) -> Self {
@@ -384,6 +390,11 @@ impl Rot {
     #[inline]
     pub fn cos_between(self, other: Self) -> f32 {
         self.cos * other.cos + self.sin * other.sin
+    }
+    /// The cosine of the angle it turns by.
+    #[inline]
+    pub fn cos_angle(self) -> f32 {
+        self.cos
     }
     /// The columns of the rotation matrix: where the axes go.
     #[inline]

@@ -380,6 +380,14 @@ impl<N: Num> Rot<N> {
             - u.length_squared() * arm.dot(normal);
         half + half
     }
+    /// How far a vector moves when it is turned the other way: R⁻¹ v − v, exact also for small turns.
+    #[inline(always)]
+    pub fn unturn(self, v: Vector<N>) -> Vector<N> {
+        let u = Vector { x: self.x, y: self.y, z: self.z };
+        let t = v.cross(u);
+        let t = t + t;
+        t * self.w - u.cross(t)
+    }
     /// Scaled to unit length.
     #[inline(always)]
     pub fn normalized(self) -> Self {
@@ -476,6 +484,11 @@ impl Rot {
     pub fn cos_between(self, other: Self) -> f32 {
         let dot = self.x * other.x + self.y * other.y + self.z * other.z + self.w * other.w;
         2.0 * dot * dot - 1.0
+    }
+    /// The cosine of the angle it turns by.
+    #[inline]
+    pub fn cos_angle(self) -> f32 {
+        2.0 * self.w * self.w - 1.0
     }
     /// The columns of the rotation matrix: where the axes go.
     #[inline]
