@@ -85,6 +85,8 @@ pub trait Lane: Num {
     fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Whether the mask is set in any lane. Only for skipping work that would select the old value.
     fn any(mask: Self::Mask) -> bool;
+    /// The mask as bits, lane 0 lowest.
+    fn bits(mask: Self::Mask) -> u32;
     /// `mask ? a : b`, lane by lane.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
     /// Loads one quad for each lane through `fetch` and transposes: element `k` of the result holds
@@ -160,6 +162,10 @@ impl Lane for f32 {
     #[inline(always)]
     fn any(mask: bool) -> bool {
         mask
+    }
+    #[inline(always)]
+    fn bits(mask: bool) -> u32 {
+        u32::from(mask)
     }
     #[inline(always)]
     fn select(mask: bool, a: Self, b: Self) -> Self {

@@ -182,6 +182,11 @@ impl Lane for F32x8 {
         unsafe { _mm256_movemask_ps(mask.0) != 0 }
     }
     #[inline(always)]
+    fn bits(mask: Mask8) -> u32 {
+        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        unsafe { _mm256_movemask_ps(mask.0) as u32 }
+    }
+    #[inline(always)]
     fn select(mask: Mask8, a: Self, b: Self) -> Self {
         // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
         Self(unsafe { _mm256_blendv_ps(b.0, a.0, mask.0) })

@@ -1,4 +1,5 @@
 //! Four lanes as plain arrays, for targets without an implementation of their own.
+#![expect(unsafe_code, reason = "lanes are looked at one by one")]
 
 use super::lane::{Lane, Num, Quad};
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -35,6 +36,21 @@ impl SubAssign for F32x4 {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
+    }
+}
+
+impl F32x4 {
+    /// Four values side by side.
+    #[inline(always)]
+    pub const fn new(values: [f32; 4]) -> Self {
+        Self(values)
+    }
+
+    /// The lanes of some values, one after another.
+    #[inline(always)]
+    pub fn flat(values: &[Self]) -> &[f32] {
+        // SAFETY: `Self` is four `f32` in order, without anything between, and more strictly aligned.
+        unsafe { core::slice::from_raw_parts(values.as_ptr().cast(), 4 * values.len()) }
     }
 }
 
@@ -103,6 +119,10 @@ impl Lane for F32x4 {
     #[inline(always)]
     fn any(mask: [bool; 4]) -> bool {
         mask[0] | mask[1] | mask[2] | mask[3]
+    }
+    #[inline(always)]
+    fn bits(mask: [bool; 4]) -> u32 {
+        (0..4).fold(0, |bits, i| bits | u32::from(mask[i]) << i)
     }
     #[inline(always)]
     fn select(mask: [bool; 4], a: Self, b: Self) -> Self {

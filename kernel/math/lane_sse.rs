@@ -75,6 +75,20 @@ impl Num for F32x4 {
 }
 
 impl F32x4 {
+    /// Four values side by side.
+    #[inline(always)]
+    pub const fn new(values: [f32; 4]) -> Self {
+        // SAFETY: any 128 bits are a valid __m128.
+        Self(unsafe { core::mem::transmute::<[f32; 4], __m128>(values) })
+    }
+
+    /// The lanes of some values, one after another.
+    #[inline(always)]
+    pub fn flat(values: &[Self]) -> &[f32] {
+        // SAFETY: `Self` is four `f32` in order, without anything between, and more strictly aligned.
+        unsafe { core::slice::from_raw_parts(values.as_ptr().cast(), 4 * values.len()) }
+    }
+
     #[inline(always)]
     fn array(self) -> [f32; 4] {
         // SAFETY: __m128 and [f32; 4] have the same size, and any bits are valid for both.
@@ -165,6 +179,11 @@ impl Lane for F32x4 {
     fn any(mask: Mask4) -> bool {
         // SAFETY: SSE2 is part of the x86-64 baseline.
         unsafe { _mm_movemask_ps(mask.0) != 0 }
+    }
+    #[inline(always)]
+    fn bits(mask: Mask4) -> u32 {
+        // SAFETY: SSE2 is part of the x86-64 baseline.
+        unsafe { _mm_movemask_ps(mask.0) as u32 }
     }
     #[inline(always)]
     fn select(mask: Mask4, a: Self, b: Self) -> Self {

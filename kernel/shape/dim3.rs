@@ -4,7 +4,7 @@
 mod hull3;
 
 pub use hull3::{Edge, Face, Hull};
-pub(crate) use hull3::{EdgeBlock, pack, support_index};
+pub(crate) use hull3::{EdgeBlock, FaceBlock, farthest, largest, pack};
 
 use super::{Ball, Capsule, Cuboid, RayHit, Segment, Triangle};
 use crate::math::{InvInertia, Vector};

@@ -6,6 +6,8 @@ use crate::math::Vector;
 
 /// The most corners a clipped polygon has. Cutting adds at most one per side.
 pub(super) const MAX_CORNERS: usize = 64;
+/// The most of most polygons, for which there is less to be cleared.
+pub(super) const FEW_CORNERS: usize = 16;
 /// Incident faces with more vertices are thinned to every second, fourth, … vertex.
 const MAX_INCIDENT: usize = 32;
 /// Side planes stand this share of the smaller shape's extent outside of the face: two equal faces on
@@ -24,107 +26,135 @@ pub(super) struct Corner {
     edge: u32,
 }
 
-/// A clipped polygon on the stack.
-pub(super) struct Polygon {
-    corners: [Corner; MAX_CORNERS],
+/// A clipped polygon of at most `N` corners on the stack.
+pub(super) struct Polygon<const N: usize> {
+    corners: [Corner; N],
     count: usize,
 }
 
-impl Polygon {
-    fn new() -> Self {
-        Self { corners: [Corner::default(); MAX_CORNERS], count: 0 }
+impl<const N: usize> Polygon<N> {
+    pub fn new() -> Self {
+        Self { corners: [Corner::default(); N], count: 0 }
     }
 
     pub fn corners(&self) -> &[Corner] {
         &self.corners[..self.count]
     }
 
-    fn push(&mut self, corner: Corner) {
-        if self.count < MAX_CORNERS {
-            self.corners[self.count] = corner;
-            self.count += 1;
-        }
+    /// Adds a corner, or leaves it to the next to overwrite: without a branch. Beyond `N` the last is overwritten.
+    #[inline(always)]
+    fn push_if(&mut self, wanted: bool, corner: Corner) {
+        self.corners[self.count.min(N - 1)] = corner;
+        self.count = (self.count + usize::from(wanted)).min(N);
     }
 }
 
-/// The face (or edge, or vertex, of what has no faces) of `incident` that looks most against a
-/// direction, both in its own frame, among the faces around the vertex `deepest` along it. A face
-/// elsewhere may look more against it: the base of a cone that stands on its tip.
-pub(super) fn incident_polygon(incident: &View, normal: Vector, deepest: usize, frame: &Frame) -> Polygon {
-    let mut polygon = Polygon::new();
+/// How many corners there may be when a face of `reference` clips one of `incident`.
+pub(super) fn most_corners(
+    reference: &View,
+    face: usize,
+    incident: &View,
+    incident_face: Option<usize>,
+) -> usize {
+    let of_incident = match incident_face {
+        Some(face) => incident.faces[face].count as usize,
+        None => incident.vertices.len(),
+    };
+    of_incident + reference.faces[face].count as usize
+}
+
+/// The face of `incident` that looks most against a direction in its own frame, among the faces around the
+/// vertex `deepest` along it; none if it has no faces. A face elsewhere may look more against it: the base of a cone that
+/// stands on its tip.
+pub(super) fn incident_face(incident: &View, normal: Vector, deepest: usize) -> Option<usize> {
     if incident.faces.is_empty() {
-        for (i, v) in incident.vertices.iter().enumerate() {
-            polygon.push(Corner { point: frame.point(*v), name: (i as u32) << 10, edge: 0 });
-        }
-        return polygon;
+        return None;
     }
     let (mut face, mut least) = (0, f32::INFINITY);
-    for edge in incident.edges {
-        if edge.tail as usize == deepest || edge.head as usize == deepest {
-            for side in [edge.left as usize, edge.right as usize] {
-                let cos = incident.faces[side].normal.dot(normal);
-                if cos < least {
-                    (face, least) = (side, cos);
-                }
-            }
-        }
+    for &beside in incident.fan(deepest) {
+        let cos = incident.faces[beside as usize].normal.dot(normal);
+        let better = cos < least;
+        face = if better { beside } else { face };
+        least = if better { cos } else { least };
     }
+    Some(face as usize)
+}
+
+/// A face of `incident`, or the edge or vertex that it is if it has no faces.
+pub(super) fn incident_polygon<const N: usize>(
+    incident: &View,
+    face: Option<usize>,
+    frame: &Frame,
+    polygon: &mut Polygon<N>,
+) {
+    let Some(face) = face else {
+        for (i, v) in incident.vertices.iter().enumerate() {
+            polygon.push_if(true, Corner { point: frame.point(*v), name: (i as u32) << 10, edge: 0 });
+        }
+        return;
+    };
     let outline = incident.outline(face);
     let stride = outline.len().div_ceil(MAX_INCIDENT).next_power_of_two();
     for i in outline.iter().step_by(stride) {
         let number = i & 0x1ff;
         let point = frame.point(incident.vertices[*i as usize]);
-        polygon.push(Corner { point, name: number << 10, edge: number });
+        polygon.push_if(true, Corner { point, name: number << 10, edge: number });
     }
-    polygon
 }
 
-/// Cuts a polygon by the side planes of a face of `reference`; `extent` is that of the smaller shape.
-pub(super) fn clip(reference: &View, face: usize, polygon: &mut Polygon, extent: f32) {
+/// Cuts a polygon by the side planes of a face of `reference`; `extent` is that of the smaller shape. There are two to
+/// work with; returns the one that the result is in.
+pub(super) fn clip<'a, const N: usize>(
+    reference: &View,
+    face: usize,
+    [mut polygon, mut spare]: [&'a mut Polygon<N>; 2],
+    extent: f32,
+) -> &'a Polygon<N> {
     let normal = reference.faces[face].normal;
     let outline = reference.outline(face);
     let mut tail = reference.vertices[outline[outline.len() - 1] as usize];
-    // Copied only when a side really cuts: most corners of a resting body are inside of all.
-    let mut spare = None;
+    let mut heights = [0.0; N];
     for (side, i) in outline.iter().enumerate() {
         let head = reference.vertices[*i as usize];
         let outward = (head - tail).cross(normal);
         let margin = MARGIN * extent * outward.length();
-        let plane = (outward, outward.dot(tail) + margin);
-        if polygon.corners().iter().any(|c| !(outward.dot(c.point) <= plane.1)) {
-            let spare = spare.get_or_insert_with(Polygon::new);
-            cut(polygon, plane, side as u32, spare);
-            core::mem::swap(polygon, spare);
+        let offset = outward.dot(tail) + margin;
+        // Copied only when a side really cuts: most corners of a resting body are inside of all.
+        let mut any_outside = false;
+        for (height, corner) in heights.iter_mut().zip(polygon.corners()) {
+            *height = outward.dot(corner.point) - offset;
+            any_outside |= !(*height <= 0.0);
         }
-        if polygon.count == 0 {
-            break;
+        if any_outside {
+            cut(polygon, &heights, side as u32, spare);
+            core::mem::swap(&mut polygon, &mut spare);
+            if polygon.count == 0 {
+                break;
+            }
         }
         tail = head;
     }
+    polygon
 }
 
-/// The part of a convex polygon behind a plane.
-fn cut(polygon: &Polygon, (outward, offset): (Vector, f32), side: u32, out: &mut Polygon) {
+/// The part of a convex polygon behind a plane, given the heights of its corners over it.
+fn cut<const N: usize>(polygon: &Polygon<N>, heights: &[f32; N], side: u32, out: &mut Polygon<N>) {
     out.count = 0;
     let corners = polygon.corners();
     // A segment is an outline that is walked once, not there and back.
     let walk = if corners.len() == 2 { 1 } else { corners.len() };
-    let height = |c: &Corner| outward.dot(c.point) - offset;
-    let mut this = height(&corners[0]);
     let side_name = (side + 1) & 0x3ff;
     for k in 0..corners.len() {
-        let (c, d) = (&corners[k], &corners[if k + 1 < corners.len() { k + 1 } else { 0 }]);
-        let next = height(d);
-        if this <= 0.0 {
-            out.push(*c);
-        }
-        if k < walk && (this <= 0.0) != (next <= 0.0) {
-            let t = this / (this - next);
-            let point = c.point + (d.point - c.point) * t;
-            // Where the polygon leaves, its next edge runs along the side.
-            let edge = if this <= 0.0 { ON_SIDE | side & 0x1ff } else { c.edge };
-            out.push(Corner { point, name: c.edge << 10 | side_name, edge });
-        }
-        this = next;
+        let after = if k + 1 < corners.len() { k + 1 } else { 0 };
+        let (c, d) = (&corners[k], &corners[after]);
+        let (this, next) = (heights[k], heights[after]);
+        let inside = this <= 0.0;
+        out.push_if(inside, *c);
+        let t = this / (this - next);
+        let point = c.point + (d.point - c.point) * t;
+        // Where the polygon leaves, its next edge runs along the side.
+        let edge = if inside { ON_SIDE | side & 0x1ff } else { c.edge };
+        let crosses = k < walk && inside != (next <= 0.0);
+        out.push_if(crosses, Corner { point, name: c.edge << 10 | side_name, edge });
     }
 }

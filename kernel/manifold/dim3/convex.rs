@@ -4,10 +4,10 @@
 //! Simulations", GDC 2015). Faces are preferred to edges unless those are clearly better, which makes
 //! the choice of points the same from step to step.
 
-use super::clip::{clip, incident_polygon};
+use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, clip};
 use super::gjk;
 use super::reduce::{Candidate, Candidates, reduce};
-use super::sat::{self, EdgeAxis};
+use super::sat::{self, EdgeAxis, FaceAxis, Known};
 use super::view::{Frame, View, extents};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector, clamp, max, min};
@@ -43,9 +43,30 @@ struct Pair<'a> {
 /// A feature that separates the pair.
 #[derive(Clone, Copy)]
 enum Axis {
-    FaceA(usize),
-    FaceB(usize),
+    FaceA(FaceAxis),
+    FaceB(FaceAxis),
     Edges(EdgeAxis),
+}
+
+impl Axis {
+    fn separation(&self) -> f32 {
+        match self {
+            Self::FaceA(face) | Self::FaceB(face) => face.separation,
+            Self::Edges(edges) => edges.separation,
+        }
+    }
+}
+
+/// A face that clips, and what it clips.
+struct Clipping<'a> {
+    reference: &'a View<'a>,
+    incident: &'a View<'a>,
+    /// Takes the incident polyhedron into the frame of the other.
+    frame: &'a Frame,
+    /// Of the incident polyhedron, if it has faces.
+    face: Option<usize>,
+    /// Whether the polyhedron that clips is B.
+    of_b: bool,
 }
 
 /// The contact of two polyhedra; see the module.
@@ -65,13 +86,14 @@ pub(super) fn collide(
         return;
     }
     out.count = 0;
-    let (axis, separation) = pair.search();
-    *cache = remember(axis, separation);
+    let axis = pair.search();
+    let separation = axis.separation();
+    *cache = remember(axis);
     // No axis at all: sizes that are not numbers.
     if separation > pair.limit() || separation == f32::NEG_INFINITY {
         return;
     }
-    let exact = pair.build(axis, separation, out);
+    let exact = pair.build(axis, out);
     if !exact && separation > gjk::resolution(pair.larger, pair.smaller) {
         pair.build_closest(separation, out);
     }
@@ -91,10 +113,11 @@ pub(super) fn collide_apart(
 }
 
 /// What the next step tries first. Features beyond a byte are not remembered.
-fn remember(axis: Axis, separation: f32) -> FeatureCache {
+fn remember(axis: Axis) -> FeatureCache {
+    let separation = axis.separation();
     let (kind, a, b) = match axis {
-        Axis::FaceA(i) => (FACE_A, i, 0),
-        Axis::FaceB(i) => (FACE_B, 0, i),
+        Axis::FaceA(f) => (FACE_A, f.face, 0),
+        Axis::FaceB(f) => (FACE_B, 0, f.face),
         Axis::Edges(e) => (EDGES, e.a, e.b),
     };
     match (u8::try_from(a), u8::try_from(b)) {
@@ -119,80 +142,104 @@ impl<'a> Pair<'a> {
     /// Whether the cached axis settles the matter.
     fn try_cached(&self, cache: &FeatureCache, out: &mut LocalManifold) -> bool {
         let (i, j) = (cache.a as usize, cache.b as usize);
-        let (axis, separation) = match cache.kind {
+        let axis = match cache.kind {
             FACE_A if i < self.a.faces.len() => {
-                (Axis::FaceA(i), sat::face_separation(self.a, i, self.b, &self.b_in_a))
+                Axis::FaceA(sat::face_separation(self.a, i, self.b, &self.b_in_a))
             }
             FACE_B if j < self.b.faces.len() => {
-                (Axis::FaceB(j), sat::face_separation(self.b, j, self.a, &self.a_in_b))
+                Axis::FaceB(sat::face_separation(self.b, j, self.a, &self.a_in_b))
             }
             EDGES if i < self.a.edges.len() && j < self.b.edges.len() => {
                 let Some(edges) = sat::edge_separation(self.a, i, self.b, j, &self.b_in_a) else {
                     return false;
                 };
-                (Axis::Edges(edges), edges.separation)
+                Axis::Edges(edges)
             }
             _ => return false,
         };
+        let separation = axis.separation();
         if separation > self.limit() {
             return true;
         }
         if !((separation - cache.separation).abs() < CACHE_TOLERANCE * self.smaller) {
             return false;
         }
-        let exact = self.build(axis, separation, out);
+        let exact = self.build(axis, out);
         exact || (out.count > 0 && separation <= gjk::resolution(self.larger, self.smaller))
     }
 
     /// The axis of least penetration or largest separation, or the first beyond the limit.
-    fn search(&self) -> (Axis, f32) {
+    fn search(&self) -> Axis {
         let of_a = sat::best_face(self.a, self.b, &self.b_in_a, self.limit());
         if of_a.separation > self.limit() {
-            return (Axis::FaceA(of_a.face), of_a.separation);
+            return Axis::FaceA(of_a);
         }
         let of_b = sat::best_face(self.b, self.a, &self.a_in_b, self.limit());
         if of_b.separation > self.limit() {
-            return (Axis::FaceB(of_b.face), of_b.separation);
+            return Axis::FaceB(of_b);
         }
-        let edges = sat::best_edges(self.a, self.b, &self.b_in_a, self.limit());
         let preference = PREFER_FACES * self.smaller;
-        let (face, separation) = if of_b.separation > of_a.separation + 0.1 * preference {
-            (Axis::FaceB(of_b.face), of_b.separation)
+        let face = if of_b.separation > of_a.separation + 0.1 * preference {
+            Axis::FaceB(of_b)
         } else {
-            (Axis::FaceA(of_a.face), of_a.separation)
+            Axis::FaceA(of_a)
         };
-        match edges {
-            Some(e) if e.separation > separation + preference => (Axis::Edges(e), e.separation),
-            _ => (face, separation),
-        }
+        let known = Known {
+            of_b_in_a: self.b_in_a.point(self.b.vertices[of_a.lowest]),
+            of_a_in_b: self.a_in_b.point(self.a.vertices[of_b.lowest]),
+            separation: face.separation() + preference,
+        };
+        sat::best_edges(self.a, self.b, &self.b_in_a, &known, self.limit()).map_or(face, Axis::Edges)
     }
 
     /// Fills the manifold from an axis. Whether its nearest point is as near as the axis says, which
     /// is then the true distance.
-    fn build(&self, axis: Axis, separation: f32, out: &mut LocalManifold) -> bool {
+    fn build(&self, axis: Axis, out: &mut LocalManifold) -> bool {
         match axis {
-            Axis::FaceA(i) => self.build_face(i, separation, false, out),
-            Axis::FaceB(i) => self.build_face(i, separation, true, out),
-            Axis::Edges(e) => self.build_edges(&e, out),
+            Axis::FaceA(face) => self.build_face(&face, false, out),
+            Axis::FaceB(face) => self.build_face(&face, true, out),
+            Axis::Edges(edges) => self.build_edges(&edges, out),
         }
     }
 
-    fn build_face(&self, face: usize, separation: f32, of_b: bool, out: &mut LocalManifold) -> bool {
+    fn build_face(&self, axis: &FaceAxis, of_b: bool, out: &mut LocalManifold) -> bool {
         let (reference, incident, frame) =
             if of_b { (self.b, self.a, &self.a_in_b) } else { (self.a, self.b, &self.b_in_a) };
-        let plane = &reference.faces[face];
-        let normal = plane.normal;
-        let local = frame.direction_in(normal);
-        let deepest = incident.support(-local);
-        let mut polygon = incident_polygon(incident, local, deepest, frame);
-        clip(reference, face, &mut polygon, self.smaller);
+        let local = frame.direction_in(reference.faces[axis.face].normal);
+        let clipping = Clipping {
+            reference,
+            incident,
+            frame,
+            face: clip::incident_face(incident, local, axis.lowest),
+            of_b,
+        };
+        if clip::most_corners(reference, axis.face, incident, clipping.face) <= FEW_CORNERS {
+            self.clip_face::<FEW_CORNERS>(axis, &clipping, out)
+        } else {
+            self.clip_face::<MAX_CORNERS>(axis, &clipping, out)
+        }
+    }
+
+    #[inline(never)]
+    fn clip_face<const N: usize>(
+        &self,
+        axis: &FaceAxis,
+        clipping: &Clipping,
+        out: &mut LocalManifold,
+    ) -> bool {
+        let &Clipping { reference, incident, frame, face, of_b } = clipping;
+        let plane = &reference.faces[axis.face];
+        let (normal, separation) = (plane.normal, axis.separation);
+        let (mut polygon, mut spare) = (Polygon::<N>::new(), Polygon::<N>::new());
+        clip::incident_polygon(incident, face, frame, &mut polygon);
+        let polygon = clip(reference, axis.face, [&mut polygon, &mut spare], self.smaller);
         // A corner at height s over the plane is between the surfaces at (s + r_ref − r_inc) / 2.
         let middle = |point: Vector, s: f32| {
             let point = point - normal * (0.5 * (s - reference.radius + incident.radius));
             if of_b { self.b_in_a.point(point) } else { point }
         };
-        let base = u32::from(of_b) << 30 | (face as u32 & 0x3ff) << 20;
-        let mut candidates = Candidates::new();
+        let base = u32::from(of_b) << 30 | (axis.face as u32 & 0x3ff) << 20;
+        let mut candidates = Candidates::<N>::new();
         let mut least = f32::INFINITY;
         for corner in polygon.corners() {
             let s = normal.dot(corner.point) - plane.offset;
@@ -215,7 +262,7 @@ impl<'a> Pair<'a> {
         }
         if out.count == 0 && separation <= gjk::resolution(self.larger, self.smaller) {
             // Overlapping beside the face: the deepest vertex alone.
-            let point = middle(frame.point(incident.vertices[deepest]), separation);
+            let point = middle(frame.point(incident.vertices[axis.lowest]), separation);
             out.push(point, separation - self.radius, base | 0xf_ffff);
         }
         least <= separation + EXACT * self.smaller

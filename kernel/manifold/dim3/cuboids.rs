@@ -5,7 +5,7 @@
 
 use super::convex::{self, CACHE_TOLERANCE, EDGES, EXACT, FACE_A, FACE_B, PREFER_FACES};
 use super::gjk;
-use super::reduce::{Planar, reduce_planar};
+use super::reduce::Patch;
 use super::view::{Frame, Small};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{F32x4, Lane, Num, Pose, Vector, clamp, max, min};
@@ -15,8 +15,8 @@ const PARALLEL: f32 = 2.5e-5;
 /// The reference rectangle is widened by this share of the smaller extent: equal boxes on each other
 /// then keep their own corners in spite of rounding.
 const MARGIN: f32 = 1.0e-3;
-/// Clipping gives at most four corners, four entries, four exits and four reference corners.
-const MAX_CLIPPED: usize = 16;
+/// The axes after each, in turn.
+const NEXT: [usize; 3] = [1, 2, 0];
 
 /// Two boxes and where they are to each other.
 struct Pair {
@@ -28,42 +28,6 @@ struct Pair {
     prediction: f32,
     smaller: f32,
     larger: f32,
-}
-
-/// What a face contact is made of, in the frame of the box whose face it is.
-struct FaceClip {
-    /// The axis of the face.
-    axis: usize,
-    /// On which side of the box the face lies, 1 or −1.
-    side: f32,
-    /// How far the face is from the centre.
-    face: f32,
-    /// Corners of the clipped face, along the two axes after `axis`.
-    points: [Planar; MAX_CLIPPED],
-    names: [u32; MAX_CLIPPED],
-    count: usize,
-    /// The smallest height of the clipped incident face over the reference face.
-    least: f32,
-}
-
-/// The components turned so that `axis` comes first.
-#[inline(always)]
-fn cycled(v: Vector, axis: usize) -> Vector {
-    match axis {
-        0 => v,
-        1 => Vector { x: v.y, y: v.z, z: v.x },
-        _ => Vector { x: v.z, y: v.x, z: v.y },
-    }
-}
-
-/// The inverse of [`cycled`].
-#[inline(always)]
-fn uncycled(v: Vector, axis: usize) -> Vector {
-    match axis {
-        0 => v,
-        1 => Vector { x: v.z, y: v.x, z: v.y },
-        _ => Vector { x: v.y, y: v.z, z: v.x },
-    }
 }
 
 /// The contact of two boxes with the given half extents; see the module.
@@ -143,8 +107,16 @@ impl Pair {
             return None;
         }
         match cache.kind {
-            FACE_A => Some(self.faces_of_a().to_array()[i]),
-            FACE_B => Some(self.faces_of_b().to_array()[j]),
+            FACE_A => {
+                let along = |k: usize| self.frame.axes[k].to_array()[i].abs();
+                let (x, y, z) = (along(0), along(1), along(2));
+                let reach = x * self.half_b.x + y * self.half_b.y + z * self.half_b.z;
+                Some(self.offset[0].to_array()[i].abs() - self.half_a.to_array()[i] - reach)
+            }
+            FACE_B => {
+                let reach = self.frame.axes[j].abs().dot(self.half_a);
+                Some(self.offset[1].to_array()[j].abs() - self.half_b.to_array()[j] - reach)
+            }
             EDGES => {
                 let (value, _, square) = self.edges(i, j);
                 (square > PARALLEL).then(|| value / square.sqrt())
@@ -174,18 +146,45 @@ impl Pair {
                 return found;
             }
         }
-        let mut least = found.separation + preference;
-        // For a negative value, division by a length below 1 only lowers it: most pairs end here,
-        // without a root.
-        for i in 0..3 {
+        self.search_edges(found, preference)
+    }
+
+    /// The better one of the face found and the best pair of edges, which has to be so by `preference`.
+    #[inline(always)]
+    fn search_edges(&self, mut found: FeatureCache, preference: f32) -> FeatureCache {
+        // Row i of the rotation: how far each axis of B goes along axis i of A.
+        let [x, y, z] = self.frame.axes;
+        let rows = [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
+        let lanes = |r: [f32; 3]| F32x4::new([r[0], r[1], r[2], 0.0]);
+        let turned = |r: [f32; 3], k: usize| absolute(lanes([r[k % 3], r[(k + 1) % 3], r[(k + 2) % 3]]));
+        let (signed, sizes) = (rows.map(lanes), rows.map(|r| turned(r, 0)));
+        let (t, ha, hb) = (self.offset[0].to_array(), self.half_a.to_array(), self.half_b.to_array());
+        let of_b = [lanes([hb[1], hb[2], hb[0]]), lanes([hb[2], hb[0], hb[1]])];
+        let least = found.separation + preference;
+        let (bar, parallel) = (F32x4::splat(min(least, 0.0)), F32x4::splat(PARALLEL));
+        let axis = |i: usize| {
+            let (i1, i2) = (NEXT[i], NEXT[NEXT[i]]);
+            let distance = F32x4::splat(t[i2]) * signed[i1] - F32x4::splat(t[i1]) * signed[i2];
+            let of_a = F32x4::splat(ha[i1]) * sizes[i2] + F32x4::splat(ha[i2]) * sizes[i1];
+            let of_b = of_b[0] * turned(rows[i], 2) + of_b[1] * turned(rows[i], 1);
+            let square = signed[i1] * signed[i1] + signed[i2] * signed[i2];
+            let value = absolute(distance) - of_a - of_b;
+            // For a negative value, division by a length below 1 only lowers it: most pairs end here, without a root.
+            (value, square, F32x4::and(bar.lt(value), parallel.lt(square)))
+        };
+        let axes = [axis(0), axis(1), axis(2)];
+        if !F32x4::any(F32x4::or(F32x4::or(axes[0].2, axes[1].2), axes[2].2)) {
+            return found;
+        }
+        let mut least = least;
+        for (i, (value, square, open)) in axes.into_iter().enumerate() {
+            let none = F32x4::splat(f32::NEG_INFINITY);
+            let separations = F32x4::select(open, value / square.sqrt(), none);
             for j in 0..3 {
-                let (value, _, square) = self.edges(i, j);
-                if value > min(least, 0.0) && square > PARALLEL {
-                    let separation = value / square.sqrt();
-                    if separation > least {
-                        least = separation;
-                        found = FeatureCache { kind: EDGES, a: i as u8, b: j as u8, separation };
-                    }
+                let separation = separations.get(j);
+                if separation > least {
+                    least = separation;
+                    found = FeatureCache { kind: EDGES, a: i as u8, b: j as u8, separation };
                 }
             }
         }
@@ -196,48 +195,69 @@ impl Pair {
     #[inline(always)]
     fn build(&self, kind: u8, a: u8, b: u8, separation: f32, out: &mut LocalManifold) -> bool {
         match kind {
-            FACE_A => self.build_face_of_a(a as usize, separation, out),
-            FACE_B => self.build_face_of_b(b as usize, separation, out),
-            _ => self.build_edges(a as usize, b as usize, separation, out),
+            EDGES => self.build_edges(a as usize, b as usize, separation, out),
+            _ => self.build_face(
+                kind == FACE_B,
+                (if kind == FACE_B { b } else { a }) as usize,
+                separation,
+                out,
+            ),
         }
     }
 
-    fn build_face_of_a(&self, axis: usize, separation: f32, out: &mut LocalManifold) -> bool {
-        let clipped = self.clip_face(axis, &self.frame, self.half_a, self.half_b);
-        out.normal = Vector::AXES[axis] * clipped.side;
-        self.emit(&clipped, axis as u32, None, separation, out)
-    }
+    /// Clips the face of one box that looks most against the face on `axis` of the other, which is A unless `of_b`.
+    ///
+    /// Of all directions and points the coordinates come in turn, so that the axis comes first. Which axes and faces
+    /// these are nobody foresees, so they are looked up instead of branched on.
+    fn build_face(&self, of_b: bool, axis: usize, separation: f32, out: &mut LocalManifold) -> bool {
+        let [x, y, z] = self.frame.axes;
+        // The other box's axes and centre in the frame of the one with the face, and that one's in A's.
+        let (axes, position, this, other, columns, origin) = if of_b {
+            let axes = [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
+            (axes, -self.offset[1], self.half_b, self.half_a, self.frame.axes, self.frame.position)
+        } else {
+            let axes = [x.to_array(), y.to_array(), z.to_array()];
+            (axes, self.offset[0], self.half_a, self.half_b, Vector::AXES, Vector::ZERO)
+        };
+        let (i0, i1, i2) = (axis, NEXT[axis], NEXT[NEXT[axis]]);
+        let (position, half) = (position.to_array(), this.to_array());
+        let side = if position[i0] < 0.0 { -1.0 } else { 1.0 };
+        // The axis of the other box across its incident face, and the two along it.
+        let [sx, sy, sz] = [axes[0][i0].abs(), axes[1][i0].abs(), axes[2][i0].abs()];
+        let incident = if sy > sx { 1 } else { 0 };
+        let incident = if sz > max(sx, sy) { 2 } else { incident };
+        let (across, along) = (incident, [NEXT[incident], NEXT[NEXT[incident]]]);
+        let other = other.to_array();
+        let away = if axes[across][i0] * side > 0.0 { -1.0 } else { 1.0 };
+        // Across the reference face, and the height over it.
+        let local = |j: usize, k: f32| {
+            let v = &axes[j];
+            Vector { x: v[i1] * k, y: v[i2] * k, z: v[i0] * (k * side) }
+        };
+        let center = Vector { x: position[i1], y: position[i2], z: position[i0] * side - half[i0] };
+        let quad = Quad {
+            center: center + local(across, away * other[across]),
+            p: local(along[0], other[along[0]]),
+            q: local(along[1], other[along[1]]),
+        };
+        let margin = MARGIN * self.smaller;
+        let clipped = quad.clip(half[i1] + margin, half[i2] + margin, self.prediction);
 
-    fn build_face_of_b(&self, axis: usize, separation: f32, out: &mut LocalManifold) -> bool {
-        let inverse = self.frame.inverse();
-        let clipped = self.clip_face(axis, &inverse, self.half_b, self.half_a);
-        out.normal = self.frame.axes[axis] * -clipped.side;
-        self.emit(&clipped, axis as u32 | 4, Some(&self.frame), separation, out)
-    }
-
-    /// Reduces the clipped points and writes them. `frame` takes them to A's frame.
-    #[inline(always)]
-    fn emit(
-        &self,
-        clipped: &FaceClip,
-        face: u32,
-        frame: Option<&Frame>,
-        separation: f32,
-        out: &mut LocalManifold,
-    ) -> bool {
         out.count = 0;
-        let list = &clipped.points[..clipped.count];
-        let (kept, count) = reduce_planar(list);
-        // The axis and its side: the reference face.
-        let base = (face * 2 + u32::from(clipped.side > 0.0)) << 8;
+        out.normal = columns[i0] * if of_b { -side } else { side };
+        // The axis and its side, the reference face; which face of the other box.
+        let face = ((axis | usize::from(of_b) << 2) * 2 + usize::from(side > 0.0)) as u32;
+        let base = face << 8 | ((incident * 2 + usize::from(away > 0.0)) << 5) as u32;
+        let (up, right, ahead) = (columns[i0] * side, columns[i1], columns[i2]);
+        let (kept, count) = clipped.patch.reduce();
         for k in &kept[..count] {
-            let c = list[*k];
-            let middle = Vector { x: clipped.side * (clipped.face + 0.5 * c.separation), y: c.x, z: c.y };
-            let point = uncycled(middle, clipped.axis);
-            out.push(frame.map_or(point, |f| f.point(point)), c.separation, base | clipped.names[*k]);
+            let height = F32x4::flat(&clipped.patch.separation)[*k];
+            let (x, y) = clipped.patch.at(*k);
+            let point = origin + up * (half[i0] + 0.5 * height) + right * x + ahead * y;
+            out.push(point, height, base | clipped.name(*k));
         }
         if out.count == 0 && separation <= gjk::resolution(self.larger, self.smaller) {
-            self.emit_deepest(base, separation, out);
+            self.emit_deepest(face << 8, separation, out);
         }
         clipped.least <= separation + EXACT * self.smaller
     }
@@ -256,53 +276,6 @@ impl Pair {
             self.frame.point(corner) - n * (0.5 * separation)
         };
         out.push(point, separation, base | 0xff);
-    }
-
-    /// Clips the face of the other box (`frame`, `other`) that looks most against it by the face of
-    /// this box on `axis`. Coordinates are turned so that this axis comes first.
-    #[inline(always)]
-    fn clip_face(&self, axis: usize, frame: &Frame, this: Vector, other: Vector) -> FaceClip {
-        let position = cycled(frame.position, axis);
-        let [a, b, c] = frame.axes.map(|v| cycled(v, axis));
-        let h = cycled(this, axis);
-        let side = if position.x < 0.0 { -1.0 } else { 1.0 };
-        let (sa, sb, sc) = (a.x.abs(), b.x.abs(), c.x.abs());
-        // The axis of the other box across its incident face, and the two along it.
-        let (incident, across, p, q, reach) = if sa >= sb && sa >= sc {
-            (0, a, b * other.y, c * other.z, other.x)
-        } else if sb >= sc {
-            (1, b, c * other.z, a * other.x, other.y)
-        } else {
-            (2, c, a * other.x, b * other.y, other.z)
-        };
-        let away = if across.x * side > 0.0 { -1.0 } else { 1.0 };
-        let center = position + across * (away * reach);
-        // Across the reference face, and the height over it.
-        let local = |w: Vector| Vector { x: w.y, y: w.z, z: w.x * side };
-        let mut center = local(center);
-        center.z -= h.x;
-        let quad = Quad { center, p: local(p), q: local(q) };
-        let margin = MARGIN * self.smaller;
-        // Which face of the other box.
-        let name = (incident * 2 + u32::from(away > 0.0)) << 5;
-        let mut clipped = FaceClip {
-            axis,
-            side,
-            face: h.x,
-            points: [Planar::default(); MAX_CLIPPED],
-            names: [0; MAX_CLIPPED],
-            count: 0,
-            least: f32::INFINITY,
-        };
-        quad.clip(h.y + margin, h.z + margin, &mut |x, y, height, corner| {
-            clipped.least = min(height, clipped.least);
-            if height <= self.prediction && clipped.count < MAX_CLIPPED {
-                clipped.points[clipped.count] = Planar { x, y, separation: height };
-                clipped.names[clipped.count] = name | corner;
-                clipped.count += 1;
-            }
-        });
-        clipped
     }
 
     /// See [`convex::collide_apart`].
@@ -356,14 +329,22 @@ struct Quad {
     q: Vector,
 }
 
-/// Four values side by side.
-#[inline(always)]
-fn lanes(v: [f32; 4]) -> F32x4 {
-    let mut out = F32x4::splat(v[0]);
-    out.set(1, v[1]);
-    out.set(2, v[2]);
-    out.set(3, v[3]);
-    out
+/// A clipped quad: four corners of its own, four points where an edge enters the rectangle, four where one leaves,
+/// and four corners of the rectangle.
+struct Clipped {
+    patch: Patch<4>,
+    /// Whether a point is where an edge meets the second pair of sides, as bits.
+    across: u32,
+    /// The smallest height of all that is over the rectangle.
+    least: f32,
+}
+
+impl Clipped {
+    /// A name for a point that lasts from step to step: which corner, or which edge is cut by which side.
+    #[inline(always)]
+    fn name(&self, point: usize) -> u32 {
+        (point as u32) << 1 | self.across >> (point & 15) & 1
+    }
 }
 
 #[inline(always)]
@@ -371,43 +352,59 @@ fn absolute(v: F32x4) -> F32x4 {
     v.max(-v)
 }
 
+/// The values whose bits are set, and infinity in place of the others.
+#[inline(always)]
+fn only(bits: u32, values: F32x4) -> F32x4 {
+    const LANES: [F32x4; 16] = {
+        let mut table = [F32x4::ZERO; 16];
+        let mut i = 0;
+        while i < 16 {
+            table[i] =
+                F32x4::new([(i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32, (i >> 3) as f32]);
+            i += 1;
+        }
+        table
+    };
+    F32x4::select(F32x4::ZERO.lt(LANES[bits as usize & 15]), values, F32x4::splat(f32::INFINITY))
+}
+
 impl Quad {
-    /// Gives the corners of the part with |x| ≤ `half_u`, |y| ≤ `half_v` to `add`, in no order.
+    /// The part with |x| ≤ `half_u`, |y| ≤ `half_v` and a height up to `prediction`, in no order.
     ///
-    /// Unlike cutting side by side this is four lanes wide: each edge of the quad is cut by both pairs
-    /// of sides at once (Liang and Barsky, 1984), then the corners of the rectangle are looked up in
+    /// Unlike cutting side by side this is four lanes wide and without branches: each edge of the quad is cut by both
+    /// pairs of sides at once (Liang and Barsky, 1984), then the corners of the rectangle are looked up in
     /// the quad.
     #[inline(always)]
-    fn clip(&self, half_u: f32, half_v: f32, add: &mut impl FnMut(f32, f32, f32, u32)) {
+    fn clip(&self, half_u: f32, half_v: f32, prediction: f32) -> Clipped {
+        const P: F32x4 = F32x4::new([-1.0, 1.0, 1.0, -1.0]);
+        const Q: F32x4 = F32x4::new([-1.0, -1.0, 1.0, 1.0]);
         let (c, p, q) = (self.center, self.p, self.q);
-        let along = |c: f32, p: f32, q: f32| lanes([c - p - q, c + p - q, c + p + q, c - p + q]);
-        let (x, y, z) = (along(c.x, p.x, q.x), along(c.y, p.y, q.y), along(c.z, p.z, q.z));
+        let corners = |c: f32, p: f32, q: f32| F32x4::splat(c) + P * F32x4::splat(p) + Q * F32x4::splat(q);
+        let (x, y, z) = (corners(c.x, p.x, q.x), corners(c.y, p.y, q.y), corners(c.z, p.z, q.z));
         let (hu, hv) = (F32x4::splat(half_u), F32x4::splat(half_v));
-        let inside = F32x4::and(absolute(x).le(hu), absolute(y).le(hv));
-        let inside = F32x4::select(inside, F32x4::ONE, F32x4::ZERO);
-        let inside: [bool; 4] = core::array::from_fn(|k| inside.get(k) != 0.0);
-        for (k, is_inside) in inside.iter().enumerate() {
-            if *is_inside {
-                add(x.get(k), y.get(k), z.get(k), k as u32);
-            }
+        let inside = F32x4::bits(F32x4::and(absolute(x).le(hu), absolute(y).le(hv)));
+        let none = F32x4::splat(f32::INFINITY);
+        let mut clipped = Clipped {
+            patch: Patch { x: [x; 4], y: [y; 4], separation: [only(inside, z), none, none, none] },
+            across: 0,
+            least: 0.0,
+        };
+        if inside != 0xf {
+            self.cut_edges([x, y, z], [hu, hv], inside, &mut clipped);
+            self.covered_corners(half_u, half_v, &mut clipped.patch);
         }
-        if inside == [true; 4] {
-            return;
-        }
-        self.cut_edges([x, y, z], [hu, hv], inside, add);
-        self.covered_corners(half_u, half_v, add);
+        let [a, b, c, d] = clipped.patch.separation;
+        let least = a.min(b).min(c.min(d));
+        clipped.least = min(min(least.get(0), least.get(1)), min(least.get(2), least.get(3)));
+        let limit = F32x4::splat(prediction);
+        clipped.patch.separation = [a, b, c, d].map(|s| F32x4::select(s.le(limit), s, none));
+        clipped
     }
 
     #[inline(always)]
-    fn cut_edges(
-        &self,
-        [x, y, z]: [F32x4; 3],
-        [hu, hv]: [F32x4; 2],
-        inside: [bool; 4],
-        add: &mut impl FnMut(f32, f32, f32, u32),
-    ) {
+    fn cut_edges(&self, [x, y, z]: [F32x4; 3], [hu, hv]: [F32x4; 2], inside: u32, clipped: &mut Clipped) {
         let (p, q) = (self.p * 2.0, self.q * 2.0);
-        let sides = |p: f32, q: f32| lanes([p, q, -p, -q]);
+        let sides = |p: f32, q: f32| F32x4::new([p, q, -p, -q]);
         let (dx, dy, dz) = (sides(p.x, q.x), sides(p.y, q.y), sides(p.z, q.z));
         let slab = |at: F32x4, d: F32x4, half: F32x4| {
             // An edge along the slab: any tiny slope says whether it is inside.
@@ -418,39 +415,37 @@ impl Quad {
         };
         let ((enter_u, exit_u), (enter_v, exit_v)) = (slab(x, dx, hu), slab(y, dy, hv));
         let (enter, exit) = (enter_u.max(enter_v), exit_u.min(exit_v));
-        for k in 0..4 {
-            let (t0, t1) = (enter.get(k), exit.get(k));
-            if !(t0 <= t1) {
-                continue;
-            }
-            let mut cut = |t: f32, name: u32| {
-                add(x.get(k) + t * dx.get(k), y.get(k) + t * dy.get(k), z.get(k) + t * dz.get(k), name);
-            };
-            if !inside[k] && t0 > 0.0 && t0 <= 1.0 {
-                let across = u32::from(enter_v.get(k) > enter_u.get(k));
-                cut(t0, 0x8 | (k as u32) << 1 | across);
-            }
-            if !inside[(k + 1) & 3] && (0.0..1.0).contains(&t1) {
-                let across = u32::from(exit_v.get(k) < exit_u.get(k));
-                cut(t1, 0x10 | (k as u32) << 1 | across);
-            }
+        let meets = enter.le(exit);
+        let enters = F32x4::and(F32x4::and(F32x4::ZERO.lt(enter), enter.le(F32x4::ONE)), meets);
+        let exits = F32x4::and(F32x4::and(F32x4::ZERO.le(exit), exit.lt(F32x4::ONE)), meets);
+        let next_inside = inside >> 1 | (inside & 1) << 3;
+        let patch = &mut clipped.patch;
+        for (block, t, bits) in
+            [(1, enter, F32x4::bits(enters) & !inside), (2, exit, F32x4::bits(exits) & !next_inside)]
+        {
+            // Where there is no such point the numbers may be none.
+            (patch.x[block], patch.y[block]) = (x + t * dx, y + t * dy);
+            patch.separation[block] = only(bits, z + t * dz);
         }
+        clipped.across = F32x4::bits(enter_u.lt(enter_v)) << 4 | F32x4::bits(exit_v.lt(exit_u)) << 8;
     }
 
     /// The corners of the reference rectangle that lie over the quad.
     #[inline(always)]
-    fn covered_corners(&self, half_u: f32, half_v: f32, add: &mut impl FnMut(f32, f32, f32, u32)) {
+    fn covered_corners(&self, half_u: f32, half_v: f32, patch: &mut Patch<4>) {
+        const U: F32x4 = F32x4::new([-1.0, 1.0, -1.0, 1.0]);
+        const V: F32x4 = F32x4::new([-1.0, -1.0, 1.0, 1.0]);
         let (c, p, q) = (self.center, self.p, self.q);
-        let inverse = 1.0 / (p.x * q.y - p.y * q.x);
-        for k in 0..4u32 {
-            let (x, y) =
-                (if k & 1 == 0 { -half_u } else { half_u }, if k & 2 == 0 { -half_v } else { half_v });
-            let (dx, dy) = (x - c.x, y - c.y);
-            // The corner is c + s p + t q.
-            let (s, t) = ((dx * q.y - dy * q.x) * inverse, (p.x * dy - p.y * dx) * inverse);
-            if s.abs() < 1.0 && t.abs() < 1.0 {
-                add(x, y, c.z + s * p.z + t * q.z, 0x18 | k);
-            }
-        }
+        let inverse = F32x4::splat(1.0 / (p.x * q.y - p.y * q.x));
+        let wide = |v: Vector| Vector::<F32x4>::splat(v);
+        let (c, p, q) = (wide(c), wide(p), wide(q));
+        let (x, y) = (U * F32x4::splat(half_u), V * F32x4::splat(half_v));
+        let (dx, dy) = (x - c.x, y - c.y);
+        // The corner is c + s p + t q.
+        let (s, t) = ((dx * q.y - dy * q.x) * inverse, (p.x * dy - p.y * dx) * inverse);
+        let covered = F32x4::and(absolute(s).lt(F32x4::ONE), absolute(t).lt(F32x4::ONE));
+        (patch.x[3], patch.y[3]) = (x, y);
+        let height = c.z + s * p.z + t * q.z;
+        patch.separation[3] = F32x4::select(covered, height, F32x4::splat(f32::INFINITY));
     }
 }

@@ -1,6 +1,6 @@
 //! A half-space against the vertices of anything.
 
-use super::reduce::{Candidate, Candidates, reduce};
+use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce};
 use crate::manifold::LocalManifold;
 use crate::math::{Pose, Vector};
 use crate::shape::Shape;
@@ -32,7 +32,7 @@ fn vertices(
 ) {
     // Heights in the frame of B: one product a vertex, and only what is near is turned.
     let (local, base) = (pose.rotation.inverse_rotate(normal), normal.dot(pose.position) - radius);
-    let mut candidates = Candidates::new();
+    let mut candidates = Candidates::<MAX_CANDIDATES>::new();
     for (i, p) in points.into_iter().enumerate() {
         let separation = local.dot(p) + base;
         if separation <= prediction {

@@ -42,7 +42,9 @@ pub fn collide(
     if !(pose_b_in_a.position.abs().max_element() < FARTHEST) || !pose_b_in_a.rotation.is_finite() {
         return;
     }
-    if rank(a) > rank(b) {
+    if let (Shape::Cuboid(a), Shape::Cuboid(b)) = (a, b) {
+        cuboids::collide(a.half, b.half, pose_b_in_a, prediction, cache, out);
+    } else if rank(a) > rank(b) {
         let inverse = pose_b_in_a.inverse();
         dispatch(b, a, &inverse, prediction, cache, out);
         *out = out.flipped(&inverse);
@@ -66,9 +68,15 @@ fn rank(shape: &Shape) -> u8 {
 /// Sizes out of all proportion can overflow on the way: no contact then, rather than a bad one.
 #[inline]
 fn drop_unusable(out: &mut LocalManifold) {
-    let unit = (out.normal.length_squared() - 1.0).abs() < 1.0e-3;
-    let finite = |p: &super::LocalPoint| p.point.is_finite() && p.separation.is_finite();
-    if out.count > 0 && !(unit && out.points().iter().all(finite)) {
+    if out.count == 0 {
+        return;
+    }
+    // Nothing times a finite number is nothing.
+    let mut nothing = 0.0;
+    for p in out.points() {
+        nothing += p.point.x * 0.0 + p.point.y * 0.0 + p.point.z * 0.0 + p.separation * 0.0;
+    }
+    if !((out.normal.length_squared() - 1.0).abs() < 1.0e-3 && nothing == 0.0) {
         out.count = 0;
     }
 }
@@ -83,9 +91,6 @@ fn dispatch(
 ) {
     let center = pose.position;
     match (a, b) {
-        (Shape::Cuboid(a), Shape::Cuboid(b)) => {
-            cuboids::collide(a.half, b.half, pose, prediction, cache, out);
-        }
         (Shape::HalfSpace(a), b) => half_space::collide(a.normal, b, pose, prediction, out),
         (Shape::Ball(a), Shape::Ball(b)) => round::balls(a.radius, center, b.radius, prediction, out),
         (Shape::Cuboid(a), Shape::Ball(b)) => round::cuboid_ball(a.half, center, b.radius, prediction, out),

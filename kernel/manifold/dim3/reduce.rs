@@ -1,13 +1,13 @@
 //! Many candidate points become at most four: the deepest, and those that span the most area with it.
 
-use crate::math::{Vector, max, min};
+use crate::math::{F32x4, Lane, Num, Vector, max};
 
 /// The most candidates a manifold function collects before it reduces.
 pub(super) const MAX_CANDIDATES: usize = 64;
-/// A challenger must be this much better than the incumbent. Candidates of about equal worth then keep
-/// their order from step to step, so that impulses find their points again.
-const CHALLENGE: f32 = 1.05;
-/// By how much a point must be deeper than the incumbent, as a share of the patch's size.
+/// The first candidate whose worth is at least this share of the best one's is taken. Candidates of about equal
+/// worth then keep their order from step to step, so that impulses find their points again.
+const ABOUT_EQUAL: f32 = 0.952;
+/// How much higher than the deepest a point may lie to count as equally deep, as a share of the patch's size.
 const DEEPER: f32 = 1.0e-3;
 /// A point that adds less than this share of the patch's squared size adds nothing.
 const FLAT: f32 = 1.0e-6;
@@ -20,15 +20,15 @@ pub(super) struct Candidate {
     pub feature: u32,
 }
 
-/// A list of candidates on the stack.
-pub(super) struct Candidates {
-    list: [Candidate; MAX_CANDIDATES],
+/// A list of at most `N` candidates on the stack.
+pub(super) struct Candidates<const N: usize> {
+    list: [Candidate; N],
     count: usize,
 }
 
-impl Candidates {
+impl<const N: usize> Candidates<N> {
     pub fn new() -> Self {
-        Self { list: [Candidate::default(); MAX_CANDIDATES], count: 0 }
+        Self { list: [Candidate::default(); N], count: 0 }
     }
 
     pub fn as_slice(&self) -> &[Candidate] {
@@ -37,7 +37,7 @@ impl Candidates {
 
     /// Adds a candidate; when full, in place of the one with the largest separation.
     pub fn push(&mut self, candidate: Candidate) {
-        if self.count < MAX_CANDIDATES {
+        if self.count < N {
             self.list[self.count] = candidate;
             self.count += 1;
             return;
@@ -54,75 +54,138 @@ impl Candidates {
     }
 }
 
-/// A candidate by its place in the plane of contact.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Planar {
-    pub x: f32,
-    pub y: f32,
-    pub separation: f32,
-}
-
-/// The numbers of the candidates to keep, and how many; see [`reduce_planar`].
+/// The numbers of the candidates to keep, and how many; see [`Patch::reduce`].
 #[inline]
 pub(super) fn reduce(list: &[Candidate], normal: Vector) -> ([usize; 4], usize) {
-    if list.len() <= 4 {
-        return ([0, 1, 2, 3], list.len());
+    match list.len() {
+        0..=4 => ([0, 1, 2, 3], list.len()),
+        5..=16 => Patch::<4>::of(list, normal).reduce(),
+        _ => Patch::<16>::of(list, normal).reduce(),
     }
-    let u = normal.any_orthonormal();
-    let v = normal.cross(u);
-    let mut planar = [Planar::default(); MAX_CANDIDATES];
-    for (p, c) in planar.iter_mut().zip(list) {
-        *p = Planar { x: u.dot(c.point), y: v.dot(c.point), separation: c.separation };
-    }
-    reduce_planar(&planar[..list.len()])
 }
 
-/// The numbers of the candidates to keep, and how many: at most four. The first is the deepest but for
-/// 0.1 % of the patch's size; then the one farthest from it, the largest triangle, and the point that
-/// adds most to the triangle's area.
-pub(super) fn reduce_planar(list: &[Planar]) -> ([usize; 4], usize) {
-    if list.len() <= 4 {
-        return ([0, 1, 2, 3], list.len());
-    }
-    let square = |p: &Planar, q: &Planar| (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
-    let size_squared = list.iter().fold(0.0, |m, c| max(m, square(c, &list[0])));
-    let margin = DEEPER * size_squared.sqrt();
-    let (first, _) = pick(list, f32::NEG_INFINITY, |c| -c.separation, |best| best + margin);
-    let a = list[first];
-    let (second, far) = pick(list, 0.0, |c| square(c, &a), |best| best * CHALLENGE);
-    if !(far > FLAT * size_squared) {
-        return ([first, 0, 0, 0], 1);
-    }
-    let b = list[second];
-    let twice_area =
-        |p: &Planar, q: &Planar, r: &Planar| (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
-    let (third, area) = pick(list, 0.0, |c| twice_area(&a, &b, c).abs(), |best| best * CHALLENGE);
-    if !(area > FLAT * size_squared) {
-        return ([first, second, 0, 0], 2);
-    }
-    let c = list[third];
-    let [p, q, r] = if twice_area(&a, &b, &c) < 0.0 { [b, a, c] } else { [a, b, c] };
-    let outside = |d: &Planar| -min(min(twice_area(&p, &q, d), twice_area(&q, &r, d)), twice_area(&r, &p, d));
-    let (fourth, added) = pick(list, 0.0, outside, |best| best * CHALLENGE);
-    let count = if added > FLAT * size_squared { 4 } else { 3 };
-    ([first, second, third, fourth], count)
+/// Candidates by their place in the plane of contact, four side by side in each of `B` blocks; some may be missing.
+pub(super) struct Patch<const B: usize> {
+    pub x: [F32x4; B],
+    pub y: [F32x4; B],
+    /// Infinite where there is no candidate.
+    pub separation: [F32x4; B],
 }
 
-/// The candidate of most worth, where one must be above `bar` of the incumbent's; and its worth.
+type Mask = <F32x4 as Lane>::Mask;
+
+impl<const B: usize> Patch<B> {
+    fn of(list: &[Candidate], normal: Vector) -> Self {
+        let u = normal.any_orthonormal();
+        let v = normal.cross(u);
+        let none = F32x4::splat(f32::INFINITY);
+        let mut patch = Self { x: [F32x4::ZERO; B], y: [F32x4::ZERO; B], separation: [none; B] };
+        for (i, c) in list.iter().enumerate() {
+            patch.x[i / 4].set(i % 4, u.dot(c.point));
+            patch.y[i / 4].set(i % 4, v.dot(c.point));
+            patch.separation[i / 4].set(i % 4, c.separation);
+        }
+        patch
+    }
+
+    /// The numbers of the candidates that are not missing, as bits.
+    #[inline(always)]
+    fn present(&self) -> u64 {
+        self.first_with(|_, present| present)
+    }
+
+    /// Of which blocks' candidates something holds, as bits.
+    #[inline(always)]
+    fn first_with(&self, holds: impl Fn(usize, Mask) -> Mask) -> u64 {
+        let mut bits = 0;
+        for k in 0..B {
+            let present = self.separation[k].lt(F32x4::splat(f32::INFINITY));
+            bits |= u64::from(F32x4::bits(F32x4::and(holds(k, present), present))) << (4 * k);
+        }
+        bits
+    }
+
+    /// A candidate's place.
+    #[inline(always)]
+    pub fn at(&self, i: usize) -> (f32, f32) {
+        (F32x4::flat(&self.x)[i], F32x4::flat(&self.y)[i])
+    }
+
+    /// The first candidate of about the most worth, above 0, and its worth.
+    #[inline(always)]
+    fn pick(&self, worth: impl Fn(F32x4, F32x4) -> F32x4) -> (usize, f32) {
+        let mut worths = [F32x4::ZERO; B];
+        let mut most = F32x4::ZERO;
+        for k in 0..B {
+            let present = self.separation[k].lt(F32x4::splat(f32::INFINITY));
+            worths[k] = F32x4::select(present, worth(self.x[k], self.y[k]), F32x4::ZERO);
+            most = most.max(worths[k]);
+        }
+        let bar = F32x4::splat(ABOUT_EQUAL * greatest(most));
+        let i = self.first_with(|k, _| bar.le(worths[k])).trailing_zeros() as usize % (4 * B);
+        (i, F32x4::flat(&worths)[i])
+    }
+
+    /// The numbers of the candidates to keep, and how many: at most four. The first is the deepest but for
+    /// 0.1 % of the patch's size; then the one farthest from it, the largest triangle, and the point that
+    /// adds most to the triangle's area.
+    pub fn reduce(&self) -> ([usize; 4], usize) {
+        let mut present = self.present();
+        let count = present.count_ones() as usize;
+        if count <= 4 {
+            let mut kept = [0; 4];
+            for k in &mut kept {
+                *k = (present.trailing_zeros() & 63) as usize;
+                present &= present.wrapping_sub(1);
+            }
+            return (kept, count);
+        }
+        let distance = |(x, y): (f32, f32)| {
+            let (x, y) = (F32x4::splat(x), F32x4::splat(y));
+            move |p: F32x4, q: F32x4| (p - x) * (p - x) + (q - y) * (q - y)
+        };
+        let from_any = distance(self.at(present.trailing_zeros() as usize));
+        let (mut size, mut least) = (F32x4::ZERO, self.separation[0]);
+        for k in 0..B {
+            let here = self.separation[k].lt(F32x4::splat(f32::INFINITY));
+            size = F32x4::select(here, from_any(self.x[k], self.y[k]), F32x4::ZERO).max(size);
+            least = self.separation[k].min(least);
+        }
+        let size_squared = greatest(size);
+        let bar = F32x4::splat(DEEPER * size_squared.sqrt() - greatest(-least));
+        let first = self.first_with(|k, _| self.separation[k].le(bar)).trailing_zeros() as usize % (4 * B);
+        let a = self.at(first);
+        let (second, far) = self.pick(distance(a));
+        if !(far > FLAT * size_squared) {
+            return ([first, 0, 0, 0], 1);
+        }
+        let b = self.at(second);
+        let (third, area) = self.pick(|x, y| {
+            let area = twice_area(a, b, x, y);
+            area.max(-area)
+        });
+        if !(area > FLAT * size_squared) {
+            return ([first, second, 0, 0], 2);
+        }
+        let c = self.at(third);
+        let (cx, cy) = (F32x4::splat(c.0), F32x4::splat(c.1));
+        let [p, q, r] = if twice_area(a, b, cx, cy).get(0) < 0.0 { [b, a, c] } else { [a, b, c] };
+        let (fourth, added) =
+            self.pick(|x, y| -twice_area(p, q, x, y).min(twice_area(q, r, x, y)).min(twice_area(r, p, x, y)));
+        let count = if added > FLAT * size_squared { 4 } else { 3 };
+        ([first, second, third, fourth], count)
+    }
+}
+
+/// The largest lane.
 #[inline(always)]
-fn pick(
-    list: &[Planar],
-    start: f32,
-    worth: impl Fn(&Planar) -> f32,
-    bar: impl Fn(f32) -> f32,
-) -> (usize, f32) {
-    let (mut index, mut best, mut above) = (0, start, start);
-    for (i, c) in list.iter().enumerate() {
-        let value = worth(c);
-        let better = value > above;
-        index = if better { i } else { index };
-        best = if better { value } else { best };
-        above = bar(best);
-    }
-    (index, best)
+fn greatest(v: F32x4) -> f32 {
+    max(max(v.get(0), v.get(1)), max(v.get(2), v.get(3)))
+}
+
+/// Twice the areas of the triangles of two points and four third ones, positive where they turn left.
+#[inline(always)]
+fn twice_area(p: (f32, f32), q: (f32, f32), x: F32x4, y: F32x4) -> F32x4 {
+    let (dx, dy) = (F32x4::splat(q.0 - p.0), F32x4::splat(q.1 - p.1));
+    dx * (y - F32x4::splat(p.1)) - dy * (x - F32x4::splat(p.0))
 }

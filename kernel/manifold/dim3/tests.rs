@@ -3,6 +3,8 @@
 use super::collide;
 use super::oracle::Solid;
 use super::reduce::{Candidate, reduce};
+use super::sat;
+use super::view::{Frame, View};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, HalfSpace, Hull, Segment, Shape, Triangle};
@@ -181,6 +183,30 @@ proptest! {
             let (of_a, of_b) = (Solid::new(&a), Solid::new(&b).at(&moved));
             let along = of_a.separation_along(&of_b, out.normal);
             prop_assert!(along > of_a.signed_distance(&of_b) - 0.012);
+        }
+    }
+
+    #[test]
+    fn what_is_ruled_out_beforehand_would_not_have_been_found(a in hull(), b in hull(), pose in pose(1.5)) {
+        let (Shape::Hull(a), Shape::Hull(b)) = (&a, &b) else { unreachable!() };
+        let (a, b, frame) = (View::from(&**a), View::from(&**b), Frame::new(&pose));
+        let best = sat::best_face(&a, &b, &frame, f32::INFINITY);
+        let all = (0..a.faces.len()).map(|i| sat::face_separation(&a, i, &b, &frame).separation);
+        prop_assert!((best.separation - all.fold(f32::NEG_INFINITY, f32::max)).abs() < 1e-5);
+        let inverse = frame.inverse();
+        let of_b = sat::best_face(&b, &a, &inverse, f32::INFINITY);
+        let known = |separation: f32| sat::Known {
+            of_b_in_a: frame.point(b.vertices[best.lowest]),
+            of_a_in_b: inverse.point(a.vertices[of_b.lowest]),
+            separation,
+        };
+        let edges = |separation| sat::best_edges(&a, &b, &frame, &known(separation), f32::INFINITY);
+        let bar = best.separation.max(of_b.separation) + 1e-4;
+        // Below minus infinity nothing can be: nothing is ruled out.
+        match (edges(bar), edges(f32::NEG_INFINITY)) {
+            (Some(found), Some(full)) => prop_assert!((found.separation - full.separation).abs() < 1e-5),
+            (None, Some(full)) => prop_assert!(full.separation <= bar + 1e-5, "{} {bar}", full.separation),
+            (found, None) => prop_assert!(found.is_none()),
         }
     }
 

@@ -1,8 +1,8 @@
 //! One view of every polyhedral core: hulls by reference, boxes, triangles, segments and points
 //! scaled onto the stack. The same code then collides them all.
 
-use crate::math::{F32x4, Lane, Pose, Vector, max, min};
-use crate::shape::{Capsule, Edge, EdgeBlock, Face, Hull, pack, support_index};
+use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
+use crate::shape::{Capsule, Edge, EdgeBlock, Face, FaceBlock, Hull, farthest, pack};
 
 /// The convex polyhedron (or flat limit of one) that a shape is, but for a radius around it.
 #[derive(Clone, Copy)]
@@ -13,6 +13,11 @@ pub(super) struct View<'a> {
     pub loops: &'a [u32],
     pub edges: &'a [Edge],
     pub edge_blocks: &'a [EdgeBlock],
+    pub face_blocks: &'a [FaceBlock],
+    /// The faces around each vertex, one vertex after another.
+    pub fans: &'a [u32],
+    /// Where the faces around each vertex begin among these, and where all end.
+    pub fan_starts: &'a [u32],
     /// A point inside.
     pub center: Vector,
     /// About the distance from the centre to the farthest vertex.
@@ -22,21 +27,23 @@ pub(super) struct View<'a> {
 }
 
 impl View<'_> {
+    /// The vertex farthest along a direction, and how far that is.
+    #[inline(always)]
+    pub fn farthest(&self, direction: Vector) -> (usize, f32) {
+        let (index, value) = farthest(self.blocks, direction);
+        (index.min(self.vertices.len() - 1), value)
+    }
+
     /// The index of the vertex farthest along a direction.
     #[inline]
     pub fn support(&self, direction: Vector) -> usize {
-        support_index(self.vertices, self.blocks, direction)
+        self.farthest(direction).0
     }
 
-    /// The least product of a vertex with a direction.
-    #[inline(always)]
-    pub fn lowest(&self, direction: Vector) -> f32 {
-        let d = Vector::<F32x4>::splat(direction);
-        let mut least = self.blocks[0].dot(d);
-        for block in &self.blocks[1..] {
-            least = block.dot(d).min(least);
-        }
-        min(min(least.get(0), least.get(1)), min(least.get(2), least.get(3)))
+    /// The faces around a vertex.
+    #[inline]
+    pub fn fan(&self, vertex: usize) -> &[u32] {
+        &self.fans[self.fan_starts[vertex] as usize..self.fan_starts[vertex + 1] as usize]
     }
 
     /// The vertices of a face, counter-clockwise.
@@ -56,6 +63,9 @@ impl<'a> From<&'a Hull> for View<'a> {
             loops: hull.loops(),
             edges: hull.edges(),
             edge_blocks: hull.edge_blocks(),
+            face_blocks: hull.face_blocks(),
+            fans: hull.fans().0,
+            fan_starts: hull.fans().1,
             center: hull.centroid(),
             extent: hull.reach(),
             radius: 0.0,
@@ -83,9 +93,51 @@ const CUBE_EDGES: [Edge; 12] = [
     edge(2, 6, 3, 0),
     edge(3, 7, 1, 3),
 ];
+const CUBE_FANS: [u32; 24] = [0, 2, 4, 1, 2, 4, 0, 3, 4, 1, 3, 4, 0, 2, 5, 1, 2, 5, 0, 3, 5, 1, 3, 5];
+const CUBE_FAN_STARTS: [u32; 9] = [0, 3, 6, 9, 12, 15, 18, 21, 24];
+/// Vectors four side by side.
+const fn wide(x: [f32; 4], y: [f32; 4], z: [f32; 4]) -> Vector<F32x4> {
+    Vector { x: F32x4::new(x), y: F32x4::new(y), z: F32x4::new(z) }
+}
+
+/// The corners of the box of half extents 1.
+const CUBE_CORNERS: [Vector<F32x4>; 2] = [
+    wide([-1.0, 1.0, -1.0, 1.0], [-1.0, -1.0, 1.0, 1.0], [-1.0, -1.0, -1.0, -1.0]),
+    wide([-1.0, 1.0, -1.0, 1.0], [-1.0, -1.0, 1.0, 1.0], [1.0, 1.0, 1.0, 1.0]),
+];
+/// The normals of its faces.
+const CUBE_NORMALS: [Vector<F32x4>; 2] = [
+    wide([-1.0, 1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 1.0], [0.0, 0.0, 0.0, 0.0]),
+    wide([0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0], [-1.0, 1.0, 1.0, 1.0]),
+];
+/// Its edges: four along each axis.
+const CUBE_EDGE_BLOCKS: [EdgeBlock; 3] = [
+    EdgeBlock {
+        direction: wide([1.0, 1.0, 1.0, 1.0], [0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]),
+        left: wide([0.0, 0.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 1.0], [0.0, -1.0, 1.0, 0.0]),
+        right: wide([0.0, 0.0, 0.0, 0.0], [0.0, 1.0, -1.0, 0.0], [-1.0, 0.0, 0.0, 1.0]),
+        tail: wide([-1.0, -1.0, -1.0, -1.0], [-1.0, 1.0, -1.0, 1.0], [-1.0, -1.0, 1.0, 1.0]),
+    },
+    EdgeBlock {
+        direction: wide([0.0, 0.0, 0.0, 0.0], [1.0, 1.0, 1.0, 1.0], [0.0, 0.0, 0.0, 0.0]),
+        left: wide([0.0, 1.0, -1.0, 0.0], [0.0, 0.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 1.0]),
+        right: wide([-1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.0], [0.0, -1.0, 1.0, 0.0]),
+        tail: wide([-1.0, 1.0, -1.0, 1.0], [-1.0, -1.0, -1.0, -1.0], [-1.0, -1.0, 1.0, 1.0]),
+    },
+    EdgeBlock {
+        direction: wide([0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0], [1.0, 1.0, 1.0, 1.0]),
+        left: wide([-1.0, 0.0, 0.0, 1.0], [0.0, -1.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0]),
+        right: wide([0.0, 1.0, -1.0, 0.0], [-1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.0]),
+        tail: wide([-1.0, 1.0, -1.0, 1.0], [-1.0, -1.0, 1.0, 1.0], [-1.0, -1.0, -1.0, -1.0]),
+    },
+];
+const TRIANGLE_FANS: [u32; 6] = [0, 1, 0, 1, 0, 1];
+const TRIANGLE_FAN_STARTS: [u32; 4] = [0, 2, 4, 6];
 const TRIANGLE_LOOPS: [u32; 6] = [0, 1, 2, 0, 2, 1];
 const TRIANGLE_EDGES: [Edge; 3] = [edge(0, 1, 0, 1), edge(1, 2, 0, 1), edge(2, 0, 0, 1)];
 const SEGMENT_EDGES: [Edge; 3] = [edge(0, 1, 0, 1), edge(0, 1, 1, 2), edge(0, 1, 2, 0)];
+const EMPTY_EDGES: EdgeBlock =
+    EdgeBlock { direction: Vector::ZERO, left: Vector::ZERO, right: Vector::ZERO, tail: Vector::ZERO };
 const NO_FACE: Face = Face { normal: Vector::ZERO, offset: 0.0, first: 0, count: 0 };
 
 /// Room on the stack for a small polyhedron.
@@ -94,6 +146,9 @@ pub(super) struct Small {
     blocks: [Vector<F32x4>; 2],
     faces: [Face; 6],
     edge_blocks: [EdgeBlock; 3],
+    face_blocks: [FaceBlock; 2],
+    fans: &'static [u32],
+    fan_starts: &'static [u32],
     loops: &'static [u32],
     edges: &'static [Edge],
     vertex_count: usize,
@@ -106,17 +161,14 @@ pub(super) struct Small {
 impl Small {
     /// One point: the core of a ball.
     pub fn point(at: Vector, radius: f32) -> Self {
-        let empty = EdgeBlock {
-            direction: Vector::ZERO,
-            left: Vector::ZERO,
-            right: Vector::ZERO,
-            tail: Vector::ZERO,
-        };
         let mut small = Self {
             vertices: [at; 8],
             blocks: [Vector::ZERO; 2],
             faces: [NO_FACE; 6],
-            edge_blocks: [empty; 3],
+            edge_blocks: [EMPTY_EDGES; 3],
+            face_blocks: [FaceBlock { normal: Vector::ZERO, offset: F32x4::ZERO }; 2],
+            fans: &[],
+            fan_starts: &[],
             loops: &[],
             edges: &[],
             vertex_count: 1,
@@ -129,28 +181,41 @@ impl Small {
         small
     }
 
-    /// A box.
+    /// A box: that of half extents 1, of which but corners and offsets stay as they are.
     pub fn cuboid(half: Vector) -> Self {
-        let mut small = Self::point(Vector::ZERO, 0.0);
         let side = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
-        small.vertices =
-            core::array::from_fn(|i| Vector { x: side(i & 1), y: side(i & 2), z: side(i & 4) }.scale(half));
         let h = half.to_array();
-        small.faces = core::array::from_fn(|i| Face {
-            normal: Vector::AXES[i / 2] * side(i & 1),
-            offset: h[i / 2],
-            first: 4 * i as u32,
-            count: 4,
-        });
-        (small.loops, small.edges) = (&CUBE_LOOPS, &CUBE_EDGES);
-        (small.vertex_count, small.face_count) = (8, 6);
-        small.extent = half.length();
-        let directions = core::array::from_fn(|i| Vector::AXES[i / 4]);
-        let sides = [|e: &Edge| e.left as usize, |e: &Edge| e.right as usize]
-            .map(|f| core::array::from_fn(|i| small.faces[f(&CUBE_EDGES[i])].normal));
-        small.fill_edges(&directions, &sides);
-        small.fill_blocks();
-        small
+        let wide = Vector::<F32x4>::splat(half);
+        let stretched = |v: Vector<F32x4>| Vector { x: v.x * wide.x, y: v.y * wide.y, z: v.z * wide.z };
+        let edges = |b: &EdgeBlock| EdgeBlock { tail: stretched(b.tail), ..*b };
+        let [lower, upper] = &CUBE_CORNERS;
+        let [first, second, third] = &CUBE_EDGE_BLOCKS;
+        Self {
+            vertices: core::array::from_fn(|i| {
+                Vector { x: side(i & 1), y: side(i & 2), z: side(i & 4) }.scale(half)
+            }),
+            blocks: [stretched(*lower), stretched(*upper)],
+            faces: core::array::from_fn(|i| Face {
+                normal: Vector::AXES[i / 2] * side(i & 1),
+                offset: h[i / 2],
+                first: 4 * i as u32,
+                count: 4,
+            }),
+            edge_blocks: [edges(first), edges(second), edges(third)],
+            face_blocks: [
+                FaceBlock { normal: CUBE_NORMALS[0], offset: F32x4::new([h[0], h[0], h[1], h[1]]) },
+                FaceBlock { normal: CUBE_NORMALS[1], offset: wide.z },
+            ],
+            fans: &CUBE_FANS,
+            fan_starts: &CUBE_FAN_STARTS,
+            loops: &CUBE_LOOPS,
+            edges: &CUBE_EDGES,
+            vertex_count: 8,
+            face_count: 6,
+            center: Vector::ZERO,
+            extent: half.length(),
+            radius: 0.0,
+        }
     }
 
     /// A triangle as a flat hull with two faces; without area, its longest side.
@@ -182,6 +247,11 @@ impl Small {
         small.faces[1] = Face { normal: -normal, offset: -offset, first: 3, count: 3 };
         small.face_count = 2;
         (small.loops, small.edges) = (&TRIANGLE_LOOPS, &TRIANGLE_EDGES);
+        (small.fans, small.fan_starts) = (&TRIANGLE_FANS, &TRIANGLE_FAN_STARTS);
+        let mut both = Vector::<F32x4>::splat(-normal);
+        both.set(0, normal);
+        small.face_blocks[0] =
+            FaceBlock { normal: both, offset: F32x4::new([offset, -offset, -offset, -offset]) };
         let unit = sides.map(|s| (s * k) * (1.0 / max((s * k).length(), f32::MIN_POSITIVE)));
         let directions = core::array::from_fn(|i| unit[i.min(2)]);
         small.fill_edges(&directions, &[[normal; 12], [-normal; 12]]);
@@ -247,6 +317,9 @@ impl Small {
             loops: self.loops,
             edges: self.edges,
             edge_blocks: &self.edge_blocks[..self.edges.len().div_ceil(4)],
+            face_blocks: &self.face_blocks[..self.face_count.div_ceil(4)],
+            fans: self.fans,
+            fan_starts: self.fan_starts,
             center: self.center,
             extent: self.extent,
             radius: self.radius,

@@ -53,10 +53,19 @@ pub(crate) struct EdgeBlock {
     pub tail: Vector<F32x4>,
 }
 
+/// Four faces side by side, for the search for the face that separates best.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FaceBlock {
+    /// The outward unit normal.
+    pub normal: Vector<F32x4>,
+    /// The signed distance from the origin to the plane along the normal.
+    pub offset: F32x4,
+}
+
 /// A convex polyhedron.
 ///
-/// Immutable once made. The vertices are stored twice: one by one, and four side by side for the
-/// support search, which is most of what a hull is asked.
+/// Immutable once made. Vertices, faces and edges are stored twice: one by one, and four side by side for
+/// the searches, which are most of what a hull is asked.
 #[derive(Clone, Debug)]
 pub struct Hull {
     vertices: Vec<Vector>,
@@ -65,6 +74,9 @@ pub struct Hull {
     loops: Vec<u32>,
     edges: Vec<Edge>,
     edge_blocks: Vec<EdgeBlock>,
+    face_blocks: Vec<FaceBlock>,
+    fans: Vec<u32>,
+    fan_starts: Vec<u32>,
     unit_mass: MassProperties,
     extent: f32,
 }
@@ -86,9 +98,9 @@ pub(crate) fn pack(values: &[Vector]) -> impl Iterator<Item = Vector<F32x4>> + '
     })
 }
 
-/// The index of the vertex farthest along `direction`, the lowest of equals.
-#[inline]
-pub(crate) fn support_index(vertices: &[Vector], blocks: &[Vector<F32x4>], direction: Vector) -> usize {
+/// The number of the vector farthest along `direction`, the lowest of equals, and how far that is.
+#[inline(always)]
+pub(crate) fn farthest(blocks: &[Vector<F32x4>], direction: Vector) -> (usize, f32) {
     let d = Vector::<F32x4>::splat(direction);
     let mut best = blocks[0].dot(d);
     let mut at = F32x4::ZERO;
@@ -100,16 +112,20 @@ pub(crate) fn support_index(vertices: &[Vector], blocks: &[Vector<F32x4>], direc
         best = F32x4::select(better, value, best);
         at = F32x4::select(better, number, at);
     }
-    let mut index = 0;
-    let mut value = f32::NEG_INFINITY;
-    for lane in 0..4 {
-        let candidate = at.get(lane) as usize * 4 + lane;
-        let v = best.get(lane);
-        if v > value || (v == value && candidate < index) {
-            (index, value) = (candidate, v);
-        }
-    }
-    index.min(vertices.len() - 1)
+    largest(best, at)
+}
+
+/// The number of the largest of some values and the value, given the largest of each lane and which of its lane it
+/// is. Without branches: which lane it is nobody foresees.
+#[inline(always)]
+pub(crate) fn largest(best: F32x4, at: F32x4) -> (usize, f32) {
+    const LANES: F32x4 = F32x4::new([0.0, 1.0, 2.0, 3.0]);
+    const NONE: f32 = 1.0e9;
+    let value = max(max(best.get(0), best.get(1)), max(best.get(2), best.get(3)));
+    let number = at * F32x4::splat(4.0) + LANES;
+    let number = F32x4::select(best.eq(F32x4::splat(value)), number, F32x4::splat(NONE));
+    let least = min(min(number.get(0), number.get(1)), min(number.get(2), number.get(3)));
+    (least as usize, value)
 }
 
 impl Hull {
@@ -150,11 +166,15 @@ impl Hull {
             .filter(|(tail, head, _)| tail < head)
             .map(|&(tail, head, left)| Edge { tail, head, left, right: twin(tail, head) })
             .collect();
+        let (fans, fan_starts) = fans(vertices.len(), outlines);
         let unit_mass = mass::of_polyhedron(&vertices, outlines);
         let extent = vertices.iter().map(|v| (*v - unit_mass.center).length_squared()).fold(0.0, max).sqrt();
         Self {
             blocks: pack(&vertices).collect(),
             edge_blocks: edge_blocks(&vertices, &faces, &edges),
+            face_blocks: face_blocks(&faces),
+            fans,
+            fan_starts,
             vertices,
             faces,
             loops,
@@ -214,9 +234,19 @@ impl Hull {
         &self.edge_blocks
     }
 
+    /// The faces four side by side, the last repeated to fill the tail.
+    pub(crate) fn face_blocks(&self) -> &[FaceBlock] {
+        &self.face_blocks
+    }
+
+    /// The faces around each vertex, one vertex after another, and where each vertex' begin.
+    pub(crate) fn fans(&self) -> (&[u32], &[u32]) {
+        (&self.fans, &self.fan_starts)
+    }
+
     /// The vertex farthest along `direction` (any length).
     pub fn support(&self, direction: Vector) -> Vector {
-        self.vertices[support_index(&self.vertices, &self.blocks, direction)]
+        self.vertices[farthest(&self.blocks, direction).0.min(self.vertices.len() - 1)]
     }
 
     /// Mass, centre and inertia at 1 kg/m³.
@@ -285,6 +315,30 @@ fn edge_blocks(vertices: &[Vector], faces: &[Face], edges: &[Edge]) -> Vec<EdgeB
     (0..direction.len())
         .map(|i| EdgeBlock { direction: direction[i], left: left[i], right: right[i], tail: tail[i] })
         .collect()
+}
+
+/// Packs faces four side by side.
+fn face_blocks(faces: &[Face]) -> Vec<FaceBlock> {
+    let normals: Vec<Vector> = faces.iter().map(|f| f.normal).collect();
+    let offsets = faces.chunks(4).map(|chunk| {
+        let mut block = F32x4::splat(chunk[0].offset);
+        for lane in 1..4 {
+            block.set(lane, chunk[lane.min(chunk.len() - 1)].offset);
+        }
+        block
+    });
+    pack(&normals).zip(offsets).map(|(normal, offset)| FaceBlock { normal, offset }).collect()
+}
+
+/// The faces around each of so many vertices, and where each vertex' begin; the last number is where all end.
+fn fans(vertices: usize, outlines: &[Vec<u32>]) -> (Vec<u32>, Vec<u32>) {
+    let mut around = vec![Vec::new(); vertices];
+    for (face, outline) in outlines.iter().enumerate() {
+        outline.iter().for_each(|v| around[*v as usize].push(face as u32));
+    }
+    let starts = around.iter().scan(0, |end, fan| Some(core::mem::replace(end, *end + fan.len() as u32)));
+    let starts = starts.chain([outlines.iter().map(|o| o.len() as u32).sum()]).collect();
+    (around.concat(), starts)
 }
 
 /// The largest extent of some points along an axis; 0 for none.
