@@ -4,14 +4,15 @@ mod contacts;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
-mod pairs;
+pub mod pairs;
 
 pub use contacts::Contacts;
-pub use pairs::{Dice, Lie, MIXED, PREDICTION, Pair, pairs};
+pub use pairs::{MIXED, PREDICTION, pairs};
 
 use crate::kernel;
 use kernel::math::Vector;
 use kernel::shape::{Ball, Capsule, Cuboid, Shape};
+use pairs::Dice;
 
 /// Shapes of about a metre.
 pub type Make = fn(&mut Dice) -> Shape;

@@ -10,7 +10,8 @@ mod measure;
 
 use crate::kernel;
 use kernel::manifold::{FeatureCache, LocalManifold, collide};
-use measure::{Contacts, KINDS, Lie, MIXED, PREDICTION, Pair, pairs};
+use measure::pairs::{Lie, Pair};
+use measure::{Contacts, KINDS, MIXED, PREDICTION, pairs};
 use std::hint::black_box;
 use std::time::Instant;
 
