@@ -106,6 +106,9 @@ pub(super) fn admitted(aabb: Aabb) -> Aabb {
 }
 
 impl Tree {
+    /// How many bytes are kept of each leaf.
+    pub const BYTES_PER_LEAF: usize = size_of::<Branch>() + size_of::<Leaf>();
+
     /// An empty tree without storage.
     pub const fn new() -> Self {
         Self {

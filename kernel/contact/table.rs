@@ -45,6 +45,10 @@ impl PointCount {
 }
 
 impl ContactTable {
+    /// How many bytes are kept of each contact here, but for one bit, for the [`pairs`](Self::pairs), and for
+    /// manifolds after the first.
+    pub const BYTES_PER_CONTACT: usize = size_of::<Contact>() + size_of::<PointCount>() + size_of::<u32>();
+
     /// How many contacts there are.
     pub fn len(&self) -> usize {
         self.ids.len()

@@ -28,6 +28,9 @@ const FREE: Slot = Slot { pair: VACANT, value: 0 };
 const MIN_SLOTS: usize = 16;
 
 impl PairSet {
+    /// How many bytes a slot has; there are two to four for each pair.
+    pub const BYTES_PER_SLOT: usize = size_of::<Slot>();
+
     /// An empty map without storage.
     pub const fn new() -> Self {
         Self { slots: Vec::new(), len: 0 }

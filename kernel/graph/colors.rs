@@ -49,6 +49,9 @@ pub struct ColorGraph {
 }
 
 impl ColorGraph {
+    /// How many bytes are kept of each body that has contacts here, and how many of each contact.
+    pub const BYTES: [usize; 2] = [size_of::<u32>(); 2];
+
     /// A graph without contacts.
     pub fn new() -> Self {
         Self::default()

@@ -117,6 +117,10 @@ pub struct BodyTable {
 }
 
 impl BodyTable {
+    /// How many bytes are kept of each body here, but for one bit in each of three sets.
+    pub const BYTES_PER_BODY: usize =
+        size_of::<Body>() + size_of::<BodyPose>() + size_of::<Velocity>() + size_of::<u32>();
+
     /// Adds a body, awake unless static.
     pub fn add(&mut self, kind: BodyKind, local_center: Vector, pose: WorldPose) -> u32 {
         let id = self.ids.allocate();

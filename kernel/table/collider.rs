@@ -164,6 +164,15 @@ pub struct Fattening {
 }
 
 impl ColliderTable {
+    /// How many bytes are kept of each collider here, but for one bit, and for the geometry of a hull, which
+    /// colliders share.
+    pub const BYTES_PER_COLLIDER: usize = size_of::<Collider>()
+        + size_of::<u32>()
+        + size_of::<WorldPose>()
+        + 2 * size_of::<Aabb>()
+        + size_of::<Reach>()
+        + size_of::<Material>();
+
     /// Adds a collider at a pose and links it to its body. Its fat box is empty until
     /// [`refresh`](Self::refresh).
     pub fn add(&mut self, def: ColliderDef, pose: WorldPose, bodies: &mut BodyTable) -> u32 {

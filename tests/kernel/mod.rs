@@ -5,6 +5,7 @@ mod crowds;
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 mod held;
+mod memory;
 mod physics;
 mod recycling;
 mod sim;

@@ -96,6 +96,11 @@ pub struct Islands {
 }
 
 impl Islands {
+    /// How many bytes are kept of each body here, besides its island's share.
+    pub const BYTES_PER_BODY: usize = size_of::<Place>() + size_of::<u32>();
+    /// How many bytes are kept of each link here.
+    pub const BYTES_PER_LINK: usize = size_of::<Place>() + size_of::<Link>();
+
     /// No bodies, no islands.
     pub fn new() -> Self {
         Self::default()

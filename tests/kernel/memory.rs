@@ -1,0 +1,43 @@
+//! How much is kept of a body, a collider and a contact: printed by `cargo test -- memory --nocapture`, and written
+//! down in docs/hot-loops.md.
+
+use crate::kernel;
+use core::mem::size_of;
+use kernel::bvh::Tree;
+use kernel::contact::ContactTable;
+use kernel::data::PairSet;
+use kernel::graph::{ColorGraph, Islands};
+use kernel::math::{DIM, F32x4, Lane};
+use kernel::solver::{BodyRow, ContactRow, InvMass, MassRow, Motion, RestitutionRow};
+use kernel::table::{BodyTable, ColliderTable};
+
+/// The bytes of a contact's share of a wide row: what all passes sweep, and what only bouncing needs.
+fn row<const P: usize>() -> [usize; 2] {
+    fn of<N: Lane, M: InvMass<N>, const P: usize>() -> [usize; 2] {
+        [size_of::<ContactRow<N, M, P>>() / N::WIDTH, size_of::<RestitutionRow<N, P>>() / N::WIDTH]
+    }
+    of::<F32x4, F32x4, P>()
+}
+
+#[test]
+fn memory_of_bodies_colliders_and_contacts_stays_in_its_budget() {
+    let [color_of_body, color_of_contact] = ColorGraph::BYTES;
+    let body = [BodyTable::BYTES_PER_BODY, Islands::BYTES_PER_BODY + color_of_body];
+    let rows = [size_of::<BodyRow>(), size_of::<MassRow>(), size_of::<Motion>()];
+    let collider = [ColliderTable::BYTES_PER_COLLIDER, Tree::BYTES_PER_LEAF];
+    let slots = 2 * PairSet::BYTES_PER_SLOT;
+    let contact = [ContactTable::BYTES_PER_CONTACT, slots, Islands::BYTES_PER_LINK + color_of_contact];
+    let contact_rows = [row::<1>(), row::<2>(), row::<4>()];
+    println!("{DIM}D, bytes:");
+    println!("body {body:?}, awake also rows {rows:?}");
+    println!("collider {collider:?}");
+    println!("contact {contact:?}, touching and awake also rows {contact_rows:?} with one, two, four points");
+    let sum = |parts: &[usize]| parts.iter().sum::<usize>();
+    let (body, collider, contact) = (sum(&body), sum(&collider), sum(&contact));
+    println!("sum {body} + {}, {collider}, {contact} + {:?}", sum(&rows), contact_rows.map(|r| sum(&r)));
+    // World positions of twice the size, which may have to be aligned.
+    let more = if size_of::<kernel::math::Scalar>() == 8 { 16 } else { 0 };
+    let [of_body, of_collider, of_contact] = if DIM == 2 { [84, 260, 240] } else { [112, 312, 328] };
+    let budget = [of_body + more, of_collider + more, of_contact];
+    assert!([body, collider, contact].iter().zip(budget).all(|(is, most)| *is <= most), "{budget:?}");
+}
