@@ -47,8 +47,8 @@ macro_rules! of_set {
         match ($block.set, &$view.wide) {
             (Set::Overflow, _) => $f(&$view.overflow.free, $block, $($argument),*),
             (Set::OverflowHeld, _) => $f(&$view.overflow.held, $block, $($argument),*),
-            (Set::Wide, Wide::Four(wide)) => $f(&wide.free, $block, $($argument),*),
-            (Set::WideHeld, Wide::Four(wide)) => $f(&wide.held, $block, $($argument),*),
+            (Set::Wide, Wide::Four(wide)) => four_lanes::$f(&wide.free, $block, $($argument),*),
+            (Set::WideHeld, Wide::Four(wide)) => four_lanes::$f(&wide.held, $block, $($argument),*),
             #[cfg(target_arch = "x86_64")]
             (Set::Wide, Wide::Eight(wide)) => eight_lanes::$f(&wide.free, $block, $($argument),*),
             #[cfg(target_arch = "x86_64")]
@@ -78,6 +78,29 @@ impl SetsView<'_> {
     pub(super) fn store(&self, block: &Block, contacts: &ManifoldsView) {
         of_set!(self, block, store(contacts));
     }
+}
+
+/// The entry points of four lanes. Functions of their own, like those of eight, so that it can be seen what the
+/// compiler made of them (`tools/asm.sh`): contacts taken one by one are next to them otherwise.
+mod four_lanes {
+    use super::*;
+
+    macro_rules! entry {
+        ($name:ident($($argument:ident: $type:ty),*) -> $result:ty) => {
+            #[inline(never)]
+            pub(super) fn $name<M: InvMass<F32x4>>(
+                set: &RowSetView<F32x4, M>,
+                block: &Block,
+                $($argument: $type),*
+            ) -> $result {
+                super::$name(set, block, $($argument),*)
+            }
+        };
+    }
+
+    entry!(fill(filler: &Filler) -> (bool, bool));
+    entry!(run(pass: Pass, bodies: &RowView<BodyRow>, params: &SubstepParams) -> bool);
+    entry!(store(contacts: &ManifoldsView) -> ());
 }
 
 /// The entry points of eight lanes: everything below them is inlined and compiled for AVX2.

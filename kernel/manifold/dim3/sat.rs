@@ -6,7 +6,7 @@
 //! An outward axis n of one of A's edges is a positive combination of the normals of the two faces beside it; where
 //! a point of B is deeper than S < 0 under both planes, B is so along every such n too, since |n| is at most the
 //! sum of its parts. For the point the vertex of B that is lowest over the best face serves, since shapes that meet do so
-//! about there: of two icosahedra's 40 faces some five are left, of their 900 pairs of edges rarely one.
+//! about there: of the 40 faces of two hulls with 12 vertices some nine are left, of their 900 pairs of edges about a tenth.
 
 use super::view::{Frame, View};
 use crate::math::{F32x4, Lane, Num, Vector, min};
