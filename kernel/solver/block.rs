@@ -47,12 +47,12 @@ macro_rules! of_set {
         match ($block.set, &$view.wide) {
             (Set::Overflow, _) => $f(&$view.overflow.free, $block, $($argument),*),
             (Set::OverflowHeld, _) => $f(&$view.overflow.held, $block, $($argument),*),
-            (Set::Wide, Wide::Four(wide)) => four_lanes::$f(&wide.free, $block, $($argument),*),
-            (Set::WideHeld, Wide::Four(wide)) => four_lanes::$f(&wide.held, $block, $($argument),*),
+            (Set::Wide, Wide::Four(wide)) => $f(&wide.free, $block, $($argument),*),
+            (Set::WideHeld, Wide::Four(wide)) => $f(&wide.held, $block, $($argument),*),
             #[cfg(target_arch = "x86_64")]
-            (Set::Wide, Wide::Eight(wide)) => eight_lanes::$f(&wide.free, $block, $($argument),*),
+            (Set::Wide, Wide::Eight(wide)) => $f(&wide.free, $block, $($argument),*),
             #[cfg(target_arch = "x86_64")]
-            (Set::WideHeld, Wide::Eight(wide)) => eight_lanes::$f(&wide.held, $block, $($argument),*),
+            (Set::WideHeld, Wide::Eight(wide)) => $f(&wide.held, $block, $($argument),*),
         }
     };
 }
@@ -80,69 +80,107 @@ impl SetsView<'_> {
     }
 }
 
-/// The entry points of four lanes. Functions of their own, like those of eight, so that it can be seen what the
-/// compiler made of them (`tools/asm.sh`): contacts taken one by one are next to them otherwise.
-mod four_lanes {
-    use super::*;
+/// The entry points of a width: everything below them is inlined, and compiled for the CPU feature it needs.
+///
+/// There is one for each class and pass. Without optimisation, whatever is inlined has its own place on the stack:
+/// all passes in one function took 4.6 MB of it in 3D, where threads have two.
+trait Entry: Lane {
+    fn fill<M: InvMass<Self>, const P: usize>(rows: BlockRows<Self, M, P>, filler: &Filler) -> (bool, bool);
 
-    macro_rules! entry {
-        ($name:ident($($argument:ident: $type:ty),*) -> $result:ty) => {
+    fn sweep<M: InvMass<Self>, S: Sweep, const P: usize>(
+        rows: BlockRows<Self, M, P>,
+        block: &Block,
+        bodies: &RowView<BodyRow>,
+        params: &SubstepParams,
+    ) -> bool;
+
+    fn store<M: InvMass<Self>, const P: usize>(rows: BlockRows<Self, M, P>, contacts: &ManifoldsView);
+}
+
+/// The entry points of lanes that every CPU has.
+macro_rules! enter {
+    ($lane:ty) => {
+        impl Entry for $lane {
             #[inline(never)]
-            pub(super) fn $name<M: InvMass<F32x4>>(
-                set: &RowSetView<F32x4, M>,
-                block: &Block,
-                $($argument: $type),*
-            ) -> $result {
-                super::$name(set, block, $($argument),*)
+            fn fill<M: InvMass<Self>, const P: usize>(
+                rows: BlockRows<Self, M, P>,
+                filler: &Filler,
+            ) -> (bool, bool) {
+                filler.fill(rows)
             }
-        };
-    }
 
-    entry!(fill(filler: &Filler) -> (bool, bool));
-    entry!(run(pass: Pass, bodies: &RowView<BodyRow>, params: &SubstepParams) -> bool);
-    entry!(store(contacts: &ManifoldsView) -> ());
+            #[inline(never)]
+            fn sweep<M: InvMass<Self>, S: Sweep, const P: usize>(
+                rows: BlockRows<Self, M, P>,
+                block: &Block,
+                bodies: &RowView<BodyRow>,
+                params: &SubstepParams,
+            ) -> bool {
+                S::over(rows, block, bodies, params)
+            }
+
+            #[inline(never)]
+            fn store<M: InvMass<Self>, const P: usize>(
+                rows: BlockRows<Self, M, P>,
+                contacts: &ManifoldsView,
+            ) {
+                store_rows(&rows, contacts);
+            }
+        }
+    };
 }
 
-/// The entry points of eight lanes: everything below them is inlined and compiled for AVX2.
+enter!(f32);
+enter!(F32x4);
+
 #[cfg(target_arch = "x86_64")]
-mod eight_lanes {
-    use super::*;
-
-    macro_rules! entry {
-        ($name:ident($($argument:ident: $type:ty),*) -> $result:ty) => {
-            pub(super) fn $name<M: InvMass<F32x8>>(
-                set: &RowSetView<F32x8, M>,
-                block: &Block,
-                $($argument: $type),*
-            ) -> $result {
-                #[target_feature(enable = "avx2")]
-                fn avx2<M: InvMass<F32x8>>(
-                    set: &RowSetView<F32x8, M>,
-                    block: &Block,
-                    $($argument: $type),*
-                ) -> $result {
-                    super::$name(set, block, $($argument),*)
-                }
-                // SAFETY: rows of this width are only made where the CPU has AVX2.
-                unsafe { avx2(set, block, $($argument),*) }
-            }
-        };
+impl Entry for F32x8 {
+    fn fill<M: InvMass<Self>, const P: usize>(rows: BlockRows<Self, M, P>, filler: &Filler) -> (bool, bool) {
+        #[target_feature(enable = "avx2")]
+        fn avx2<M: InvMass<F32x8>, const P: usize>(
+            rows: BlockRows<F32x8, M, P>,
+            filler: &Filler,
+        ) -> (bool, bool) {
+            filler.fill(rows)
+        }
+        // SAFETY: rows of this width are only made where the CPU has AVX2.
+        unsafe { avx2(rows, filler) }
     }
 
-    entry!(fill(filler: &Filler) -> (bool, bool));
-    entry!(run(pass: Pass, bodies: &RowView<BodyRow>, params: &SubstepParams) -> bool);
-    entry!(store(contacts: &ManifoldsView) -> ());
+    fn sweep<M: InvMass<Self>, S: Sweep, const P: usize>(
+        rows: BlockRows<Self, M, P>,
+        block: &Block,
+        bodies: &RowView<BodyRow>,
+        params: &SubstepParams,
+    ) -> bool {
+        #[target_feature(enable = "avx2")]
+        fn avx2<M: InvMass<F32x8>, S: Sweep, const P: usize>(
+            rows: BlockRows<F32x8, M, P>,
+            block: &Block,
+            bodies: &RowView<BodyRow>,
+            params: &SubstepParams,
+        ) -> bool {
+            S::over(rows, block, bodies, params)
+        }
+        // SAFETY: as above.
+        unsafe { avx2::<M, S, P>(rows, block, bodies, params) }
+    }
+
+    fn store<M: InvMass<Self>, const P: usize>(rows: BlockRows<Self, M, P>, contacts: &ManifoldsView) {
+        #[target_feature(enable = "avx2")]
+        fn avx2<M: InvMass<F32x8>, const P: usize>(rows: BlockRows<F32x8, M, P>, contacts: &ManifoldsView) {
+            store_rows(&rows, contacts);
+        }
+        // SAFETY: as above.
+        unsafe { avx2(rows, contacts) }
+    }
 }
 
-#[inline(always)]
-fn fill<N: Lane, M: InvMass<N>>(set: &RowSetView<N, M>, block: &Block, filler: &Filler) -> (bool, bool) {
-    with_block!(set, block, |rows| filler.fill(rows))
+fn fill<N: Entry, M: InvMass<N>>(set: &RowSetView<N, M>, block: &Block, filler: &Filler) -> (bool, bool) {
+    with_block!(set, block, |rows| N::fill(rows, filler))
 }
 
-/// Plain loops, not iterator adaptors: what is to be compiled for the caller's CPU feature must be inlined
-/// into it.
-#[inline(always)]
-fn run<N: Lane, M: InvMass<N>>(
+fn run<N: Entry, M: InvMass<N>>(
     set: &RowSetView<N, M>,
     block: &Block,
     pass: Pass,
@@ -157,77 +195,118 @@ fn run<N: Lane, M: InvMass<N>>(
     if !concerned {
         return false;
     }
-    with_block!(set, block, |rows| run_rows(rows, block, pass, bodies, params))
+    with_block!(set, block, |rows| match pass {
+        Pass::Impact => N::sweep::<M, Impact, _>(rows, block, bodies, params),
+        Pass::WarmStart => N::sweep::<M, WarmStart, _>(rows, block, bodies, params),
+        Pass::Solve => N::sweep::<M, Solve, _>(rows, block, bodies, params),
+        Pass::TakeBack => N::sweep::<M, TakeBack, _>(rows, block, bodies, params),
+        Pass::Relax if block.bouncy => N::sweep::<M, RelaxBouncy, _>(rows, block, bodies, params),
+        Pass::Relax => N::sweep::<M, Relax, _>(rows, block, bodies, params),
+        Pass::Restitute => N::sweep::<M, Restitute, _>(rows, block, bodies, params),
+    })
 }
 
-#[inline(always)]
-fn run_rows<N: Lane, M: InvMass<N>, const P: usize>(
-    BlockRows { rows, bounces, deeps, .. }: BlockRows<N, M, P>,
-    block: &Block,
-    pass: Pass,
-    bodies: &RowView<BodyRow>,
-    params: &SubstepParams,
-) -> bool {
+fn store<N: Entry, M: InvMass<N>>(set: &RowSetView<N, M>, block: &Block, contacts: &ManifoldsView) {
+    with_block!(set, block, |rows| N::store(rows, contacts));
+}
+
+/// A pass over the rows of a block.
+///
+/// Plain loops, not iterator adaptors: what is to be compiled for the caller's CPU feature must be inlined into it.
+trait Sweep {
+    /// Returns whether it found an impact.
+    fn over<N: Lane, M: InvMass<N>, const P: usize>(
+        rows: BlockRows<N, M, P>,
+        block: &Block,
+        bodies: &RowView<BodyRow>,
+        params: &SubstepParams,
+    ) -> bool;
+}
+
+/// Names a pass and says what it does.
+macro_rules! sweep {
+    ($name:ident($rows:ident, $block:ident, $bodies:ident, $params:ident) $body:block) => {
+        struct $name;
+
+        impl Sweep for $name {
+            #[inline(always)]
+            fn over<N: Lane, M: InvMass<N>, const P: usize>(
+                $rows: BlockRows<N, M, P>,
+                $block: &Block,
+                $bodies: &RowView<BodyRow>,
+                $params: &SubstepParams,
+            ) -> bool $body
+        }
+    };
+}
+
+sweep!(Impact(all, _block, bodies, params) {
     let mut hit = false;
-    match pass {
-        Pass::Impact => {
-            for (row, bounce) in rows.iter_mut().zip(&mut *bounces) {
-                hit |= row.impact(bodies, bounce, params);
-            }
-        }
-        Pass::WarmStart => {
-            if block.deep {
-                for (row, deep) in rows.iter_mut().zip(&*deeps) {
-                    row.cool(deep);
-                }
-            }
-            for row in rows.iter() {
-                row.warm_start(bodies);
-            }
-        }
-        Pass::Solve => {
-            if block.deep {
-                for (row, deep) in rows.iter().zip(deeps) {
-                    row.note_before(deep);
-                }
-            }
-            for row in rows.iter_mut() {
-                row.solve(bodies, params);
-            }
-        }
-        Pass::TakeBack => {
-            for (row, deep) in rows.iter_mut().zip(&*deeps) {
-                row.take_back(bodies, deep);
-            }
-        }
-        Pass::Relax if block.bouncy => {
-            for (row, bounce) in rows.iter_mut().zip(&*bounces) {
-                row.relax(bodies, params, Some(bounce.restitution));
-            }
-        }
-        Pass::Relax => {
-            for row in rows.iter_mut() {
-                row.relax(bodies, params, None);
-            }
-        }
-        Pass::Restitute => {
-            for (row, bounce) in rows.iter_mut().zip(&mut *bounces) {
-                row.restitute(bodies, bounce, params);
-            }
+    for (row, bounce) in all.rows.iter_mut().zip(&mut *all.bounces) {
+        hit |= row.impact(bodies, bounce, params);
+    }
+    hit
+});
+
+sweep!(WarmStart(all, block, bodies, _params) {
+    if block.deep {
+        for (row, deep) in all.rows.iter_mut().zip(&*all.deeps) {
+            row.cool(deep);
         }
     }
-    if block.bouncy && (pass == Pass::Solve || pass == Pass::Relax) {
-        for (row, bounce) in rows.iter().zip(bounces) {
+    for row in all.rows.iter() {
+        row.warm_start(bodies);
+    }
+    false
+});
+
+sweep!(Solve(all, block, bodies, params) {
+    if block.deep {
+        for (row, deep) in all.rows.iter().zip(all.deeps) {
+            row.note_before(deep);
+        }
+    }
+    for row in all.rows.iter_mut() {
+        row.solve(bodies, params);
+    }
+    if block.bouncy {
+        for (row, bounce) in all.rows.iter().zip(all.bounces) {
             row.note_impulses(bounce);
         }
     }
-    hit
-}
+    false
+});
 
-#[inline(always)]
-fn store<N: Lane, M: InvMass<N>>(set: &RowSetView<N, M>, block: &Block, contacts: &ManifoldsView) {
-    with_block!(set, block, |rows| store_rows(&rows, contacts));
-}
+sweep!(TakeBack(all, _block, bodies, _params) {
+    for (row, deep) in all.rows.iter_mut().zip(&*all.deeps) {
+        row.take_back(bodies, deep);
+    }
+    false
+});
+
+sweep!(Relax(all, _block, bodies, params) {
+    for row in all.rows.iter_mut() {
+        row.relax(bodies, params, None);
+    }
+    false
+});
+
+sweep!(RelaxBouncy(all, _block, bodies, params) {
+    for (row, bounce) in all.rows.iter_mut().zip(&*all.bounces) {
+        row.relax(bodies, params, Some(bounce.restitution));
+    }
+    for (row, bounce) in all.rows.iter().zip(all.bounces) {
+        row.note_impulses(bounce);
+    }
+    false
+});
+
+sweep!(Restitute(all, _block, bodies, params) {
+    for (row, bounce) in all.rows.iter_mut().zip(&mut *all.bounces) {
+        row.restitute(bodies, bounce, params);
+    }
+    false
+});
 
 #[inline(always)]
 fn store_rows<N: Lane, M: InvMass<N>, const P: usize>(rows: &BlockRows<N, M, P>, contacts: &ManifoldsView) {
