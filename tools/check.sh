@@ -31,6 +31,13 @@ for dimension in 2d 3d; do
     stage cargo test --quiet --package "avian_kernel$dimension" --features f64
 done
 
+# The bits are the same without optimisation, and with all of it.
+for dimension in 2d 3d; do
+    plain="profile.dev.package.avian_kernel$dimension.opt-level=0"
+    stage cargo test --quiet --package "avian_kernel$dimension" --config "$plain" --test it golden_hashes
+    stage cargo test --quiet --package "avian_kernel$dimension" --release --test it golden
+done
+
 # The libraries with the features of the README's command, so that Bevy is compiled once for lints and once
 # for tests. What draws is linted and tested without a window: no renderer is built here.
 stage cargo clippy --workspace --exclude examples2d --exclude examples3d --exclude testbed --all-targets -- -D warnings

@@ -35,9 +35,10 @@ pub struct Solver {
 }
 
 impl Solver {
-    /// Solves with four lanes where the CPU has eight: for comparison.
-    pub fn set_narrow(&mut self) {
-        self.rows.width = Width::Four;
+    /// Whether to solve with four lanes where the CPU has eight, from the next [`build_rows`](Self::build_rows) on: for
+    /// comparison.
+    pub fn set_narrow(&mut self, narrow: bool) {
+        self.rows.width = if narrow { Width::Four } else { Width::default() };
     }
 
     /// Forgets the rows of the last step, and makes room for so many [`bodies`](Self::bodies): every one of their rows is

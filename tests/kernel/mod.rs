@@ -4,6 +4,10 @@ mod crowds;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod golden;
+#[cfg_attr(feature = "2d", path = "golden2.rs")]
+#[cfg_attr(feature = "3d", path = "golden3.rs")]
+mod golden_dim;
 mod held;
 mod memory;
 mod physics;

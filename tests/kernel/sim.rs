@@ -97,7 +97,7 @@ impl Sim {
 
     /// Solves four contacts side by side, also where the CPU could do eight.
     pub fn set_narrow(&mut self) {
-        self.solver.set_narrow();
+        self.solver.set_narrow(true);
     }
 
     /// Has a team of so many update and solve contacts.
@@ -172,10 +172,15 @@ impl Sim {
         self.add(BodyKind::Dynamic, Shape::Cuboid(Cuboid { half }), position, Rot::IDENTITY)
     }
 
-    /// Gives a body another shape, and the mass of it.
-    pub fn reshape(&mut self, id: u32, shape: Shape) {
+    /// Gives a body the mass of a shape of density 1.
+    pub fn weigh(&mut self, id: u32, shape: &Shape) {
         let mass = shape.mass_properties(1.0);
         self.masses[id as usize] = (1.0 / mass.mass, inverse_inertia(&mass));
+    }
+
+    /// Gives a body another shape, and the mass of it.
+    pub fn reshape(&mut self, id: u32, shape: Shape) {
+        self.weigh(id, &shape);
         let def = ColliderDef { shape, ..self.colliders[id].def.clone() };
         self.colliders.redefine(id, def, &mut self.bodies);
     }
@@ -219,6 +224,8 @@ impl Sim {
         self.colliders.ids.recycle();
         self.contacts.recycle_ids();
         self.gather();
+        // Helpers come also where there is too little to do for it to pay: that they do not matter is tested.
+        self.solver.team.wake();
         let mut found = FoundPairs::default();
         found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.solver.team);
         self.movers.clear();
@@ -228,6 +235,7 @@ impl Sim {
         self.narrow();
         let params = self.params();
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies, colliders: &self.colliders };
+        self.solver.team.wake();
         if self.builds_rows {
             self.solver.build_rows(&input, &self.colors, &params);
         }
