@@ -19,7 +19,7 @@ use crate::{
         solver::{
             schedule::{SolverSystems, SubstepSolverSystems},
             substeps::StepSolver,
-            workers::WorkerCount,
+            workers::{RowWidth, WorkerCount},
         },
         tables::{Bodies, Colliders, Contacts},
     },
@@ -97,6 +97,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<Contacts>()
         .init_resource::<StepSolver>()
         .init_resource::<WorkerCount>()
+        .init_resource::<RowWidth>()
         .init_resource::<StepTimes>()
         // Colliders have a surface whether or not the narrow phase is there to use it.
         .init_resource::<DefaultFriction>()

@@ -39,7 +39,8 @@ fn register_dynamics(app: &mut App) {
             integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
             rigid_body::sleeping::TimeToSleep,
             solver::{
-                ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig, SolverDiagnostics, WorkerCount,
+                ContactSoftnessCoefficients, PhysicsLengthUnit, RowWidth, SolverConfig, SolverDiagnostics,
+                WorkerCount,
                 schedule::SubstepCount,
                 softness_parameters::{SoftnessCoefficients, SoftnessParameters},
             },
@@ -50,6 +51,7 @@ fn register_dynamics(app: &mut App) {
     register!(app:
         SpeculativeMargin, Gravity, CustomVelocityIntegration, CustomPositionIntegration,
         PhysicsLengthUnit, SolverConfig, SolverDiagnostics, ContactSoftnessCoefficients, SubstepCount, WorkerCount,
+        RowWidth,
         SoftnessParameters, SoftnessCoefficients, TimeToSleep, PhysicsTransformConfig,
     );
 }

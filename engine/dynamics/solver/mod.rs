@@ -16,4 +16,4 @@ pub(crate) mod workers;
 pub use config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig};
 pub use diagnostics::SolverDiagnostics;
 pub use plugin::{SolverPlugin, SolverPlugins};
-pub use workers::WorkerCount;
+pub use workers::{RowWidth, WorkerCount};

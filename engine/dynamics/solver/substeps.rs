@@ -16,7 +16,7 @@ use crate::{
             diagnostics::SolverDiagnostics,
             schedule::{SubstepCount, SubstepSchedule, advance_substep, substep_delta},
             softness_parameters::SoftnessCoefficients,
-            workers::{Crew, WorkerCount},
+            workers::{Crew, RowWidth, WorkerCount},
         },
         tables::{Bodies, Colliders, Contacts},
     },
@@ -141,13 +141,14 @@ pub(crate) fn prepare_rows(
     bodies: Res<Bodies>,
     colliders: Res<Colliders>,
     contacts: Res<Contacts>,
-    response: Option<Res<ContactResponse>>,
+    (response, width): (Option<Res<ContactResponse>>, Res<RowWidth>),
     mut solver: ResMut<StepSolver>,
     mut diagnostics: ResMut<SolverDiagnostics>,
 ) {
     let start = bevy_platform::time::Instant::now();
     let input = RowInput { contacts: &contacts.table, bodies: &bodies.table, colliders: &colliders.table };
     let StepSolver { kernel, params, .. } = &mut *solver;
+    kernel.set_narrow(*width == RowWidth::Four);
     if response.is_none_or(|r| r.0) {
         kernel.build_rows(&input, &contacts.colors, params);
     } else {

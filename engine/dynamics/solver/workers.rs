@@ -1,4 +1,4 @@
-//! How many threads a step uses.
+//! How many threads a step uses, and how many contacts each of them solves side by side.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
@@ -32,6 +32,18 @@ impl WorkerCount {
             count => count.min(MOST),
         }
     }
+}
+
+/// How many contacts are solved side by side. The result has the same bits with any; this is for comparing and
+/// measuring.
+#[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[reflect(Resource, Debug, Default, PartialEq)]
+pub enum RowWidth {
+    /// As many as the CPU can: eight with AVX2, else four.
+    #[default]
+    Widest,
+    /// Four, as on a CPU without AVX2.
+    Four,
 }
 
 /// More threads than this are a slip of the keyboard.
