@@ -8,6 +8,10 @@ mod crowds;
 mod determinism;
 #[path = "../../../tests/proof/dim2.rs"]
 mod dim;
+#[path = "../../../tests/proof/golden.rs"]
+mod golden;
+#[path = "../../../tests/proof/golden2.rs"]
+mod golden_dim;
 #[path = "../../../tests/proof/impacts.rs"]
 mod impacts;
 #[path = "../../../tests/proof/invariance.rs"]
