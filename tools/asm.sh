@@ -3,7 +3,7 @@
 # has, how many calls, and how much of its arithmetic is as wide as the lane. docs/hot-loops.md says how to read it.
 #
 #   tools/asm.sh [2d|3d]             the table of a dimension, 3d if not told
-#   tools/asm.sh 3d eight_lanes::run the assembly of all functions of the kernel with that in their names
+#   tools/asm.sh 3d F32x8            the assembly of all functions of the kernel with that in their names
 #
 # Builds into a folder of its own, as check.sh does; CARGO_TARGET_DIR overrides it. Needs objdump.
 set -euo pipefail
@@ -47,21 +47,17 @@ assembly | awk '
                 rows++
                 calls += kind[j] == "call"; full += kind[j] == "ymm"; part += kind[j] == "xmm"; scalar += kind[j] == "ss"
             }
-            width = name ~ /eight_lanes/ ? 8 : name ~ /four_lanes/ ? 4 : 1
-            if (width == 4) { full = part; part = 0 }
-            all = width
-            n[all]++; sum[all] += rows; c[all] += calls; f[all] += full; p[all] += part; s[all] += scalar
+            if (name ~ /x4/) { full = part; part = 0 }
+            n[name]++; sum[name] += rows; c[name] += calls; f[name] += full; p[name] += part; s[name] += scalar
         }
-        for (all in n) {
-            printf "%-44s %5d %5d %12d %6d %11d %9d %7d\n", name, all, n[all], sum[all], c[all], f[all], p[all], s[all]
-        }
+        functions[name]++
     }
-    function clear() { split("", target); split("", at); split("", kind); split("", from); split("", n); split("", sum); split("", c); split("", f); split("", p); split("", s); count = 0 }
-    BEGIN { printf "%-44s %5s %5s %12s %6s %11s %9s %7s\n", "entry point", "lanes", "loops", "instructions", "calls", "full width", "narrower", "scalar" }
+    function clear() { split("", target); split("", at); split("", kind); split("", from); count = 0 }
+    BEGIN { printf "%-12s %9s %5s %12s %6s %11s %9s %7s\n", "entry point", "functions", "loops", "instructions", "calls", "full width", "narrower", "scalar" }
     /^[0-9a-f]+ <.*>:$/ {
         finish(); clear(); name = ""
-        if ($0 ~ /solver::block::(SetsView|four_lanes|eight_lanes)::run(::avx2)?>:$/) {
-            name = $0; sub(/^.*solver::/, "", name); sub(/>:$/, "", name)
+        if (match($0, /(f32|F32x4|F32x8) as [a-z0-9_]*::solver::block::Entry>::sweep(::avx2)?>:$/)) {
+            name = substr($0, RSTART); sub(/ as .*::sweep.*$/, "::sweep", name)
         }
         next
     }
@@ -73,5 +69,10 @@ assembly | awk '
         else if ($2 ~ /^v?(add|sub|mul|div|sqrt|max|min)ps$/) kind[count] = /%ymm/ ? "ymm" : "xmm"
         else if ($2 ~ /^v?(add|sub|mul|div|sqrt|max|min)ss$/) kind[count] = "ss"
     }
-    END { finish() }
+    END {
+        finish()
+        for (name in n) {
+            printf "%-12s %9d %5d %12d %6d %11d %9d %7d\n", name, functions[name], n[name], sum[name], c[name], f[name], p[name], s[name]
+        }
+    }
 '
