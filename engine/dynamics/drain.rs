@@ -80,7 +80,7 @@ pub(crate) fn drain_lifecycle(mut queue: ResMut<LifecycleQueue>, mut tables: Tab
     let mut colliders = core::mem::take(&mut queue.colliders);
     dedup(&mut colliders);
     for entity in colliders.drain(..) {
-        census.settle_collider(entity, &mut tables, &mut queue.refused);
+        census.settle_collider(entity, &mut tables, &mut queue);
     }
     queue.colliders = colliders;
 }
@@ -228,8 +228,9 @@ impl Census<'_, '_> {
         }
     }
 
-    fn settle_collider(&mut self, entity: Entity, tables: &mut Tables, refused: &mut EntityHashSet) {
-        let was_refused = refused.remove(&entity);
+    fn settle_collider(&mut self, entity: Entity, tables: &mut Tables, queue: &mut LifecycleQueue) {
+        let was_refused = queue.refused.remove(&entity);
+        queue.detached.remove(&entity);
         let id = self.collider_ids.get(entity).map_or(NONE, |id| id.0);
         let state = self.colliders.get(entity).ok().filter(|state| !state.6 && !state.7);
         let Some((collider, of, transform, pose, layers, sensor, ..)) = state else {
@@ -257,7 +258,7 @@ impl Census<'_, '_> {
             _ => return self.dismiss_collider(entity, id, tables),
         };
         if !is_finite(&world) {
-            refused.insert(entity);
+            queue.refused.insert(entity);
             // Where its body is out as well, that was told.
             if !was_refused && (body != NONE || body_entity.is_none()) {
                 warn!("the place of the collider {entity} is not finite; it takes no part until it is");
@@ -286,6 +287,9 @@ impl Census<'_, '_> {
         let colliders = &mut *tables.colliders;
         if body == NONE {
             colliders.table.poses[id as usize] = world;
+            if body_entity.is_some() {
+                queue.detached.insert(entity);
+            }
         }
         colliders.trees.place(id, kind);
         colliders.stale.insert(id);

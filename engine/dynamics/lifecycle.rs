@@ -28,7 +28,6 @@ use crate::{
             AngularVelocity, LinearVelocity, RigidBody, RigidBodyDisabled,
             mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
         },
-        tables::Colliders,
     },
     physics_transform::{Position, Rotation},
     scan::{IN_TABLES, Since},
@@ -47,6 +46,8 @@ pub(crate) struct LifecycleQueue {
     pub(crate) lost_colliders: Vec<u32>,
     /// Colliders kept out because their place is not finite, of which the app was told.
     pub(crate) refused: EntityHashSet,
+    /// Colliders that name a body which takes no part: they stand where they stand alone.
+    pub(crate) detached: EntityHashSet,
 }
 
 /// Without any of these a body cannot be simulated. They come with it, but may be taken away.
@@ -121,13 +122,13 @@ fn note_collider<C: Component>(app: &mut App) {
 pub(crate) fn note_changed_colliders(
     shapes: Query<(Entity, Ref<Collider>), With<ColliderId>>,
     places: Query<(Entity, Ref<ColliderTransform>), With<ColliderId>>,
-    poses: Query<(Entity, &ColliderId, Ref<Position>, Ref<Rotation>)>,
-    colliders: Res<Colliders>,
+    alone: Query<(Entity, Ref<Position>, Ref<Rotation>), (With<ColliderId>, Without<ColliderOf>)>,
+    poses: Query<(Ref<Position>, Ref<Rotation>), With<ColliderId>>,
     mut queue: ResMut<LifecycleQueue>,
     system: SystemChangeTick,
 ) {
     let since = Since::last_run(system);
-    let LifecycleQueue { colliders: noted, refused, .. } = &mut *queue;
+    let LifecycleQueue { colliders: noted, refused, detached, .. } = &mut *queue;
     let mut note = |entity: Entity| noted.push(entity);
     for (entities, shape) in shapes.contiguous_iter().expect(IN_TABLES) {
         since.rows([shape.changed_ticks_slice()], |row| note(entities[row]));
@@ -135,16 +136,17 @@ pub(crate) fn note_changed_colliders(
     for (entities, place) in places.contiguous_iter().expect(IN_TABLES) {
         since.rows([place.changed_ticks_slice()], |row| note(entities[row]));
     }
-    let stands_alone = |id: u32| id != NONE && colliders.table[id].def.body == NONE;
-    // Let in again as soon as it has a place.
-    let waits = |id: u32, entity| id == NONE && refused.contains(&entity);
-    for (entities, ids, position, rotation) in poses.contiguous_iter().expect(IN_TABLES) {
-        since.rows([position.changed_ticks_slice(), rotation.changed_ticks_slice()], |row| {
-            if stands_alone(ids[row].0) || waits(ids[row].0, entities[row]) {
-                note(entities[row]);
-            }
-        });
+    for (entities, position, rotation) in alone.contiguous_iter().expect(IN_TABLES) {
+        let columns = [position.changed_ticks_slice(), rotation.changed_ticks_slice()];
+        since.rows(columns, |row| note(entities[row]));
     }
+    // What was refused is let in as soon as it has a place.
+    let has_moved = |entity: &Entity| {
+        poses.get(*entity).is_ok_and(|(position, rotation)| position.is_changed() || rotation.is_changed())
+    };
+    let start = noted.len();
+    noted.extend(refused.union(detached).copied().filter(has_moved));
+    noted[start..].sort_unstable();
 }
 
 /// An id that is taken away or overwritten leaves; an entity that is still a body enters anew.

@@ -1,6 +1,11 @@
 //! Which friction, restitution and margins a collider has: its own, else its body's, else the default.
 
-use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
+use bevy_ecs::{
+    change_detection::ContiguousRef,
+    entity_disabling::Disabled,
+    prelude::*,
+    system::{SystemChangeTick, SystemParam},
+};
 use kernel::table::{Combine, Material, Surface};
 
 use crate::{
@@ -15,6 +20,7 @@ use crate::{
         tables::Tables,
     },
     math::{Scalar, to_f32},
+    scan::{IN_TABLES, Since},
 };
 
 /// The surface of a collider and how far it reaches.
@@ -90,13 +96,22 @@ fn length(value: Scalar) -> f32 {
     if value > 0.0 { value.min(f32::MAX) } else { 0.0 }
 }
 
-type SurfaceChanged =
-    Or<(Changed<Friction>, Changed<Restitution>, Changed<CollisionMargin>, Changed<SpeculativeMargin>)>;
+/// What a surface is made of.
+type SurfaceParts = (
+    Entity,
+    Option<Ref<'static, Friction>>,
+    Option<Ref<'static, Restitution>>,
+    Option<Ref<'static, CollisionMargin>>,
+    Option<Ref<'static, SpeculativeMargin>>,
+);
+
+/// Whoever has some of it.
+type HasSurface = Or<(With<Friction>, With<Restitution>, With<CollisionMargin>, With<SpeculativeMargin>)>;
 
 /// Brings the table in line with changed surfaces, on colliders and on bodies whose colliders have none of
 /// their own. Removals of these components are noticed when the collider is next settled.
 pub(crate) fn refresh_surfaces(
-    changed: Query<Entity, SurfaceChanged>,
+    surfaces: Query<SurfaceParts, HasSurface>,
     removed: (
         RemovedComponents<Friction>,
         RemovedComponents<Restitution>,
@@ -106,10 +121,23 @@ pub(crate) fn refresh_surfaces(
     ids: Query<(&ColliderId, Option<&crate::collision::collider::collider_hierarchy::ColliderOf>)>,
     query: SurfaceQuery,
     mut tables: Tables,
+    system: SystemChangeTick,
 ) {
     let (mut friction, mut restitution, mut margin, mut speculative) = removed;
     let defaults = query.friction.is_changed() || query.restitution.is_changed() || query.config.is_changed();
-    let mut entities: Vec<Entity> = changed.iter().collect();
+    let mut entities: Vec<Entity> = Vec::new();
+    let since = Since::last_run(system);
+    for (all, friction, restitution, margin, speculative) in surfaces.contiguous_iter().expect(IN_TABLES) {
+        let columns = [
+            friction.as_ref().map(ContiguousRef::changed_ticks_slice),
+            restitution.as_ref().map(ContiguousRef::changed_ticks_slice),
+            margin.as_ref().map(ContiguousRef::changed_ticks_slice),
+            speculative.as_ref().map(ContiguousRef::changed_ticks_slice),
+        ];
+        for column in columns.into_iter().flatten() {
+            since.rows([column], |row| entities.push(all[row]));
+        }
+    }
     entities.extend(friction.read());
     entities.extend(restitution.read());
     entities.extend(margin.read());

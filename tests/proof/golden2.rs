@@ -4,21 +4,21 @@ use avian::prelude::*;
 
 /// Of each scene of native shapes the hash that it ends with.
 pub const NATIVE: [(&str, u64); 11] = [
-    ("pyramid", 0xe9e9855b595d9cc4),
+    ("pyramid", 0x77f755d34138ed9f),
     ("pyramids", 0x888870d04d87832e),
-    ("tumbler", 0x772cb373ba689292),
-    ("dominoes", 0x3c0562cea31b758d),
-    ("card_house", 0x1079265245c25a82),
+    ("tumbler", 0x1800b07ded455b8c),
+    ("dominoes", 0xb9b96728fd49e1d3),
+    ("card_house", 0xfb05f5bf417f986f),
     ("towers", 0xf7210e556bbf3a1d),
-    ("smash", 0x8583c5ba25034635),
+    ("smash", 0x67267eb7d2bddd9a),
     ("crowd", 0xb07ca5a22c483c44),
-    ("sleepers", 0x1b0c8b597e1a713f),
-    ("bounces", 0x799536c44e9fa594),
-    ("settings", 0x9f2cd5039e45c69c),
+    ("sleepers", 0x51524439f31da516),
+    ("bounces", 0x8e39d676fce64acc),
+    ("settings", 0xa8303dbf3b509cbe),
 ];
 
 /// The same for scenes with shapes of parry's.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x7afaddf18ee1b6a6), ("slopes", 0x0623ca1d48c39188)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xe3e69cfa755d09f4), ("slopes", 0xeffe19ef4eff022f)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 20;

@@ -4,21 +4,21 @@ use avian::prelude::*;
 
 /// Of each scene of native shapes the hash that it ends with.
 pub const NATIVE: [(&str, u64); 11] = [
-    ("pyramid", 0x1690578e6679ed21),
-    ("pyramids", 0x0308e90136eb2904),
-    ("tumbler", 0x1e4fcdef2fc1c721),
-    ("dominoes", 0x81e182117e2e54b9),
-    ("card_house", 0x4ed56490f1ae7c28),
-    ("towers", 0xd34b20b9f11ee56f),
-    ("smash", 0x9c1a897af3456266),
-    ("crowd", 0x100ad26d4e8d9e18),
-    ("sleepers", 0x0f62b41d5088fcbf),
-    ("bounces", 0x586355a16a8f4039),
-    ("settings", 0x26a882b1d3b00d22),
+    ("pyramid", 0xd9cea250dfd32ffd),
+    ("pyramids", 0x7029bf7b80ae7227),
+    ("tumbler", 0x02c356723c064cd1),
+    ("dominoes", 0xb83ca68772f7c210),
+    ("card_house", 0x05215463f94ddd84),
+    ("towers", 0xd2a8b3dee5310c3d),
+    ("smash", 0xebf355a0aa5d5db6),
+    ("crowd", 0x87007a3c2ff9cd39),
+    ("sleepers", 0xe00ec19ef99b27ea),
+    ("bounces", 0x834703dab244029a),
+    ("settings", 0xbae1b94e657fe51e),
 ];
 
 /// The same for scenes with shapes of parry's.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x4e14e12e5ef199d1), ("slopes", 0x6dad82f8394ed14c)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x348d85234759c178), ("slopes", 0x8c9311e841c281a9)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 7;

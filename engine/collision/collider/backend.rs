@@ -8,13 +8,15 @@ use crate::dynamics::rigid_body::mass_properties::{
     MassPropertyQueue, MassPropertySystems,
     components::{ColliderDensity, ColliderMassProperties},
 };
+use crate::scan::Since;
 use crate::schedule::OnThisThread;
 use bevy_app::{App, FixedPostUpdate, Plugin};
-use bevy_ecs::change_detection::DetectChangesMut;
+use bevy_ecs::change_detection::{DetectChanges, DetectChangesMut};
 use bevy_ecs::intern::Interned;
 use bevy_ecs::lifecycle::RemovedComponents;
-use bevy_ecs::prelude::{Changed, Entity, IntoScheduleConfigs, Or, Query, Without};
+use bevy_ecs::prelude::{Entity, IntoScheduleConfigs, Query, Ref, Without};
 use bevy_ecs::schedule::ScheduleLabel;
+use bevy_ecs::system::SystemChangeTick;
 use core::marker::PhantomData;
 
 /// Makes components of type `C` colliders: gives them the components every collider has, and keeps
@@ -62,13 +64,28 @@ impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
 /// Recomputes [`ColliderMassProperties`] where the collider or its density changed, or where it ceased to
 /// be a sensor. Those of sensors are left as they are.
 pub fn update_collider_mass_properties<C: AnyCollider>(
-    changed: Query<Entity, (Or<(Changed<C>, Changed<ColliderDensity>)>, Without<Sensor>)>,
+    all: Query<(Entity, Ref<C>, Ref<ColliderDensity>), Without<Sensor>>,
     mut former_sensors: RemovedComponents<Sensor>,
     mut colliders: Query<(&C, &ColliderDensity, &mut ColliderMassProperties), Without<Sensor>>,
     mut queue: MassPropertyQueue,
+    system: SystemChangeTick,
     _: OnThisThread,
 ) {
-    for entity in changed.iter().chain(former_sensors.read()) {
+    let mut changed: Vec<Entity> = former_sensors.read().collect();
+    let since = Since::last_run(system);
+    if let Ok(tables) = all.contiguous_iter() {
+        for (entities, shape, density) in tables {
+            let columns = [shape.changed_ticks_slice(), density.changed_ticks_slice()];
+            since.rows(columns, |row| changed.push(entities[row]));
+        }
+    } else {
+        // `C` is not stored in tables.
+        let is_new = |(_, shape, density): &(Entity, Ref<C>, Ref<ColliderDensity>)| {
+            shape.is_changed() || density.is_changed()
+        };
+        changed.extend(all.iter().filter(is_new).map(|(entity, ..)| entity));
+    }
+    for entity in changed {
         let Ok((collider, density, mut properties)) = colliders.get_mut(entity) else {
             continue;
         };
