@@ -153,9 +153,9 @@ pub(crate) fn refresh_surfaces(
                 continue;
             }
             let surfaces = query.of(collider, of.map(|of| of.body));
+            tables.link().set_material(id.0, surfaces.material);
             let Tables { bodies, colliders, .. } = &mut tables;
             let colliders = &mut **colliders;
-            colliders.table.set_material(id.0, surfaces.material);
             let entry = &mut colliders.table[id.0];
             if entry.def.margin != surfaces.margin || entry.def.speculative != surfaces.speculative {
                 entry.def.margin = surfaces.margin;

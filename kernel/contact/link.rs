@@ -9,7 +9,7 @@ use super::table::ContactTable;
 use crate::data::BitSet;
 use crate::graph::{ColorGraph, IslandId, Islands, LinkId};
 use crate::shape::Shape;
-use crate::table::{BodyKind, BodyTable, ColliderTable, NONE};
+use crate::table::{BodyKind, BodyTable, ColliderTable, Material, NONE};
 
 /// What changed of a contact, for whoever tells others about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +40,9 @@ impl Link<'_> {
         let colliders = [a.min(b), a.max(b)];
         let bodies = colliders.map(|c| self.colliders[c].def.body);
         let flags = self.flags(colliders, bodies);
-        let id = self.contacts.add(Contact::new(colliders, bodies, flags), self.colliders);
+        let surface = self.mixed(colliders);
+        let contact = Contact { surface, ..Contact::new(colliders, bodies, flags) };
+        let id = self.contacts.add(contact, self.colliders);
         self.refresh(id);
         id
     }
@@ -157,6 +159,7 @@ impl Link<'_> {
                 self.attach(id);
             }
         }
+        self.mix_of_collider(collider);
     }
 
     /// Wakes the island of a dynamic body, or a kinematic body alone. Nothing for static ones and
@@ -303,6 +306,27 @@ impl Link<'_> {
         ids
     }
 
+    /// Gives a collider another surface.
+    pub fn set_material(&mut self, collider: u32, material: Material) {
+        if core::mem::replace(&mut self.colliders[collider].def.material, material) != material {
+            self.mix_of_collider(collider);
+        }
+    }
+
+    /// Mixes the surfaces of a collider's contacts anew.
+    fn mix_of_collider(&mut self, collider: u32) {
+        let ids: Vec<u32> = self.contacts.of_collider(collider, self.colliders).collect();
+        for id in ids {
+            self.contacts.get_mut(id).surface = self.mixed(self.contacts.get(id).colliders);
+        }
+    }
+
+    /// The coefficients of two surfaces together.
+    fn mixed(&self, colliders: [u32; 2]) -> [f32; 2] {
+        let [a, b] = colliders.map(|c| &self.colliders[c].def.material);
+        [a.friction.mix(b.friction), a.restitution.mix(b.restitution)]
+    }
+
     /// What a pair is, by its colliders and bodies.
     fn flags(&self, colliders: [u32; 2], bodies: [u32; 2]) -> ContactFlags {
         let defs = colliders.map(|c| &self.colliders[c].def);
@@ -404,6 +428,7 @@ impl Link<'_> {
         });
         let mut colored = 0;
         for (id, contact) in self.contacts.iter() {
+            assert_eq!(contact.surface, self.mixed(contact.colliders), "contact {id} knows its surfaces");
             let awake = contact.bodies.iter().any(|b| self.is_awake(*b));
             assert_eq!(contact.active != NONE, awake, "contact {id} is active exactly if a body is awake");
             let movable = self.movable(contact);

@@ -115,6 +115,8 @@ pub struct Contact {
     pub slot: Option<ColorSlot>,
     /// The place in the list of awake contacts, or [`NONE`].
     pub active: u32,
+    /// The coefficients of friction and restitution of both surfaces together.
+    pub surface: [f32; 2],
     /// Each side's revisions of collider and body when the manifold was computed.
     pub revisions: [u32; 2],
     /// The last separating axis or reference feature.
@@ -139,6 +141,7 @@ impl Contact {
             extra: NONE,
             slot: None,
             active: NONE,
+            surface: [0.0; 2],
             revisions: [0; 2],
             cache: FeatureCache::NONE,
             frozen: Frozen::default(),

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::contact::{Contact, ContactFlags, ContactTable, Manifold};
 use crate::math::{AxisLocks, Ids, Lane, TangentFrame, Vector};
-use crate::table::{BodyTable, ColliderTable, NONE};
+use crate::table::{BodyTable, NONE};
 
 /// What rows are made from.
 pub struct RowInput<'a> {
@@ -15,8 +15,6 @@ pub struct RowInput<'a> {
     pub contacts: &'a ContactTable,
     /// Which row each body has.
     pub bodies: &'a BodyTable,
-    /// The surfaces.
-    pub colliders: &'a ColliderTable,
 }
 
 /// How many deeply overlapping contacts each dynamic body's row has; nothing in steps without any.
@@ -293,9 +291,8 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         if input.bodies.any_dominance {
             self.dominate(input.bodies, contact, lane);
         }
-        let [a, b] = contact.colliders.map(|c| &input.colliders.materials[c as usize]);
-        row.friction.set(lane, a.friction.mix(b.friction));
-        let restitution = a.restitution.mix(b.restitution);
+        let [friction, restitution] = contact.surface;
+        row.friction.set(lane, friction);
         bounce.restitution.set(lane, restitution);
         if restitution > 0.0 {
             let [a, b] = ids.map(|row| filler.motions[row as usize].acceleration);

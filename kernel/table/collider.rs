@@ -150,8 +150,6 @@ pub struct ColliderTable {
     pub fat: Vec<Aabb>,
     /// Reaches by id.
     pub reaches: Vec<Reach>,
-    /// Surfaces by id: what rows are mixed from.
-    pub materials: Vec<Material>,
 }
 
 /// How a box is made fat, constant over a step.
@@ -170,8 +168,7 @@ impl ColliderTable {
         + size_of::<u32>()
         + size_of::<WorldPose>()
         + 2 * size_of::<Aabb>()
-        + size_of::<Reach>()
-        + size_of::<Material>();
+        + size_of::<Reach>();
 
     /// Adds a collider at a pose and links it to its body. Its fat box is empty until
     /// [`refresh`](Self::refresh).
@@ -186,7 +183,6 @@ impl ColliderTable {
             self.tight.push(Aabb::EMPTY);
             self.fat.push(Aabb::EMPTY);
             self.reaches.push(Reach::default());
-            self.materials.push(Material::default());
         } else {
             self.colliders[i] = collider;
             self.poses[i] = pose;
@@ -219,12 +215,6 @@ impl ColliderTable {
         self.update_reach(id, bodies);
     }
 
-    /// Gives a collider another surface. Rows are mixed anew in every step.
-    pub fn set_material(&mut self, id: u32, material: Material) {
-        self[id].def.material = material;
-        self.materials[id as usize] = material;
-    }
-
     /// Recomputes how far the shape reaches from the body's centre of mass; cached contacts are
     /// invalidated. To be called after changes of the shape, the margins, or the body's kind or centre of
     /// mass.
@@ -237,7 +227,6 @@ impl ColliderTable {
         };
         let extent = def.shape.extent(center);
         let fixed = def.body == NONE || bodies[def.body].kind == BodyKind::Static;
-        self.materials[id as usize] = def.material;
         let reach = &mut self.reaches[id as usize];
         *reach = Reach {
             extent,

@@ -125,7 +125,7 @@ fn a_new_surface_takes_effect_on_a_recycled_contact() {
     for body in [floor, id] {
         let mut material = sim.colliders[body].def.material;
         material.friction.coefficient = 0.0;
-        sim.colliders.set_material(body, material);
+        sim.link().set_material(body, material);
     }
     assert_eq!(sim.look(floor, id).0, Found::Recycled);
     sim.step();

@@ -234,7 +234,7 @@ impl Sim {
         }
         self.narrow();
         let params = self.params();
-        let input = RowInput { contacts: &self.contacts, bodies: &self.bodies, colliders: &self.colliders };
+        let input = RowInput { contacts: &self.contacts, bodies: &self.bodies };
         self.solver.team.wake();
         if self.builds_rows {
             self.solver.build_rows(&input, &self.colors, &params);

@@ -18,7 +18,7 @@ use crate::{
             softness_parameters::SoftnessCoefficients,
             workers::{Crew, RowWidth, WorkerCount},
         },
-        tables::{Bodies, Colliders, Contacts},
+        tables::{Bodies, Contacts},
     },
     math::{Scalar, to_f32},
     schedule::{Physics, Substeps},
@@ -139,14 +139,13 @@ pub(crate) fn prepare_params(
 /// Builds the rows of all touching contacts.
 pub(crate) fn prepare_rows(
     bodies: Res<Bodies>,
-    colliders: Res<Colliders>,
     contacts: Res<Contacts>,
     (response, width): (Option<Res<ContactResponse>>, Res<RowWidth>),
     mut solver: ResMut<StepSolver>,
     mut diagnostics: ResMut<SolverDiagnostics>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let input = RowInput { contacts: &contacts.table, bodies: &bodies.table, colliders: &colliders.table };
+    let input = RowInput { contacts: &contacts.table, bodies: &bodies.table };
     let StepSolver { kernel, params, .. } = &mut *solver;
     kernel.set_narrow(*width == RowWidth::Four);
     if response.is_none_or(|r| r.0) {
