@@ -229,8 +229,8 @@ impl Census<'_, '_> {
     }
 
     fn settle_collider(&mut self, entity: Entity, tables: &mut Tables, queue: &mut LifecycleQueue) {
-        let was_refused = queue.refused.remove(&entity);
-        queue.detached.remove(&entity);
+        let was_refused = queue.refused.swap_remove(&entity);
+        queue.detached.swap_remove(&entity);
         let id = self.collider_ids.get(entity).map_or(NONE, |id| id.0);
         let state = self.colliders.get(entity).ok().filter(|state| !state.6 && !state.7);
         let Some((collider, of, transform, pose, layers, sensor, ..)) = state else {
@@ -238,6 +238,9 @@ impl Census<'_, '_> {
         };
         let body_entity = of.map(|of| of.body);
         let body = body_entity.and_then(|body| self.body_ids.get(body).ok()).map_or(NONE, |id| id.0);
+        if body == NONE && body_entity.is_some() {
+            queue.detached.insert(entity);
+        }
         let Surfaces { material, margin, speculative } = self.surfaces.of(entity, body_entity);
         let local = transform.filter(|_| body_entity != Some(entity)).map_or(Pose::IDENTITY, local_pose);
         let def = ColliderDef {
@@ -287,9 +290,6 @@ impl Census<'_, '_> {
         let colliders = &mut *tables.colliders;
         if body == NONE {
             colliders.table.poses[id as usize] = world;
-            if body_entity.is_some() {
-                queue.detached.insert(entity);
-            }
         }
         colliders.trees.place(id, kind);
         colliders.stale.insert(id);

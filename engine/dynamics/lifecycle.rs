@@ -14,7 +14,7 @@
 //! ```
 
 use bevy_app::App;
-use bevy_ecs::{entity::EntityHashSet, entity_disabling::Disabled, prelude::*, system::SystemChangeTick};
+use bevy_ecs::{entity::EntityIndexSet, entity_disabling::Disabled, prelude::*, system::SystemChangeTick};
 use kernel::table::NONE;
 
 use crate::{
@@ -45,9 +45,9 @@ pub(crate) struct LifecycleQueue {
     /// Ids whose component went with its entity.
     pub(crate) lost_colliders: Vec<u32>,
     /// Colliders kept out because their place is not finite, of which the app was told.
-    pub(crate) refused: EntityHashSet,
-    /// Colliders that name a body which takes no part: they stand where they stand alone.
-    pub(crate) detached: EntityHashSet,
+    pub(crate) refused: EntityIndexSet,
+    /// Colliders that name a body which takes no part: no body takes them along, so their own pose counts.
+    pub(crate) detached: EntityIndexSet,
 }
 
 /// Without any of these a body cannot be simulated. They come with it, but may be taken away.
@@ -129,6 +129,11 @@ pub(crate) fn note_changed_colliders(
 ) {
     let since = Since::last_run(system);
     let LifecycleQueue { colliders: noted, refused, detached, .. } = &mut *queue;
+    // What was refused is let in as soon as it has a place; by the order in which it was refused, not by tables.
+    let has_moved = |entity: &Entity| {
+        poses.get(*entity).is_ok_and(|(position, rotation)| position.is_changed() || rotation.is_changed())
+    };
+    noted.extend(refused.iter().chain(detached.iter()).copied().filter(has_moved));
     let mut note = |entity: Entity| noted.push(entity);
     for (entities, shape) in shapes.contiguous_iter().expect(IN_TABLES) {
         since.rows([shape.changed_ticks_slice()], |row| note(entities[row]));
@@ -140,13 +145,6 @@ pub(crate) fn note_changed_colliders(
         let columns = [position.changed_ticks_slice(), rotation.changed_ticks_slice()];
         since.rows(columns, |row| note(entities[row]));
     }
-    // What was refused is let in as soon as it has a place.
-    let has_moved = |entity: &Entity| {
-        poses.get(*entity).is_ok_and(|(position, rotation)| position.is_changed() || rotation.is_changed())
-    };
-    let start = noted.len();
-    noted.extend(refused.union(detached).copied().filter(has_moved));
-    noted[start..].sort_unstable();
 }
 
 /// An id that is taken away or overwritten leaves; an entity that is still a body enters anew.

@@ -109,7 +109,7 @@ type SurfaceParts = (
 type HasSurface = Or<(With<Friction>, With<Restitution>, With<CollisionMargin>, With<SpeculativeMargin>)>;
 
 /// Brings the table in line with changed surfaces, on colliders and on bodies whose colliders have none of
-/// their own. Removals of these components are noticed when the collider is next settled.
+/// their own.
 pub(crate) fn refresh_surfaces(
     surfaces: Query<SurfaceParts, HasSurface>,
     removed: (
@@ -128,14 +128,15 @@ pub(crate) fn refresh_surfaces(
     let mut entities: Vec<Entity> = Vec::new();
     let since = Since::last_run(system);
     for (all, friction, restitution, margin, speculative) in surfaces.contiguous_iter().expect(IN_TABLES) {
-        let columns = [
+        let parts = [
             friction.as_ref().map(ContiguousRef::changed_ticks_slice),
             restitution.as_ref().map(ContiguousRef::changed_ticks_slice),
             margin.as_ref().map(ContiguousRef::changed_ticks_slice),
             speculative.as_ref().map(ContiguousRef::changed_ticks_slice),
         ];
-        for column in columns.into_iter().flatten() {
-            since.rows([column], |row| entities.push(all[row]));
+        // A part that is not there stands for one that is.
+        if let Some(any) = parts.into_iter().flatten().next() {
+            since.rows(parts.map(|part| part.unwrap_or(any)), |row| entities.push(all[row]));
         }
     }
     entities.extend(friction.read());

@@ -324,12 +324,13 @@ pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick, 
     // Not what was read from transforms just now.
     let is_own = |tick: Tick| since.is_new(tick) && !read.contains(&tick);
     let looks_up = is_change_tracked();
+    // What hangs in a hierarchy, and all where tables cannot be written in whole.
     let mut late: Vec<Entity> = Vec::new();
     for (pose, transforms) in queries.p0().contiguous_iter_mut().expect(IN_TABLES) {
         let (entities, positions, rotations) = pose;
         let (at, turned) = (positions.changed_ticks_slice(), rotations.changed_ticks_slice());
-        let mut ticks = None;
-        let mut transforms = Column::new(transforms, &mut ticks);
+        let mut changed = None;
+        let mut column = Column::new(transforms, &mut changed);
         since.rows([at, turned], |row| {
             if !is_own(at[row]) && !is_own(turned[row]) {
                 return;
@@ -338,7 +339,7 @@ pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick, 
                 late.push(entities[row]);
                 return;
             }
-            let slot = transforms.slot(row);
+            let slot = column.slot(row);
             let written = write_pose(None, slot.get(), positions[row].0, rotations[row]);
             if !same_pose(slot.get(), &written) {
                 slot.set(written);

@@ -10,7 +10,7 @@ use core::time::Duration;
 ///
 /// What the app's own systems do between two parts counts for the later one. The parts that only stand between the
 /// ECS and the engine's own tables are `DrainLifecycle`, `ReadAwake`, `Gather`, `Scatter` and `MirrorSleep`, besides
-/// `Prepare` and `Writeback`. The names are for people to read: they may change.
+/// `Prepare` and `Writeback`; `FinishBodies`, before `Scatter`, is the kernel's. The names are for people to read: they may change.
 ///
 /// ```
 /// # use avian::schedule::StepTimes;

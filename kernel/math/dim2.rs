@@ -386,11 +386,6 @@ impl Rot {
     pub fn difference(self, other: Self) -> Angular {
         self.inverse().mul(other).small_turn()
     }
-    /// The cosine of the angle between two rotations.
-    #[inline]
-    pub fn cos_between(self, other: Self) -> f32 {
-        self.cos * other.cos + self.sin * other.sin
-    }
     /// The cosine of the angle it turns by.
     #[inline]
     pub fn cos_angle(self) -> f32 {

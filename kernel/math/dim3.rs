@@ -479,12 +479,6 @@ impl Rot {
     pub fn difference(self, other: Self) -> Angular {
         self.inverse().mul(other).small_turn()
     }
-    /// The cosine of the angle between two rotations.
-    #[inline]
-    pub fn cos_between(self, other: Self) -> f32 {
-        let dot = self.x * other.x + self.y * other.y + self.z * other.z + self.w * other.w;
-        2.0 * dot * dot - 1.0
-    }
     /// The cosine of the angle it turns by.
     #[inline]
     pub fn cos_angle(self) -> f32 {

@@ -203,7 +203,8 @@ impl ColliderTable {
     }
 
     /// Changes shape, place, margin or body; cached contacts are invalidated. The contacts of a
-    /// collider that changes its body must be gone.
+    /// collider that changes its body must be gone; others are to be told of the rest
+    /// (`Link::reflag_of_collider`).
     pub fn redefine(&mut self, id: u32, def: ColliderDef, bodies: &mut BodyTable) {
         debug_assert!(
             self[id].def.body == def.body || self[id].first_contact == NONE,

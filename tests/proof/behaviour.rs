@@ -236,6 +236,22 @@ fn what_is_disabled_waits_where_it_is() {
 }
 
 #[test]
+fn the_box_of_a_disabled_body_follows_its_position() {
+    let mut lab = Lab::new();
+    let body = lab.unit_box(at(0.0, 5.0, 0.0));
+    lab.insert(body, RigidBodyDisabled);
+    lab.steps(2);
+    let moved = lab.at(body) + Vector::X * 3.0;
+    lab.insert(body, Position(moved));
+    lab.steps(2);
+    assert!(
+        (lab.get::<ColliderAabb>(body).center() - moved).length() < 1e-4,
+        "{:?}",
+        lab.get::<ColliderAabb>(body)
+    );
+}
+
+#[test]
 fn a_body_may_change_its_type() {
     let mut lab = Lab::new();
     lab.floor();

@@ -1,5 +1,4 @@
-//! Golden hashes: what whole scenes come to, bit by bit, with any number of workers and any width of rows, in every
-//! profile.
+//! Golden hashes: what whole scenes come to, bit by bit, with any number of workers and any width of rows.
 //!
 //! The expected hashes stand in `golden2.rs` and `golden3.rs`. Where a change of the simulation is meant, the table
 //! that the failing test prints replaces the old one, and the commit says why. The kernel's own golden hashes

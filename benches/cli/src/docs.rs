@@ -154,12 +154,25 @@ fn quality(page: &mut String, cells: &[Cell], dim: u32) {
         page,
         "How the worlds stood at the end, judged by one ruler: deepest and mean overlap in millimetres, and, where it \
          applies, how far the top of the last pyramid had moved, the widest gap of a joint, and how many bodies had escaped \
-         or were not finite.\n"
+         or were not finite. The last column: deepest overlap and way of the top against the least of any peer's; up to 1 \
+         this engine's worlds stand no worse than the best of the others'.\n"
     );
-    table(page, &chosen, &[], |beside, columns| {
+    table(page, &chosen, &["this / best peer"], |beside, columns| {
         let said = |engine: &&str| engine_cell(beside.iter().copied(), engine).map_or("–".to_owned(), judged);
-        columns.iter().map(said).collect()
+        columns.iter().map(said).chain([against_peers(beside)]).collect()
     });
+}
+
+/// How this engine's deepest overlap, and the way of a pyramid's top, compare with the least of any peer's.
+fn against_peers(beside: &[&Cell]) -> String {
+    let Some(ours) = engine_cell(beside.iter().copied(), "ours") else { return "–".to_owned() };
+    let ratio = |measure: fn(&Cell) -> Option<f32>| {
+        let peers = beside.iter().filter(|cell| cell.first.engine != "ours");
+        let least = peers.filter_map(|cell| measure(cell)).reduce(f32::min)?;
+        Some(format!("{:.2}", measure(ours)? / least))
+    };
+    let overlap = ratio(|cell| Some(cell.first.quality.max_overlap));
+    [overlap, ratio(|cell| cell.first.quality.drift)].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 fn judged(cell: &Cell) -> String {

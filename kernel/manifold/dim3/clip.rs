@@ -30,22 +30,25 @@ pub(super) struct Corner {
 pub(super) struct Polygon<const N: usize> {
     corners: [Corner; N],
     count: usize,
+    /// Where a corner is put for which there is no room.
+    beyond: Corner,
 }
 
 impl<const N: usize> Polygon<N> {
     pub fn new() -> Self {
-        Self { corners: [Corner::default(); N], count: 0 }
+        Self { corners: [Corner::default(); N], count: 0, beyond: Corner::default() }
     }
 
     pub fn corners(&self) -> &[Corner] {
         &self.corners[..self.count]
     }
 
-    /// Adds a corner, or leaves it to the next to overwrite: without a branch. Beyond `N` the last is overwritten.
+    /// Adds a corner, or leaves it to the next to overwrite: without a branch. Beyond `N` there are none.
     #[inline(always)]
     fn push_if(&mut self, wanted: bool, corner: Corner) {
-        self.corners[self.count.min(N - 1)] = corner;
-        self.count = (self.count + usize::from(wanted)).min(N);
+        let has_room = self.count < N;
+        *self.corners.get_mut(self.count).unwrap_or(&mut self.beyond) = corner;
+        self.count += usize::from(wanted & has_room);
     }
 }
 
@@ -64,8 +67,8 @@ pub(super) fn most_corners(
 }
 
 /// The face of `incident` that looks most against a direction in its own frame, among the faces around the
-/// vertex `deepest` along it; none if it has no faces. A face elsewhere may look more against it: the base of a cone that
-/// stands on its tip.
+/// vertex `deepest` along it; none if it has no faces. A face elsewhere may look more against it: the base of a
+/// cone that stands on its tip.
 pub(super) fn incident_face(incident: &View, normal: Vector, deepest: usize) -> Option<usize> {
     if incident.faces.is_empty() {
         return None;
@@ -102,8 +105,8 @@ pub(super) fn incident_polygon<const N: usize>(
     }
 }
 
-/// Cuts a polygon by the side planes of a face of `reference`; `extent` is that of the smaller shape. There are two to
-/// work with; returns the one that the result is in.
+/// Cuts a polygon by the side planes of a face of `reference`; `extent` is that of the smaller shape. There are
+/// two to work with; returns the one that the result is in.
 pub(super) fn clip<'a, const N: usize>(
     reference: &View,
     face: usize,

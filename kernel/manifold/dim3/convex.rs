@@ -89,8 +89,8 @@ pub(super) fn collide(
     let axis = pair.search();
     let separation = axis.separation();
     *cache = remember(axis);
-    // No axis at all: sizes that are not numbers.
-    if separation > pair.limit() || separation == f32::NEG_INFINITY {
+    // Sizes that are not numbers have no axis, or one whose separation is none.
+    if !(separation <= pair.limit()) || separation == f32::NEG_INFINITY {
         return;
     }
     let exact = pair.build(axis, out);

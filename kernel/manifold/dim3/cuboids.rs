@@ -88,7 +88,6 @@ impl Pair {
     /// centres along it, and the squared length.
     #[inline(always)]
     fn edges(&self, i: usize, j: usize) -> (f32, f32, f32) {
-        const NEXT: [usize; 3] = [1, 2, 0];
         let (i1, i2, j1, j2) = (NEXT[i], NEXT[NEXT[i]], NEXT[j], NEXT[NEXT[j]]);
         let (ha, hb, t) = (self.half_a.to_array(), self.half_b.to_array(), self.offset[0].to_array());
         let axes = self.frame.axes;

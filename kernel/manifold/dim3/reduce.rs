@@ -91,12 +91,12 @@ impl<const B: usize> Patch<B> {
     /// The numbers of the candidates that are not missing, as bits.
     #[inline(always)]
     fn present(&self) -> u64 {
-        self.first_with(|_, present| present)
+        self.those_with(|_, present| present)
     }
 
-    /// Of which blocks' candidates something holds, as bits.
+    /// The candidates for which something holds, as bits.
     #[inline(always)]
-    fn first_with(&self, holds: impl Fn(usize, Mask) -> Mask) -> u64 {
+    fn those_with(&self, holds: impl Fn(usize, Mask) -> Mask) -> u64 {
         let mut bits = 0;
         for k in 0..B {
             let present = self.separation[k].lt(F32x4::splat(f32::INFINITY));
@@ -122,7 +122,7 @@ impl<const B: usize> Patch<B> {
             most = most.max(worths[k]);
         }
         let bar = F32x4::splat(ABOUT_EQUAL * greatest(most));
-        let i = self.first_with(|k, _| bar.le(worths[k])).trailing_zeros() as usize % (4 * B);
+        let i = self.those_with(|k, _| bar.le(worths[k])).trailing_zeros() as usize % (4 * B);
         (i, F32x4::flat(&worths)[i])
     }
 
@@ -153,7 +153,7 @@ impl<const B: usize> Patch<B> {
         }
         let size_squared = greatest(size);
         let bar = F32x4::splat(DEEPER * size_squared.sqrt() - greatest(-least));
-        let first = self.first_with(|k, _| self.separation[k].le(bar)).trailing_zeros() as usize % (4 * B);
+        let first = self.those_with(|k, _| self.separation[k].le(bar)).trailing_zeros() as usize % (4 * B);
         let a = self.at(first);
         let (second, far) = self.pick(distance(a));
         if !(far > FLAT * size_squared) {

@@ -397,6 +397,38 @@ fn many_sided_faces_are_handled() {
 }
 
 #[test]
+fn points_of_turned_prisms_lie_in_both() {
+    // As many corners as there is room for: the part of one face over the other has those of both.
+    let prism = |sides: u32, phase: f64| {
+        let corner = |i: u32, y: f32| {
+            let (s, c) =
+                crate::math::sin_cos(phase + f64::from(i) * core::f64::consts::TAU / f64::from(sides));
+            v(c as f32, y, s as f32)
+        };
+        let points: Vec<Vector> = (0..sides).flat_map(|i| [corner(i, -0.5), corner(i, 0.5)]).collect();
+        Shape::Hull(Arc::new(Hull::convex_hull_of(&points).expect("a prism")))
+    };
+    for (sides_a, sides_b) in [(8, 8), (4, 12), (12, 4), (32, 32), (5, 7)] {
+        let (a, b) = (prism(sides_a, 0.0), prism(sides_b, 0.0));
+        for turn in [0.0, 0.1, 0.3, core::f32::consts::FRAC_PI_8, 1.0, 2.0] {
+            let pose = Pose::new(v(0.0, 0.99, 0.0), Rot::from_axis_angle(Vector::Y, turn));
+            let m = fresh(&a, &b, &pose, 0.02);
+            assert_eq!(m.count, 4, "{sides_a} on {sides_b} turned by {turn}");
+            for p in m.points() {
+                let inside = |shape: &Shape, point: Vector| {
+                    let Shape::Hull(hull) = shape else { unreachable!() };
+                    hull.faces()
+                        .iter()
+                        .all(|f| f.normal.y.abs() > 0.5 || f.normal.dot(point) <= f.offset + 2e-3)
+                };
+                assert!(inside(&a, p.point), "{sides_a} on {sides_b} turned by {turn}: {p:?}");
+                assert!(inside(&b, pose.inverse_transform(p.point)), "{sides_b} turned by {turn}: {p:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn hostile_input_gives_no_contact() {
     let shapes = [
         Shape::Ball(Ball { radius: 0.0 }),

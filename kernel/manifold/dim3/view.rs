@@ -95,6 +95,7 @@ const CUBE_EDGES: [Edge; 12] = [
 ];
 const CUBE_FANS: [u32; 24] = [0, 2, 4, 1, 2, 4, 0, 3, 4, 1, 3, 4, 0, 2, 5, 1, 2, 5, 0, 3, 5, 1, 3, 5];
 const CUBE_FAN_STARTS: [u32; 9] = [0, 3, 6, 9, 12, 15, 18, 21, 24];
+
 /// Vectors four side by side.
 const fn wide(x: [f32; 4], y: [f32; 4], z: [f32; 4]) -> Vector<F32x4> {
     Vector { x: F32x4::new(x), y: F32x4::new(y), z: F32x4::new(z) }
