@@ -174,3 +174,41 @@ fn lose_collider(
         queue.colliders.push(on.entity);
     }
 }
+
+#[cfg(all(test, feature = "default-collider"))]
+mod tests {
+    use super::*;
+    use crate::PhysicsPlugins;
+    use bevy_app::{App, TaskPoolPlugin, Update};
+    use bevy_transform::TransformPlugin;
+
+    fn ids(app: &App, entity: Entity) -> [Option<u32>; 2] {
+        let entity = app.world().entity(entity);
+        [entity.get::<BodyId>().map(|id| id.0), entity.get::<ColliderId>().map(|id| id.0)]
+    }
+
+    /// As from a saved scene: ids of another world, or of another entity, are not this entity's.
+    #[test]
+    fn ids_from_elsewhere_are_none() {
+        let mut app = App::new();
+        app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update)));
+        let loaded = (RigidBody::Dynamic, Collider::default(), BodyId(7), ColliderId(7));
+        let first = app.world_mut().spawn(loaded).id();
+        assert_eq!(ids(&app, first), [Some(NONE); 2]);
+        app.world_mut().run_schedule(crate::schedule::PhysicsSchedule);
+        assert_eq!(ids(&app, first), [Some(0); 2]);
+
+        let second = (RigidBody::Dynamic, Collider::default(), BodyId(0), ColliderId(0));
+        let second = app.world_mut().spawn(second).id();
+        app.world_mut().run_schedule(crate::schedule::PhysicsSchedule);
+        assert_eq!([ids(&app, first), ids(&app, second)], [[Some(0); 2], [Some(1); 2]]);
+
+        // Over one's own id: the old place is given up, and another taken.
+        app.world_mut().entity_mut(first).insert((BodyId(1), ColliderId(1)));
+        app.world_mut().run_schedule(crate::schedule::PhysicsSchedule);
+        app.world_mut().run_schedule(crate::schedule::PhysicsSchedule);
+        assert_eq!(ids(&app, second), [Some(1); 2]);
+        let [body, collider] = ids(&app, first);
+        assert!(![Some(1), Some(NONE)].contains(&body) && ![Some(1), Some(NONE)].contains(&collider));
+    }
+}
