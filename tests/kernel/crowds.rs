@@ -235,7 +235,8 @@ fn a_heap_of_boxes_that_fell_far_does_not_sink_into_itself() {
     }
     assert!(pressed > 0.1 * half, "the fall presses them deep, {pressed} m");
     sim.steps(120);
-    // Soft contacts yield two centimetres under twenty layers of three times the weight.
-    let left = deepest(&sim);
-    assert!(left < 0.03, "{left} m deep when it has come to rest");
+    // Soft contacts yield two centimetres under twenty layers of three times the weight; in the plane the rule that
+    // parts all that is deep without force left 2.2 cm, in space 15 to 27.
+    let (left, most) = (deepest(&sim), if kernel::math::DIM == 2 { 0.021 } else { 0.03 });
+    assert!(left < most, "{left} m deep when it has come to rest");
 }
