@@ -5,7 +5,7 @@ use bevy_ecs::{change_detection::CheckChangeTicks, intern::Interned, prelude::*,
 use bevy_transform::components::Transform;
 
 use super::{
-    PhysicsTransformConfig, PhysicsTransformSystems, Position, Rotation,
+    ApplyPosToTransform, PhysicsTransformConfig, PhysicsTransformSystems, Position, Rotation,
     sync::{
         SpawnQueue, SyncTicks, find_changed_transforms, initialise_added, initialise_poses, note_rotation,
         position_to_transform, transform_to_position,
@@ -80,8 +80,8 @@ impl Plugin for TransformTreePlugin {
             .init_resource::<TransformTree>()
             .init_resource::<TreeChanges>()
             .init_resource::<SyncTicks>()
-            .add_observer(enqueue::<Add, Position>)
-            .add_observer(enqueue::<Remove, Position>)
+            .add_observer(enqueue::<Add, (Position, RigidBody, ApplyPosToTransform)>)
+            .add_observer(enqueue::<Remove, (Position, RigidBody, ApplyPosToTransform)>)
             .add_observer(enqueue_parented::<Insert>)
             .add_observer(enqueue_parented::<Remove>)
             .add_observer(|check: On<CheckChangeTicks>, mut ticks: ResMut<SyncTicks>| ticks.clamp(*check))

@@ -465,6 +465,29 @@ fn the_rest_of_the_scene_is_not_visited() {
 }
 
 #[test]
+fn a_body_with_nothing_but_colliders_below_is_not_walked() {
+    let mut app = app();
+    let body = app.world_mut().spawn((RigidBody::Dynamic, place(0.0, 0.0))).id();
+    let collider = app.world_mut().spawn((ColliderMarker, place(1.0, 0.0), ChildOf(body))).id();
+    step(&mut app);
+    let visited = |app: &App| app.world().resource::<TransformTree>().visited;
+    let before = visited(&app);
+    move_body(&mut app, body, at(3.0, 0.0), None);
+    step(&mut app);
+    assert_shown_at(&mut app, body);
+    assert_at(&app, collider, at(4.0, 0.0));
+    assert_eq!(visited(&app), before);
+    // Until it becomes a body itself.
+    app.world_mut().entity_mut(collider).insert(RigidBody::Dynamic);
+    step(&mut app);
+    move_body(&mut app, body, at(5.0, 0.0), None);
+    step(&mut app);
+    assert_at(&app, collider, at(4.0, 0.0));
+    assert_shown_at(&mut app, collider);
+    assert!(visited(&app) > before);
+}
+
+#[test]
 fn what_is_switched_off_stays_off() {
     let mut app = app();
     app.insert_resource(PhysicsTransformConfig { position_to_transform: false, ..Default::default() });
@@ -533,7 +556,7 @@ proptest! {
     }
 
     #[test]
-    fn the_tree_and_the_links_survive_any_life(ops in prop::collection::vec((0u8..8, 0usize..12, 0usize..12), 1..60)) {
+    fn the_tree_and_the_links_survive_any_life(ops in prop::collection::vec((0u8..10, 0usize..12, 0usize..12), 1..60)) {
         let mut app = app();
         let mut all: Vec<Entity> = (0..12).map(|_| app.world_mut().spawn(Transform::default()).id()).collect();
         for (op, a, b) in ops {
@@ -553,6 +576,17 @@ proptest! {
                 4 | 5 if !is_above && alive(&app, other) => { app.world_mut().entity_mut(entity).insert(ChildOf(other)); }
                 6 => { app.world_mut().entity_mut(entity).remove::<ChildOf>(); }
                 7 => { app.world_mut().despawn(entity); }
+                8 if app.world().get::<ApplyPosToTransform>(entity).is_some() => {
+                    app.world_mut().entity_mut(entity).remove::<ApplyPosToTransform>();
+                }
+                8 => { app.world_mut().entity_mut(entity).insert(ApplyPosToTransform); }
+                9 if app.world().get::<RigidBody>(entity).is_some() => {
+                    move_body(&mut app, entity, at(a as Scalar, b as Scalar), None);
+                    step(&mut app);
+                    let bodies = all.iter().filter(|e| alive(&app, **e));
+                    let bodies: Vec<_> = bodies.copied().filter(|e| app.world().get::<RigidBody>(*e).is_some()).collect();
+                    bodies.iter().for_each(|body| assert_shown_at(&mut app, *body));
+                }
                 _ => { step(&mut app); check_links(&app, &all); }
             }
         }

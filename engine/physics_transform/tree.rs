@@ -6,6 +6,9 @@
 //! without anything below need no node. Observers append to one queue; [`update_tree`] alone writes the
 //! tree, in the order of the queue, by looking at the hierarchy as it is then, so that the order in which
 //! things were spawned, reparented and despawned before does not matter.
+//!
+//! Each node counts the poses below it that are written to transforms: a body with nothing but its colliders
+//! below is written like one that stands alone.
 
 use bevy_ecs::{
     entity::{EntityHashMap, EntityHashSet},
@@ -14,8 +17,8 @@ use bevy_ecs::{
     query::Allow,
 };
 
-use super::Position;
-use crate::schedule::OnThisThread;
+use super::{ApplyPosToTransform, Position};
+use crate::{dynamics::rigid_body::RigidBody, schedule::OnThisThread};
 
 /// On an entity whose pose follows from its body: a collider that is not on the body itself.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -43,7 +46,18 @@ struct Node {
     /// Where the parent lists this node.
     slot: usize,
     children: Vec<Entity>,
+    /// Whether its pose is written to its transform. Only kept where there is a parent.
+    is_written: bool,
+    /// For how many below that is so.
+    written_below: usize,
     visit: u64,
+}
+
+impl Node {
+    /// How many poses are written here and below.
+    fn written(&self) -> usize {
+        usize::from(self.is_written) + self.written_below
+    }
 }
 
 /// The nodes; see the module.
@@ -57,7 +71,13 @@ pub(crate) struct TransformTree {
 
 /// The hierarchy as it is now.
 pub(crate) type Parents<'w, 's> = Query<'w, 's, &'static ChildOf, Allow<Disabled>>;
-type Physical<'w, 's> = Query<'w, 's, (), (With<Position>, Allow<Disabled>)>;
+type Physical<'w, 's> =
+    Query<'w, 's, (Has<RigidBody>, Has<ApplyPosToTransform>), (With<Position>, Allow<Disabled>)>;
+
+/// Whether an entity's pose is written to its transform.
+fn is_written(entity: Entity, physical: &Physical) -> bool {
+    physical.get(entity).is_ok_and(|(is_body, is_asked)| is_body || is_asked)
+}
 
 impl TransformTree {
     /// Whether the entity has tracked relatives.
@@ -68,6 +88,11 @@ impl TransformTree {
     /// The tracked parent.
     pub(crate) fn parent(&self, entity: Entity) -> Option<Entity> {
         self.nodes.get(&entity)?.parent
+    }
+
+    /// Whether the entity's transform is relative to another, or poses written below are relative to it.
+    pub(crate) fn is_tied(&self, entity: Entity) -> bool {
+        self.nodes.get(&entity).is_some_and(|node| node.parent.is_some() || node.written_below > 0)
     }
 
     /// The tracked children: those that have physics, or have some below.
@@ -112,15 +137,16 @@ impl TransformTree {
         if parent != held {
             self.unlink(entity, physical);
             if let Some(parent) = parent {
-                self.link(entity, parent, parents);
+                self.link(entity, parent, parents, physical);
             }
         }
+        self.recount(entity, is_written(entity, physical));
         self.prune(entity, physical);
         parent != held
     }
 
     /// Links `entity` below `parent`, and the ancestors that were not tracked yet.
-    fn link(&mut self, entity: Entity, parent: Entity, parents: &Parents) {
+    fn link(&mut self, entity: Entity, parent: Entity, parents: &Parents, physical: &Physical) {
         let (mut entity, mut parent) = (entity, parent);
         loop {
             let above = self.nodes.entry(parent).or_default();
@@ -128,6 +154,9 @@ impl TransformTree {
             let (slot, linked) = (above.children.len() - 1, above.parent.is_some());
             let node = self.nodes.entry(entity).or_default();
             (node.parent, node.slot) = (Some(parent), slot);
+            node.is_written = is_written(entity, physical);
+            let written = node.written();
+            self.count(parent, |below| below + written);
             match parents.get(parent) {
                 Ok(next) if !linked => (entity, parent) = (parent, next.parent()),
                 _ => return,
@@ -138,6 +167,8 @@ impl TransformTree {
     fn unlink(&mut self, entity: Entity, physical: &Physical) {
         let Some(node) = self.nodes.get_mut(&entity) else { return };
         let (slot, Some(parent)) = (node.slot, node.parent.take()) else { return };
+        let written = node.written();
+        self.count(parent, |below| below - written);
         if let Some(above) = self.nodes.get_mut(&parent) {
             above.children.swap_remove(slot);
             if let Some(&moved) = above.children.get(slot)
@@ -147,6 +178,25 @@ impl TransformTree {
             }
         }
         self.prune(parent, physical);
+    }
+
+    /// Changes the count of poses written below `at` and its ancestors.
+    fn count(&mut self, at: Entity, change: impl Fn(usize) -> usize) {
+        let mut next = Some(at);
+        while let Some(node) = next.and_then(|at| self.nodes.get_mut(&at)) {
+            node.written_below = change(node.written_below);
+            next = node.parent;
+        }
+    }
+
+    /// Notes whether the pose of an entity that has a parent is written.
+    fn recount(&mut self, entity: Entity, is_written: bool) {
+        let Some(node) = self.nodes.get_mut(&entity) else { return };
+        let Some(parent) = node.parent else { return };
+        let was = core::mem::replace(&mut node.is_written, is_written);
+        if is_written != was {
+            self.count(parent, |below| if is_written { below + 1 } else { below - 1 });
+        }
     }
 
     /// Forgets the entity if it has nothing below and either no parent or no physics.
@@ -182,6 +232,13 @@ impl TransformTree {
             for child in &node.children {
                 assert_eq!(self.nodes[child].parent, Some(entity));
             }
+            let is_posed =
+                |e| world.get::<RigidBody>(e).is_some() || world.get::<ApplyPosToTransform>(e).is_some();
+            if node.parent.is_some() {
+                assert_eq!(node.is_written, world.get::<Position>(entity).is_some() && is_posed(entity));
+            }
+            let below: usize = node.children.iter().map(|child| self.nodes[child].written()).sum();
+            assert_eq!(node.written_below, below, "poses written below {entity}");
         }
     }
 }

@@ -25,8 +25,8 @@ impl Plugin for ColliderHierarchyPlugin {
             .init_resource::<TransformTree>()
             .insert_resource(AttachesColliders)
             .register_type::<(ColliderOf, RigidBodyColliders)>()
-            .add_observer(enqueue::<Add, (RigidBody, ColliderMarker)>)
-            .add_observer(enqueue::<Remove, (RigidBody, ColliderMarker)>)
+            .add_observer(enqueue::<Add, ColliderMarker>)
+            .add_observer(enqueue::<Remove, ColliderMarker>)
             .add_observer(detach_at_once);
     }
 }

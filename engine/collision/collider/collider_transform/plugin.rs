@@ -163,18 +163,19 @@ pub(crate) fn place_child_colliders(
     _: OnThisThread,
 ) {
     let last = core::mem::replace(&mut placement.last, system.this_run());
-    let mut place = |collider: Entity| {
+    let mut place = |collider: Entity, body: Option<(&Position, Rotation)>| {
         let Ok((mut position, mut rotation, offset, of)) = children.get_mut(collider) else { return };
-        let Ok((_, at, turned, _)) = bodies.get(of.body) else { return };
-        let turned = filled_in(*turned);
+        let own = || bodies.get(of.body).ok().map(|(_, at, turned, _)| (at.into_inner(), filled_in(*turned)));
+        let Some((at, turned)) = body.or_else(own) else { return };
         position.set_if_neq(Position(at.0 + turned * offset.translation));
         rotation.set_if_neq(turned * offset.rotation);
     };
-    placement.offset.drain(..).for_each(&mut place);
+    placement.offset.drain(..).for_each(|collider| place(collider, None));
     for (_, position, rotation, colliders) in &bodies {
         let is_new = |tick: Tick| tick.is_newer_than(last, system.this_run());
         if is_new(position.last_changed()) || is_new(rotation.last_changed()) {
-            colliders.into_iter().for_each(&mut place);
+            let body = (position.into_inner(), filled_in(*rotation));
+            colliders.into_iter().for_each(|collider| place(collider, Some(body)));
         }
     }
 }
