@@ -19,7 +19,7 @@ use crate::{
         solver::{
             schedule::{SolverSystems, SubstepSolverSystems},
             substeps::StepSolver,
-            workers::{RowWidth, WorkerCount},
+            workers::{RowWidth, WorkerCount, call_team, dismiss_team},
         },
         tables::{Bodies, Colliders, Contacts},
     },
@@ -136,9 +136,11 @@ pub(crate) fn install(app: &mut App) {
     app.add_systems(
         PhysicsSchedule,
         (
+            call_team.in_set(Stage::ResetDiagnostics),
             (lifecycle::note_changed_colliders, crate::dynamics::drain::drain_lifecycle)
                 .chain()
                 .in_set(Stage::DrainLifecycle),
+            dismiss_team.in_set(Stage::RemoveLost),
             crate::dynamics::drain::remove_lost_late.in_set(Stage::RemoveLost),
         ),
     );

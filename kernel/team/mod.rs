@@ -12,8 +12,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// How long a helper looks for work before it goes to sleep. Waking it takes about as long.
-const PATIENCE: Duration = Duration::from_micros(50);
+/// How long a helper looks for work before it goes to sleep: longer than what one thread does alone between two
+/// stages of a step. Waking it takes a tenth of that, and its core may need as long to wake itself.
+const PATIENCE: Duration = Duration::from_micros(500);
 
 /// The caller and its helpers, who run the blocks of one stage at a time.
 ///
@@ -47,6 +48,8 @@ struct Board {
     asleep: Vec<AtomicBool>,
     /// How many do not.
     awake: AtomicU32,
+    /// Whether there will be no work for long.
+    rests: AtomicBool,
     /// What the first block that panicked in a helper said.
     panic: Mutex<Option<Box<dyn Any + Send>>>,
     quit: AtomicBool,
@@ -128,12 +131,20 @@ impl Team {
     /// without, blocks are run by the caller alone.
     pub fn wake(&self) {
         let Some(helpers) = &self.0 else { return };
-        let Board { asleep, awake, .. } = &*helpers.board;
+        let Board { asleep, awake, rests, .. } = &*helpers.board;
+        rests.store(false, Ordering::Relaxed);
         for (asleep, handle) in asleep.iter().zip(&helpers.threads) {
             if asleep.load(Ordering::Relaxed) && asleep.swap(false, Ordering::AcqRel) {
                 awake.fetch_add(1, Ordering::Relaxed);
                 handle.thread().unpark();
             }
+        }
+    }
+
+    /// Lets the helpers sleep at once: there is no more work for them, and others may want their cores.
+    pub fn rest(&self) {
+        if let Some(helpers) = &self.0 {
+            helpers.board.rests.store(true, Ordering::Relaxed);
         }
     }
 
@@ -284,7 +295,8 @@ impl Board {
             looks = looks.wrapping_add(1);
             if looks.is_multiple_of(64) {
                 let now = Instant::now();
-                if self.quit.load(Ordering::Relaxed) || now - *idle_since.get_or_insert(now) > PATIENCE {
+                let is_over = self.rests.load(Ordering::Relaxed) || self.quit.load(Ordering::Relaxed);
+                if is_over || now - *idle_since.get_or_insert(now) > PATIENCE {
                     return;
                 }
             }

@@ -18,8 +18,10 @@ fn every_block_runs_once() {
         let team = Team::new(members);
         assert_eq!(team.members(), members.max(1));
         for round in 0..200 {
-            if round % 3 == 0 {
-                team.wake();
+            match round % 3 {
+                0 => team.wake(),
+                1 => team.rest(),
+                _ => {}
             }
             for blocks in [0, 1, 2, 3, 17, 200] {
                 assert_eq!(counts(&team, blocks), vec![1; blocks], "{members} members");

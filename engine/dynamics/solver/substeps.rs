@@ -16,7 +16,7 @@ use crate::{
             diagnostics::SolverDiagnostics,
             schedule::{SubstepCount, SubstepSchedule, advance_substep, substep_delta},
             softness_parameters::SoftnessCoefficients,
-            workers::{Crew, RowWidth, WorkerCount},
+            workers::{Crew, RowWidth},
         },
         tables::{Bodies, Contacts},
     },
@@ -30,14 +30,7 @@ pub(crate) struct StepSolver {
     pub(crate) kernel: Solver,
     pub(crate) params: SubstepParams,
     pub(crate) substeps: u32,
-    crew: Crew,
-}
-
-impl StepSolver {
-    /// Has the team's helpers come, where there is much to do.
-    pub(crate) fn call_team(&mut self, contacts: usize, count: WorkerCount) {
-        self.crew.call(&mut self.kernel.team, contacts, count);
-    }
+    pub(super) crew: Crew,
 }
 
 impl Default for StepSolver {
