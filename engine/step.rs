@@ -18,8 +18,8 @@ use crate::{
         rigid_body::{DefaultFriction, DefaultRestitution},
         solver::{
             schedule::{SolverSystems, SubstepSolverSystems},
-            substeps::StepSolver,
-            workers::{RowWidth, WorkerCount, call_team, dismiss_team},
+            substeps::{StepSolver, call_team, dismiss_team},
+            workers::{RowWidth, WorkerCount},
         },
         tables::{Bodies, Colliders, Contacts},
     },

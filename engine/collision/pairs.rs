@@ -25,8 +25,7 @@ use crate::{
     schedule::Physics,
 };
 
-/// What is added to a box on every side when it is made fat, times the length unit. Larger boxes change
-/// less often but make more pairs.
+/// What is added to a box on every side when it is made fat, times the length unit, if its shape is not small.
 const FAT_MARGIN: f32 = 0.05;
 
 /// What the size of fat boxes follows from.

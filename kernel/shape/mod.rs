@@ -54,6 +54,14 @@ impl Shape {
         self.local_aabb(pose.rotation).at(pose.position)
     }
 
+    /// Has what the shape shares with others brought near: it is needed soon.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self) {
+        if let Self::Hull(hull) = self {
+            crate::data::prefetch(core::slice::from_ref(&**hull), 0);
+        }
+    }
+
     /// The box around the shape in its own frame turned by `rotation`, centred on nothing.
     pub fn local_aabb(&self, rotation: crate::math::Rot) -> Aabb {
         match self {

@@ -16,7 +16,7 @@ use crate::{
             diagnostics::SolverDiagnostics,
             schedule::{SubstepCount, SubstepSchedule, advance_substep, substep_delta},
             softness_parameters::SoftnessCoefficients,
-            workers::{Crew, RowWidth},
+            workers::{Crew, RowWidth, WorkerCount},
         },
         tables::{Bodies, Contacts},
     },
@@ -30,7 +30,25 @@ pub(crate) struct StepSolver {
     pub(crate) kernel: Solver,
     pub(crate) params: SubstepParams,
     pub(crate) substeps: u32,
-    pub(super) crew: Crew,
+    crew: Crew,
+}
+
+impl StepSolver {
+    /// Has the team's helpers come, where there is much to do.
+    pub(crate) fn call_team(&mut self, contacts: usize, count: WorkerCount) {
+        self.crew.call(&mut self.kernel.team, contacts, count);
+    }
+}
+
+/// Has helpers come before there is work for them, if there was much of it in the last step: to wake takes a
+/// processor long.
+pub(crate) fn call_team(mut solver: ResMut<StepSolver>, contacts: Res<Contacts>, workers: Res<WorkerCount>) {
+    solver.call_team(contacts.table.active().len(), *workers);
+}
+
+/// Sends the helpers to sleep: what follows the step may want their cores.
+pub(crate) fn dismiss_team(solver: Res<StepSolver>) {
+    solver.kernel.team.rest();
 }
 
 impl Default for StepSolver {

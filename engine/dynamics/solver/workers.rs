@@ -5,9 +5,6 @@ use bevy_reflect::prelude::*;
 use bevy_tasks::ComputeTaskPool;
 use kernel::team::Team;
 
-use super::substeps::StepSolver;
-use crate::dynamics::tables::Contacts;
-
 /// How many threads a step uses, the one that runs the schedule among them. The result has the same bits with
 /// any number.
 ///
@@ -55,31 +52,13 @@ const MOST: usize = 256;
 /// Waking a helper takes as long as some hundred contacts.
 const MANY_CONTACTS: usize = 1024;
 
-/// Has helpers come before there is work for them, if there was much of it in the last step: to wake takes a
-/// processor long.
-pub(crate) fn call_team(mut solver: ResMut<StepSolver>, contacts: Res<Contacts>, workers: Res<WorkerCount>) {
-    solver.call_team(contacts.table.active().len(), *workers);
-}
-
-/// Sends the helpers to sleep: what follows the step may want their cores.
-pub(crate) fn dismiss_team(solver: Res<StepSolver>) {
-    solver.kernel.team.rest();
-}
-
-impl StepSolver {
-    /// Has the team's helpers come, where there is much to do.
-    pub(crate) fn call_team(&mut self, contacts: usize, count: WorkerCount) {
-        self.crew.call(&mut self.kernel.team, contacts, count);
-    }
-}
-
 /// The team of the engine's steps, and the setting it was made for.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Crew(Option<WorkerCount>);
 
 impl Crew {
     /// Has helpers come, where there is much to do.
-    fn call(&mut self, team: &mut Team, contacts: usize, count: WorkerCount) {
+    pub(crate) fn call(&mut self, team: &mut Team, contacts: usize, count: WorkerCount) {
         let many = contacts >= MANY_CONTACTS;
         // Until there is much to do for the first time there is no team.
         if self.0 != Some(count) && (many || self.0.is_some()) {

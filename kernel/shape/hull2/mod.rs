@@ -12,6 +12,7 @@ use crate::shape::primitives::{Stretch, checked_length, direction_or, hit_of_str
 use crate::shape::{Aabb, Capsule, RayHit, ShapeError};
 use mass::mass_of_rounded_polygon;
 use outline::{cast_ray_polygon, edges, merge_distance, monotone_chain, simplified, turns_left_once};
+use smallvec::SmallVec;
 use wide::{cross, length, sub, wide};
 
 /// A convex polygon, sharp or rounded: all points within [`radius`](Self::radius) of its core.
@@ -20,8 +21,8 @@ use wide::{cross, length, sub, wide};
 /// their neighbours; edge `i` leads from vertex `i` to the next one and has normal `i`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    vertices: Box<[Vector]>,
-    normals: Box<[Vector]>,
+    /// The vertices, then the normals: of up to eight, as most have, together with the rest.
+    points: SmallVec<[Vector; 16]>,
     radius: f32,
     aabb: Aabb,
     mass: MassProperties,
@@ -61,28 +62,27 @@ impl Hull {
     }
 
     fn build(vertices: Vec<Vector>, radius: f32) -> Self {
-        let normals: Box<[Vector]> = edges(&vertices)
-            .map(|(p, q)| {
-                let e = sub(wide(q), wide(p));
-                let l = length(e);
-                Vector::from_array([(e[1] / l) as f32, (-e[0] / l) as f32])
-            })
-            .collect();
+        let normals = edges(&vertices).map(|(p, q)| {
+            let e = sub(wide(q), wide(p));
+            let l = length(e);
+            Vector::from_array([(e[1] / l) as f32, (-e[0] / l) as f32])
+        });
+        let points = vertices.iter().copied().chain(normals).collect();
         let aabb = Aabb::around(vertices.iter().copied()).grown(radius);
         let mass = mass_of_rounded_polygon(&vertices, f64::from(radius));
-        Self { vertices: vertices.into(), normals, radius, aabb, mass }
+        Self { points, radius, aabb, mass }
     }
 
     /// The corners of the core, counter-clockwise; at least three.
     #[inline]
     pub fn vertices(&self) -> &[Vector] {
-        &self.vertices
+        &self.points[..self.points.len() / 2]
     }
 
     /// The outward unit normals: `normals()[i]` is that of the edge from vertex `i` to the next.
     #[inline]
     pub fn normals(&self) -> &[Vector] {
-        &self.normals
+        &self.points[self.points.len() / 2..]
     }
 
     /// How far the surface stands off the core, in metres; 0 for a sharp polygon.
@@ -99,8 +99,9 @@ impl Hull {
 
     /// The point farthest along `direction` (any length), radius included.
     pub fn support(&self, direction: Vector) -> Vector {
-        let mut best = (self.vertices[0], self.vertices[0].dot(direction));
-        for v in &self.vertices[1..] {
+        let vertices = self.vertices();
+        let mut best = (vertices[0], vertices[0].dot(direction));
+        for v in &vertices[1..] {
             let height = v.dot(direction);
             if height > best.1 {
                 best = (*v, height);
@@ -118,12 +119,12 @@ impl Hull {
         solid: bool,
     ) -> Option<RayHit> {
         if self.radius == 0.0 {
-            return cast_ray_polygon(&self.vertices, &self.normals, origin, direction, max_distance, solid);
+            return cast_ray_polygon(self.vertices(), self.normals(), origin, direction, max_distance, solid);
         }
         // The boundary of a rounded polygon is that of the capsules around its edges.
         let mut whole: Option<Stretch> = None;
         let (mut first, mut last) = (None, None);
-        for (a, b) in edges(&self.vertices) {
+        for (a, b) in edges(self.vertices()) {
             let capsule = Capsule { a, b, radius: self.radius };
             let Some((enter, exit)) = capsule.stretch(origin, direction) else { continue };
             let (low, high) = whole.unwrap_or((f32::INFINITY, f32::NEG_INFINITY));
