@@ -19,7 +19,7 @@ use bevy_transform::components::Transform;
 use super::{
     ApplyPosToTransform, PhysicsTransformConfig, Position, Rotation, dim,
     frame::{Frame, read_pose, same_pose, same_rotation, same_translation, write_pose},
-    tree::{FollowsBody, HierarchyQueue, Parents, TransformTree, TreeChanges},
+    tree::{FollowsBody, HierarchyQueue, Parents, Physical, TransformTree, TreeChanges},
     turn::Turn,
 };
 use crate::{
@@ -309,13 +309,15 @@ pub struct TransformWriter<'w, 's> {
     parents: Parents<'w, 's>,
     following: Query<'w, 's, (), With<FollowsBody>>,
     hierarchy: Res<'w, HierarchyQueue>,
+    changes: ResMut<'w, TreeChanges>,
+    physical: Physical<'w, 's>,
 }
 
 /// Writes the poses that moved since the last write-back into `Transform`: of bodies, and of entities with
 /// [`ApplyPosToTransform`]. Bodies below a moved one keep their pose in the world, so theirs are written
 /// too. Scale is kept; in 2D also the depth and any tilt.
-pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick, _: OnThisThread) {
-    let TransformWriter { mut tree, mut ticks, config, mut queries, parents, following, hierarchy } = writer;
+pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTick, _: OnThisThread) {
+    let TransformWriter { mut tree, mut ticks, config, mut queries, parents, following, .. } = writer;
     let (last, read) = (ticks.writeback, ticks.read);
     let since = Since::new(last, system);
     ticks.writeback = system.this_run();
@@ -324,8 +326,9 @@ pub fn position_to_transform(writer: TransformWriter, system: SystemChangeTick, 
     }
     // Not what was read from transforms just now.
     let is_own = |tick: Tick| since.is_new(tick) && !read.contains(&tick);
-    // While the tree is behind the hierarchy only the hierarchy says what hangs in it.
-    let looks_up = is_change_tracked() || !hierarchy.0.is_empty();
+    // What the app did to the hierarchy during the step.
+    tree.follow(&writer.hierarchy.0, &parents, &writer.physical, &mut writer.changes.early);
+    let looks_up = is_change_tracked();
     // What hangs in a hierarchy, and all where tables cannot be written in whole.
     let mut late: Vec<Entity> = Vec::new();
     for (pose, transforms) in queries.p0().contiguous_iter_mut().expect(IN_TABLES) {

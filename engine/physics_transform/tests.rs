@@ -488,6 +488,43 @@ fn a_body_with_nothing_but_colliders_below_is_not_walked() {
 }
 
 #[test]
+fn a_family_may_be_turned_upside_down_at_once() {
+    let mut app = app();
+    let a = app.world_mut().spawn((RigidBody::Dynamic, place(0.0, 0.0))).id();
+    let b = app.world_mut().spawn((RigidBody::Dynamic, place(1.0, 0.0), ChildOf(a))).id();
+    step(&mut app);
+    app.world_mut().entity_mut(a).remove::<RigidBody>();
+    app.world_mut().entity_mut(b).remove::<ChildOf>();
+    app.world_mut().entity_mut(a).insert(ChildOf(b));
+    step(&mut app);
+    assert_eq!(app.world().resource::<TransformTree>().parent(a), Some(b));
+    move_body(&mut app, b, at(3.0, 0.0), None);
+    step(&mut app);
+    assert_shown_at(&mut app, b);
+}
+
+#[test]
+fn a_body_may_be_hung_below_another_within_a_step() {
+    let mut app = app();
+    let [outer, inner] = [0.0, 1.0].map(|x| app.world_mut().spawn((RigidBody::Dynamic, place(x, 0.0))).id());
+    step(&mut app);
+    let hang = move |mut commands: Commands, mut done: Local<bool>| {
+        if !core::mem::replace(&mut *done, true) {
+            commands.entity(inner).insert(ChildOf(outer));
+        }
+    };
+    app.add_systems(Update, hang.in_set(PhysicsSystems::StepSimulation));
+    move_body(&mut app, inner, at(5.0, 0.0), None);
+    move_body(&mut app, outer, at(2.0, 0.0), None);
+    for _ in 0..2 {
+        step(&mut app);
+        assert_at(&app, inner, at(5.0, 0.0));
+        assert_shown_at(&mut app, inner);
+        assert_shown_at(&mut app, outer);
+    }
+}
+
+#[test]
 fn what_is_switched_off_stays_off() {
     let mut app = app();
     app.insert_resource(PhysicsTransformConfig { position_to_transform: false, ..Default::default() });

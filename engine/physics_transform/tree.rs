@@ -35,6 +35,8 @@ pub(crate) struct TreeChanges {
     pub(crate) queued: Vec<Entity>,
     /// Entities with another parent than before.
     pub(crate) reparented: Vec<Entity>,
+    /// Those that the write-back of the last step saw already; they are still in the queue.
+    pub(crate) early: Vec<Entity>,
     /// Entities whose `Transform` may differ from what physics knows, the topmost sufficing: changed,
     /// reparented or enabled again.
     pub(crate) transforms: Vec<Entity>,
@@ -71,7 +73,7 @@ pub(crate) struct TransformTree {
 
 /// The hierarchy as it is now.
 pub(crate) type Parents<'w, 's> = Query<'w, 's, &'static ChildOf, Allow<Disabled>>;
-type Physical<'w, 's> =
+pub(crate) type Physical<'w, 's> =
     Query<'w, 's, (Has<RigidBody>, Has<ApplyPosToTransform>), (With<Position>, Allow<Disabled>)>;
 
 /// Whether an entity's pose is written to its transform.
@@ -129,20 +131,37 @@ impl TransformTree {
         }
     }
 
-    /// Brings the link of one entity up to date; returns whether it has another parent than before.
-    fn refresh(&mut self, entity: Entity, parents: &Parents, physical: &Physical) -> bool {
-        let tracked = physical.contains(entity) || !self.children(entity).is_empty();
-        let parent = if tracked { parents.get(entity).ok().map(ChildOf::parent) } else { None };
-        let held = self.parent(entity);
-        if parent != held {
-            self.unlink(entity, physical);
-            if let Some(parent) = parent {
-                self.link(entity, parent, parents, physical);
+    /// Brings the links of entities up to date. `moved` receives those with another parent than before.
+    ///
+    /// Links that are gone go first: beside new ones they could close a circle.
+    pub(super) fn follow(
+        &mut self,
+        entities: &[Entity],
+        parents: &Parents,
+        physical: &Physical,
+        moved: &mut Vec<Entity>,
+    ) {
+        for &entity in entities {
+            if self.wanted_parent(entity, parents, physical) != self.parent(entity) {
+                self.unlink(entity, physical);
+                moved.push(entity);
             }
         }
-        self.recount(entity, is_written(entity, physical));
-        self.prune(entity, physical);
-        parent != held
+        for &entity in entities {
+            if let Some(parent) = self.wanted_parent(entity, parents, physical)
+                && self.parent(entity).is_none()
+            {
+                self.link(entity, parent, parents, physical);
+            }
+            self.recount(entity, is_written(entity, physical));
+            self.prune(entity, physical);
+        }
+    }
+
+    /// The parent of an entity that has physics in it or below.
+    fn wanted_parent(&self, entity: Entity, parents: &Parents, physical: &Physical) -> Option<Entity> {
+        let tracked = physical.contains(entity) || !self.children(entity).is_empty();
+        if tracked { parents.get(entity).ok().map(ChildOf::parent) } else { None }
     }
 
     /// Links `entity` below `parent`, and the ancestors that were not tracked yet.
@@ -253,7 +272,7 @@ pub(crate) fn update_tree(
     mut seen: Local<EntityHashSet>,
     _: OnThisThread,
 ) {
-    let TreeChanges { queued, reparented, transforms } = &mut *changes;
+    let TreeChanges { queued, reparented, early, transforms } = &mut *changes;
     queued.clear();
     reparented.clear();
     transforms.clear();
@@ -262,7 +281,8 @@ pub(crate) fn update_tree(
     }
     seen.clear();
     queued.extend(queue.0.drain(..).filter(|&entity| seen.insert(entity)));
-    reparented.extend(queued.iter().copied().filter(|&entity| tree.refresh(entity, &parents, &physical)));
+    reparented.append(early);
+    tree.follow(queued, &parents, &physical, reparented);
 }
 
 /// Appends the entity of a life-cycle event to the queue.

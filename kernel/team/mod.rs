@@ -12,6 +12,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+/// How long a helper looks for work without letting others on its core.
+const GREED: Duration = Duration::from_micros(50);
+
 /// How long a helper looks for work before it goes to sleep: longer than what one thread does alone between two
 /// stages of a step. Waking it takes a tenth of that, and its core may need as long to wake itself.
 const PATIENCE: Duration = Duration::from_micros(500);
@@ -48,7 +51,7 @@ struct Board {
     asleep: Vec<AtomicBool>,
     /// How many do not.
     awake: AtomicU32,
-    /// Whether there will be no work for long.
+    /// Whether helpers are to sleep without looking for more work.
     rests: AtomicBool,
     /// What the first block that panicked in a helper said.
     panic: Mutex<Option<Box<dyn Any + Send>>>,
@@ -141,7 +144,8 @@ impl Team {
         }
     }
 
-    /// Lets the helpers sleep at once: there is no more work for them, and others may want their cores.
+    /// Lets the helpers sleep at once, those of clones too, which are the same: there is no more work for them, and
+    /// others may want their cores.
     pub fn rest(&self) {
         if let Some(helpers) = &self.0 {
             helpers.board.rests.store(true, Ordering::Relaxed);
@@ -296,8 +300,12 @@ impl Board {
             if looks.is_multiple_of(64) {
                 let now = Instant::now();
                 let is_over = self.rests.load(Ordering::Relaxed) || self.quit.load(Ordering::Relaxed);
-                if is_over || now - *idle_since.get_or_insert(now) > PATIENCE {
+                let idle = now - *idle_since.get_or_insert(now);
+                if is_over || idle > PATIENCE {
                     return;
+                }
+                if idle > GREED {
+                    thread::yield_now();
                 }
             }
             core::hint::spin_loop();

@@ -18,7 +18,7 @@ pub const GOLDEN: [(&str, u64, u64); 15] = [
     ("held", 0x77687bcef38b9af2, 0xffa360b35db68ecf),
     ("dominance", 0x74f80f3b4cee2323, 0x05b71d55970cbd2b),
     ("spin", 0x469e3bf183616aa3, 0x48a5f3f78031c326),
-    ("mixer", 0x52fcd819aa87cb4d, 0x5ee62913c758f4e3),
+    ("mixer", 0x97dd2ea5b71369b5, 0xb8f960935669d5d4),
     ("changes", 0xa4d6f2a70b61bbf9, 0x07fe5876928d7aeb),
     ("wall", 0x08c88388980c4818, 0x3337f556f4691a56),
 ];

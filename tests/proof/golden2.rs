@@ -6,7 +6,7 @@ use avian::prelude::*;
 pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0x77f755d34138ed9f),
     ("pyramids", 0x888870d04d87832e),
-    ("tumbler", 0x7d1c7f0f1828bd00),
+    ("tumbler", 0x1f0734448ffe3412),
     ("dominoes", 0xb9b96728fd49e1d3),
     ("card_house", 0xfb05f5bf417f986f),
     ("towers", 0xf7210e556bbf3a1d),

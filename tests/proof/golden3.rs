@@ -6,15 +6,15 @@ use avian::prelude::*;
 pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0xd9cea250dfd32ffd),
     ("pyramids", 0x7029bf7b80ae7227),
-    ("tumbler", 0x2ca46a086773e391),
+    ("tumbler", 0x05f69ece7d8db6b4),
     ("dominoes", 0xb83ca68772f7c210),
     ("card_house", 0x05215463f94ddd84),
     ("towers", 0xd2a8b3dee5310c3d),
     ("smash", 0xebf355a0aa5d5db6),
     ("crowd", 0x87007a3c2ff9cd39),
     ("sleepers", 0xe00ec19ef99b27ea),
-    ("bounces", 0x870036e772702890),
-    ("settings", 0x91807ab1c1ff0957),
+    ("bounces", 0x8277111ee5ef3469),
+    ("settings", 0xfbc9110ebdf77a3b),
 ];
 
 /// The same for scenes with shapes of parry's.

@@ -21,7 +21,7 @@ use wide::{cross, length, sub, wide};
 /// their neighbours; edge `i` leads from vertex `i` to the next one and has normal `i`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    /// The vertices, then the normals: of up to eight, as most have, together with the rest.
+    /// The vertices, then the normals; up to eight of each lie within the struct.
     points: SmallVec<[Vector; 16]>,
     radius: f32,
     aabb: Aabb,
