@@ -3,9 +3,9 @@
 //!
 //! A level may hang a hundred thousand pictures and one body under one root. Walking `Children` from the
 //! root would visit them all, with markers or without; this shadow of the hierarchy visits the body. Roots
-//! without anything below need no node. Observers append to one queue; [`update_tree`] alone writes the
-//! tree, in the order of the queue, by looking at the hierarchy as it is then, so that the order in which
-//! things were spawned, reparented and despawned before does not matter.
+//! without anything below need no node. Observers append to one queue; [`TransformTree::follow`] alone changes
+//! links, before a step and once more before transforms are written, by looking at the hierarchy as it is
+//! then, so that the order in which things were spawned, reparented and despawned before does not matter.
 //!
 //! Each node counts the poses below it that are written to transforms: a body with nothing but its colliders
 //! below is written like one that stands alone.
