@@ -18,8 +18,11 @@ stage() {
 
 # Cargo knows the crates of another clone of this tree by the same names, and looks for changes where that one
 # was: with sources outside of a package's folder it would test the other clone. Only dependencies are kept.
+# A call cleans one profile only.
 for manifest in Cargo.toml crates/far_f64/Cargo.toml; do
-    stage cargo clean --quiet --workspace --manifest-path "$manifest"
+    for profile in dev release; do
+        stage cargo clean --quiet --workspace --profile "$profile" --manifest-path "$manifest"
+    done
 done
 
 stage cargo fmt --all --check
