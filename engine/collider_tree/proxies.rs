@@ -7,6 +7,7 @@ use kernel::{
     bvh::{Mover, Movers, PairMask, ProxyId, TreeKind, Trees},
     data::BitSet,
     shape::Aabb,
+    team::Team,
 };
 
 /// The trees and each collider's leaf.
@@ -40,6 +41,9 @@ const BULK: usize = 256;
 
 /// A tree is put in order when one of so many leaves has grown.
 const GROWN: usize = 16;
+
+/// Of a tree of which one of so many leaves has grown, all boxes are fitted at once.
+const MOST: usize = 3;
 
 /// A tree's cost is looked at when one of so many leaves has moved.
 const MOVED: usize = 4;
@@ -79,40 +83,54 @@ impl ProxyTable {
         self.places.get(id as usize).copied().flatten().is_some_and(|p| p.leaf.is_none())
     }
 
-    /// Gives the leaves of the colliders in `moved` their fat boxes, and keeps the trees good to search.
+    /// Gives the leaves of the colliders in `moved` their fat boxes, and keeps the trees good to search. Of all others
+    /// the boxes in `fat` must be those they have.
     ///
     /// Unless the app wants every leaf reinserted, leaves grow in place until one in [`GROWN`] has: fitting the
     /// boxes above them, or rebuilding, then costs as much as what grew. Returns how long that took.
-    pub(crate) fn update(&mut self, moved: &BitSet, fat: &[Aabb], mode: TreeOptimizationMode) -> Duration {
+    pub(crate) fn update(
+        &mut self,
+        moved: &BitSet,
+        fat: &[Aabb],
+        mode: TreeOptimizationMode,
+        team: &Team,
+    ) -> Duration {
         let mut fresh: [Vec<(u32, Aabb)>; 4] = Default::default();
-        let many = moved.count() * GROWN;
-        let mut placed = [false; 4];
+        let mut grown = [0; 4];
+        for id in moved.iter() {
+            if let Some(Some(Place { kind, leaf: Some(_) })) = self.places.get(id as usize) {
+                grown[*kind as usize] += 1;
+            }
+        }
+        let share = |kind: TreeKind, part: usize| grown[kind as usize] * part > self.trees[kind].len();
+        let reinsert = mode == TreeOptimizationMode::Reinsert;
+        let [most, many] = [MOST, GROWN].map(|part| TreeKind::ALL.map(|k| !reinsert && share(k, part)));
         for id in moved.iter() {
             let Some(Some(place)) = self.places.get(id as usize) else { continue };
             let (aabb, kind) = (fat[id as usize], place.kind);
             let tree = &mut self.trees[kind];
             match place.leaf {
                 None => fresh[kind as usize].push((id, aabb)),
-                Some(leaf) if mode == TreeOptimizationMode::Reinsert => tree.set(leaf, aabb),
-                Some(leaf) => {
-                    if many > tree.len() {
-                        tree.place(leaf, aabb);
-                        placed[kind as usize] = true;
-                    } else {
-                        tree.enlarge(leaf, aabb);
-                    }
-                    self.states[kind as usize].grown += 1;
-                }
+                Some(_) if most[kind as usize] => {}
+                Some(leaf) if reinsert => tree.set(leaf, aabb),
+                Some(leaf) if many[kind as usize] => tree.place(leaf, aabb),
+                Some(leaf) => tree.enlarge(leaf, aabb),
             }
         }
         let mut optimizing = Duration::ZERO;
         for kind in TreeKind::ALL {
-            if placed[kind as usize] {
+            let i = kind as usize;
+            if most[i] {
+                self.trees[kind].fit(&|id| fat[id as usize], team);
+            } else if many[i] {
                 self.trees[kind].refit();
             }
-            self.enter(kind, &fresh[kind as usize]);
+            if !reinsert {
+                self.states[i].grown += grown[i];
+            }
+            self.enter(kind, &fresh[i]);
             let start = Instant::now();
-            self.put_in_order(kind, mode, placed[kind as usize]);
+            self.put_in_order(kind, mode, many[i]);
             optimizing += start.elapsed();
         }
         optimizing
@@ -200,9 +218,9 @@ mod tests {
             (first..100).for_each(|id| _ = ids.insert(id));
             ids
         };
-        proxies.update(&from(0), &fat, mode);
+        proxies.update(&from(0), &fat, mode, &Team::default());
         (100 - moved..100).for_each(|id| fat[id as usize] = at(20));
-        proxies.update(&from(100 - moved), &fat, mode);
+        proxies.update(&from(100 - moved), &fat, mode, &Team::default());
         proxies.trees[KIND].validate();
         proxies.trees[KIND].bounds().max.x - (100 - moved) as f32
     }

@@ -93,7 +93,7 @@ pub(crate) fn update_contacts(
     };
     let contacts = &mut *tables.contacts;
     contacts.changed.clear();
-    solver.call_team(contacts.table.active().len(), *workers);
+    solver.call_team(contacts.table.active_len(), *workers);
     contacts.table.update(&phase, &solver.kernel.team, &mut scratch.0, &mut contacts.changed);
     diagnostics.contact_count = contacts.table.len() as u32;
     diagnostics.narrow_phase += start.elapsed();

@@ -46,7 +46,7 @@ type Boxes = (&'static ColliderId, &'static mut ColliderAabb, &'static mut Enlar
 
 /// Puts what entered or was changed by hand where it is, and in its tree.
 pub(crate) fn update_stale_boxes(
-    fat_boxes: FatBoxes,
+    (fat_boxes, solver): (FatBoxes, Res<StepSolver>),
     bodies: Res<Bodies>,
     mut colliders: ResMut<Colliders>,
     mut boxes: Query<Boxes>,
@@ -71,7 +71,8 @@ pub(crate) fn update_stale_boxes(
         }
     }
     stale.clear();
-    diagnostics.optimize += trees.update(&changed, &table.fat, optimization.optimization_mode);
+    let (mode, team) = (optimization.optimization_mode, &solver.kernel.team);
+    diagnostics.optimize += trees.update(&changed, &table.fat, mode, team);
     moved.union_with(&changed);
     diagnostics.update += start.elapsed();
 }
@@ -114,7 +115,7 @@ pub(crate) fn refit_awake(
             });
         }
     }
-    diagnostics.optimize += trees.update(&changed, &table.fat, optimization.optimization_mode);
+    diagnostics.optimize += trees.update(&changed, &table.fat, optimization.optimization_mode, team);
     moved.union_with(&changed);
     changed.clear();
     diagnostics.update += start.elapsed();

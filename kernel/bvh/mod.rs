@@ -9,8 +9,10 @@
 //! Hierarchies" (2007).
 
 mod build;
+mod fit;
 #[cfg(test)]
 mod measure;
+mod meet;
 #[cfg(test)]
 mod oracle;
 mod pairs;

@@ -123,13 +123,21 @@ impl Twin {
                 }
             }
             80..110 => {
+                let all_at_once = noise.below(2) == 0;
                 for _ in 0..noise.below(20) {
                     let Some(i) = self.pick(noise) else { break };
                     let aabb = self.list[i].2.swept(noise.vector(-0.5, 0.5));
-                    self.tree.place(self.list[i].0, aabb);
+                    if !all_at_once {
+                        self.tree.place(self.list[i].0, aabb);
+                    }
                     self.list[i].2 = tree::admitted(aabb);
                 }
-                self.tree.refit();
+                if all_at_once {
+                    let of_id = |id| self.list.iter().find(|e| e.1 == id).unwrap().2;
+                    self.tree.fit(&of_id, &Team::default());
+                } else {
+                    self.tree.refit();
+                }
             }
             140..143 => self.tree.rebuild_full(),
             143..146 => {
@@ -335,18 +343,23 @@ proptest! {
     }
 
     #[test]
-    fn pairs_are_those_of_a_search_of_all(seed in any::<u64>(), count in 0..150u32) {
+    fn pairs_are_those_of_a_search_of_all(
+        seed in any::<u64>(), count in 0..400u32, kinds in 1..=4usize, still in 1..6usize
+    ) {
+        // The more kinds and the less that moves, the more is asked for one by one.
+        const KINDS: [TreeKind; 4] =
+            [TreeKind::Dynamic, TreeKind::Static, TreeKind::Kinematic, TreeKind::Standalone];
         let mut noise = Noise(seed);
         let mut trees = Trees::default();
         let mut all = Vec::new();
         let mut movers = Movers::default();
         for id in 0..count {
-            let kind = TreeKind::ALL[noise.below(4)];
+            let kind = KINDS[noise.below(kinds)];
             let mask = if noise.below(3) == 0 { PairMask::ALL } else { PairMask::solid(kind) };
             let mask = if noise.below(20) == 0 { PairMask::NONE } else { mask };
             let proxy = trees[kind].insert(id, noise.aabb());
             let mover = Mover { id, kind, mask, aabb: trees[kind].aabb(proxy) };
-            let moved = noise.below(2) == 0;
+            let moved = noise.below(still) == 0;
             all.push((mover, moved));
         }
         // In no order.
@@ -361,7 +374,7 @@ proptest! {
         let mut expected = Vec::new();
         for (a, _) in &all {
             for (b, _) in all.iter().filter(|(b, _)| b.id > a.id) {
-                let asks = |x: &Mover, y: &Mover| listed.contains(&x.id) && x.mask.contains(y.kind);
+                let asks = |x: &Mover, y: &Mover| movers.contains(x.id) && x.mask.contains(y.kind);
                 if a.aabb.overlaps(&b.aabb) && (asks(a, b) || asks(b, a)) && !is_known(a.id, b.id) {
                     expected.push((a.id, b.id));
                 }
@@ -379,6 +392,24 @@ proptest! {
 }
 
 #[test]
+fn a_team_fits_a_tree_as_one_does() {
+    let mut noise = Noise(5);
+    let mut boxes: Vec<_> = (0..3_000).map(|id| (id, noise.aabb())).collect();
+    let mut tree = Tree::new();
+    tree.build(&boxes);
+    boxes.iter_mut().for_each(|b| b.1 = noise.aabb());
+    let fitted = |team: &Team| {
+        team.wake();
+        let mut tree = tree.clone();
+        tree.fit(&|id| boxes[id as usize].1, team);
+        tree.validate();
+        (0..3_000).for_each(|i| assert_eq!(tree.aabb(ProxyId(i)), tree::admitted(boxes[i as usize].1)));
+        (tree.bounds(), tree.cost().to_bits())
+    };
+    assert_eq!(fitted(&Team::new(3)), fitted(&Team::default()));
+}
+
+#[test]
 fn empty_and_single_trees_answer() {
     let mut tree = Tree::default();
     let any = Aabb::EVERYTHING;
@@ -387,6 +418,7 @@ fn empty_and_single_trees_answer() {
     tree.cast_ray(Vector::ZERO, Vector::X, f32::INFINITY, |_, _| panic!("nothing is there"));
     assert_eq!(tree.rebuild_partial(), 0);
     tree.rebuild_full();
+    tree.fit(&|_| panic!("nothing is there"), &Team::default());
     tree.build(&[]);
     tree.validate();
 
@@ -396,6 +428,8 @@ fn empty_and_single_trees_answer() {
     assert!(!tree.query(&unit, |id| id != 5), "stopped by the callback");
     tree.enlarge(proxy, unit.grown(1.0));
     assert_eq!(tree.aabb(proxy), unit.grown(1.0));
+    tree.fit(&|_| unit.grown(2.0), &Team::default());
+    assert_eq!(tree.aabb(proxy), unit.grown(2.0));
     tree.set(proxy, unit);
     tree.rebuild_full();
     tree.validate();

@@ -1,5 +1,7 @@
-//! Which pairs of boxes came to touch: every mover asks the trees it may touch.
+//! Which pairs of boxes came to touch: every mover asks the trees it may touch, or, where most moved, the trees are
+//! walked at once.
 
+use super::meet::{Slots, Walk};
 use super::tree::Tree;
 use crate::data::{BitSet, PairSet};
 use crate::shape::Aabb;
@@ -8,6 +10,15 @@ use std::sync::{Mutex, PoisonError};
 
 /// How many movers a member of the team asks for at a stretch.
 const BLOCK: usize = 32;
+
+/// Two trees are walked at once if one of so many leaves in them moved, and at least so many in all.
+const MANY: (usize, usize) = (3, 64);
+
+/// Into about how many parts such a walk is cut for each tree against another.
+const PARTS: usize = 64;
+
+/// Pairs found are held against those known when there are so many: what was prefetched is still there.
+const TO_LOOK_UP: usize = 128;
 
 /// What moves a collider decides in which tree it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -142,16 +153,23 @@ impl Movers {
         self.list.clear();
     }
 
+    /// Whether a collider is a mover that looks for partners of a kind.
+    #[inline(always)]
+    fn asks(&self, id: u32, kind: TreeKind) -> bool {
+        self.moved.contains(id) && self.masks[id as usize].contains(kind)
+    }
+
     /// Whether the pair of a mover and what it found is left to the other, who finds it as well.
     #[inline(always)]
     fn is_left_to(&self, found: u32, mover: &Mover) -> bool {
-        found < mover.id && self.moved.contains(found) && self.masks[found as usize].contains(mover.kind)
+        found < mover.id && self.asks(found, mover.kind)
     }
 }
 
 /// Which pairs are of no interest.
 pub trait Known: Sync {
-    /// Whether it is plain to see that a pair, lower id first, is none: asked for every two boxes that touch.
+    /// Whether it is plain to see that a pair, lower id first, is none: asked for every two boxes that touch and of which
+    /// one moved.
     fn is_plain(&self, a: u32, b: u32) -> bool;
     /// Has the memory brought near that [`contains`](Self::contains) looks at.
     fn prefetch(&self, a: u32, b: u32);
@@ -176,26 +194,111 @@ impl Known for PairSet {
     }
 }
 
-/// Appends the pairs `(lower id, higher id)` that one mover is to report: what its box touches in the trees
-/// its mask names, less itself, less the pairs of two movers that the lower one reports, less those that are
-/// [plain](Known::is_plain). Order as the trees have it.
-#[inline]
-fn pairs_of(mover: &Mover, trees: &Trees, movers: &Movers, known: &impl Known, out: &mut Vec<(u32, u32)>) {
-    for kind in TreeKind::ALL.into_iter().filter(|k| mover.mask.contains(*k)) {
-        trees[kind].query(&mover.aabb, |found| {
-            let pair = (found.min(mover.id), found.max(mover.id));
-            if found != mover.id && !movers.is_left_to(found, mover) && !known.is_plain(pair.0, pair.1) {
-                out.push(pair);
+/// What the movers of a step are searched by: kinds between which most leaves moved by walking both trees at once,
+/// the others by a query for each mover.
+#[derive(Debug, Default)]
+struct Plan {
+    /// For each kind those it is queried against.
+    queried: [PairMask; 4],
+    /// Parts of walks, and between which kinds.
+    parts: Vec<([TreeKind; 2], Slots)>,
+    /// Room to divide a walk in.
+    walk: Walk,
+    divided: Vec<Slots>,
+}
+
+impl Plan {
+    fn make(&mut self, trees: &Trees, movers: &Movers) {
+        self.parts.clear();
+        let mut asked = [[0; 4]; 4];
+        for mover in movers.list() {
+            for kind in TreeKind::ALL {
+                asked[mover.kind as usize][kind as usize] += usize::from(mover.mask.contains(kind));
             }
-            true
-        });
+        }
+        self.queried = [PairMask::NONE; 4];
+        for a in TreeKind::ALL {
+            for b in TreeKind::ALL.into_iter().filter(|b| *b >= a) {
+                let there = |x: TreeKind, y: TreeKind| asked[x as usize][y as usize];
+                let (asked, leaves) = if a == b {
+                    (there(a, a), trees[a].len())
+                } else {
+                    (there(a, b) + there(b, a), trees[a].len() + trees[b].len())
+                };
+                if asked == 0 {
+                    continue;
+                }
+                if asked < MANY.1 || asked * MANY.0 < leaves {
+                    for (x, y) in [(a, b), (b, a)] {
+                        self.queried[x as usize] = self.queried[x as usize].with(PairMask::only(y));
+                    }
+                    continue;
+                }
+                let other = (a != b).then_some(&trees[b]);
+                self.walk.divide(&trees[a], other, PARTS, &mut self.divided);
+                self.parts.extend(self.divided.iter().map(|part| ([a, b], *part)));
+            }
+        }
+    }
+
+    /// How many blocks of movers there are to query for.
+    fn query_blocks(&self, movers: &Movers) -> usize {
+        if self.queried == [PairMask::NONE; 4] { 0 } else { movers.list().len().div_ceil(BLOCK) }
     }
 }
 
-/// Takes the pairs from `start` on out that are known: first all are asked for, then looked at, so that the
-/// memory's answers need not be waited for one by one.
+/// What a member of the team needs: the pairs it found, and room.
+#[derive(Debug, Default)]
+struct Member {
+    found: Vec<(u32, u32)>,
+    walk: Walk,
+}
+
+impl Member {
+    /// Adds the pairs `(lower id, higher id)` that one mover is to report: what its box touches in the trees of the
+    /// `kinds` its mask names, less itself, less the pairs of two movers that the lower one reports, less those that
+    /// are [plain](Known::is_plain). Order as the trees have it.
+    #[inline]
+    fn query(&mut self, mover: &Mover, kinds: PairMask, trees: &Trees, movers: &Movers, known: &impl Known) {
+        for kind in TreeKind::ALL.into_iter().filter(|k| mover.mask.contains(*k) && kinds.contains(*k)) {
+            trees[kind].query(&mover.aabb, |found| {
+                let pair = (found.min(mover.id), found.max(mover.id));
+                if found != mover.id && !movers.is_left_to(found, mover) && !known.is_plain(pair.0, pair.1) {
+                    self.found.push(pair);
+                }
+                true
+            });
+        }
+    }
+
+    /// Adds the pairs of one part of a walk, less those neither of whom moved and asks for the other, less those that
+    /// are plain or known.
+    fn walk(
+        &mut self,
+        ([a, b], part): ([TreeKind; 2], Slots),
+        trees: &Trees,
+        movers: &Movers,
+        known: &impl Known,
+    ) {
+        let Self { found, walk, .. } = self;
+        let mut start = found.len();
+        walk.meet(&trees[a], (a != b).then_some(&trees[b]), part, |x, y| {
+            let pair = (x.min(y), x.max(y));
+            if (movers.asks(x, b) || movers.asks(y, a)) && !known.is_plain(pair.0, pair.1) {
+                known.prefetch(pair.0, pair.1);
+                found.push(pair);
+                if found.len() - start == TO_LOOK_UP {
+                    drop_known(found, start, known);
+                    start = found.len();
+                }
+            }
+        });
+        drop_known(found, start, known);
+    }
+}
+
+/// Takes the pairs from `start` on out that are known.
 fn drop_known(found: &mut Vec<(u32, u32)>, start: usize, known: &impl Known) {
-    found[start..].iter().for_each(|(a, b)| known.prefetch(*a, *b));
     let mut kept = start;
     for i in start..found.len() {
         let (a, b) = found[i];
@@ -209,30 +312,37 @@ fn drop_known(found: &mut Vec<(u32, u32)>, start: usize, known: &impl Known) {
 #[derive(Debug, Default)]
 pub struct FoundPairs {
     sorted: Vec<(u32, u32)>,
-    /// What each member of the team found.
-    by_member: Vec<Mutex<Vec<(u32, u32)>>>,
+    plan: Plan,
+    members: Vec<Mutex<Member>>,
 }
 
 impl FoundPairs {
     /// Finds the pairs of all movers anew: sorted, each once. Every id must stand in one tree only, once.
     pub fn find(&mut self, trees: &Trees, movers: &Movers, known: &impl Known, team: &Team) {
-        if self.by_member.len() < team.members() {
-            self.by_member.resize_with(team.members(), Mutex::default);
+        if self.members.len() < team.members() {
+            self.members.resize_with(team.members(), Mutex::default);
         }
-        let (list, by_member) = (movers.list(), &self.by_member);
-        team.run(list.len().div_ceil(BLOCK), |block, member| {
-            let mut found = by_member[member].lock().unwrap_or_else(PoisonError::into_inner);
-            let start = found.len();
+        let Self { sorted, plan, members } = self;
+        plan.make(trees, movers);
+        let (plan, list, parts) = (&*plan, movers.list(), plan.parts.len());
+        team.run(parts + plan.query_blocks(movers), |block, member| {
+            let mut member = members[member].lock().unwrap_or_else(PoisonError::into_inner);
+            let Some(block) = block.checked_sub(parts) else {
+                return member.walk(plan.parts[block], trees, movers, known);
+            };
+            let start = member.found.len();
             for mover in &list[block * BLOCK..list.len().min((block + 1) * BLOCK)] {
-                pairs_of(mover, trees, movers, known, &mut found);
+                member.query(mover, plan.queried[mover.kind as usize], trees, movers, known);
             }
-            drop_known(&mut found, start, known);
+            // First all are asked for, then looked at: the memory's answers need not be waited for one by one.
+            member.found[start..].iter().for_each(|(a, b)| known.prefetch(*a, *b));
+            drop_known(&mut member.found, start, known);
         });
-        self.sorted.clear();
-        for found in &mut self.by_member {
-            self.sorted.append(found.get_mut().unwrap_or_else(PoisonError::into_inner));
+        sorted.clear();
+        for member in members {
+            sorted.append(&mut member.get_mut().unwrap_or_else(PoisonError::into_inner).found);
         }
-        self.sorted.sort_unstable();
+        sorted.sort_unstable();
     }
 
     /// The pairs found last, `(lower id, higher id)`, sorted.

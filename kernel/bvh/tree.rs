@@ -297,7 +297,7 @@ impl Tree {
     }
 
     #[inline(always)]
-    fn slot_box(&self, slot: u32) -> Aabb {
+    pub(super) fn slot_box(&self, slot: u32) -> Aabb {
         if slot == ROOT { self.root_box } else { self.branches[slot as usize >> 1].boxes[slot as usize & 1] }
     }
 

@@ -430,7 +430,11 @@ impl Link<'_> {
         for (id, contact) in self.contacts.iter() {
             assert_eq!(contact.surface, self.mixed(contact.colliders), "contact {id} knows its surfaces");
             let awake = contact.bodies.iter().any(|b| self.is_awake(*b));
-            assert_eq!(contact.active != NONE, awake, "contact {id} is active exactly if a body is awake");
+            assert_eq!(
+                self.contacts.is_active(id),
+                awake,
+                "contact {id} is active exactly if a body is awake"
+            );
             let movable = self.movable(contact);
             let moving = movable.iter().flatten().any(|b| self.is_awake(*b));
             assert_eq!(contact.slot.is_some(), contact.is_solved() && moving, "contact {id}'s colour");

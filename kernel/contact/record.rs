@@ -94,37 +94,41 @@ pub struct Frozen {
     pub rotations: [Rot; 2],
     /// From A's to B's centre of mass.
     pub offset: Vector,
-    /// The distance up to which points were looked for, margins aside, in metres.
+    /// The distance up to which points were looked for, or, if there were none, up to which there are none; margins
+    /// aside, in metres.
     pub prediction: f32,
 }
 
 /// A pair of colliders whose fat boxes overlap.
+///
+/// What a contact without points is asked for in every step comes first, in the plane within one cache line; then what
+/// pushing needs; last what is of use only when it comes or goes.
 #[derive(Clone, Debug)]
+#[repr(C)]
+#[cfg_attr(feature = "2d", repr(align(64)))]
 pub struct Contact {
     /// The colliders, the lower id first.
     pub colliders: [u32; 2],
     /// The bodies they belong to, or [`NONE`].
     pub bodies: [u32; 2],
+    /// Each side's revisions of collider and body when the manifold was computed.
+    pub revisions: [u32; 2],
     /// State bits.
     pub flags: ContactFlags,
     /// How many manifolds stand in the side pool besides the inline one.
     pub extra_count: u16,
+    /// The pose that anchors and normal were computed at.
+    pub frozen: Frozen,
+    /// The last separating axis or reference feature.
+    pub cache: FeatureCache,
+    /// The first (for native pairs: only) manifold.
+    pub manifold: Manifold,
+    /// The coefficients of friction and restitution of both surfaces together.
+    pub surface: [f32; 2],
     /// Where in the side pool, or [`NONE`].
     pub extra: u32,
     /// The place among its colour's contacts; `None` unless it touches, responds and is awake.
     pub slot: Option<ColorSlot>,
-    /// The place in the list of awake contacts, or [`NONE`].
-    pub active: u32,
-    /// The coefficients of friction and restitution of both surfaces together.
-    pub surface: [f32; 2],
-    /// Each side's revisions of collider and body when the manifold was computed.
-    pub revisions: [u32; 2],
-    /// The last separating axis or reference feature.
-    pub cache: FeatureCache,
-    /// The pose that anchors and normal were computed at.
-    pub frozen: Frozen,
-    /// The first (for native pairs: only) manifold.
-    pub manifold: Manifold,
     /// Next and previous contact of the same collider, for each side, as `contact << 1 | side`.
     pub(super) next: [u32; 2],
     pub(super) previous: [u32; 2],
@@ -140,7 +144,6 @@ impl Contact {
             extra_count: 0,
             extra: NONE,
             slot: None,
-            active: NONE,
             surface: [0.0; 2],
             revisions: [0; 2],
             cache: FeatureCache::NONE,

@@ -8,10 +8,10 @@ use crate::data::{BitSet, Parts};
 use crate::table::{BodyKind, BodyTable, NONE};
 use crate::team::Team;
 
-/// How many contacts are updated at a stretch: recycled ones take some microseconds.
-const BLOCK: usize = 64;
+/// How many contacts are updated at a stretch, in words of 64 ids: recycled ones take some microseconds.
+const BLOCK: usize = 2;
 
-/// So many contacts ahead records are brought near: they lie in the order in which pairs were found.
+/// So many contacts ahead records are brought near.
 const AHEAD: usize = 4;
 
 impl ContactTable {
@@ -33,8 +33,14 @@ impl ContactTable {
         let crowded = self.any_deep.then_some(&self.crowded);
         let (contacts, points) = (Parts::of(contacts), Parts::of(points));
         let of_members = Parts::of(scratches);
-        team.run(active.len().div_ceil(BLOCK), |block, member| {
-            let ids = &active[block * BLOCK..active.len().min((block + 1) * BLOCK)];
+        team.run(active.blocks(BLOCK), |block, member| {
+            let mut ids = [0; 64 * BLOCK];
+            let mut count = 0;
+            for id in active.iter_block(BLOCK, block) {
+                ids[count] = id;
+                count += 1;
+            }
+            let ids = &ids[..count];
             // SAFETY: no two blocks run at once with the same member.
             let scratch = unsafe { of_members.one(member) };
             ids[..AHEAD.min(ids.len())].iter().for_each(|id| contacts.prefetch(*id));
@@ -42,7 +48,7 @@ impl ContactTable {
                 if let Some(next) = ids.get(i + AHEAD) {
                     contacts.prefetch(*next);
                 }
-                // SAFETY: a contact is in the list once.
+                // SAFETY: an id is in one block, once.
                 let (contact, count) = unsafe { (contacts.one(id as usize), points.one(id as usize)) };
                 scratch.update(id, contact, extra, crowded, phase);
                 // Counts of contacts of different blocks share cache lines, so they are left alone where they may be.
@@ -72,8 +78,8 @@ impl ContactTable {
         if !self.any_deep {
             return;
         }
-        for id in &self.active {
-            let contact = &self.contacts[*id as usize];
+        for id in self.active.iter() {
+            let contact = &self.contacts[id as usize];
             if contact.flags.has(ContactFlags::DEEP) {
                 let dynamic = |body: &u32| *body != NONE && bodies[*body].kind == BodyKind::Dynamic;
                 contact.bodies.into_iter().filter(dynamic).for_each(|body| _ = self.crowded.insert(body));

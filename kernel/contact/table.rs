@@ -1,4 +1,4 @@
-//! All contacts by id, the pairs they are of, and the list of the awake ones.
+//! All contacts by id, the pairs they are of, and the set of the awake ones.
 
 use super::record::{Contact, Manifold};
 use crate::data::{BitSet, IdPool, PairSet, prefetch};
@@ -15,8 +15,10 @@ pub struct ContactTable {
     /// What [`PointCount`] says of each contact.
     pub(super) points: Vec<PointCount>,
     pairs: PairSet,
-    /// Contacts with an awake body, in no particular order.
-    pub(super) active: Vec<u32>,
+    /// Contacts with an awake body, ...
+    pub(super) active: BitSet,
+    /// ... and how many they are.
+    active_count: usize,
     /// Whether the last update found a deeply overlapping contact.
     pub(super) any_deep: bool,
     /// The dynamic bodies that overlapped others deeply when contacts were last updated.
@@ -45,9 +47,9 @@ impl PointCount {
 }
 
 impl ContactTable {
-    /// How many bytes are kept of each contact here, but for one bit, for the [`pairs`](Self::pairs), and for
+    /// How many bytes are kept of each contact here, but for two bits, for the [`pairs`](Self::pairs), and for
     /// manifolds after the first.
-    pub const BYTES_PER_CONTACT: usize = size_of::<Contact>() + size_of::<PointCount>() + size_of::<u32>();
+    pub const BYTES_PER_CONTACT: usize = size_of::<Contact>() + size_of::<PointCount>();
 
     /// How many contacts there are.
     pub fn len(&self) -> usize {
@@ -74,9 +76,19 @@ impl ContactTable {
         self.any_deep
     }
 
-    /// The contacts with an awake body, in no particular order.
-    pub fn active(&self) -> &[u32] {
-        &self.active
+    /// The contacts with an awake body, by id.
+    pub fn active(&self) -> impl Iterator<Item = u32> + '_ {
+        self.active.iter()
+    }
+
+    /// How many contacts have an awake body.
+    pub fn active_len(&self) -> usize {
+        self.active_count
+    }
+
+    /// Whether a contact has an awake body.
+    pub fn is_active(&self, id: u32) -> bool {
+        self.active.contains(id)
     }
 
     /// All contacts, by id.
@@ -205,21 +217,11 @@ impl ContactTable {
     }
 
     pub(super) fn activate(&mut self, id: u32) {
-        let contact = &mut self.contacts[id as usize];
-        if contact.active == NONE {
-            contact.active = self.active.len() as u32;
-            self.active.push(id);
-        }
+        self.active_count += usize::from(self.active.insert(id));
     }
 
     pub(super) fn deactivate(&mut self, id: u32) {
-        let at = core::mem::replace(&mut self.contacts[id as usize].active, NONE);
-        if at != NONE {
-            self.active.swap_remove(at as usize);
-            if let Some(moved) = self.active.get(at as usize) {
-                self.contacts[*moved as usize].active = at;
-            }
-        }
+        self.active_count -= usize::from(self.active.remove(id));
     }
 
     /// The contacts of a collider.
@@ -242,10 +244,8 @@ impl ContactTable {
     ///
     /// With the invariant that does not hold.
     pub fn validate(&self, colliders: &ColliderTable) {
-        for (at, id) in self.active.iter().enumerate() {
-            assert!(self.is_live(*id), "an active contact is live");
-            assert_eq!(self.get(*id).active as usize, at, "an active contact knows its place");
-        }
+        assert_eq!(self.active.count(), self.active_count, "active contacts are counted");
+        assert!(self.active.iter().all(|id| self.is_live(id)), "an active contact is live");
         let mut live = 0;
         for (id, contact) in self.iter() {
             live += 1;

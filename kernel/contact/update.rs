@@ -98,6 +98,9 @@ const RECYCLE_SHARE: f32 = 0.25;
 /// Bodies that turned further than this since the manifold was computed do not recycle: cos 10°.
 const RECYCLE_COS: f32 = 0.985;
 
+/// By how much the chord of an angle of twice that may be longer than [`small_turn`](Rot::small_turn) says.
+const CHORD: f32 = 1.016;
+
 impl<S: ManifoldSource> NarrowPhase<'_, S> {
     /// Brings a contact up to date with where its bodies are now. `crowded` says that one of them overlapped another
     /// deeply before. Manifolds after the first are left in
@@ -140,7 +143,8 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         // What has just come together, or was changed by hand, was put where it is; all else was pressed there, if not
         // by those that were put there.
         let placed = crowded || contact.revisions != self.revisions(contact, poses);
-        self.compute(contact, extra, poses, scratch);
+        self.compute(contact, poses, scratch);
+        self.replace(contact, extra, poses[0], scratch);
         let deep = match (contact.flags.has(ContactFlags::DEEP), placed) {
             (true, _) => self.overlaps_by(NO_LONGER_DEEP, contact),
             (false, true) => self.overlaps_by(DEEP, contact),
@@ -184,6 +188,13 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         [&self.colliders.reaches[a as usize], &self.colliders.reaches[b as usize]]
     }
 
+    /// How far apart the shapes are kept, in metres.
+    #[inline(always)]
+    fn margin(&self, contact: &Contact) -> f32 {
+        let [a, b] = self.reaches(contact);
+        a.margin + b.margin
+    }
+
     #[inline(always)]
     fn revisions(&self, contact: &Contact, poses: [&BodyPose; 2]) -> [u32; 2] {
         let [a, b] = self.reaches(contact);
@@ -192,6 +203,9 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
 
     /// Keeps the manifold if the bodies moved little enough against each other, and lets its
     /// separations follow: s = s₀ + n · (Δoffset + (R_B − 1) r_B − (R_A − 1) r_A).
+    ///
+    /// No point of one surface moved further against the other than `moved`. So of shapes that were `prediction` apart none
+    /// can be nearer than what is left of it; they are not looked at until that may close in the step.
     fn recycle(&self, contact: &mut Contact, poses: [&BodyPose; 2]) -> bool {
         let reaches = self.reaches(contact);
         let Frozen { rotations, offset, prediction } = contact.frozen;
@@ -199,8 +213,11 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         // of all but fast bodies.
         let fastest = (poses[0].speed + poses[1].speed) * self.dt;
         if !contact.flags.has(ContactFlags::FROZEN)
+            || !(self.recycle_distance > 0.0)
             || contact.revisions != self.revisions(contact, poses)
             || (fastest > prediction && prediction < self.prediction(contact))
+            // A point and a half-space: nobody reaches anywhere.
+            || max(reaches[0].extent, reaches[1].extent) == 0.0
         {
             return false;
         }
@@ -211,17 +228,25 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
             return false;
         }
         let change = (poses[1].center - poses[0].center).to_local() - offset;
-        // The motion of B relative to A: how far it shifted in A's frame, which length is the same in world axes, and
-        // the angle between how far each turned, times the farther reach of the two.
-        let shift = change - turns[0].inverse().unturn(offset);
+        // How far the centre of one shifted in the frame of the other, which length is the same in world axes, and
+        // the angle between how far each turned, times the reach of the one that shifted: B, but A if B is static, for
+        // that may be large and its centre far off, or a half-space, which has no end. Not less than the reach of
+        // either that moves, so that normals and anchors do not grow old on the larger.
+        let is_a = reaches[1].turning == 0.0 && reaches[0].extent > 0.0;
+        let (frame, reach) = if is_a { (turns[1], reaches[0].extent) } else { (turns[0], reaches[1].extent) };
+        let reach = max(reach, max(reaches[0].turning, reaches[1].turning));
+        let shift = change - frame.inverse().unturn(offset);
         let angle: Angular = turns[0].difference(turns[1]);
-        let mut allowed =
-            min(self.recycle_distance, RECYCLE_SHARE * smaller([reaches[0].extent, reaches[1].extent]));
-        if contact.manifold.count < MAX_POINTS as u32 {
+        let allowed = if contact.manifold.count == 0 {
+            prediction - max(self.closing(contact, &reaches), self.tolerance)
+        } else {
+            let errors =
+                min(self.recycle_distance, RECYCLE_SHARE * smaller([reaches[0].extent, reaches[1].extent]));
             // Points may be missing that were too far apart to be found; none of them may close in this step.
-            allowed = min(allowed, prediction - self.closing(contact, &reaches));
-        }
-        let moved = shift.length() + max(reaches[0].turning, reaches[1].turning) * angle.length();
+            let is_full = contact.manifold.count == MAX_POINTS as u32;
+            if is_full { errors } else { min(errors, prediction - self.closing(contact, &reaches)) }
+        };
+        let moved = shift.length() + CHORD * reach * angle.length();
         // A NaN fails the comparison.
         if !(moved < allowed) {
             return false;
@@ -239,52 +264,73 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         true
     }
 
-    /// Computes the manifolds at the present pose and hands the old points' impulses on.
-    fn compute(
-        &self,
-        contact: &mut Contact,
-        extra: &[Manifold],
-        poses: [&BodyPose; 2],
-        scratch: &mut Scratch<S::Workspace>,
-    ) {
+    /// Computes the manifolds at the present pose, into `scratch.local`, and freezes the contact there.
+    fn compute(&self, contact: &mut Contact, poses: [&BodyPose; 2], scratch: &mut Scratch<S::Workspace>) {
         let [a, b] = contact.colliders;
-        let (ca, cb) = (&self.colliders[a], &self.colliders[b]);
-        let margin = ca.def.margin + cb.def.margin;
+        let margin = self.margin(contact);
         let revisions = self.revisions(contact, poses);
         if contact.revisions != revisions {
             // What is remembered of the features may be of other shapes.
             contact.cache = FeatureCache::NONE;
         }
-        let reach = self.prediction(contact);
+        let mut reach = self.prediction(contact);
         let prediction = reach + margin;
-        let (pose_a, pose_b) = (&self.colliders.poses[a as usize], &self.colliders.poses[b as usize]);
 
         scratch.local.clear();
         if contact.flags.has(ContactFlags::FOREIGN) {
             self.source.manifolds(a, b, prediction, &mut scratch.foreign, &mut scratch.local);
         } else {
-            let relative = pose_a.relative(pose_b);
-            let mut local = LocalManifold::default();
-            let (sa, sb): (&Shape, &Shape) = (&ca.def.shape, &cb.def.shape);
-            manifold::collide(sa, sb, &relative, prediction, &mut contact.cache, &mut local);
-            if local.count > 0 {
-                scratch.local.push(local);
+            let mut apart = self.colliders.tight[a as usize].gap(&self.colliders.tight[b as usize]);
+            if !(apart > prediction) {
+                let (pose_a, pose_b) = (&self.colliders.poses[a as usize], &self.colliders.poses[b as usize]);
+                let (sa, sb): (&Shape, &Shape) = (&self.colliders[a].def.shape, &self.colliders[b].def.shape);
+                let mut local = LocalManifold::default();
+                let relative = pose_a.relative(pose_b);
+                manifold::collide(sa, sb, &relative, prediction, &mut contact.cache, &mut local);
+                apart = local.apart;
+                if local.count > 0 {
+                    scratch.local.push(local);
+                }
+            }
+            if scratch.local.is_empty() {
+                reach = max(apart - margin, reach);
             }
         }
 
-        let frozen = Frozen {
+        contact.frozen = Frozen {
             rotations: poses.map(|p| p.rotation),
             offset: (poses[1].center - poses[0].center).to_local(),
             prediction: reach,
         };
-        // From body A's centre of mass to collider A's origin, in world axes.
-        let to_shape = (pose_a.position - poses[0].center).to_local();
-        let old = contact.manifold;
+        contact.revisions = revisions;
+        let recyclable = self.recycle_distance > 0.0 && !contact.flags.has(ContactFlags::FOREIGN);
+        contact.flags.set(ContactFlags::FROZEN, recyclable);
+    }
+
+    /// Puts the manifolds in `scratch.local` in place of those that were, and hands the old points' impulses on. `body_a`
+    /// is the pose of the first side's body.
+    fn replace(
+        &self,
+        contact: &mut Contact,
+        extra: &[Manifold],
+        body_a: &BodyPose,
+        scratch: &mut Scratch<S::Workspace>,
+    ) {
         scratch.extra.clear();
-        let mut first = Manifold::default();
+        if contact.manifold.count == 0 && scratch.local.is_empty() {
+            contact.flags.set(ContactFlags::TOUCHING, false);
+            return;
+        }
+        let [a, b] = contact.colliders;
+        let (ca, cb) = (&self.colliders[a].def, &self.colliders[b].def);
+        let margin = self.margin(contact);
+        let pose_a = &self.colliders.poses[a as usize];
+        // From body A's centre of mass to collider A's origin, in world axes.
+        let to_shape = (pose_a.position - body_a.center).to_local();
+        let old = core::mem::take(&mut contact.manifold);
         for (i, local) in scratch.local.iter().enumerate() {
             let mut m = to_world(local, pose_a.rotation, to_shape, margin);
-            m.rounding = [ca.def.shape.rounding(), cb.def.shape.rounding()];
+            m.rounding = [ca.shape.rounding(), cb.shape.rounding()];
             if !m.normal.is_finite()
                 || m.points().iter().any(|p| !p.separation.is_finite() || !p.anchor.is_finite())
             {
@@ -295,24 +341,24 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
                 inherit(&mut m, core::iter::once(&old).chain(extra.iter()));
             }
             if i == 0 {
-                first = m;
+                contact.manifold = m;
             } else {
                 scratch.extra.push(m);
             }
         }
-        contact.manifold = first;
-        contact.frozen = frozen;
-        contact.revisions = revisions;
         let touching = contact.manifold.count > 0 || !scratch.extra.is_empty();
         contact.flags.set(ContactFlags::TOUCHING, touching);
-        let recyclable = self.recycle_distance > 0.0 && !contact.flags.has(ContactFlags::FOREIGN);
-        contact.flags.set(ContactFlags::FROZEN, recyclable);
     }
 
     /// How far the surfaces of a contact may close in this step, in metres.
     fn closing(&self, contact: &Contact, reaches: &[&Reach; 2]) -> f32 {
         let [a, b] = [self.velocity(contact, 0), self.velocity(contact, 1)];
-        let turning = reaches[0].turning * a.angular.length() + reaches[1].turning * b.angular.length();
+        let arm = |side: usize| {
+            let own = reaches[side].extent;
+            // A half-space turns as far out as the other is.
+            if own > 0.0 { own } else { contact.frozen.offset.length() + reaches[1 - side].extent }
+        };
+        let turning = arm(0) * a.angular.length() + arm(1) * b.angular.length();
         ((b.linear - a.linear).length() + turning) * self.dt
     }
 

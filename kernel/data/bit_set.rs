@@ -76,7 +76,17 @@ impl BitSet {
 
     /// The members in ascending order.
     pub fn iter(&self) -> impl Iterator<Item = u32> + '_ {
-        self.words.iter().enumerate().flat_map(|(i, &word)| {
+        self.iter_block(self.words.len(), 0)
+    }
+
+    /// How many blocks of so many times 64 ids there are up to the largest member.
+    pub fn blocks(&self, words: usize) -> usize {
+        self.words.len().div_ceil(words)
+    }
+
+    /// The members in one of [`blocks`](Self::blocks) in ascending order.
+    pub fn iter_block(&self, words: usize, block: usize) -> impl Iterator<Item = u32> + '_ {
+        self.words.iter().enumerate().skip(words * block).take(words).flat_map(|(i, &word)| {
             let mut rest = word;
             core::iter::from_fn(move || {
                 (rest != 0).then(|| {
@@ -159,6 +169,8 @@ mod tests {
                     prop_assert!(set.iter().eq(model.iter().copied()));
                     prop_assert_eq!(set.count(), model.len());
                     prop_assert_eq!(set.is_empty(), model.is_empty());
+                    let blocks = (0..set.blocks(3)).flat_map(|block| set.iter_block(3, block));
+                    prop_assert!(blocks.eq(model.iter().copied()));
                 }
             }
         }

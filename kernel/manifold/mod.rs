@@ -35,6 +35,8 @@ pub struct LocalManifold {
     pub points: [LocalPoint; MAX_POINTS],
     /// How many points there are, 0 if the shapes are farther apart than the prediction distance.
     pub count: usize,
+    /// Of shapes without points: they are no nearer than this, in metres; 0 where that is not known.
+    pub apart: f32,
 }
 
 impl LocalManifold {

@@ -71,6 +71,13 @@ impl Aabb {
         (0..DIM).fold(true, |all, i| all & (a[i] <= d[i]) & (c[i] <= b[i]))
     }
 
+    /// How far apart the boxes are along the axis along which they are farthest apart, in metres; not above 0 where they
+    /// overlap.
+    #[inline(always)]
+    pub fn gap(&self, other: &Self) -> f32 {
+        (self.min - other.max).max(other.min - self.max).max_element()
+    }
+
     /// Whether `other` lies in this box; touching counts.
     #[inline(always)]
     pub fn contains(&self, other: &Self) -> bool {

@@ -36,7 +36,7 @@ impl DeepCounts {
         }
         self.0.resize(bodies.rows.len(), 0);
         for id in input.contacts.active() {
-            let contact = input.contacts.get(*id);
+            let contact = input.contacts.get(id);
             if contact.flags.has(ContactFlags::DEEP) && contact.slot.is_some() {
                 for body in contact.bodies {
                     let row = row_of(input.bodies, body);

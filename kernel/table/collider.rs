@@ -133,6 +133,8 @@ pub struct Reach {
     pub turning: f32,
     /// The greatest distance at which contacts are predicted, in metres.
     pub speculative: f32,
+    /// How far from the shape others are kept, in metres.
+    pub margin: f32,
     /// Counts changes that make cached contacts wrong: shape, place on the body, margins.
     pub revision: u32,
 }
@@ -241,6 +243,7 @@ impl ColliderTable {
             extent,
             turning: if fixed { 0.0 } else { extent },
             speculative: def.speculative,
+            margin: def.margin,
             revision: reach.revision.wrapping_add(1),
         };
     }

@@ -224,7 +224,7 @@ fn a_heap_of_boxes_that_fell_far_does_not_sink_into_itself() {
         }
     }
     let depths = |sim: &Sim| -> Vec<f32> {
-        let contacts = sim.contacts.active().iter().map(|id| sim.contacts.get(*id));
+        let contacts = sim.contacts.active().map(|id| sim.contacts.get(id));
         contacts.flat_map(|c| c.manifold.points().iter().map(|p| -p.separation).collect::<Vec<_>>()).collect()
     };
     let deepest = |sim: &Sim| depths(sim).into_iter().fold(0.0, f32::max);

@@ -172,3 +172,83 @@ fn what_lands_sinks_no_deeper_for_recycling() {
         assert!(mean < mean_fresh + 1e-3, "mean {mean} m for {mean_fresh} m, tilted: {tilted}");
     }
 }
+
+/// What the narrow phase knows of two bodies at every step, against what it would find if it looked anew. Returns how
+/// often it did not look while it knew of no points, and how often it did.
+fn watch(mut sim: Sim, [a, b]: [u32; 2], steps: usize, what: &str) -> [usize; 2] {
+    let mut counts = [0; 2];
+    let mut was_left_alone = false;
+    for _ in 0..steps {
+        sim.step();
+        if sim.contacts.find(a, b).is_none() {
+            was_left_alone = false;
+            continue;
+        }
+        let (found, known) = sim.look(a, b);
+        sim.recycle = false;
+        let (anew, fresh) = sim.look(a, b);
+        sim.recycle = true;
+        assert_ne!(anew, Found::Recycled, "{what}: not looked at anew");
+        let nearest = fresh.manifold.points().iter().fold(f32::MAX, |least, p| least.min(p.separation));
+        let is_near = anew == Found::Computed && nearest < -1e-3;
+        assert!(!(was_left_alone && is_near), "{what}: met, {nearest} m deep, while left alone");
+        was_left_alone = found == Found::Recycled && known.manifold.count == 0;
+        if found != Found::Apart && known.manifold.count == 0 {
+            counts[usize::from(found == Found::Computed)] += 1;
+            assert!(nearest > 0.005, "{what}: nobody knew of a point {nearest} m away");
+        }
+    }
+    counts
+}
+
+/// A stick that comes to a box from afar, slowly or fast, turning or not; either may have the lower id.
+fn approach(k: u32) -> [usize; 2] {
+    let fraction = |by: u32| (k * by % 101) as f32 / 101.0;
+    let mut sim = Sim::new();
+    sim.gravity = Vector::ZERO;
+    let from = turned(6.3 * fraction(13)).rotate(Vector::X);
+    let fixed = |sim: &mut Sim| {
+        let cube = Shape::Cuboid(Cuboid { half: Vector::ONE * 0.5 });
+        sim.add(BodyKind::Static, cube, Vector::ZERO, turned(fraction(7)))
+    };
+    let moving = |sim: &mut Sim| {
+        let stick = Shape::Cuboid(Cuboid { half: sized(0.8, 0.05, 0.05) });
+        let id = sim.add(BodyKind::Dynamic, stick, from * 1.8, turned(3.1 * fraction(29)));
+        let linear =
+            turned(0.8 * fraction(37) - 0.4).rotate(from) * -(0.05 + 8.0 * fraction(41) * fraction(43));
+        sim.bodies.set_velocity(id, Velocity { linear, angular: spin(12.0 * fraction(53) - 6.0) });
+        id
+    };
+    let ids = if k.is_multiple_of(2) {
+        [fixed(&mut sim), moving(&mut sim)]
+    } else {
+        [moving(&mut sim), fixed(&mut sim)]
+    };
+    watch(sim, ids, 150, &format!("approach {k}"))
+}
+
+#[test]
+fn what_is_apart_is_not_looked_at_and_yet_found_in_time() {
+    let counts = (0..400).map(approach).fold([0; 2], |[a, b], [c, d]| [a + c, b + d]);
+    assert!(2 * counts[0] > counts[1], "{counts:?} kept and computed while apart");
+}
+
+#[test]
+fn what_turns_as_it_falls_far_from_the_middle_of_a_large_floor_is_found_in_time() {
+    // Its motion is that of a turn about the floor's centre of mass: seen from the body, the floor only turns.
+    for below in [false, true] {
+        for shape in [Shape::Cuboid(Cuboid { half: Vector::ONE * 0.5 }), Shape::Ball(Ball { radius: 0.5 })] {
+            let mut sim = Sim::new();
+            sim.gravity = Vector::ZERO;
+            let slab = Shape::Cuboid(Cuboid { half: sized(100.0, 1.0, 100.0) });
+            let add_slab =
+                |sim: &mut Sim| sim.add(BodyKind::Static, slab.clone(), Vector::Y * -1.0, Rot::IDENTITY);
+            let floor = below.then(|| add_slab(&mut sim));
+            let id = sim.add(BodyKind::Dynamic, shape, Vector::X * 50.0 + Vector::Y * 0.65, Rot::IDENTITY);
+            let floor = floor.unwrap_or_else(|| add_slab(&mut sim));
+            let velocity = Velocity { linear: Vector::X * 0.1 + Vector::Y * -3.0, angular: spin(-0.06) };
+            sim.bodies.set_velocity(id, velocity);
+            watch(sim, [floor, id], 60, &format!("floor first: {below}"));
+        }
+    }
+}

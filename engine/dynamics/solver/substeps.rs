@@ -43,7 +43,7 @@ impl StepSolver {
 /// Has helpers come before there is work for them, if there was much of it in the last step: to wake takes a
 /// processor long.
 pub(crate) fn call_team(mut solver: ResMut<StepSolver>, contacts: Res<Contacts>, workers: Res<WorkerCount>) {
-    solver.call_team(contacts.table.active().len(), *workers);
+    solver.call_team(contacts.table.active_len(), *workers);
 }
 
 /// Sends the helpers to sleep: what follows the step may want their cores.

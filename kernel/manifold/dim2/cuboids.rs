@@ -36,6 +36,7 @@ pub(super) fn collide(
     let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
     remember(cache, side, best);
     if best.separation > prediction {
+        out.apart = best.separation;
         return;
     }
 

@@ -34,6 +34,7 @@ pub(super) fn collide(
         }
     }
     out.normal = normal;
+    out.apart = height + offset - other.radius;
     let mut push = |i: usize| {
         let v: Vector = pose.transform(other.vertices[i]);
         let h = other.vertices[i].dot(down) + offset;

@@ -27,6 +27,8 @@ pub(super) fn push_between(
     let separation = distance - limits.radii[0] - limits.radii[1];
     if separation <= limits.prediction {
         out.push(p + normal * (0.5 * (distance + limits.radii[0] - limits.radii[1])), separation, feature);
+    } else {
+        out.apart = separation;
     }
     normal
 }
@@ -58,6 +60,7 @@ pub(super) fn collide_with_point(
     for (i, (v, n)) in a.vertices.iter().zip(a.normals).enumerate() {
         let height = (center - *v).dot(*n);
         if height > reach {
+            out.apart = height - a.radius - b.radius;
             return;
         }
         if height > best.0 {
@@ -92,5 +95,7 @@ pub(super) fn collide_with_point(
     if separation <= prediction {
         out.normal = normal;
         out.push(center - normal * (0.5 * (height - a.radius + b.radius)), separation, 0);
+    } else {
+        out.apart = separation;
     }
 }

@@ -40,17 +40,20 @@ pub(super) fn collide(
     let known = cached(a, b, pose, &inverse, cache);
     if let Some((_, best)) = known.filter(|(_, best)| best.separation > reach) {
         cache.separation = best.separation;
+        out.apart = best.separation - a.radius - b.radius;
         return;
     }
     let on_a = most_separating(a, b, &inverse, reach);
     if on_a.separation > reach {
         remember(cache, Side::A, on_a);
+        out.apart = on_a.separation - a.radius - b.radius;
         return;
     }
     let on_b = most_separating(b, a, pose, reach);
     let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
     remember(cache, side, best);
     if best.separation > reach {
+        out.apart = best.separation - a.radius - b.radius;
         return;
     }
 

@@ -42,6 +42,7 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32
     let best = if crossing { shallowest(&candidates) } else { nearest(&candidates) };
     let reach = prediction + a.radius + b.radius;
     if !crossing && best.square > reach * reach {
+        out.apart = best.square.sqrt() - a.radius - b.radius;
         return;
     }
 

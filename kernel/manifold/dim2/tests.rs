@@ -241,6 +241,17 @@ proptest! {
     }
 
     #[test]
+    fn without_points_shapes_are_no_nearer_than_is_said((a, b, pose) in near_pair(), farther in 1.0f32..2.0) {
+        let pose = Pose::new(pose.position * farther, pose.rotation);
+        let m = contact(&a, &b, &pose);
+        if m.count == 0 && bounded_by_planes(&a, &b) {
+            let truth = oracle(&a, &b, &pose, [0.0; 2]);
+            prop_assert!(f64::from(m.apart) < truth + TOLERANCE, "{} but {truth}", m.apart);
+            prop_assert!(m.apart > 0.0, "nothing is said of {truth}");
+        }
+    }
+
+    #[test]
     fn points_lie_midway((a, b, pose) in near_pair()) {
         let m = contact(&a, &b, &pose);
         for p in m.points() {

@@ -91,11 +91,19 @@ pub(super) fn collide(
     *cache = remember(axis);
     // Sizes that are not numbers have no axis, or one whose separation is none.
     if !(separation <= pair.limit()) || separation == f32::NEG_INFINITY {
+        out.apart = max(separation - pair.radius, 0.0);
         return;
     }
     let exact = pair.build(axis, out);
     if !exact && separation > gjk::resolution(pair.larger, pair.smaller) {
-        pair.build_closest(separation, out);
+        let is_farther = pair.build_closest(separation, out);
+        // Beside the face, and yet no farther than its plane says: a sliver, or rounding.
+        if out.count == 0
+            && !is_farther
+            && let Axis::FaceA(face) | Axis::FaceB(face) = axis
+        {
+            pair.push_deepest(&face, matches!(axis, Axis::FaceB(_)), out);
+        }
     }
 }
 
@@ -159,6 +167,7 @@ impl<'a> Pair<'a> {
         };
         let separation = axis.separation();
         if separation > self.limit() {
+            out.apart = separation - self.radius;
             return true;
         }
         if !((separation - cache.separation).abs() < CACHE_TOLERANCE * self.smaller) {
@@ -233,11 +242,7 @@ impl<'a> Pair<'a> {
         let (mut polygon, mut spare) = (Polygon::<N>::new(), Polygon::<N>::new());
         clip::incident_polygon(incident, face, frame, &mut polygon);
         let polygon = clip(reference, axis.face, [&mut polygon, &mut spare], self.smaller);
-        // A corner at height s over the plane is between the surfaces at (s + r_ref − r_inc) / 2.
-        let middle = |point: Vector, s: f32| {
-            let point = point - normal * (0.5 * (s - reference.radius + incident.radius));
-            if of_b { self.b_in_a.point(point) } else { point }
-        };
+        let middle = |point: Vector, s: f32| self.middle(point, s, normal, of_b);
         let base = u32::from(of_b) << 30 | (axis.face as u32 & 0x3ff) << 20;
         let mut candidates = Candidates::<N>::new();
         let mut least = f32::INFINITY;
@@ -262,10 +267,28 @@ impl<'a> Pair<'a> {
         }
         if out.count == 0 && separation <= gjk::resolution(self.larger, self.smaller) {
             // Overlapping beside the face: the deepest vertex alone.
-            let point = middle(frame.point(incident.vertices[axis.lowest]), separation);
-            out.push(point, separation - self.radius, base | 0xf_ffff);
+            self.push_deepest(axis, of_b, out);
         }
         least <= separation + EXACT * self.smaller
+    }
+
+    /// The point between the surfaces for a corner at height `s` over a plane of A, or of B, whose frame it is in: at
+    /// (s + r_ref − r_inc) / 2. In A's frame.
+    #[inline(always)]
+    fn middle(&self, corner: Vector, s: f32, normal: Vector, of_b: bool) -> Vector {
+        let (reference, incident) = if of_b { (self.b, self.a) } else { (self.a, self.b) };
+        let point = corner - normal * (0.5 * (s - reference.radius + incident.radius));
+        if of_b { self.b_in_a.point(point) } else { point }
+    }
+
+    /// Adds the deepest vertex under a face alone.
+    fn push_deepest(&self, axis: &FaceAxis, of_b: bool, out: &mut LocalManifold) {
+        let (reference, incident, frame) =
+            if of_b { (self.b, self.a, &self.a_in_b) } else { (self.a, self.b, &self.b_in_a) };
+        let corner = frame.point(incident.vertices[axis.lowest]);
+        let point = self.middle(corner, axis.separation, reference.faces[axis.face].normal, of_b);
+        let feature = u32::from(of_b) << 30 | (axis.face as u32 & 0x3ff) << 20 | 0xf_ffff;
+        out.push(point, axis.separation - self.radius, feature);
     }
 
     fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {
@@ -293,18 +316,20 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// One point between the closest vertices or edges, if they really are apart.
-    fn build_closest(&self, separation: f32, out: &mut LocalManifold) {
-        let Some(c) = gjk::closest(self.a, self.b, &self.b_in_a) else { return };
+    /// One point between the closest vertices or edges, if they really are farther apart than `separation`. Whether they
+    /// are.
+    fn build_closest(&self, separation: f32, out: &mut LocalManifold) -> bool {
+        let Some(c) = gjk::closest(self.a, self.b, &self.b_in_a) else { return false };
         if !(c.distance > separation) {
-            return;
+            return false;
         }
         (out.count, out.normal) = (0, c.normal);
         if c.distance - self.radius > self.prediction {
-            return;
+            return true;
         }
         let point = (c.a + c.normal * self.a.radius + c.b - c.normal * self.b.radius) * 0.5;
         out.push(point, c.distance - self.radius, 3 << 30 | c.feature);
+        true
     }
 }
 

@@ -45,7 +45,10 @@ pub(super) fn collide(
     let offset = [frame.position, frame.direction_in(frame.position)];
     let pair = Pair { half_a, half_b, frame, offset, prediction, smaller, larger };
     let exact = match pair.cached(cache) {
-        Some(separation) if separation > prediction => return,
+        Some(separation) if separation > prediction => {
+            out.apart = separation;
+            return;
+        }
         Some(separation) if (separation - cache.separation).abs() < CACHE_TOLERANCE * smaller => {
             let exact = pair.build(cache.kind, cache.a, cache.b, separation, out);
             exact || (out.count > 0 && separation <= gjk::resolution(larger, smaller))
@@ -59,6 +62,7 @@ pub(super) fn collide(
     let separation = cache.separation;
     out.count = 0;
     if separation > prediction {
+        out.apart = separation;
         return;
     }
     let exact = pair.build(cache.kind, cache.a, cache.b, separation, out);

@@ -2,7 +2,7 @@
 
 use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce};
 use crate::manifold::LocalManifold;
-use crate::math::{Pose, Vector};
+use crate::math::{Pose, Vector, min};
 use crate::shape::Shape;
 
 /// The contact of the half-space with the given unit normal, in its own frame, with a shape.
@@ -33,8 +33,10 @@ fn vertices(
     // Heights in the frame of B: one product a vertex, and only what is near is turned.
     let (local, base) = (pose.rotation.inverse_rotate(normal), normal.dot(pose.position) - radius);
     let mut candidates = Candidates::<MAX_CANDIDATES>::new();
+    out.apart = f32::INFINITY;
     for (i, p) in points.into_iter().enumerate() {
         let separation = local.dot(p) + base;
+        out.apart = min(out.apart, separation);
         if separation <= prediction {
             let point = pose.transform(p) - normal * (radius + 0.5 * separation);
             candidates.push(Candidate { point, separation, feature: i as u32 });

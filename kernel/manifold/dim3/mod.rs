@@ -38,7 +38,7 @@ pub fn collide(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    out.count = 0;
+    (out.count, out.apart) = (0, 0.0);
     if !(pose_b_in_a.position.abs().max_element() < FARTHEST) || !pose_b_in_a.rotation.is_finite() {
         return;
     }

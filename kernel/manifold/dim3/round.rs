@@ -23,6 +23,8 @@ impl Cores {
         if separation <= prediction {
             let point = (self.a + normal * self.radius_a + self.b - normal * self.radius_b) * 0.5;
             out.push(point, separation, feature);
+        } else {
+            out.apart = separation;
         }
     }
 
@@ -169,10 +171,15 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
             for (feature, s) in [(1, low), (2, high)] {
                 across(s).push(out.normal, prediction, feature, out);
             }
+            out.apart = 0.0;
             return;
         }
     }
     cores.contact(fallback, prediction, out);
+    if parallel {
+        // Of parallel lines the closest points are found by rounding.
+        out.apart = 0.0;
+    }
 }
 
 /// Where along two segments their closest points are (Ericson, "Real-Time Collision Detection",

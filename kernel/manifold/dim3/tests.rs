@@ -125,6 +125,23 @@ proptest! {
     }
 
     #[test]
+    fn without_points_shapes_are_no_nearer_than_is_said(a in bounded(), b in bounded(), pose in pose(3.0)) {
+        let m = fresh(&a, &b, &pose, 0.02);
+        if m.count == 0 {
+            let truth = Solid::new(&a).signed_distance(&Solid::new(&b).at(&pose));
+            prop_assert!(f64::from(m.apart) < truth + 1e-4, "{} but {truth}", m.apart);
+        }
+    }
+
+    #[test]
+    fn half_spaces_say_how_far_shapes_are(b in bounded(), pose in pose(3.0)) {
+        let m = fresh(&Shape::HalfSpace(HalfSpace { normal: Vector::Y }), &b, &pose, 0.02);
+        let lowest = b.support(pose.rotation.inverse_rotate(-Vector::Y)).expect("it is bounded");
+        let height = pose.transform(lowest).y;
+        prop_assert!(m.count > 0 || (m.apart - height).abs() < 1e-5, "{} for {height}", m.apart);
+    }
+
+    #[test]
     fn swapping_gives_the_same_contact(a in any_shape(), b in any_shape(), pose in pose(1.5), prediction in 0.0f32..0.5) {
         let one = fresh(&a, &b, &pose, prediction);
         let two = fresh(&b, &a, &pose.inverse(), prediction).flipped(&pose.inverse());
@@ -461,4 +478,22 @@ fn hostile_input_gives_no_contact() {
             }
         }
     }
+}
+
+#[test]
+fn a_ball_beside_a_face_as_near_as_its_plane_is_not_missed() {
+    // Past the edge of a sliver's face, so that clipping leaves nothing, and no farther than the face's plane within rounding.
+    let points = [
+        v(0.0, 0.0, -0.21818882),
+        v(0.0, 0.0, -0.5602403),
+        v(0.032914832, -0.53013474, 0.8290511),
+        v(-0.5548305, 0.51874983, -0.70095223),
+        v(-0.3668308, 0.055974785, 0.00292276),
+    ];
+    let sliver = Shape::Hull(Arc::new(Hull::convex_hull_of(&points).expect("it has a volume")));
+    let turn = Rot { x: -0.87632227, y: 0.29615477, z: -0.24989757, w: -0.2861866 };
+    let pose = Pose::new(v(0.89893055, 1.1044351, -0.08116335), turn);
+    let ball = Shape::Ball(Ball { radius: 0.1 });
+    check_against_oracle(&ball, &sliver, &pose).expect("as brute force finds it");
+    check_against_oracle(&sliver, &ball, &pose.inverse()).expect("as brute force finds it");
 }
