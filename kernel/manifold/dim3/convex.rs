@@ -108,7 +108,7 @@ pub(super) fn collide(
 }
 
 /// One point between the closest features of two polyhedra that an axis separates, where the axis
-/// itself says less than the distance. Leaves the manifold alone if the distance is no larger.
+/// itself says less than the distance. Leaves the manifold alone if the distance is no larger. Whether it is.
 pub(super) fn collide_apart(
     a: &View,
     b: &View,
@@ -116,8 +116,8 @@ pub(super) fn collide_apart(
     separation: f32,
     prediction: f32,
     out: &mut LocalManifold,
-) {
-    Pair::new(a, b, pose, prediction).build_closest(separation, out);
+) -> bool {
+    Pair::new(a, b, pose, prediction).build_closest(separation, out)
 }
 
 /// What the next step tries first. Features beyond a byte are not remembered.

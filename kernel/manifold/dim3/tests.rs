@@ -497,3 +497,15 @@ fn a_ball_beside_a_face_as_near_as_its_plane_is_not_missed() {
     check_against_oracle(&ball, &sliver, &pose).expect("as brute force finds it");
     check_against_oracle(&sliver, &ball, &pose.inverse()).expect("as brute force finds it");
 }
+
+#[test]
+fn a_small_box_beside_a_face_as_near_as_its_plane_is_not_missed() {
+    let cuboid = |x, y, z| Shape::Cuboid(Cuboid { half: v(x, y, z) });
+    let turn = Rot { x: 0.61542994, y: -0.50162625, z: 0.5816331, w: 0.17697482 };
+    let pose = Pose::new(v(2.63221, 0.3689928, -2.5911958), turn);
+    let (a, b) = (cuboid(0.02602681, 0.031777676, 0.022768507), cuboid(2.9284203, 3.1612728, 1.7466228));
+    for (a, b, pose) in [(&a, &b, pose), (&b, &a, pose.inverse())] {
+        let m = fresh(a, b, &pose, 0.02);
+        assert!(m.count == 1 && (m.points()[0].separation - 0.005035617).abs() < 1e-4, "{m:?}");
+    }
+}
