@@ -9,17 +9,27 @@ pub(crate) const IN_TABLES: &str = "components of the engine are stored in table
 const MAX_AGE: u32 = Tick::MAX.get();
 
 /// What counts as new: what changed after a tick.
+///
+/// That is what is younger than an age. Both are kept with the sign bit turned over: the order of unsigned numbers is then that of
+/// signed ones, which every processor compares side by side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Since {
     now: u32,
-    age: u32,
+    age: i32,
 }
+
+/// The sign bit.
+const SIGN: u32 = 1 << 31;
 
 impl Since {
     /// Since `last`, seen from a system that runs now.
     pub(crate) fn new(last: Tick, system: SystemChangeTick) -> Self {
-        let now = system.this_run().get();
-        Self { now, age: now.wrapping_sub(last.get()).min(MAX_AGE) }
+        Self::between(last, system.this_run())
+    }
+
+    fn between(last: Tick, now: Tick) -> Self {
+        let age = now.get().wrapping_sub(last.get()).min(MAX_AGE);
+        Self { now: now.get() ^ SIGN, age: (age ^ SIGN) as i32 }
     }
 
     /// Since the system last ran.
@@ -30,7 +40,7 @@ impl Since {
     /// As [`Tick::is_newer_than`], without branches.
     #[inline(always)]
     pub(crate) fn is_new(self, tick: Tick) -> bool {
-        self.now.wrapping_sub(tick.get()).min(MAX_AGE) < self.age
+        (self.now.wrapping_sub(tick.get()) as i32) < self.age
     }
 
     /// Calls `found` with each row at which any of the columns is new.
@@ -63,7 +73,7 @@ mod tests {
     use super::*;
 
     fn since(last: u32, now: u32) -> Since {
-        Since { now, age: now.wrapping_sub(last).min(MAX_AGE) }
+        Since::between(Tick::new(last), Tick::new(now))
     }
 
     #[test]

@@ -14,6 +14,8 @@ pub struct ContactTable {
     pub(super) contacts: Vec<Contact>,
     /// What [`PointCount`] says of each contact.
     pub(super) points: Vec<PointCount>,
+    /// The bodies of each contact, once more for who asks for no more than them.
+    bodies: Vec<[u32; 2]>,
     pairs: PairSet,
     /// Contacts with an awake body, ...
     pub(super) active: BitSet,
@@ -49,7 +51,8 @@ impl PointCount {
 impl ContactTable {
     /// How many bytes are kept of each contact here, but for two bits, for the [`pairs`](Self::pairs), and for
     /// manifolds after the first.
-    pub const BYTES_PER_CONTACT: usize = size_of::<Contact>() + size_of::<PointCount>();
+    pub const BYTES_PER_CONTACT: usize =
+        size_of::<Contact>() + size_of::<PointCount>() + size_of::<[u32; 2]>();
 
     /// How many contacts there are.
     pub fn len(&self) -> usize {
@@ -110,6 +113,12 @@ impl ContactTable {
     #[inline(always)]
     pub(crate) fn point_count(&self, id: u32) -> PointCount {
         self.points[id as usize]
+    }
+
+    /// The bodies that a contact's colliders belong to, or [`NONE`].
+    #[inline(always)]
+    pub(crate) fn bodies_of(&self, id: u32) -> [u32; 2] {
+        self.bodies[id as usize]
     }
 
     /// Has contacts brought near that are needed soon; those that do not exist are left out.
@@ -176,9 +185,11 @@ impl ContactTable {
         let [a, b] = contact.colliders;
         self.pairs.insert(a, b, id);
         if id as usize == self.contacts.len() {
+            self.bodies.push(contact.bodies);
             self.contacts.push(contact);
             self.points.push(PointCount::default());
         } else {
+            self.bodies[id as usize] = contact.bodies;
             self.contacts[id as usize] = contact;
             self.points[id as usize] = PointCount::default();
         }
@@ -250,6 +261,7 @@ impl ContactTable {
         for (id, contact) in self.iter() {
             live += 1;
             assert_eq!(self.points[id as usize], PointCount::of(contact), "points are counted");
+            assert_eq!(self.bodies[id as usize], contact.bodies, "bodies are as in the record");
             let [a, b] = contact.colliders;
             assert!(a < b, "the lower collider comes first");
             assert_eq!(self.find(a, b), Some(id), "a contact is found by its pair");

@@ -4,6 +4,7 @@
 use super::{ContactRow, DeepRow, InvMass, RestitutionRow};
 use crate::data::Parts;
 use crate::math::Lane;
+use core::ops::Range;
 
 /// Rows are laid out by the number of points they have room for: 1, 2 or 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,22 +58,42 @@ pub(super) struct Block {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Plan {
     pub(super) blocks: Vec<Block>,
-    /// Where each stage ends among the blocks.
-    ends: Vec<u32>,
+    pub(super) stages: Stages,
     /// How many rows a block may have.
     block_rows: u32,
 }
 
+/// Stages of blocks; those of a stage may be solved in any order or at once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Stages {
+    /// Where each stage ends among the blocks, ...
+    ends: Vec<u32>,
+    /// ... and where within it each member's part does.
+    parts: Vec<u32>,
+    members: usize,
+}
+
+impl Stages {
+    /// Each stage's blocks, and where among them the members' parts end.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (Range<usize>, &[u32])> {
+        let starts = core::iter::once(0).chain(self.ends.iter().copied());
+        let blocks = starts.zip(&self.ends).map(|(start, end)| start as usize..*end as usize);
+        blocks.zip(self.parts.chunks(self.members.max(1)))
+    }
+}
+
 impl Plan {
-    /// Forgets everything. From now on blocks have up to so many rows.
-    pub(super) fn begin(&mut self, block_rows: u32) {
+    /// Forgets everything. From now on blocks have up to so many rows, and stages so many parts.
+    pub(super) fn begin(&mut self, block_rows: u32, members: usize) {
         self.blocks.clear();
-        self.ends.clear();
+        self.stages.ends.clear();
+        self.stages.parts.clear();
+        self.stages.members = members;
         self.block_rows = block_rows;
     }
 
     /// Cuts rows into blocks of the stage that is being planned.
-    pub(super) fn add(&mut self, set: Set, class: PointClass, rows: core::ops::Range<u32>) {
+    pub(super) fn add(&mut self, set: Set, class: PointClass, rows: Range<u32>) {
         let mut start = rows.start;
         while start < rows.end {
             let len = self.block_rows.min(rows.end - start);
@@ -81,12 +102,20 @@ impl Plan {
         }
     }
 
+    /// Ends a member's part of the stage that is being planned.
+    pub(super) fn end_part(&mut self) {
+        let start = self.stages.ends.last().copied().unwrap_or(0);
+        self.stages.parts.push(self.blocks.len() as u32 - start);
+    }
+
     /// Ends a stage: what is added from now on waits for what was added before.
     pub(super) fn end_stage(&mut self) {
-        let end = self.blocks.len() as u32;
-        if self.ends.last().copied().unwrap_or(0) < end {
-            self.ends.push(end);
+        let Stages { ends, parts, members } = &mut self.stages;
+        let (start, end) = (ends.last().copied().unwrap_or(0), self.blocks.len() as u32);
+        if start < end {
+            ends.push(end);
         }
+        parts.resize(ends.len() * *members, end - start);
     }
 
     /// How many rows there are.
@@ -94,10 +123,9 @@ impl Plan {
         self.blocks.iter().map(|block| block.len).sum()
     }
 
-    /// Each stage's blocks.
-    pub(super) fn stages(&self) -> impl Iterator<Item = &[Block]> {
-        let starts = core::iter::once(0).chain(self.ends.iter().copied());
-        starts.zip(&self.ends).map(|(start, end)| &self.blocks[start as usize..*end as usize])
+    /// Each stage's blocks, and where among them the members' parts end.
+    pub(super) fn stages(&self) -> impl Iterator<Item = (&[Block], &[u32])> {
+        self.stages.iter().map(|(blocks, parts)| (&self.blocks[blocks], parts))
     }
 }
 

@@ -101,9 +101,47 @@ pub(super) fn is_held(input: &RowInput, locks: &[AxisLocks], contact: u32) -> bo
     })
 }
 
-/// Buckets by point class, kept between steps.
+/// Buckets by member and point class, kept between steps.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Buckets([Vec<ContactSource>; 3]);
+pub(super) struct Buckets(Vec<[Vec<ContactSource>; 3]>);
+
+/// Who solves which contacts: a member those of bodies whose rows lie in its part of all, in every colour.
+///
+/// A body then mostly stays with one member, and in the cache of its core, through all sweeps of a step; else every
+/// second time another core would have written it last, and to fetch it from there takes longer than to solve the
+/// contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shares {
+    members: u32,
+    /// The members for each body row, in units of 2⁻³².
+    per_row: u64,
+}
+
+/// A stage with fewer contacts for each member is left to the caller: about a microsecond's work, as long as it takes
+/// until another core has begun.
+const WORTH_SHARING: usize = 256;
+
+impl Shares {
+    pub(super) fn new(members: usize, rows: usize) -> Self {
+        Self { members: members as u32, per_row: ((members as u64) << 32) / rows.max(1) as u64 }
+    }
+
+    /// Among how many members so many contacts are shared.
+    fn of(&self, contacts: usize) -> usize {
+        if contacts < WORTH_SHARING * self.members as usize { 1 } else { self.members as usize }
+    }
+
+    /// Which member a contact is solved by. Between bodies of two members it is either's, by chance.
+    #[inline(always)]
+    fn member(&self, input: &RowInput, contact: u32) -> usize {
+        let rows = input.contacts.bodies_of(contact).map(|body| row_of(input.bodies, body));
+        let row = match rows {
+            [0, row] | [row, 0] => row,
+            rows => rows[contact as usize % 2],
+        };
+        ((u64::from(row) * self.per_row) >> 32) as usize
+    }
+}
 
 impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
     /// Lays out the rows of contacts whose dynamic bodies are all different.
@@ -115,14 +153,20 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
         &mut self,
         set: Set,
         contacts: &[u32],
-        table: &ContactTable,
+        input: &RowInput,
+        shares: &Shares,
         buckets: &mut Buckets,
         plan: &mut Plan,
     ) {
+        let table = input.contacts;
+        let members = shares.of(contacts.len());
+        if buckets.0.len() < members {
+            buckets.0.resize_with(members, Default::default);
+        }
         let mut layer = 0;
         loop {
             let mut more = false;
-            for bucket in &mut buckets.0 {
+            for bucket in buckets.0.iter_mut().flatten() {
                 bucket.clear();
             }
             for &id in contacts {
@@ -137,12 +181,16 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
                 };
                 if count > 0 {
                     let source = ContactSource { contact: id, manifold: layer };
-                    buckets.0[PointClass::of(count) as usize].push(source);
+                    let member = if members > 1 { shares.member(input, id) } else { 0 };
+                    buckets.0[member][PointClass::of(count) as usize].push(source);
                 }
             }
-            for class in PointClass::ALL {
-                let range = with_rows!(self, class, |rows| rows.lay(&buckets.0[class as usize]));
-                plan.add(set, class, range);
+            for buckets in &buckets.0[..members] {
+                for class in PointClass::ALL {
+                    let range = with_rows!(self, class, |rows| rows.lay(&buckets[class as usize]));
+                    plan.add(set, class, range);
+                }
+                plan.end_part();
             }
             plan.end_stage();
             if !more {

@@ -2,7 +2,7 @@
 
 use super::batch::{Plan, RowSet, Set};
 use super::block::{SetsView, Wide, WideView};
-use super::prepare::{Buckets, RowInput, is_held};
+use super::prepare::{Buckets, RowInput, Shares, is_held};
 use crate::graph::{ColorGraph, OVERFLOW};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
@@ -58,6 +58,7 @@ pub(super) struct Layout<'a> {
     /// Which axes are held, by body row; empty where nobody is held along any.
     pub(super) locks: &'a [AxisLocks],
     pub(super) any_deep: bool,
+    pub(super) shares: Shares,
     pub(super) buffers: &'a mut Buffers,
     pub(super) plan: &'a mut Plan,
 }
@@ -131,10 +132,10 @@ impl<N: Lane> WideRows<N> {
 
     /// Lays out the rows of contacts whose dynamic bodies are all different.
     fn lay(&mut self, [held_set, free_set]: [Set; 2], contacts: &[u32], layout: &mut Layout) {
-        let Layout { input, locks, buffers, plan, .. } = layout;
+        let Layout { input, locks, shares, buffers, plan, .. } = layout;
         let Buffers { buckets, held, free } = &mut **buffers;
         if locks.is_empty() {
-            self.free.lay(free_set, contacts, input.contacts, buckets, plan);
+            self.free.lay(free_set, contacts, input, shares, buckets, plan);
             return;
         }
         held.clear();
@@ -142,8 +143,8 @@ impl<N: Lane> WideRows<N> {
         for id in contacts {
             if is_held(input, locks, *id) { held.push(*id) } else { free.push(*id) }
         }
-        self.held.lay(held_set, held, input.contacts, buckets, plan);
-        self.free.lay(free_set, free, input.contacts, buckets, plan);
+        self.held.lay(held_set, held, input, shares, buckets, plan);
+        self.free.lay(free_set, free, input, shares, buckets, plan);
     }
 
     fn view(&mut self) -> WideView<'_, N> {

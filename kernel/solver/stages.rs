@@ -3,7 +3,7 @@
 
 use super::batch::Plan;
 use super::block::Pass;
-use super::prepare::{DeepCounts, Filler, RowInput};
+use super::prepare::{DeepCounts, Filler, RowInput, Shares};
 use super::rows::{AllRows, Buffers, Layout, Width};
 use super::{BodyRows, RowView, SubstepParams};
 use crate::contact::ContactTable;
@@ -44,7 +44,7 @@ impl Solver {
     /// Forgets the rows of the last step, and makes room for so many [`bodies`](Self::bodies): every one of their rows is
     /// to be filled, whether or not there are contacts.
     pub fn begin_step(&mut self, kinematic: usize, dynamic: usize) {
-        self.plan.begin(0);
+        self.plan.begin(0, 1);
         self.bodies.reset(kinematic, dynamic);
     }
 
@@ -53,9 +53,10 @@ impl Solver {
         let Self { bodies, team, rows, plan, buffers, deep, .. } = self;
         deep.count(input, bodies);
         let BodyRows { rows: body_rows, masses, motions, locks, first_dynamic, .. } = bodies;
-        plan.begin(if team.members() > 1 { BLOCK_ROWS } else { u32::MAX });
-        let any_deep = deep.any();
-        rows.lay_out(colors, &mut Layout { input, locks, any_deep, buffers, plan });
+        let members = team.members();
+        plan.begin(if members > 1 { BLOCK_ROWS } else { u32::MAX }, members);
+        let shares = Shares::new(members, body_rows.len());
+        rows.lay_out(colors, &mut Layout { input, locks, any_deep: deep.any(), shares, buffers, plan });
         let filler = &Filler {
             input,
             view: RowView::over(body_rows, *first_dynamic),
@@ -71,10 +72,12 @@ impl Solver {
         if many {
             team.wake();
         }
-        team.run(blocks.len(), |block, _| {
-            // SAFETY: each block is run once.
-            sets.fill(unsafe { blocks.one(block) }, filler);
-        });
+        for (stage, parts) in plan.stages.iter() {
+            team.run_parts(parts, |block, _| {
+                // SAFETY: each block is run once.
+                sets.fill(unsafe { blocks.one(stage.start + block) }, filler);
+            });
+        }
     }
 
     /// How many wide and how many scalar rows the step has.
@@ -136,19 +139,19 @@ impl Solver {
     /// Puts the impulses back into the manifolds, for the next step to start from.
     pub fn store_impulses(&mut self, contacts: &mut ContactTable) {
         let (sets, manifolds) = (self.rows.view(), contacts.manifolds_view());
-        for stage in self.plan.stages() {
-            self.team.run(stage.len(), |block, _| sets.store(&stage[block], &manifolds));
+        for (blocks, parts) in self.plan.stages() {
+            self.team.run_parts(parts, |block, _| sets.store(&blocks[block], &manifolds));
         }
-        self.plan.begin(0);
+        self.plan.begin(0, 1);
     }
 
     /// Runs all blocks, stage by stage. Returns whether any of them found an impact.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams) -> bool {
         let (sets, bodies) = (self.rows.view(), self.bodies.view());
         let hit = AtomicBool::new(false);
-        for stage in self.plan.stages() {
-            self.team.run(stage.len(), |block, _| {
-                if sets.run(&stage[block], pass, &bodies, params) {
+        for (blocks, parts) in self.plan.stages() {
+            self.team.run_parts(parts, |block, _| {
+                if sets.run(&blocks[block], pass, &bodies, params) {
                     hit.store(true, Ordering::Relaxed);
                 }
             });

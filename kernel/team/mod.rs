@@ -39,12 +39,12 @@ struct Helpers {
 /// What caller and helpers share.
 #[derive(Debug, Default)]
 struct Board {
-    /// The blocks that nobody has claimed, by the member who is to claim them first.
-    claims: Box<[Claims]>,
-    /// How many blocks of the stage are done.
-    done: AtomicU32,
-    /// The stage. Written only while all its blocks are done, read only by who has claimed one that is not.
-    job: UnsafeCell<Option<Job>>,
+    /// What each member is told.
+    desks: Box<[Desk]>,
+    /// How many blocks each member has done in its life, in a line of its own.
+    done: Box<[Apart<AtomicU32>]>,
+    /// What those sum up to when all blocks so far are done.
+    posted: AtomicU32,
     /// Whether some clone of the team is at work.
     busy: AtomicBool,
     /// Which helpers sleep. Who wakes one says so before it is awake.
@@ -58,10 +58,24 @@ struct Board {
     quit: AtomicBool,
 }
 
-/// Consecutive blocks to be claimed: the first in the upper half, one beyond the last in the lower. A cache line,
-/// for members mostly look at their own.
+/// In cache lines of its own: processors fetch two at a time.
 #[derive(Debug, Default)]
-#[repr(align(64))]
+#[repr(align(128))]
+struct Apart<T>(T);
+
+/// Where a member learns what there is to do: it looks at one cache line, and at others' only when that has no more.
+#[derive(Debug, Default)]
+#[repr(align(128))]
+struct Desk {
+    /// The blocks that are the member's to claim first, and that nobody has claimed.
+    claims: Claims,
+    /// The stage. Written only while all its blocks are done, read only by the member and after it has claimed a
+    /// block that is not.
+    job: UnsafeCell<Option<Job>>,
+}
+
+/// Consecutive blocks to be claimed: the first in the upper half, one beyond the last in the lower.
+#[derive(Debug, Default)]
 struct Claims(AtomicU64);
 
 impl Claims {
@@ -113,8 +127,9 @@ impl Team {
     /// refuse a thread, the team is smaller.
     pub fn new(members: usize) -> Self {
         let asleep = (1..members).map(|_| AtomicBool::new(true)).collect();
-        let claims = (0..members).map(|_| Claims::default()).collect();
-        let board = Arc::new(Board { asleep, claims, ..Board::default() });
+        let desks = (0..members).map(|_| Desk::default()).collect();
+        let done = (0..members).map(|_| Apart::default()).collect();
+        let board = Arc::new(Board { asleep, desks, done, ..Board::default() });
         let threads: Vec<_> = (1..members)
             .map_while(|member| {
                 let board = Arc::clone(&board);
@@ -158,13 +173,33 @@ impl Team {
     /// # Panics
     /// If a block does.
     pub fn run(&self, blocks: usize, job: impl Fn(usize, usize) + Sync) {
+        let count = u32::try_from(blocks).expect("a block is many bytes of memory");
+        let members = self.members() as u64;
+        self.run_shares(count, (1..=members).map(|k| (u64::from(count) * k / members) as u32), job);
+    }
+
+    /// As [`run`](Self::run), where member `k` begins with the blocks from `ends[k - 1]` to `ends[k]`; there are as
+    /// many ends as members, and each is at least the one before. What is all the caller's it runs alone.
+    ///
+    /// # Panics
+    /// If a block does, and if there are not as many ends as members.
+    pub fn run_parts(&self, ends: &[u32], job: impl Fn(usize, usize) + Sync) {
+        assert_eq!(ends.len(), self.members(), "each member has a part");
+        let last = ends[ends.len() - 1];
+        if ends[0] == last {
+            return (0..last as usize).for_each(|block| job(block, 0));
+        }
+        self.run_shares(last, ends.iter().copied(), job);
+    }
+
+    /// Runs so many blocks, of which each member begins with those up to an end.
+    fn run_shares(&self, blocks: u32, ends: impl Iterator<Item = u32>, job: impl Fn(usize, usize) + Sync) {
         let board = self.0.as_ref().map(|helpers| &*helpers.board);
-        let alone = || (0..blocks).for_each(|block| job(block, 0));
+        let alone = || (0..blocks as usize).for_each(|block| job(block, 0));
         match board {
             Some(board) if blocks > 1 && board.awake.load(Ordering::Relaxed) > 0 && board.begin() => {
                 let ours = Ours(board);
-                let count = u32::try_from(blocks).expect("a block is many bytes of memory");
-                board.share(count, &|block, member| job(block as usize, member));
+                board.share(blocks, ends, &|block, member| job(block as usize, member));
                 let panic = board.panic().take();
                 drop(ours);
                 if let Some(panic) = panic {
@@ -214,7 +249,7 @@ impl Board {
     }
 
     /// Puts a job up, takes part in it, and waits for its end.
-    fn share<F: Fn(u32, usize) + Sync>(&self, blocks: u32, job: &F) {
+    fn share<F: Fn(u32, usize) + Sync>(&self, blocks: u32, ends: impl Iterator<Item = u32>, job: &F) {
         unsafe fn run<F: Fn(u32, usize)>(data: *const (), block: u32, member: usize) {
             // SAFETY: `data` is the `F` that it was made from (see `Job::run`).
             unsafe { (*data.cast::<F>())(block, member) }
@@ -223,44 +258,56 @@ impl Board {
         struct Wait<'a>(&'a Board, u32);
         impl Drop for Wait<'_> {
             fn drop(&mut self) {
+                let Self(board, blocks) = self;
                 // What nobody has claimed when the caller panics is nobody's.
-                let left = self.0.claims.iter().map(Claims::close).sum::<u32>();
-                self.0.wait_for(self.1 - left);
+                let left = board.desks.iter().map(|desk| desk.claims.close()).sum::<u32>();
+                let posted = board.posted.load(Ordering::Relaxed).wrapping_add(*blocks - left);
+                board.wait_for(posted);
+                board.posted.store(posted, Ordering::Relaxed);
             }
         }
-        self.done.store(0, Ordering::Relaxed);
-        // SAFETY: all blocks of the last job are done, and nobody can have claimed one of this.
-        unsafe { *self.job.get() = Some(Job { data: core::ptr::from_ref(job).cast(), run: run::<F> }) };
-        let _wait = Wait(self, blocks);
-        let members = self.claims.len() as u64;
-        let share = |member: u64| (u64::from(blocks) * member / members) as u32;
-        for (member, claims) in (0..members).zip(&self.claims) {
-            claims.put(share(member)..share(member + 1));
+        let posted = Job { data: core::ptr::from_ref(job).cast(), run: run::<F> };
+        for desk in &self.desks {
+            // SAFETY: all blocks of the last job are done, and nobody can have claimed one of this.
+            unsafe { *desk.job.get() = Some(posted) };
         }
-        while let Some(block) = self.claim(0) {
+        let _wait = Wait(self, blocks);
+        let mut start = 0;
+        for (desk, end) in self.desks.iter().zip(ends) {
+            desk.claims.put(start..end);
+            start = end;
+        }
+        while let Some(block) = self.claim_own(0).or_else(|| self.claim_others(0)) {
             // Done or not, the block counts: whoever waits must not wait for ever.
-            let _done = Done(self);
+            let _done = Done(self, 0);
             job(block, 0);
         }
     }
 
-    /// Waits until so many blocks are done.
-    fn wait_for(&self, blocks: u32) {
+    /// Waits until the counts of blocks done sum up to this.
+    fn wait_for(&self, posted: u32) {
         let mut looks = 0u32;
-        while self.done.load(Ordering::Acquire) < blocks {
-            looks += 1;
+        while self.done.iter().fold(0, |sum: u32, done| sum.wrapping_add(done.0.load(Ordering::Acquire)))
+            != posted
+        {
+            looks = looks.wrapping_add(1);
             // Who has the last block may have lost its core.
             if looks.is_multiple_of(1 << 10) { thread::yield_now() } else { core::hint::spin_loop() }
         }
     }
 
-    /// A block that nobody else has or will have. Members begin with the same part of the blocks in every run: what
-    /// runs over the same data one after another finds it in the cache of its core.
+    /// A block of the member's own part that nobody else has or will have. Members begin with the same part in every
+    /// run: what runs over the same data one after another finds it in the cache of its core.
     #[inline]
-    fn claim(&self, member: usize) -> Option<u32> {
-        let (before, from) = self.claims.split_at(member);
-        let (own, after) = from.split_first()?;
-        own.take(true).or_else(|| after.iter().chain(before).find_map(|others| others.take(false)))
+    fn claim_own(&self, member: usize) -> Option<u32> {
+        self.desks[member].claims.take(true)
+    }
+
+    /// A block of another member's part that nobody else has or will have.
+    #[inline]
+    fn claim_others(&self, member: usize) -> Option<u32> {
+        let (before, from) = self.desks.split_at(member);
+        from[1..].iter().chain(before).find_map(|desk| desk.claims.take(false))
     }
 
     /// What a helper does with its life.
@@ -283,18 +330,12 @@ impl Board {
         let mut idle_since = None;
         let mut looks = 0u32;
         loop {
-            if let Some(block) = self.claim(member) {
-                let _done = Done(self);
-                // SAFETY: it has a block that is not done: nobody writes the job, and its closure is there.
-                let Some(job) = (unsafe { *self.job.get() }) else { continue };
-                // SAFETY: as above.
-                let run = || unsafe { (job.run)(job.data, block, member) };
-                if let Err(panic) = std::panic::catch_unwind(core::panic::AssertUnwindSafe(run)) {
-                    // Dropping another could panic again, out of the block.
-                    core::mem::forget(self.panic().replace(panic));
-                }
+            // Others' parts are looked at after one's own only: else their lines were gone whenever they look.
+            let mut next = self.claim_own(member);
+            while let Some(block) = next {
+                self.run_block(block, member);
                 idle_since = None;
-                continue;
+                next = self.claim_own(member).or_else(|| self.claim_others(member));
             }
             looks = looks.wrapping_add(1);
             if looks.is_multiple_of(64) {
@@ -313,6 +354,21 @@ impl Board {
     }
 }
 
+impl Board {
+    /// Runs a block that a helper has claimed.
+    fn run_block(&self, block: u32, member: usize) {
+        let _done = Done(self, member);
+        // SAFETY: it has a block that is not done: nobody writes the job, and its closure is there.
+        let Some(job) = (unsafe { *self.desks[member].job.get() }) else { return };
+        // SAFETY: as above.
+        let run = || unsafe { (job.run)(job.data, block, member) };
+        if let Err(panic) = std::panic::catch_unwind(core::panic::AssertUnwindSafe(run)) {
+            // Dropping another could panic again, out of the block.
+            core::mem::forget(self.panic().replace(panic));
+        }
+    }
+}
+
 /// Gives the board back when the job ends, however it does.
 struct Ours<'a>(&'a Board);
 
@@ -325,10 +381,12 @@ impl Drop for Ours<'_> {
 }
 
 /// Counts a block as done when it ends, however it does.
-struct Done<'a>(&'a Board);
+struct Done<'a>(&'a Board, usize);
 
 impl Drop for Done<'_> {
     fn drop(&mut self) {
-        self.0.done.fetch_add(1, Ordering::Release);
+        // Nobody else writes it.
+        let done = &self.0.done[self.1].0;
+        done.store(done.load(Ordering::Relaxed).wrapping_add(1), Ordering::Release);
     }
 }

@@ -31,6 +31,38 @@ fn every_block_runs_once() {
 }
 
 #[test]
+fn every_block_runs_once_wherever_parts_end() {
+    for members in [1, 2, 3, 8] {
+        let team = Team::new(members);
+        for round in 0..600u32 {
+            if round % 50 == 0 {
+                team.wake();
+            }
+            // Some parts are empty, and now and then all but one.
+            let mut ends: Vec<u32> = (1..=members as u32).map(|k| (round * k * 7) % 23).collect();
+            ends.sort_unstable();
+            if round % 5 == 0 {
+                let last = ends[members - 1];
+                ends.fill(last);
+            }
+            let blocks = ends[members - 1] as usize;
+            let counts: Vec<AtomicU32> = (0..blocks).map(|_| AtomicU32::new(0)).collect();
+            team.run_parts(&ends, |block, member| {
+                assert!(member < members);
+                counts[block].fetch_add(1, Ordering::Relaxed);
+            });
+            assert!(counts.iter().all(|count| count.load(Ordering::Relaxed) == 1), "{ends:?}");
+        }
+    }
+}
+
+#[test]
+#[should_panic(expected = "each member has a part")]
+fn parts_are_as_many_as_members() {
+    Team::new(2).run_parts(&[1, 2, 3], |_, _| {});
+}
+
+#[test]
 fn jobs_in_quick_succession_do_not_mix() {
     let team = Team::new(3);
     let mut values = vec![0usize; 64];
