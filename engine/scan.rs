@@ -10,8 +10,8 @@ const MAX_AGE: u32 = Tick::MAX.get();
 
 /// What counts as new: what changed after a tick.
 ///
-/// That is what is younger than an age. Both are kept with the sign bit turned over: the order of unsigned numbers is then that of
-/// signed ones, which every processor compares side by side.
+/// That is what is younger than an age. Both are kept with the sign bit turned over: the order of unsigned
+/// numbers is then that of signed ones, which every processor compares side by side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Since {
     now: u32,

@@ -247,8 +247,8 @@ impl Plan {
     }
 }
 
-/// What a member of the team needs: the pairs it found, and room. In cache lines of its own, for it is written with every
-/// step of a walk.
+/// What a member of the team needs: the pairs it found, and room. In cache lines of its own, for it is written with
+/// every step of a walk.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 struct Member {

@@ -34,8 +34,8 @@ impl ManifoldSource for () {
     fn manifolds(&self, _: u32, _: u32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
 }
 
-/// Buffers of one worker, kept between steps; `W` are those of its [`ManifoldSource`]. In cache lines of its own, for they
-/// are written with every contact.
+/// Buffers of one worker, kept between steps; `W` are those of its [`ManifoldSource`]. In cache lines of its own, for
+/// they are written with every contact.
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub struct Scratch<W = ()> {

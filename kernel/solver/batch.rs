@@ -58,42 +58,39 @@ pub(super) struct Block {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Plan {
     pub(super) blocks: Vec<Block>,
-    pub(super) stages: Stages,
-    /// How many rows a block may have.
-    block_rows: u32,
-}
-
-/// Stages of blocks; those of a stage may be solved in any order or at once.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Stages {
-    /// Where each stage ends among the blocks, ...
-    ends: Vec<u32>,
+    /// Where each stage ends among the blocks, and whether it is shared, ...
+    ends: Vec<(u32, bool)>,
     /// ... and where within it each member's part does.
     parts: Vec<u32>,
     members: usize,
+    /// How many rows a block may have.
+    block_rows: u32,
+    /// How many manifolds have a place in a row.
+    pub(super) manifolds: usize,
 }
 
-impl Stages {
-    /// Each stage's blocks, and where among them the members' parts end.
-    pub(super) fn iter(&self) -> impl Iterator<Item = (Range<usize>, &[u32])> {
-        let starts = core::iter::once(0).chain(self.ends.iter().copied());
-        let blocks = starts.zip(&self.ends).map(|(start, end)| start as usize..*end as usize);
-        blocks.zip(self.parts.chunks(self.members.max(1)))
-    }
+/// Blocks that may be solved in any order or at once.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stage<'a> {
+    pub(super) blocks: &'a [Block],
+    /// Where each member's part of them ends; `None` if there are too few to share.
+    pub(super) parts: Option<&'a [u32]>,
 }
 
 impl Plan {
     /// Forgets everything. From now on blocks have up to so many rows, and stages so many parts.
     pub(super) fn begin(&mut self, block_rows: u32, members: usize) {
         self.blocks.clear();
-        self.stages.ends.clear();
-        self.stages.parts.clear();
-        self.stages.members = members;
+        self.ends.clear();
+        self.parts.clear();
+        self.members = members;
         self.block_rows = block_rows;
+        self.manifolds = 0;
     }
 
-    /// Cuts rows into blocks of the stage that is being planned.
-    pub(super) fn add(&mut self, set: Set, class: PointClass, rows: Range<u32>) {
+    /// Cuts the rows of so many manifolds into blocks of the stage that is being planned.
+    pub(super) fn add(&mut self, set: Set, class: PointClass, rows: Range<u32>, manifolds: usize) {
+        self.manifolds += manifolds;
         let mut start = rows.start;
         while start < rows.end {
             let len = self.block_rows.min(rows.end - start);
@@ -104,18 +101,21 @@ impl Plan {
 
     /// Ends a member's part of the stage that is being planned.
     pub(super) fn end_part(&mut self) {
-        let start = self.stages.ends.last().copied().unwrap_or(0);
-        self.stages.parts.push(self.blocks.len() as u32 - start);
+        self.parts.push(self.blocks.len() as u32 - self.start());
     }
 
-    /// Ends a stage: what is added from now on waits for what was added before.
-    pub(super) fn end_stage(&mut self) {
-        let Stages { ends, parts, members } = &mut self.stages;
-        let (start, end) = (ends.last().copied().unwrap_or(0), self.blocks.len() as u32);
-        if start < end {
-            ends.push(end);
+    /// Ends a stage, which is shared or not: what is added from now on waits for what was added before.
+    pub(super) fn end_stage(&mut self, is_shared: bool) {
+        let end = self.blocks.len() as u32;
+        if self.start() < end {
+            self.ends.push((end, is_shared));
         }
-        parts.resize(ends.len() * *members, end - start);
+        self.parts.truncate(self.ends.len() * self.members);
+    }
+
+    /// Where the stage that is being planned begins.
+    fn start(&self) -> u32 {
+        self.ends.last().map_or(0, |(end, _)| *end)
     }
 
     /// How many rows there are.
@@ -123,9 +123,14 @@ impl Plan {
         self.blocks.iter().map(|block| block.len).sum()
     }
 
-    /// Each stage's blocks, and where among them the members' parts end.
-    pub(super) fn stages(&self) -> impl Iterator<Item = (&[Block], &[u32])> {
-        self.stages.iter().map(|(blocks, parts)| (&self.blocks[blocks], parts))
+    /// The stages in their order.
+    pub(super) fn stages(&self) -> impl Iterator<Item = Stage<'_>> {
+        let mut start = 0;
+        self.ends.iter().zip(self.parts.chunks(self.members.max(1))).map(move |(&(end, is_shared), parts)| {
+            let blocks = &self.blocks[start..end as usize];
+            start = end as usize;
+            Stage { blocks, parts: is_shared.then_some(parts) }
+        })
     }
 }
 

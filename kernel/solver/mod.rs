@@ -25,6 +25,7 @@ mod inv_mass;
 mod prepare;
 mod row;
 mod rows;
+mod shares;
 mod softness;
 mod stages;
 mod view;

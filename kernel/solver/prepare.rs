@@ -2,6 +2,7 @@
 //! filled, block by block, and the effective masses computed for all lanes of a row at once.
 
 use super::batch::{BlockRows, Plan, PointClass, RowSet, Rows, Set, Source, with_rows};
+use super::shares::Shares;
 use super::{
     BodyRow, BodyRows, ContactRow, DeepRow, InvMass, MassRow, Motion, RestitutionRow, RowView, SubstepParams,
 };
@@ -101,45 +102,38 @@ pub(super) fn is_held(input: &RowInput, locks: &[AxisLocks], contact: u32) -> bo
     })
 }
 
-/// Buckets by member and point class, kept between steps.
+/// Manifolds sorted by who solves them and by point class; kept between steps.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Buckets(Vec<[Vec<ContactSource>; 3]>);
-
-/// Who solves which contacts: a member those of bodies whose rows lie in its part of all, in every colour.
-///
-/// A body then mostly stays with one member, and in the cache of its core, through all sweeps of a step; else every
-/// second time another core would have written it last, and to fetch it from there takes longer than to solve the
-/// contact.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shares {
-    members: u32,
-    /// The members for each body row, in units of 2⁻³².
-    per_row: u64,
+pub(super) struct Buckets {
+    pub(super) shares: Shares,
+    lists: Vec<[Vec<ContactSource>; 3]>,
 }
 
-/// A stage with fewer contacts for each member is left to the caller: about a microsecond's work, as long as it takes
-/// until another core has begun.
-const WORTH_SHARING: usize = 256;
-
-impl Shares {
-    pub(super) fn new(members: usize, rows: usize) -> Self {
-        Self { members: members as u32, per_row: ((members as u64) << 32) / rows.max(1) as u64 }
-    }
-
-    /// Among how many members so many contacts are shared.
-    fn of(&self, contacts: usize) -> usize {
-        if contacts < WORTH_SHARING * self.members as usize { 1 } else { self.members as usize }
-    }
-
-    /// Which member a contact is solved by. Between bodies of two members it is either's, by chance.
-    #[inline(always)]
-    fn member(&self, input: &RowInput, contact: u32) -> usize {
-        let rows = input.contacts.bodies_of(contact).map(|body| row_of(input.bodies, body));
-        let row = match rows {
-            [0, row] | [row, 0] => row,
-            rows => rows[contact as usize % 2],
-        };
-        ((u64::from(row) * self.per_row) >> 32) as usize
+impl Buckets {
+    /// Sorts the manifolds of that number into so many parts. Returns how many contacts have more of them.
+    fn sort(&mut self, contacts: &[u32], layer: u32, parts: usize, input: &RowInput) -> usize {
+        let Self { shares, lists } = self;
+        if lists.len() < parts {
+            lists.resize_with(parts, Default::default);
+        }
+        lists.iter_mut().flatten().for_each(Vec::clear);
+        let mut more = 0;
+        for &id in contacts {
+            let count = match input.contacts.point_count(id).of_only_manifold() {
+                Some(count) if layer == 0 => count,
+                Some(_) => 0,
+                None => {
+                    let contact = input.contacts.get(id);
+                    more += usize::from(u32::from(contact.extra_count) > layer);
+                    input.contacts.manifold(contact, layer).map_or(0, |manifold| manifold.count)
+                }
+            };
+            if count > 0 {
+                let list = &mut lists[shares.part(input, id, parts)][PointClass::of(count) as usize];
+                list.push(ContactSource { contact: id, manifold: layer });
+            }
+        }
+        more
     }
 }
 
@@ -154,48 +148,24 @@ impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
         set: Set,
         contacts: &[u32],
         input: &RowInput,
-        shares: &Shares,
         buckets: &mut Buckets,
         plan: &mut Plan,
     ) {
-        let table = input.contacts;
-        let members = shares.of(contacts.len());
-        if buckets.0.len() < members {
-            buckets.0.resize_with(members, Default::default);
-        }
-        let mut layer = 0;
-        loop {
-            let mut more = false;
-            for bucket in buckets.0.iter_mut().flatten() {
-                bucket.clear();
-            }
-            for &id in contacts {
-                let count = match table.point_count(id).of_only_manifold() {
-                    Some(count) if layer == 0 => count,
-                    Some(_) => 0,
-                    None => {
-                        let contact = table.get(id);
-                        more |= u32::from(contact.extra_count) > layer;
-                        table.manifold(contact, layer).map_or(0, |manifold| manifold.count)
+        let (mut layer, mut left) = (0, contacts.len());
+        while left > 0 {
+            let parts = buckets.shares.parts(left);
+            left = buckets.sort(contacts, layer, parts, input);
+            for member in 0..buckets.shares.members() {
+                if let Some(part) = buckets.shares.of_member(member, parts) {
+                    for class in PointClass::ALL {
+                        let manifolds = &buckets.lists[part][class as usize];
+                        let range = with_rows!(self, class, |rows| rows.lay(manifolds));
+                        plan.add(set, class, range, manifolds.len());
                     }
-                };
-                if count > 0 {
-                    let source = ContactSource { contact: id, manifold: layer };
-                    let member = if members > 1 { shares.member(input, id) } else { 0 };
-                    buckets.0[member][PointClass::of(count) as usize].push(source);
-                }
-            }
-            for buckets in &buckets.0[..members] {
-                for class in PointClass::ALL {
-                    let range = with_rows!(self, class, |rows| rows.lay(&buckets[class as usize]));
-                    plan.add(set, class, range);
                 }
                 plan.end_part();
             }
-            plan.end_stage();
-            if !more {
-                return;
-            }
+            plan.end_stage(parts > 1);
             layer += 1;
         }
     }
@@ -454,6 +424,6 @@ impl<N: Lane, const P: usize> Fill<N, P> {
 
 /// A body's row in this step; the dummy for none.
 #[inline(always)]
-fn row_of(bodies: &BodyTable, body: u32) -> u32 {
+pub(super) fn row_of(bodies: &BodyTable, body: u32) -> u32 {
     if body == NONE { 0 } else { bodies.rows[body as usize] }
 }

@@ -2,7 +2,7 @@
 
 use super::batch::{Plan, RowSet, Set};
 use super::block::{SetsView, Wide, WideView};
-use super::prepare::{Buckets, RowInput, Shares, is_held};
+use super::prepare::{Buckets, RowInput, is_held};
 use crate::graph::{ColorGraph, OVERFLOW};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
@@ -58,7 +58,6 @@ pub(super) struct Layout<'a> {
     /// Which axes are held, by body row; empty where nobody is held along any.
     pub(super) locks: &'a [AxisLocks],
     pub(super) any_deep: bool,
-    pub(super) shares: Shares,
     pub(super) buffers: &'a mut Buffers,
     pub(super) plan: &'a mut Plan,
 }
@@ -66,7 +65,7 @@ pub(super) struct Layout<'a> {
 /// Kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Buffers {
-    buckets: Buckets,
+    pub(super) buckets: Buckets,
     held: Vec<u32>,
     free: Vec<u32>,
 }
@@ -86,16 +85,6 @@ impl AllRows {
         }
     }
 
-    /// How many wide and how many scalar rows there are.
-    pub(super) fn counts(&self) -> (usize, usize) {
-        let wide = match self.width {
-            #[cfg(target_arch = "x86_64")]
-            Width::Eight => self.eight.len(),
-            _ => self.four.len(),
-        };
-        (wide, self.overflow.len())
-    }
-
     pub(super) fn view(&mut self) -> SetsView<'_> {
         let wide = match self.width {
             #[cfg(target_arch = "x86_64")]
@@ -110,10 +99,6 @@ impl<N: Lane> WideRows<N> {
     fn clear(&mut self) {
         self.free.clear();
         self.held.clear();
-    }
-
-    fn len(&self) -> usize {
-        self.free.len() + self.held.len()
     }
 
     fn make_room(&mut self, any_deep: bool) {
@@ -132,10 +117,10 @@ impl<N: Lane> WideRows<N> {
 
     /// Lays out the rows of contacts whose dynamic bodies are all different.
     fn lay(&mut self, [held_set, free_set]: [Set; 2], contacts: &[u32], layout: &mut Layout) {
-        let Layout { input, locks, shares, buffers, plan, .. } = layout;
+        let Layout { input, locks, buffers, plan, .. } = layout;
         let Buffers { buckets, held, free } = &mut **buffers;
         if locks.is_empty() {
-            self.free.lay(free_set, contacts, input, shares, buckets, plan);
+            self.free.lay(free_set, contacts, input, buckets, plan);
             return;
         }
         held.clear();
@@ -143,8 +128,8 @@ impl<N: Lane> WideRows<N> {
         for id in contacts {
             if is_held(input, locks, *id) { held.push(*id) } else { free.push(*id) }
         }
-        self.held.lay(held_set, held, input, shares, buckets, plan);
-        self.free.lay(free_set, free, input, shares, buckets, plan);
+        self.held.lay(held_set, held, input, buckets, plan);
+        self.free.lay(free_set, free, input, buckets, plan);
     }
 
     fn view(&mut self) -> WideView<'_, N> {

@@ -1,9 +1,9 @@
 //! The stages of a step, in the order they run.
 #![expect(unsafe_code, reason = "blocks are filled at once, each by one member of the team")]
 
-use super::batch::Plan;
+use super::batch::{Plan, Stage};
 use super::block::Pass;
-use super::prepare::{DeepCounts, Filler, RowInput, Shares};
+use super::prepare::{DeepCounts, Filler, RowInput};
 use super::rows::{AllRows, Buffers, Layout, Width};
 use super::{BodyRows, RowView, SubstepParams};
 use crate::contact::ContactTable;
@@ -41,6 +41,12 @@ impl Solver {
         self.rows.width = if narrow { Width::Four } else { Width::default() };
     }
 
+    /// From how many contacts a member of the team on a colour is shared by several, from the next
+    /// [`build_rows`](Self::build_rows) on: so that tests need not have as many as it takes to pay.
+    pub fn share_from(&mut self, contacts: usize) {
+        self.buffers.buckets.shares.worth = contacts;
+    }
+
     /// Forgets the rows of the last step, and makes room for so many [`bodies`](Self::bodies): every one of their rows is
     /// to be filled, whether or not there are contacts.
     pub fn begin_step(&mut self, kinematic: usize, dynamic: usize) {
@@ -55,8 +61,8 @@ impl Solver {
         let BodyRows { rows: body_rows, masses, motions, locks, first_dynamic, .. } = bodies;
         let members = team.members();
         plan.begin(if members > 1 { BLOCK_ROWS } else { u32::MAX }, members);
-        let shares = Shares::new(members, body_rows.len());
-        rows.lay_out(colors, &mut Layout { input, locks, any_deep: deep.any(), shares, buffers, plan });
+        buffers.buckets.shares.divide(members, body_rows.len(), input, colors);
+        rows.lay_out(colors, &mut Layout { input, locks, any_deep: deep.any(), buffers, plan });
         let filler = &Filler {
             input,
             view: RowView::over(body_rows, *first_dynamic),
@@ -72,17 +78,20 @@ impl Solver {
         if many {
             team.wake();
         }
-        for (stage, parts) in plan.stages.iter() {
-            team.run_parts(parts, |block, _| {
-                // SAFETY: each block is run once.
-                sets.fill(unsafe { blocks.one(stage.start + block) }, filler);
-            });
-        }
+        team.run(blocks.len(), |block, _| {
+            // SAFETY: each block is run once.
+            sets.fill(unsafe { blocks.one(block) }, filler);
+        });
     }
 
-    /// How many wide and how many scalar rows the step has.
-    pub fn row_counts(&self) -> (usize, usize) {
-        self.rows.counts()
+    /// How many stages of each sweep are shared by several members of the team.
+    pub fn shared_stages(&self) -> usize {
+        self.plan.stages().filter(|stage| stage.parts.is_some()).count()
+    }
+
+    /// How many manifolds are solved in the step.
+    pub fn manifold_count(&self) -> usize {
+        self.plan.manifolds
     }
 
     /// Accelerations, damping, gyroscopic torque, speed limits.
@@ -139,8 +148,12 @@ impl Solver {
     /// Puts the impulses back into the manifolds, for the next step to start from.
     pub fn store_impulses(&mut self, contacts: &mut ContactTable) {
         let (sets, manifolds) = (self.rows.view(), contacts.manifolds_view());
-        for (blocks, parts) in self.plan.stages() {
-            self.team.run_parts(parts, |block, _| sets.store(&blocks[block], &manifolds));
+        for Stage { blocks, parts } in self.plan.stages() {
+            let store = |block: usize, _| sets.store(&blocks[block], &manifolds);
+            match parts {
+                Some(parts) => self.team.run_parts(parts, store),
+                None => self.team.run(blocks.len(), store),
+            }
         }
         self.plan.begin(0, 1);
     }
@@ -149,12 +162,16 @@ impl Solver {
     fn sweep(&mut self, pass: Pass, params: &SubstepParams) -> bool {
         let (sets, bodies) = (self.rows.view(), self.bodies.view());
         let hit = AtomicBool::new(false);
-        for (blocks, parts) in self.plan.stages() {
-            self.team.run_parts(parts, |block, _| {
+        for Stage { blocks, parts } in self.plan.stages() {
+            let solve = |block: usize, _| {
                 if sets.run(&blocks[block], pass, &bodies, params) {
                     hit.store(true, Ordering::Relaxed);
                 }
-            });
+            };
+            match parts {
+                Some(parts) => self.team.run_parts(parts, solve),
+                None => (0..blocks.len()).for_each(|block| solve(block, 0)),
+            }
         }
         hit.into_inner()
     }

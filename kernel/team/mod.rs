@@ -1,4 +1,5 @@
-//! The kernel's own threads. A stage of a step is cut into blocks; whoever is awake claims them.
+//! The kernel's own threads. A stage of a step is cut into blocks, a part of them for each member; who is awake and done
+//! with its own claims those of others.
 #![expect(unsafe_code, reason = "threads borrow what the caller has on its stack")]
 
 #[cfg(test)]
@@ -43,10 +44,7 @@ struct Board {
     desks: Box<[Desk]>,
     /// How many blocks each member has done in its life, in a line of its own.
     done: Box<[Apart<AtomicU32>]>,
-    /// What those sum up to when all blocks so far are done.
-    posted: AtomicU32,
-    /// Whether some clone of the team is at work.
-    busy: AtomicBool,
+    caller: Apart<Caller>,
     /// Which helpers sleep. Who wakes one says so before it is awake.
     asleep: Vec<AtomicBool>,
     /// How many do not.
@@ -54,8 +52,17 @@ struct Board {
     /// Whether helpers are to sleep without looking for more work.
     rests: AtomicBool,
     /// What the first block that panicked in a helper said.
-    panic: Mutex<Option<Box<dyn Any + Send>>>,
+    panic: Apart<Mutex<Option<Box<dyn Any + Send>>>>,
     quit: AtomicBool,
+}
+
+/// What the caller writes with every stage.
+#[derive(Debug, Default)]
+struct Caller {
+    /// Whether some clone of the team is at work.
+    busy: AtomicBool,
+    /// What the counts of blocks done sum up to when all so far are.
+    posted: AtomicU32,
 }
 
 /// In cache lines of its own: processors fetch two at a time.
@@ -69,8 +76,8 @@ struct Apart<T>(T);
 struct Desk {
     /// The blocks that are the member's to claim first, and that nobody has claimed.
     claims: Claims,
-    /// The stage. Written only while all its blocks are done, read only by the member and after it has claimed a
-    /// block that is not.
+    /// The stage. Written only while all blocks of the last one are done, read only by who has claimed a block here
+    /// that is not.
     job: UnsafeCell<Option<Job>>,
 }
 
@@ -178,18 +185,19 @@ impl Team {
         self.run_shares(count, (1..=members).map(|k| (u64::from(count) * k / members) as u32), job);
     }
 
-    /// As [`run`](Self::run), where member `k` begins with the blocks from `ends[k - 1]` to `ends[k]`; there are as
-    /// many ends as members, and each is at least the one before. What is all the caller's it runs alone.
+    /// As [`run`](Self::run) for the blocks below the last of `ends`, where member `k` begins with those from
+    /// `ends[k - 1]` to `ends[k]`. Who has none does not take part. Ends that are not one for each member, made for
+    /// another team, are left out of account.
     ///
     /// # Panics
-    /// If a block does, and if there are not as many ends as members.
+    /// If a block does.
     pub fn run_parts(&self, ends: &[u32], job: impl Fn(usize, usize) + Sync) {
-        assert_eq!(ends.len(), self.members(), "each member has a part");
-        let last = ends[ends.len() - 1];
-        if ends[0] == last {
-            return (0..last as usize).for_each(|block| job(block, 0));
+        let blocks = ends.last().copied().unwrap_or(0);
+        debug_assert!(ends.is_sorted(), "parts follow one another: {ends:?}");
+        if ends.len() != self.members() {
+            return self.run(blocks as usize, job);
         }
-        self.run_shares(last, ends.iter().copied(), job);
+        self.run_shares(blocks, ends.iter().copied(), job);
     }
 
     /// Runs so many blocks, of which each member begins with those up to an end.
@@ -240,12 +248,12 @@ impl Drop for Helpers {
 
 impl Board {
     fn panic(&self) -> MutexGuard<'_, Option<Box<dyn Any + Send>>> {
-        self.panic.lock().unwrap_or_else(PoisonError::into_inner)
+        self.panic.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes the board, unless a clone of the team or a job that runs jobs has it.
     fn begin(&self) -> bool {
-        self.busy.compare_exchange(false, true, Ordering::Acquire, Ordering::Relaxed).is_ok()
+        self.caller.0.busy.compare_exchange(false, true, Ordering::Acquire, Ordering::Relaxed).is_ok()
     }
 
     /// Puts a job up, takes part in it, and waits for its end.
@@ -261,23 +269,23 @@ impl Board {
                 let Self(board, blocks) = self;
                 // What nobody has claimed when the caller panics is nobody's.
                 let left = board.desks.iter().map(|desk| desk.claims.close()).sum::<u32>();
-                let posted = board.posted.load(Ordering::Relaxed).wrapping_add(*blocks - left);
-                board.wait_for(posted);
-                board.posted.store(posted, Ordering::Relaxed);
+                let posted = &board.caller.0.posted;
+                let all = posted.load(Ordering::Relaxed).wrapping_add(*blocks - left);
+                board.wait_for(all);
+                posted.store(all, Ordering::Relaxed);
             }
         }
         let posted = Job { data: core::ptr::from_ref(job).cast(), run: run::<F> };
-        for desk in &self.desks {
-            // SAFETY: all blocks of the last job are done, and nobody can have claimed one of this.
-            unsafe { *desk.job.get() = Some(posted) };
-        }
         let _wait = Wait(self, blocks);
         let mut start = 0;
         for (desk, end) in self.desks.iter().zip(ends) {
+            let end = end.clamp(start, blocks);
+            // SAFETY: all blocks of the last job are done, and nobody can have claimed one here of this.
+            unsafe { *desk.job.get() = Some(posted) };
             desk.claims.put(start..end);
             start = end;
         }
-        while let Some(block) = self.claim_own(0).or_else(|| self.claim_others(0)) {
+        while let Some((block, _)) = self.claim_own(0).or_else(|| self.claim_others(0)) {
             // Done or not, the block counts: whoever waits must not wait for ever.
             let _done = Done(self, 0);
             job(block, 0);
@@ -299,15 +307,17 @@ impl Board {
     /// A block of the member's own part that nobody else has or will have. Members begin with the same part in every
     /// run: what runs over the same data one after another finds it in the cache of its core.
     #[inline]
-    fn claim_own(&self, member: usize) -> Option<u32> {
-        self.desks[member].claims.take(true)
+    fn claim_own(&self, member: usize) -> Option<(u32, &Desk)> {
+        let desk = &self.desks[member];
+        desk.claims.take(true).map(|block| (block, desk))
     }
 
     /// A block of another member's part that nobody else has or will have.
     #[inline]
-    fn claim_others(&self, member: usize) -> Option<u32> {
+    fn claim_others(&self, member: usize) -> Option<(u32, &Desk)> {
         let (before, from) = self.desks.split_at(member);
-        from[1..].iter().chain(before).find_map(|desk| desk.claims.take(false))
+        let others = from[1..].iter().chain(before);
+        others.filter_map(|desk| desk.claims.take(false).map(|block| (block, desk))).next()
     }
 
     /// What a helper does with its life.
@@ -332,8 +342,8 @@ impl Board {
         loop {
             // Others' parts are looked at after one's own only: else their lines were gone whenever they look.
             let mut next = self.claim_own(member);
-            while let Some(block) = next {
-                self.run_block(block, member);
+            while let Some((block, desk)) = next {
+                self.run_block(block, desk, member);
                 idle_since = None;
                 next = self.claim_own(member).or_else(|| self.claim_others(member));
             }
@@ -355,11 +365,11 @@ impl Board {
 }
 
 impl Board {
-    /// Runs a block that a helper has claimed.
-    fn run_block(&self, block: u32, member: usize) {
+    /// Runs a block that a helper has claimed at a desk.
+    fn run_block(&self, block: u32, desk: &Desk, member: usize) {
         let _done = Done(self, member);
-        // SAFETY: it has a block that is not done: nobody writes the job, and its closure is there.
-        let Some(job) = (unsafe { *self.desks[member].job.get() }) else { return };
+        // SAFETY: it has a block from there that is not done: nobody writes the job, and its closure is there.
+        let Some(job) = (unsafe { *desk.job.get() }) else { return };
         // SAFETY: as above.
         let run = || unsafe { (job.run)(job.data, block, member) };
         if let Err(panic) = std::panic::catch_unwind(core::panic::AssertUnwindSafe(run)) {
@@ -376,7 +386,7 @@ impl Drop for Ours<'_> {
     fn drop(&mut self) {
         // If the caller's own block panicked, that is what is told.
         core::mem::forget(self.0.panic().take());
-        self.0.busy.store(false, Ordering::Release);
+        self.0.caller.0.busy.store(false, Ordering::Release);
     }
 }
 

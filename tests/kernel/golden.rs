@@ -355,7 +355,7 @@ fn changes(sim: &mut Sim) {
     }
 }
 
-/// So much that every stage is cut into blocks: a high pyramid in a rain of balls.
+/// So much that there are many blocks: a high pyramid in a rain of balls.
 fn wall(sim: &mut Sim) {
     sim.floor();
     stack(sim, 40, 0.0);

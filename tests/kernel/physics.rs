@@ -368,6 +368,7 @@ fn the_same_bits_with_any_number_of_workers() {
             sim.locks[id as usize] = kernel::math::AxisLocks(if i % 5 == 0 { 0b100_000 } else { 0 });
         }
         sim.steps(200);
+        assert_eq!(sim.shared > 4, members > 1, "{members} members share {} stages", sim.shared);
         let velocities = sim.bodies.velocities.iter().map(|v| format!("{v:?}"));
         sim.bodies.poses.iter().map(|p| format!("{p:?}")).chain(velocities).collect::<Vec<_>>()
     };

@@ -52,6 +52,8 @@ pub struct Sim {
     /// Whether contacts are solved.
     pub builds_rows: bool,
     pub locks: Vec<AxisLocks>,
+    /// How many stages of the last step were shared by members of the team.
+    pub shared: usize,
     trees: Trees,
     proxies: Vec<(TreeKind, ProxyId)>,
     masses: Vec<(f32, InvInertia)>,
@@ -67,6 +69,9 @@ pub struct Sim {
 
 impl Sim {
     pub fn new() -> Self {
+        // Members share also where there is too little to do for it to pay: that they do not matter is tested.
+        let mut solver = Solver::default();
+        solver.share_from(1);
         Self {
             bodies: BodyTable::default(),
             colliders: ColliderTable::default(),
@@ -81,11 +86,12 @@ impl Sim {
             checked: true,
             builds_rows: true,
             locks: Vec::new(),
+            shared: 0,
             trees: Trees::default(),
             proxies: Vec::new(),
             masses: Vec::new(),
             movers: Movers::default(),
-            solver: Solver::default(),
+            solver,
             scratch: Vec::new(),
             scan: SleepScan::new(),
             listed: Vec::new(),
@@ -224,7 +230,7 @@ impl Sim {
         self.colliders.ids.recycle();
         self.contacts.recycle_ids();
         self.gather();
-        // Helpers come also where there is too little to do for it to pay: that they do not matter is tested.
+        // Helpers come also where it does not pay.
         self.solver.team.wake();
         let mut found = FoundPairs::default();
         found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.solver.team);
@@ -238,6 +244,7 @@ impl Sim {
         self.solver.team.wake();
         if self.builds_rows {
             self.solver.build_rows(&input, &self.colors, &params);
+            self.shared = self.solver.shared_stages();
         }
         for _ in 0..self.substeps {
             self.solver.substep(&params);

@@ -164,8 +164,7 @@ pub(crate) fn prepare_rows(
     } else {
         kernel.build_rows(&input, &ColorGraph::new(), params);
     }
-    let (wide, scalar) = kernel.row_counts();
-    diagnostics.contact_constraint_count = (wide + scalar) as u32;
+    diagnostics.contact_constraint_count = kernel.manifold_count() as u32;
     diagnostics.prepare_constraints += start.elapsed();
 }
 

@@ -96,19 +96,12 @@ pub(super) fn collide(
     }
     let exact = pair.build(axis, out);
     if !exact && separation > gjk::resolution(pair.larger, pair.smaller) {
-        let is_farther = pair.build_closest(separation, out);
-        // Beside the face, and yet no farther than its plane says: a sliver, or rounding.
-        if out.count == 0
-            && !is_farther
-            && let Axis::FaceA(face) | Axis::FaceB(face) = axis
-        {
-            pair.push_deepest(&face, matches!(axis, Axis::FaceB(_)), out);
-        }
+        pair.build_apart(separation, out);
     }
 }
 
 /// One point between the closest features of two polyhedra that an axis separates, where the axis
-/// itself says less than the distance. Leaves the manifold alone if the distance is no larger. Whether it is.
+/// itself says less than the distance. Leaves points that there are alone if the distance is no larger.
 pub(super) fn collide_apart(
     a: &View,
     b: &View,
@@ -116,8 +109,8 @@ pub(super) fn collide_apart(
     separation: f32,
     prediction: f32,
     out: &mut LocalManifold,
-) -> bool {
-    Pair::new(a, b, pose, prediction).build_closest(separation, out)
+) {
+    Pair::new(a, b, pose, prediction).build_apart(separation, out);
 }
 
 /// What the next step tries first. Features beyond a byte are not remembered.
@@ -316,8 +309,17 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// One point between the closest vertices or edges, if they really are farther apart than `separation`. Whether they
-    /// are.
+    /// See [`collide_apart`].
+    fn build_apart(&self, separation: f32, out: &mut LocalManifold) {
+        let is_farther = self.build_closest(separation, out);
+        // Beside the face, and yet no farther than its plane says: a sliver, or rounding.
+        if out.count == 0 && !is_farther {
+            self.build_closest(f32::NEG_INFINITY, out);
+        }
+    }
+
+    /// One point between the closest vertices or edges, if they really are farther apart than `separation`. Returns
+    /// whether they are.
     fn build_closest(&self, separation: f32, out: &mut LocalManifold) -> bool {
         let Some(c) = gjk::closest(self.a, self.b, &self.b_in_a) else { return false };
         if !(c.distance > separation) {

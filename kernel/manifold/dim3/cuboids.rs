@@ -67,12 +67,7 @@ pub(super) fn collide(
     }
     let exact = pair.build(cache.kind, cache.a, cache.b, separation, out);
     if !exact && separation > gjk::resolution(larger, smaller) {
-        let is_farther = pair.build_apart(pose, separation, out);
-        // Beside the face, and yet no farther than its plane says, within rounding.
-        if out.count == 0 && !is_farther && cache.kind != EDGES {
-            let of_b = cache.kind == FACE_B;
-            pair.push_deepest(of_b, (if of_b { cache.b } else { cache.a }) as usize, separation, out);
-        }
+        pair.build_apart(pose, separation, out);
     }
 }
 
@@ -253,8 +248,9 @@ impl Pair {
 
         out.count = 0;
         out.normal = columns[i0] * if of_b { -side } else { side };
-        // The reference face; which face of the other box.
-        let base = face_name(of_b, axis, side) | ((incident * 2 + usize::from(away > 0.0)) << 5) as u32;
+        // The axis and its side, the reference face; which face of the other box.
+        let face = ((axis | usize::from(of_b) << 2) * 2 + usize::from(side > 0.0)) as u32;
+        let base = face << 8 | ((incident * 2 + usize::from(away > 0.0)) << 5) as u32;
         let (up, right, ahead) = (columns[i0] * side, columns[i1], columns[i2]);
         let (kept, count) = clipped.patch.reduce();
         for k in &kept[..count] {
@@ -264,17 +260,17 @@ impl Pair {
             out.push(point, height, base | clipped.name(*k));
         }
         if out.count == 0 && separation <= gjk::resolution(self.larger, self.smaller) {
-            self.push_deepest(of_b, axis, separation, out);
+            self.emit_deepest(face << 8, separation, out);
         }
         clipped.least <= separation + EXACT * self.smaller
     }
 
-    /// Adds the corner that is deepest under the face on `axis` of A, or of B, whose normal the manifold has.
+    /// Overlap beside the reference face: the deepest corner alone.
     #[cold]
-    fn push_deepest(&self, of_b: bool, axis: usize, separation: f32, out: &mut LocalManifold) {
+    fn emit_deepest(&self, base: u32, separation: f32, out: &mut LocalManifold) {
         let n = out.normal;
         let sign = |v: f32| if v < 0.0 { -1.0 } else { 1.0 };
-        let side = sign(self.offset[usize::from(of_b)].to_array()[axis]);
+        let of_b = base & 4 << 9 != 0;
         let point = if of_b {
             Vector { x: sign(n.x), y: sign(n.y), z: sign(n.z) }.scale(self.half_a) + n * (0.5 * separation)
         } else {
@@ -282,14 +278,14 @@ impl Pair {
             let corner = Vector { x: sign(d.x), y: sign(d.y), z: sign(d.z) }.scale(self.half_b);
             self.frame.point(corner) - n * (0.5 * separation)
         };
-        out.push(point, separation, face_name(of_b, axis, if of_b { -side } else { side }) | 0xff);
+        out.push(point, separation, base | 0xff);
     }
 
     /// See [`convex::collide_apart`].
     #[inline(never)]
-    fn build_apart(&self, pose: &Pose, separation: f32, out: &mut LocalManifold) -> bool {
+    fn build_apart(&self, pose: &Pose, separation: f32, out: &mut LocalManifold) {
         let (a, b) = (Small::cuboid(self.half_a), Small::cuboid(self.half_b));
-        convex::collide_apart(&a.view(), &b.view(), pose, separation, self.prediction, out)
+        convex::collide_apart(&a.view(), &b.view(), pose, separation, self.prediction, out);
     }
 
     fn build_edges(&self, i: usize, j: usize, separation: f32, out: &mut LocalManifold) -> bool {
@@ -325,12 +321,6 @@ impl Pair {
         out.push((on_a + on_b) * 0.5, separation, feature);
         inside
     }
-}
-
-/// A name for the face on one side of an axis of A, or of B; the lowest byte is left for what lies over it.
-#[inline(always)]
-fn face_name(of_b: bool, axis: usize, side: f32) -> u32 {
-    (((axis | usize::from(of_b) << 2) * 2 + usize::from(side > 0.0)) << 8) as u32
 }
 
 /// The incident face: a parallelogram, in coordinates across the reference face and over it.

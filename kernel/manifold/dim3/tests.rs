@@ -499,6 +499,25 @@ fn a_ball_beside_a_face_as_near_as_its_plane_is_not_missed() {
 }
 
 #[test]
+fn a_box_past_the_edge_of_a_vast_one_touches_it_where_it_is() {
+    let cuboid = |half| Shape::Cuboid(Cuboid { half });
+    let (cube, floor) = (cuboid(Vector::ONE * 0.5), cuboid(v(1000.0, 1.0, 1000.0)));
+    for beside in [0.0, 1.0e-3, 3.0e-3, 1.0e-2] {
+        let pose = Pose::new(v(1000.5 + beside, 1.52, 0.0), Rot::IDENTITY);
+        for (a, b, pose) in [(&floor, &cube, pose), (&cube, &floor, pose.inverse())] {
+            let m = fresh(a, b, &pose, 0.05);
+            assert!(m.count > 0, "{beside} beside the edge");
+            for p in m.points() {
+                let center = if core::ptr::eq(a, &floor) { pose.position } else { Vector::ZERO };
+                assert!((p.point - center).length() < 1.0, "{beside}: {p:?}");
+                let distance = (0.02f32 * 0.02 + beside * beside).sqrt();
+                assert!((p.separation - distance).abs() < 1e-3, "{beside}: {p:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_small_box_beside_a_face_as_near_as_its_plane_is_not_missed() {
     let cuboid = |x, y, z| Shape::Cuboid(Cuboid { half: v(x, y, z) });
     let turn = Rot { x: 0.61542994, y: -0.50162625, z: 0.5816331, w: 0.17697482 };
