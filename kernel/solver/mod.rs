@@ -20,6 +20,7 @@ mod finish;
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]
 #[cfg_attr(feature = "3d", path = "gyro3.rs")]
 mod gyro;
+mod input;
 mod integrate;
 mod inv_mass;
 mod prepare;
@@ -33,8 +34,9 @@ mod view;
 pub use batch::{PointClass, RowSet};
 pub use body::{BodyRows, Limits, Motion};
 pub use dim::{BodyRow, MassRow, Twist};
+pub use input::RowInput;
 pub use inv_mass::InvMass;
-pub use prepare::{ContactSource, RowInput};
+pub use prepare::ContactSource;
 pub use row::{ContactRow, DeepRow, PointRow, RestitutionRow};
 pub use rows::Width;
 pub use softness::{Softness, SubstepParams};

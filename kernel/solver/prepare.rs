@@ -2,21 +2,14 @@
 //! filled, block by block, and the effective masses computed for all lanes of a row at once.
 
 use super::batch::{BlockRows, Plan, PointClass, RowSet, Rows, Set, Source, with_rows};
+use super::input::RowInput;
 use super::shares::Shares;
 use super::{
     BodyRow, BodyRows, ContactRow, DeepRow, InvMass, MassRow, Motion, RestitutionRow, RowView, SubstepParams,
 };
-use crate::contact::{Contact, ContactFlags, ContactTable, Manifold};
+use crate::contact::{Contact, ContactFlags, Manifold};
 use crate::math::{AxisLocks, Ids, Lane, TangentFrame, Vector};
 use crate::table::{BodyTable, NONE};
-
-/// What rows are made from.
-pub struct RowInput<'a> {
-    /// The contacts, with their manifolds.
-    pub contacts: &'a ContactTable,
-    /// Which row each body has.
-    pub bodies: &'a BodyTable,
-}
 
 /// How many deeply overlapping contacts each dynamic body's row has; nothing in steps without any.
 ///
@@ -40,7 +33,7 @@ impl DeepCounts {
             let contact = input.contacts.get(id);
             if contact.flags.has(ContactFlags::DEEP) && contact.slot.is_some() {
                 for body in contact.bodies {
-                    let row = row_of(input.bodies, body);
+                    let row = input.row_of(body);
                     self.0[row as usize] += u32::from(row >= bodies.first_dynamic);
                 }
             }
@@ -97,7 +90,7 @@ pub struct ContactSource {
 /// Whether a body of the contact is held along some axes.
 pub(super) fn is_held(input: &RowInput, locks: &[AxisLocks], contact: u32) -> bool {
     input.contacts.get(contact).bodies.iter().any(|body| {
-        let row = row_of(input.bodies, *body);
+        let row = input.row_of(*body);
         locks[row as usize].is_translation_held()
     })
 }
@@ -297,7 +290,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let input = filler.input;
         let contact = input.contacts.get(from.contact);
         let manifold = input.contacts.manifold(contact, from.manifold).expect("it was there to be counted");
-        let ids = contact.bodies.map(|body| row_of(input.bodies, body));
+        let ids = contact.bodies.map(|body| input.row_of(body));
         for side in 0..2 {
             row.ids[side].set(lane, ids[side]);
             if let Some(locks) = filler.locks.get(ids[side] as usize)
@@ -420,10 +413,4 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         }
         row.twist.prepare(n, core, anchors, row.inv_inertia);
     }
-}
-
-/// A body's row in this step; the dummy for none.
-#[inline(always)]
-pub(super) fn row_of(bodies: &BodyTable, body: u32) -> u32 {
-    if body == NONE { 0 } else { bodies.rows[body as usize] }
 }

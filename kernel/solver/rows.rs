@@ -2,7 +2,8 @@
 
 use super::batch::{Plan, RowSet, Set};
 use super::block::{SetsView, Wide, WideView};
-use super::prepare::{Buckets, RowInput, is_held};
+use super::input::RowInput;
+use super::prepare::{Buckets, is_held};
 use crate::graph::{ColorGraph, OVERFLOW};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;

@@ -1,6 +1,6 @@
 //! Who of a team solves which contacts.
 
-use super::prepare::{RowInput, row_of};
+use super::input::RowInput;
 use crate::graph::ColorGraph;
 use crate::table::NONE;
 
@@ -45,7 +45,7 @@ impl Shares {
         let all = input.bodies.awake_dynamic().map(work).sum::<u64>().max(1);
         let mut before = 0;
         for id in input.bodies.awake_dynamic() {
-            self.of_row[row_of(input.bodies, id) as usize] = (before * self.members as u64 / all) as u16;
+            self.of_row[input.row_of(id) as usize] = (before * self.members as u64 / all) as u16;
             before += work(id);
         }
         // Nobody's, whoever may have woken since rows were given.
@@ -63,8 +63,7 @@ impl Shares {
         if parts == 1 {
             return 0;
         }
-        let of =
-            |body: u32| if body == NONE { NOBODY } else { self.of_row[row_of(input.bodies, body) as usize] };
+        let of = |body: u32| if body == NONE { NOBODY } else { self.of_row[input.row_of(body) as usize] };
         let member = match input.contacts.bodies_of(contact).map(of) {
             [NOBODY, NOBODY] => 0,
             [member, NOBODY] | [NOBODY, member] => member,

@@ -3,7 +3,8 @@
 
 use super::batch::{Plan, Stage};
 use super::block::Pass;
-use super::prepare::{DeepCounts, Filler, RowInput};
+use super::input::RowInput;
+use super::prepare::{DeepCounts, Filler};
 use super::rows::{AllRows, Buffers, Layout, Width};
 use super::{BodyRows, RowView, SubstepParams};
 use crate::contact::ContactTable;
