@@ -7,15 +7,14 @@ use super::{Hull, mass, size_of};
 use crate::math::Vector;
 use crate::shape::ShapeError;
 
-/// How far, as a share of the size, a vertex may lie off a face's plane to be part of the face.
-/// Larger eats small bevels, smaller leaves the slivers that hull builders make.
-const FLATNESS: f64 = 1.0e-4;
+/// How far, as a share of the size, a vertex may lie off a face's plane to be part of the face, and off an edge to
+/// be part of the edge. Larger eats small bevels, smaller leaves the slivers that hull builders make. Thin solids
+/// would lose corners: each next one is tried if the one before joins faces that are not one polygon.
+const FLATNESS: [f64; 4] = [1.0e-4, 1.0e-5, 1.0e-6, 0.0];
 /// How far, as a share of the size, a vertex may lie in front of a face.
 const CONVEXITY: f64 = 1.0e-3;
 /// Faces are merged only if the cosine between their normals is above this.
 const SAME_DIRECTION: f64 = 0.99;
-/// Faces with less area than this share of the size's square have no reliable normal.
-const SLIVER_AREA: f64 = 1.0e-9;
 /// Meshes with less volume than this share of the size's cube are flat.
 const FLAT_VOLUME: f64 = 1.0e-9;
 
@@ -34,6 +33,7 @@ impl Hull {
     /// are clockwise.
     pub fn from_mesh(vertices: Vec<Vector>, faces: Vec<Vec<u32>>) -> Result<Self, ShapeError> {
         let (vertices, faces) = weld(vertices, faces)?;
+        let (vertices, faces) = drop_unused(&vertices, faces);
         let size = f64::from(size_of(&vertices));
         if faces.len() < 4 || !(size > 0.0) {
             return Err(ShapeError::Degenerate);
@@ -46,10 +46,31 @@ impl Hull {
         if volume < 0.0 {
             return Err(ShapeError::NotConvex);
         }
-        let groups = merge_coplanar(&vertices, &faces, &half_edges, size);
-        let outlines = outlines(&groups, &half_edges)?;
-        let (vertices, outlines) = drop_unused(&vertices, outlines);
-        let planes = checked_planes(&vertices, &outlines, size)?;
+        let mut result = Err(ShapeError::Degenerate);
+        for flatness in FLATNESS {
+            result = Self::merged(&vertices, &faces, &half_edges, size, flatness * size);
+            if result.is_ok() {
+                break;
+            }
+        }
+        result
+    }
+
+    /// The hull with faces merged that lie in a plane to within `tolerance` metres.
+    fn merged(
+        vertices: &[Vector],
+        faces: &[Vec<u32>],
+        half_edges: &[HalfEdge],
+        size: f64,
+        tolerance: f64,
+    ) -> Result<Self, ShapeError> {
+        let groups = merge_coplanar(vertices, faces, half_edges, tolerance);
+        let outlines = outlines(vertices, &groups, half_edges, tolerance)?;
+        let planes = checked_planes(vertices, &outlines, size)?;
+        let (vertices, outlines) = drop_unused(vertices, outlines);
+        if vertices.len() + outlines.len() != outlines.iter().map(Vec::len).sum::<usize>() / 2 + 2 {
+            return Err(ShapeError::Degenerate);
+        }
         Ok(Self::assemble(vertices, &planes, &outlines))
     }
 
@@ -128,7 +149,12 @@ fn area_vector(vertices: &[Vector], outline: &[u32]) -> Wide {
 ///
 /// Groups grow from the largest face on, and a face is compared with that seed alone: comparing
 /// neighbours with each other would melt a finely tessellated ball into one face.
-fn merge_coplanar(vertices: &[Vector], faces: &[Vec<u32>], half_edges: &[HalfEdge], size: f64) -> Vec<u32> {
+fn merge_coplanar(
+    vertices: &[Vector],
+    faces: &[Vec<u32>],
+    half_edges: &[HalfEdge],
+    tolerance: f64,
+) -> Vec<u32> {
     let areas: Vec<Wide> = faces.iter().map(|f| area_vector(vertices, f)).collect();
     let mut order: Vec<usize> = (0..faces.len()).collect();
     order.sort_by(|a, b| areas[*b].length().total_cmp(&areas[*a].length()).then(a.cmp(b)));
@@ -143,10 +169,12 @@ fn merge_coplanar(vertices: &[Vector], faces: &[Vec<u32>], half_edges: &[HalfEdg
         let base = widen(vertices[faces[seed][0] as usize]);
         let joins = |face: usize| {
             let area = areas[face].length();
-            let sliver = area < SLIVER_AREA * size * size;
-            let flat = faces[face]
-                .iter()
-                .all(|v| normal.dot(widen(vertices[*v as usize]) - base).abs() < FLATNESS * size);
+            let at = |k: usize| widen(vertices[faces[face][k % faces[face].len()] as usize]);
+            let longest = (0..faces[face].len()).map(|k| (at(k + 1) - at(k)).length()).fold(0.0, f64::max);
+            // Its normal says nothing.
+            let sliver = area < tolerance * longest;
+            let flat =
+                faces[face].iter().all(|v| normal.dot(widen(vertices[*v as usize]) - base).abs() < tolerance);
             flat && (sliver || normal.dot(areas[face]) > SAME_DIRECTION * area)
         };
         group[seed] = seed as u32;
@@ -166,9 +194,14 @@ fn merge_coplanar(vertices: &[Vector], faces: &[Vec<u32>], half_edges: &[HalfEdg
     group
 }
 
-/// The boundary loop of each group; vertices that only two groups share are left out, since they lie
-/// on a straight edge.
-fn outlines(group: &[u32], half_edges: &[HalfEdge]) -> Result<Vec<Vec<u32>>, ShapeError> {
+/// The boundary loop of each group; vertices that only two groups share are left out, and must lie on a straight
+/// edge, to within `tolerance` metres.
+fn outlines(
+    vertices: &[Vector],
+    group: &[u32],
+    half_edges: &[HalfEdge],
+    tolerance: f64,
+) -> Result<Vec<Vec<u32>>, ShapeError> {
     let mut border: Vec<HalfEdge> = Vec::new();
     for &(tail, head, face) in half_edges {
         let twin = face_at(half_edges, head, tail).ok_or(ShapeError::Degenerate)?;
@@ -185,14 +218,24 @@ fn outlines(group: &[u32], half_edges: &[HalfEdge]) -> Result<Vec<Vec<u32>>, Sha
     let mut result = Vec::new();
     for of_group in border.chunk_by(|a, b| a.0 == b.0) {
         let mut outline = Vec::with_capacity(of_group.len());
-        let start = of_group[0].1;
+        let corner = of_group.iter().position(|b| degree[b.1 as usize] > 2).ok_or(ShapeError::Degenerate)?;
+        let start = of_group[corner].1;
+        let mut skipped = Vec::new();
         let mut at = start;
         for _ in 0..of_group.len() {
             let next = of_group.binary_search_by_key(&at, |b| b.1).map_err(|_| ShapeError::Degenerate)?;
             if degree[at as usize] > 2 {
                 outline.push(at);
+            } else {
+                skipped.push(at);
             }
             at = of_group[next].2;
+            if degree[at as usize] > 2 {
+                let (a, b) = (outline[outline.len() - 1], at);
+                if !skipped.drain(..).all(|v| off_line(vertices, v, a, b) < tolerance) {
+                    return Err(ShapeError::Degenerate);
+                }
+            }
         }
         // Another loop, or a vertex passed twice: the group is not a disc.
         let pinched = of_group.windows(2).any(|w| w[0].1 == w[1].1);
@@ -202,6 +245,13 @@ fn outlines(group: &[u32], half_edges: &[HalfEdge]) -> Result<Vec<Vec<u32>>, Sha
         result.push(outline);
     }
     Ok(result)
+}
+
+/// How far a vertex lies off the line through two others.
+fn off_line(vertices: &[Vector], v: u32, a: u32, b: u32) -> f64 {
+    let [v, a, b] = [v, a, b].map(|i| widen(vertices[i as usize]));
+    let axis = b - a;
+    (v - a).cross(axis).length() / axis.length()
 }
 
 /// Renumbers the vertices that are left.
@@ -223,16 +273,12 @@ fn drop_unused(vertices: &[Vector], mut outlines: Vec<Vec<u32>>) -> (Vec<Vector>
     (kept, outlines)
 }
 
-/// The planes of the faces, if the solid is convex and closed.
+/// The planes of the faces, if no vertex, of the ones left out either, lies in front of one.
 fn checked_planes(
     vertices: &[Vector],
     outlines: &[Vec<u32>],
     size: f64,
 ) -> Result<Vec<(Vector, f32)>, ShapeError> {
-    let half_edge_count: usize = outlines.iter().map(Vec::len).sum();
-    if vertices.len() * 2 + outlines.len() * 2 != half_edge_count + 4 {
-        return Err(ShapeError::Degenerate);
-    }
     let mut planes = Vec::with_capacity(outlines.len());
     for outline in outlines {
         let area = area_vector(vertices, outline);

@@ -1,16 +1,18 @@
 //! The convex hull of a cloud of points, for users of the bare kernel and for tests.
 //!
 //! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", 1996) in `f64`
-//! with one tolerance: a point in front of a face by less than that is on it.
+//! without topology repair: its points come from `f32`, and are exact to nine digits more.
 
 use super::wide::{Wide, widen};
 use super::{Hull, size_of};
 use crate::math::Vector;
 use crate::shape::ShapeError;
 
-/// Points in front of the hull by less than this share of the size are dropped, and points closer to
-/// each other than this are one.
+/// Points closer to each other than this share of the size are one, and points this close to a plane flat.
 const TOLERANCE: f64 = 1.0e-5;
+/// A point in front of a face by less than this share of the tolerance is on it. It must be small: beyond the edge
+/// of a thin solid a point may be far away and hardly in front of either face.
+const ON_FACE: f64 = 1.0e-4;
 
 /// A triangle of the growing hull.
 struct Facet {
@@ -95,6 +97,7 @@ fn quickhull(points: &[Wide], tolerance: f64) -> Option<Vec<[u32; 3]>> {
     let [a, b, c, d] = first_tetrahedron(points, tolerance)?;
     let mut facets: Vec<Facet> =
         [[a, b, c], [a, d, b], [b, d, c], [c, d, a]].map(|t| Facet::new(points, t)).into();
+    let tolerance = tolerance * ON_FACE;
     assign(points, &mut facets, 0, (0..points.len()).collect(), tolerance);
     // Every round uses up at least the point it adds.
     for _ in 0..points.len() {

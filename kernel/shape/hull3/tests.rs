@@ -162,26 +162,60 @@ fn ray_by_brute_force(hull: &Hull, origin: Vector, direction: Vector) -> Option<
     best
 }
 
+/// That the hull of some points has all of them, and that it is refused only if they are flat.
+fn surrounds(points: &[Vector]) -> Result<(), TestCaseError> {
+    let size = size_of(points);
+    let Ok(hull) = Hull::convex_hull_of(points) else {
+        let flat = (0..points.len()).any(|a| {
+            (0..a).any(|b| {
+                (0..b).any(|c| {
+                    let normal = (points[b] - points[a]).cross(points[c] - points[a]);
+                    let heights = points.iter().map(|p| normal.dot(*p - points[a]).abs());
+                    heights.fold(0.0, f32::max) <= 3e-5 * size * normal.length()
+                })
+            })
+        });
+        prop_assert!(flat, "a solid was refused");
+        return Ok(());
+    };
+    for face in hull.faces() {
+        prop_assert!((face.normal.length() - 1.0).abs() < 1e-5);
+        for p in points {
+            prop_assert!(face.normal.dot(*p) <= face.offset + 3e-4 * size);
+        }
+    }
+    prop_assert_eq!(hull.vertices().len() + hull.faces().len(), hull.edges().len() + 2);
+    for vertex in hull.vertices() {
+        prop_assert!(points.contains(vertex));
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
     fn a_hull_surrounds_its_points(points in cloud()) {
-        if let Ok(hull) = Hull::convex_hull_of(&points) {
-            let tolerance = 3e-4 * size_of(&points);
-            for face in hull.faces() {
-                prop_assert!((face.normal.length() - 1.0).abs() < 1e-5);
-                for p in &points {
-                    prop_assert!(face.normal.dot(*p) <= face.offset + tolerance);
-                }
-            }
-            prop_assert_eq!(hull.vertices().len() + hull.faces().len(), hull.edges().len() + 2);
-            for vertex in hull.vertices() {
-                prop_assert!(points.contains(vertex));
-            }
-        } else {
-            prop_assert!(points.len() < 5, "random points span a solid");
-        }
+        surrounds(&points)?;
+    }
+
+    /// Down to plates of a ten-thousandth of their width, where top and bottom are nearly one plane and
+    /// triangles are needles.
+    #[test]
+    fn a_thin_hull_surrounds_its_points(points in cloud(), exponent in -4.0f32..0.0, turn in rotation()) {
+        let thickness = 10.0f32.powf(exponent);
+        let flat: Vec<Vector> = points.iter().map(|p| turn.rotate(v(p.x, p.y, p.z * thickness))).collect();
+        surrounds(&flat)?;
+    }
+
+    #[test]
+    fn a_turned_grid_of_points_is_a_box(turn in rotation(), size in -3.0f32..3.0, thin in 0.01f32..1.0) {
+        let size = 10.0f32.powf(size);
+        let grid: Vec<Vector> = (0..64)
+            .map(|i| turn.rotate(v((i & 3) as f32, (i >> 2 & 3) as f32, (i >> 4) as f32 * thin)) * size)
+            .collect();
+        let hull = Hull::convex_hull_of(&grid).expect("solid");
+        prop_assert_eq!((hull.vertices().len(), hull.edges().len(), hull.faces().len()), (8, 12, 6));
     }
 
     #[test]
