@@ -95,6 +95,7 @@ pub fn bars(cells: &[Cell], dim: u32, threads: usize) -> Result<String, String> 
             .y_label_formatter(&|y| format!("{y:.0}"))
             .draw()?;
         let width = 0.84 / engines.len().max(1) as f64;
+        let mut ratios = Vec::new();
         for (index, scene) in scenes.iter().enumerate() {
             let beside: Vec<&Cell> = cells.iter().filter(|c| c.first.scene == *scene).collect();
             let best = best_peer(beside.iter().copied()).unwrap_or(f64::NAN);
@@ -109,13 +110,17 @@ pub fn bars(cells: &[Cell], dim: u32, threads: usize) -> Result<String, String> 
                 let (right, top) = (left + 0.9 * width, ratio.min(TOP));
                 let bar = Rectangle::new([(left, 0.0), (right, top)], colour(engine).filled());
                 chart.draw_series([bar])?;
-                let (x, y) = chart.backend_coord(&(0.5 * (left + right), top));
-                draw_text(root, &format!("{ratio:.1}"), (x, y - 7), 11, HPos::Center)?;
+                ratios.push((format!("{ratio:.1}"), chart.backend_coord(&(0.5 * (left + right), top))));
             }
             let (x, y) = chart.backend_coord(&(index as f64 + 0.5, 0.0));
             draw_text(root, scene, (x, y + 16), 13, HPos::Center)?;
         }
         chart.draw_series(LineSeries::new([(0.0, 1.0), (scenes.len() as f64, 1.0)], BLACK))?;
+        for (ratio, (x, y)) in ratios {
+            // The line at 1 would strike through what stands on bars of 0.9.
+            root.draw(&Rectangle::new([(x - 8, y - 12), (x + 8, y - 2)], WHITE.filled()))?;
+            draw_text(root, &ratio, (x, y - 7), 11, HPos::Center)?;
+        }
         Ok(())
     })
 }

@@ -65,6 +65,11 @@ impl Relationship for ColliderOf {
             return;
         }
         let collider = context.entity;
+        let lists_itself = |list: &RigidBodyColliders| list.0.contains(&collider);
+        let is_body = world.get::<Self>(collider).is_some_and(|of| of.body == collider);
+        if is_body && world.get::<RigidBodyColliders>(collider).is_some_and(lists_itself) {
+            return;
+        }
         world.commands().queue(move |world: &mut World| list_collider(world, collider));
     }
 }

@@ -85,8 +85,32 @@ pub(crate) fn attach_colliders(
         }
     }
     if !links.is_empty() {
-        commands.queue(move |world: &mut World| links.iter().for_each(|&(c, body)| attach(world, c, body)));
+        commands.queue(move |world: &mut World| {
+            attach_to_themselves(world, &mut links);
+            links.iter().for_each(|&(collider, body)| attach(world, collider, body));
+        });
     }
+}
+
+/// Makes the links of new bodies that are colliders themselves, with one move between tables for the link and the list,
+/// and takes them from `links`.
+fn attach_to_themselves(world: &mut World, links: &mut Vec<(Entity, Option<Entity>)>) {
+    let mut own = Vec::new();
+    links.retain(|&(collider, body)| {
+        let is_new = |entity: EntityRef| {
+            entity.contains::<RigidBody>()
+                && entity.contains::<ColliderMarker>()
+                && !entity.contains::<ColliderOf>()
+                && !entity.contains::<RigidBodyColliders>()
+                && !entity.contains::<FollowsBody>()
+        };
+        let taken = body == Some(collider) && world.get_entity(collider).is_ok_and(is_new);
+        if taken {
+            own.push((collider, (ColliderOf { body: collider }, RigidBodyColliders(vec![collider]))));
+        }
+        !taken
+    });
+    world.insert_batch(own);
 }
 
 /// Makes or removes one link. Users' observers run in between, so everything is looked up again.
