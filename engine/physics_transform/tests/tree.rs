@@ -80,6 +80,30 @@ fn observers_may_remove_what_is_being_linked() {
 }
 
 #[test]
+fn observers_of_one_link_may_change_the_other_bodies() {
+    let mut app = app();
+    let [first, gone, unbodied, bare] =
+        core::array::from_fn(|_| app.world_mut().spawn((RigidBody::Dynamic, ColliderMarker)).id());
+    let child = app.world_mut().spawn((ColliderMarker, ChildOf(unbodied))).id();
+    app.add_observer(move |added: On<Add, ColliderOf>, mut commands: Commands| {
+        if added.event_target() == first {
+            commands.entity(gone).despawn();
+            commands.entity(unbodied).remove::<RigidBody>();
+            commands.entity(bare).remove::<ColliderMarker>();
+        }
+    });
+    step(&mut app);
+    assert_eq!(app.world().get::<ColliderOf>(child), None, "its body was none when its turn came");
+    step(&mut app);
+    assert!(app.world().get_entity(gone).is_err());
+    for entity in [unbodied, bare] {
+        assert_eq!(app.world().get::<ColliderOf>(entity), None);
+        assert_eq!(app.world().get::<RigidBodyColliders>(entity), None);
+    }
+    assert_eq!(app.world().get::<RigidBodyColliders>(first).map(|list| list.to_vec()), Some(vec![first]));
+}
+
+#[test]
 fn the_rest_of_the_scene_is_not_visited() {
     let mut app = app();
     let root = app.world_mut().spawn(place(0.0, 0.0)).id();

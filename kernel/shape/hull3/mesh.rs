@@ -7,9 +7,10 @@ use super::{Hull, mass, size_of};
 use crate::math::Vector;
 use crate::shape::ShapeError;
 
-/// How far, as a share of the size, a vertex may lie off a face's plane to be part of the face, and off an edge to
-/// be part of the edge. Larger eats small bevels, smaller leaves the slivers that hull builders make. Thin solids
-/// would lose corners: each next one is tried if the one before joins faces that are not one polygon.
+/// How far, as a share of the size, a vertex may lie off a face's plane to be part of the face, and off an
+/// edge to be part of the edge. Larger eats small bevels, smaller leaves the slivers that hull builders
+/// make. Thin solids would lose corners: each next one is tried if the one before joins faces that are not
+/// one polygon.
 const FLATNESS: [f64; 4] = [1.0e-4, 1.0e-5, 1.0e-6, 0.0];
 /// How far, as a share of the size, a vertex may lie in front of a face.
 const CONVEXITY: f64 = 1.0e-3;
@@ -23,7 +24,8 @@ type HalfEdge = (u32, u32, u32);
 
 impl Hull {
     /// A hull from vertices (in metres) and faces, each a loop of at least three vertex indices,
-    /// counter-clockwise from outside. Coplanar neighbours are merged into polygons.
+    /// counter-clockwise from outside. Neighbours that lie in a plane to within 0.01 % of the size are merged
+    /// into polygons; to within less, where those would not be all of the solid.
     ///
     /// # Errors
     ///
@@ -35,7 +37,8 @@ impl Hull {
         let (vertices, faces) = weld(vertices, faces)?;
         let (vertices, faces) = drop_unused(&vertices, faces);
         let size = f64::from(size_of(&vertices));
-        if faces.len() < 4 || !(size > 0.0) {
+        // Squares and cubes of extents must be finite and not vanish.
+        if faces.len() < 4 || !(size > 1.0e-12 && size < 1.0e12) {
             return Err(ShapeError::Degenerate);
         }
         let half_edges = half_edges(&faces)?;
@@ -46,14 +49,15 @@ impl Hull {
         if volume < 0.0 {
             return Err(ShapeError::NotConvex);
         }
-        let mut result = Err(ShapeError::Degenerate);
+        let mut refusal = ShapeError::Degenerate;
         for flatness in FLATNESS {
-            result = Self::merged(&vertices, &faces, &half_edges, size, flatness * size);
-            if result.is_ok() {
-                break;
+            match Self::merged(&vertices, &faces, &half_edges, size, flatness * size) {
+                Ok(hull) => return Ok(hull),
+                Err(ShapeError::NotConvex) => refusal = ShapeError::NotConvex,
+                Err(_) => {}
             }
         }
-        result
+        Err(refusal)
     }
 
     /// The hull with faces merged that lie in a plane to within `tolerance` metres.
@@ -68,7 +72,8 @@ impl Hull {
         let outlines = outlines(vertices, &groups, half_edges, tolerance)?;
         let planes = checked_planes(vertices, &outlines, size)?;
         let (vertices, outlines) = drop_unused(vertices, outlines);
-        if vertices.len() + outlines.len() != outlines.iter().map(Vec::len).sum::<usize>() / 2 + 2 {
+        let half_edge_count = self::half_edges(&outlines)?.len();
+        if vertices.len() * 2 + outlines.len() * 2 != half_edge_count + 4 {
             return Err(ShapeError::Degenerate);
         }
         Ok(Self::assemble(vertices, &planes, &outlines))
@@ -89,11 +94,6 @@ impl Hull {
 fn weld(vertices: Vec<Vector>, mut faces: Vec<Vec<u32>>) -> Result<(Vec<Vector>, Vec<Vec<u32>>), ShapeError> {
     if vertices.iter().any(|v| !v.is_finite()) {
         return Err(ShapeError::NotFinite);
-    }
-    // Squares and cubes of extents must be finite and not vanish.
-    let size = size_of(&vertices);
-    if !(size > 1.0e-12 && size < 1.0e12) {
-        return Err(ShapeError::Degenerate);
     }
     if faces.iter().flatten().any(|i| *i as usize >= vertices.len()) {
         return Err(ShapeError::Degenerate);
@@ -171,11 +171,12 @@ fn merge_coplanar(
             let area = areas[face].length();
             let at = |k: usize| widen(vertices[faces[face][k % faces[face].len()] as usize]);
             let longest = (0..faces[face].len()).map(|k| (at(k + 1) - at(k)).length()).fold(0.0, f64::max);
-            // Its normal says nothing.
             let sliver = area < tolerance * longest;
             let flat =
                 faces[face].iter().all(|v| normal.dot(widen(vertices[*v as usize]) - base).abs() < tolerance);
-            flat && (sliver || normal.dot(areas[face]) > SAME_DIRECTION * area)
+            // A needle joins what it leans to, but not the other side of a thin solid.
+            let least = if sliver { 0.0 } else { SAME_DIRECTION * area };
+            flat && normal.dot(areas[face]) > least
         };
         group[seed] = seed as u32;
         queue.push(seed);
@@ -194,8 +195,8 @@ fn merge_coplanar(
     group
 }
 
-/// The boundary loop of each group; vertices that only two groups share are left out, and must lie on a straight
-/// edge, to within `tolerance` metres.
+/// The boundary loop of each group; vertices that only two groups share are left out, and must lie on a
+/// straight edge, to within `tolerance` metres.
 fn outlines(
     vertices: &[Vector],
     group: &[u32],
@@ -232,7 +233,7 @@ fn outlines(
             at = of_group[next].2;
             if degree[at as usize] > 2 {
                 let (a, b) = (outline[outline.len() - 1], at);
-                if !skipped.drain(..).all(|v| off_line(vertices, v, a, b) < tolerance) {
+                if !skipped.drain(..).all(|v| off_edge(vertices, v, a, b) < tolerance) {
                     return Err(ShapeError::Degenerate);
                 }
             }
@@ -247,11 +248,12 @@ fn outlines(
     Ok(result)
 }
 
-/// How far a vertex lies off the line through two others.
-fn off_line(vertices: &[Vector], v: u32, a: u32, b: u32) -> f64 {
+/// How far a vertex lies from the segment between two others.
+fn off_edge(vertices: &[Vector], v: u32, a: u32, b: u32) -> f64 {
     let [v, a, b] = [v, a, b].map(|i| widen(vertices[i as usize]));
-    let axis = b - a;
-    (v - a).cross(axis).length() / axis.length()
+    let edge = b - a;
+    let along = ((v - a).dot(edge) / edge.dot(edge)).clamp(0.0, 1.0);
+    (v - a - edge * along).length()
 }
 
 /// Renumbers the vertices that are left.

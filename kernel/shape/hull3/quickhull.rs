@@ -1,7 +1,7 @@
 //! The convex hull of a cloud of points, for users of the bare kernel and for tests.
 //!
 //! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", 1996) in `f64`
-//! without topology repair: its points come from `f32`, and are exact to nine digits more.
+//! about one of the points, which are `f32` and leave nine digits for the rounding of planes.
 
 use super::wide::{Wide, widen};
 use super::{Hull, size_of};
@@ -10,8 +10,8 @@ use crate::shape::ShapeError;
 
 /// Points closer to each other than this share of the size are one, and points this close to a plane flat.
 const TOLERANCE: f64 = 1.0e-5;
-/// A point in front of a face by less than this share of the tolerance is on it. It must be small: beyond the edge
-/// of a thin solid a point may be far away and hardly in front of either face.
+/// A point in front of a face by less than this share of the tolerance is on it. It must be small: beyond
+/// the edge of a thin solid a point may be far away and hardly in front of either face.
 const ON_FACE: f64 = 1.0e-4;
 
 /// A triangle of the growing hull.
@@ -44,7 +44,7 @@ impl Hull {
     /// # Errors
     ///
     /// `NotFinite` for a bad coordinate, `Degenerate` if the points lie in a plane to within 0.001 %
-    /// of their extent.
+    /// of their extent, or span less volume than a cube of 0.1 % of it.
     pub fn convex_hull_of(points: &[Vector]) -> Result<Self, ShapeError> {
         if points.iter().any(|p| !p.is_finite()) {
             return Err(ShapeError::NotFinite);
@@ -61,7 +61,7 @@ impl Hull {
                 distinct.push(*p);
             }
         }
-        let wide: Vec<Wide> = distinct.iter().map(|p| widen(*p)).collect();
+        let wide: Vec<Wide> = distinct.iter().map(|p| widen(*p) - widen(distinct[0])).collect();
         let triangles = quickhull(&wide, tolerance).ok_or(ShapeError::Degenerate)?;
         Self::from_triangles(distinct, &triangles)
     }

@@ -101,6 +101,19 @@ fn bad_input_is_refused() {
 }
 
 #[test]
+fn a_needle_keeps_its_tips() {
+    let points = [
+        v(0.0, -9e-5, 1e-5),
+        v(0.61, -6e-5, 1.3e-4),
+        v(0.17, -1e-5, 3e-5),
+        v(0.33, 1e-4, -1e-5),
+        v(1.0, 0.0, 0.0),
+    ];
+    let hull = Hull::convex_hull_of(&points).expect("a solid");
+    assert_eq!((hull.support(-Vector::X).x, hull.support(Vector::X).x), (0.0, 1.0));
+}
+
+#[test]
 fn a_fine_ball_keeps_its_faces() {
     // Fibonacci points: every face turns little against its neighbours, and none may be merged away.
     let count = 300;
@@ -162,8 +175,8 @@ fn ray_by_brute_force(hull: &Hull, origin: Vector, direction: Vector) -> Option<
     best
 }
 
-/// That the hull of some points has all of them, and that it is refused only if they are flat.
-fn surrounds(points: &[Vector]) -> Result<(), TestCaseError> {
+/// That the hull of some points has all of them, along `axes` too, and is refused only if they are flat.
+fn surrounds(points: &[Vector], axes: [Vector; 3]) -> Result<(), TestCaseError> {
     let size = size_of(points);
     let Ok(hull) = Hull::convex_hull_of(points) else {
         let flat = (0..points.len()).any(|a| {
@@ -171,13 +184,18 @@ fn surrounds(points: &[Vector]) -> Result<(), TestCaseError> {
                 (0..b).any(|c| {
                     let normal = (points[b] - points[a]).cross(points[c] - points[a]);
                     let heights = points.iter().map(|p| normal.dot(*p - points[a]).abs());
-                    heights.fold(0.0, f32::max) <= 3e-5 * size * normal.length()
+                    let highest = heights.fold(0.0, f32::max);
+                    normal.length() > 0.0 && highest <= 3e-5 * size * normal.length()
                 })
             })
         });
         prop_assert!(flat, "a solid was refused");
         return Ok(());
     };
+    for axis in axes.into_iter().flat_map(|a| [a, a * -1.0]) {
+        let farthest = points.iter().map(|p| axis.dot(*p)).fold(f32::MIN, f32::max);
+        prop_assert!(axis.dot(hull.support(axis)) >= farthest - 5e-4 * size);
+    }
     for face in hull.faces() {
         prop_assert!((face.normal.length() - 1.0).abs() < 1e-5);
         for p in points {
@@ -196,16 +214,33 @@ proptest! {
 
     #[test]
     fn a_hull_surrounds_its_points(points in cloud()) {
-        surrounds(&points)?;
+        surrounds(&points, [Vector::X, Vector::Y, Vector::Z])?;
     }
 
-    /// Down to plates of a ten-thousandth of their width, where top and bottom are nearly one plane and
-    /// triangles are needles.
+    /// Plates and needles, where two sides are nearly one plane and triangles are slivers.
     #[test]
-    fn a_thin_hull_surrounds_its_points(points in cloud(), exponent in -4.0f32..0.0, turn in rotation()) {
-        let thickness = 10.0f32.powf(exponent);
-        let flat: Vec<Vector> = points.iter().map(|p| turn.rotate(v(p.x, p.y, p.z * thickness))).collect();
-        surrounds(&flat)?;
+    fn a_thin_hull_surrounds_its_points(
+        points in cloud(),
+        (y, z) in prop_oneof![(-1.0f32..0.0, -4.0f32..0.0), (-3.0f32..0.0, -3.0f32..0.0)],
+        turn in rotation(),
+    ) {
+        let scale = v(1.0, 10.0f32.powf(y), 10.0f32.powf(z));
+        let thin: Vec<Vector> =
+            points.iter().map(|p| turn.rotate(v(p.x, p.y * scale.y, p.z * scale.z))).collect();
+        surrounds(&thin, [Vector::X, Vector::Y, Vector::Z].map(|a| turn.rotate(a)))?;
+    }
+
+    #[test]
+    fn a_hull_far_from_the_origin_surrounds_its_points(
+        points in prop::collection::vec([0u8..5, 0u8..5, 0u8..5], 5..40),
+        at in [-100_000i32..100_000, -100_000..100_000, -100_000..100_000],
+    ) {
+        let at = Vector::from_array(at.map(|c| c as f32));
+        let near: Vec<Vector> =
+            points.iter().map(|p| Vector::from_array(p.map(f32::from))).collect();
+        let far: Vec<Vector> = near.iter().map(|p| *p + at).collect();
+        let (near, far) = (Hull::convex_hull_of(&near), Hull::convex_hull_of(&far));
+        prop_assert_eq!(near.map(|h| h.faces().len()), far.map(|h| h.faces().len()));
     }
 
     #[test]

@@ -59,7 +59,8 @@ impl Relationship for ColliderOf {
     }
 
     /// Lists the collider on its body, as Bevy's own hook does, but without an error where an observer
-    /// despawns either of them before the list is made.
+    /// despawns either of them before the list is made. A body that came with itself in its list is not
+    /// listed twice.
     fn on_insert(mut world: DeferredWorld, context: HookContext) {
         if !matches!(context.relationship_hook_mode, RelationshipHookMode::Run) {
             return;

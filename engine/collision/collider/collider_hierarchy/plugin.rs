@@ -92,8 +92,8 @@ pub(crate) fn attach_colliders(
     }
 }
 
-/// Makes the links of new bodies that are colliders themselves, with one move between tables for the link and the list,
-/// and takes them from `links`.
+/// Makes the links of new bodies that are colliders themselves, with one move between tables for the link
+/// and the list, and takes them from `links`.
 fn attach_to_themselves(world: &mut World, links: &mut Vec<(Entity, Option<Entity>)>) {
     let mut own = Vec::new();
     links.retain(|&(collider, body)| {
@@ -111,6 +111,8 @@ fn attach_to_themselves(world: &mut World, links: &mut Vec<(Entity, Option<Entit
         !taken
     });
     world.insert_batch(own);
+    // What observers of these ask for is done before the other links are looked at.
+    world.flush();
 }
 
 /// Makes or removes one link. Users' observers run in between, so everything is looked up again.
