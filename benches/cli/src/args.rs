@@ -33,7 +33,7 @@ scenes    what there is
 --baseline NAME   the engine that the table compares with, the first if not given
 --stages          where the time of a step goes; costs a little
 --wait SECONDS    the longest wait for a quiet machine before a run
---foreign SHARE   runs during which others used more of a core than this are repeated, twice at most
+--foreign SHARE   runs during which others took more of a core than this are repeated, twice at most
 --ours FILE       another build of ../ours than the present one
 --out FILE        where the results are, out/results.json if not given
 --docs FOLDER     where the page and the pictures go, ../docs if not given";

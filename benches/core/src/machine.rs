@@ -62,16 +62,18 @@ impl Usage {
     }
 }
 
-/// CPU time that all processes have used so far, in seconds.
+/// CPU time that all processes have used so far, and that the host of a virtual machine gave to others, in seconds.
 pub fn busy_s() -> f64 {
     /// The kernel counts in hundredths of a second.
     const HZ: f64 = 100.0;
     let stat = std::fs::read_to_string("/proc/stat").unwrap_or_default();
     let line = stat.lines().next().unwrap_or("");
     let ticks: Vec<f64> = line.split_whitespace().skip(1).filter_map(|x| x.parse().ok()).collect();
-    // user, nice, system, idle, waiting, interrupts (hard, soft): all but the idle ones.
+    // user, nice, system, idle, waiting, interrupts (hard, soft), stolen: all but the idle ones.
     match ticks[..] {
-        [user, nice, system, _, _, hard, soft, ..] => (user + nice + system + hard + soft) / HZ,
+        [user, nice, system, _, _, hard, soft, stolen, ..] => {
+            (user + nice + system + hard + soft + stolen) / HZ
+        }
         _ => 0.0,
     }
 }
