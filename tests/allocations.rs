@@ -14,7 +14,7 @@ fn median_of_steps(build: impl FnOnce(&mut World), before: u32) -> (usize, u32) 
     for _ in 0..before {
         step(&mut app);
     }
-    let mut taken: Vec<usize> = (0..50).map(|_| counting::taken(|| step(&mut app))).collect();
+    let mut taken: Vec<usize> = (0..50).map(|_| counting::taken(|| step(&mut app)).1).collect();
     taken.sort_unstable();
     let contacts = app.world().resource::<CollisionDiagnostics>().contact_count;
     println!("{contacts} contacts: {taken:?}");

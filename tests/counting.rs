@@ -3,6 +3,7 @@
 
 use std::{
     alloc::{GlobalAlloc, Layout, System},
+    cell::Cell,
     sync::atomic::{AtomicUsize, Ordering::Relaxed},
 };
 
@@ -10,10 +11,20 @@ struct Counting;
 
 static TAKEN: AtomicUsize = AtomicUsize::new(0);
 
+thread_local! {
+    static TAKEN_HERE: Cell<usize> = const { Cell::new(0) };
+}
+
+fn count() {
+    TAKEN.fetch_add(1, Relaxed);
+    // A thread that ends has none any more.
+    let _ = TAKEN_HERE.try_with(|taken| taken.set(taken.get() + 1));
+}
+
 // SAFETY: every call is passed on to the system's allocator as it came.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        TAKEN.fetch_add(1, Relaxed);
+        count();
         // SAFETY: the caller keeps the contract, which is the same.
         unsafe { System.alloc(layout) }
     }
@@ -24,7 +35,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 
     unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        TAKEN.fetch_add(1, Relaxed);
+        count();
         // SAFETY: as above.
         unsafe { System.realloc(at, layout, size) }
     }
@@ -33,9 +44,11 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// How often something is allocated meanwhile.
-pub fn taken(run: impl FnOnce()) -> usize {
-    let before = TAKEN.load(Relaxed);
+/// How often something is allocated meanwhile: on this thread, and on all.
+pub fn taken(run: impl FnOnce()) -> (usize, usize) {
+    let now = || (TAKEN_HERE.get(), TAKEN.load(Relaxed));
+    let before = now();
     run();
-    TAKEN.load(Relaxed) - before
+    let after = now();
+    (after.0 - before.0, after.1 - before.1)
 }
