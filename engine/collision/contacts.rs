@@ -15,7 +15,7 @@ use crate::{
         narrow_phase::NarrowPhaseConfig,
     },
     dynamics::{
-        solver::{WorkerCount, config::PhysicsLengthUnit, substeps::StepSolver},
+        solver::{RowWidth, WorkerCount, config::PhysicsLengthUnit, substeps::StepSolver},
         tables::Tables,
     },
     math::to_f32,
@@ -66,12 +66,13 @@ pub(crate) struct Settings<'w> {
     unit: Res<'w, PhysicsLengthUnit>,
     time: Res<'w, Time<Physics>>,
     workers: Res<'w, WorkerCount>,
+    width: Res<'w, RowWidth>,
 }
 
 /// Brings the manifolds of all awake contacts up to date.
 pub(crate) fn update_contacts(
     shapes: Query<&Collider>,
-    Settings { config, unit, time, workers }: Settings,
+    Settings { config, unit, time, workers, width }: Settings,
     mut solver: ResMut<StepSolver>,
     mut scratch: ResMut<NarrowScratch>,
     mut diagnostics: ResMut<CollisionDiagnostics>,
@@ -90,6 +91,7 @@ pub(crate) fn update_contacts(
         speculative: SPECULATIVE * unit,
         recycle_distance: RECYCLE * unit,
         match_points: config.match_contacts,
+        narrow: *width == RowWidth::Four,
     };
     let contacts = &mut *tables.contacts;
     contacts.changed.clear();

@@ -3,6 +3,7 @@
 
 mod link;
 mod record;
+mod recycle;
 mod shared;
 mod table;
 mod update;

@@ -2,8 +2,9 @@
 #![expect(unsafe_code, reason = "contacts are changed by several threads, each its own")]
 
 use super::record::{Contact, ContactFlags, Manifold};
+use super::recycle::Group;
 use super::table::{ContactTable, PointCount};
-use super::update::{Found, ManifoldSource, NarrowPhase, Scratch};
+use super::update::{Begun, ManifoldSource, NarrowPhase, Scratch};
 use crate::data::{BitSet, Parts};
 use crate::table::{BodyKind, BodyTable, NONE};
 use crate::team::Team;
@@ -44,17 +45,32 @@ impl ContactTable {
             // SAFETY: no two blocks run at once with the same member.
             let scratch = unsafe { of_members.one(member) };
             ids[..AHEAD.min(ids.len())].iter().for_each(|id| contacts.prefetch(*id));
+            let mut waiting = [0; Group::SIZE];
             for (i, &id) in ids.iter().enumerate() {
                 if let Some(next) = ids.get(i + AHEAD) {
                     contacts.prefetch(*next);
                 }
                 // SAFETY: an id is in one block, once.
                 let (contact, count) = unsafe { (contacts.one(id as usize), points.one(id as usize)) };
-                scratch.update(id, contact, extra, crowded, phase);
-                // Counts of contacts of different blocks share cache lines, so they are left alone where they may be.
-                let now = PointCount::of(contact);
-                if *count != now {
-                    *count = now;
+                match phase.begin(contact, &mut scratch.group) {
+                    Begun::Apart => scratch.part(id, contact),
+                    Begun::Asked => waiting[scratch.group.len() - 1] = id,
+                    Begun::Stale => scratch.renew(id, contact, count, extra, crowded, phase),
+                }
+                if scratch.group.len() < Group::SIZE && i + 1 < ids.len() {
+                    continue;
+                }
+                let waiting = &waiting[..scratch.group.len()];
+                let answer = phase.answer(&mut scratch.group);
+                for (place, &id) in waiting.iter().enumerate() {
+                    // SAFETY: as above, and the one before is in use no more.
+                    let (contact, count) = unsafe { (contacts.one(id as usize), points.one(id as usize)) };
+                    if answer.apply(place, contact) {
+                        phase.follow(contact);
+                        scratch.any_deep |= contact.flags.has(ContactFlags::DEEP);
+                    } else {
+                        scratch.renew(id, contact, count, extra, crowded, phase);
+                    }
                 }
             }
         });
@@ -94,19 +110,28 @@ impl ContactTable {
 }
 
 impl<W> Scratch<W> {
-    /// Forgets what the table was to be told.
+    /// Forgets what the table was to be told, and who waits if that ended in a panic.
     fn clear(&mut self) {
+        self.group.clear();
         self.changed.clear();
         self.stored.clear();
         self.pool.clear();
         self.any_deep = false;
     }
 
-    /// Updates one contact, and notes what only the table can do.
-    fn update<S: ManifoldSource<Workspace = W>>(
+    /// Notes that the boxes of a contact came apart.
+    fn part(&mut self, id: u32, contact: &mut Contact) {
+        contact.flags.set(ContactFlags::APART, true);
+        self.changed.push(id);
+        self.any_deep |= contact.flags.has(ContactFlags::DEEP);
+    }
+
+    /// Computes the manifolds of a contact anew, and notes what only the table can do.
+    fn renew<S: ManifoldSource<Workspace = W>>(
         &mut self,
         id: u32,
         contact: &mut Contact,
+        count: &mut PointCount,
         extra: &[Vec<Manifold>],
         crowded: Option<&BitSet>,
         phase: &NarrowPhase<S>,
@@ -118,23 +143,20 @@ impl<W> Scratch<W> {
             NONE => &[],
             slot => &extra[slot as usize][..usize::from(contact.extra_count)],
         };
-        match phase.update(contact, extra, is_crowded, self) {
-            Found::Apart => {
-                contact.flags.set(ContactFlags::APART, true);
-                self.changed.push(id);
-            }
-            Found::Recycled => {}
-            Found::Computed => {
-                if touched != contact.flags.has(ContactFlags::TOUCHING) {
-                    self.changed.push(id);
-                }
-                if contact.extra != NONE || !self.extra.is_empty() {
-                    self.stored.push((id, self.extra.len()));
-                    self.pool.extend_from_slice(&self.extra);
-                }
-            }
+        phase.renew(contact, extra, is_crowded, self);
+        if touched != contact.flags.has(ContactFlags::TOUCHING) {
+            self.changed.push(id);
+        }
+        if contact.extra != NONE || !self.extra.is_empty() {
+            self.stored.push((id, self.extra.len()));
+            self.pool.extend_from_slice(&self.extra);
         }
         self.any_deep |= contact.flags.has(ContactFlags::DEEP);
+        // Counts of contacts of different blocks share cache lines, so they are left alone where they may be.
+        let now = PointCount::of(contact);
+        if *count != now {
+            *count = now;
+        }
     }
 }
 

@@ -1,13 +1,9 @@
-//! The narrow phase of one contact: apart? → recycle? → the full manifold.
-//!
-//! Recycling is Erin Catto's (Box2D v3.2, Box3D; both ask to be cited for it): while two bodies have
-//! hardly moved relative to each other since their manifold was computed, its normal, anchors and
-//! features are kept and only the separations follow the motion. The frozen pose is not renewed by that,
-//! so errors cannot add up. Besides the time saved, frozen anchors are what lets tall towers stand.
+//! The narrow phase of one contact: apart? → [recycle](super::recycle)? → the full manifold.
 
 use super::record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
+use super::recycle::Group;
 use crate::manifold::{self, FeatureCache, LocalManifold};
-use crate::math::{Angular, MAX_POINTS, Rot, Vector, max, min};
+use crate::math::{Rot, Vector, WorldPose, max, min};
 use crate::shape::Shape;
 use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity};
 
@@ -41,6 +37,8 @@ impl ManifoldSource for () {
 pub struct Scratch<W = ()> {
     local: Vec<LocalManifold>,
     foreign: W,
+    /// Contacts that may be recycled.
+    pub(super) group: Group,
     /// Where [`NarrowPhase::update`] leaves the manifolds after the first.
     pub extra: Vec<Manifold>,
     /// What the table is to be told when all contacts are updated: which began or ended to touch, ...
@@ -73,6 +71,8 @@ pub struct NarrowPhase<'a, S> {
     pub recycle_distance: f32,
     /// Whether points inherit the impulses of the last step.
     pub match_points: bool,
+    /// No more than four contacts side by side, though this CPU may have wider lanes: the results are the same.
+    pub narrow: bool,
 }
 
 /// What an update found.
@@ -94,14 +94,15 @@ const DEEP: f32 = 0.1;
 /// bodies would fly apart.
 const NO_LONGER_DEEP: f32 = 0.01;
 
-/// The manifold of small bodies is recycled over this share of the smaller one's reach at most.
-const RECYCLE_SHARE: f32 = 0.25;
-
-/// Bodies that turned further than this since the manifold was computed do not recycle: cos 10°.
-const RECYCLE_COS: f32 = 0.985;
-
-/// By how much the chord of an angle of twice that may be longer than [`small_turn`](Rot::small_turn) says.
-const CHORD: f32 = 1.016;
+/// What is known of a contact at first sight.
+pub(super) enum Begun {
+    /// The fat boxes do not overlap any more.
+    Apart,
+    /// It is in the group, and may be recycled.
+    Asked,
+    /// Its manifold is to be computed anew.
+    Stale,
+}
 
 impl<S: ManifoldSource> NarrowPhase<'_, S> {
     /// Brings a contact up to date with where its bodies are now. `crowded` says that one of them overlapped another
@@ -114,34 +115,51 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         crowded: bool,
         scratch: &mut Scratch<S::Workspace>,
     ) -> Found {
+        match self.begin(contact, &mut scratch.group) {
+            Begun::Apart => Found::Apart,
+            Begun::Asked if self.answer(&mut scratch.group).apply(0, contact) => {
+                self.follow(contact);
+                Found::Recycled
+            }
+            Begun::Asked | Begun::Stale => {
+                self.renew(contact, extra, crowded, scratch);
+                Found::Computed
+            }
+        }
+    }
+
+    /// Looks at a contact first, and puts it in the group if it may be recycled.
+    #[inline(always)]
+    pub(super) fn begin(&self, contact: &Contact, group: &mut Group) -> Begun {
         let [a, b] = contact.colliders;
-        let (fat_a, fat_b) = (&self.colliders.fat[a as usize], &self.colliders.fat[b as usize]);
-        if !fat_a.overlaps(fat_b) {
-            return Found::Apart;
+        if !self.colliders.fat[a as usize].overlaps(&self.colliders.fat[b as usize]) {
+            return Begun::Apart;
         }
-        // By reference: a copy is written in other pieces than it is read in, which a processor waits for.
-        let (fixed_a, fixed_b);
-        let pose_a = match contact.bodies[0] {
-            NONE => {
-                fixed_a = self.fixed_pose(a);
-                &fixed_a
-            }
-            body => &self.bodies.poses[body as usize],
-        };
-        let pose_b = match contact.bodies[1] {
-            NONE => {
-                fixed_b = self.fixed_pose(b);
-                &fixed_b
-            }
-            body => &self.bodies.poses[body as usize],
-        };
-        let poses = [pose_a, pose_b];
-        if self.recycle(contact, poses) {
-            if contact.flags.has(ContactFlags::DEEP) {
-                contact.flags.set(ContactFlags::DEEP, self.overlaps_by(NO_LONGER_DEEP, contact));
-            }
-            return Found::Recycled;
+        if self.ask(contact, self.poses(contact, &mut [None; 2]), group) {
+            Begun::Asked
+        } else {
+            Begun::Stale
         }
+    }
+
+    /// What is left to do of a contact that was recycled.
+    #[inline(always)]
+    pub(super) fn follow(&self, contact: &mut Contact) {
+        if contact.flags.has(ContactFlags::DEEP) {
+            contact.flags.set(ContactFlags::DEEP, self.overlaps_by(NO_LONGER_DEEP, contact));
+        }
+    }
+
+    /// Computes the manifolds anew; otherwise as [`update`](Self::update).
+    pub(super) fn renew(
+        &self,
+        contact: &mut Contact,
+        extra: &[Manifold],
+        crowded: bool,
+        scratch: &mut Scratch<S::Workspace>,
+    ) {
+        let mut fixed = [None; 2];
+        let poses = self.poses(contact, &mut fixed);
         // What has just come together, or was changed by hand, was put where it is; all else was pressed there, if not
         // by those that were put there.
         let placed = crowded || contact.revisions != self.revisions(contact, poses);
@@ -153,7 +171,6 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
             (false, false) => false,
         };
         contact.flags.set(ContactFlags::DEEP, deep);
-        Found::Computed
     }
 
     /// Whether the shapes overlap by more than a share of the smaller one's reach.
@@ -164,13 +181,27 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         deepest < 0.0 && deepest < -share * reach
     }
 
-    /// The pose of a collider without a body, as that of a body.
-    fn fixed_pose(&self, collider: u32) -> BodyPose {
-        let pose = self.colliders.poses[collider as usize];
-        BodyPose { center: pose.position, rotation: pose.rotation, speed: 0.0, revision: 0 }
+    /// The poses of both sides' bodies; of a collider without one, its own, kept in `fixed`. By reference: a copy is
+    /// written in other pieces than it is read in, which a processor waits for.
+    #[inline(always)]
+    fn poses<'a>(&'a self, contact: &Contact, fixed: &'a mut [Option<BodyPose>; 2]) -> [&'a BodyPose; 2] {
+        let [a, b] = fixed;
+        [self.pose(contact, 0, a), self.pose(contact, 1, b)]
     }
 
-    fn velocity(&self, contact: &Contact, side: usize) -> Velocity {
+    #[inline(always)]
+    fn pose<'a>(&'a self, contact: &Contact, side: usize, fixed: &'a mut Option<BodyPose>) -> &'a BodyPose {
+        match contact.bodies[side] {
+            NONE => {
+                let WorldPose { position, rotation } = self.colliders.poses[contact.colliders[side] as usize];
+                fixed.insert(BodyPose { center: position, rotation, speed: 0.0, revision: 0 })
+            }
+            body => &self.bodies.poses[body as usize],
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn velocity(&self, contact: &Contact, side: usize) -> Velocity {
         match contact.bodies[side] {
             NONE => Velocity::default(),
             body => self.bodies.velocities[body as usize],
@@ -185,7 +216,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
 
     /// The reaches of both sides. Not by `map`, which the compiler makes a call of.
     #[inline(always)]
-    fn reaches(&self, contact: &Contact) -> [&Reach; 2] {
+    pub(super) fn reaches(&self, contact: &Contact) -> [&Reach; 2] {
         let [a, b] = contact.colliders;
         [&self.colliders.reaches[a as usize], &self.colliders.reaches[b as usize]]
     }
@@ -198,72 +229,9 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
     }
 
     #[inline(always)]
-    fn revisions(&self, contact: &Contact, poses: [&BodyPose; 2]) -> [u32; 2] {
+    pub(super) fn revisions(&self, contact: &Contact, poses: [&BodyPose; 2]) -> [u32; 2] {
         let [a, b] = self.reaches(contact);
         [Self::revision(a, poses[0]), Self::revision(b, poses[1])]
-    }
-
-    /// Keeps the manifold if the bodies moved little enough against each other, and lets its
-    /// separations follow: s = s₀ + n · (Δoffset + (R_B − 1) r_B − (R_A − 1) r_A).
-    ///
-    /// No point of one surface moved further against the other than `moved`. So of shapes that were `prediction` apart none
-    /// can be nearer than what is left of it; they are not looked at until that may close in the step.
-    fn recycle(&self, contact: &mut Contact, poses: [&BodyPose; 2]) -> bool {
-        let reaches = self.reaches(contact);
-        let Frozen { rotations, offset, prediction } = contact.frozen;
-        // Neither can close faster than both together: that settles it without asking for the velocities
-        // of all but fast bodies.
-        let fastest = (poses[0].speed + poses[1].speed) * self.dt;
-        if !contact.flags.has(ContactFlags::FROZEN)
-            || !(self.recycle_distance > 0.0)
-            || contact.revisions != self.revisions(contact, poses)
-            || (fastest > prediction && prediction < self.prediction(contact))
-            // A point and a half-space: nobody reaches anywhere.
-            || max(reaches[0].extent, reaches[1].extent) == 0.0
-        {
-            return false;
-        }
-        // In world axes: how far each turned since freezing, R Rᶠ⁻¹, and how far B's centre of mass shifted against A's.
-        let turn = |i: usize| poses[i].rotation.mul(rotations[i].inverse());
-        let turns = [turn(0), turn(1)];
-        if !(turns[0].cos_angle() >= RECYCLE_COS && turns[1].cos_angle() >= RECYCLE_COS) {
-            return false;
-        }
-        let change = (poses[1].center - poses[0].center).to_local() - offset;
-        // How far the centre of one shifted in the frame of the other, which length is the same in world axes, and
-        // the angle between how far each turned, times the reach of the one that shifted: B, but A if B is static, for
-        // that may be large and its centre far off, or a half-space, which has no end. Not less than the reach of
-        // either that moves, so that normals and anchors do not grow old on the larger.
-        let is_a = reaches[1].turning == 0.0 && reaches[0].extent > 0.0;
-        let (frame, reach) = if is_a { (turns[1], reaches[0].extent) } else { (turns[0], reaches[1].extent) };
-        let reach = max(reach, max(reaches[0].turning, reaches[1].turning));
-        let shift = change - frame.inverse().unturn(offset);
-        let angle: Angular = turns[0].difference(turns[1]);
-        let allowed = if contact.manifold.count == 0 {
-            prediction - max(self.closing(contact, &reaches), self.tolerance)
-        } else {
-            let errors =
-                min(self.recycle_distance, RECYCLE_SHARE * smaller([reaches[0].extent, reaches[1].extent]));
-            // Points may be missing that were too far apart to be found; none of them may close in this step.
-            let is_full = contact.manifold.count == MAX_POINTS as u32;
-            if is_full { errors } else { min(errors, prediction - self.closing(contact, &reaches)) }
-        };
-        let moved = shift.length() + CHORD * reach * angle.length();
-        // A NaN fails the comparison.
-        if !(moved < allowed) {
-            return false;
-        }
-        // Only native pairs are recycled, which have no manifolds after the first.
-        let m = &mut contact.manifold;
-        let along = change.dot(m.normal);
-        let cores = [m.normal * m.rounding[0], offset - m.normal * m.rounding[1]];
-        // n · (R r − r) = (R⁻¹ n − n) · r, of which only r differs from point to point.
-        let leans = [turns[0].unturn(m.normal), turns[1].unturn(m.normal)];
-        for p in &mut m.points[..m.count as usize] {
-            let turn = leans[1].dot(p.anchor - cores[1]) - leans[0].dot(p.anchor - cores[0]);
-            p.separation = p.frozen_separation + along + turn;
-        }
-        true
     }
 
     /// Computes the manifolds at the present pose, into `scratch.local`, and freezes the contact there.
@@ -352,21 +320,9 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         contact.flags.set(ContactFlags::TOUCHING, touching);
     }
 
-    /// How far the surfaces of a contact may close in this step, in metres.
-    fn closing(&self, contact: &Contact, reaches: &[&Reach; 2]) -> f32 {
-        let [a, b] = [self.velocity(contact, 0), self.velocity(contact, 1)];
-        let arm = |side: usize| {
-            let own = reaches[side].extent;
-            // A half-space turns as far out as the other is.
-            if own > 0.0 { own } else { contact.frozen.offset.length() + reaches[1 - side].extent }
-        };
-        let turning = arm(0) * a.angular.length() + arm(1) * b.angular.length();
-        ((b.linear - a.linear).length() + turning) * self.dt
-    }
-
     /// How far apart surfaces may be to count as a contact: as far as they can close in this step, but
     /// not beyond the colliders' speculative margins.
-    fn prediction(&self, contact: &Contact) -> f32 {
+    pub(super) fn prediction(&self, contact: &Contact) -> f32 {
         let [a, b] = self.reaches(contact);
         let limit = a.speculative + b.speculative;
         let closing =

@@ -9,10 +9,14 @@ pub(crate) fn prefetch<T>(slice: &[T], index: u32) {
     if let Some(element) = slice.get(index as usize) {
         use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         let start = core::ptr::from_ref(element).cast::<i8>();
-        // It need not begin where a line does: the last byte may be in one line more.
-        for byte in (0..size_of::<T>()).step_by(64).chain([size_of::<T>().saturating_sub(1)]) {
+        for line in 0..size_of::<T>().div_ceil(64) {
             // SAFETY: a prefetch of any address is harmless, and this is within the element.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(byte)) };
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(64 * line)) };
+        }
+        // It need not begin where a line does: the last byte may be in one line more.
+        if !align_of::<T>().is_multiple_of(64) {
+            // SAFETY: as above.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(size_of::<T>().saturating_sub(1))) };
         }
     }
     #[cfg(not(target_arch = "x86_64"))]

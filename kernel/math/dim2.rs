@@ -217,16 +217,19 @@ impl<N: Num> Angular<N> {
     }
 }
 
+impl<N: Lane> Angular<N> {
+    /// The magnitude.
+    #[inline(always)]
+    pub fn length(self) -> N {
+        (-self.z).max(self.z)
+    }
+}
+
 impl Angular {
     /// Whether the value is neither infinite nor NaN.
     #[inline]
     pub fn is_finite(self) -> bool {
         self.z.is_finite()
-    }
-    /// The magnitude.
-    #[inline]
-    pub fn length(self) -> f32 {
-        self.z.abs()
     }
 }
 
@@ -340,6 +343,16 @@ impl<N: Lane> Rot<N> {
     pub fn small_turn(self) -> Angular<N> {
         Angular { z: self.sin }
     }
+    /// The turn from one rotation to another, if small.
+    #[inline(always)]
+    pub fn difference(self, other: Self) -> Angular<N> {
+        self.inverse().mul(other).small_turn()
+    }
+    /// The cosine of the angle it turns by.
+    #[inline(always)]
+    pub fn cos_angle(self) -> N {
+        self.cos
+    }
     /// The rotation of lane `i`.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Rot {
@@ -354,7 +367,9 @@ impl<N: Lane> Rot<N> {
     fn scaled(self, factor: N) -> Self {
         Self { cos: self.cos * factor, sin: self.sin * factor }
     }
-    fn select(mask: N::Mask, a: Self, b: Self) -> Self {
+    /// `a` where the mask is set, else `b`.
+    #[inline(always)]
+    pub fn select(mask: N::Mask, a: Self, b: Self) -> Self {
         Self { cos: N::select(mask, a.cos, b.cos), sin: N::select(mask, a.sin, b.sin) }
     }
 }
@@ -380,16 +395,6 @@ impl Rot {
     #[inline]
     pub fn is_finite(self) -> bool {
         self.cos * 0.0 + self.sin * 0.0 == 0.0
-    }
-    /// The turn from one rotation to another, if small.
-    #[inline]
-    pub fn difference(self, other: Self) -> Angular {
-        self.inverse().mul(other).small_turn()
-    }
-    /// The cosine of the angle it turns by.
-    #[inline]
-    pub fn cos_angle(self) -> f32 {
-        self.cos
     }
     /// The columns of the rotation matrix: where the axes go.
     #[inline]

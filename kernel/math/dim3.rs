@@ -424,6 +424,16 @@ impl<N: Lane> Rot<N> {
     pub fn small_turn(self) -> Angular<N> {
         Vector { x: self.x, y: self.y, z: self.z } * N::splat(2.0)
     }
+    /// The turn from one rotation to another, if small.
+    #[inline(always)]
+    pub fn difference(self, other: Self) -> Angular<N> {
+        self.inverse().mul(other).small_turn()
+    }
+    /// The cosine of the angle it turns by.
+    #[inline(always)]
+    pub fn cos_angle(self) -> N {
+        N::splat(2.0) * self.w * self.w - N::ONE
+    }
     /// The rotation of lane `i`.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Rot {
@@ -440,7 +450,9 @@ impl<N: Lane> Rot<N> {
     fn scaled(self, factor: N) -> Self {
         Self { x: self.x * factor, y: self.y * factor, z: self.z * factor, w: self.w * factor }
     }
-    fn select(mask: N::Mask, a: Self, b: Self) -> Self {
+    /// `a` where the mask is set, else `b`.
+    #[inline(always)]
+    pub fn select(mask: N::Mask, a: Self, b: Self) -> Self {
         Self {
             x: N::select(mask, a.x, b.x),
             y: N::select(mask, a.y, b.y),
@@ -473,16 +485,6 @@ impl Rot {
         let length = square.sqrt();
         let [x, y, z, w] = [x, y, z, w].map(|c| (c / length) as f32);
         Self { x, y, z, w }
-    }
-    /// The turn from one rotation to another, if small.
-    #[inline]
-    pub fn difference(self, other: Self) -> Angular {
-        self.inverse().mul(other).small_turn()
-    }
-    /// The cosine of the angle it turns by.
-    #[inline]
-    pub fn cos_angle(self) -> f32 {
-        2.0 * self.w * self.w - 1.0
     }
     /// The columns of the rotation matrix: where the axes go.
     #[inline]

@@ -8,6 +8,26 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[repr(C, align(16))]
 pub struct Quad(pub [f32; 4]);
 
+/// How many contacts are computed side by side. The results have the same bits with any.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// Every CPU's: SSE2, NEON, or plain arrays.
+    Four,
+    /// AVX2's.
+    Eight,
+}
+
+impl Default for Width {
+    /// The widest that this CPU has.
+    fn default() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            return Self::Eight;
+        }
+        Self::Four
+    }
+}
+
 /// A number the vector types can be made of.
 pub trait Num:
     Copy

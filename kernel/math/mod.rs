@@ -73,7 +73,7 @@ mod tangent;
 mod trig;
 
 pub use dim::*;
-pub use lane::{Ids, Lane, Num, Quad, clamp, max, min};
+pub use lane::{Ids, Lane, Num, Quad, Width, clamp, max, min};
 #[cfg(target_arch = "x86_64")]
 pub use lane_avx::F32x8;
 #[cfg(not(target_arch = "x86_64"))]

@@ -38,7 +38,6 @@ pub use input::RowInput;
 pub use inv_mass::InvMass;
 pub use prepare::ContactSource;
 pub use row::{ContactRow, DeepRow, PointRow, RestitutionRow};
-pub use rows::Width;
 pub use softness::{Softness, SubstepParams};
 pub use stages::Solver;
 pub use view::RowView;

@@ -7,27 +7,7 @@ use super::prepare::{Buckets, is_held};
 use crate::graph::{ColorGraph, OVERFLOW};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
-use crate::math::{AxisLocks, F32x4, Lane, Vector};
-
-/// How many contacts are solved side by side. The results have the same bits with any.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Width {
-    /// Every CPU's: SSE2, NEON, or plain arrays.
-    Four,
-    /// AVX2's.
-    Eight,
-}
-
-impl Default for Width {
-    /// The widest that this CPU has.
-    fn default() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            return Self::Eight;
-        }
-        Self::Four
-    }
-}
+use crate::math::{AxisLocks, F32x4, Lane, Vector, Width};
 
 /// The rows of every width; of the wide ones only one is in use.
 #[derive(Clone, Debug, Default)]

@@ -5,11 +5,12 @@ use super::batch::{Plan, Stage};
 use super::block::Pass;
 use super::input::RowInput;
 use super::prepare::{DeepCounts, Filler};
-use super::rows::{AllRows, Buffers, Layout, Width};
+use super::rows::{AllRows, Buffers, Layout};
 use super::{BodyRows, RowView, SubstepParams};
 use crate::contact::ContactTable;
 use crate::data::Parts;
 use crate::graph::ColorGraph;
+use crate::math::Width;
 use crate::team::Team;
 use core::sync::atomic::{AtomicBool, Ordering};
 

@@ -21,6 +21,7 @@ fn phase<'a>(
     colliders: &'a ColliderTable,
     dt: f32,
     recycle: bool,
+    narrow: bool,
 ) -> NarrowPhase<'a, ()> {
     NarrowPhase {
         bodies,
@@ -31,6 +32,7 @@ fn phase<'a>(
         speculative: 0.02,
         recycle_distance: if recycle { 0.05 } else { 0.0 },
         match_points: true,
+        narrow,
     }
 }
 
@@ -60,6 +62,7 @@ pub struct Sim {
     movers: Movers,
     solver: Solver,
     scratch: Vec<Scratch>,
+    is_narrow: bool,
     scan: SleepScan,
     listed: Vec<u32>,
     frames: Vec<WorldPose>,
@@ -93,6 +96,7 @@ impl Sim {
             movers: Movers::default(),
             solver,
             scratch: Vec::new(),
+            is_narrow: false,
             scan: SleepScan::new(),
             listed: Vec::new(),
             frames: Vec::new(),
@@ -101,8 +105,9 @@ impl Sim {
         }
     }
 
-    /// Solves four contacts side by side, also where the CPU could do eight.
+    /// Computes with four contacts side by side, also where the CPU could with eight.
     pub fn set_narrow(&mut self) {
+        self.is_narrow = true;
         self.solver.set_narrow(true);
     }
 
@@ -286,12 +291,12 @@ impl Sim {
     pub fn look(&self, a: u32, b: u32) -> (Found, Contact) {
         let id = self.contacts.find(a, b).expect("they have a contact");
         let mut contact = self.contacts.get(id).clone();
-        let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle);
+        let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle, self.is_narrow);
         (phase.update(&mut contact, &[], false, &mut Scratch::default()), contact)
     }
 
     fn narrow(&mut self) {
-        let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle);
+        let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle, self.is_narrow);
         self.changed.clear();
         self.solver.team.wake();
         self.contacts.update(&phase, &self.solver.team, &mut self.scratch, &mut self.changed);

@@ -79,6 +79,7 @@ impl Contacts {
             speculative: PREDICTION,
             recycle_distance: if recycle { 0.05 } else { 0.0 },
             match_points: true,
+            narrow: false,
         };
         self.changed.clear();
         self.contacts.update(&phase, &self.team, &mut self.scratches, &mut self.changed);

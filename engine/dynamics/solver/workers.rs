@@ -34,7 +34,7 @@ impl WorkerCount {
     }
 }
 
-/// How many contacts are solved side by side. The result has the same bits with any; this is for comparing and
+/// How many contacts are computed side by side. The result has the same bits with any; this is for comparing and
 /// measuring.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[reflect(Resource, Debug, Default, PartialEq)]
