@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What the compiler made of the solver's sweeps: for each loop over rows in each entry point, how many instructions it
-# has, how many calls, and how much of its arithmetic is as wide as the lane. docs/hot-loops.md says how to read it.
+# What the compiler made of the solver's sweeps and of recycling: for each loop over rows in each entry point, how many
+# instructions it has, how many calls, and how much of its arithmetic is as wide as the lane. docs/hot-loops.md says how to read it.
 #
 #   tools/asm.sh [2d|3d]             the table of a dimension, 3d if not told
 #   tools/asm.sh 3d F32x8            the assembly of all functions of the kernel with that in their names
@@ -59,6 +59,8 @@ assembly | awk '
         if (match($0, /(f32|F32x4|F32x8) as [a-z0-9_]*::solver::block::Entry>::sweep(::avx2)?>:$/)) {
             name = substr($0, RSTART); sub(/ as .*::sweep.*$/, "::sweep", name)
         }
+        if (/::recycle::Group>?::answer::avx2>:$/) name = "F32x8::answer"
+        if (/::recycle::Group>?::answer::baseline>:$/) name = "F32x4::answer"
         next
     }
     name != "" && /^ +[0-9a-f]+:\t/ {

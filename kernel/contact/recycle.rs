@@ -6,7 +6,8 @@
 //! anchors are what lets tall towers stand.
 //!
 //! In a scene at rest nearly all contacts are recycled, and each by the same arithmetic. So [`ask`](NarrowPhase::ask)
-//! lays out what it needs, and [`answer`](NarrowPhase::answer) computes it for as many contacts at once as a lane has.
+//! lays out in a row what it needs, and [`answer`](NarrowPhase::answer) computes with as many rows side by side as a
+//! lane has floats.
 #![expect(unsafe_code, reason = "rows of numbers are turned into lanes of numbers")]
 
 use super::record::{Contact, ContactFlags};
@@ -37,17 +38,20 @@ struct Asked<N: Num = f32> {
     /// From A's to B's centre of mass when the contact was frozen.
     offset: Vector<N>,
     /// From A's to B's centre of mass.
-    apart: Vector<N>,
-    /// B's velocity against A's. Any number if all points there can be are there.
-    linear: Vector<N>,
-    /// The angular velocities. Any number if all points there can be are there.
-    angular: [Angular<N>; 2],
+    offset_now: Vector<N>,
+    /// As in [`Frozen`](super::Frozen).
     prediction: N,
-    /// How many points there are; if none, all below may be any number.
-    count: N,
-    /// How far the shapes reach, and how far that moves them for each radian.
+    /// As in [`Reach`](crate::table::Reach).
     extents: [N; 2],
+    /// As in [`Reach`](crate::table::Reach).
     turning: [N; 2],
+    /// How many points there are.
+    count: N,
+    /// B's velocity against A's. Stale if all points there can be are there.
+    linear: Vector<N>,
+    /// The angular velocities. Stale if all points there can be are there.
+    angular: [Angular<N>; 2],
+    /// As in [`Manifold`](super::Manifold); stale if there are no points, as is what follows.
     rounding: [N; 2],
     normal: Vector<N>,
     points: [AskedPoint<N>; MAX_POINTS],
@@ -81,13 +85,13 @@ impl Row {
 }
 
 impl<N: Lane> Asked<N> {
-    /// The rows of some ids side by side.
+    /// The rows at some places side by side.
     #[inline(always)]
-    fn side_by_side(rows: &[Row], ids: &N::Ids) -> Self {
+    fn side_by_side(rows: &[Row; Group::SIZE], places: &N::Ids) -> Self {
         const { assert!(size_of::<Self>() == FLOATS * size_of::<N>()) }
         let mut lanes = MaybeUninit::<[[N; 4]; QUADS]>::uninit();
         for quad in 0..QUADS {
-            let four = N::gather(ids, |row| &rows[row as usize].quads()[quad]);
+            let four = N::gather(places, |place| &rows[place as usize].quads()[quad]);
             // SAFETY: one of the `QUADS` that there is room for.
             unsafe { lanes.as_mut_ptr().cast::<[N; 4]>().add(quad).write(four) };
         }
@@ -96,52 +100,96 @@ impl<N: Lane> Asked<N> {
     }
 }
 
-/// Contacts that are asked about together.
+/// What is the same for all contacts; as in [`NarrowPhase`].
+#[derive(Clone, Copy)]
+struct Terms {
+    dt: f32,
+    tolerance: f32,
+    recycle_distance: f32,
+}
+
+/// Contacts that are asked about together, and what was found.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Group {
     rows: [Row; Self::SIZE],
+    ids: [u32; Self::SIZE],
     len: usize,
-}
-
-/// Which contacts of a [`Group`] keep their manifold, as bits, and how far the points of each are apart now.
-pub(super) struct Answer {
+    /// Which keep their manifolds, as bits.
     kept: u32,
-    separations: [Quad; Group::SIZE],
+    /// How far the points of each are apart now.
+    separations: [Quad; Self::SIZE],
 }
 
 impl Group {
-    /// So many fit in.
-    pub(super) const SIZE: usize = 16;
-
-    pub(super) fn len(&self) -> usize {
-        self.len
-    }
+    /// So many fit in: two of the widest lanes.
+    const SIZE: usize = 16;
 
     pub(super) fn clear(&mut self) {
         self.len = 0;
     }
-}
 
-impl Answer {
-    /// Has a contact's separations follow the motion of its bodies, if it keeps its manifold. `place` is how many were
-    /// asked about before it.
+    #[inline(always)]
+    pub(super) fn is_full(&self) -> bool {
+        self.len == Self::SIZE
+    }
+
+    /// The contacts asked about, in order.
+    #[inline(always)]
+    pub(super) fn ids(&self) -> &[u32] {
+        &self.ids[..self.len]
+    }
+
+    /// Whether a contact keeps its manifold; if so, has its separations follow the motion of its bodies. `place` is how
+    /// many were asked about before it.
     #[inline(always)]
     pub(super) fn apply(&self, place: usize, contact: &mut Contact) -> bool {
-        let kept = self.kept & 1 << place != 0;
-        if kept {
+        let is_kept = self.kept & 1 << place != 0;
+        if is_kept {
             let m = &mut contact.manifold;
             for (p, separation) in m.points[..m.count as usize].iter_mut().zip(self.separations[place].0) {
                 p.separation = separation;
             }
         }
-        kept
+        is_kept
+    }
+
+    /// Not generic, so that it is compiled here, once, where its assembly can be looked at.
+    fn answer(&mut self, terms: &Terms, width: Width) {
+        #[inline(never)]
+        fn baseline(group: &mut Group, terms: &Terms) {
+            group.answer_wide::<F32x4>(terms);
+        }
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx2")]
+        fn avx2(group: &mut Group, terms: &Terms) {
+            group.answer_wide::<F32x8>(terms);
+        }
+        match width {
+            // SAFETY: this is the width of CPUs with AVX2 only.
+            #[cfg(target_arch = "x86_64")]
+            Width::Eight => unsafe { avx2(self, terms) },
+            _ => baseline(self, terms),
+        }
+    }
+
+    #[inline(always)]
+    fn answer_wide<N: Lane>(&mut self, terms: &Terms) {
+        const { assert!(Self::SIZE.is_multiple_of(N::WIDTH) && Self::SIZE <= u32::BITS as usize) }
+        self.kept = 0;
+        for start in (0..self.len).step_by(N::WIDTH) {
+            let mut places = N::Ids::splat(0);
+            (0..N::WIDTH).for_each(|i| places.set(i, (start + i) as u32));
+            let asked = Asked::<N>::side_by_side(&self.rows, &places);
+            self.kept |= N::bits(asked.is_kept(terms)) << start;
+            N::scatter(asked.separations(), &places, |place, quad| self.separations[place as usize] = quad);
+        }
     }
 }
 
 impl<S: ManifoldSource> NarrowPhase<'_, S> {
-    /// Adds to a group with room left what decides whether a contact keeps its manifold; `false` if it does not.
+    /// Adds to a group that is not full what decides whether a contact keeps its manifold; `false` if it does not.
     #[inline(always)]
-    pub(super) fn ask(&self, contact: &Contact, poses: [&BodyPose; 2], group: &mut Group) -> bool {
+    pub(super) fn ask(&self, id: u32, contact: &Contact, poses: [&BodyPose; 2], group: &mut Group) -> bool {
         let reaches = self.reaches(contact);
         let frozen = &contact.frozen;
         // Neither can close faster than both together: that settles it without asking for the velocities
@@ -156,12 +204,13 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         {
             return false;
         }
+        group.ids[group.len] = id;
         let row = &mut group.rows[group.len].asked;
         group.len += 1;
         row.rotations = [poses[0].rotation, poses[1].rotation];
         row.frozen = frozen.rotations;
         row.offset = frozen.offset;
-        row.apart = (poses[1].center - poses[0].center).to_local();
+        row.offset_now = (poses[1].center - poses[0].center).to_local();
         row.prediction = frozen.prediction;
         row.extents = [reaches[0].extent, reaches[1].extent];
         row.turning = [reaches[0].turning, reaches[1].turning];
@@ -183,45 +232,24 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         true
     }
 
-    /// Finds out which contacts of a group keep their manifolds, and empties it.
-    pub(super) fn answer(&self, group: &mut Group) -> Answer {
-        let len = core::mem::take(&mut group.len);
-        match if self.narrow { Width::Four } else { Width::default() } {
-            #[cfg(target_arch = "x86_64")]
-            Width::Eight => {
-                #[target_feature(enable = "avx2")]
-                fn avx2<S: ManifoldSource>(phase: &NarrowPhase<S>, rows: &[Row], len: usize) -> Answer {
-                    phase.answer_wide::<F32x8>(rows, len)
-                }
-                // SAFETY: this CPU has it.
-                unsafe { avx2(self, &group.rows, len) }
-            }
-            _ => self.answer_wide::<F32x4>(&group.rows, len),
-        }
-    }
-
+    /// Finds out which contacts of a group keep their manifolds.
     #[inline(always)]
-    fn answer_wide<N: Lane>(&self, rows: &[Row], len: usize) -> Answer {
-        let mut answer = Answer { kept: 0, separations: [Quad::default(); Group::SIZE] };
-        for start in (0..len).step_by(N::WIDTH) {
-            let mut ids = N::Ids::splat(0);
-            (0..N::WIDTH).for_each(|i| ids.set(i, (start + i) as u32));
-            let asked = Asked::<N>::side_by_side(rows, &ids);
-            answer.kept |= N::bits(self.is_kept(&asked)) << start;
-            N::scatter(asked.separations(), &ids, |row, quad| answer.separations[row as usize] = quad);
-        }
-        answer
+    pub(super) fn answer(&self, group: &mut Group) {
+        let &Self { dt, tolerance, recycle_distance, .. } = self;
+        group.answer(&Terms { dt, tolerance, recycle_distance }, Width::of(self.narrow));
     }
+}
 
+impl<N: Lane> Asked<N> {
     /// Whether the bodies moved little enough against each other.
     ///
     /// No point of one surface moved further against the other than `moved`. So of shapes that were `prediction` apart none
     /// can be nearer than what is left of it; they are not looked at until that may close in the step.
     #[inline(always)]
-    fn is_kept<N: Lane>(&self, asked: &Asked<N>) -> N::Mask {
-        let &Asked { offset, prediction, count, extents, turning, .. } = asked;
+    fn is_kept(&self, terms: &Terms) -> N::Mask {
+        let &Self { offset, prediction, count, extents, turning, .. } = self;
         // In world axes: how far each turned since freezing, R Rᶠ⁻¹, and how far B's centre of mass shifted against A's.
-        let turns = asked.turns();
+        let turns = self.turns();
         let straight = N::splat(RECYCLE_COS);
         let is_straight = N::and(straight.le(turns[0].cos_angle()), straight.le(turns[1].cos_angle()));
         // How far the centre of one shifted in the frame of the other, which length is the same in world axes, and
@@ -231,16 +259,16 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         let is_a = N::and(turning[1].eq(N::ZERO), N::ZERO.lt(extents[0]));
         let frame = Rot::select(is_a, turns[1], turns[0]);
         let reach = N::select(is_a, extents[0], extents[1]).max(turning[0].max(turning[1]));
-        let shift = asked.change() - frame.inverse().unturn(offset);
+        let shift = self.change() - frame.inverse().unturn(offset);
         let angle: Angular<N> = turns[0].difference(turns[1]);
         let moved = shift.length() + N::splat(CHORD) * reach * angle.length();
 
-        let closing = asked.closing(N::splat(self.dt));
-        let without_points = prediction - closing.max(N::splat(self.tolerance));
+        let closing = self.closing(N::splat(terms.dt));
+        let without_points = prediction - closing.max(N::splat(terms.tolerance));
         // Half-spaces reach nowhere, and count by the other side.
         let [a, b] = extents;
         let smaller = N::select(N::or(a.eq(N::ZERO), b.eq(N::ZERO)), a.max(b), a.min(b));
-        let errors = N::splat(self.recycle_distance).min(N::splat(RECYCLE_SHARE) * smaller);
+        let errors = N::splat(terms.recycle_distance).min(N::splat(RECYCLE_SHARE) * smaller);
         // Points may be missing that were too far apart to be found; none of them may close in this step.
         let is_full = count.eq(N::splat(MAX_POINTS as f32));
         let with_points = N::select(is_full, errors, errors.min(prediction - closing));
@@ -248,9 +276,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         // A NaN fails the comparison.
         N::and(is_straight, moved.lt(allowed))
     }
-}
 
-impl<N: Lane> Asked<N> {
     /// How far each body turned since freezing, in world axes.
     #[inline(always)]
     fn turns(&self) -> [Rot<N>; 2] {
@@ -261,7 +287,7 @@ impl<N: Lane> Asked<N> {
     /// How far B's centre of mass shifted against A's since freezing.
     #[inline(always)]
     fn change(&self) -> Vector<N> {
-        self.apart - self.offset
+        self.offset_now - self.offset
     }
 
     /// How far the surfaces may close in `dt` seconds, in metres.
@@ -297,78 +323,120 @@ impl<N: Lane> Asked<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{BodyTable, ColliderTable};
     use proptest::{prelude::*, strategy::ValueTree, test_runner::TestRunner};
 
-    const LANES: usize = F32x4::WIDTH;
+    const TERMS: Terms = Terms { dt: 1.0 / 60.0, tolerance: 0.005, recycle_distance: 0.05 };
 
-    /// Rows near one of which the manifold is kept, and far from it.
+    impl Row {
+        fn floats(&mut self) -> &mut [f32; 4 * QUADS] {
+            // SAFETY: a row is so many floats, without anything between.
+            unsafe { &mut *core::ptr::from_mut(self).cast() }
+        }
+
+        /// With NaN wherever the number may be stale.
+        fn stale(mut self) -> Self {
+            let nan = Vector::ONE * f32::NAN;
+            if self.asked.count == 0.0 {
+                self.asked.rounding = [f32::NAN; 2];
+                self.asked.normal = nan;
+                self.asked.points = [AskedPoint { anchor: nan, frozen_separation: f32::NAN }; MAX_POINTS];
+            }
+            if self.asked.count == MAX_POINTS as f32 {
+                self.asked.linear = nan;
+                self.asked.angular = [Angular::ZERO * f32::NAN; 2];
+            }
+            self
+        }
+    }
+
+    /// Rows near one of which the manifold is kept, and far from it; of half-spaces too; with a NaN anywhere.
     fn row() -> impl Strategy<Value = Row> {
         let noise = prop_oneof![40 => Just(0.0), 20 => -0.005..0.005f32, 1 => -1.0..1.0f32];
-        let points = prop::sample::select(vec![0.0, 1.0, MAX_POINTS as f32]);
-        (prop::collection::vec(noise, FLOATS), points, 0.1..2.0f32, 0..40 * FLOATS).prop_map(
-            |(noise, count, reach, odd)| {
-                let mut asked = Asked {
+        let noise = prop::collection::vec(noise, FLOATS);
+        let count = prop::sample::select(vec![0.0, 1.0, MAX_POINTS as f32]);
+        let reach = || prop_oneof![1 => Just(0.0), 4 => 0.1..2.0f32];
+        (noise, count, [reach(), reach()], any::<bool>(), 0..20 * FLOATS).prop_map(
+            |(noise, count, extents, is_a_static, odd)| {
+                let asked = Asked {
                     offset: Vector::Y,
-                    apart: Vector::Y,
+                    offset_now: Vector::Y,
                     prediction: 0.02,
-                    extents: [reach, 1.0],
-                    turning: [reach, 0.0],
                     normal: Vector::Y,
                     ..Asked::default()
                 };
-                asked.points[0].anchor = Vector::X;
                 let mut row = Row { asked, ..Row::default() };
-                // SAFETY: a row is so many floats, without anything between.
-                let floats: &mut [f32; 4 * QUADS] = unsafe { &mut *core::ptr::from_mut(&mut row).cast() };
-                floats.iter_mut().zip(noise).for_each(|(float, noise)| *float += noise);
-                if let Some(float) = floats.get_mut(odd) {
+                row.floats().iter_mut().zip(noise).for_each(|(float, noise)| *float += noise);
+                row.asked.count = count;
+                row.asked.extents = extents;
+                row.asked.turning = extents;
+                row.asked.turning[usize::from(is_a_static)] = 0.0;
+                if let Some(float) = row.floats()[..FLOATS].get_mut(odd) {
                     *float = f32::NAN;
                 }
-                row.asked.count = count;
                 row
             },
         )
     }
 
-    fn phase((bodies, colliders): &(BodyTable, ColliderTable)) -> NarrowPhase<'_, ()> {
-        NarrowPhase {
-            bodies,
-            colliders,
-            source: &(),
-            dt: 1.0 / 60.0,
-            tolerance: 0.005,
-            speculative: 0.02,
-            recycle_distance: 0.05,
-            match_points: true,
-            narrow: false,
-        }
+    fn group(rows: &[Row], dirt: Row) -> Group {
+        let mut group =
+            Group { rows: [dirt; Group::SIZE], len: rows.len(), kept: u32::MAX, ..Group::default() };
+        group.rows[..rows.len()].copy_from_slice(rows);
+        group
     }
 
     proptest! {
-        /// What is found of a contact is the same bits whatever stands beside it.
+        /// What is found of a contact is the same bits with any width, whatever stands beside it, and does not depend on
+        /// what a row held before.
         #[test]
-        fn side_by_side_is_as_alone(rows in prop::collection::vec(row(), LANES)) {
-            let tables = Default::default();
-            let phase = phase(&tables);
-            let together = Asked::<F32x4>::side_by_side(&rows, &core::array::from_fn(|i| i as u32));
-            let (kept, separations) = (F32x4::bits(phase.is_kept(&together)), together.separations());
-            for (i, row) in rows.iter().enumerate() {
-                prop_assert_eq!(phase.is_kept(&row.asked), kept & 1 << i != 0);
-                for (alone, lane) in row.asked.separations().into_iter().zip(separations) {
-                    let lane = lane.get(i);
-                    prop_assert!(alone.to_bits() == lane.to_bits() || alone.is_nan() && lane.is_nan());
+        fn side_by_side_is_as_alone(rows in prop::collection::vec(row(), 1..=Group::SIZE), dirt in row()) {
+            for width in [Width::default(), Width::Four] {
+                let mut group = group(&rows, dirt);
+                group.answer(&TERMS, width);
+                for (place, row) in rows.iter().enumerate() {
+                    let kept = group.kept & 1 << place != 0;
+                    prop_assert_eq!(row.asked.is_kept(&TERMS), kept);
+                    prop_assert_eq!(row.stale().asked.is_kept(&TERMS), kept);
+                    for (alone, beside) in row.asked.separations().into_iter().zip(group.separations[place].0) {
+                        prop_assert!(alone.to_bits() == beside.to_bits() || alone.is_nan() && beside.is_nan());
+                    }
                 }
             }
         }
     }
 
+    /// Of the rows of the property above some are kept and some are not, with any number of points.
     #[test]
-    fn some_of_those_rows_are_kept_and_some_are_not() {
-        let tables = Default::default();
+    fn rows_differ() {
         let mut runner = TestRunner::deterministic();
-        let mut draw = || row().new_tree(&mut runner).expect("nothing is filtered").current();
-        let kept = (0..1000).filter(|_| phase(&tables).is_kept(&draw().asked)).count();
-        assert!((100..900).contains(&kept), "{kept} of 1000");
+        for count in [0.0, 1.0, MAX_POINTS as f32] {
+            let rows = (0..1000).map(|_| row().new_tree(&mut runner).expect("nothing is filtered").current());
+            let mut rows: Vec<Row> = rows.collect();
+            rows.iter_mut().for_each(|row| row.asked.count = count);
+            let kept = rows.iter().filter(|row| row.asked.is_kept(&TERMS)).count();
+            assert!((100..900).contains(&kept), "{kept} of 1000 with {count} points");
+        }
+    }
+
+    /// A NaN where a body is, or how it was, is no reason to keep a manifold.
+    #[test]
+    fn nan_is_not_kept() {
+        let asked = Asked {
+            offset: Vector::Y,
+            offset_now: Vector::Y,
+            prediction: 0.02,
+            extents: [1.0; 2],
+            turning: [1.0; 2],
+            count: MAX_POINTS as f32,
+            normal: Vector::Y,
+            ..Asked::default()
+        };
+        let good = Row { asked, ..Row::default() };
+        assert!(good.asked.is_kept(&TERMS));
+        for odd in 0..core::mem::offset_of!(Asked, prediction) / size_of::<f32>() {
+            let mut row = good;
+            row.floats()[odd] = f32::NAN;
+            assert!(!row.asked.is_kept(&TERMS), "{odd}");
+        }
     }
 }

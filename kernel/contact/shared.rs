@@ -2,7 +2,6 @@
 #![expect(unsafe_code, reason = "contacts are changed by several threads, each its own")]
 
 use super::record::{Contact, ContactFlags, Manifold};
-use super::recycle::Group;
 use super::table::{ContactTable, PointCount};
 use super::update::{Begun, ManifoldSource, NarrowPhase, Scratch};
 use crate::data::{BitSet, Parts};
@@ -44,35 +43,27 @@ impl ContactTable {
             let ids = &ids[..count];
             // SAFETY: no two blocks run at once with the same member.
             let scratch = unsafe { of_members.one(member) };
+            // Whoever waited when something panicked is not of this block.
+            scratch.group.clear();
             ids[..AHEAD.min(ids.len())].iter().for_each(|id| contacts.prefetch(*id));
-            let mut waiting = [0; Group::SIZE];
             for (i, &id) in ids.iter().enumerate() {
                 if let Some(next) = ids.get(i + AHEAD) {
                     contacts.prefetch(*next);
                 }
                 // SAFETY: an id is in one block, once.
                 let (contact, count) = unsafe { (contacts.one(id as usize), points.one(id as usize)) };
-                match phase.begin(contact, &mut scratch.group) {
+                match phase.begin(id, contact, &mut scratch.group) {
                     Begun::Apart => scratch.part(id, contact),
-                    Begun::Asked => waiting[scratch.group.len() - 1] = id,
+                    Begun::Asked => {}
                     Begun::Stale => scratch.renew(id, contact, count, extra, crowded, phase),
                 }
-                if scratch.group.len() < Group::SIZE && i + 1 < ids.len() {
-                    continue;
-                }
-                let waiting = &waiting[..scratch.group.len()];
-                let answer = phase.answer(&mut scratch.group);
-                for (place, &id) in waiting.iter().enumerate() {
-                    // SAFETY: as above, and the one before is in use no more.
-                    let (contact, count) = unsafe { (contacts.one(id as usize), points.one(id as usize)) };
-                    if answer.apply(place, contact) {
-                        phase.follow(contact);
-                        scratch.any_deep |= contact.flags.has(ContactFlags::DEEP);
-                    } else {
-                        scratch.renew(id, contact, count, extra, crowded, phase);
-                    }
+                if scratch.group.is_full() {
+                    // SAFETY: all that wait are of this block, and those above are in use no more.
+                    unsafe { scratch.settle(&contacts, &points, extra, crowded, phase) };
                 }
             }
+            // SAFETY: as above.
+            unsafe { scratch.settle(&contacts, &points, extra, crowded, phase) };
         });
         self.any_deep = false;
         for scratch in scratches {
@@ -110,13 +101,40 @@ impl ContactTable {
 }
 
 impl<W> Scratch<W> {
-    /// Forgets what the table was to be told, and who waits if that ended in a panic.
+    /// Forgets what the table was to be told.
     fn clear(&mut self) {
-        self.group.clear();
         self.changed.clear();
         self.stored.clear();
         self.pool.clear();
         self.any_deep = false;
+    }
+
+    /// Updates the contacts that wait in the group, and empties it.
+    ///
+    /// # Safety
+    /// Nobody else may have one of these contacts, nor its count.
+    #[inline(always)]
+    unsafe fn settle<S: ManifoldSource<Workspace = W>>(
+        &mut self,
+        contacts: &Parts<Contact>,
+        points: &Parts<PointCount>,
+        extra: &[Vec<Manifold>],
+        crowded: Option<&BitSet>,
+        phase: &NarrowPhase<S>,
+    ) {
+        phase.answer(&mut self.group);
+        for place in 0..self.group.ids().len() {
+            let id = self.group.ids()[place];
+            // SAFETY: by the contract nobody else has it; the one before is in use no more.
+            let (contact, count) = unsafe { (contacts.one(id as usize), points.one(id as usize)) };
+            if self.group.apply(place, contact) {
+                phase.follow(contact);
+                self.any_deep |= contact.flags.has(ContactFlags::DEEP);
+            } else {
+                self.renew(id, contact, count, extra, crowded, phase);
+            }
+        }
+        self.group.clear();
     }
 
     /// Notes that the boxes of a contact came apart.

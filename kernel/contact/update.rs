@@ -105,8 +105,8 @@ pub(super) enum Begun {
 }
 
 impl<S: ManifoldSource> NarrowPhase<'_, S> {
-    /// Brings a contact up to date with where its bodies are now. `crowded` says that one of them overlapped another
-    /// deeply before. Manifolds after the first are left in
+    /// Brings one contact alone up to date with where its bodies are now, as [`ContactTable`](super::ContactTable) does all.
+    /// `crowded` says that one of them overlapped another deeply before. Manifolds after the first are left in
     /// `scratch.extra`; the caller stores them.
     pub fn update(
         &self,
@@ -115,31 +115,31 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         crowded: bool,
         scratch: &mut Scratch<S::Workspace>,
     ) -> Found {
-        match self.begin(contact, &mut scratch.group) {
-            Begun::Apart => Found::Apart,
-            Begun::Asked if self.answer(&mut scratch.group).apply(0, contact) => {
-                self.follow(contact);
-                Found::Recycled
+        scratch.group.clear();
+        match self.begin(0, contact, &mut scratch.group) {
+            Begun::Apart => return Found::Apart,
+            Begun::Asked => {
+                self.answer(&mut scratch.group);
+                if scratch.group.apply(0, contact) {
+                    self.follow(contact);
+                    return Found::Recycled;
+                }
             }
-            Begun::Asked | Begun::Stale => {
-                self.renew(contact, extra, crowded, scratch);
-                Found::Computed
-            }
+            Begun::Stale => {}
         }
+        self.renew(contact, extra, crowded, scratch);
+        Found::Computed
     }
 
     /// Looks at a contact first, and puts it in the group if it may be recycled.
     #[inline(always)]
-    pub(super) fn begin(&self, contact: &Contact, group: &mut Group) -> Begun {
+    pub(super) fn begin(&self, id: u32, contact: &Contact, group: &mut Group) -> Begun {
         let [a, b] = contact.colliders;
         if !self.colliders.fat[a as usize].overlaps(&self.colliders.fat[b as usize]) {
             return Begun::Apart;
         }
-        if self.ask(contact, self.poses(contact, &mut [None; 2]), group) {
-            Begun::Asked
-        } else {
-            Begun::Stale
-        }
+        let is_asked = self.ask(id, contact, self.poses(contact, &mut [None; 2]), group);
+        if is_asked { Begun::Asked } else { Begun::Stale }
     }
 
     /// What is left to do of a contact that was recycled.

@@ -1,4 +1,4 @@
-//! The lane: what a solver row computes with, one `f32` or several side by side.
+//! The lane: what rows of numbers are computed with, one `f32` or several side by side.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -8,7 +8,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[repr(C, align(16))]
 pub struct Quad(pub [f32; 4]);
 
-/// How many contacts are computed side by side. The results have the same bits with any.
+/// How many floats the lanes have that rows are computed with. The results have the same bits with any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
     /// Every CPU's: SSE2, NEON, or plain arrays.
@@ -20,10 +20,18 @@ pub enum Width {
 impl Default for Width {
     /// The widest that this CPU has.
     fn default() -> Self {
+        Self::of(false)
+    }
+}
+
+impl Width {
+    /// The widest that this CPU has, or four if it is to be `narrow`.
+    pub fn of(narrow: bool) -> Self {
         #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
+        if !narrow && std::arch::is_x86_feature_detected!("avx2") {
             return Self::Eight;
         }
+        let _ = narrow;
         Self::Four
     }
 }
@@ -49,7 +57,7 @@ pub trait Num:
     fn sqrt(self) -> Self;
 }
 
-/// The body-row indices of one wide row, one for each lane.
+/// Indices of rows, one for each lane.
 pub trait Ids: Copy + Debug {
     /// The same index in every lane.
     fn splat(id: u32) -> Self;
@@ -80,7 +88,7 @@ pub trait Lane: Num {
     const WIDTH: usize;
     /// The outcome of a comparison, lane by lane.
     type Mask: Copy;
-    /// One body-row index for each lane.
+    /// The index of a row for each lane.
     type Ids: Ids;
 
     /// The same value in every lane.

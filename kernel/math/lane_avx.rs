@@ -2,7 +2,7 @@
 //!
 //! Every method is inlined into an entry point with the feature `avx2`; called from elsewhere they are
 //! correct, but slow. Each operation gives the bits that the four-lane type gives.
-#![expect(unsafe_code, reason = "AVX intrinsics; rows of this width are only made where the CPU has them")]
+#![expect(unsafe_code, reason = "AVX intrinsics; lanes of this width are only used where the CPU has them")]
 
 use super::lane::{Lane, Num, Quad};
 use core::arch::x86_64::*;
@@ -24,7 +24,7 @@ macro_rules! binary {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+                // SAFETY: eight lanes are only used where the CPU has AVX2.
                 Self(unsafe { $intrinsic(self.0, other.0) })
             }
         }
@@ -53,7 +53,7 @@ impl Neg for F32x8 {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         Self(unsafe { _mm256_xor_ps(self.0, _mm256_set1_ps(-0.0)) })
     }
 }
@@ -72,7 +72,7 @@ impl Num for F32x8 {
     const ONE: Self = Self(unsafe { core::mem::transmute::<[f32; 8], __m256>([1.0; 8]) });
     #[inline(always)]
     fn sqrt(self) -> Self {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         Self(unsafe { _mm256_sqrt_ps(self.0) })
     }
 }
@@ -89,7 +89,7 @@ impl F32x8 {
 #[inline(always)]
 fn transpose(rows: [__m256; 4]) -> [__m256; 4] {
     let [a, b, c, d] = rows;
-    // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+    // SAFETY: eight lanes are only used where the CPU has AVX2.
     unsafe {
         let (ab_low, cd_low) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
         let (ab_high, cd_high) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
@@ -127,7 +127,7 @@ impl Lane for F32x8 {
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         Self(unsafe { _mm256_set1_ps(value) })
     }
     #[inline(always)]
@@ -143,52 +143,52 @@ impl Lane for F32x8 {
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2. MAXPS is `a > b ? a : b`.
+        // SAFETY: eight lanes are only used where the CPU has AVX2. MAXPS is `a > b ? a : b`.
         Self(unsafe { _mm256_max_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2. MINPS is `a < b ? a : b`.
+        // SAFETY: eight lanes are only used where the CPU has AVX2. MINPS is `a < b ? a : b`.
         Self(unsafe { _mm256_min_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn lt(self, other: Self) -> Mask8 {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         Mask8(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0) })
     }
     #[inline(always)]
     fn le(self, other: Self) -> Mask8 {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         Mask8(unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0) })
     }
     #[inline(always)]
     fn eq(self, other: Self) -> Mask8 {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         Mask8(unsafe { _mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, other.0) })
     }
     #[inline(always)]
     fn or(a: Mask8, b: Mask8) -> Mask8 {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         Mask8(unsafe { _mm256_or_ps(a.0, b.0) })
     }
     #[inline(always)]
     fn and(a: Mask8, b: Mask8) -> Mask8 {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         Mask8(unsafe { _mm256_and_ps(a.0, b.0) })
     }
     #[inline(always)]
     fn any(mask: Mask8) -> bool {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         unsafe { _mm256_movemask_ps(mask.0) != 0 }
     }
     #[inline(always)]
     fn bits(mask: Mask8) -> u32 {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         unsafe { _mm256_movemask_ps(mask.0) as u32 }
     }
     #[inline(always)]
     fn select(mask: Mask8, a: Self, b: Self) -> Self {
-        // SAFETY: rows of eight lanes are only made where the CPU has AVX2.
+        // SAFETY: eight lanes are only used where the CPU has AVX2.
         Self(unsafe { _mm256_blendv_ps(b.0, a.0, mask.0) })
     }
     #[inline(always)]

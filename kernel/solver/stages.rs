@@ -40,7 +40,7 @@ impl Solver {
     /// Whether to solve with four lanes where the CPU has eight, from the next [`build_rows`](Self::build_rows) on: for
     /// comparison.
     pub fn set_narrow(&mut self, narrow: bool) {
-        self.rows.width = if narrow { Width::Four } else { Width::default() };
+        self.rows.width = Width::of(narrow);
     }
 
     /// From how many contacts a member of the team on a colour is shared by several, from the next
