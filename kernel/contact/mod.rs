@@ -2,6 +2,7 @@
 //! the one door through which contacts, colours and islands change.
 
 mod link;
+mod phase;
 mod record;
 mod recycle;
 mod shared;
@@ -9,7 +10,8 @@ mod table;
 mod update;
 
 pub use link::{Link, Status};
+pub use phase::{ManifoldSource, NarrowPhase};
 pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
 pub(crate) use shared::ManifoldsView;
 pub use table::ContactTable;
-pub use update::{Found, ManifoldSource, NarrowPhase, Scratch};
+pub use update::{Found, Scratch};

@@ -10,8 +10,8 @@
 //! lane has floats.
 #![expect(unsafe_code, reason = "rows of numbers are turned into lanes of numbers")]
 
+use super::phase::NarrowPhase;
 use super::record::{Contact, ContactFlags};
-use super::update::{ManifoldSource, NarrowPhase};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
 use crate::math::{Angular, F32x4, Ids, Lane, MAX_POINTS, Num, Quad, Rot, Vector, Width, max};
@@ -186,7 +186,7 @@ impl Group {
     }
 }
 
-impl<S: ManifoldSource> NarrowPhase<'_, S> {
+impl<S> NarrowPhase<'_, S> {
     /// Adds to a group that is not full what decides whether a contact keeps its manifold; `false` if it does not.
     #[inline(always)]
     pub(super) fn ask(&self, id: u32, contact: &Contact, poses: [&BodyPose; 2], group: &mut Group) -> bool {

@@ -1,9 +1,10 @@
 //! What a team does to the contacts together.
 #![expect(unsafe_code, reason = "contacts are changed by several threads, each its own")]
 
+use super::phase::{ManifoldSource, NarrowPhase};
 use super::record::{Contact, ContactFlags, Manifold};
 use super::table::{ContactTable, PointCount};
-use super::update::{Begun, ManifoldSource, NarrowPhase, Scratch};
+use super::update::{Begun, Scratch};
 use crate::data::{BitSet, Parts};
 use crate::table::{BodyKind, BodyTable, NONE};
 use crate::team::Team;

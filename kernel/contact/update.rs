@@ -1,34 +1,12 @@
 //! The narrow phase of one contact: apart? → [recycle](super::recycle)? → the full manifold.
 
+use super::phase::{ManifoldSource, NarrowPhase};
 use super::record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
 use super::recycle::Group;
 use crate::manifold::{self, FeatureCache, LocalManifold};
-use crate::math::{Rot, Vector, WorldPose, max, min};
+use crate::math::{Rot, Vector, max, min};
 use crate::shape::Shape;
-use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity};
-
-/// Whoever computes the manifolds of pairs with a [`Shape::Foreign`] in them.
-pub trait ManifoldSource: Sync {
-    /// Its buffers, kept between calls.
-    type Workspace: Default + Send;
-
-    /// Adds the manifolds of colliders `a` and `b`, in `a`'s frame with normals from `a` to `b`, with
-    /// points up to `prediction` metres apart.
-    fn manifolds(
-        &self,
-        a: u32,
-        b: u32,
-        prediction: f32,
-        workspace: &mut Self::Workspace,
-        out: &mut Vec<LocalManifold>,
-    );
-}
-
-impl ManifoldSource for () {
-    type Workspace = ();
-
-    fn manifolds(&self, _: u32, _: u32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
-}
+use crate::table::BodyPose;
 
 /// Buffers of one worker, kept between steps; `W` are those of its [`ManifoldSource`]. In cache lines of its own, for
 /// they are written with every contact.
@@ -49,30 +27,6 @@ pub struct Scratch<W = ()> {
     pub(super) pool: Vec<Manifold>,
     /// ... and whether any overlaps deeply.
     pub(super) any_deep: bool,
-}
-
-/// What the update of any contact reads; constant over the narrow phase.
-pub struct NarrowPhase<'a, S> {
-    /// The bodies.
-    pub bodies: &'a BodyTable,
-    /// The colliders.
-    pub colliders: &'a ColliderTable,
-    /// For pairs with a foreign shape.
-    pub source: &'a S,
-    /// The step's length, in seconds.
-    pub dt: f32,
-    /// Contacts up to this distance are always found, in metres.
-    pub tolerance: f32,
-    /// The distance up to which contacts are predicted at rest, in metres, where the colliders'
-    /// speculative margins allow it.
-    pub speculative: f32,
-    /// How far, in metres, a surface may have moved against the other for the manifold to be recycled;
-    /// 0 switches recycling off.
-    pub recycle_distance: f32,
-    /// Whether points inherit the impulses of the last step.
-    pub match_points: bool,
-    /// No more than four contacts side by side, though this CPU may have wider lanes: the results are the same.
-    pub narrow: bool,
 }
 
 /// What an update found.
@@ -181,59 +135,6 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         deepest < 0.0 && deepest < -share * reach
     }
 
-    /// The poses of both sides' bodies; of a collider without one, its own, kept in `fixed`. By reference: a copy is
-    /// written in other pieces than it is read in, which a processor waits for.
-    #[inline(always)]
-    fn poses<'a>(&'a self, contact: &Contact, fixed: &'a mut [Option<BodyPose>; 2]) -> [&'a BodyPose; 2] {
-        let [a, b] = fixed;
-        [self.pose(contact, 0, a), self.pose(contact, 1, b)]
-    }
-
-    #[inline(always)]
-    fn pose<'a>(&'a self, contact: &Contact, side: usize, fixed: &'a mut Option<BodyPose>) -> &'a BodyPose {
-        match contact.bodies[side] {
-            NONE => {
-                let WorldPose { position, rotation } = self.colliders.poses[contact.colliders[side] as usize];
-                fixed.insert(BodyPose { center: position, rotation, speed: 0.0, revision: 0 })
-            }
-            body => &self.bodies.poses[body as usize],
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn velocity(&self, contact: &Contact, side: usize) -> Velocity {
-        match contact.bodies[side] {
-            NONE => Velocity::default(),
-            body => self.bodies.velocities[body as usize],
-        }
-    }
-
-    /// The side's revision: of its collider and its body together.
-    #[inline(always)]
-    fn revision(reach: &Reach, pose: &BodyPose) -> u32 {
-        reach.revision.wrapping_add(pose.revision.wrapping_mul(0x9E37_79B1))
-    }
-
-    /// The reaches of both sides. Not by `map`, which the compiler makes a call of.
-    #[inline(always)]
-    pub(super) fn reaches(&self, contact: &Contact) -> [&Reach; 2] {
-        let [a, b] = contact.colliders;
-        [&self.colliders.reaches[a as usize], &self.colliders.reaches[b as usize]]
-    }
-
-    /// How far apart the shapes are kept, in metres.
-    #[inline(always)]
-    fn margin(&self, contact: &Contact) -> f32 {
-        let [a, b] = self.reaches(contact);
-        a.margin + b.margin
-    }
-
-    #[inline(always)]
-    pub(super) fn revisions(&self, contact: &Contact, poses: [&BodyPose; 2]) -> [u32; 2] {
-        let [a, b] = self.reaches(contact);
-        [Self::revision(a, poses[0]), Self::revision(b, poses[1])]
-    }
-
     /// Computes the manifolds at the present pose, into `scratch.local`, and freezes the contact there.
     fn compute(&self, contact: &mut Contact, poses: [&BodyPose; 2], scratch: &mut Scratch<S::Workspace>) {
         let [a, b] = contact.colliders;
@@ -318,16 +219,6 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         }
         let touching = contact.manifold.count > 0 || !scratch.extra.is_empty();
         contact.flags.set(ContactFlags::TOUCHING, touching);
-    }
-
-    /// How far apart surfaces may be to count as a contact: as far as they can close in this step, but
-    /// not beyond the colliders' speculative margins.
-    pub(super) fn prediction(&self, contact: &Contact) -> f32 {
-        let [a, b] = self.reaches(contact);
-        let limit = a.speculative + b.speculative;
-        let closing =
-            (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;
-        max(self.tolerance, min(max(self.speculative, closing), limit))
     }
 }
 

@@ -1,0 +1,122 @@
+//! What the update of any contact reads.
+
+use super::record::Contact;
+use crate::manifold::LocalManifold;
+use crate::math::{WorldPose, max, min};
+use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity};
+
+/// Whoever computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign) in them.
+pub trait ManifoldSource: Sync {
+    /// Its buffers, kept between calls.
+    type Workspace: Default + Send;
+
+    /// Adds the manifolds of colliders `a` and `b`, in `a`'s frame with normals from `a` to `b`, with
+    /// points up to `prediction` metres apart.
+    fn manifolds(
+        &self,
+        a: u32,
+        b: u32,
+        prediction: f32,
+        workspace: &mut Self::Workspace,
+        out: &mut Vec<LocalManifold>,
+    );
+}
+
+impl ManifoldSource for () {
+    type Workspace = ();
+
+    fn manifolds(&self, _: u32, _: u32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
+}
+
+/// What the update of any contact reads; constant over the narrow phase.
+pub struct NarrowPhase<'a, S> {
+    /// The bodies.
+    pub bodies: &'a BodyTable,
+    /// The colliders.
+    pub colliders: &'a ColliderTable,
+    /// For pairs with a foreign shape.
+    pub source: &'a S,
+    /// The step's length, in seconds.
+    pub dt: f32,
+    /// Contacts up to this distance are always found, in metres.
+    pub tolerance: f32,
+    /// The distance up to which contacts are predicted at rest, in metres, where the colliders'
+    /// speculative margins allow it.
+    pub speculative: f32,
+    /// How far, in metres, a surface may have moved against the other for the manifold to be recycled;
+    /// 0 switches recycling off.
+    pub recycle_distance: f32,
+    /// Whether points inherit the impulses of the last step.
+    pub match_points: bool,
+    /// No more than four contacts side by side, though this CPU may have wider lanes: the results are the same.
+    pub narrow: bool,
+}
+
+impl<S> NarrowPhase<'_, S> {
+    /// The poses of both sides' bodies; of a collider without one, its own, kept in `fixed`. By reference: a copy is
+    /// written in other pieces than it is read in, which a processor waits for.
+    #[inline(always)]
+    pub(super) fn poses<'a>(
+        &'a self,
+        contact: &Contact,
+        fixed: &'a mut [Option<BodyPose>; 2],
+    ) -> [&'a BodyPose; 2] {
+        let [a, b] = fixed;
+        [self.pose(contact, 0, a), self.pose(contact, 1, b)]
+    }
+
+    #[inline(always)]
+    fn pose<'a>(&'a self, contact: &Contact, side: usize, fixed: &'a mut Option<BodyPose>) -> &'a BodyPose {
+        match contact.bodies[side] {
+            NONE => {
+                let WorldPose { position, rotation } = self.colliders.poses[contact.colliders[side] as usize];
+                fixed.insert(BodyPose { center: position, rotation, speed: 0.0, revision: 0 })
+            }
+            body => &self.bodies.poses[body as usize],
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn velocity(&self, contact: &Contact, side: usize) -> Velocity {
+        match contact.bodies[side] {
+            NONE => Velocity::default(),
+            body => self.bodies.velocities[body as usize],
+        }
+    }
+
+    /// The side's revision: of its collider and its body together.
+    #[inline(always)]
+    fn revision(reach: &Reach, pose: &BodyPose) -> u32 {
+        reach.revision.wrapping_add(pose.revision.wrapping_mul(0x9E37_79B1))
+    }
+
+    /// The reaches of both sides. Not by `map`, which the compiler makes a call of.
+    #[inline(always)]
+    pub(super) fn reaches(&self, contact: &Contact) -> [&Reach; 2] {
+        let [a, b] = contact.colliders;
+        [&self.colliders.reaches[a as usize], &self.colliders.reaches[b as usize]]
+    }
+
+    /// How far apart the shapes are kept, in metres.
+    #[inline(always)]
+    pub(super) fn margin(&self, contact: &Contact) -> f32 {
+        let [a, b] = self.reaches(contact);
+        a.margin + b.margin
+    }
+
+    #[inline(always)]
+    pub(super) fn revisions(&self, contact: &Contact, poses: [&BodyPose; 2]) -> [u32; 2] {
+        let [a, b] = self.reaches(contact);
+        [Self::revision(a, poses[0]), Self::revision(b, poses[1])]
+    }
+
+    /// How far apart surfaces may be to count as a contact: as far as they can close in this step, but
+    /// not beyond the colliders' speculative margins.
+    pub(super) fn prediction(&self, contact: &Contact) -> f32 {
+        let [a, b] = self.reaches(contact);
+        let limit = a.speculative + b.speculative;
+        let closing =
+            (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;
+        max(self.tolerance, min(max(self.speculative, closing), limit))
+    }
+}
