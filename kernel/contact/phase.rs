@@ -2,7 +2,7 @@
 
 use super::record::Contact;
 use crate::manifold::LocalManifold;
-use crate::math::{WorldPose, max, min};
+use crate::math::{Lane, WorldPose, max, min};
 use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity};
 
 /// Whoever computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign) in them.
@@ -119,4 +119,11 @@ impl<S> NarrowPhase<'_, S> {
             (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;
         max(self.tolerance, min(max(self.speculative, closing), limit))
     }
+}
+
+/// The smaller of two reaches. Half-spaces reach nowhere, and count by the other side.
+#[inline(always)]
+pub(super) fn smaller<N: Lane>([a, b]: [N; 2]) -> N {
+    let is_half_space = N::or(a.eq(N::ZERO), b.eq(N::ZERO));
+    N::select(is_half_space, a.max(b), a.min(b))
 }

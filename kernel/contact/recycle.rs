@@ -10,7 +10,7 @@
 //! lane has floats.
 #![expect(unsafe_code, reason = "rows of numbers are turned into lanes of numbers")]
 
-use super::phase::NarrowPhase;
+use super::phase::{NarrowPhase, smaller};
 use super::record::{Contact, ContactFlags};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
@@ -265,10 +265,7 @@ impl<N: Lane> Asked<N> {
 
         let closing = self.closing(N::splat(terms.dt));
         let without_points = prediction - closing.max(N::splat(terms.tolerance));
-        // Half-spaces reach nowhere, and count by the other side.
-        let [a, b] = extents;
-        let smaller = N::select(N::or(a.eq(N::ZERO), b.eq(N::ZERO)), a.max(b), a.min(b));
-        let errors = N::splat(terms.recycle_distance).min(N::splat(RECYCLE_SHARE) * smaller);
+        let errors = N::splat(terms.recycle_distance).min(N::splat(RECYCLE_SHARE) * smaller(extents));
         // Points may be missing that were too far apart to be found; none of them may close in this step.
         let is_full = count.eq(N::splat(MAX_POINTS as f32));
         let with_points = N::select(is_full, errors, errors.min(prediction - closing));

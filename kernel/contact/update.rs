@@ -1,6 +1,6 @@
 //! The narrow phase of one contact: apart? → [recycle](super::recycle)? → the full manifold.
 
-use super::phase::{ManifoldSource, NarrowPhase};
+use super::phase::{ManifoldSource, NarrowPhase, smaller};
 use super::record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
 use super::recycle::Group;
 use crate::manifold::{self, FeatureCache, LocalManifold};
@@ -220,11 +220,6 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         let touching = contact.manifold.count > 0 || !scratch.extra.is_empty();
         contact.flags.set(ContactFlags::TOUCHING, touching);
     }
-}
-
-/// The smaller of two reaches. Half-spaces reach nowhere, and count by the other side.
-fn smaller([a, b]: [f32; 2]) -> f32 {
-    if a == 0.0 || b == 0.0 { max(a, b) } else { min(a, b) }
 }
 
 /// A manifold in world axes, with anchors from body A's centre of mass.
