@@ -64,9 +64,11 @@ pub mod physics_transform;
 pub mod schedule;
 
 mod columns;
+mod noted;
 mod plugins;
 mod scan;
 mod step;
+mod type_path;
 mod type_registration;
 
 #[cfg(feature = "parry-f32")]

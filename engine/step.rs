@@ -4,7 +4,7 @@
 //! says where each stage stands. The public sets are attached to the same list, so they cannot drift apart.
 
 use bevy_app::{App, Plugin};
-use bevy_ecs::prelude::*;
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel, system::ScheduleSystem};
 
 use crate::{
     collider_tree::ColliderTreeSystems,
@@ -86,6 +86,24 @@ stages! {
     MirrorSleep,
 }
 
+/// Adds systems of the engine to [`PhysicsSchedule`] or one that takes its place.
+///
+/// The stages fix their order, and systems of one stage are chained or share nothing. The order between them and the
+/// app's systems in the public sets is left open, and that is no error: such a system sees what was there before or
+/// after a stage of its set, and what it writes counts where it is read next.
+pub(crate) fn add_systems<M>(
+    app: &mut App,
+    schedule: impl ScheduleLabel,
+    systems: impl IntoScheduleConfigs<ScheduleSystem, M>,
+) {
+    #[cfg(test)]
+    if app.world().contains_resource::<Strict>() {
+        app.add_systems(schedule, systems);
+        return;
+    }
+    app.add_systems(schedule, systems.ambiguous_with_all());
+}
+
 /// Puts the stages in order and makes the tables. Every plugin that adds to the step calls it; the first call
 /// counts.
 pub(crate) fn install(app: &mut App) {
@@ -133,20 +151,21 @@ pub(crate) fn install(app: &mut App) {
         )
             .chain(),
     );
-    app.add_systems(
+    add_systems(
+        app,
         PhysicsSchedule,
         (
             call_team.in_set(Stage::ResetDiagnostics),
             (lifecycle::note_changed_colliders, crate::dynamics::drain::drain_lifecycle)
                 .chain()
                 .in_set(Stage::DrainLifecycle),
-            dismiss_team.in_set(Stage::RemoveLost),
-            crate::dynamics::drain::remove_lost_late.in_set(Stage::RemoveLost),
+            (dismiss_team, crate::dynamics::drain::remove_lost_late).chain().in_set(Stage::RemoveLost),
         ),
     );
     for (i, &(stage, name)) in Stage::ALL.iter().enumerate() {
         let end = (move |mut times: ResMut<StepTimes>| times.end(name)).after(stage);
-        app.add_systems(
+        add_systems(
+            app,
             PhysicsSchedule,
             match Stage::ALL.get(i + 1) {
                 Some((next, _)) => end.before(*next),
@@ -184,7 +203,8 @@ pub(crate) mod substep {
             own.note(integrate_positions);
         }
         app.init_resource::<SolverDiagnostics>();
-        app.add_systems(
+        super::add_systems(
+            app,
             schedule,
             (
                 integrate_velocities.in_set(IntegrationSystems::Velocity),
@@ -201,7 +221,8 @@ pub(crate) mod substep {
         own.note(warm_start);
         own.note(solve_contacts);
         own.note(relax_contacts);
-        app.add_systems(
+        super::add_systems(
+            app,
             SubstepSchedule,
             (
                 warm_start.in_set(SubstepSolverSystems::WarmStart),
@@ -209,5 +230,32 @@ pub(crate) mod substep {
                 relax_contacts.in_set(SubstepSolverSystems::Relax),
             ),
         );
+    }
+}
+
+#[cfg(test)]
+/// Has ambiguities with the engine's systems checked in spite of [`add_systems`].
+#[derive(Resource)]
+struct Strict;
+
+#[cfg(all(test, feature = "default-collider"))]
+mod tests {
+    use super::*;
+    use crate::{PhysicsPlugins, dynamics::solver::schedule::SubstepSchedule};
+    use bevy_app::{TaskPoolPlugin, Update};
+
+    /// Both schedules fail to build where an order is not determined.
+    #[test]
+    fn stages_determine_the_order_of_the_engines_systems() {
+        let mut app = App::new();
+        app.insert_resource(Strict).add_plugins((TaskPoolPlugin::default(), PhysicsPlugins::new(Update)));
+        app.finish();
+        let check = |app: &mut App, label: bevy_ecs::intern::Interned<dyn ScheduleLabel>| {
+            app.world_mut().schedule_scope(label, |world, schedule| schedule.initialize(world).map(drop))
+        };
+        for label in [PhysicsSchedule.intern(), SubstepSchedule.intern()] {
+            let built = check(&mut app, label);
+            assert!(built.is_ok(), "{label:?}: {built:?}");
+        }
     }
 }

@@ -12,6 +12,13 @@ fn app() -> App {
     app
 }
 
+/// The paths of all registered types.
+pub fn registered() -> Vec<&'static str> {
+    let app = app();
+    let registry = app.world().resource::<AppTypeRegistry>().read();
+    registry.iter().map(|registration| registration.type_info().type_path()).collect()
+}
+
 #[test]
 fn clocks_are_registered() {
     let app = app();

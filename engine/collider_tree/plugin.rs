@@ -45,7 +45,8 @@ impl Plugin for SharedTreePlugin {
             .init_resource::<ColliderTreeDiagnostics>()
             .init_resource::<PhysicsLengthUnit>();
         step::install(app);
-        app.add_systems(
+        step::add_systems(
+            app,
             PhysicsSchedule,
             (
                 reset_trees.in_set(Stage::ResetDiagnostics),

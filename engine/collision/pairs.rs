@@ -44,15 +44,17 @@ impl FatBoxes<'_> {
 /// The boxes that the app sees.
 type Boxes = (&'static ColliderId, &'static mut ColliderAabb, &'static mut EnlargedAabb);
 
-/// Puts what entered or was changed by hand where it is, and in its tree.
+/// Puts what entered or was changed by hand where it is, and in its tree. The boxes of bodies that the app gave a
+/// velocity are swept along it: they may pass through something in this very step.
 pub(crate) fn update_stale_boxes(
     (fat_boxes, solver): (FatBoxes, Res<StepSolver>),
-    bodies: Res<Bodies>,
+    mut bodies: ResMut<Bodies>,
     mut colliders: ResMut<Colliders>,
     mut boxes: Query<Boxes>,
     optimization: Res<ColliderTreeOptimization>,
     mut diagnostics: ResMut<ColliderTreeDiagnostics>,
 ) {
+    mark_pushed(&mut bodies.table, &mut colliders);
     if colliders.stale.is_empty() {
         return;
     }
@@ -75,6 +77,16 @@ pub(crate) fn update_stale_boxes(
     diagnostics.optimize += trees.update(&changed, &table.fat, mode, team);
     moved.union_with(&changed);
     diagnostics.update += start.elapsed();
+}
+
+/// Marks the colliders of bodies that were given a velocity by hand as stale.
+fn mark_pushed(bodies: &mut BodyTable, colliders: &mut Colliders) {
+    for body in bodies.pushed.iter() {
+        for id in colliders.table.of_body(body, bodies) {
+            colliders.stale.insert(id);
+        }
+    }
+    bodies.pushed.clear();
 }
 
 /// After the solver: boxes of bodies that moved, in the trees and in the components.

@@ -1,6 +1,6 @@
 //! Brings the tables in line with what bodies and colliders are now. See [`lifecycle`](super::lifecycle).
 
-use bevy_ecs::{entity::EntityHashSet, entity_disabling::Disabled, prelude::*, system::SystemParam};
+use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
 use bevy_log::warn;
 use kernel::{
     bvh::TreeKind,
@@ -61,25 +61,25 @@ pub(crate) struct Census<'w, 's> {
     commands: Commands<'w, 's>,
 }
 
-/// Drains the queue: lost ids leave, then noted bodies enter, leave or are retyped, then noted colliders.
+/// Drains the queue: lost ids leave, then noted bodies enter, leave or are retyped, then noted colliders. Ids follow
+/// the order in which entities were first noted, never that of entities.
 pub(crate) fn drain_lifecycle(mut queue: ResMut<LifecycleQueue>, mut tables: Tables, mut census: Census) {
-    tables.bodies.table.ids.recycle();
-    tables.colliders.table.ids.recycle();
-    tables.contacts.table.recycle_ids();
     // Whoever mirrors sleep has done so at the end of the last step.
     tables.bodies.table.flipped.clear();
     remove_lost(&mut queue, &mut tables, &mut census);
+    // Of what was despawned since the last step as well: a level that is replaced at once gets the same ids.
+    tables.bodies.table.ids.recycle();
+    tables.colliders.table.ids.recycle();
+    tables.contacts.table.recycle_ids();
 
     let mut bodies = core::mem::take(&mut queue.bodies);
-    dedup(&mut bodies);
-    for entity in bodies.drain(..) {
+    for (entity, ()) in bodies.drain() {
         census.settle_body(entity, &mut tables, &mut queue);
     }
     queue.bodies = bodies;
 
     let mut colliders = core::mem::take(&mut queue.colliders);
-    dedup(&mut colliders);
-    for entity in colliders.drain(..) {
+    for (entity, ()) in colliders.drain() {
         census.settle_collider(entity, &mut tables, &mut queue);
     }
     queue.colliders = colliders;
@@ -106,12 +106,6 @@ fn remove_lost(queue: &mut LifecycleQueue, tables: &mut Tables, census: &mut Cen
 /// Where a collider is on its body.
 fn local_pose(transform: &ColliderTransform) -> Pose {
     Pose::new(vector_to_kernel(transform.translation), unit_rotation(&transform.rotation))
-}
-
-/// Each entity once, in the order first noted: ids follow that order, never the entities'.
-fn dedup(entities: &mut Vec<Entity>) {
-    let mut seen = EntityHashSet::default();
-    entities.retain(|e| seen.insert(*e));
 }
 
 fn remove_collider(id: u32, tables: &mut Tables) {
@@ -209,7 +203,7 @@ impl Census<'_, '_> {
             remove_collider(first, tables);
             if let Ok(mut component) = self.collider_ids.get_mut(entity) {
                 component.0 = NONE;
-                queue.colliders.push(entity);
+                queue.colliders.note(entity);
             }
         }
         tables.link().leave(id);
@@ -299,10 +293,13 @@ impl Census<'_, '_> {
     }
 }
 
-/// Changes a collider in place. Whatever it touched is woken; pairs that its new layers forbid end.
+/// Changes a collider in place, if anything is other than before. Whatever it touched is woken; pairs that its new layers forbid end.
 fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
     let body = def.body;
     let old = &tables.colliders.table[id].def;
+    if old.is_same(&def) {
+        return;
+    }
     let filtered = old.layers != def.layers;
     // A new sensor is of interest to what it was not solved against.
     let repaired = filtered || old.flags != def.flags;

@@ -29,6 +29,7 @@ use crate::{
             mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
         },
     },
+    noted::Noted,
     physics_transform::{Position, Rotation},
     scan::{IN_TABLES, Since},
 };
@@ -37,9 +38,9 @@ use crate::{
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct LifecycleQueue {
     /// Entities whose body may enter, leave, be retyped.
-    pub(crate) bodies: Vec<Entity>,
+    pub(crate) bodies: Noted,
     /// Entities whose collider may enter, leave, be redefined.
-    pub(crate) colliders: Vec<Entity>,
+    pub(crate) colliders: Noted,
     /// Ids whose component went with its entity.
     pub(crate) lost_bodies: Vec<u32>,
     /// Ids whose component went with its entity.
@@ -48,6 +49,19 @@ pub(crate) struct LifecycleQueue {
     pub(crate) refused: EntityIndexSet,
     /// Colliders that name a body which takes no part: no body takes them along, so their own pose counts.
     pub(crate) detached: EntityIndexSet,
+}
+
+impl LifecycleQueue {
+    fn note_body(&mut self, entity: Entity) {
+        self.bodies.note(entity);
+    }
+
+    fn note_collider(&mut self, entity: Entity) {
+        if let Some(gone) = self.colliders.note(entity) {
+            self.refused.swap_remove(&gone);
+            self.detached.swap_remove(&gone);
+        }
+    }
 }
 
 /// Without any of these a body cannot be simulated. They come with it, but may be taken away.
@@ -88,33 +102,34 @@ pub(crate) fn watch(app: &mut App) {
     note_collider::<Sensor>(app);
     note_collider::<Disabled>(app);
     app.add_observer(|on: On<Add, BodyEssentials>, mut queue: ResMut<LifecycleQueue>| {
-        queue.bodies.push(on.entity);
-        queue.colliders.push(on.entity);
+        queue.note_body(on.entity);
+        queue.note_collider(on.entity);
     })
     .add_observer(|on: On<Remove, BodyEssentials>, mut queue: ResMut<LifecycleQueue>| {
-        queue.bodies.push(on.entity);
-        queue.colliders.push(on.entity);
+        queue.note_body(on.entity);
+        queue.note_collider(on.entity);
     });
     app.add_observer(lose_body).add_observer(lose_collider);
 
     let world = app.world_mut();
     let mut bodies = world.query_filtered::<Entity, With<RigidBody>>();
     let mut colliders = world.query_filtered::<Entity, With<Collider>>();
-    let (bodies, colliders) = (bodies.iter(world).collect(), colliders.iter(world).collect());
+    let (bodies, colliders): (Vec<_>, Vec<_>) =
+        (bodies.iter(world).collect(), colliders.iter(world).collect());
     let mut queue = world.resource_mut::<LifecycleQueue>();
-    queue.bodies = bodies;
-    queue.colliders = colliders;
+    queue.bodies.extend(bodies);
+    queue.colliders.extend(colliders);
 }
 
 fn note_body<C: Component>(app: &mut App) {
-    app.add_observer(|on: On<Insert, C>, mut queue: ResMut<LifecycleQueue>| queue.bodies.push(on.entity))
-        .add_observer(|on: On<Remove, C>, mut queue: ResMut<LifecycleQueue>| queue.bodies.push(on.entity));
+    app.add_observer(|on: On<Insert, C>, mut queue: ResMut<LifecycleQueue>| queue.note_body(on.entity))
+        .add_observer(|on: On<Remove, C>, mut queue: ResMut<LifecycleQueue>| queue.note_body(on.entity));
 }
 
 fn note_collider<C: Component>(app: &mut App) {
-    app.add_observer(|on: On<Insert, C>, mut queue: ResMut<LifecycleQueue>| queue.colliders.push(on.entity))
+    app.add_observer(|on: On<Insert, C>, mut queue: ResMut<LifecycleQueue>| queue.note_collider(on.entity))
         .add_observer(|on: On<Remove, C>, mut queue: ResMut<LifecycleQueue>| {
-            queue.colliders.push(on.entity);
+            queue.note_collider(on.entity);
         });
 }
 
@@ -134,7 +149,7 @@ pub(crate) fn note_changed_colliders(
         poses.get(*entity).is_ok_and(|(position, rotation)| position.is_changed() || rotation.is_changed())
     };
     noted.extend(refused.iter().chain(detached.iter()).copied().filter(has_moved));
-    let mut note = |entity: Entity| noted.push(entity);
+    let mut note = |entity: Entity| _ = noted.note(entity);
     for (entities, shape) in shapes.contiguous_iter().expect(IN_TABLES) {
         since.rows([shape.changed_ticks_slice()], |row| note(entities[row]));
     }
@@ -157,7 +172,7 @@ fn lose_body(
         && *id != NONE
     {
         queue.lost_bodies.push(*id);
-        queue.bodies.push(on.entity);
+        queue.note_body(on.entity);
     }
 }
 
@@ -171,16 +186,26 @@ fn lose_collider(
         && *id != NONE
     {
         queue.lost_colliders.push(*id);
-        queue.colliders.push(on.entity);
+        queue.note_collider(on.entity);
     }
 }
 
 #[cfg(all(test, feature = "default-collider"))]
 mod tests {
     use super::*;
-    use crate::PhysicsPlugins;
+    use crate::{
+        PhysicsPlugins,
+        collision::collider::collider_transform::Placement,
+        dynamics::{rigid_body::sleeping::Sleeping, sleep::SleepRequests},
+        physics_transform::{
+            sync::SpawnQueue,
+            tree::{HierarchyQueue, TransformTree},
+        },
+        schedule::{Physics, PhysicsSchedule, PhysicsTime},
+    };
     use bevy_app::{App, TaskPoolPlugin, Update};
-    use bevy_transform::TransformPlugin;
+    use bevy_time::Time;
+    use bevy_transform::{TransformPlugin, components::Transform};
 
     fn ids(app: &App, entity: Entity) -> [Option<u32>; 2] {
         let entity = app.world().entity(entity);
@@ -210,5 +235,54 @@ mod tests {
         assert_eq!(ids(&app, second), [Some(1); 2]);
         let [body, collider] = ids(&app, first);
         assert!(![Some(1), Some(NONE)].contains(&body) && ![Some(1), Some(NONE)].contains(&collider));
+    }
+
+    /// The lengths of all queues that observers fill.
+    fn queued(world: &World) -> [usize; 6] {
+        let queue = world.resource::<LifecycleQueue>();
+        [
+            queue.bodies.len(),
+            queue.colliders.len(),
+            world.resource::<HierarchyQueue>().len(),
+            world.resource::<SpawnQueue>().len(),
+            world.resource::<SleepRequests>().len(),
+            world.resource::<Placement>().len(),
+        ]
+    }
+
+    /// A hundred bodies that live for one frame each, with a child collider, in 300 frames without a step. No
+    /// queue grows beyond a few entries for each entity that there was at one time, whether the schedule that
+    /// hosts physics runs or not, and nothing is left afterwards.
+    #[test]
+    fn issue_queues_grew_with_all_that_lived_while_physics_was_paused() {
+        for hosted in [false, true] {
+            let mut app = App::new();
+            app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update)));
+            app.world_mut().resource_mut::<Time<Physics>>().pause();
+            let root = app.world_mut().spawn(Transform::default()).id();
+            for _ in 0..300 {
+                let bodies: Vec<Entity> = (0..100)
+                    .map(|_| {
+                        let body =
+                            app.world_mut().spawn((RigidBody::Dynamic, Collider::default(), ChildOf(root)));
+                        body.id()
+                    })
+                    .collect();
+                for &body in &bodies {
+                    app.world_mut().spawn((Collider::default(), ChildOf(body)));
+                    app.world_mut().entity_mut(body).insert(Sleeping).remove::<Sleeping>();
+                }
+                if hosted {
+                    app.update();
+                }
+                bodies.iter().for_each(|body| _ = app.world_mut().despawn(*body));
+                let queued = queued(app.world());
+                assert!(queued.iter().all(|length| *length <= 1000), "hosted: {hosted}, {queued:?}");
+            }
+            app.update();
+            app.world_mut().run_schedule(PhysicsSchedule);
+            assert_eq!(queued(app.world()), [0; 6], "hosted: {hosted}");
+            assert_eq!(app.world().resource::<TransformTree>().len(), 0, "hosted: {hosted}");
+        }
     }
 }

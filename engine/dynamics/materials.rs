@@ -1,16 +1,21 @@
 //! Which friction, restitution and margins a collider has: its own, else its body's, else the default.
 
+use bevy_app::App;
 use bevy_ecs::{
     change_detection::ContiguousRef,
+    entity::EntityIndexSet,
     entity_disabling::Disabled,
     prelude::*,
     system::{SystemChangeTick, SystemParam},
 };
-use kernel::table::{Combine, Material, Surface};
+use kernel::table::{Combine, Material, NONE, Surface};
 
 use crate::{
     collision::{
-        collider::{CollisionMargin, collider_hierarchy::RigidBodyColliders},
+        collider::{
+            CollisionMargin,
+            collider_hierarchy::{ColliderOf, RigidBodyColliders},
+        },
         narrow_phase::NarrowPhaseConfig,
     },
     dynamics::{
@@ -108,22 +113,41 @@ type SurfaceParts = (
 /// Whoever has some of it.
 type HasSurface = Or<(With<Friction>, With<Restitution>, With<CollisionMargin>, With<SpeculativeMargin>)>;
 
+/// Colliders in the tables, and bodies of such, that lost a part of their surface since the last step, in the
+/// order in which they did. Bevy's own record of removals lasts for two frames, which may be fewer than pass
+/// between two steps.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct LostSurfaces(EntityIndexSet);
+
+/// Registers the observer of removals.
+pub(crate) fn watch_surfaces(app: &mut App) {
+    app.init_resource::<LostSurfaces>().add_observer(note_lost_surface);
+}
+
+/// Notes only what the tables know: what enters later is read then.
+fn note_lost_surface(
+    lost: On<Remove, (Friction, Restitution, CollisionMargin, SpeculativeMargin)>,
+    ids: Query<&ColliderId, Allow<Disabled>>,
+    colliders: Query<&RigidBodyColliders, Allow<Disabled>>,
+    mut noted: ResMut<LostSurfaces>,
+) {
+    let entity = lost.entity;
+    let is_known = |collider: Entity| ids.get(collider).is_ok_and(|id| id.0 != NONE);
+    if is_known(entity) || colliders.get(entity).is_ok_and(|all| all.iter().any(is_known)) {
+        noted.0.insert(entity);
+    }
+}
+
 /// Brings the table in line with changed surfaces, on colliders and on bodies whose colliders have none of
 /// their own.
 pub(crate) fn refresh_surfaces(
     surfaces: Query<SurfaceParts, HasSurface>,
-    removed: (
-        RemovedComponents<Friction>,
-        RemovedComponents<Restitution>,
-        RemovedComponents<CollisionMargin>,
-        RemovedComponents<SpeculativeMargin>,
-    ),
-    ids: Query<(&ColliderId, Option<&crate::collision::collider::collider_hierarchy::ColliderOf>)>,
+    mut lost: ResMut<LostSurfaces>,
+    ids: Query<(&ColliderId, Option<&ColliderOf>)>,
     query: SurfaceQuery,
     mut tables: Tables,
     system: SystemChangeTick,
 ) {
-    let (mut friction, mut restitution, mut margin, mut speculative) = removed;
     let defaults = query.friction.is_changed() || query.restitution.is_changed() || query.config.is_changed();
     let mut entities: Vec<Entity> = Vec::new();
     let since = Since::last_run(system);
@@ -139,10 +163,7 @@ pub(crate) fn refresh_surfaces(
             since.rows(parts.map(|part| part.unwrap_or(any)), |row| entities.push(all[row]));
         }
     }
-    entities.extend(friction.read());
-    entities.extend(restitution.read());
-    entities.extend(margin.read());
-    entities.extend(speculative.read());
+    entities.extend(lost.0.drain(..));
     if defaults {
         entities.extend(tables.colliders.entities.iter().copied());
     }

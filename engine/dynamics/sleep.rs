@@ -17,6 +17,7 @@ use crate::{
         },
         tables::{Bodies, Tables},
     },
+    noted::Noted,
     schedule::Physics,
 };
 
@@ -28,15 +29,23 @@ const STEPS_OF_REST: f32 = 4.0;
 /// and those that were forbidden to sleep.
 #[derive(Resource, Default)]
 pub(crate) struct SleepRequests {
-    sleep: Vec<Entity>,
-    wake: Vec<Entity>,
+    sleep: Noted,
+    wake: Noted,
+}
+
+#[cfg(test)]
+impl SleepRequests {
+    /// How many bodies are noted.
+    pub(crate) fn len(&self) -> usize {
+        self.sleep.len() + self.wake.len()
+    }
 }
 
 #[cfg(feature = "validate")]
 impl SleepRequests {
     /// Whether something is still to be done about a body.
     pub(crate) fn concern(&self, entity: Entity) -> bool {
-        self.sleep.contains(&entity) || self.wake.contains(&entity)
+        self.sleep.contains(entity) || self.wake.contains(entity)
     }
 }
 
@@ -72,7 +81,7 @@ impl Command for WakeBody {
         body_mut(world, self.0)?.remove::<Sleeping>();
         // Nobody sleeps without the plugin that makes it.
         if let Some(mut requests) = world.get_resource_mut::<SleepRequests>() {
-            requests.wake.push(self.0);
+            requests.wake.note(self.0);
         }
         Ok(())
     }
@@ -96,10 +105,10 @@ pub(crate) fn watch_sleeping(app: &mut App) {
         .init_resource::<SleepBuffers>()
         .add_observer(ask_to_sleep)
         .add_observer(|on: On<Remove, Sleeping>, mut requests: ResMut<SleepRequests>| {
-            requests.wake.push(on.entity);
+            requests.wake.note(on.entity);
         })
         .add_observer(|on: On<Add, SleepingDisabled>, mut requests: ResMut<SleepRequests>| {
-            requests.wake.push(on.entity);
+            requests.wake.note(on.entity);
         });
 }
 
@@ -116,7 +125,7 @@ fn ask_to_sleep(
         dynamic && !bodies.table[id.0].awake
     };
     if !ids.get(on.entity).is_ok_and(sleeps) {
-        requests.sleep.push(on.entity);
+        requests.sleep.note(on.entity);
     }
 }
 
@@ -127,7 +136,8 @@ pub(crate) fn follow_requests(
     ids: Query<(&BodyId, Has<Sleeping>, Has<SleepingDisabled>)>,
     mut tables: Tables,
 ) {
-    for entity in core::mem::take(&mut requests.sleep) {
+    let SleepRequests { sleep, wake } = &mut *requests;
+    for (entity, ()) in sleep.drain() {
         // Added and removed again: the state now is what counts.
         if let Ok((id, true, _)) = ids.get(entity)
             && id.0 != NONE
@@ -136,7 +146,7 @@ pub(crate) fn follow_requests(
             tables.link().sleep_island(island);
         }
     }
-    for entity in core::mem::take(&mut requests.wake) {
+    for (entity, ()) in wake.drain() {
         if let Ok((id, false, _) | (id, true, true)) = ids.get(entity)
             && id.0 != NONE
         {
@@ -145,7 +155,7 @@ pub(crate) fn follow_requests(
     }
 }
 
-/// Splits at most one island that lost contacts, and puts to sleep those whose bodies have all rested.
+/// Splits islands that lost contacts, a few in each step, and puts to sleep those whose bodies have all rested.
 pub(crate) fn sleep_islands(
     mut scan: ResMut<SleepBuffers>,
     time_to_sleep: Res<TimeToSleep>,
@@ -158,9 +168,9 @@ pub(crate) fn sleep_islands(
     let least = STEPS_OF_REST * time.delta_secs();
     // A NaN stays one: nobody sleeps.
     let time_to_sleep = if time_to_sleep.0 < least { least } else { time_to_sleep.0 };
-    scan.0.scan(&islands.0, time_to_sleep, rested);
-    if let Some(island) = scan.0.split() {
-        islands.0.split(island);
+    scan.0.scan(&mut islands.0, time_to_sleep, rested);
+    for island in scan.0.splits() {
+        islands.0.split(*island);
     }
     for island in scan.0.sleepers().to_vec() {
         if !tables.link().is_carried(island) {

@@ -10,7 +10,10 @@ use kernel::{
     table::{BodyTable, ColliderTable},
 };
 
-use crate::collider_tree::proxies::ProxyTable;
+use crate::{
+    collider_tree::proxies::ProxyTable,
+    physics_transform::{Position, Rotation},
+};
 
 /// All bodies in the simulation.
 #[derive(Resource, Clone, Default)]
@@ -23,6 +26,10 @@ pub(crate) struct Bodies {
     pub(crate) seen: Vec<WorldPose>,
     /// When the engine last wrote poses and velocities: what bears this tick the app did not change.
     pub(crate) written: Tick,
+    /// When poses were last read in this step: what is newer the app changed within it.
+    pub(crate) read: Tick,
+    /// The bodies that are moving and that the app put elsewhere within this step, and where.
+    pub(crate) moved_within: Vec<(u32, Position, Rotation)>,
     /// The bodies with a solver row in this step, in the order of their rows from row 1.
     pub(crate) listed: Vec<u32>,
     /// The entities of a few bodies that are looked up one by one, kept for its memory.

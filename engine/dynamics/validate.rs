@@ -78,7 +78,7 @@ impl Audit<'_, '_> {
                 assert!(bodies.table.ids.is_live(id), "{entity} has the body id {id}, which is not in use");
                 assert_eq!(bodies.entities[id as usize], entity, "body {id} is another entity's");
             }
-            if self.queue.bodies.contains(&entity) {
+            if self.queue.bodies.contains(entity) {
                 continue;
             }
             let placed =
@@ -119,7 +119,7 @@ impl Audit<'_, '_> {
                 assert!(colliders.table.ids.is_live(id), "{entity} has the unused collider id {id}");
                 assert_eq!(colliders.entities[id as usize], entity, "collider {id} is another entity's");
             }
-            if self.queue.colliders.contains(&entity) {
+            if self.queue.colliders.contains(entity) {
                 continue;
             }
             let body = of.and_then(|of| self.bodies.get(of.body).ok());
@@ -131,7 +131,7 @@ impl Audit<'_, '_> {
             if !wanted {
                 continue;
             }
-            if body.is_none_or(|(body, ..)| !self.queue.bodies.contains(&body)) {
+            if body.is_none_or(|(body, ..)| !self.queue.bodies.contains(body)) {
                 let body = body.map_or(NONE, |(_, id, ..)| id.0);
                 let held = colliders.table[id].def.body;
                 let lost = self.queue.lost_bodies.contains(&held);

@@ -25,13 +25,15 @@ use crate::math::{FRAC_1_SQRT_2, Matrix, Quaternion, Scalar, Vector, Vector3};
 #[derive(Reflect, Clone, Copy, Component, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Debug, Component, Default, PartialEq)]
+#[reflect(type_path = false, Debug, Component, Default, PartialEq)]
 pub struct Rotation {
     /// The cosine of the angle.
     pub cos: Scalar,
     /// The sine of the angle.
     pub sin: Scalar,
 }
+
+crate::type_path::type_path!(Rotation, "physics_transform::transform");
 
 impl Default for Rotation {
     fn default() -> Self {

@@ -21,8 +21,10 @@ use crate::math::{Quaternion, Scalar, Vector};
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Debug, Component, Default, PartialEq)]
+#[reflect(type_path = false, Debug, Component, Default, PartialEq)]
 pub struct Rotation(pub Quaternion);
+
+crate::type_path::type_path!(Rotation, "physics_transform::transform");
 
 impl Rotation {
     /// Stands for "take it from the `Transform`"; replaced when the entity gets its body or collider.

@@ -60,7 +60,8 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[derive(Resource, Reflect, Clone, Debug, PartialEq, Eq)]
 #[reflect(Resource, Default, Debug, PartialEq)]
 pub struct PhysicsTransformConfig {
-    /// Whether a change to an ancestor's `Transform` moves the bodies and colliders below.
+    /// Whether a change to an ancestor's `Transform` moves the bodies and colliders below, and whether their
+    /// `GlobalTransform` is brought up to date before each step.
     pub propagate_before_physics: bool,
     /// Whether changed transforms are read before a step. New bodies are initialised from theirs anyway.
     pub transform_to_position: bool,

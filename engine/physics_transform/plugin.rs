@@ -8,7 +8,7 @@ use super::{
     ApplyPosToTransform, PhysicsTransformConfig, PhysicsTransformSystems, Position, Rotation,
     sync::{
         SpawnQueue, SyncTicks, find_changed_transforms, initialise_added, initialise_poses, note_rotation,
-        position_to_transform, transform_to_position,
+        position_to_transform, propagate_global_transforms, transform_to_position,
     },
     tree::{HierarchyQueue, TransformTree, TreeChanges, enqueue, enqueue_parented, update_tree},
 };
@@ -53,6 +53,13 @@ impl Plugin for PhysicsTransformPlugin {
                 )
                     .chain()
                     .in_set(PhysicsTransformSystems::TransformToPosition),
+            )
+            .add_systems(
+                self.schedule,
+                propagate_global_transforms
+                    .run_if(|config: Res<PhysicsTransformConfig>| config.propagate_before_physics)
+                    .in_set(PhysicsTransformSystems::Propagate)
+                    .after(find_changed_transforms),
             )
             .add_systems(
                 self.schedule,

@@ -23,8 +23,10 @@ use crate::math::{Scalar, Vector, vector_from_xyz};
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Debug, Component, Default, PartialEq)]
+#[reflect(type_path = false, Debug, Component, Default, PartialEq)]
 pub struct Position(pub Vector);
+
+crate::type_path::type_path!(Position, "physics_transform::transform");
 
 impl Position {
     /// Stands for "take it from the `Transform`"; replaced when the entity gets its body or collider.

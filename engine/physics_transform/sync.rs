@@ -7,14 +7,14 @@
 //! where to look.
 
 use bevy_ecs::{
-    change_detection::{CheckChangeTicks, Tick},
+    change_detection::{CheckChangeTicks, ContiguousRef, Tick},
     entity::EntityHashSet,
     entity_disabling::Disabled,
     prelude::*,
     system::{SystemChangeTick, SystemParam},
 };
 use bevy_log::warn;
-use bevy_transform::components::Transform;
+use bevy_transform::components::{GlobalTransform, Transform};
 
 use super::{
     ApplyPosToTransform, PhysicsTransformConfig, Position, Rotation, dim,
@@ -26,6 +26,7 @@ use crate::{
     columns::{Column, is_change_tracked},
     dynamics::rigid_body::RigidBody,
     math::Vector,
+    noted::Noted,
     scan::{IN_TABLES, Since},
     schedule::OnThisThread,
 };
@@ -55,7 +56,6 @@ impl SyncTicks {
 /// An entity that got its [`Position`] since the last step.
 #[derive(Clone, Debug)]
 pub(crate) struct Spawned {
-    entity: Entity,
     /// Whether the user gave the position and the rotation.
     given: [bool; 2],
     /// What the first initialisation made of the pose.
@@ -64,7 +64,15 @@ pub(crate) struct Spawned {
 
 /// Entities to initialise, in order of their making, and those that got a [`Rotation`].
 #[derive(Resource, Clone, Debug, Default)]
-pub(crate) struct SpawnQueue(Vec<Spawned>, Vec<Entity>);
+pub(crate) struct SpawnQueue(Noted<Spawned>, Noted);
+
+#[cfg(test)]
+impl SpawnQueue {
+    /// How many entities are noted.
+    pub(crate) fn len(&self) -> usize {
+        self.0.len() + self.1.len()
+    }
+}
 
 /// The frame an entity's `Transform` is relative to, through all ancestors; `None` for a root. An ancestor
 /// without a transform counts as unmoved.
@@ -89,30 +97,72 @@ pub(crate) fn parent_frame(
 /// Finds the transforms that changed since the last scan other than by the write-back: the one scan over
 /// all entities with a `Transform`.
 pub(crate) fn find_changed_transforms(
-    transforms: Query<(Entity, Ref<Transform>, Has<Position>, Has<Children>)>,
+    transforms: Query<(Entity, Ref<Transform>, Option<Ref<GlobalTransform>>, Has<Position>, Has<Children>)>,
     tree: Res<TransformTree>,
     mut changes: ResMut<TreeChanges>,
     mut ticks: ResMut<SyncTicks>,
     system: SystemChangeTick,
     _: OnThisThread,
 ) {
-    let TreeChanges { reparented, transforms: found, .. } = &mut *changes;
+    let TreeChanges { reparented, transforms: found, written, .. } = &mut *changes;
     found.append(&mut reparented.clone());
     let since = Since::new(ticks.scan, system);
     let matters =
         |entity, physical: bool, has_children: bool| physical || (has_children && tree.contains(entity));
-    for (entities, transforms, physical, has_children) in transforms.contiguous_iter().expect(IN_TABLES) {
+    for (entities, transforms, global, physical, has_children) in
+        transforms.contiguous_iter().expect(IN_TABLES)
+    {
         if !physical && !has_children {
             continue;
         }
         let changed = transforms.changed_ticks_slice();
+        let global = global.as_ref().map(ContiguousRef::changed_ticks_slice);
+        let is_behind = |row: usize| {
+            global.is_some_and(|global| changed[row].is_newer_than(global[row], system.this_run()))
+        };
         since.rows([changed], |row| {
-            if changed[row] != ticks.writeback && matters(entities[row], physical, has_children) {
+            if !matters(entities[row], physical, has_children) {
+                return;
+            }
+            if changed[row] != ticks.writeback {
                 found.push(entities[row]);
+            } else if is_behind(row) {
+                written.push(entities[row]);
             }
         });
     }
     ticks.scan = system.this_run();
+}
+
+/// Brings the `GlobalTransform` of physics up to date: of bodies, colliders and their ancestors whose own transform,
+/// or one above, changed since the last step or was written after it. Bevy does so once a frame, for all entities,
+/// after any number of steps; what has no physics in it or below is left to it.
+pub(crate) fn propagate_global_transforms(
+    changes: Res<TreeChanges>,
+    mut tree: ResMut<TransformTree>,
+    transforms: Query<&Transform>,
+    parents: Parents,
+    mut globals: Query<&mut GlobalTransform>,
+    _: OnThisThread,
+) {
+    tree.begin_walk();
+    for &entity in changes.transforms.iter().chain(&changes.written) {
+        let mut above: Option<GlobalTransform> = None;
+        if tree.parent(entity).is_some() {
+            let line = core::iter::successors(Some(entity), |&at| parents.get(at).ok().map(ChildOf::parent));
+            let line: Vec<&Transform> = line.skip(1).filter_map(|at| transforms.get(at).ok()).collect();
+            let step = |global: GlobalTransform, local: &&Transform| global.mul_transform(**local);
+            above = line.split_last().map(|(root, below)| below.iter().rev().fold((**root).into(), step));
+        }
+        tree.descend(entity, above, |entity, parent: &Option<GlobalTransform>| {
+            let transform = *transforms.get(entity).ok()?;
+            let global = parent.map_or_else(|| transform.into(), |parent| parent.mul_transform(transform));
+            if let Ok(mut held) = globals.get_mut(entity) {
+                held.set_if_neq(global);
+            }
+            Some(Some(global))
+        });
+    }
 }
 
 /// Warns, once until it is mended, of a transform that is no place; the entity stays where it was.
@@ -196,12 +246,12 @@ pub(crate) fn initialise_added(
     let given = [*position != Position::PLACEHOLDER, rotation.is_some_and(|r| *r != Rotation::PLACEHOLDER)];
     initialiser.initialise(entity, given);
     let Ok((position, rotation, ..)) = initialiser.poses.get(entity) else { return };
-    queue.0.push(Spawned { entity, given, first: (*position, rotation.copied()) });
+    queue.0.put(entity, Spawned { given, first: (*position, rotation.copied()) });
 }
 
 /// Notes new rotations: an entity that had its position before does not get another chance.
 pub(crate) fn note_rotation(added: On<Add, Rotation>, mut queue: ResMut<SpawnQueue>) {
-    queue.1.push(added.event_target());
+    queue.1.note(added.event_target());
 }
 
 /// Initialises the poses of new entities, ancestors first.
@@ -213,17 +263,17 @@ pub(crate) fn initialise_poses(
     _: OnThisThread,
 ) {
     ticks.read[0] = system.this_run();
-    let mut spawned: Vec<(usize, Spawned)> =
-        queue.0.drain(..).map(|new| (initialiser.depth(new.entity), new)).collect();
-    spawned.sort_by_key(|&(depth, _)| depth);
-    for (_, Spawned { entity, given, first }) in spawned {
+    let mut spawned: Vec<(usize, Entity, Spawned)> =
+        queue.0.drain().map(|(entity, new)| (initialiser.depth(entity), entity, new)).collect();
+    spawned.sort_by_key(|&(depth, ..)| depth);
+    for (_, entity, Spawned { given, first }) in spawned {
         let Ok((position, rotation, _, false)) = initialiser.poses.get(entity) else { continue };
         // A pose set after spawning is as good as one given with it.
         let given = [given[0] || *position != first.0, given[1] || rotation.copied() != first.1];
         initialiser.initialise(entity, given);
         initialiser.tell_nonsense(entity, given, &mut ticks.told);
     }
-    for entity in core::mem::take(&mut queue.1) {
+    for (entity, ()) in queue.1.drain() {
         let Ok((_, Some(rotation), ..)) = initialiser.poses.get(entity) else { continue };
         if *rotation == Rotation::PLACEHOLDER {
             initialiser.initialise(entity, [true, false]);
@@ -327,7 +377,10 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
     // Not what was read from transforms just now.
     let is_own = |tick: Tick| since.is_new(tick) && !read.contains(&tick);
     // What the app did to the hierarchy during the step.
-    tree.follow(&writer.hierarchy.0, &parents, &writer.physical, &mut writer.changes.early);
+    if !writer.hierarchy.is_empty() {
+        let noted = writer.hierarchy.entities();
+        tree.follow(&noted, &parents, &writer.physical, &mut writer.changes.early);
+    }
     let looks_up = is_change_tracked();
     // What hangs in a hierarchy, and all where tables cannot be written in whole.
     let mut late: Vec<Entity> = Vec::new();

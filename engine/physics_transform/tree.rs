@@ -10,23 +10,48 @@
 //! Each node counts the poses below it that are written to transforms: a body with nothing but its colliders
 //! below is written like one that stands alone.
 
-use bevy_ecs::{
-    entity::{EntityHashMap, EntityHashSet},
-    entity_disabling::Disabled,
-    prelude::*,
-    query::Allow,
-};
+use bevy_ecs::{entity::EntityHashMap, entity_disabling::Disabled, prelude::*, query::Allow};
 
 use super::{ApplyPosToTransform, Position};
-use crate::{dynamics::rigid_body::RigidBody, schedule::OnThisThread};
+use crate::{dynamics::rigid_body::RigidBody, noted::Noted, schedule::OnThisThread};
 
 /// On an entity whose pose follows from its body: a collider that is not on the body itself.
 #[derive(Component, Clone, Copy, Debug, Default)]
-pub(crate) struct FollowsBody;
+pub(crate) struct FollowsBody {
+    /// The body, where the hierarchy names it. None where the app inserted the link.
+    pub(crate) above: Option<Entity>,
+}
 
 /// Entities whose parent, body or collider came, went or changed since the last step.
 #[derive(Resource, Clone, Debug, Default)]
-pub(crate) struct HierarchyQueue(pub(crate) Vec<Entity>);
+pub(crate) struct HierarchyQueue {
+    /// Those that may be there.
+    noted: Noted,
+    /// Those that are gone, but not from the tree.
+    gone: Vec<Entity>,
+}
+
+impl HierarchyQueue {
+    fn note(&mut self, entity: Entity, tree: &TransformTree) {
+        self.gone.extend(self.noted.note(entity).filter(|gone| tree.contains(*gone)));
+    }
+
+    /// Whether the tree is up to date.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.noted.is_empty() && self.gone.is_empty()
+    }
+
+    /// The entities to be looked at.
+    pub(crate) fn entities(&self) -> Vec<Entity> {
+        self.gone.iter().copied().chain(self.noted.entities()).collect()
+    }
+
+    /// How many they are.
+    #[cfg(test)]
+    pub(crate) fn len(&self) -> usize {
+        self.gone.len() + self.noted.len()
+    }
+}
 
 /// What [`update_tree`] found, for the systems after it in this step.
 #[derive(Resource, Clone, Debug, Default)]
@@ -40,6 +65,8 @@ pub(crate) struct TreeChanges {
     /// Entities whose `Transform` may differ from what physics knows, the topmost sufficing: changed,
     /// reparented or enabled again.
     pub(crate) transforms: Vec<Entity>,
+    /// Entities whose `Transform` was written after a step, and whose `GlobalTransform` has not followed since.
+    pub(crate) written: Vec<Entity>,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -134,7 +161,7 @@ impl TransformTree {
     /// Brings the links of entities up to date. `moved` receives those with another parent than before.
     ///
     /// Links that are gone go first: beside new ones they could close a circle.
-    pub(super) fn follow(
+    pub(crate) fn follow(
         &mut self,
         entities: &[Entity],
         parents: &Parents,
@@ -237,7 +264,7 @@ impl TransformTree {
     /// Panics where a link is not mutual, or, with nothing queued, differs from the hierarchy.
     #[cfg(test)]
     pub(crate) fn check(&self, world: &World) {
-        if !world.resource::<HierarchyQueue>().0.is_empty() {
+        if !world.resource::<HierarchyQueue>().is_empty() {
             return;
         }
         for (&entity, node) in &self.nodes {
@@ -269,25 +296,29 @@ pub(crate) fn update_tree(
     mut changes: ResMut<TreeChanges>,
     parents: Parents,
     physical: Physical,
-    mut seen: Local<EntityHashSet>,
     _: OnThisThread,
 ) {
-    let TreeChanges { queued, reparented, early, transforms } = &mut *changes;
+    let TreeChanges { queued, reparented, early, transforms, written } = &mut *changes;
     queued.clear();
     reparented.clear();
     transforms.clear();
-    if queue.0.is_empty() {
+    written.clear();
+    if queue.is_empty() {
         return;
     }
-    seen.clear();
-    queued.extend(queue.0.drain(..).filter(|&entity| seen.insert(entity)));
+    queued.append(&mut queue.gone);
+    queued.extend(queue.noted.drain().map(|(entity, ())| entity));
     reparented.append(early);
     tree.follow(queued, &parents, &physical, reparented);
 }
 
 /// Appends the entity of a life-cycle event to the queue.
-pub(crate) fn enqueue<E: EntityEvent, B: Bundle>(event: On<E, B>, mut queue: ResMut<HierarchyQueue>) {
-    queue.0.push(event.event_target());
+pub(crate) fn enqueue<E: EntityEvent, B: Bundle>(
+    event: On<E, B>,
+    mut queue: ResMut<HierarchyQueue>,
+    tree: Res<TransformTree>,
+) {
+    queue.note(event.event_target(), &tree);
 }
 
 /// Appends an entity with another parent, if there is physics in it or below.
@@ -299,6 +330,6 @@ pub(super) fn enqueue_parented<E: EntityEvent>(
 ) {
     let entity = event.event_target();
     if tree.contains(entity) || physical.contains(entity) {
-        queue.0.push(entity);
+        queue.note(entity, &tree);
     }
 }

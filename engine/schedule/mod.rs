@@ -89,7 +89,7 @@ impl Plugin for PhysicsSchedulePlugin {
             )
                 .chain(),
         );
-        app.add_systems(PhysicsSchedule, record_step.after(PhysicsStepSystems::Last));
+        app.add_systems(PhysicsSchedule, record_step.after(PhysicsStepSystems::Last).ambiguous_with_all());
     }
 }
 
@@ -110,6 +110,7 @@ pub(crate) fn make_deterministic(schedule: &mut Schedule) {
 /// One step of the simulation, in the stages of [`PhysicsStepSystems`].
 ///
 /// Systems run one after the other, and an ambiguous order is an error: say `.before` or `.after` where two of your systems share data.
+/// The order with the engine's own systems of the same set may be left open: data shared with them is seen as it was before or after them.
 /// [Run by hand](Physics#stepping-by-hand), a step is as long as the delta of [`Time<Physics>`](Physics), whatever the generic [`Time`] shows.
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub struct PhysicsSchedule;

@@ -186,6 +186,10 @@ impl Tree {
             self.leaves[proxy.0 as usize] = Leaf { id: u32::MAX, slot: LEAF | self.free_leaf };
             self.free_leaf = proxy.0;
             self.len -= 1;
+            if self.len == 0 {
+                // What comes next is numbered as in a new tree.
+                self.clear();
+            }
         }
     }
 

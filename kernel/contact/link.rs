@@ -47,7 +47,8 @@ impl Link<'_> {
         id
     }
 
-    /// Acts on what the narrow phase found, in the order of ids. `report` hears of each change.
+    /// Acts on what the narrow phase found, in the order of ids, and restarts the sleep timers of islands that were
+    /// woken: to be called in every step, before bodies are finished. `report` hears of each change.
     pub fn apply(&mut self, changed: &BitSet, mut report: impl FnMut(u32, &Contact, Status)) {
         for id in changed.iter() {
             if !self.contacts.is_live(id) {
@@ -68,6 +69,9 @@ impl Link<'_> {
                 report(id, contact, Status::Ended);
                 self.detach(id);
             }
+        }
+        if let Some(islands) = &mut self.islands {
+            islands.drain_woken(|body| self.bodies[body].sleep_timer = 0.0);
         }
     }
 
@@ -171,7 +175,10 @@ impl Link<'_> {
         match (self.bodies[body].kind, self.island_of(body)) {
             (BodyKind::Static, _) => {}
             (BodyKind::Kinematic, _) => self.set_kinematic_awake(body, true),
-            (BodyKind::Dynamic, Some(island)) => self.wake_island(island),
+            (BodyKind::Dynamic, Some(island)) => {
+                self.bodies[body].sleep_timer = 0.0;
+                self.wake_island(island);
+            }
             (BodyKind::Dynamic, None) => {
                 self.bodies[body].sleep_timer = 0.0;
                 if !self.bodies[body].awake {
@@ -223,32 +230,23 @@ impl Link<'_> {
         }
     }
 
-    /// Wakes all bodies of an island and restarts their sleep timers.
+    /// Wakes all bodies of an island and has them rest anew, at once or, where the island is awake, when
+    /// [`apply`](Self::apply) is next called: so all that wakes an island in one step costs one walk over it.
     pub fn wake_island(&mut self, island: IslandId) {
         let Some(islands) = &mut self.islands else { return };
+        if !islands.is_asleep(island) {
+            return islands.mark_woken(island);
+        }
         for &body in islands.bodies(island) {
             self.bodies[body].sleep_timer = 0.0;
         }
-        if islands.is_asleep(island) {
-            self.set_island_awake(island, true);
-        }
+        self.set_island_awake(island, true);
     }
 
     /// Whether a body of the island is in contact with a kinematic one that moves: such an island must not
     /// sleep, however slowly it is carried, or its support would leave without it.
     pub fn is_carried(&self, island: IslandId) -> bool {
-        let Some(islands) = &self.islands else { return false };
-        let moves = |body: u32| {
-            body != NONE && self.bodies[body].kind == BodyKind::Kinematic && self.bodies[body].awake
-        };
-        islands.bodies(island).iter().any(|&body| {
-            self.colliders.of_body(body, self.bodies).any(|collider| {
-                self.contacts.of_collider(collider, self.colliders).any(|id| {
-                    let contact = self.contacts.get(id);
-                    contact.is_solved() && contact.bodies.into_iter().any(moves)
-                })
-            })
-        })
+        self.islands.as_ref().is_some_and(|islands| islands.carriers(island) > 0)
     }
 
     /// Puts all bodies of an island to sleep: their contacts keep their impulses, but leave the colours.
@@ -362,6 +360,7 @@ impl Link<'_> {
         let active = contact.bodies.iter().any(|b| self.is_awake(*b));
         let movable = self.movable(contact);
         let colored = contact.is_solved() && movable.iter().flatten().any(|b| self.is_awake(*b));
+        let carried = self.carried(contact);
         match (colored, contact.slot) {
             (true, None) => {
                 let slot = self.colors.assign(id, movable);
@@ -370,11 +369,29 @@ impl Link<'_> {
             (false, Some(_)) => self.uncolor(id),
             _ => {}
         }
+        if let (Some(islands), [_, None] | [None, _]) = (&mut self.islands, movable) {
+            match carried {
+                Some(body) if !islands.is_linked(LinkId(2 * id)) => {
+                    islands.link_carrier(LinkId(2 * id), body);
+                }
+                None => _ = islands.unlink(LinkId(2 * id)),
+                Some(_) => {}
+            }
+        }
         if active {
             self.contacts.activate(id);
         } else {
             self.contacts.deactivate(id);
         }
+    }
+
+    /// The dynamic body of a contact with a kinematic one that moves.
+    fn carried(&self, contact: &Contact) -> Option<u32> {
+        let moves = |body: u32| self.is_awake(body) && self.bodies[body].kind == BodyKind::Kinematic;
+        if !contact.is_solved() || !contact.bodies.into_iter().any(moves) {
+            return None;
+        }
+        self.movable(contact).into_iter().flatten().next()
     }
 
     fn uncolor(&mut self, id: u32) {
@@ -426,7 +443,7 @@ impl Link<'_> {
             let contact = self.contacts.get(id);
             (contact.slot.expect("a coloured contact knows its slot"), self.movable(contact))
         });
-        let mut colored = 0;
+        let (mut colored, mut carrying) = (0, 0);
         for (id, contact) in self.contacts.iter() {
             assert_eq!(contact.surface, self.mixed(contact.colliders), "contact {id} knows its surfaces");
             let awake = contact.bodies.iter().any(|b| self.is_awake(*b));
@@ -439,6 +456,7 @@ impl Link<'_> {
             let moving = movable.iter().flatten().any(|b| self.is_awake(*b));
             assert_eq!(contact.slot.is_some(), contact.is_solved() && moving, "contact {id}'s colour");
             colored += usize::from(contact.slot.is_some());
+            carrying += u32::from(self.carried(contact).is_some());
             if let ([Some(a), Some(b)], Some(islands)) = (movable, &self.islands) {
                 assert_eq!(islands.is_linked(LinkId(2 * id)), contact.is_solved(), "contact {id}'s link");
                 if contact.is_solved() {
@@ -449,6 +467,8 @@ impl Link<'_> {
         assert_eq!(self.colors.len(), colored, "only contacts have colours");
         if let Some(islands) = &self.islands {
             islands.validate();
+            let carriers: u32 = islands.islands().map(|island| islands.carriers(island)).sum();
+            assert_eq!(carriers, carrying, "islands count the contacts that carry them");
             for island in islands.islands() {
                 for body in islands.bodies(island) {
                     let awake = self.bodies[*body].awake;

@@ -15,3 +15,6 @@ pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
 pub(crate) use shared::ManifoldsView;
 pub use table::ContactTable;
 pub use update::{Found, Scratch};
+
+#[cfg(test)]
+mod tests;

@@ -24,6 +24,10 @@ impl ContactFlags {
     pub const APART: Self = Self(1 << 5);
     /// Was put to overlap by more than a tenth of the smaller side's reach, and has not come apart since.
     pub const DEEP: Self = Self(1 << 6);
+    /// Body A is not dynamic: normal and anchors turn with it.
+    pub const PLATFORM_A: Self = Self(1 << 7);
+    /// Body B is not dynamic: normal and anchors turn with it.
+    pub const PLATFORM_B: Self = Self(1 << 8);
 
     /// Whether all bits of `other` are set.
     #[inline(always)]
@@ -49,7 +53,7 @@ impl ContactFlags {
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ManifoldPoint {
-    /// From body A's centre of mass, in world axes, at the pose the manifold was frozen at.
+    /// From body A's centre of mass, in world axes, at the frozen pose.
     pub anchor: Vector,
     /// The separation at the frozen pose, in metres.
     pub frozen_separation: f32,
@@ -87,7 +91,8 @@ impl Manifold {
     }
 }
 
-/// The pose of the bodies when the manifold was last computed in full.
+/// The pose of the bodies that the manifold belongs to: how they stood when it was last computed in full, turned
+/// since then with a platform.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Frozen {
     /// The rotations of bodies A and B.

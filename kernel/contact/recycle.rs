@@ -5,6 +5,10 @@
 //! follow the motion. The frozen pose is not renewed by that, so errors cannot add up. Besides the time saved, frozen
 //! anchors are what lets tall towers stand.
 //!
+//! Decision: on a platform, which is a body that contacts do not turn, the frozen pose turns as a whole with it: normal,
+//! anchors and rotations. Only rounding adds up, as a random walk. Between dynamic bodies it does not turn: where normals
+//! follow every little turn, a tower of 50 boxes leans ever further and falls.
+//!
 //! In a scene at rest nearly all contacts are recycled, and each by the same arithmetic. So [`ask`](NarrowPhase::ask)
 //! lays out in a row what it needs, and [`answer`](NarrowPhase::answer) computes with as many rows side by side as a
 //! lane has floats.
@@ -23,6 +27,15 @@ const RECYCLE_SHARE: f32 = 0.25;
 
 /// Bodies that turned further than this since the manifold was computed do not recycle: cos 10°.
 const RECYCLE_COS: f32 = 0.985;
+
+/// The frozen pose is left alone while the platform turned by less than this since, in radians. A frictionless body
+/// slides on it as on a plane that is tilted by that angle less.
+const UNTURNED: f32 = 2.0e-5;
+
+/// Which body of a contact is a platform, as a number in a row.
+const NO_PLATFORM: f32 = 0.0;
+const PLATFORM_A: f32 = 1.0;
+const PLATFORM_B: f32 = 2.0;
 
 /// By how much the chord of an angle of twice that may be longer than [`small_turn`](Rot::small_turn) says.
 const CHORD: f32 = 1.016;
@@ -47,8 +60,10 @@ struct Asked<N: Num = f32> {
     turning: [N; 2],
     /// How many points there are.
     count: N,
-    /// B's velocity against A's. Stale if all points there can be are there.
-    linear: Vector<N>,
+    /// [`PLATFORM_A`], [`PLATFORM_B`] or [`NO_PLATFORM`].
+    platform: N,
+    /// How fast B moves against A. Stale if all points there can be are there.
+    speed: N,
     /// The angular velocities. Stale if all points there can be are there.
     angular: [Angular<N>; 2],
     /// As in [`Manifold`](super::Manifold); stale if there are no points, as is what follows.
@@ -116,6 +131,8 @@ pub(super) struct Group {
     len: usize,
     /// Which keep their manifolds, as bits.
     kept: u32,
+    /// Which have a frozen pose that is to be turned if they do.
+    turned: u32,
     /// How far the points of each are apart now.
     separations: [Quad; Self::SIZE],
 }
@@ -139,12 +156,15 @@ impl Group {
         &self.ids[..self.len]
     }
 
-    /// Whether a contact keeps its manifold; if so, has its separations follow the motion of its bodies. `place` is how
-    /// many were asked about before it.
+    /// Whether a contact keeps its manifold; if so, has it follow the motion of its bodies. `place` is how many were
+    /// asked about before it.
     #[inline(always)]
     pub(super) fn apply(&self, place: usize, contact: &mut Contact) -> bool {
         let is_kept = self.kept & 1 << place != 0;
         if is_kept {
+            if self.turned & 1 << place != 0 {
+                turn(contact, self.rows[place].asked.rotations);
+            }
             let m = &mut contact.manifold;
             for (p, separation) in m.points[..m.count as usize].iter_mut().zip(self.separations[place].0) {
                 p.separation = separation;
@@ -165,9 +185,9 @@ impl Group {
             group.answer_wide::<F32x8>(terms);
         }
         match width {
-            // SAFETY: this is the width of CPUs with AVX2 only.
+            // SAFETY: the width comes with the proof that the CPU has AVX2.
             #[cfg(target_arch = "x86_64")]
-            Width::Eight => unsafe { avx2(self, terms) },
+            Width::Eight(_) => unsafe { avx2(self, terms) },
             _ => baseline(self, terms),
         }
     }
@@ -175,12 +195,13 @@ impl Group {
     #[inline(always)]
     fn answer_wide<N: Lane>(&mut self, terms: &Terms) {
         const { assert!(Self::SIZE.is_multiple_of(N::WIDTH) && Self::SIZE <= u32::BITS as usize) }
-        self.kept = 0;
+        (self.kept, self.turned) = (0, 0);
         for start in (0..self.len).step_by(N::WIDTH) {
             let mut places = N::Ids::splat(0);
             (0..N::WIDTH).for_each(|i| places.set(i, (start + i) as u32));
             let asked = Asked::<N>::side_by_side(&self.rows, &places);
             self.kept |= N::bits(asked.is_kept(terms)) << start;
+            self.turned |= N::bits(asked.is_turned()) << start;
             N::scatter(asked.separations(), &places, |place, quad| self.separations[place as usize] = quad);
         }
     }
@@ -217,9 +238,10 @@ impl<S> NarrowPhase<'_, S> {
         // Only native pairs are recycled, which have no manifolds after the first.
         let m = &contact.manifold;
         row.count = m.count as f32;
+        row.platform = platform(contact.flags);
         if m.count < MAX_POINTS as u32 {
             let [a, b] = [self.velocity(contact, 0), self.velocity(contact, 1)];
-            row.linear = b.linear - a.linear;
+            row.speed = (b.linear - a.linear).length();
             row.angular = [a.angular, b.angular];
         }
         if m.count > 0 {
@@ -274,6 +296,20 @@ impl<N: Lane> Asked<N> {
         N::and(is_straight, moved.lt(allowed))
     }
 
+    /// Whether the frozen pose is to be turned.
+    #[inline(always)]
+    fn is_turned(&self) -> N::Mask {
+        let is_far = N::splat(UNTURNED * UNTURNED).lt(self.platform_turn().small_turn().length_squared());
+        N::and(N::and(is_far, N::ZERO.lt(self.platform)), N::ZERO.lt(self.count))
+    }
+
+    /// How far the platform turned, if there is one.
+    #[inline(always)]
+    fn platform_turn(&self) -> Rot<N> {
+        let [a, b] = self.turns();
+        Rot::select(self.platform.eq(N::splat(PLATFORM_B)), b, a)
+    }
+
     /// How far each body turned since freezing, in world axes.
     #[inline(always)]
     fn turns(&self) -> [Rot<N>; 2] {
@@ -297,23 +333,55 @@ impl<N: Lane> Asked<N> {
             N::select(N::ZERO.lt(own), own, far + self.extents[1 - side])
         };
         let turning = arm(0) * self.angular[0].length() + arm(1) * self.angular[1].length();
-        (self.linear.length() + turning) * dt
+        (self.speed + turning) * dt
     }
 
-    /// How far apart the points are now: s = s₀ + n · (Δoffset + (R_B − 1) r_B − (R_A − 1) r_A).
+    /// How far apart the points are now: s = s₀ + n · (Δ + (Q_B − 1) r_B − (Q_A − 1) r_A), where Q are the turns of the
+    /// bodies and Δ how far B's centre of mass shifted, all as seen from the frozen pose, which may turn as a whole.
     #[inline(always)]
     fn separations(&self) -> [N; 4] {
-        let (normal, turns) = (self.normal, self.turns());
-        let along = self.change().dot(normal);
+        let frame = Rot::select(self.is_turned(), self.platform_turn(), Rot::IDENTITY);
+        let normal = self.normal;
+        let along = (self.change() + frame.unturn(self.offset_now)).dot(normal);
         let cores = [normal * self.rounding[0], self.offset - normal * self.rounding[1]];
-        // n · (R r − r) = (R⁻¹ n − n) · r, of which only r differs from point to point.
-        let leans = [turns[0].unturn(normal), turns[1].unturn(normal)];
+        // n · (Q r − r) = (Q⁻¹ n − n) · r, of which only r differs from point to point.
+        let leans = self.turns().map(|turn| frame.inverse().mul(turn).unturn(normal));
         let mut all = [N::ZERO; 4];
         for (out, p) in all.iter_mut().zip(&self.points) {
             let turn = leans[1].dot(p.anchor - cores[1]) - leans[0].dot(p.anchor - cores[0]);
             *out = p.frozen_separation + along + turn;
         }
         all
+    }
+}
+
+/// Which body is a platform.
+#[inline(always)]
+fn platform(flags: ContactFlags) -> f32 {
+    if flags.has(ContactFlags::PLATFORM_A) {
+        PLATFORM_A
+    } else if flags.has(ContactFlags::PLATFORM_B) {
+        PLATFORM_B
+    } else {
+        NO_PLATFORM
+    }
+}
+
+/// Turns the frozen pose of a contact, and what was computed there, with the platform.
+/// `rotations` are those of both bodies now.
+#[inline(never)]
+fn turn(contact: &mut Contact, rotations: [Rot; 2]) {
+    let own = usize::from(contact.flags.has(ContactFlags::PLATFORM_B));
+    let frozen = &mut contact.frozen;
+    let turn = rotations[own].mul(frozen.rotations[own].inverse()).renormalized();
+    frozen.rotations[own] = rotations[own];
+    frozen.rotations[1 - own] = turn.mul(frozen.rotations[1 - own]).renormalized();
+    frozen.offset = turn.turn_little(frozen.offset);
+    let m = &mut contact.manifold;
+    m.normal = turn.turn_little(m.normal);
+    m.friction_impulse = turn.turn_little(m.friction_impulse);
+    for p in &mut m.points[..m.count as usize] {
+        p.anchor = turn.turn_little(p.anchor);
     }
 }
 
@@ -339,7 +407,7 @@ mod tests {
                 self.asked.points = [AskedPoint { anchor: nan, frozen_separation: f32::NAN }; MAX_POINTS];
             }
             if self.asked.count == MAX_POINTS as f32 {
-                self.asked.linear = nan;
+                self.asked.speed = f32::NAN;
                 self.asked.angular = [Angular::ZERO * f32::NAN; 2];
             }
             self
@@ -352,8 +420,9 @@ mod tests {
         let noise = prop::collection::vec(noise, FLOATS);
         let count = prop::sample::select(vec![0.0, 1.0, MAX_POINTS as f32]);
         let reach = || prop_oneof![1 => Just(0.0), 4 => 0.1..2.0f32];
-        (noise, count, [reach(), reach()], any::<bool>(), 0..20 * FLOATS).prop_map(
-            |(noise, count, extents, is_a_static, odd)| {
+        let platform = prop::sample::select(vec![PLATFORM_A, PLATFORM_B, NO_PLATFORM]);
+        (noise, (count, platform), [reach(), reach()], any::<bool>(), 0..20 * FLOATS).prop_map(
+            |(noise, (count, platform), extents, is_a_static, odd)| {
                 let asked = Asked {
                     offset: Vector::Y,
                     offset_now: Vector::Y,
@@ -364,6 +433,7 @@ mod tests {
                 let mut row = Row { asked, ..Row::default() };
                 row.floats().iter_mut().zip(noise).for_each(|(float, noise)| *float += noise);
                 row.asked.count = count;
+                row.asked.platform = platform;
                 row.asked.extents = extents;
                 row.asked.turning = extents;
                 row.asked.turning[usize::from(is_a_static)] = 0.0;
@@ -394,6 +464,7 @@ mod tests {
                     let kept = group.kept & 1 << place != 0;
                     prop_assert_eq!(row.asked.is_kept(&TERMS), kept);
                     prop_assert_eq!(row.stale().asked.is_kept(&TERMS), kept);
+                    prop_assert_eq!(row.asked.is_turned(), group.turned & 1 << place != 0);
                     for (alone, beside) in row.asked.separations().into_iter().zip(group.separations[place].0) {
                         prop_assert!(alone.to_bits() == beside.to_bits() || alone.is_nan() && beside.is_nan());
                     }

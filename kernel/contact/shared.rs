@@ -3,7 +3,7 @@
 
 use super::phase::{ManifoldSource, NarrowPhase};
 use super::record::{Contact, ContactFlags, Manifold};
-use super::table::{ContactTable, PointCount};
+use super::table::{ContactTable, PointCount, Stored};
 use super::update::{Begun, Scratch};
 use crate::data::{BitSet, Parts};
 use crate::table::{BodyKind, BodyTable, NONE};
@@ -67,17 +67,31 @@ impl ContactTable {
             unsafe { scratch.settle(&contacts, &points, extra, crowded, phase) };
         });
         self.any_deep = false;
-        for scratch in scratches {
+        for scratch in &*scratches {
             self.any_deep |= scratch.any_deep;
             for id in &scratch.changed {
                 changed.insert(*id);
             }
+        }
+        self.store_all(scratches);
+    }
+
+    /// Stores the manifolds after the first that the members found. Places in the side pool are taken in the order of
+    /// contacts, not of members, so that equal steps give equal tables.
+    fn store_all<W>(&mut self, scratches: &[Scratch<W>]) {
+        let mut stored = core::mem::take(&mut self.stored);
+        for (member, scratch) in scratches.iter().enumerate() {
             let mut start = 0;
-            for &(id, count) in &scratch.stored {
-                self.store_extra(id, &scratch.pool[start..start + count]);
+            for &(contact, count) in &scratch.stored {
+                stored.push(Stored { contact, member, range: start..start + count });
                 start += count;
             }
         }
+        stored.sort_unstable_by_key(|stored| stored.contact);
+        for Stored { contact, member, range } in stored.drain(..) {
+            self.store_extra(contact, &scratches[member].pool[range]);
+        }
+        self.stored = stored;
     }
 
     /// Finds the dynamic bodies that overlap others deeply.

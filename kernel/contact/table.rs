@@ -27,6 +27,17 @@ pub struct ContactTable {
     pub(super) crowded: BitSet,
     pub(super) extra: Vec<Vec<Manifold>>,
     free_extra: Vec<u32>,
+    /// What an update is to store, by contact; empty between updates.
+    pub(super) stored: Vec<Stored>,
+}
+
+/// Manifolds after the first that a member of the team computed.
+#[derive(Clone, Debug)]
+pub(super) struct Stored {
+    pub(super) contact: u32,
+    pub(super) member: usize,
+    /// Where they stand in the member's pool.
+    pub(super) range: core::ops::Range<usize>,
 }
 
 /// How many points a contact has, beside the record: who only counts need not have the records come.

@@ -6,7 +6,7 @@ use super::recycle::Group;
 use crate::manifold::{self, FeatureCache, LocalManifold};
 use crate::math::{Rot, Vector, max, min};
 use crate::shape::Shape;
-use crate::table::BodyPose;
+use crate::table::{BodyKind, BodyPose, NONE};
 
 /// Buffers of one worker, kept between steps; `W` are those of its [`ManifoldSource`]. In cache lines of its own, for
 /// they are written with every contact.
@@ -160,6 +160,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
                 manifold::collide(sa, sb, &relative, prediction, &mut contact.cache, &mut local);
                 apart = local.apart;
                 if local.count > 0 {
+                    self.note_platform(contact, [sa, sb]);
                     scratch.local.push(local);
                 }
             }
@@ -176,6 +177,16 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         contact.revisions = revisions;
         let recyclable = self.recycle_distance > 0.0 && !contact.flags.has(ContactFlags::FOREIGN);
         contact.flags.set(ContactFlags::FROZEN, recyclable);
+    }
+
+    /// Notes in the flags which body is a platform. Two round shapes have none, since one can roll under the same normal.
+    fn note_platform(&self, contact: &mut Contact, shapes: [&Shape; 2]) {
+        let is_platform = |body: u32| body == NONE || self.bodies[body].kind != BodyKind::Dynamic;
+        let is_round = |s: &&Shape| matches!(s, Shape::Ball(_) | Shape::Capsule(_) | Shape::Segment(_));
+        let are_round = shapes.iter().all(is_round);
+        let [a, b] = contact.bodies.map(|body| !are_round && is_platform(body));
+        contact.flags.set(ContactFlags::PLATFORM_A, a);
+        contact.flags.set(ContactFlags::PLATFORM_B, b && !a);
     }
 
     /// Puts the manifolds in `scratch.local` in place of those that were, and hands the old points' impulses on. `body_a`

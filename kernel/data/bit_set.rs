@@ -66,6 +66,11 @@ impl BitSet {
         self.words.iter().all(|w| *w == 0)
     }
 
+    /// Whether no id is in both.
+    pub fn is_disjoint(&self, other: &Self) -> bool {
+        self.words.iter().zip(&other.words).all(|(a, b)| a & b == 0)
+    }
+
     /// Adds all members of the other set.
     pub fn union_with(&mut self, other: &Self) {
         self.grow(other.words.len() * BITS);
@@ -77,6 +82,20 @@ impl BitSet {
     /// The members in ascending order.
     pub fn iter(&self) -> impl Iterator<Item = u32> + '_ {
         self.iter_block(self.words.len(), 0)
+    }
+
+    /// The lowest member that is not below `id`.
+    pub fn first_from(&self, id: u32) -> Option<u32> {
+        let (first, bit) = split(id);
+        let mut mask = !(bit - 1);
+        for (i, word) in self.words.iter().enumerate().skip(first) {
+            let rest = word & mask;
+            if rest != 0 {
+                return Some((i * BITS) as u32 + rest.trailing_zeros());
+            }
+            mask = u64::MAX;
+        }
+        None
     }
 
     /// How many blocks of so many times 64 ids there are up to the largest member.
@@ -152,7 +171,10 @@ mod tests {
                 match op {
                     Op::Insert(id) => prop_assert_eq!(set.insert(id), model.insert(id)),
                     Op::Remove(id) => prop_assert_eq!(set.remove(id), model.remove(&id)),
-                    Op::Contains(id) => prop_assert_eq!(set.contains(id), model.contains(&id)),
+                    Op::Contains(id) => {
+                        prop_assert_eq!(set.contains(id), model.contains(&id));
+                        prop_assert_eq!(set.first_from(id), model.range(id..).next().copied());
+                    }
                     Op::Grow(capacity) => set.grow(capacity),
                     Op::Clear => {
                         set.clear();

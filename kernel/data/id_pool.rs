@@ -2,14 +2,20 @@
 
 use super::BitSet;
 
-/// Small dense ids, reused last freed first, but not before the next [`recycle`](Self::recycle).
+/// Small dense ids, reused lowest first, but not before the next [`recycle`](Self::recycle).
+///
+/// Which id is given out follows from those in use alone, not from the order in which others came and went: the
+/// order of ids is the order of work, so a level that is loaded again behaves as it did.
 ///
 /// Between being freed and being recycled an id is neither live nor given out again: whoever still
 /// holds it from this step finds nothing there, rather than a stranger.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdPool {
     live: BitSet,
-    free: Vec<u32>,
+    free: BitSet,
+    free_count: u32,
+    /// No id below this one is free.
+    lowest: u32,
     pending: Vec<u32>,
     capacity: u32,
 }
@@ -17,16 +23,31 @@ pub struct IdPool {
 impl IdPool {
     /// An empty pool.
     pub const fn new() -> Self {
-        Self { live: BitSet::new(), free: Vec::new(), pending: Vec::new(), capacity: 0 }
+        Self {
+            live: BitSet::new(),
+            free: BitSet::new(),
+            free_count: 0,
+            lowest: 0,
+            pending: Vec::new(),
+            capacity: 0,
+        }
     }
 
-    /// Gives out the reusable id that was freed last, or else the next id never given out.
+    /// Gives out the lowest reusable id, or else the next id never given out.
     pub fn allocate(&mut self) -> u32 {
-        let id = self.free.pop().unwrap_or_else(|| {
-            let id = self.capacity;
-            self.capacity += 1;
-            id
-        });
+        let reusable = if self.free_count == 0 { None } else { self.free.first_from(self.lowest) };
+        let id = match reusable {
+            Some(id) => {
+                self.free.remove(id);
+                self.free_count -= 1;
+                self.lowest = id + 1;
+                id
+            }
+            None => {
+                self.capacity += 1;
+                self.capacity - 1
+            }
+        };
         self.live.insert(id);
         id
     }
@@ -43,7 +64,11 @@ impl IdPool {
 
     /// Makes the ids freed so far reusable.
     pub fn recycle(&mut self) {
-        self.free.append(&mut self.pending);
+        for id in self.pending.drain(..) {
+            self.free.insert(id);
+            self.free_count += 1;
+            self.lowest = self.lowest.min(id);
+        }
     }
 
     /// Whether the id is given out.
@@ -55,7 +80,7 @@ impl IdPool {
     /// The number of live ids.
     #[inline]
     pub fn len(&self) -> usize {
-        self.capacity as usize - self.free.len() - self.pending.len()
+        self.capacity as usize - self.free_count as usize - self.pending.len()
     }
 
     /// Whether no id is live.
@@ -86,12 +111,12 @@ mod tests {
         #[test]
         fn never_gives_out_a_live_or_pending_id(ops in prop::collection::vec((0..20u8, any::<u32>()), 10_000)) {
             let mut pool = IdPool::new();
-            let (mut live, mut pending, mut free) = (Vec::<u32>::new(), Vec::new(), Vec::new());
+            let (mut live, mut pending, mut free) = (Vec::<u32>::new(), Vec::new(), BTreeSet::new());
             let mut highest = 0;
             for (kind, pick) in ops {
                 match kind {
                     0..=9 => {
-                        let expected = free.pop().unwrap_or(highest);
+                        let expected = free.pop_first().unwrap_or(highest);
                         highest = highest.max(expected + 1);
                         prop_assert_eq!(pool.allocate(), expected);
                         live.push(expected);
@@ -104,7 +129,7 @@ mod tests {
                     }
                     _ => {
                         pool.recycle();
-                        free.append(&mut pending);
+                        free.extend(pending.drain(..));
                     }
                 }
                 prop_assert_eq!(pool.len(), live.len());
@@ -119,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn a_freed_id_returns_only_after_recycling_last_freed_first() {
+    fn a_freed_id_returns_only_after_recycling_lowest_first() {
         let mut pool = IdPool::new();
         let ids = [pool.allocate(), pool.allocate(), pool.allocate()];
         assert_eq!(ids, [0, 1, 2]);
@@ -127,7 +152,7 @@ mod tests {
         pool.free(2);
         assert_eq!(pool.allocate(), 3);
         pool.recycle();
-        assert_eq!([pool.allocate(), pool.allocate(), pool.allocate()], [2, 0, 4]);
+        assert_eq!([pool.allocate(), pool.allocate(), pool.allocate()], [0, 2, 4]);
     }
 
     #[test]

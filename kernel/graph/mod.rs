@@ -9,5 +9,7 @@ mod sleep;
 mod union_find;
 
 pub use colors::{COLOR_COUNT, ColorGraph, ColorSlot, OVERFLOW};
+#[cfg(test)]
+pub(crate) use islands::VISITS;
 pub use islands::{IslandId, Islands, Link, LinkId};
 pub use sleep::SleepScan;

@@ -1,18 +1,35 @@
-//! Which islands may fall asleep, and which one should be checked for having fallen apart.
+//! Which islands may fall asleep, and which ones should be checked for having fallen apart.
 
 use super::{IslandId, Islands};
 
+/// How many bodies and links the islands may have together that are split in one step besides the first. It bounds what
+/// a step pays for splitting small islands: united in 0.05 ms. With fewer, hundreds of islands that fall apart at once
+/// wait for longer.
+const SPLIT_BUDGET: usize = 4096;
+
 /// The outcome of one scan over the awake islands; keeps its memory between scans.
 ///
-/// An island falls asleep as a whole, once every body of it has been at rest long enough. One that lost
-/// links since it was last known to be connected may hold bodies that no longer touch: it must be
-/// [split](Islands::split) before it may sleep. Splitting costs the whole island, so only one is
-/// proposed per scan: the one with the body that has waited longest (after Catto, "Simulation Islands",
-/// 2023). As a split settles the question, the next scan proposes another and nobody waits for ever.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// An island falls asleep as a whole, once every body of it has been at rest long enough. One that lost links since it
+/// was last known to be connected may hold bodies that no longer touch: it must be [split](Islands::split) before it may
+/// sleep (Catto, "Simulation Islands", 2023).
+///
+/// Decision: splitting visits the whole island, and a large heap may lose a link in every step. So islands of which a
+/// body is ready to sleep take turns by id: the first is split whatever its size, others as long as they are small. The
+/// first island that is passed over has its turn next. Box2D splits the island with the body that has rested longest;
+/// then a heap that keeps losing links keeps all other islands awake.
+#[derive(Clone, Debug, PartialEq)]
 pub struct SleepScan {
     sleepers: Vec<IslandId>,
-    split: Option<IslandId>,
+    /// Islands that may be split, from the one on whose turn it is.
+    candidates: Vec<IslandId>,
+    splits: Vec<IslandId>,
+    budget: usize,
+}
+
+impl Default for SleepScan {
+    fn default() -> Self {
+        Self { sleepers: Vec::new(), candidates: Vec::new(), splits: Vec::new(), budget: SPLIT_BUDGET }
+    }
 }
 
 impl SleepScan {
@@ -22,30 +39,53 @@ impl SleepScan {
     }
 
     /// Looks at all awake islands. `rested` tells for how many seconds a body has been at rest, `None` if
-    /// it must not sleep; a body is ready to sleep from `time_to_sleep` seconds on. A NaN keeps awake.
+    /// it must not sleep; a body is ready to sleep from `time_to_sleep` seconds on. A NaN keeps awake. Islands that are
+    /// [woken](Islands::is_woken) are left alone, whatever their bodies say.
     ///
-    /// The outcome depends on the contents of the islands only, not on their history.
-    pub fn scan(&mut self, islands: &Islands, time_to_sleep: f32, rested: impl Fn(u32) -> Option<f32>) {
-        let ready = |body: &u32| rested(*body).filter(|time| *time >= time_to_sleep);
+    /// The outcome depends on the islands only, which also keep whose turn it is.
+    pub fn scan(&mut self, islands: &mut Islands, time_to_sleep: f32, rested: impl Fn(u32) -> Option<f32>) {
+        let ready = |body: &u32| rested(*body).is_some_and(|time| time >= time_to_sleep);
         self.sleepers.clear();
-        let mut longest: Option<(f32, IslandId)> = None;
+        self.candidates.clear();
         for &island in islands.awake_islands() {
-            let bodies = islands.bodies(island);
-            if islands.removed(island) == 0 {
-                if bodies.iter().all(|body| ready(body).is_some()) {
-                    self.sleepers.push(island);
-                }
+            if islands.is_woken(island) {
                 continue;
             }
-            for time in bodies.iter().filter_map(ready) {
-                let sleepier = longest.is_none_or(|(best, id)| time > best || (time == best && island < id));
-                if sleepier {
-                    longest = Some((time, island));
+            let bodies = islands.bodies(island);
+            if islands.removed(island) > 0 {
+                if bodies.iter().any(ready) {
+                    self.candidates.push(island);
                 }
+            } else if bodies.iter().all(ready) {
+                self.sleepers.push(island);
             }
         }
         self.sleepers.sort_unstable();
-        self.split = longest.map(|(_, island)| island);
+        self.candidates.sort_unstable();
+        self.choose_splits(islands);
+    }
+
+    fn choose_splits(&mut self, islands: &mut Islands) {
+        let turn = islands.split_turn();
+        let first = self.candidates.partition_point(|island| *island < turn);
+        self.candidates.rotate_left(first);
+        self.splits.clear();
+        let mut left = self.budget;
+        let mut passed_over = None;
+        for (i, &island) in self.candidates.iter().enumerate() {
+            let cost = islands.bodies(island).len() + islands.links(island).len();
+            if i == 0 {
+                self.splits.push(island);
+            } else if cost <= left {
+                left -= cost;
+                self.splits.push(island);
+            } else if passed_over.is_none() {
+                passed_over = Some(island);
+            }
+        }
+        if let Some(next) = passed_over {
+            islands.set_split_turn(next);
+        }
     }
 
     /// The islands that may be put to sleep, by ascending id. They are known to be connected.
@@ -53,9 +93,9 @@ impl SleepScan {
         &self.sleepers
     }
 
-    /// The island to split in this step, never one of the sleepers.
-    pub fn split(&self) -> Option<IslandId> {
-        self.split
+    /// The islands to split in this step, none of them among the sleepers.
+    pub fn splits(&self) -> &[IslandId] {
+        &self.splits
     }
 }
 
@@ -64,30 +104,50 @@ mod tests {
     use super::super::LinkId;
     use super::*;
     use proptest::prelude::*;
-    use std::collections::BTreeMap;
+    use std::collections::{BTreeMap, BTreeSet};
 
     fn chain(bodies: u32) -> Islands {
         let mut islands = Islands::new();
-        (0..bodies).for_each(|body| {
-            islands.add_body(body);
-        });
-        (1..bodies).for_each(|body| {
-            islands.link(LinkId(body), body - 1, body);
-        });
+        add_chain(&mut islands, 0..bodies);
         islands
+    }
+
+    /// A link has the number of the second body.
+    fn add_chain(islands: &mut Islands, bodies: core::ops::Range<u32>) {
+        for body in bodies.clone() {
+            islands.add_body(body);
+            if body > bodies.start {
+                islands.link(LinkId(body), body - 1, body);
+            }
+        }
+    }
+
+    /// One step of somebody without contacts: splits, and puts to sleep.
+    fn step(scan: &mut SleepScan, islands: &mut Islands, rested: impl Fn(u32) -> Option<f32>) {
+        scan.scan(islands, 0.5, rested);
+        for island in scan.splits() {
+            islands.split(*island);
+        }
+        for island in scan.sleepers() {
+            islands.set_asleep(*island, true);
+        }
+    }
+
+    fn sleeps(islands: &Islands, body: u32) -> bool {
+        islands.is_asleep(islands.island_of(body).unwrap())
     }
 
     #[test]
     fn one_restless_body_keeps_its_island_awake() {
-        let islands = chain(10);
+        let mut islands = chain(10);
         let mut scan = SleepScan::new();
         for (last, sleeps) in [(Some(0.5), true), (Some(0.49), false), (None, false), (Some(f32::NAN), false)]
         {
-            scan.scan(&islands, 0.5, |body| if body == 9 { last } else { Some(3.0) });
+            scan.scan(&mut islands, 0.5, |body| if body == 9 { last } else { Some(3.0) });
             assert_eq!(scan.sleepers().len(), usize::from(sleeps), "{last:?}");
-            assert_eq!(scan.split(), None);
+            assert_eq!(scan.splits(), []);
         }
-        scan.scan(&islands, f32::NAN, |_| Some(3.0));
+        scan.scan(&mut islands, f32::NAN, |_| Some(3.0));
         assert!(scan.sleepers().is_empty());
     }
 
@@ -97,17 +157,119 @@ mod tests {
         let mut islands = chain(10);
         let rested = |body| Some(if body < 4 { 1.0 } else { 0.0 });
         let mut scan = SleepScan::new();
-        scan.scan(&islands, 0.5, rested);
-        assert_eq!((scan.sleepers(), scan.split()), (&[][..], None));
+        scan.scan(&mut islands, 0.5, rested);
+        assert_eq!((scan.sleepers(), scan.splits()), (&[][..], &[][..]));
         islands.unlink(LinkId(4));
-        scan.scan(&islands, 0.5, rested);
-        assert_eq!((scan.sleepers(), scan.split()), (&[][..], islands.island_of(0)));
-        assert_eq!(islands.split(scan.split().unwrap()).len(), 1);
-        scan.scan(&islands, 0.5, rested);
-        assert_eq!((scan.sleepers(), scan.split()), (&[islands.island_of(3).unwrap()][..], None));
+        scan.scan(&mut islands, 0.5, rested);
+        let [island] = scan.splits() else { panic!("{:?}", scan.splits()) };
+        assert_eq!((scan.sleepers(), Some(*island)), (&[][..], islands.island_of(0)));
+        assert_eq!(islands.split(*island).len(), 1);
+        scan.scan(&mut islands, 0.5, rested);
+        assert_eq!((scan.sleepers(), scan.splits()), (&[islands.island_of(3).unwrap()][..], &[][..]));
+    }
+
+    /// The heap was the one that rested longest, so it was split in every step, and nothing else ever.
+    #[test]
+    fn parted_pairs_sleep_beside_a_heap_that_loses_a_link_in_every_step() {
+        let mut islands = Islands::new();
+        let heap = 0..5_000;
+        add_chain(&mut islands, heap.clone());
+        for pair in 0..20 {
+            let a = heap.end + 2 * pair;
+            add_chain(&mut islands, a..a + 2);
+            islands.unlink(LinkId(a + 1));
+        }
+        let rested = |body: u32| {
+            Some(if body + 1 == heap.end {
+                0.0
+            } else if body < heap.end {
+                30.0
+            } else {
+                1.0
+            })
+        };
+        let mut scan = SleepScan::new();
+        for i in 0..3u32 {
+            // Two neighbours more hang together, and one link fewer is left between them.
+            islands.link(LinkId(10_000 + i), i, i + 1);
+            islands.unlink(LinkId(10_000 + i));
+            step(&mut scan, &mut islands, rested);
+        }
+        assert!((heap.end..heap.end + 40).all(|body| sleeps(&islands, body)));
+        assert!(!sleeps(&islands, 0), "it hangs on a body that moves");
+        islands.validate();
+    }
+
+    /// None of the three is small; each is split in every third step.
+    #[test]
+    fn large_islands_take_turns() {
+        let mut islands = Islands::new();
+        let heaps = [0, 3_000, 6_000].map(|start| start..start + 3_000);
+        heaps.iter().for_each(|heap| add_chain(&mut islands, heap.clone()));
+        let ids = heaps.clone().map(|heap| islands.island_of(heap.start).unwrap());
+        let mut scan = SleepScan::new();
+        for i in 0..9 {
+            for heap in &heaps {
+                islands.link(LinkId(10_000), heap.start, heap.start + 1);
+                islands.unlink(LinkId(10_000));
+            }
+            // One body of each has rested.
+            step(&mut scan, &mut islands, |body| Some(if body % 3_000 == 0 { 1.0 } else { 0.0 }));
+            assert_eq!(scan.splits(), [ids[i % 3]]);
+        }
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+        /// What rests and touches nothing that moves sleeps after at most one step for each body, however what moves
+        /// is linked and parted meanwhile, and with however little to spend on splitting.
+        #[test]
+        fn all_that_could_sleep_does_so_in_bounded_time(
+            count in 2u32..80,
+            first in prop::collection::vec((any::<u32>(), any::<u32>()), 0..160),
+            cut in prop::collection::vec(any::<bool>(), 160),
+            moving in prop::collection::vec(prop::bool::weighted(0.3), 80),
+            budget in 0usize..40,
+            later in prop::collection::vec((any::<u32>(), any::<u32>()), 160),
+        ) {
+            let mut islands = Islands::new();
+            (0..count).for_each(|body| { islands.add_body(body); });
+            for (key, &(a, b)) in first.iter().enumerate() {
+                islands.link(LinkId(key as u32), a % count, b % count);
+            }
+            let mut left = first;
+            for key in (0..left.len()).rev().filter(|key| cut[*key]) {
+                islands.unlink(LinkId(key as u32));
+                left.remove(key);
+            }
+            // Who moves, or hangs together with somebody who does.
+            let mut restless: Vec<bool> = moving[..count as usize].to_vec();
+            for _ in 0..count {
+                for &(a, b) in &left {
+                    let (a, b) = ((a % count) as usize, (b % count) as usize);
+                    let either = restless[a] || restless[b];
+                    (restless[a], restless[b]) = (either, either);
+                }
+            }
+            let movers: Vec<u32> = (0..count).filter(|body| restless[*body as usize]).collect();
+            let mut scan = SleepScan { budget, ..SleepScan::new() };
+            for i in 0..=count as usize {
+                // All that moves has a neighbour that rests, as far as anybody knows.
+                step(&mut scan, &mut islands, |body| Some(if moving[body as usize] { 0.0 } else { 1.0 }));
+                if let [.., _] = movers[..] {
+                    let (a, b) = later[i % later.len()];
+                    let [a, b] = [a, b].map(|n| movers[n as usize % movers.len()]);
+                    islands.link(LinkId(1_000), a, b);
+                    islands.unlink(LinkId(1_000));
+                }
+            }
+            for body in 0..count {
+                prop_assert_eq!(sleeps(&islands, body), !restless[body as usize], "body {}", body);
+            }
+            islands.validate();
+        }
+
         /// Against the definition, over all bodies; and independent of the order of the awake list.
         #[test]
         fn the_scan_matches_its_definition(
@@ -130,10 +292,10 @@ mod tests {
             }
             let rested = |body: u32| times[body as usize].map(f32::from);
             let mut scan = SleepScan::new();
-            scan.scan(&islands, 4.0, rested);
+            scan.scan(&mut islands, 4.0, rested);
 
             let mut may_sleep: BTreeMap<IslandId, bool> = BTreeMap::new();
-            let mut candidates: Vec<(u8, IslandId)> = Vec::new();
+            let mut candidates: BTreeSet<IslandId> = BTreeSet::new();
             for body in 0..40u32 {
                 let island = islands.island_of(body).unwrap();
                 if islands.is_asleep(island) {
@@ -142,12 +304,13 @@ mod tests {
                 let ready = times[body as usize].is_some_and(|time| time >= 4);
                 *may_sleep.entry(island).or_insert(islands.removed(island) == 0) &= ready;
                 if ready && islands.removed(island) > 0 {
-                    candidates.push((u8::MAX - times[body as usize].unwrap(), island));
+                    candidates.insert(island);
                 }
             }
             let expected: Vec<_> = may_sleep.into_iter().filter(|(_, may)| *may).map(|(id, _)| id).collect();
             prop_assert_eq!(scan.sleepers(), &expected[..]);
-            prop_assert_eq!(scan.split(), candidates.into_iter().min().map(|(_, island)| island));
+            // All of them are small.
+            prop_assert!(scan.splits().iter().eq(&candidates));
 
             for body in shuffle {
                 let island = islands.island_of(body).unwrap();
@@ -157,7 +320,7 @@ mod tests {
                 }
             }
             let mut again = SleepScan::new();
-            again.scan(&islands, 4.0, rested);
+            again.scan(&mut islands, 4.0, rested);
             prop_assert_eq!(scan, again);
         }
     }

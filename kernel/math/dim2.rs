@@ -223,6 +223,11 @@ impl<N: Lane> Angular<N> {
     pub fn length(self) -> N {
         (-self.z).max(self.z)
     }
+    /// Reads lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Angular {
+        Angular { z: self.z.get(i) }
+    }
 }
 
 impl Angular {
@@ -315,6 +320,13 @@ impl<N: Num> Rot<N> {
         let less = self.cos - N::ONE;
         Vector { x: less * v.x + self.sin * v.y, y: less * v.y - self.sin * v.x }
     }
+    /// Turns a vector by a small turn. The length is kept to rounding also after many.
+    #[inline(always)]
+    pub fn turn_little(self, v: Vector<N>) -> Vector<N> {
+        // 1 − cos = sin² / (1 + cos), without cancellation.
+        let less = self.sin * self.sin / (N::ONE + self.cos);
+        Vector { x: v.x - (less * v.x + self.sin * v.y), y: v.y - (less * v.y - self.sin * v.x) }
+    }
     /// Scaled to unit length.
     #[inline(always)]
     pub fn normalized(self) -> Self {
@@ -379,6 +391,10 @@ impl Rot {
     pub fn from_angle(angle: f32) -> Self {
         let (sin, cos) = super::sin_cos(f64::from(angle));
         Self { cos: cos as f32, sin: sin as f32 }
+    }
+    /// Turned further by the angle `delta`, of any size.
+    pub fn turned_by(self, delta: Angular) -> Self {
+        Self::from_angle(delta.z).mul(self).normalized()
     }
     /// Scaled to unit length whatever its length, bit for bit the same where that is 1 to rounding; NaN where
     /// it has no direction.

@@ -254,50 +254,38 @@ impl InvInertia {
         Self { xx: v.x, yy: v.y, zz: v.z, xy: 0.0, xz: 0.0, yz: 0.0 }
     }
 
-    /// The tensor in world axes of a body turned by `rotation`: R I R⁻¹.
-    #[inline]
-    pub fn rotated(self, rotation: Rot) -> Self {
-        let [cx, cy, cz] = rotation.axes();
-        // Rows of R are (cx.x, cy.x, cz.x), …; first T = R I, then T Rᵀ, of which six entries differ.
-        let row = |a: f32, b: f32, c: f32| Vector {
-            x: a * self.xx + b * self.xy + c * self.xz,
-            y: a * self.xy + b * self.yy + c * self.yz,
-            z: a * self.xz + b * self.yz + c * self.zz,
-        };
-        let r = [
-            Vector { x: cx.x, y: cy.x, z: cz.x },
-            Vector { x: cx.y, y: cy.y, z: cz.y },
-            Vector { x: cx.z, y: cy.z, z: cz.z },
-        ];
-        let t = [row(r[0].x, r[0].y, r[0].z), row(r[1].x, r[1].y, r[1].z), row(r[2].x, r[2].y, r[2].z)];
-        Self {
-            xx: t[0].dot(r[0]),
-            yy: t[1].dot(r[1]),
-            zz: t[2].dot(r[2]),
-            xy: t[0].dot(r[1]),
-            xz: t[0].dot(r[2]),
-            yz: t[1].dot(r[2]),
-        }
-    }
-
-    /// The inverse of this symmetric matrix; zero if it is singular.
+    /// The inverse of this symmetric matrix; zero if it is singular, or if the inverse is not finite.
+    ///
+    /// In `f64`: the determinant is a product of three entries, which in `f32` underflows for bodies of millimetres.
+    ///
+    /// One of the moments of a needle that lies askew may be lost in the rounding of the others, even be negative. It then
+    /// counts as about that rounding.
     pub fn inverse(self) -> Self {
-        let Self { xx, yy, zz, xy, xz, yz } = self;
+        let [mut xx, mut yy, mut zz] = [self.xx, self.yy, self.zz].map(f64::from);
+        let [xy, xz, yz] = [self.xy, self.xz, self.yz].map(f64::from);
+        let askew = xy != 0.0 || xz != 0.0 || yz != 0.0;
+        let trace = xx + yy + zz;
+        let minors = (xx * yy - xy * xy) + (xx * zz - xz * xz) + (yy * zz - yz * yz);
+        // Of moments (e, 1, 1) the determinant is e / 2 of the product of trace and minors.
+        let determinant = xx * (yy * zz - yz * yz) + xy * (xz * yz - xy * zz) + xz * (xy * yz - xz * yy);
+        if askew && minors > 1.0e-3 * trace * trace && determinant <= 1.0e-7 * trace * minors {
+            let lift = 2.0e-7 * trace;
+            (xx, yy, zz) = (xx + lift, yy + lift, zz + lift);
+        }
         let (a, b, c) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
         let determinant = xx * a + xy * b + xz * c;
-        // NaN and zero both fail the comparison.
-        if !(determinant.abs() > 0.0) || !determinant.is_finite() {
-            return Self::ZERO;
-        }
         let k = 1.0 / determinant;
-        Self {
-            xx: a * k,
-            yy: (xx * zz - xz * xz) * k,
-            zz: (xx * yy - xy * xy) * k,
-            xy: b * k,
-            xz: c * k,
-            yz: (xy * xz - xx * yz) * k,
-        }
+        let inverse = Self {
+            xx: (a * k) as f32,
+            yy: ((xx * zz - xz * xz) * k) as f32,
+            zz: ((xx * yy - xy * xy) * k) as f32,
+            xy: (b * k) as f32,
+            xz: (c * k) as f32,
+            yz: ((xy * xz - xx * yz) * k) as f32,
+        };
+        // One that is infinite or NaN makes the sum NaN.
+        let Self { xx, yy, zz, xy, xz, yz } = inverse.scaled(0.0);
+        if xx + yy + zz + xy + xz + yz == 0.0 { inverse } else { Self::ZERO }
     }
 
     /// The inverse inertia, in world axes, of a body whose turning about the axes in `locks` is held.
@@ -388,6 +376,11 @@ impl<N: Num> Rot<N> {
         let t = t + t;
         t * self.w - u.cross(t)
     }
+    /// Turns a vector by a small turn. The length is kept to rounding also after many.
+    #[inline(always)]
+    pub fn turn_little(self, v: Vector<N>) -> Vector<N> {
+        self.rotate(v)
+    }
     /// Scaled to unit length.
     #[inline(always)]
     pub fn normalized(self) -> Self {
@@ -468,6 +461,15 @@ impl Rot {
         let (sin, cos) = super::sin_cos(0.5 * f64::from(angle));
         let v = axis * (sin as f32);
         Self { x: v.x, y: v.y, z: v.z, w: cos as f32 }
+    }
+    /// Turned further by the rotation vector `delta`, of any length.
+    pub fn turned_by(self, delta: Angular) -> Self {
+        let [x, y, z] = delta.to_array().map(f64::from);
+        let angle = (x * x + y * y + z * z).sqrt();
+        let (sin, cos) = super::sin_cos(0.5 * angle);
+        let k = if angle > 0.0 { sin / angle } else { 0.5 };
+        let [x, y, z] = [x, y, z].map(|c| (c * k) as f32);
+        Self { x, y, z, w: cos as f32 }.mul(self).normalized()
     }
     /// Whether no component is infinite or NaN.
     #[inline]

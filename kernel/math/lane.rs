@@ -8,13 +8,28 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[repr(C, align(16))]
 pub struct Quad(pub [f32; 4]);
 
+/// The proof that the CPU has AVX2: only [`find`](Self::find) makes one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Avx2(());
+
+impl Avx2 {
+    /// Asks the CPU.
+    pub fn find() -> Option<Self> {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            return Some(Self(()));
+        }
+        None
+    }
+}
+
 /// How many floats the lanes have that rows are computed with. The results have the same bits with any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
     /// Every CPU's: SSE2, NEON, or plain arrays.
     Four,
     /// AVX2's.
-    Eight,
+    Eight(Avx2),
 }
 
 impl Default for Width {
@@ -27,12 +42,10 @@ impl Default for Width {
 impl Width {
     /// The widest that this CPU has, or four if it is to be `narrow`.
     pub fn of(narrow: bool) -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if !narrow && std::arch::is_x86_feature_detected!("avx2") {
-            return Self::Eight;
+        match Avx2::find() {
+            Some(avx2) if !narrow => Self::Eight(avx2),
+            _ => Self::Four,
         }
-        let _ = narrow;
-        Self::Four
     }
 }
 

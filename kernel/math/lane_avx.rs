@@ -1,7 +1,9 @@
 //! Eight lanes on x86-64 with AVX2, chosen when the program runs.
 //!
-//! Every method is inlined into an entry point with the feature `avx2`; called from elsewhere they are
-//! correct, but slow. Each operation gives the bits that the four-lane type gives.
+//! The operations need AVX2, which their signatures cannot say: the traits are those of every lane. So the type is private
+//! to the crate, and only entry points with the feature `avx2`, into which every method is inlined, name it as their
+//! lane; an entry point is called with an [`Avx2`](super::Avx2) in hand. `tests/rules.rs` lists the files that may name the
+//! type. Each operation gives the bits that the four-lane type gives.
 #![expect(unsafe_code, reason = "AVX intrinsics; lanes of this width are only used where the CPU has them")]
 
 use super::lane::{Lane, Num, Quad};
@@ -11,12 +13,12 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// Eight `f32` side by side.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
-pub struct F32x8(__m256);
+pub(crate) struct F32x8(__m256);
 
 /// A comparison of eight lanes, all bits set where it holds.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
-pub struct Mask8(__m256);
+pub(crate) struct Mask8(__m256);
 
 macro_rules! binary {
     ($trait:ident $method:ident $intrinsic:ident) => {
@@ -24,7 +26,7 @@ macro_rules! binary {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                // SAFETY: eight lanes are only used where the CPU has AVX2.
+                // SAFETY: below an entry point that has an `Avx2` (see the module).
                 Self(unsafe { $intrinsic(self.0, other.0) })
             }
         }
@@ -53,7 +55,7 @@ impl Neg for F32x8 {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         Self(unsafe { _mm256_xor_ps(self.0, _mm256_set1_ps(-0.0)) })
     }
 }
@@ -72,7 +74,7 @@ impl Num for F32x8 {
     const ONE: Self = Self(unsafe { core::mem::transmute::<[f32; 8], __m256>([1.0; 8]) });
     #[inline(always)]
     fn sqrt(self) -> Self {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         Self(unsafe { _mm256_sqrt_ps(self.0) })
     }
 }
@@ -89,7 +91,7 @@ impl F32x8 {
 #[inline(always)]
 fn transpose(rows: [__m256; 4]) -> [__m256; 4] {
     let [a, b, c, d] = rows;
-    // SAFETY: eight lanes are only used where the CPU has AVX2.
+    // SAFETY: below an entry point that has an `Avx2` (see the module).
     unsafe {
         let (ab_low, cd_low) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
         let (ab_high, cd_high) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
@@ -105,8 +107,7 @@ fn transpose(rows: [__m256; 4]) -> [__m256; 4] {
 /// Two quads as the halves of one register.
 #[inline(always)]
 fn join(low: &Quad, high: &Quad) -> __m256 {
-    // SAFETY: a `Quad` is 16 bytes at an address aligned to 16; rows of eight lanes are only made where
-    // the CPU has AVX2.
+    // SAFETY: a `Quad` is 16 bytes at an address aligned to 16; else as above.
     unsafe {
         let low = _mm256_castps128_ps256(_mm_load_ps(low.0.as_ptr()));
         _mm256_insertf128_ps::<1>(low, _mm_load_ps(high.0.as_ptr()))
@@ -127,7 +128,7 @@ impl Lane for F32x8 {
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         Self(unsafe { _mm256_set1_ps(value) })
     }
     #[inline(always)]
@@ -143,52 +144,52 @@ impl Lane for F32x8 {
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        // SAFETY: eight lanes are only used where the CPU has AVX2. MAXPS is `a > b ? a : b`.
+        // SAFETY: below an entry point that has an `Avx2` (see the module). MAXPS is `a > b ? a : b`.
         Self(unsafe { _mm256_max_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        // SAFETY: eight lanes are only used where the CPU has AVX2. MINPS is `a < b ? a : b`.
+        // SAFETY: below an entry point that has an `Avx2` (see the module). MINPS is `a < b ? a : b`.
         Self(unsafe { _mm256_min_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn lt(self, other: Self) -> Mask8 {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         Mask8(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0) })
     }
     #[inline(always)]
     fn le(self, other: Self) -> Mask8 {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         Mask8(unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0) })
     }
     #[inline(always)]
     fn eq(self, other: Self) -> Mask8 {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         Mask8(unsafe { _mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, other.0) })
     }
     #[inline(always)]
     fn or(a: Mask8, b: Mask8) -> Mask8 {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         Mask8(unsafe { _mm256_or_ps(a.0, b.0) })
     }
     #[inline(always)]
     fn and(a: Mask8, b: Mask8) -> Mask8 {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         Mask8(unsafe { _mm256_and_ps(a.0, b.0) })
     }
     #[inline(always)]
     fn any(mask: Mask8) -> bool {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         unsafe { _mm256_movemask_ps(mask.0) != 0 }
     }
     #[inline(always)]
     fn bits(mask: Mask8) -> u32 {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         unsafe { _mm256_movemask_ps(mask.0) as u32 }
     }
     #[inline(always)]
     fn select(mask: Mask8, a: Self, b: Self) -> Self {
-        // SAFETY: eight lanes are only used where the CPU has AVX2.
+        // SAFETY: below an entry point that has an `Avx2` (see the module).
         Self(unsafe { _mm256_blendv_ps(b.0, a.0, mask.0) })
     }
     #[inline(always)]

@@ -66,6 +66,8 @@ mod lane_avx;
 mod lane_portable;
 #[cfg(target_arch = "x86_64")]
 mod lane_sse;
+#[cfg(feature = "3d")]
+mod needle3;
 mod pose;
 #[cfg_attr(feature = "2d", path = "tangent2.rs")]
 #[cfg_attr(feature = "3d", path = "tangent3.rs")]
@@ -73,13 +75,15 @@ mod tangent;
 mod trig;
 
 pub use dim::*;
-pub use lane::{Ids, Lane, Num, Quad, Width, clamp, max, min};
+pub use lane::{Avx2, Ids, Lane, Num, Quad, Width, clamp, max, min};
 #[cfg(target_arch = "x86_64")]
-pub use lane_avx::F32x8;
+pub(crate) use lane_avx::F32x8;
 #[cfg(not(target_arch = "x86_64"))]
 pub use lane_portable::F32x4;
 #[cfg(target_arch = "x86_64")]
 pub use lane_sse::F32x4;
+#[cfg(feature = "3d")]
+pub(crate) use needle3::MAX_RATIO;
 pub use pose::{Pose, WorldPose, WorldVector};
 pub use tangent::{Tangent, TangentFrame, TangentMass};
 pub use trig::{atan2, cos, sin, sin_cos};

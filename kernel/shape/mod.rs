@@ -54,6 +54,21 @@ impl Shape {
         self.local_aabb(pose.rotation).at(pose.position)
     }
 
+    /// Whether another shape is known to be the same. Hulls are compared by what they share, and of foreign shapes
+    /// only the box is known, so they never are.
+    pub fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Ball(a), Self::Ball(b)) => a == b,
+            (Self::Capsule(a), Self::Capsule(b)) => a == b,
+            (Self::Cuboid(a), Self::Cuboid(b)) => a == b,
+            (Self::Hull(a), Self::Hull(b)) => Arc::ptr_eq(a, b),
+            (Self::Triangle(a), Self::Triangle(b)) => a == b,
+            (Self::Segment(a), Self::Segment(b)) => a == b,
+            (Self::HalfSpace(a), Self::HalfSpace(b)) => a == b,
+            _ => false,
+        }
+    }
+
     /// Has what the shape shares with others brought near: it is needed soon.
     #[inline(always)]
     pub(crate) fn prefetch(&self) {

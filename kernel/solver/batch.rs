@@ -295,12 +295,13 @@ macro_rules! with_rows {
 }
 pub(super) use with_rows;
 
-/// Runs `$body` with `$rows` bound to the rows of a block, whatever their number of points.
+/// Runs `$body` with `$rows` bound to the rows of a block, whatever their number of points. For functions whose contract is
+/// [`RowsView::take`]'s.
 macro_rules! with_block {
     ($set:expr, $block:expr, |$rows:ident| $body:expr) => {
         match $block.class {
             $crate::solver::PointClass::One => {
-                // SAFETY: who runs blocks runs each once at a time, and no two share rows.
+                // SAFETY: the caller guarantees that no other thread uses rows of this block.
                 let $rows = unsafe { $set.one.take($block) };
                 $body
             }

@@ -6,7 +6,7 @@ use super::prepare::{AHEAD, Filler};
 use super::{BodyRow, InvMass, RowView, SubstepParams};
 use crate::contact::ManifoldsView;
 #[cfg(target_arch = "x86_64")]
-use crate::math::F32x8;
+use crate::math::{Avx2, F32x8};
 use crate::math::{F32x4, Ids, Lane, TangentFrame, Vector};
 use crate::table::NONE;
 
@@ -30,9 +30,8 @@ pub(super) struct SetsView<'a> {
 /// The wide rows.
 pub(super) enum Wide<'a> {
     Four(WideView<'a, F32x4>),
-    /// Only where the CPU has AVX2.
     #[cfg(target_arch = "x86_64")]
-    Eight(WideView<'a, F32x8>),
+    Eight(WideView<'a, F32x8>, Avx2),
 }
 
 /// The rows of one width.
@@ -45,38 +44,50 @@ pub(super) struct WideView<'a, N: Lane> {
 macro_rules! of_set {
     ($view:expr, $block:expr, $f:ident($($argument:expr),*)) => {
         match ($block.set, &$view.wide) {
-            (Set::Overflow, _) => $f(&$view.overflow.free, $block, $($argument),*),
-            (Set::OverflowHeld, _) => $f(&$view.overflow.held, $block, $($argument),*),
-            (Set::Wide, Wide::Four(wide)) => $f(&wide.free, $block, $($argument),*),
-            (Set::WideHeld, Wide::Four(wide)) => $f(&wide.held, $block, $($argument),*),
+            (Set::Overflow, _) => $f((), &$view.overflow.free, $block, $($argument),*),
+            (Set::OverflowHeld, _) => $f((), &$view.overflow.held, $block, $($argument),*),
+            (Set::Wide, Wide::Four(wide)) => $f((), &wide.free, $block, $($argument),*),
+            (Set::WideHeld, Wide::Four(wide)) => $f((), &wide.held, $block, $($argument),*),
             #[cfg(target_arch = "x86_64")]
-            (Set::Wide, Wide::Eight(wide)) => $f(&wide.free, $block, $($argument),*),
+            (Set::Wide, Wide::Eight(wide, avx2)) => $f(*avx2, &wide.free, $block, $($argument),*),
             #[cfg(target_arch = "x86_64")]
-            (Set::WideHeld, Wide::Eight(wide)) => $f(&wide.held, $block, $($argument),*),
+            (Set::WideHeld, Wide::Eight(wide, avx2)) => $f(*avx2, &wide.held, $block, $($argument),*),
         }
     };
 }
 
 impl SetsView<'_> {
     /// Fills a block's rows, and notes in it what they are like.
-    pub(super) fn fill(&self, block: &mut Block, filler: &Filler) {
-        (block.bouncy, block.deep) = of_set!(self, block, fill(filler));
+    ///
+    /// # Safety
+    /// Meanwhile no other thread runs a block that has rows of this one, nor writes a body or contact that it has.
+    pub(super) unsafe fn fill(&self, block: &mut Block, filler: &Filler) {
+        // SAFETY: by the contract.
+        (block.bouncy, block.deep) = unsafe { of_set!(self, block, fill(filler)) };
     }
 
     /// Runs a pass over a block. Returns whether it found an impact.
-    pub(super) fn run(
+    ///
+    /// # Safety
+    /// Meanwhile no other thread runs a block that has rows of this one, nor touches a dynamic body that it has, nor writes another that it has.
+    pub(super) unsafe fn run(
         &self,
         block: &Block,
         pass: Pass,
         bodies: &RowView<BodyRow>,
         params: &SubstepParams,
     ) -> bool {
-        of_set!(self, block, run(pass, bodies, params))
+        // SAFETY: by the contract.
+        unsafe { of_set!(self, block, run(pass, bodies, params)) }
     }
 
     /// Puts a block's impulses back into the manifolds.
-    pub(super) fn store(&self, block: &Block, contacts: &ManifoldsView) {
-        of_set!(self, block, store(contacts));
+    ///
+    /// # Safety
+    /// Meanwhile no other thread runs a block that has rows of this one, nor touches a contact that it has.
+    pub(super) unsafe fn store(&self, block: &Block, contacts: &ManifoldsView) {
+        // SAFETY: by the contract.
+        unsafe { of_set!(self, block, store(contacts)) };
     }
 }
 
@@ -85,24 +96,43 @@ impl SetsView<'_> {
 /// There is one for each class and pass. Without optimisation, whatever is inlined has its own place on the stack:
 /// all passes in one function took 4.6 MB of it in 3D, where threads have two.
 trait Entry: Lane {
-    fn fill<M: InvMass<Self>, const P: usize>(rows: BlockRows<Self, M, P>, filler: &Filler) -> (bool, bool);
+    /// What proves that the CPU has the feature.
+    type Proof: Copy;
 
-    fn sweep<M: InvMass<Self>, S: Sweep, const P: usize>(
+    fn fill<M: InvMass<Self>, const P: usize>(
+        proof: Self::Proof,
+        rows: BlockRows<Self, M, P>,
+        filler: &Filler,
+    ) -> (bool, bool);
+
+    /// # Safety
+    /// As [`SetsView::run`]'s.
+    unsafe fn sweep<M: InvMass<Self>, S: Sweep, const P: usize>(
+        proof: Self::Proof,
         rows: BlockRows<Self, M, P>,
         block: &Block,
         bodies: &RowView<BodyRow>,
         params: &SubstepParams,
     ) -> bool;
 
-    fn store<M: InvMass<Self>, const P: usize>(rows: BlockRows<Self, M, P>, contacts: &ManifoldsView);
+    /// # Safety
+    /// As [`SetsView::store`]'s.
+    unsafe fn store<M: InvMass<Self>, const P: usize>(
+        proof: Self::Proof,
+        rows: BlockRows<Self, M, P>,
+        contacts: &ManifoldsView,
+    );
 }
 
 /// The entry points of lanes that every CPU has.
 macro_rules! enter {
     ($lane:ty) => {
         impl Entry for $lane {
+            type Proof = ();
+
             #[inline(never)]
             fn fill<M: InvMass<Self>, const P: usize>(
+                (): (),
                 rows: BlockRows<Self, M, P>,
                 filler: &Filler,
             ) -> (bool, bool) {
@@ -110,21 +140,25 @@ macro_rules! enter {
             }
 
             #[inline(never)]
-            fn sweep<M: InvMass<Self>, S: Sweep, const P: usize>(
+            unsafe fn sweep<M: InvMass<Self>, S: Sweep, const P: usize>(
+                (): (),
                 rows: BlockRows<Self, M, P>,
                 block: &Block,
                 bodies: &RowView<BodyRow>,
                 params: &SubstepParams,
             ) -> bool {
-                S::over(rows, block, bodies, params)
+                // SAFETY: by the contract.
+                unsafe { S::over(rows, block, bodies, params) }
             }
 
             #[inline(never)]
-            fn store<M: InvMass<Self>, const P: usize>(
+            unsafe fn store<M: InvMass<Self>, const P: usize>(
+                (): (),
                 rows: BlockRows<Self, M, P>,
                 contacts: &ManifoldsView,
             ) {
-                store_rows(&rows, contacts);
+                // SAFETY: by the contract.
+                unsafe { store_rows(&rows, contacts) };
             }
         }
     };
@@ -135,7 +169,13 @@ enter!(F32x4);
 
 #[cfg(target_arch = "x86_64")]
 impl Entry for F32x8 {
-    fn fill<M: InvMass<Self>, const P: usize>(rows: BlockRows<Self, M, P>, filler: &Filler) -> (bool, bool) {
+    type Proof = Avx2;
+
+    fn fill<M: InvMass<Self>, const P: usize>(
+        _: Avx2,
+        rows: BlockRows<Self, M, P>,
+        filler: &Filler,
+    ) -> (bool, bool) {
         #[target_feature(enable = "avx2")]
         fn avx2<M: InvMass<F32x8>, const P: usize>(
             rows: BlockRows<F32x8, M, P>,
@@ -143,44 +183,64 @@ impl Entry for F32x8 {
         ) -> (bool, bool) {
             filler.fill(rows)
         }
-        // SAFETY: rows of this width are only made where the CPU has AVX2.
+        // SAFETY: the caller has the proof that the CPU has AVX2.
         unsafe { avx2(rows, filler) }
     }
 
-    fn sweep<M: InvMass<Self>, S: Sweep, const P: usize>(
+    unsafe fn sweep<M: InvMass<Self>, S: Sweep, const P: usize>(
+        _: Avx2,
         rows: BlockRows<Self, M, P>,
         block: &Block,
         bodies: &RowView<BodyRow>,
         params: &SubstepParams,
     ) -> bool {
         #[target_feature(enable = "avx2")]
-        fn avx2<M: InvMass<F32x8>, S: Sweep, const P: usize>(
+        unsafe fn avx2<M: InvMass<F32x8>, S: Sweep, const P: usize>(
             rows: BlockRows<F32x8, M, P>,
             block: &Block,
             bodies: &RowView<BodyRow>,
             params: &SubstepParams,
         ) -> bool {
-            S::over(rows, block, bodies, params)
+            // SAFETY: by the contract.
+            unsafe { S::over(rows, block, bodies, params) }
         }
-        // SAFETY: as above.
+        // SAFETY: as above, and by the contract.
         unsafe { avx2::<M, S, P>(rows, block, bodies, params) }
     }
 
-    fn store<M: InvMass<Self>, const P: usize>(rows: BlockRows<Self, M, P>, contacts: &ManifoldsView) {
+    unsafe fn store<M: InvMass<Self>, const P: usize>(
+        _: Avx2,
+        rows: BlockRows<Self, M, P>,
+        contacts: &ManifoldsView,
+    ) {
         #[target_feature(enable = "avx2")]
-        fn avx2<M: InvMass<F32x8>, const P: usize>(rows: BlockRows<F32x8, M, P>, contacts: &ManifoldsView) {
-            store_rows(&rows, contacts);
+        unsafe fn avx2<M: InvMass<F32x8>, const P: usize>(
+            rows: BlockRows<F32x8, M, P>,
+            contacts: &ManifoldsView,
+        ) {
+            // SAFETY: by the contract.
+            unsafe { store_rows(&rows, contacts) };
         }
-        // SAFETY: as above.
+        // SAFETY: as above, and by the contract.
         unsafe { avx2(rows, contacts) }
     }
 }
 
-fn fill<N: Entry, M: InvMass<N>>(set: &RowSetView<N, M>, block: &Block, filler: &Filler) -> (bool, bool) {
-    with_block!(set, block, |rows| N::fill(rows, filler))
+/// # Safety
+/// As [`SetsView::fill`]'s.
+unsafe fn fill<N: Entry, M: InvMass<N>>(
+    proof: N::Proof,
+    set: &RowSetView<N, M>,
+    block: &Block,
+    filler: &Filler,
+) -> (bool, bool) {
+    with_block!(set, block, |rows| N::fill(proof, rows, filler))
 }
 
-fn run<N: Entry, M: InvMass<N>>(
+/// # Safety
+/// As [`SetsView::run`]'s.
+unsafe fn run<N: Entry, M: InvMass<N>>(
+    proof: N::Proof,
     set: &RowSetView<N, M>,
     block: &Block,
     pass: Pass,
@@ -195,19 +255,34 @@ fn run<N: Entry, M: InvMass<N>>(
     if !concerned {
         return false;
     }
-    with_block!(set, block, |rows| match pass {
-        Pass::Impact => N::sweep::<M, Impact, _>(rows, block, bodies, params),
-        Pass::WarmStart => N::sweep::<M, WarmStart, _>(rows, block, bodies, params),
-        Pass::Solve => N::sweep::<M, Solve, _>(rows, block, bodies, params),
-        Pass::TakeBack => N::sweep::<M, TakeBack, _>(rows, block, bodies, params),
-        Pass::Relax if block.bouncy => N::sweep::<M, RelaxBouncy, _>(rows, block, bodies, params),
-        Pass::Relax => N::sweep::<M, Relax, _>(rows, block, bodies, params),
-        Pass::Restitute => N::sweep::<M, Restitute, _>(rows, block, bodies, params),
+    with_block!(set, block, |rows| {
+        // SAFETY: by the contract.
+        unsafe {
+            match pass {
+                Pass::Impact => N::sweep::<M, Impact, _>(proof, rows, block, bodies, params),
+                Pass::WarmStart => N::sweep::<M, WarmStart, _>(proof, rows, block, bodies, params),
+                Pass::Solve => N::sweep::<M, Solve, _>(proof, rows, block, bodies, params),
+                Pass::TakeBack => N::sweep::<M, TakeBack, _>(proof, rows, block, bodies, params),
+                Pass::Relax if block.bouncy => {
+                    N::sweep::<M, RelaxBouncy, _>(proof, rows, block, bodies, params)
+                }
+                Pass::Relax => N::sweep::<M, Relax, _>(proof, rows, block, bodies, params),
+                Pass::Restitute => N::sweep::<M, Restitute, _>(proof, rows, block, bodies, params),
+            }
+        }
     })
 }
 
-fn store<N: Entry, M: InvMass<N>>(set: &RowSetView<N, M>, block: &Block, contacts: &ManifoldsView) {
-    with_block!(set, block, |rows| N::store(rows, contacts));
+/// # Safety
+/// As [`SetsView::store`]'s.
+unsafe fn store<N: Entry, M: InvMass<N>>(
+    proof: N::Proof,
+    set: &RowSetView<N, M>,
+    block: &Block,
+    contacts: &ManifoldsView,
+) {
+    // SAFETY: by the contract.
+    with_block!(set, block, |rows| unsafe { N::store(proof, rows, contacts) });
 }
 
 /// A pass over the rows of a block.
@@ -215,7 +290,10 @@ fn store<N: Entry, M: InvMass<N>>(set: &RowSetView<N, M>, block: &Block, contact
 /// Plain loops, not iterator adaptors: what is to be compiled for the caller's CPU feature must be inlined into it.
 trait Sweep {
     /// Returns whether it found an impact.
-    fn over<N: Lane, M: InvMass<N>, const P: usize>(
+    ///
+    /// # Safety
+    /// As [`SetsView::run`]'s.
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(
         rows: BlockRows<N, M, P>,
         block: &Block,
         bodies: &RowView<BodyRow>,
@@ -230,12 +308,15 @@ macro_rules! sweep {
 
         impl Sweep for $name {
             #[inline(always)]
-            fn over<N: Lane, M: InvMass<N>, const P: usize>(
+            unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(
                 $rows: BlockRows<N, M, P>,
                 $block: &Block,
                 $bodies: &RowView<BodyRow>,
                 $params: &SubstepParams,
-            ) -> bool $body
+            ) -> bool {
+                // SAFETY: by the contract.
+                unsafe { $body }
+            }
         }
     };
 }
@@ -308,8 +389,13 @@ sweep!(Restitute(all, _block, bodies, params) {
     false
 });
 
+/// # Safety
+/// As [`SetsView::store`]'s.
 #[inline(always)]
-fn store_rows<N: Lane, M: InvMass<N>, const P: usize>(rows: &BlockRows<N, M, P>, contacts: &ManifoldsView) {
+unsafe fn store_rows<N: Lane, M: InvMass<N>, const P: usize>(
+    rows: &BlockRows<N, M, P>,
+    contacts: &ManifoldsView,
+) {
     for (i, (row, source)) in rows.rows.iter().zip(rows.sources).enumerate() {
         if let Some(next) = rows.sources.get(i + AHEAD) {
             contacts.prefetch(next.contacts.lanes());
@@ -319,7 +405,7 @@ fn store_rows<N: Lane, M: InvMass<N>, const P: usize>(rows: &BlockRows<N, M, P>,
             if *contact == NONE {
                 continue;
             }
-            // SAFETY: a contact has one row in a stage, and stages are stored one after the other.
+            // SAFETY: by the contract; the one before is in use no more.
             let manifold = unsafe { contacts.manifold(*contact, source.manifolds.lanes()[lane]) };
             manifold.friction_impulse = friction.get(lane);
             manifold.twist_impulse = row.twist.impulse(lane);

@@ -1,6 +1,7 @@
 //! The dense bodies of one step: rows that contact rows refer to by index.
 
-use super::{BodyRow, MassRow, RowView, gyro::is_isotropic};
+use super::{BodyRow, MassRow, RowView, gyro::Gyro};
+use crate::data::BitSet;
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
 
 /// How a body's velocity changes by itself. Constant over a step.
@@ -51,10 +52,45 @@ impl Limits {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spin {
     pub(super) row: u32,
-    /// In the body's frame.
-    pub(super) inv_inertia: InvInertia,
+    pub(super) gyro: Gyro,
     /// When the step begins.
     pub(super) rotation: Rot,
+}
+
+/// What some body rows have, each once: their threads write these rows.
+#[derive(Clone, Debug)]
+pub(super) struct OnceEach<T> {
+    list: Vec<(u32, T)>,
+    rows: BitSet,
+}
+
+impl<T> Default for OnceEach<T> {
+    fn default() -> Self {
+        Self { list: Vec::new(), rows: BitSet::new() }
+    }
+}
+
+impl<T> OnceEach<T> {
+    fn clear(&mut self) {
+        self.list.clear();
+        self.rows.clear();
+    }
+
+    /// Adds what a row has, unless it has something already. Returns whether it had nothing.
+    #[inline]
+    fn push(&mut self, row: usize, item: T) -> bool {
+        let row = u32::try_from(row).expect("a row is many bytes of memory");
+        let is_first = self.rows.insert(row);
+        if is_first {
+            self.list.push((row, item));
+        }
+        is_first
+    }
+
+    /// Rows and what they have: no row twice.
+    pub(super) fn list(&self) -> &[(u32, T)] {
+        &self.list
+    }
 }
 
 /// The bodies of one step. Row 0 is the immovable dummy that static partners and padding refer to; then
@@ -69,9 +105,9 @@ pub struct BodyRows {
     /// What changes velocities.
     pub motions: Vec<Motion>,
     /// What limits the few that are limited.
-    pub(super) limits: Vec<(u32, Limits)>,
+    pub(super) limits: OnceEach<Limits>,
     /// Those that their own spin turns: none in 2D.
-    pub(super) spins: Vec<Spin>,
+    pub(super) spins: OnceEach<Spin>,
     /// Which axes are held, by row; empty where nobody is held along any.
     pub(super) locks: Vec<AxisLocks>,
     /// The first row of a dynamic body.
@@ -98,24 +134,36 @@ impl BodyRows {
         self.first_dynamic
     }
 
-    /// Limits a body's velocity: at most once a step.
+    /// Limits a body's velocity: at most once a step. What comes after the first time counts for nothing.
     pub fn limit(&mut self, row: usize, limits: Limits) {
         if limits.is_none() {
             return;
         }
-        self.limits.push((row as u32, limits));
-        if limits.locks.is_translation_held() {
+        let is_first = self.limits.push(row, limits);
+        debug_assert!(is_first, "body row {row} is limited twice");
+        if is_first && limits.locks.is_translation_held() {
             self.locks.resize(self.rows.len(), AxisLocks::NONE);
             self.locks[row] = limits.locks;
         }
     }
 
     /// Has a dynamic body turn by its own spin, if its inverse inertia, in its own frame, makes it: at most once a
-    /// step. `rotation` is the body's when the step begins.
+    /// step. `rotation` is the body's when the step begins. What comes after the first time counts for nothing.
     #[inline]
     pub fn spin(&mut self, row: usize, inv_inertia: InvInertia, rotation: Rot) {
-        if !is_isotropic(inv_inertia) {
-            self.spins.push(Spin { row: row as u32, inv_inertia, rotation });
+        if let Some(gyro) = Gyro::of(inv_inertia) {
+            let is_first = self.spins.push(row, Spin { row: row as u32, gyro, rotation });
+            debug_assert!(is_first, "body row {row} spins twice");
+        }
+    }
+
+    /// Has the contacts of the step see what inertia they may of bodies that swing fast; `h` is the length of a substep.
+    pub(super) fn blunt(&mut self, h: f32) {
+        for (_, spin) in self.spins.list() {
+            let (mass, w) = (self.masses[spin.row as usize], self.rows[spin.row as usize].velocity().1);
+            if let Some(inertia) = spin.gyro.in_step(mass.inv_inertia(), w, spin.rotation, h) {
+                self.masses[spin.row as usize] = MassRow::new(mass.inv_mass(), inertia);
+            }
         }
     }
 
@@ -131,9 +179,9 @@ impl BodyRows {
         self.motions[row] = Motion::FREE;
     }
 
-    /// A view through which rows of disjoint bodies can be read and written; only dynamic bodies are.
-    pub(super) fn view(&mut self) -> RowView<'_, BodyRow> {
-        RowView::over(&mut self.rows, self.first_dynamic)
+    /// A view through which rows of disjoint bodies can be read and written, the latter from `first_dynamic` on.
+    pub(super) fn view(&mut self, first_dynamic: u32) -> RowView<'_, BodyRow> {
+        RowView::over(&mut self.rows, first_dynamic)
     }
 
     /// A view that writes kinematic bodies too, for integrating positions.

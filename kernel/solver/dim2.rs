@@ -1,5 +1,6 @@
 //! What differs between the dimensions in the rows: how a body lies in memory, and twist friction.
 //! `dim3.rs` exports the same names.
+#![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::RowView;
 use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Vector};
@@ -61,26 +62,52 @@ impl BodyRow {
     }
 
     /// Loads the velocities of one body for each lane.
+    ///
+    /// # Safety
+    /// No other thread writes these rows meanwhile.
     #[inline(always)]
-    pub(super) fn gather_velocity<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Angular<N>) {
-        let [x, y, z, _] = N::gather(ids, |id| &rows.get(id).velocity);
+    pub(super) unsafe fn gather_velocity<N: Lane>(
+        rows: &RowView<Self>,
+        ids: &N::Ids,
+    ) -> (Vector<N>, Angular<N>) {
+        // SAFETY: by the contract; the reference does not outlive the load.
+        let [x, y, z, _] = N::gather(ids, |id| unsafe { &rows.get(id).velocity });
         (Vector { x, y }, Angular { z })
     }
     /// Loads the motion in this step of one body for each lane.
+    ///
+    /// # Safety
+    /// No other thread writes these rows meanwhile.
     #[inline(always)]
-    pub(super) fn gather_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Rot<N>) {
-        let [x, y, cos, sin] = N::gather(ids, |id| &rows.get(id).delta);
+    pub(super) unsafe fn gather_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Rot<N>) {
+        // SAFETY: by the contract; the reference does not outlive the load.
+        let [x, y, cos, sin] = N::gather(ids, |id| unsafe { &rows.get(id).delta });
         (Vector { x, y }, Rot { cos, sin })
     }
     /// Stores the velocities of one body for each lane, where the body may be written.
+    ///
+    /// # Safety
+    /// No other thread reads or writes those of these rows that may be written.
     #[inline(always)]
-    pub(super) fn scatter_velocity<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, v: Vector<N>, w: Angular<N>) {
-        N::scatter([v.x, v.y, w.z, N::ZERO], ids, |id, quad| rows.put(id, |row| row.velocity = quad));
+    pub(super) unsafe fn scatter_velocity<N: Lane>(
+        rows: &RowView<Self>,
+        ids: &N::Ids,
+        v: Vector<N>,
+        w: Angular<N>,
+    ) {
+        // SAFETY: by the contract.
+        N::scatter([v.x, v.y, w.z, N::ZERO], ids, |id, quad| unsafe {
+            rows.put(id, |row| row.velocity = quad);
+        });
     }
     /// Stores the motion in this step of one body for each lane, where the body may be written.
+    ///
+    /// # Safety
+    /// No other thread reads or writes those of these rows that may be written.
     #[inline(always)]
-    pub(super) fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
-        N::scatter([p.x, p.y, q.cos, q.sin], ids, |id, quad| rows.put(id, |row| row.delta = quad));
+    pub(super) unsafe fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
+        // SAFETY: by the contract.
+        N::scatter([p.x, p.y, q.cos, q.sin], ids, |id, quad| unsafe { rows.put(id, |row| row.delta = quad) });
     }
 }
 

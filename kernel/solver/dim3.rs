@@ -1,5 +1,6 @@
 //! What differs between the dimensions in the rows: how a body lies in memory, and twist friction.
 //! `dim2.rs` exports the same names.
+#![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::RowView;
 use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Vector};
@@ -75,30 +76,64 @@ impl BodyRow {
     }
 
     /// Loads the velocities of one body for each lane.
+    ///
+    /// # Safety
+    /// No other thread writes these rows meanwhile.
     #[inline(always)]
-    pub(super) fn gather_velocity<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Angular<N>) {
-        let [x, y, z, _] = N::gather(ids, |id| &rows.get(id).linear);
-        let [a, b, c, _] = N::gather(ids, |id| &rows.get(id).angular);
+    pub(super) unsafe fn gather_velocity<N: Lane>(
+        rows: &RowView<Self>,
+        ids: &N::Ids,
+    ) -> (Vector<N>, Angular<N>) {
+        // SAFETY: by the contract; the reference does not outlive the load.
+        let [x, y, z, _] = N::gather(ids, |id| unsafe { &rows.get(id).linear });
+        // SAFETY: by the contract; the reference does not outlive the load.
+        let [a, b, c, _] = N::gather(ids, |id| unsafe { &rows.get(id).angular });
         (Vector { x, y, z }, Vector { x: a, y: b, z: c })
     }
     /// Loads the motion in this step of one body for each lane.
+    ///
+    /// # Safety
+    /// No other thread writes these rows meanwhile.
     #[inline(always)]
-    pub(super) fn gather_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Rot<N>) {
-        let [x, y, z, _] = N::gather(ids, |id| &rows.get(id).position);
-        let [a, b, c, w] = N::gather(ids, |id| &rows.get(id).rotation);
+    pub(super) unsafe fn gather_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Rot<N>) {
+        // SAFETY: by the contract; the reference does not outlive the load.
+        let [x, y, z, _] = N::gather(ids, |id| unsafe { &rows.get(id).position });
+        // SAFETY: by the contract; the reference does not outlive the load.
+        let [a, b, c, w] = N::gather(ids, |id| unsafe { &rows.get(id).rotation });
         (Vector { x, y, z }, Rot { x: a, y: b, z: c, w })
     }
     /// Stores the velocities of one body for each lane, where the body may be written.
+    ///
+    /// # Safety
+    /// No other thread reads or writes those of these rows that may be written.
     #[inline(always)]
-    pub(super) fn scatter_velocity<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, v: Vector<N>, w: Angular<N>) {
-        N::scatter([v.x, v.y, v.z, N::ZERO], ids, |id, quad| rows.put(id, |row| row.linear = quad));
-        N::scatter([w.x, w.y, w.z, N::ZERO], ids, |id, quad| rows.put(id, |row| row.angular = quad));
+    pub(super) unsafe fn scatter_velocity<N: Lane>(
+        rows: &RowView<Self>,
+        ids: &N::Ids,
+        v: Vector<N>,
+        w: Angular<N>,
+    ) {
+        // SAFETY: by the contract.
+        N::scatter([v.x, v.y, v.z, N::ZERO], ids, |id, quad| unsafe {
+            rows.put(id, |row| row.linear = quad);
+        });
+        // SAFETY: by the contract.
+        N::scatter([w.x, w.y, w.z, N::ZERO], ids, |id, quad| unsafe {
+            rows.put(id, |row| row.angular = quad);
+        });
     }
     /// Stores the motion in this step of one body for each lane, where the body may be written.
+    ///
+    /// # Safety
+    /// No other thread reads or writes those of these rows that may be written.
     #[inline(always)]
-    pub(super) fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
-        N::scatter([p.x, p.y, p.z, N::ZERO], ids, |id, quad| rows.put(id, |row| row.position = quad));
-        N::scatter([q.x, q.y, q.z, q.w], ids, |id, quad| rows.put(id, |row| row.rotation = quad));
+    pub(super) unsafe fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
+        // SAFETY: by the contract.
+        N::scatter([p.x, p.y, p.z, N::ZERO], ids, |id, quad| unsafe {
+            rows.put(id, |row| row.position = quad);
+        });
+        // SAFETY: by the contract.
+        N::scatter([q.x, q.y, q.z, q.w], ids, |id, quad| unsafe { rows.put(id, |row| row.rotation = quad) });
     }
 }
 

@@ -76,8 +76,10 @@ impl Finish<'_> {
             // SAFETY: no two bodies have one row, so this one is nobody else's.
             before.set(i, unsafe { bodies.poses.one(*id as usize) }.rotation);
         }
-        let (v, _) = BodyRow::gather_velocity::<N>(rows, &lanes);
-        let (way, turn) = BodyRow::gather_delta::<N>(rows, &lanes);
+        // SAFETY: nothing is written through this view.
+        let ((v, _), (way, turn)) = unsafe {
+            (BodyRow::gather_velocity::<N>(rows, &lanes), BodyRow::gather_delta::<N>(rows, &lanes))
+        };
         let rotation = turn.mul(before).renormalized();
         let (speed, way_squared) = (v.length(), way.length_squared());
         let angle_squared = turn.small_turn().length_squared();
@@ -85,7 +87,8 @@ impl Finish<'_> {
             let (row, id) = (first + i as u32, *id as usize);
             // SAFETY: as above.
             let (body, pose) = unsafe { (bodies.bodies.one(id), bodies.poses.one(id)) };
-            let motion = rows.get(row);
+            // SAFETY: nothing is written through this view.
+            let motion = unsafe { rows.get(row) };
             let (linear, angular) = motion.velocity();
             let (center, rotation) = (pose.center + Vector::get(&way, i).to_world(), Rot::get(&rotation, i));
             let placed = center.is_finite_world() & rotation.is_finite();

@@ -2,14 +2,31 @@
 
 use crate::math::{Angular, InvInertia, Rot};
 
-/// Whether turning does not change the spin axis: always in 2D.
-pub(super) fn is_isotropic(_inv_inertia: InvInertia) -> bool {
-    true
-}
+/// The inertia of a body whose spin axis turns by itself: no body in 2D.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Gyro {}
 
-/// The angular velocity after `h` seconds of free spin: the same in 2D.
-pub(super) fn gyroscopic(w: Angular, _rotation: Rot, _inv_inertia: InvInertia, _h: f32) -> Angular {
-    w
+impl Gyro {
+    /// `None`: in 2D turning does not change the spin axis.
+    pub(super) fn of(_inv_inertia: InvInertia) -> Option<Self> {
+        None
+    }
+
+    /// The inverse inertia that the contacts of a step see, if it is not the body's.
+    pub(super) fn in_step(
+        &self,
+        _world: InvInertia,
+        _w: Angular,
+        _rotation: Rot,
+        _h: f32,
+    ) -> Option<InvInertia> {
+        match *self {}
+    }
+
+    /// The angular velocity after `h` seconds of free spin.
+    pub(super) fn spun(&self, _w: Angular, _rotation: Rot, _h: f32) -> Angular {
+        match *self {}
+    }
 }
 
 /// The componentwise product.

@@ -1,24 +1,26 @@
 //! Free motion: velocities from accelerations and damping, positions from velocities.
+#![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
+use super::body::OnceEach;
 use super::{BodyRow, BodyRows, RowView, gyro::*};
-use crate::math::{Angular, F32x4, Lane};
+use crate::math::{Angular, F32x4, Lane, Rot};
 use crate::team::Team;
 
 /// How many bodies a member of the team moves at a stretch: a multiple of the lanes.
 const BLOCK: usize = 256;
 
-/// Changes the rows of some bodies, each of which is listed once.
+/// Changes the rows of some bodies.
 fn each_of<T: Sync>(
-    list: &[T],
-    row: impl Fn(&T) -> u32 + Sync,
+    listed: &OnceEach<T>,
     rows: &mut [BodyRow],
     team: &Team,
     change: impl Fn(&T, &mut BodyRow) + Sync,
 ) {
-    let view = RowView::over(rows, 0);
+    let (list, view) = (listed.list(), RowView::over(rows, 0));
     team.run(list.len().div_ceil(BLOCK), |block, _| {
-        for item in &list[block * BLOCK..list.len().min((block + 1) * BLOCK)] {
-            view.put(row(item), |row| change(item, row));
+        for (row, item) in &list[block * BLOCK..list.len().min((block + 1) * BLOCK)] {
+            // SAFETY: no row is listed twice, and an item is in one block.
+            unsafe { view.put(*row, |row| change(item, row)) };
         }
     });
 }
@@ -38,26 +40,24 @@ impl BodyRows {
             let start = first + block * BLOCK;
             for id in start..count.min(start + BLOCK) {
                 let motion = &motions[id];
-                view.put(id as u32, |row| {
+                let change = |row: &mut BodyRow| {
                     let (v, w) = row.velocity();
                     row.set_velocity(
                         v * (1.0 / (1.0 + motion.linear_damping * h)) + motion.acceleration * h,
                         w * (1.0 / (1.0 + motion.angular_damping * h)) + motion.angular_acceleration * h,
                     );
-                });
+                };
+                // SAFETY: a row is in one block.
+                unsafe { view.put(id as u32, change) };
             }
         });
-        each_of(
-            spins,
-            |spin| spin.row,
-            rows,
-            team,
-            |spin, row| {
-                let (v, w) = row.velocity();
-                let rotation = world_rotation(row.delta().1, spin.rotation);
-                row.set_velocity(v, gyroscopic(w, rotation, spin.inv_inertia, h));
-            },
-        );
+        each_of(spins, rows, team, |spin, row| {
+            let (v, w) = row.velocity();
+            let rotation = world_rotation(row.delta().1, spin.rotation);
+            // The torque acts in the middle of the free spin: at its beginning, a heavy top would lean ever more.
+            let half = motions[spin.row as usize].angular_acceleration * (0.5 * h);
+            row.set_velocity(v, spin.gyro.spun(w - half, rotation, h) + half);
+        });
         self.hold_back(team);
     }
 
@@ -70,58 +70,81 @@ impl BodyRows {
             let (mut id, end) = (block * BLOCK, count.min((block + 1) * BLOCK));
             while id + F32x4::WIDTH <= end {
                 let ids = core::array::from_fn(|k| (id + k) as u32);
-                move_bodies::<F32x4>(&view, &ids, h);
+                // SAFETY: a row is in one block.
+                unsafe { move_bodies::<F32x4>(&view, &ids, h) };
                 id += F32x4::WIDTH;
             }
             for id in id..end {
-                move_bodies::<f32>(&view, &[id as u32], h);
+                // SAFETY: as above.
+                unsafe { move_bodies::<f32>(&view, &[id as u32], h) };
             }
         });
     }
 
     /// Keeps velocities within their limits.
     fn hold_back(&mut self, team: &Team) {
-        each_of(
-            &self.limits,
-            |limited| limited.0,
-            &mut self.rows,
-            team,
-            |(_, limits), row| {
-                let (v, w) = row.velocity();
-                let v = v.scale(limits.locks.translation_factors());
-                let w = scale_angular(w, limits.locks.rotation_factors());
-                row.set_velocity(
-                    v * limit_factor(v.length(), limits.max_speed),
-                    w * limit_factor(w.length(), limits.max_angular_speed),
-                );
-            },
-        );
+        each_of(&self.limits, &mut self.rows, team, |limits, row| {
+            let (v, w) = row.velocity();
+            let v = v.scale(limits.locks.translation_factors());
+            let w = scale_angular(w, limits.locks.rotation_factors());
+            row.set_velocity(
+                v * limit_factor(v.length(), limits.max_speed),
+                w * limit_factor(w.length(), limits.max_angular_speed),
+            );
+        });
     }
 }
 
+/// # Safety
+/// No other thread reads or writes these rows meanwhile.
 #[inline(always)]
-fn move_bodies<N: Lane>(view: &super::RowView<BodyRow>, ids: &N::Ids, h: f32) {
-    let (v, w) = BodyRow::gather_velocity::<N>(view, ids);
-    let (p, q) = BodyRow::gather_delta::<N>(view, ids);
+unsafe fn move_bodies<N: Lane>(view: &super::RowView<BodyRow>, ids: &N::Ids, h: f32) {
+    // SAFETY: by the contract.
+    let ((v, w), (p, q)) =
+        unsafe { (BodyRow::gather_velocity::<N>(view, ids), BodyRow::gather_delta::<N>(view, ids)) };
     let h = N::splat(h);
-    let (p, q) = (p + v * h, q.integrated(exact_turn(w * h)));
-    BodyRow::scatter_delta::<N>(view, ids, p, q);
+    // SAFETY: by the contract.
+    unsafe { BodyRow::scatter_delta::<N>(view, ids, p + v * h, turned(q, w * h)) };
 }
+
+/// The largest x of [`exact_turn`], at 0.5 rad (in 2D: 0.25 rad): its series is exact to rounding up to here.
+const SMALL: f32 = 0.0625;
+
+/// A rotation after the turn `delta`, of any angle.
+#[inline(always)]
+fn turned<N: Lane>(q: Rot<N>, delta: Angular<N>) -> Rot<N> {
+    let near = q.integrated(exact_turn(delta));
+    let far = N::lt(N::splat(SMALL), delta.length_squared() * N::splat(SERIES));
+    if N::any(far) { Rot::select(far, large_turn(q, delta), near) } else { near }
+}
+
+/// What x of [`exact_turn`] is over δ².
+const SERIES: f32 = if crate::math::DIM == 2 { 1.0 } else { 0.25 };
 
 /// The normalised Euler step turns by 2 atan(δ/2) (in 2D: atan δ) instead of δ. Terms of the
 /// tangent's series beforehand make up for it: δ (1 + x/3 + 2x²/15 + 17x³/315 + 62x⁴/2835), x = (δ/2)² (in 2D: δ²).
 #[inline(always)]
 fn exact_turn<N: Lane>(turn: Angular<N>) -> Angular<N> {
-    let k = if crate::math::DIM == 2 { 1.0 } else { 0.25 };
-    let x = turn.length_squared() * N::splat(k);
+    let x = turn.length_squared() * N::splat(SERIES);
     let series = N::splat(2.0 / 15.0) + x * (N::splat(17.0 / 315.0) + x * N::splat(62.0 / 2835.0));
     turn * (N::ONE + x * (N::splat(1.0 / 3.0) + x * series))
+}
+
+/// The turn by a large angle, lane by lane by sine and cosine. The tangent of [`exact_turn`] is infinite at half a
+/// turn. Not inlined: few bodies turn so fast.
+#[inline(never)]
+fn large_turn<N: Lane>(q: Rot<N>, delta: Angular<N>) -> Rot<N> {
+    let mut turned = q;
+    for i in 0..N::WIDTH {
+        turned.set(i, q.get(i).turned_by(delta.get(i)));
+    }
+    turned
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Rot, Vector};
+    use crate::math::Vector;
     use crate::solver::{Limits, Motion};
 
     fn one_body(motion: Motion, v: Vector) -> BodyRows {
@@ -159,15 +182,32 @@ mod tests {
         assert!((f64::from(bodies.rows[1].velocity().0.x) - want).abs() < 1e-4 * want);
     }
 
+    /// How a rotation turns two axes, beside what the angle's sine and cosine say.
+    fn turn_error(angle: f32) -> f64 {
+        let [x, y] = [Rot::IDENTITY.axes()[0], Rot::IDENTITY.axes()[1]];
+        let turned = turned::<f32>(Rot::IDENTITY, spin(angle)).rotate(x);
+        let (sin, cos) = crate::math::sin_cos(f64::from(angle));
+        (f64::from(turned.dot(x)) - cos).abs().max((f64::from(turned.dot(y)) - sin).abs())
+    }
+
     #[test]
     fn a_turn_is_the_angle_it_should_be() {
-        let axis = Rot::IDENTITY.axes()[0];
-        for degrees in [1.0f32, 10.0, 30.0] {
+        for degrees in
+            [0.0f32, 1.0, 10.0, 14.0, 15.0, 28.0, 29.0, 30.0, 90.0, 180.0, 270.0, 360.0, 1000.0, 1.0e6]
+        {
             let angle = degrees / 180.0 * core::f32::consts::PI;
-            let turn = spin(angle);
-            let turned = Rot::IDENTITY.integrated(exact_turn(turn)).rotate(axis);
-            let cos = turned.dot(axis);
-            assert!((f64::from(cos) - crate::math::cos(f64::from(angle))).abs() < 2e-5, "{degrees}°");
+            assert!(turn_error(angle) < 1e-6, "{degrees}°: {}", turn_error(angle));
+            assert!(turn_error(-angle) < 1e-6, "−{degrees}°: {}", turn_error(-angle));
+        }
+    }
+
+    #[test]
+    fn a_turn_of_any_size_leaves_a_rotation() {
+        for exponent in -38..38 {
+            let angle = 10.0f32.powi(exponent);
+            let q = turned::<f32>(Rot::IDENTITY, spin(angle));
+            let length = q.rotate(Rot::IDENTITY.axes()[0]).length();
+            assert!((length - 1.0).abs() < 1e-6, "1e{exponent} rad: {q:?}");
         }
     }
 

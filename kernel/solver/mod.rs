@@ -16,6 +16,7 @@ mod body;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod exclusive;
 mod finish;
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]
 #[cfg_attr(feature = "3d", path = "gyro3.rs")]
@@ -40,4 +41,4 @@ pub use prepare::ContactSource;
 pub use row::{ContactRow, DeepRow, PointRow, RestitutionRow};
 pub use softness::{Softness, SubstepParams};
 pub use stages::Solver;
-pub use view::RowView;
+use view::RowView;

@@ -1,5 +1,6 @@
 //! Manifolds become rows: each colour's contacts are sorted by point count and laid out, then lanes are
 //! filled, block by block, and the effective masses computed for all lanes of a row at once.
+#![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::batch::{BlockRows, Plan, PointClass, RowSet, Rows, Set, Source, with_rows};
 use super::input::RowInput;
@@ -377,8 +378,9 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             row.inv_inertia[side] = inertia.scaled(movable);
             unheld += inv_mass;
         }
-        let (va, wa) = BodyRow::gather_velocity::<N>(view, &row.ids[0]);
-        let (vb, wb) = BodyRow::gather_velocity::<N>(view, &row.ids[1]);
+        // SAFETY: no thread writes bodies while rows are filled.
+        let [(va, wa), (vb, wb)] =
+            unsafe { row.ids.each_ref().map(|ids| BodyRow::gather_velocity::<N>(view, ids)) };
         let n = row.normal;
         let linear = n.dot(row.inv_mass[0].apply(n)) + n.dot(row.inv_mass[1].apply(n));
         let (mut total, mut center) = (N::ZERO, Vector::ZERO);

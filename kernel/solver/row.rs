@@ -1,4 +1,5 @@
 //! One contact manifold as solver rows, written once for 2D and 3D, one lane or many.
+#![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::{BodyRow, InvMass, RowView, Softness, SubstepParams, Twist};
 use crate::math::{Angular, Ids, InvInertia, Lane, Tangent, TangentFrame, TangentMass, Vector};
@@ -135,10 +136,14 @@ struct Pair<N> {
 }
 
 impl<N: Lane> Pair<N> {
+    /// # Safety
+    /// No other thread writes these rows meanwhile.
     #[inline(always)]
-    fn load(rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) -> Self {
-        let (va, wa) = BodyRow::gather_velocity::<N>(rows, &ids[0]);
-        let (vb, wb) = BodyRow::gather_velocity::<N>(rows, &ids[1]);
+    unsafe fn load(rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) -> Self {
+        // SAFETY: by the contract.
+        let [(va, wa), (vb, wb)] = unsafe {
+            [BodyRow::gather_velocity::<N>(rows, &ids[0]), BodyRow::gather_velocity::<N>(rows, &ids[1])]
+        };
         Self { v: [va, vb], w: [wa, wb] }
     }
 
@@ -157,10 +162,15 @@ impl<N: Lane> Pair<N> {
         (self.v[1] - self.v[0]).dot(n) + self.w[1].dot(mb) - self.w[0].dot(ma)
     }
 
+    /// # Safety
+    /// No other thread reads or writes those of these rows that may be written.
     #[inline(always)]
-    fn store(&self, rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) {
-        BodyRow::scatter_velocity::<N>(rows, &ids[0], self.v[0], self.w[0]);
-        BodyRow::scatter_velocity::<N>(rows, &ids[1], self.v[1], self.w[1]);
+    unsafe fn store(&self, rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) {
+        // SAFETY: by the contract.
+        unsafe {
+            BodyRow::scatter_velocity::<N>(rows, &ids[0], self.v[0], self.w[0]);
+            BodyRow::scatter_velocity::<N>(rows, &ids[1], self.v[1], self.w[1]);
+        }
     }
 }
 
@@ -175,9 +185,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     }
 
     /// Applies the accumulated impulses.
+    ///
+    /// # Safety
+    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
     #[inline(always)]
-    pub fn warm_start(&self, rows: &RowView<BodyRow>) {
-        let mut pair = Pair::load(rows, &self.ids);
+    pub(super) unsafe fn warm_start(&self, rows: &RowView<BodyRow>) {
+        // SAFETY: by the contract.
+        let mut pair = unsafe { Pair::load(rows, &self.ids) };
         // All impulses of the manifold as one impulse and one moment for each body.
         let mut impulse = TangentFrame::new(self.normal).expand(self.tangent_impulse);
         let [ra, rb] = self.surface_arms();
@@ -190,17 +204,24 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
         self.push(&mut pair, impulse, moments);
         self.twist.warm_start(self.normal, self.inv_inertia, &mut pair.w);
-        pair.store(rows, &self.ids);
+        // SAFETY: by the contract.
+        unsafe { pair.store(rows, &self.ids) };
     }
 
     /// The soft-bias pass: non-penetration with position error fed back.
+    ///
+    /// # Safety
+    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
     #[inline(always)]
-    pub fn solve(&mut self, rows: &RowView<BodyRow>, params: &SubstepParams) {
-        let mut pair = Pair::load(rows, &self.ids);
+    pub(super) unsafe fn solve(&mut self, rows: &RowView<BodyRow>, params: &SubstepParams) {
+        // SAFETY: by the contract.
+        let mut pair = unsafe { Pair::load(rows, &self.ids) };
         let immovable = N::or(self.inv_mass[0].is_zero(), self.inv_mass[1].is_zero());
         let soft = SoftLanes::select(immovable, &params.stiff, &params.soft);
-        self.solve_normals(rows, &mut pair, params, Some(soft), None);
-        pair.store(rows, &self.ids);
+        // SAFETY: by the contract.
+        unsafe { self.solve_normals(rows, &mut pair, params, Some(soft), None) };
+        // SAFETY: by the contract.
+        unsafe { pair.store(rows, &self.ids) };
     }
 
     /// The relax pass: friction, then non-penetration without bias.
@@ -212,17 +233,28 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     ///
     /// Where `restitution` is given and not 0, what closes fast is not slowed down before it meets: the impact
     /// pass will see to it.
+    ///
+    /// # Safety
+    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
     #[inline(always)]
-    pub fn relax(&mut self, rows: &RowView<BodyRow>, params: &SubstepParams, restitution: Option<N>) {
-        let mut pair = Pair::load(rows, &self.ids);
+    pub(super) unsafe fn relax(
+        &mut self,
+        rows: &RowView<BodyRow>,
+        params: &SubstepParams,
+        restitution: Option<N>,
+    ) {
+        // SAFETY: by the contract.
+        let mut pair = unsafe { Pair::load(rows, &self.ids) };
         self.solve_friction(&mut pair);
-        self.solve_normals(rows, &mut pair, params, None, restitution);
-        pair.store(rows, &self.ids);
+        // SAFETY: by the contract.
+        unsafe { self.solve_normals(rows, &mut pair, params, None, restitution) };
+        // SAFETY: by the contract.
+        unsafe { pair.store(rows, &self.ids) };
     }
 
     /// Lets the substep start from the row's share of the impulses.
     #[inline(always)]
-    pub fn cool(&mut self, deep: &DeepRow<N, P>) {
+    pub(super) fn cool(&mut self, deep: &DeepRow<N, P>) {
         for point in &mut self.points {
             point.impulse = point.impulse * deep.warm;
         }
@@ -230,16 +262,20 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
 
     /// Notes the impulses that [`take_back`](Self::take_back) returns to.
     #[inline(always)]
-    pub fn note_before(&self, deep: &mut DeepRow<N, P>) {
+    pub(super) fn note_before(&self, deep: &mut DeepRow<N, P>) {
         for (before, point) in deep.before.iter_mut().zip(&self.points) {
             *before = point.impulse;
         }
     }
 
     /// Takes back the impulses of the soft-bias pass where overlap is deep, once they have moved the bodies.
+    ///
+    /// # Safety
+    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
     #[inline(always)]
-    pub fn take_back(&mut self, rows: &RowView<BodyRow>, deep: &DeepRow<N, P>) {
-        let before = Pair::load(rows, &self.ids);
+    pub(super) unsafe fn take_back(&mut self, rows: &RowView<BodyRow>, deep: &DeepRow<N, P>) {
+        // SAFETY: by the contract.
+        let before = unsafe { Pair::load(rows, &self.ids) };
         let mut pair = before;
         let n = self.normal;
         for i in 0..P {
@@ -249,12 +285,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             self.points[i].impulse = point.impulse + delta;
             self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
         }
-        pair.or_where_not(N::ZERO.lt(deep.deep), before).store(rows, &self.ids);
+        // SAFETY: by the contract.
+        unsafe { pair.or_where_not(N::ZERO.lt(deep.deep), before).store(rows, &self.ids) };
     }
 
     /// Notes the impulses that the restitution pass looks back on.
     #[inline(always)]
-    pub fn note_impulses(&self, bounce: &mut RestitutionRow<N, P>) {
+    pub(super) fn note_impulses(&self, bounce: &mut RestitutionRow<N, P>) {
         for (max, point) in bounce.max_impulse.iter_mut().zip(&self.points) {
             *max = max.max(point.impulse);
         }
@@ -263,8 +300,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// One normal row a point: λ' = max(λ − m (k_m (v_n + b)) − k_i λ, 0), where b is s/h while the
     /// point is apart (it may close exactly that far), the soft bias where it overlaps and `soft` is
     /// given, else 0.
+    ///
+    /// # Safety
+    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
     #[inline(always)]
-    fn solve_normals(
+    unsafe fn solve_normals(
         &mut self,
         rows: &RowView<BodyRow>,
         pair: &mut Pair<N>,
@@ -272,8 +312,10 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         soft: Option<SoftLanes<N>>,
         restitution: Option<N>,
     ) {
-        let (pa, qa) = BodyRow::gather_delta::<N>(rows, &self.ids[0]);
-        let (pb, qb) = BodyRow::gather_delta::<N>(rows, &self.ids[1]);
+        // SAFETY: by the contract.
+        let [(pa, qa), (pb, qb)] = unsafe {
+            [BodyRow::gather_delta::<N>(rows, &self.ids[0]), BodyRow::gather_delta::<N>(rows, &self.ids[1])]
+        };
         let n = self.normal;
         let (inv_h, slowest) = (N::splat(params.inv_h), -self.push_speed);
         let shift = (pb - pa).dot(n);
@@ -354,14 +396,18 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// The impact pass: points that close within this substep, and faster than the threshold, part again
     /// before any other pass sees them, as if they had met at the right time within it. Returns whether any
     /// did.
+    ///
+    /// # Safety
+    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
     #[inline(always)]
-    pub fn impact(
+    pub(super) unsafe fn impact(
         &mut self,
         rows: &RowView<BodyRow>,
         bounce: &mut RestitutionRow<N, P>,
         params: &SubstepParams,
     ) -> bool {
-        let mut pair = Pair::load(rows, &self.ids);
+        // SAFETY: by the contract.
+        let mut pair = unsafe { Pair::load(rows, &self.ids) };
         let n = self.normal;
         let threshold = N::splat(-params.restitution_threshold);
         let mut moments = [[Angular::ZERO; 2]; P];
@@ -377,8 +423,10 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         if !N::any(fast) {
             return false;
         }
-        let (mut pa, qa) = BodyRow::gather_delta::<N>(rows, &self.ids[0]);
-        let (mut pb, qb) = BodyRow::gather_delta::<N>(rows, &self.ids[1]);
+        // SAFETY: by the contract.
+        let [(mut pa, qa), (mut pb, qb)] = unsafe {
+            [BodyRow::gather_delta::<N>(rows, &self.ids[0]), BodyRow::gather_delta::<N>(rows, &self.ids[1])]
+        };
         let shift = (pb - pa).dot(n);
         let mut targets = [N::ZERO; P];
         let mut early = N::splat(f32::MAX);
@@ -405,15 +453,19 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let hit = N::ZERO.lt(any);
         let before = pair;
         self.collide(&mut pair, bounce, &targets, &moments);
-        pair.or_where_not(hit, before).store(rows, &self.ids);
+        // SAFETY: by the contract.
+        unsafe { pair.or_where_not(hit, before).store(rows, &self.ids) };
 
         let [ma, mb] = [self.inv_mass[0].apply(n), self.inv_mass[1].apply(n)];
         let k = (ma + mb).dot(n);
         let lag = N::select(N::and(hit, N::ZERO.lt(k)), early / k, N::ZERO);
         pa += ma * lag;
         pb -= mb * lag;
-        BodyRow::scatter_delta::<N>(rows, &self.ids[0], pa, qa);
-        BodyRow::scatter_delta::<N>(rows, &self.ids[1], pb, qb);
+        // SAFETY: by the contract.
+        unsafe {
+            BodyRow::scatter_delta::<N>(rows, &self.ids[0], pa, qa);
+            BodyRow::scatter_delta::<N>(rows, &self.ids[1], pb, qb);
+        }
         N::any(hit)
     }
 
@@ -454,14 +506,18 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
 
     /// The restitution pass: points that approached faster than the threshold and pushed leave with e
     /// times the approach speed. What the impact pass has seen is done with.
+    ///
+    /// # Safety
+    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
     #[inline(always)]
-    pub fn restitute(
+    pub(super) unsafe fn restitute(
         &mut self,
         rows: &RowView<BodyRow>,
         bounce: &mut RestitutionRow<N, P>,
         params: &SubstepParams,
     ) {
-        let before = Pair::load(rows, &self.ids);
+        // SAFETY: by the contract.
+        let before = unsafe { Pair::load(rows, &self.ids) };
         let mut pair = before;
         let n = self.normal;
         let threshold = N::splat(-params.restitution_threshold);
@@ -479,7 +535,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             bounce.max_impulse[i] = bounce.max_impulse[i].max(new);
             self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
         }
-        pair.or_where_not(N::ZERO.lt(bounce.restitution), before).store(rows, &self.ids);
+        // SAFETY: by the contract.
+        unsafe { pair.or_where_not(N::ZERO.lt(bounce.restitution), before).store(rows, &self.ids) };
     }
 }
 

@@ -61,7 +61,7 @@ impl AllRows {
         self.overflow.make_room(layout.any_deep);
         match self.width {
             #[cfg(target_arch = "x86_64")]
-            Width::Eight => self.eight.lay_colors(colors, layout),
+            Width::Eight(_) => self.eight.lay_colors(colors, layout),
             _ => self.four.lay_colors(colors, layout),
         }
     }
@@ -69,7 +69,7 @@ impl AllRows {
     pub(super) fn view(&mut self) -> SetsView<'_> {
         let wide = match self.width {
             #[cfg(target_arch = "x86_64")]
-            Width::Eight => Wide::Eight(self.eight.view()),
+            Width::Eight(avx2) => Wide::Eight(self.eight.view(), avx2),
             _ => Wide::Four(self.four.view()),
         };
         SetsView { overflow: self.overflow.view(), wide }

@@ -3,6 +3,7 @@
 
 use super::batch::{Plan, Stage};
 use super::block::Pass;
+use super::exclusive::Exclusive;
 use super::input::RowInput;
 use super::prepare::{DeepCounts, Filler};
 use super::rows::{AllRows, Buffers, Layout};
@@ -34,6 +35,7 @@ pub struct Solver {
     plan: Plan,
     buffers: Buffers,
     deep: DeepCounts,
+    exclusive: Exclusive,
 }
 
 impl Solver {
@@ -57,9 +59,17 @@ impl Solver {
     }
 
     /// Builds the rows of all touching contacts in the colours.
+    ///
+    /// With the graph of other contacts, or bodies that are not what they were when the contacts got their colours, all rows
+    /// are solved by the caller alone, whatever that means for the motion.
+    ///
+    /// # Panics
+    /// If a contact or body of the graph is not in the input, or a row of the input not among the [`bodies`](Self::bodies).
     pub fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
-        let Self { bodies, team, rows, plan, buffers, deep, .. } = self;
+        let Self { bodies, team, rows, plan, buffers, deep, exclusive } = self;
         deep.count(input, bodies);
+        exclusive.look(input, colors, bodies.first_dynamic, team);
+        bodies.blunt(params.h);
         let BodyRows { rows: body_rows, masses, motions, locks, first_dynamic, .. } = bodies;
         let members = team.members();
         plan.begin(if members > 1 { BLOCK_ROWS } else { u32::MAX }, members);
@@ -81,14 +91,15 @@ impl Solver {
             team.wake();
         }
         team.run(blocks.len(), |block, _| {
-            // SAFETY: each block is run once.
-            sets.fill(unsafe { blocks.one(block) }, filler);
+            // SAFETY: each block is run once, and no two have a row together; bodies and contacts are only read.
+            unsafe { sets.fill(blocks.one(block), filler) };
         });
     }
 
     /// How many stages of each sweep are shared by several members of the team.
     pub fn shared_stages(&self) -> usize {
-        self.plan.stages().filter(|stage| stage.parts.is_some()).count()
+        let shared = self.plan.stages().filter(|stage| stage.parts.is_some()).count();
+        if self.exclusive.holds() { shared } else { 0 }
     }
 
     /// How many manifolds are solved in the step.
@@ -151,8 +162,11 @@ impl Solver {
     pub fn store_impulses(&mut self, contacts: &mut ContactTable) {
         let (sets, manifolds) = (self.rows.view(), contacts.manifolds_view());
         for Stage { blocks, parts } in self.plan.stages() {
-            let store = |block: usize, _| sets.store(&blocks[block], &manifolds);
+            // SAFETY: each block is run once, no two have a row together, and either no contact is there twice or they are run
+            // one after the other.
+            let store = |block: usize, _| unsafe { sets.store(&blocks[block], &manifolds) };
             match parts {
+                _ if !self.exclusive.holds() => (0..blocks.len()).for_each(|block| store(block, 0)),
                 Some(parts) => self.team.run_parts(parts, store),
                 None => self.team.run(blocks.len(), store),
             }
@@ -162,17 +176,19 @@ impl Solver {
 
     /// Runs all blocks, stage by stage. Returns whether any of them found an impact.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams) -> bool {
-        let (sets, bodies) = (self.rows.view(), self.bodies.view());
+        let (sets, bodies) = (self.rows.view(), self.bodies.view(self.exclusive.first_dynamic()));
         let hit = AtomicBool::new(false);
         for Stage { blocks, parts } in self.plan.stages() {
             let solve = |block: usize, _| {
-                if sets.run(&blocks[block], pass, &bodies, params) {
+                // SAFETY: each block is run once, no two have a row together, and either no two contacts of a stage have a dynamic
+                // body together or they are run one after the other. Of the bodies only the dynamic ones are written.
+                if unsafe { sets.run(&blocks[block], pass, &bodies, params) } {
                     hit.store(true, Ordering::Relaxed);
                 }
             };
             match parts {
-                Some(parts) => self.team.run_parts(parts, solve),
-                None => (0..blocks.len()).for_each(|block| solve(block, 0)),
+                Some(parts) if self.exclusive.holds() => self.team.run_parts(parts, solve),
+                _ => (0..blocks.len()).for_each(|block| solve(block, 0)),
             }
         }
         hit.into_inner()

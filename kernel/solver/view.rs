@@ -6,13 +6,14 @@ use core::cell::UnsafeCell;
 /// Rows shared between batches of one colour.
 ///
 /// A colour holds no dynamic body twice, so no two contact rows of a colour write the same row; what is
-/// not dynamic is read by many and written by none. That is what makes the shared writes sound.
-pub struct RowView<'a, T> {
+/// not dynamic is read by many and written by none. That is what makes the shared writes sound. The type cannot
+/// know it, so reading and writing are unsafe; [`Exclusive`](super::exclusive::Exclusive) looks at the colours.
+pub(super) struct RowView<'a, T> {
     cells: &'a [UnsafeCell<T>],
     first_writable: u32,
 }
 
-// SAFETY: threads only touch disjoint rows, or rows that nobody writes (see the type).
+// SAFETY: threads only touch disjoint rows, or rows that nobody writes, by the contracts of `get` and `put`.
 unsafe impl<T: Send + Sync> Sync for RowView<'_, T> {}
 
 impl<'a, T> RowView<'a, T> {
@@ -23,18 +24,23 @@ impl<'a, T> RowView<'a, T> {
     }
 
     /// Reads a row.
+    ///
+    /// # Safety
+    /// While the reference lives no thread writes this row.
     #[inline(always)]
-    pub(super) fn get(&self, id: u32) -> &T {
-        // SAFETY: nobody writes this row meanwhile: a contact row reads its bodies before it writes
-        // them, no other row of its colour holds them, and the reference does not outlive the load.
+    pub(super) unsafe fn get(&self, id: u32) -> &T {
+        // SAFETY: by the contract.
         unsafe { &*self.cells[id as usize].get() }
     }
 
     /// Changes a row, if it may be written.
+    ///
+    /// # Safety
+    /// If the row may be written, no other thread reads or writes it meanwhile, and no reference to it lives.
     #[inline(always)]
-    pub(super) fn put(&self, id: u32, change: impl FnOnce(&mut T)) {
+    pub(super) unsafe fn put(&self, id: u32, change: impl FnOnce(&mut T)) {
         if id >= self.first_writable {
-            // SAFETY: as for `get`; `change` is a store.
+            // SAFETY: by the contract.
             change(unsafe { &mut *self.cells[id as usize].get() });
         }
     }

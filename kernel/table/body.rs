@@ -108,6 +108,9 @@ pub struct BodyTable {
     pub velocities: Vec<Velocity>,
     /// The solver row of each body in this step; 0, the immovable dummy, if it has none.
     pub(crate) rows: Vec<u32>,
+    /// Bodies that were given a velocity by hand since the embedder last emptied this: their boxes are to be swept
+    /// before pairs are found.
+    pub pushed: BitSet,
     /// Bodies that woke or fell asleep since the embedder last emptied this; some may be back.
     pub flipped: Vec<u32>,
     /// Whether any body's dominance is not 0: what rows need not ask otherwise. Set by whoever sets it.
@@ -117,7 +120,7 @@ pub struct BodyTable {
 }
 
 impl BodyTable {
-    /// How many bytes are kept of each body here, but for one bit in each of three sets.
+    /// How many bytes are kept of each body here, but for one bit in each of four sets.
     pub const BYTES_PER_BODY: usize =
         size_of::<Body>() + size_of::<BodyPose>() + size_of::<Velocity>() + size_of::<u32>();
 
@@ -161,6 +164,7 @@ impl BodyTable {
     pub fn remove(&mut self, id: u32) {
         debug_assert!(self[id].first_collider == NONE, "a removed body has no colliders");
         self.set_awake(id, false);
+        self.pushed.remove(id);
         self.ids.free(id);
     }
 
@@ -265,9 +269,13 @@ impl BodyTable {
         self.revise(id);
     }
 
-    /// Sets how fast a body moves.
+    /// Sets how fast a body moves, by hand. [`ColliderTable::refresh_pushed`](super::ColliderTable::refresh_pushed) then
+    /// has to be called before pairs are found, or it may pass through something in the next step.
     #[inline]
     pub fn set_velocity(&mut self, id: u32, velocity: Velocity) {
+        if velocity != self.velocities[id as usize] && velocity != Velocity::default() {
+            self.pushed.insert(id);
+        }
         self.velocities[id as usize] = velocity;
         self.poses[id as usize].speed = velocity.linear.length();
     }

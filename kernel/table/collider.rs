@@ -110,6 +110,20 @@ pub struct ColliderDef {
     pub speculative: f32,
 }
 
+impl ColliderDef {
+    /// Whether another definition says the same. Hulls are the same only if they are shared.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.body == other.body
+            && self.local == other.local
+            && self.material == other.material
+            && self.layers == other.layers
+            && self.flags == other.flags
+            && self.margin == other.margin
+            && self.speculative == other.speculative
+            && self.shape.is_same(&other.shape)
+    }
+}
+
 /// What is kept of a collider.
 #[derive(Clone, Debug)]
 pub struct Collider {
@@ -275,6 +289,23 @@ impl ColliderTable {
         let i = id as usize;
         let places = (&mut self.poses[i], &mut self.tight[i], &mut self.fat[i]);
         self.colliders[i].fit(bodies, fattening, &self.reaches[i], places)
+    }
+
+    /// Refreshes the colliders of the bodies that were given a velocity by hand, and forgets that they were.
+    /// `outgrown` receives those whose fat box was enlarged.
+    pub fn refresh_pushed(&mut self, bodies: &mut BodyTable, fattening: Fattening, outgrown: &mut BitSet) {
+        let mut pushed = core::mem::take(&mut bodies.pushed);
+        for body in pushed.iter() {
+            let mut id = bodies[body].first_collider;
+            while id != NONE {
+                if self.refresh(id, bodies, fattening) {
+                    outgrown.insert(id);
+                }
+                id = self[id].next;
+            }
+        }
+        pushed.clear();
+        bodies.pushed = pushed;
     }
 
     /// Refreshes the colliders of the bodies that have a row in this step, `listed` in the order of their rows from

@@ -1,7 +1,9 @@
 //! What a test must know of the plane.
 
+use super::extreme::Dice;
 use crate::kernel::math::{Angular, InvInertia, Rot, Vector};
-use crate::kernel::shape::MassProperties;
+use crate::kernel::shape::{Cuboid, Hull, MassProperties, Shape};
+use std::sync::Arc;
 
 /// The inverse inertia of a body.
 pub fn inverse_inertia(mass: &MassProperties) -> InvInertia {
@@ -48,4 +50,31 @@ pub fn container() -> (f32, Vec<(Vector, Vector)>, Vec<Vector>) {
 /// A position's part across the plane of x and y.
 pub fn across(_: Vector) -> f32 {
     0.0
+}
+
+/// A rotation from dice.
+pub fn any_rotation(dice: &mut Dice) -> Rot {
+    Rot::from_angle(4.0 * dice.signed())
+}
+
+/// An angular velocity from dice, of any length.
+pub fn any_spin(dice: &mut Dice) -> Angular {
+    Angular { z: dice.signed() }
+}
+
+/// A hull of the given half extents: a rhombus.
+pub fn hull_of(half: Vector) -> Shape {
+    let points: Vec<_> = Vector::AXES.into_iter().flat_map(|a| [a.scale(half), a.scale(-half)]).collect();
+    Hull::convex_hull_of(&points, 0.0)
+        .map_or(Shape::Cuboid(Cuboid { half }), |hull| Shape::Hull(Arc::new(hull)))
+}
+
+/// Unit axes about which a level plate can be tilted.
+pub fn tilts() -> Vec<Angular> {
+    vec![spin(1.0)]
+}
+
+/// The axis upright on a level plate: none.
+pub fn upright() -> Option<Angular> {
+    None
 }

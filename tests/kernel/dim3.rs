@@ -1,7 +1,9 @@
 //! What a test must know of space.
 
+use super::extreme::Dice;
 use crate::kernel::math::{Angular, InvInertia, Rot, Vector};
-use crate::kernel::shape::MassProperties;
+use crate::kernel::shape::{Cuboid, Hull, MassProperties, Shape};
+use std::sync::Arc;
 
 /// The inverse inertia of a body.
 pub fn inverse_inertia(mass: &MassProperties) -> InvInertia {
@@ -52,4 +54,31 @@ pub fn container() -> (f32, Vec<(Vector, Vector)>, Vec<Vector>) {
 /// A position's part across the plane of x and y.
 pub fn across(p: Vector) -> f32 {
     p.z
+}
+
+/// A rotation from dice.
+pub fn any_rotation(dice: &mut Dice) -> Rot {
+    Rot { x: dice.signed(), y: dice.signed(), z: dice.signed(), w: dice.signed() + 1.5 }.normalized()
+}
+
+/// An angular velocity from dice, of any length.
+pub fn any_spin(dice: &mut Dice) -> Angular {
+    Vector { x: dice.signed(), y: dice.signed(), z: dice.signed() }
+}
+
+/// A hull of the given half extents: an octahedron.
+pub fn hull_of(half: Vector) -> Shape {
+    let points: Vec<_> = Vector::AXES.into_iter().flat_map(|a| [a.scale(half), a.scale(-half)]).collect();
+    Hull::convex_hull_of(&points).map_or(Shape::Cuboid(Cuboid { half }), |hull| Shape::Hull(Arc::new(hull)))
+}
+
+/// Unit axes about which a level plate can be tilted.
+pub fn tilts() -> Vec<Angular> {
+    let skew = Vector { x: 2.0, y: 1.0, z: 2.0 } * (1.0 / 3.0);
+    vec![Vector::X, Vector::Z, skew]
+}
+
+/// The axis upright on a level plate.
+pub fn upright() -> Option<Angular> {
+    Some(Vector::Y)
 }

@@ -1,9 +1,11 @@
 //! Tests of the kernel's parts working together, written once for both dimensions.
 
+mod carried;
 mod crowds;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod extreme;
 mod golden;
 #[cfg_attr(feature = "2d", path = "golden2.rs")]
 #[cfg_attr(feature = "3d", path = "golden3.rs")]
@@ -11,6 +13,11 @@ mod golden_dim;
 mod held;
 mod memory;
 mod physics;
+mod pushed;
 mod recycling;
+mod reload;
 mod sim;
+mod sound;
+#[cfg(feature = "3d")]
+mod spin;
 mod unrest;

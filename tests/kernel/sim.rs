@@ -9,7 +9,7 @@ use kernel::data::BitSet;
 use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
 use kernel::shape::{Ball, Cuboid, Shape};
-use kernel::solver::{BodyRow, Limits, MassRow, Motion, RowInput, Softness, Solver, SubstepParams};
+use kernel::solver::{BodyRow, BodyRows, Limits, MassRow, Motion, RowInput, Softness, Solver, SubstepParams};
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
     RestSpeed, Surface,
@@ -33,6 +33,14 @@ fn phase<'a>(
         recycle_distance: if recycle { 0.05 } else { 0.0 },
         match_points: true,
         narrow,
+    }
+}
+
+/// Writes a value at an index that is in the list or next.
+fn put<T>(list: &mut Vec<T>, id: u32, value: T) {
+    match list.get_mut(id as usize) {
+        Some(place) => *place = value,
+        None => list.push(value),
     }
 }
 
@@ -144,11 +152,11 @@ impl Sim {
         let pose = WorldPose::new(position.to_world(), rotation);
         let id = self.bodies.add(kind, mass.center, pose);
         self.bodies[id].rest_speed = RestSpeed { linear: 0.15, angular: 0.15 };
-        self.frames.push(pose);
+        put(&mut self.frames, id, pose);
         self.link().enter(id);
         let inverse = if mass.mass > 0.0 { 1.0 / mass.mass } else { 0.0 };
-        self.masses.push((inverse, inverse_inertia(&mass)));
-        self.locks.push(AxisLocks::NONE);
+        put(&mut self.masses, id, (inverse, inverse_inertia(&mass)));
+        put(&mut self.locks, id, AxisLocks::NONE);
         let surface = |coefficient| Surface { coefficient, rule: Combine::Average };
         let def = ColliderDef {
             shape,
@@ -170,7 +178,7 @@ impl Sim {
         self.colliders.refresh(id, &self.bodies, self.fattening());
         let aabb = self.colliders.fat[id as usize];
         let proxy = self.trees[tree].insert(id, aabb);
-        self.proxies.push((tree, proxy));
+        put(&mut self.proxies, id, (tree, proxy));
         self.movers.insert(Mover { id, kind: tree, mask: PairMask::solid(tree), aabb });
         id
     }
@@ -181,6 +189,25 @@ impl Sim {
 
     pub fn cuboid(&mut self, half: Vector, position: Vector) -> u32 {
         self.add(BodyKind::Dynamic, Shape::Cuboid(Cuboid { half }), position, Rot::IDENTITY)
+    }
+
+    /// Removes a body with its collider. The id may be given out again at once.
+    pub fn remove(&mut self, id: u32) {
+        self.link().destroy_of_collider(id);
+        let (kind, proxy) = self.proxies[id as usize];
+        self.trees[kind].remove(proxy);
+        let others: Vec<Mover> = self.movers.list().iter().filter(|mover| mover.id != id).copied().collect();
+        self.movers.clear();
+        others.into_iter().for_each(|mover| _ = self.movers.insert(mover));
+        self.colliders.remove(id, &mut self.bodies);
+        self.link().leave(id);
+        self.recycle_ids();
+    }
+
+    fn recycle_ids(&mut self) {
+        self.bodies.ids.recycle();
+        self.colliders.ids.recycle();
+        self.contacts.recycle_ids();
     }
 
     /// Gives a body the mass of a shape of density 1.
@@ -224,6 +251,26 @@ impl Sim {
         }
     }
 
+    /// Has rows built and a step solved from colours that may be another simulation's. Returns how many stages were shared,
+    /// and what became of the bodies' rows.
+    pub fn solve_colors_of(&mut self, other: &Self) -> (usize, Vec<BodyRow>) {
+        self.gather();
+        let params = self.params();
+        let input = RowInput { contacts: &self.contacts, bodies: &self.bodies };
+        self.solver.team.wake();
+        self.solver.build_rows(&input, &other.colors, &params);
+        let shared = self.solver.shared_stages();
+        (0..self.substeps).for_each(|_| self.solver.substep(&params));
+        self.solver.store_impulses(&mut self.contacts);
+        (shared, self.solver.bodies.rows.clone())
+    }
+
+    /// The rows of the bodies, to be filled.
+    pub fn rows(&mut self) -> &mut BodyRows {
+        self.gather();
+        &mut self.solver.bodies
+    }
+
     pub fn steps(&mut self, count: usize) {
         for _ in 0..count {
             self.step();
@@ -231,12 +278,13 @@ impl Sim {
     }
 
     pub fn step(&mut self) {
-        self.bodies.ids.recycle();
-        self.colliders.ids.recycle();
-        self.contacts.recycle_ids();
+        self.recycle_ids();
         self.gather();
         // Helpers come also where it does not pay.
         self.solver.team.wake();
+        let fattening = self.fattening();
+        self.colliders.refresh_pushed(&mut self.bodies, fattening, &mut self.outgrown);
+        self.move_outgrown();
         let mut found = FoundPairs::default();
         found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.solver.team);
         self.movers.clear();
@@ -311,6 +359,11 @@ impl Sim {
         let fattening = self.fattening();
         let Self { colliders, listed, bodies, solver, outgrown, .. } = self;
         colliders.refresh_listed(listed, bodies, fattening, &solver.team, outgrown);
+        self.move_outgrown();
+    }
+
+    fn move_outgrown(&mut self) {
+        let Self { outgrown, .. } = self;
         for id in outgrown.iter() {
             let (kind, proxy) = self.proxies[id as usize];
             let aabb = self.colliders.fat[id as usize];
@@ -322,9 +375,9 @@ impl Sim {
 
     fn sleep(&mut self) {
         let bodies = &self.bodies;
-        self.scan.scan(&self.islands, 0.5, |body| Some(bodies[body].sleep_timer));
-        if let Some(island) = self.scan.split() {
-            self.islands.split(island);
+        self.scan.scan(&mut self.islands, 0.5, |body| Some(bodies[body].sleep_timer));
+        for island in self.scan.splits() {
+            self.islands.split(*island);
         }
         for island in self.scan.sleepers().to_vec() {
             self.link().sleep_island(island);

@@ -6,19 +6,19 @@ use avian::prelude::*;
 pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0x6c2e4a04e7dbe439),
     ("pyramids", 0x888870d04d87832e),
-    ("tumbler", 0x8af45b7ebc464ee4),
+    ("tumbler", 0x3f9c0f5cebc2e3a5),
     ("dominoes", 0x32d104eef11a046e),
     ("card_house", 0xfb05f5bf417f986f),
     ("towers", 0xf7210e556bbf3a1d),
-    ("smash", 0x53f31d5ad93edf28),
+    ("smash", 0x0521470a968ae6e0),
     ("crowd", 0x97af27847daa3ae7),
-    ("sleepers", 0x4ddf5e53115f50aa),
-    ("bounces", 0x7e1c153dd018d486),
-    ("settings", 0x6a4dfed1c4bc129d),
+    ("sleepers", 0x02ebb3db6b76e847),
+    ("bounces", 0x6e9957ea06ca368c),
+    ("settings", 0xfd94d2dfd21655d2),
 ];
 
 /// The same for scenes with shapes of parry's.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x9efb3b8a13758898), ("slopes", 0xeffe19ef4eff022f)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x2aba55a7206580dc), ("slopes", 0xeffe19ef4eff022f)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 20;

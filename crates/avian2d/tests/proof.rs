@@ -22,6 +22,8 @@ mod mission;
 mod mission_dim;
 #[path = "../../../tests/proof/motion.rs"]
 mod motion;
+#[path = "../../../tests/proof/pushed.rs"]
+mod pushed;
 #[path = "../../../tests/proof/sleep.rs"]
 mod sleep;
 #[path = "../../../tests/proof/stacks.rs"]

@@ -1,4 +1,16 @@
-//! What comes and goes in avian3d; the file is shared with avian2d.
+//! What comes and goes in avian3d; the files are shared with avian2d.
 
 #[path = "../../../tests/lifecycle.rs"]
 mod lifecycle;
+#[path = "../../../tests/paused.rs"]
+mod paused;
+#[path = "../../../tests/rates.rs"]
+mod rates;
+#[path = "../../../tests/reload.rs"]
+mod reload;
+#[path = "../../../tests/rest.rs"]
+mod rest;
+#[path = "../../../tests/spawn.rs"]
+mod spawn;
+#[path = "../../../tests/within.rs"]
+mod within;

@@ -22,6 +22,8 @@ mod mission;
 mod mission_dim;
 #[path = "../../../tests/proof/motion.rs"]
 mod motion;
+#[path = "../../../tests/proof/pushed.rs"]
+mod pushed;
 #[expect(dead_code, reason = "the README's example is to compile; it would not end")]
 #[path = "../../../examples/examples3d/examples/readme.rs"]
 mod readme;

@@ -53,8 +53,7 @@ struct SharedBroadPhasePlugin;
 impl Plugin for SharedBroadPhasePlugin {
     fn build(&self, app: &mut App) {
         step::install(app);
-        app.init_resource::<PairSearch>()
-            .init_resource::<CollisionDiagnostics>()
-            .add_systems(PhysicsSchedule, find_new_pairs.in_set(Stage::FindPairs));
+        app.init_resource::<PairSearch>().init_resource::<CollisionDiagnostics>();
+        step::add_systems(app, PhysicsSchedule, find_new_pairs.in_set(Stage::FindPairs));
     }
 }

@@ -15,13 +15,15 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 #[derive(Reflect, Clone, Copy, Component, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Debug, Component, Default, PartialEq)]
+#[reflect(type_path = false, Debug, Component, Default, PartialEq)]
 pub struct ColliderAabb {
     /// The lower corner.
     pub min: Vector,
     /// The upper corner.
     pub max: Vector,
 }
+
+crate::type_path::type_path!(ColliderAabb, "collision::collider");
 
 impl Default for ColliderAabb {
     fn default() -> Self {
@@ -100,8 +102,10 @@ impl ColliderAabb {
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Debug, Component, Default, PartialEq)]
+#[reflect(type_path = false, Debug, Component, Default, PartialEq)]
 pub struct EnlargedAabb(ColliderAabb);
+
+crate::type_path::type_path!(EnlargedAabb, "collision::collider");
 
 impl EnlargedAabb {
     /// The given box, as it is.

@@ -2,21 +2,25 @@
 
 use super::{
     AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, ScalableCollider, Sensor,
+    collider_hierarchy::ColliderOf,
 };
 use crate::dynamics::ids::ColliderId;
 use crate::dynamics::rigid_body::mass_properties::{
     MassPropertyQueue, MassPropertySystems,
     components::{ColliderDensity, ColliderMassProperties},
 };
+use crate::physics_transform::tree::FollowsBody;
 use crate::scan::Since;
 use crate::schedule::OnThisThread;
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::change_detection::{DetectChanges, DetectChangesMut};
+use bevy_ecs::entity_disabling::Disabled;
 use bevy_ecs::intern::Interned;
-use bevy_ecs::lifecycle::RemovedComponents;
-use bevy_ecs::prelude::{Entity, IntoScheduleConfigs, Query, Ref, Without};
+use bevy_ecs::prelude::{
+    Add, Allow, Commands, Entity, IntoScheduleConfigs, On, Query, Ref, Remove, With, Without, World,
+};
 use bevy_ecs::schedule::ScheduleLabel;
-use bevy_ecs::system::SystemChangeTick;
+use bevy_ecs::system::{SystemChangeTick, SystemParam};
 use core::marker::PhantomData;
 
 /// Makes components of type `C` colliders: gives them the components every collider has, and keeps
@@ -54,24 +58,80 @@ impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
         let _ = app.try_register_required_components::<C, ColliderMassProperties>();
         let _ = app.try_register_required_components::<C, ColliderId>();
 
-        app.add_systems(
-            self.schedule,
-            update_collider_mass_properties::<C>.in_set(MassPropertySystems::UpdateColliderMassProperties),
-        );
+        app.add_observer(weigh_added::<C>)
+            .add_observer(weigh_former_sensor::<C>)
+            .add_observer(strip::<C>)
+            .add_systems(
+                self.schedule,
+                update_collider_mass_properties::<C>
+                    .in_set(MassPropertySystems::UpdateColliderMassProperties),
+            );
     }
 }
 
-/// Recomputes [`ColliderMassProperties`] where the collider or its density changed, or where it ceased to
-/// be a sensor. Those of sensors are left as they are.
+/// Computes mass properties of colliders, and has their bodies weighed.
+#[derive(SystemParam)]
+pub struct ColliderScales<'w, 's, C: AnyCollider> {
+    colliders: Query<
+        'w,
+        's,
+        (&'static C, &'static ColliderDensity, &'static mut ColliderMassProperties),
+        Allow<Disabled>,
+    >,
+    queue: MassPropertyQueue<'w, 's>,
+}
+
+impl<C: AnyCollider> ColliderScales<'_, '_, C> {
+    fn weigh(&mut self, entity: Entity) {
+        let Ok((collider, density, mut properties)) = self.colliders.get_mut(entity) else { return };
+        // Masses of NaN or below zero would reach the solver through sums: no mass is the safe reading.
+        let density = if density.0.is_finite() && density.0 > 0.0 { density.0 } else { 0.0 };
+        if properties.set_if_neq(ColliderMassProperties::from_shape(collider, density)) {
+            self.queue.push(entity);
+        }
+    }
+}
+
+/// Weighs a new collider before its body is: insertions are told of after all additions.
+fn weigh_added<C: AnyCollider>(
+    added: On<Add, C>,
+    sensors: Query<(), With<Sensor>>,
+    mut scales: ColliderScales<C>,
+) {
+    if !sensors.contains(added.entity) {
+        scales.weigh(added.entity);
+    }
+}
+
+/// Takes what the engine added to a collider away with it.
+fn strip<C: AnyCollider>(removed: On<Remove, C>, mut queue: MassPropertyQueue, mut commands: Commands) {
+    let former = removed.entity;
+    queue.push(former);
+    commands.queue(move |world: &mut World| {
+        if let Ok(mut entity) = world.get_entity_mut(former)
+            && !entity.contains::<C>()
+        {
+            entity.remove::<(ColliderOf, FollowsBody)>();
+            let Ok(mut entity) = world.get_entity_mut(former) else { return };
+            entity.remove::<(ColliderMarker, ColliderAabb, EnlargedAabb, ColliderMassProperties)>();
+        }
+    });
+}
+
+/// What ceases to be a sensor weighs something.
+fn weigh_former_sensor<C: AnyCollider>(former: On<Remove, Sensor>, mut scales: ColliderScales<C>) {
+    scales.weigh(former.entity);
+}
+
+/// Recomputes [`ColliderMassProperties`] where the collider or its density changed in place. Those of sensors are
+/// left as they are.
 pub fn update_collider_mass_properties<C: AnyCollider>(
     all: Query<(Entity, Ref<C>, Ref<ColliderDensity>), Without<Sensor>>,
-    mut former_sensors: RemovedComponents<Sensor>,
-    mut colliders: Query<(&C, &ColliderDensity, &mut ColliderMassProperties), Without<Sensor>>,
-    mut queue: MassPropertyQueue,
+    mut scales: ColliderScales<C>,
     system: SystemChangeTick,
     _: OnThisThread,
 ) {
-    let mut changed: Vec<Entity> = former_sensors.read().collect();
+    let mut changed: Vec<Entity> = Vec::new();
     let since = Since::last_run(system);
     if let Ok(tables) = all.contiguous_iter() {
         for (entities, shape, density) in tables {
@@ -85,16 +145,7 @@ pub fn update_collider_mass_properties<C: AnyCollider>(
         };
         changed.extend(all.iter().filter(is_new).map(|(entity, ..)| entity));
     }
-    for entity in changed {
-        let Ok((collider, density, mut properties)) = colliders.get_mut(entity) else {
-            continue;
-        };
-        // Masses of NaN or below zero would reach the solver through sums: no mass is the safe reading.
-        let density = if density.0.is_finite() && density.0 > 0.0 { density.0 } else { 0.0 };
-        if properties.set_if_neq(ColliderMassProperties::from_shape(collider, density)) {
-            queue.push(entity);
-        }
-    }
+    changed.into_iter().for_each(|entity| scales.weigh(entity));
 }
 
 #[cfg(all(test, feature = "default-collider"))]

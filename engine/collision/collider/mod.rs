@@ -36,8 +36,10 @@ use derive_more::From;
 #[derive(Reflect, Component, Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Debug, Component, Default)]
+#[reflect(type_path = false, Debug, Component, Default)]
 pub struct ColliderMarker;
+
+crate::type_path::type_path!(ColliderMarker, "collision::collider::backend");
 
 /// Takes a collider out of the simulation: no contacts, no queries, no mass.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default)]

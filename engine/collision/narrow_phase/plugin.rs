@@ -12,7 +12,7 @@ use crate::{
         diagnostics::{CollisionDiagnostics, reset_collision},
     },
     dynamics::{
-        materials::refresh_surfaces,
+        materials::{refresh_surfaces, watch_surfaces},
         rigid_body::{DefaultFriction, DefaultRestitution},
         solver::config::PhysicsLengthUnit,
     },
@@ -66,7 +66,9 @@ impl Plugin for SharedNarrowPhasePlugin {
             .init_resource::<PhysicsLengthUnit>()
             .insert_resource(ContactResponse(self.generate_constraints));
         step::install(app);
-        app.add_systems(
+        watch_surfaces(app);
+        step::add_systems(
+            app,
             self.schedule,
             (
                 reset_collision.in_set(Stage::ResetDiagnostics),

@@ -11,13 +11,15 @@ use crate::math::Scalar;
 
 /// How fast a body turns, in rad/s, counter-clockwise.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
-#[reflect(Component, Debug, Default, PartialEq)]
+#[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serialize",
     derive(serde::Serialize, serde::Deserialize),
     reflect(Serialize, Deserialize)
 )]
 pub struct AngularVelocity(pub Scalar);
+
+crate::type_path::type_path!(AngularVelocity, "dynamics::rigid_body");
 
 impl AngularVelocity {
     /// Not turning.

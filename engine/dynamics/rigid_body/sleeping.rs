@@ -57,7 +57,8 @@ impl Default for SleepThreshold {
 #[deprecated(since = "0.4.0", note = "renamed to `SleepThreshold`")]
 pub type SleepingThreshold = SleepThreshold;
 
-/// How long a body has rested without a break, in seconds.
+/// How long a body has rested without a break, in seconds. Kept by the engine for bodies that are awake; setting it,
+/// to 0 for instance, is as if the body had rested that long.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(

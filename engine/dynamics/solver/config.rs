@@ -28,8 +28,10 @@ use crate::{
 /// App::new().add_plugins((TransformPlugin, PhysicsPlugins::default().with_length_unit(100.0)));
 /// ```
 #[derive(Resource, Clone, Debug, Deref, DerefMut, PartialEq, Reflect)]
-#[reflect(Resource, Default, Debug, PartialEq)]
+#[reflect(type_path = false, Resource, Default, Debug, PartialEq)]
 pub struct PhysicsLengthUnit(pub Scalar);
+
+crate::type_path::type_path!(PhysicsLengthUnit, "dynamics::solver::plugin");
 
 impl Default for PhysicsLengthUnit {
     fn default() -> Self {
@@ -61,7 +63,7 @@ impl PhysicsLengthUnit {
 
 /// How stiff, how fast and how bouncy contacts are. "LU" is [`PhysicsLengthUnit`].
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
-#[reflect(Resource, Default, Debug, PartialEq)]
+#[reflect(type_path = false, Resource, Default, Debug, PartialEq)]
 pub struct SolverConfig {
     /// The damping ratio ζ of overlap recovery; 10 by default. Above 1 overlap creeps out without bouncing; lower is springier.
     pub contact_damping_ratio: Scalar,
@@ -76,6 +78,8 @@ pub struct SolverConfig {
     /// How often restitution is applied per step; 1 by default. More spreads a bounce farther through touching bodies.
     pub restitution_iterations: usize,
 }
+
+crate::type_path::type_path!(SolverConfig, "dynamics::solver::plugin");
 
 impl Default for SolverConfig {
     fn default() -> Self {
@@ -92,13 +96,15 @@ impl Default for SolverConfig {
 
 /// How softly contacts push, recomputed from [`SolverConfig`] and the timestep before every solve.
 #[derive(Resource, Clone, Copy, PartialEq, Reflect)]
-#[reflect(Resource, Default, PartialEq)]
+#[reflect(type_path = false, Resource, Default, PartialEq)]
 pub struct ContactSoftnessCoefficients {
     /// For contacts between dynamic bodies.
     pub dynamic: SoftnessCoefficients,
     /// For contacts of a dynamic body with a static or kinematic one: twice as stiff, so that the ground wins over the pile on it.
     pub non_dynamic: SoftnessCoefficients,
 }
+
+crate::type_path::type_path!(ContactSoftnessCoefficients, "dynamics::solver::plugin");
 
 impl Default for ContactSoftnessCoefficients {
     fn default() -> Self {

@@ -17,7 +17,7 @@ use crate::{
             AngularDamping, AngularVelocity, Dominance, GravityScale, LinearDamping, LinearVelocity,
             LockedAxes, MaxAngularSpeed, MaxLinearSpeed, RigidBodyDisabled,
             mass_properties::components::{ComputedAngularInertia, ComputedCenterOfMass, ComputedMass},
-            sleeping::{SleepThreshold, SleepingDisabled},
+            sleeping::{SleepThreshold, SleepTimer, SleepingDisabled},
         },
         solver::{config::PhysicsLengthUnit, diagnostics::SolverDiagnostics, substeps::StepSolver},
         tables::{Bodies, Tables, is_minority},
@@ -287,8 +287,8 @@ pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
     tables.bodies.ids = ids;
 }
 
-/// What says when a body counts as at rest.
-type RestInput = (Option<&'static SleepThreshold>, Has<SleepingDisabled>);
+/// What says when a body counts as at rest, and for how long it has been.
+type RestInput = (Option<&'static SleepThreshold>, Has<SleepingDisabled>, Option<Ref<'static, SleepTimer>>);
 
 /// Reads pose and velocity of every awake body, before anything is computed from them, and what counts as at rest.
 pub(crate) fn read_awake(
@@ -296,8 +296,11 @@ pub(crate) fn read_awake(
     unit: Res<PhysicsLengthUnit>,
     mut tables: Tables,
     mut commands: Commands,
+    system: SystemChangeTick,
 ) {
     let unit = unit.metres();
+    let written = tables.bodies.written;
+    tables.bodies.read = system.this_run();
     let mut some = core::mem::take(&mut tables.bodies.some);
     let Bodies { table, entities, .. } = &*tables.bodies;
     let minority = is_minority(table.awake_count(), [query.iter().size_hint()]);
@@ -306,12 +309,23 @@ pub(crate) fn read_awake(
         let awake = table.awake_kinematic().chain(table.awake_dynamic());
         some.extend(awake.map(|id| entities[id as usize]));
     }
-    let read = |(entity, body, (threshold, sleepless)): (Entity, StateInputItem, _)| {
+    let read = |(entity, body, (threshold, sleepless, timer)): (
+        Entity,
+        StateInputItem,
+        (_, _, Option<Ref<SleepTimer>>),
+    )| {
         let id = body.id.0;
         if id == NONE || !tables.bodies.table[id].awake {
             return;
         }
         tables.bodies.table[id].rest_speed = rest_speed(threshold, sleepless, unit);
+        if let Some(timer) = timer
+            && timer.is_changed()
+            && timer.last_changed() != written
+        {
+            // NaN counts as no rest.
+            tables.bodies.table[id].sleep_timer = max(timer.0, 0.0);
+        }
         let change = read_in(entity, &body, &mut tables, &mut commands);
         if change.moved {
             tables.link().wake_touching(id);
@@ -402,7 +416,8 @@ impl Gather {
         if row == 0 {
             return false;
         }
-        // The velocity may have been changed since it was read; the pose counts from the next step on.
+        // The velocity may have been changed since it was read; the pose counts from the next step on: see
+        // `note_moved_within`.
         let Velocity { linear, angular } = velocity(body.linear_velocity, body.angular_velocity);
         let finite = linear.is_finite() && angular.is_finite();
         if !finite {

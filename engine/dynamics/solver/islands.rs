@@ -7,7 +7,10 @@ use bevy_ecs::prelude::*;
 
 use crate::{
     dynamics::{
-        rigid_body::sleeping::TimeToSleep,
+        rigid_body::{
+            RigidBody,
+            sleeping::{SleepThreshold, SleepTimer, TimeToSleep},
+        },
         sleep::{follow_requests, mirror_sleeping, sleep_islands, watch_sleeping},
         tables::PhysicsIslands,
     },
@@ -32,7 +35,11 @@ impl Plugin for IslandSleepingPlugin {
         step::install(app);
         watch_sleeping(app);
         app.init_resource::<TimeToSleep>();
-        app.add_systems(
+        // Each fails only where the requirement is there already.
+        let _ = app.try_register_required_components::<RigidBody, SleepThreshold>();
+        let _ = app.try_register_required_components::<RigidBody, SleepTimer>();
+        step::add_systems(
+            app,
             PhysicsSchedule,
             (
                 follow_requests.in_set(Stage::FollowSleep),

@@ -77,7 +77,8 @@ impl Plugin for SolverPlugin {
         app.init_resource::<SolverDiagnostics>();
         step::install(app);
         step::substep::add_contacts(app);
-        app.add_systems(
+        step::add_systems(
+            app,
             PhysicsSchedule,
             (
                 reset_solver.in_set(Stage::ResetDiagnostics),

@@ -1,10 +1,15 @@
 //! From rows back to components, and which bodies have come to rest.
 
-use bevy_ecs::{change_detection::ContiguousMut, prelude::*, system::SystemChangeTick};
+use bevy_ecs::{
+    change_detection::ContiguousMut,
+    prelude::*,
+    system::{SystemChangeTick, SystemParam},
+};
 use bevy_time::Time;
 use kernel::{
+    math::WorldPose,
     solver::{BodyRows, Solver},
-    table::NONE,
+    table::{BodyPose, NONE},
 };
 
 use crate::{
@@ -12,14 +17,14 @@ use crate::{
     dynamics::{
         ids::BodyId,
         integrator::CustomPositionIntegration,
-        quarantine::quarantine,
+        quarantine::{is_finite, quarantine},
         rigid_body::{AngularVelocity, LinearVelocity, RigidBodyDisabled, sleeping::SleepTimer},
         solver::{diagnostics::SolverDiagnostics, substeps::StepSolver},
         tables::{Bodies, is_minority},
     },
     math::{angular_from_kernel, vector_from_kernel},
-    physics_transform::{Position, Rotation, pose_from_kernel},
-    scan::IN_TABLES,
+    physics_transform::{Position, Rotation, pose_from_kernel, said_pose, world_pose},
+    scan::{IN_TABLES, Since},
     schedule::Physics,
 };
 
@@ -32,6 +37,87 @@ type Output = (
     &'static mut AngularVelocity,
     Option<&'static mut SleepTimer>,
 );
+
+/// What says whether the app put a body elsewhere.
+type Watched = (Entity, Ref<'static, Position>, Ref<'static, Rotation>);
+
+/// What the search for poses that the app changed within the step reads.
+#[derive(SystemParam)]
+pub(crate) struct MovedWithin<'w, 's> {
+    watched: Query<'w, 's, Watched, With<BodyId>>,
+    ids: Query<'w, 's, &'static BodyId>,
+    bodies: ResMut<'w, Bodies>,
+}
+
+impl MovedWithin<'_, '_> {
+    /// Notes the bodies with a row whose pose was changed since a tick, if `differs` holds for the pose the components
+    /// had last and the one they have now.
+    fn note(&mut self, since: Since, differs: impl Fn(&WorldPose, &WorldPose) -> bool) {
+        let Bodies { table, seen, entities, listed, moved_within, .. } = &mut *self.bodies;
+        let mut note = |entity: Entity, position: Position, rotation: Rotation| {
+            let id = self.ids.get(entity).map_or(NONE, |id| id.0);
+            let said = said_pose(&position, &rotation);
+            if id != NONE && table.row(id) != 0 && differs(&seen[id as usize], &said) {
+                moved_within.push((id, position, rotation));
+            }
+        };
+        if is_minority(listed.len(), [self.watched.iter().size_hint()]) {
+            let some = listed.iter().map(|id| entities[*id as usize]);
+            for (entity, position, rotation) in self.watched.iter_many(some) {
+                if since.is_new(position.last_changed()) || since.is_new(rotation.last_changed()) {
+                    note(entity, *position, *rotation);
+                }
+            }
+            return;
+        }
+        for (entities, position, rotation) in self.watched.contiguous_iter().expect(IN_TABLES) {
+            let columns = [position.changed_ticks_slice(), rotation.changed_ticks_slice()];
+            since.rows(columns, |row| note(entities[row], position[row], rotation[row]));
+        }
+    }
+}
+
+/// Notes the awake bodies whose pose the app changed since poses were read for this step.
+pub(crate) fn note_moved_within(mut moved: MovedWithin, system: SystemChangeTick) {
+    moved.bodies.moved_within.clear();
+    let since = Since::new(moved.bodies.read, system);
+    moved.note(since, |seen, said| seen != said);
+    moved.bodies.read = system.this_run();
+}
+
+/// Notes those that it changed while bodies were finished. What they last said is not known any more.
+pub(crate) fn note_moved_late(mut moved: MovedWithin, system: SystemChangeTick) {
+    let since = Since::new(moved.bodies.read, system);
+    moved.note(since, |_, _| true);
+}
+
+/// Puts the bodies that the app put elsewhere within the step where it did, and on from there by what they moved in
+/// the step. The tables keep what they would have come to: the difference counts from the next step on, as any other
+/// that the app makes.
+pub(crate) fn keep_moved_within(
+    mut poses: Query<(&mut Position, &mut Rotation)>,
+    solver: Res<StepSolver>,
+    mut bodies: ResMut<Bodies>,
+) {
+    let Bodies { table, entities, moved_within, .. } = &mut *bodies;
+    for (id, position, rotation) in moved_within.drain(..) {
+        let row = table.row(id);
+        let body = &solver.kernel.bodies.rows[row as usize];
+        let Ok(mut pose) = poses.get_mut(entities[id as usize]) else { continue };
+        let from = world_pose(&position, &rotation);
+        let (way, turn) = body.delta();
+        let center = from.transform(table[id].local_center) + way.to_world();
+        let moved =
+            BodyPose { center, rotation: turn.mul(from.rotation).renormalized(), ..Default::default() };
+        let moved = moved.frame(table[id].local_center);
+        // What is not finite is left for the next step to refuse.
+        let (position, rotation) =
+            if body.is_moved() && is_finite(&moved) { pose_from_kernel(moved) } else { (position, rotation) };
+        pose.0.set_if_neq(position);
+        pose.1.set_if_neq(rotation);
+        table[id].sleep_timer = 0.0;
+    }
+}
 
 /// Folds each awake body's motion into its pose, and notes for how long it has been at rest.
 ///

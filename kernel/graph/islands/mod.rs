@@ -2,11 +2,13 @@
 //! sleep and wake together.
 
 mod split;
+mod validate;
 
 use super::union_find::DisjointSets;
+use crate::data::IdPool;
 
 /// The name of an island, valid until it is merged away or loses its last body; reused after that.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct IslandId(pub u32);
 
 /// The caller's name of a link: a contact or joint between two dynamic bodies.
@@ -23,11 +25,22 @@ pub struct Link {
     pub key: LinkId,
     /// One body.
     pub a: u32,
-    /// The other body.
+    /// The other body; `u32::MAX` for a [carrier](Islands::link_carrier).
     pub b: u32,
 }
 
-/// Stands for "in no island" and "not in the awake list".
+impl Link {
+    fn is_to_carrier(&self) -> bool {
+        self.b == NONE
+    }
+
+    /// The bodies in islands that it holds.
+    fn ends(&self) -> impl Iterator<Item = u32> {
+        [self.a, self.b].into_iter().filter(|body| *body != NONE)
+    }
+}
+
+/// Stands for "in no island", "not in the awake list" and "no body".
 const NONE: u32 = u32::MAX;
 
 /// Where a body or link lies: an island and the index in its list.
@@ -39,6 +52,18 @@ struct Place {
 
 const NOWHERE: Place = Place { island: NONE, index: NONE };
 
+/// What is kept of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Member {
+    place: Place,
+    /// How many links it has.
+    links: u32,
+}
+
+impl Member {
+    const NOBODY: Self = Self { place: NOWHERE, links: 0 };
+}
+
 /// A slot for an island; a free one has no bodies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Island {
@@ -48,6 +73,15 @@ struct Island {
     removed: u32,
     /// Index in the awake list, `NONE` if asleep.
     awake: u32,
+    /// How many of its links are to carriers.
+    carriers: u32,
+    /// Whether its bodies are to rest anew.
+    is_woken: bool,
+}
+
+impl Island {
+    const EMPTY: Self =
+        Self { bodies: Vec::new(), links: Vec::new(), removed: 0, awake: NONE, carriers: 0, is_woken: false };
 }
 
 /// One of the connected parts an island fell into.
@@ -81,23 +115,29 @@ struct Scratch {
 /// island is awake or asleep as a whole; to put bodies and contacts to sleep, and to wake them, is up to
 /// the caller.
 ///
-/// Everything follows from the sequence of calls. Freed ids are reused last in, first out, with their
-/// memory: large buffers stay at the top of the stack, and a steady state allocates nothing.
+/// Everything follows from the sequence of calls. The lowest free id is reused first, so that ids follow from the
+/// islands there are; buffers are reused last in, first out: a steady state allocates nothing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Islands {
     islands: Vec<Island>,
-    free: Vec<u32>,
+    ids: IdPool,
+    /// The emptied buffers of former islands.
+    spare: Vec<(Vec<u32>, Vec<Link>)>,
     awake: Vec<IslandId>,
     /// By body id.
-    body_places: Vec<Place>,
+    members: Vec<Member>,
     /// By link id.
     link_places: Vec<Place>,
+    /// Whether an island may be marked as woken.
+    any_woken: bool,
+    /// The id from which on islands are next split.
+    split_turn: IslandId,
     scratch: Scratch,
 }
 
 impl Islands {
     /// How many bytes are kept of each body here, besides its island's share.
-    pub const BYTES_PER_BODY: usize = size_of::<Place>() + size_of::<u32>();
+    pub const BYTES_PER_BODY: usize = size_of::<Member>() + size_of::<u32>();
     /// How many bytes are kept of each link here.
     pub const BYTES_PER_LINK: usize = size_of::<Place>() + size_of::<Link>();
 
@@ -119,18 +159,20 @@ impl Islands {
 
     /// Takes a body out; its links must have been unlinked before. An unknown body is ignored.
     pub fn remove_body(&mut self, body: u32) {
-        let place = place_in(&self.body_places, body);
-        let Some(island) = self.islands.get_mut(place.island as usize) else { return };
-        while let Some(link) = island.links.iter().find(|link| link.a == body || link.b == body) {
+        let Some(place) = self.place(body) else { return };
+        while self.members[body as usize].links > 0 {
+            let island = &self.islands[place.island as usize];
+            count_visits(island.links.len());
+            let link = *island.links.iter().find(|link| link.a == body || link.b == body).expect(LISTED);
             debug_assert!(false, "{link:?} must be unlinked before its body is removed");
-            let place = std::mem::replace(&mut self.link_places[link.key.0 as usize], NOWHERE);
-            remove_link(island, &mut self.link_places, place.index);
+            self.unlink(link.key);
         }
+        self.members[body as usize] = Member::NOBODY;
+        let island = &mut self.islands[place.island as usize];
         island.bodies.swap_remove(place.index as usize);
         if let Some(moved) = island.bodies.get(place.index as usize) {
-            self.body_places[*moved as usize].index = place.index;
+            self.members[*moved as usize].place.index = place.index;
         }
-        self.body_places[body as usize] = NOWHERE;
         if island.bodies.is_empty() {
             self.destroy(place.island);
         }
@@ -153,16 +195,33 @@ impl Islands {
         };
         let island = if island_a == island_b { island_a } else { self.merge(island_a, island_b) };
         self.push_link(island.0, Link { key, a, b });
+        for body in [a, b] {
+            self.members[body as usize].links += 1;
+        }
         Some(island)
     }
 
-    /// Removes a link. The island stays whole until it is [split](Self::split). Returns whether the key
+    /// Links a body to something that moves it without being in an island, as a lift does. Such a link holds nothing
+    /// together; it is counted, and stays with its body whatever island that comes to.
+    pub fn link_carrier(&mut self, key: LinkId, body: u32) {
+        if self.is_linked(key) {
+            debug_assert!(false, "{key:?} is linked twice");
+        } else if let Some(island) = self.island_of(body) {
+            self.push_link(island.0, Link { key, a: body, b: NONE });
+            self.members[body as usize].links += 1;
+        }
+    }
+
+    /// Removes a link. An island that it held together stays whole until it is [split](Self::split). Returns whether the key
     /// was linked.
     pub fn unlink(&mut self, key: LinkId) -> bool {
         let place = place_in(&self.link_places, key.0);
         let Some(island) = self.islands.get_mut(place.island as usize) else { return false };
         self.link_places[key.0 as usize] = NOWHERE;
-        remove_link(island, &mut self.link_places, place.index);
+        let link = remove_link(island, &mut self.link_places, place.index);
+        for body in link.ends() {
+            self.members[body as usize].links -= 1;
+        }
         true
     }
 
@@ -173,13 +232,18 @@ impl Islands {
 
     /// The island of a body, `None` if the body was not added.
     pub fn island_of(&self, body: u32) -> Option<IslandId> {
-        let place = place_in(&self.body_places, body);
-        (place != NOWHERE).then_some(IslandId(place.island))
+        self.place(body).map(|place| IslandId(place.island))
+    }
+
+    fn place(&self, body: u32) -> Option<Place> {
+        self.members.get(body as usize).map(|member| member.place).filter(|place| *place != NOWHERE)
     }
 
     /// The bodies of an island in an order that follows from the calls; none if there is no such island.
     pub fn bodies(&self, island: IslandId) -> &[u32] {
-        self.get(island).map_or(&[], |island| &island.bodies)
+        let bodies: &[u32] = self.get(island).map_or(&[], |island| &island.bodies);
+        count_visits(bodies.len());
+        bodies
     }
 
     /// The links between the bodies of an island.
@@ -199,10 +263,53 @@ impl Islands {
 
     /// Puts an island to sleep or wakes it. New islands are awake.
     pub fn set_asleep(&mut self, island: IslandId, asleep: bool) {
-        if self.bodies(island).is_empty() || self.is_asleep(island) == asleep {
+        if self.get(island).is_none() || self.is_asleep(island) == asleep {
             return;
         }
         if asleep { self.drop_from_awake(island.0) } else { self.add_to_awake(island.0) }
+    }
+
+    /// Notes that the bodies of an awake island are to rest anew, all of them, whatever it costs to visit them: that is
+    /// left to [`drain_woken`](Self::drain_woken), once for all notes since. An island that merges with a woken one is
+    /// woken as well. Nothing for a sleeping island.
+    pub fn mark_woken(&mut self, island: IslandId) {
+        if let Some(island) = self.islands.get_mut(island.0 as usize).filter(|island| island.awake != NONE) {
+            island.is_woken = true;
+            self.any_woken = true;
+        }
+    }
+
+    /// Whether the bodies of an island are still to rest anew: so it must not fall asleep.
+    pub fn is_woken(&self, island: IslandId) -> bool {
+        self.get(island).is_some_and(|island| island.is_woken)
+    }
+
+    /// Hands over the bodies of all islands that were [marked](Self::mark_woken), and takes the marks away.
+    pub fn drain_woken(&mut self, mut rest_anew: impl FnMut(u32)) {
+        if !std::mem::take(&mut self.any_woken) {
+            return;
+        }
+        for id in &self.awake {
+            let island = &mut self.islands[id.0 as usize];
+            if std::mem::take(&mut island.is_woken) {
+                count_visits(island.bodies.len());
+                island.bodies.iter().for_each(|body| rest_anew(*body));
+            }
+        }
+    }
+
+    /// How many links to [carriers](Self::link_carrier) an island has.
+    pub fn carriers(&self, island: IslandId) -> u32 {
+        self.get(island).map_or(0, |island| island.carriers)
+    }
+
+    /// The lowest id that an island may have to be the next that is split, whatever its size.
+    pub(super) fn split_turn(&self) -> IslandId {
+        self.split_turn
+    }
+
+    pub(super) fn set_split_turn(&mut self, island: IslandId) {
+        self.split_turn = island;
     }
 
     /// The awake islands, in an order that follows from the calls.
@@ -219,7 +326,7 @@ impl Islands {
 
     /// The number of islands.
     pub fn len(&self) -> usize {
-        self.islands.len() - self.free.len()
+        self.ids.len()
     }
 
     /// Whether there are no islands, hence no bodies.
@@ -228,7 +335,8 @@ impl Islands {
     }
 
     fn merge(&mut self, a: IslandId, b: IslandId) -> IslandId {
-        let (sizes, low_first) = ((self.bodies(a).len(), self.bodies(b).len()), a < b);
+        let size = |island: IslandId| self.get(island).map_or(0, |island| island.bodies.len());
+        let (sizes, low_first) = ((size(a), size(b)), a < b);
         let a_is_large = sizes.0 > sizes.1 || (sizes.0 == sizes.1 && low_first);
         let (large, small) = if a_is_large { (a, b) } else { (b, a) };
         debug_assert!(
@@ -238,16 +346,18 @@ impl Islands {
         if !self.is_asleep(small) {
             self.set_asleep(large, false);
         }
-        // The buffers go back to the freed slot, empty, to be used again.
+        // The buffers go back, empty, to be used again.
         let mut links = std::mem::take(&mut self.islands[small.0 as usize].links);
         links.drain(..).for_each(|link| self.push_link(large.0, link));
         let mut bodies = std::mem::take(&mut self.islands[small.0 as usize].bodies);
         bodies.drain(..).for_each(|body| self.push_body(large.0, body));
         let slot = &mut self.islands[small.0 as usize];
         (slot.links, slot.bodies) = (links, bodies);
-        let removed = slot.removed;
-        let sum = &mut self.islands[large.0 as usize].removed;
-        *sum = sum.saturating_add(removed);
+        let Island { removed, is_woken, .. } = *slot;
+        let sum = &mut self.islands[large.0 as usize];
+        sum.removed = sum.removed.saturating_add(removed);
+        // It rests as long as its least rested body, so it makes no difference that all rest anew.
+        sum.is_woken |= is_woken;
         self.destroy(small.0);
         large
     }
@@ -258,10 +368,13 @@ impl Islands {
 
     /// An island without bodies; the caller adds the first one.
     fn create(&mut self, awake: bool) -> u32 {
-        let id = self.free.pop().unwrap_or_else(|| {
-            self.islands.push(Island { bodies: Vec::new(), links: Vec::new(), removed: 0, awake: NONE });
-            self.islands.len() as u32 - 1
-        });
+        let id = self.ids.allocate();
+        let (bodies, links) = self.spare.pop().unwrap_or_default();
+        let island = Island { bodies, links, ..Island::EMPTY };
+        match self.islands.get_mut(id as usize) {
+            Some(slot) => *slot = island,
+            None => self.islands.push(island),
+        }
         if awake {
             self.add_to_awake(id);
         }
@@ -271,8 +384,14 @@ impl Islands {
     /// Gives back the slot of an island that has lost all bodies and links.
     fn destroy(&mut self, island: u32) {
         self.drop_from_awake(island);
-        self.islands[island as usize].removed = 0;
-        self.free.push(island);
+        let slot = &mut self.islands[island as usize];
+        (slot.removed, slot.carriers) = (0, 0);
+        self.spare.push((core::mem::take(&mut slot.bodies), core::mem::take(&mut slot.links)));
+        self.ids.free(island);
+        self.ids.recycle();
+        if self.ids.is_empty() {
+            self.split_turn = IslandId::default();
+        }
     }
 
     fn add_to_awake(&mut self, island: u32) {
@@ -281,7 +400,9 @@ impl Islands {
     }
 
     fn drop_from_awake(&mut self, island: u32) {
-        let index = std::mem::replace(&mut self.islands[island as usize].awake, NONE);
+        let slot = &mut self.islands[island as usize];
+        slot.is_woken = false;
+        let index = std::mem::replace(&mut slot.awake, NONE);
         if index != NONE {
             self.awake.swap_remove(index as usize);
             if let Some(moved) = self.awake.get(index as usize) {
@@ -292,71 +413,22 @@ impl Islands {
 
     fn push_body(&mut self, island: u32, body: u32) {
         let list = &mut self.islands[island as usize].bodies;
-        set_place(&mut self.body_places, body, Place { island, index: list.len() as u32 });
+        if self.members.len() <= body as usize {
+            self.members.resize(body as usize + 1, Member::NOBODY);
+        }
+        self.members[body as usize].place = Place { island, index: list.len() as u32 };
         list.push(body);
     }
 
     fn push_link(&mut self, island: u32, link: Link) {
         let list = &mut self.islands[island as usize].links;
-        set_place(&mut self.link_places, link.key.0, Place { island, index: list.len() as u32 });
+        let key = link.key.0 as usize;
+        if self.link_places.len() <= key {
+            self.link_places.resize(key + 1, NOWHERE);
+        }
+        self.link_places[key] = Place { island, index: list.len() as u32 };
         list.push(link);
-    }
-
-    /// Checks all invariants and panics with the broken one. O(bodies + links).
-    pub fn validate(&self) {
-        let mut sets = DisjointSets::default();
-        let mut is_free = vec![false; self.islands.len()];
-        for &id in &self.free {
-            assert!(!is_free[id as usize], "slot {id} is free once");
-            is_free[id as usize] = true;
-        }
-        let (mut bodies, mut links) = (0, 0);
-        for (id, island) in self.islands.iter().enumerate() {
-            let at = |index: usize| Place { island: id as u32, index: index as u32 };
-            for (index, &body) in island.bodies.iter().enumerate() {
-                assert_eq!(
-                    place_in(&self.body_places, body),
-                    at(index),
-                    "body {body} lies where its record says"
-                );
-            }
-            sets.reset(island.bodies.len());
-            for (index, link) in island.links.iter().enumerate() {
-                assert_eq!(
-                    place_in(&self.link_places, link.key.0),
-                    at(index),
-                    "{link:?} lies where its record says"
-                );
-                let ends = [link.a, link.b].map(|body| place_in(&self.body_places, body));
-                assert!(
-                    ends.iter().all(|end| end.island == id as u32),
-                    "both ends of {link:?} are in island {id}"
-                );
-                sets.unite(ends[0].index, ends[1].index);
-            }
-            assert!(island.removed > 0 || sets.count() <= 1, "island {id} is connected or has lost links");
-            if island.awake != NONE {
-                assert_eq!(
-                    self.awake.get(island.awake as usize),
-                    Some(&IslandId(id as u32)),
-                    "it is in the awake list"
-                );
-            }
-            let is_free = is_free[id];
-            assert_eq!(
-                is_free,
-                island.bodies.is_empty(),
-                "island {id} has bodies if and only if it is in use"
-            );
-            assert!(!is_free || (island.removed == 0 && island.awake == NONE), "the free slot {id} is reset");
-            bodies += island.bodies.len();
-            links += island.links.len();
-        }
-        let placed = |places: &[Place]| places.iter().filter(|place| **place != NOWHERE).count();
-        assert_eq!(placed(&self.body_places), bodies, "every body is in one island");
-        assert_eq!(placed(&self.link_places), links, "every link is in one island");
-        let awake = self.islands.iter().filter(|island| island.awake != NONE).count();
-        assert_eq!(self.awake.len(), awake, "the awake list holds the awake islands only");
+        self.islands[island as usize].carriers += u32::from(link.is_to_carrier());
     }
 }
 
@@ -364,21 +436,35 @@ fn place_in(places: &[Place], id: u32) -> Place {
     places.get(id as usize).copied().unwrap_or(NOWHERE)
 }
 
-fn set_place(places: &mut Vec<Place>, id: u32, place: Place) {
-    if places.len() <= id as usize {
-        places.resize(id as usize + 1, NOWHERE);
-    }
-    places[id as usize] = place;
-}
-
 /// Removes the link at an index and notes where the one moved into its slot now lies.
-fn remove_link(island: &mut Island, places: &mut [Place], index: u32) {
-    island.links.swap_remove(index as usize);
+fn remove_link(island: &mut Island, places: &mut [Place], index: u32) -> Link {
+    let link = island.links.swap_remove(index as usize);
     if let Some(moved) = island.links.get(index as usize) {
         places[moved.key.0 as usize].index = index;
     }
-    // Without sleep nobody splits: the counter must not wrap around to "connected".
-    island.removed = island.removed.saturating_add(1);
+    if link.is_to_carrier() {
+        island.carriers -= 1;
+    } else {
+        // Islands are not split while sleep is off: the counter must not wrap around to "connected".
+        island.removed = island.removed.saturating_add(1);
+    }
+    link
+}
+
+/// What a broken invariant of the lists is called.
+const LISTED: &str = "a body's links are in its island";
+
+#[cfg(test)]
+std::thread_local! {
+    /// How many bodies and links were handed out or looked at, island by island.
+    pub(crate) static VISITS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+}
+
+/// Counts what a walk over an island looks at, for tests of how the work grows.
+#[inline(always)]
+fn count_visits(_count: usize) {
+    #[cfg(test)]
+    VISITS.set(VISITS.get() + _count);
 }
 
 #[cfg(test)]

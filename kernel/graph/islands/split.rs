@@ -1,6 +1,6 @@
 //! The split of an island into its connected parts.
 
-use super::{IslandId, Islands, NONE, Piece, Scratch};
+use super::{Island, IslandId, Islands, NONE, Piece, Scratch, count_visits};
 
 impl Islands {
     /// Makes an island for every connected part of this one, so that each has `removed` = 0.
@@ -26,12 +26,17 @@ impl Islands {
 
     /// Fills `piece_of` and `pieces`, unless the island is connected: then returns `false`.
     fn find_pieces(&mut self, island: u32) -> bool {
-        let Self { islands, body_places, scratch, .. } = self;
+        let Self { islands, members, scratch, .. } = self;
         let island = &islands[island as usize];
+        count_visits(island.bodies.len() + island.links.len());
         let sets = &mut scratch.sets;
         sets.reset(island.bodies.len());
         for link in &island.links {
-            sets.unite(body_places[link.a as usize].index, body_places[link.b as usize].index);
+            if link.is_to_carrier() {
+                continue;
+            }
+            let [a, b] = [link.a, link.b].map(|body| members[body as usize].place.index);
+            sets.unite(a, b);
             if sets.count() == 1 {
                 return false;
             }
@@ -54,17 +59,18 @@ impl Islands {
 
     /// Decides which island each piece goes to.
     fn name_pieces(&mut self, island: u32) {
-        let awake = self.islands[island as usize].awake != NONE;
+        let Island { awake, is_woken, .. } = self.islands[island as usize];
         let Scratch { pieces, order, .. } = &mut self.scratch;
         order.extend(0..pieces.len() as u32);
         order.sort_unstable_by_key(|piece| pieces[*piece as usize].lowest_body);
         let size = |rank: &usize| (pieces[order[*rank] as usize].size, std::cmp::Reverse(*rank));
         let keeper = (0..order.len()).max_by_key(size).unwrap_or(0);
         for rank in 0..self.scratch.order.len() {
-            let target = if rank == keeper { island } else { self.create(awake) };
+            let target = if rank == keeper { island } else { self.create(awake != NONE) };
             let piece = self.scratch.order[rank];
             self.scratch.pieces[piece as usize].island = target;
             if rank != keeper {
+                self.islands[target as usize].is_woken = is_woken;
                 self.scratch.created.push(IslandId(target));
             }
         }
@@ -75,12 +81,13 @@ impl Islands {
         let mut links = std::mem::take(&mut self.islands[island as usize].links);
         let mut kept = 0;
         links.retain(|link| {
-            let target = self.target_of(self.body_places[link.a as usize].index);
+            let target = self.target_of(self.members[link.a as usize].place.index);
             if target == island {
                 self.link_places[link.key.0 as usize].index = kept;
                 kept += 1;
             } else {
                 self.push_link(target, *link);
+                self.islands[island as usize].carriers -= u32::from(link.is_to_carrier());
             }
             target == island
         });
@@ -92,7 +99,7 @@ impl Islands {
             let target = self.target_of(old);
             old += 1;
             if target == island {
-                self.body_places[*body as usize].index = kept;
+                self.members[*body as usize].place.index = kept;
                 kept += 1;
             } else {
                 self.push_body(target, *body);

@@ -14,3 +14,5 @@ mod reflection;
 mod rules;
 #[path = "../../../../tests/schedule.rs"]
 mod schedule;
+#[path = "../../../../tests/type_paths.rs"]
+mod type_paths;

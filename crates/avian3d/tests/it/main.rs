@@ -12,3 +12,5 @@ mod plugins;
 mod reflection;
 #[path = "../../../../tests/schedule.rs"]
 mod schedule;
+#[path = "../../../../tests/type_paths.rs"]
+mod type_paths;

@@ -3,7 +3,7 @@
 mod plugin;
 
 pub use plugin::ColliderHierarchyPlugin;
-pub(super) use plugin::{AttachesColliders, attach_colliders};
+pub(super) use plugin::{AttachesColliders, PlacesColliders, attach_now};
 
 use bevy_ecs::{
     lifecycle::HookContext,
@@ -20,8 +20,20 @@ use crate::physics_transform::tree::FollowsBody;
 /// On a collider: the body it belongs to, which is the nearest of the entity itself and its ancestors that
 /// has a [`RigidBody`](crate::dynamics::rigid_body::RigidBody).
 ///
-/// The engine inserts, replaces and removes it at the start of a step. A collider that is detached from its
-/// parent loses it at once, so that it outlives the body. Colliders without a body have none.
+/// The engine inserts, replaces and removes it as soon as the command that changed the hierarchy is done.
+/// Colliders without a body have none.
+///
+/// One that the app inserts, naming any body, stays until the app takes it away. Its [`ColliderTransform`] then
+/// says where the collider is on the body; if that is left at its default, the collider stays where its own
+/// `Transform` puts it in the world, or is put at the body's origin if that is left at its default too.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// fn arm(body: Entity, mut commands: Commands) {
+///     commands.spawn((Collider::capsule(0.1, 0.5), ColliderOf { body }));
+/// }
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component, Debug, PartialEq, FromWorld)]
 #[component(
@@ -39,6 +51,14 @@ pub struct ColliderOf {
 impl FromWorld for ColliderOf {
     fn from_world(_: &mut World) -> Self {
         Self { body: Entity::PLACEHOLDER }
+    }
+}
+
+impl ColliderOf {
+    /// Whether the app, not the hierarchy, attached a collider. The link of a body to itself is always the
+    /// hierarchy's.
+    pub(super) fn is_explicit(&self, collider: Entity, follows: Option<&FollowsBody>) -> bool {
+        self.body != collider && follows.and_then(|follows| follows.above) != Some(self.body)
     }
 }
 

@@ -3,6 +3,8 @@
 mod plugin;
 
 pub use plugin::ColliderTransformPlugin;
+#[cfg(test)]
+pub(crate) use plugin::Placement;
 
 use bevy_ecs::{prelude::*, reflect::ReflectComponent};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};

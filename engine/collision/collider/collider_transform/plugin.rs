@@ -2,7 +2,11 @@
 
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::{
-    change_detection::Tick, intern::Interned, prelude::*, schedule::ScheduleLabel, system::SystemChangeTick,
+    change_detection::Tick,
+    intern::Interned,
+    prelude::*,
+    schedule::ScheduleLabel,
+    system::{SystemChangeTick, SystemParam, SystemState},
 };
 use bevy_transform::components::Transform;
 
@@ -11,16 +15,20 @@ use crate::{
     collision::collider::{
         ColliderMarker,
         collider_hierarchy::{
-            AttachesColliders, ColliderOf, CompoundBody, RigidBodyColliders, attach_colliders,
+            AttachesColliders, ColliderOf, CompoundBody, PlacesColliders, RigidBodyColliders, attach_now,
         },
     },
     dynamics::rigid_body::RigidBody,
     math::vector_from_xyz,
+    noted::Noted,
     physics_transform::{
         PhysicsTransformSystems, Position, Rotation, filled_in,
         frame::Frame,
         plugin::TransformTreePlugin,
-        sync::{find_changed_transforms, position_to_transform, transform_to_position},
+        sync::{
+            find_changed_transforms, position_to_transform, propagate_global_transforms,
+            transform_to_position,
+        },
         tree::{FollowsBody, HierarchyQueue, Parents, TransformTree, TreeChanges},
         turn_to_rotation,
     },
@@ -57,14 +65,17 @@ impl Plugin for ColliderTransformPlugin {
         let _ = app.try_register_required_components::<ColliderMarker, ColliderTransform>();
         app.init_resource::<HierarchyQueue>()
             .init_resource::<Placement>()
+            .init_resource::<PlacerState>()
+            .insert_resource(PlacesColliders)
             .register_type::<ColliderTransform>()
             .add_observer(note_attached)
             .add_systems(
                 self.schedule,
                 (
-                    attach_colliders
+                    attach_now
                         .run_if(resource_exists::<AttachesColliders>)
                         .after(find_changed_transforms)
+                        .after(propagate_global_transforms)
                         .in_set(Propagate),
                     (update_collider_transforms, place_child_colliders)
                         .chain()
@@ -79,15 +90,84 @@ impl Plugin for ColliderTransformPlugin {
 /// What is to be placed, and when that was last done.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Placement {
-    /// Colliders that got another body.
-    attached: Vec<Entity>,
+    /// Colliders that got another body since the last step.
+    attached: Noted,
+    /// Those of them that wait for the command that computes their transforms on the body.
+    unplaced: Vec<Entity>,
     /// Colliders with another transform relative to their body.
     offset: Vec<Entity>,
     last: Tick,
 }
 
-fn note_attached(attached: On<Insert, (ColliderOf, ColliderMarker)>, mut placement: ResMut<Placement>) {
-    placement.attached.push(attached.event_target());
+#[cfg(test)]
+impl Placement {
+    /// How many colliders are noted.
+    pub(crate) fn len(&self) -> usize {
+        self.attached.len() + self.offset.len()
+    }
+}
+
+fn note_attached(
+    attached: On<Insert, (ColliderOf, ColliderMarker)>,
+    mut placement: ResMut<Placement>,
+    mut commands: Commands,
+) {
+    let collider = attached.event_target();
+    placement.attached.note(collider);
+    // The first that waits calls the command for all.
+    if placement.unplaced.is_empty() {
+        commands.queue(place_now);
+    }
+    placement.unplaced.push(collider);
+}
+
+/// What a collider's place on its body follows from.
+#[derive(SystemParam)]
+struct Placer<'w, 's> {
+    placement: ResMut<'w, Placement>,
+    transforms: Query<'w, 's, (&'static Transform, Has<RigidBody>)>,
+    parents: Parents<'w, 's>,
+    colliders: Offsets<'w, 's>,
+}
+
+type Offsets<'w, 's> = Query<
+    'w,
+    's,
+    (&'static mut ColliderTransform, Option<&'static ColliderOf>, Option<&'static FollowsBody>),
+>;
+
+/// Sets a collider's transform on its body. Returns whether it was another. Where the app attached the collider,
+/// the transforms between them say nothing.
+fn put_offset(colliders: &mut Offsets, entity: Entity, offset: ColliderTransform) -> bool {
+    let Ok((mut held, of, follows)) = colliders.get_mut(entity) else { return false };
+    !of.is_some_and(|of| of.is_explicit(entity, follows)) && held.set_if_neq(offset)
+}
+
+/// Kept, as making it anew takes longer than using it.
+#[derive(Resource)]
+struct PlacerState(Option<SystemState<Placer<'static, 'static>>>);
+
+impl FromWorld for PlacerState {
+    fn from_world(world: &mut World) -> Self {
+        Self(Some(SystemState::new(world)))
+    }
+}
+
+/// Computes the [`ColliderTransform`]s of newly attached colliders as soon as the command is done that attached
+/// them.
+fn place_now(world: &mut World) {
+    let Some(mut state) = world.get_resource_mut::<PlacerState>().and_then(|mut state| state.0.take()) else {
+        return;
+    };
+    if let Ok(Placer { mut placement, transforms, parents, mut colliders }) = state.get_mut(world) {
+        for entity in placement.unplaced.drain(..) {
+            if let Ok((transform, is_body)) = transforms.get(entity) {
+                let path = path_above(entity, &parents, &transforms).child(is_body, transform);
+                put_offset(&mut colliders, entity, path.collider_transform());
+            }
+        }
+    }
+    world.resource_mut::<PlacerState>().0 = Some(state);
 }
 
 /// Where a walk down the hierarchy has come to.
@@ -122,19 +202,17 @@ pub(crate) fn update_collider_transforms(
     mut placement: ResMut<Placement>,
     transforms: Query<(&Transform, Has<RigidBody>)>,
     parents: Parents,
-    mut colliders: Query<&mut ColliderTransform>,
+    mut colliders: Offsets,
     _: OnThisThread,
 ) {
-    let attached = core::mem::take(&mut placement.attached);
+    let attached = placement.attached.take();
     tree.begin_walk();
     for &entity in changes.transforms.iter().chain(&attached) {
         let above = path_above(entity, &parents, &transforms);
         tree.descend(entity, above, |entity, path: &Path| {
             let (transform, is_body) = transforms.get(entity).ok()?;
             let path = path.child(is_body, transform);
-            if let Ok(mut held) = colliders.get_mut(entity)
-                && held.set_if_neq(path.collider_transform())
-            {
+            if put_offset(&mut colliders, entity, path.collider_transform()) {
                 placement.offset.push(entity);
             }
             Some(path)

@@ -14,7 +14,7 @@ use super::dim;
 #[derive(Clone, PartialEq, Debug, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Debug, Default, PartialEq)]
+#[reflect(type_path = false, Debug, Default, PartialEq)]
 pub struct VhacdParameters {
     /// How much a part may depart from its convex hull, 0 to 1. Default 0.1 in 2D, 0.01 in 3D.
     pub concavity: Scalar,
@@ -35,6 +35,8 @@ pub struct VhacdParameters {
     /// The most parts to make. Default 1024.
     pub max_convex_hulls: u32,
 }
+
+crate::type_path::type_path!(VhacdParameters, "collision::collider::parry");
 
 impl Default for VhacdParameters {
     fn default() -> Self {
@@ -72,7 +74,7 @@ impl From<VhacdParameters> for crate::parry::transformation::vhacd::VHACDParamet
 #[derive(Hash, Clone, Copy, PartialEq, Eq, Debug, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Hash, Debug, PartialEq)]
+#[reflect(type_path = false, Hash, Debug, PartialEq)]
 pub enum FillMode {
     /// Only what the surface goes through is filled.
     SurfaceOnly,
@@ -86,13 +88,17 @@ pub enum FillMode {
     },
 }
 
+crate::type_path::type_path!(FillMode, "collision::collider::parry");
+
 /// How a mesh collider is prepared, as bits.
 #[repr(transparent)]
 #[derive(Hash, Clone, Copy, PartialEq, Eq, Debug, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(opaque, Hash, Clone, Debug, PartialEq)]
+#[reflect(type_path = false, opaque, Hash, Clone, Debug, PartialEq)]
 pub struct TrimeshFlags(u8);
+
+crate::type_path::type_path!(TrimeshFlags, "collision::collider::parry");
 
 bitflags! {
     impl TrimeshFlags: u8 {

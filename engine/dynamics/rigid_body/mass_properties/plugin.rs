@@ -7,11 +7,14 @@ use super::{
     MassPropertySystems,
     queue::{observe, queue_changed, recompute, warn_of_missing_mass},
 };
-use crate::{physics_transform::PhysicsTransformSystems, schedule::PhysicsSystems};
+use crate::{
+    physics_transform::PhysicsTransformSystems,
+    schedule::{PhysicsSchedule, PhysicsStepSystems, PhysicsSystems},
+};
 
 /// Keeps the computed mass properties of bodies up to date. Part of `PhysicsPlugins`.
 ///
-/// A body is computed when it carries [`RecomputeMassProperties`](super::components::RecomputeMassProperties), never
+/// A body is computed when it is spawned, from what it is spawned with. After that it is computed before a step if it carries [`RecomputeMassProperties`](super::components::RecomputeMassProperties), never
 /// otherwise, so that resting worlds cost nothing. The marker is inserted when the body is spawned or changes
 /// type; when one of its colliders comes, goes, changes shape or density, becomes a sensor, is disabled or is
 /// moved within the body; when one of the components named in the [module](super) comes, goes or changes, on the
@@ -47,6 +50,11 @@ impl Plugin for MassPropertyPlugin {
                 .chain()
                 .in_set(PhysicsSystems::Prepare)
                 .after(PhysicsTransformSystems::TransformToPosition),
+        );
+        // For what came since then, where steps are taken by hand.
+        app.add_systems(
+            PhysicsSchedule,
+            (recompute, warn_of_missing_mass).chain().before(PhysicsStepSystems::First),
         );
         app.add_systems(
             self.schedule,

@@ -54,7 +54,9 @@ impl MassPropertyQueue<'_, '_> {
 
 /// Registers what makes bodies be weighed again without a scan.
 pub(super) fn observe(app: &mut bevy_app::App) {
-    app.add_observer(on_event::<Remove, (Mass, AngularInertia, CenterOfMass)>)
+    app.init_resource::<ToldOfNoMass>()
+        .add_observer(weigh_new)
+        .add_observer(on_event::<Remove, (Mass, AngularInertia, CenterOfMass)>)
         .add_observer(on_event::<Add, (Sensor, ColliderDisabled, Disabled)>)
         .add_observer(on_event::<Remove, (Sensor, ColliderDisabled, Disabled)>)
         .add_observer(on_event::<Insert, ColliderOf>)
@@ -64,6 +66,11 @@ pub(super) fn observe(app: &mut bevy_app::App) {
 
 fn on_event<E: EntityEvent, B: Bundle>(event: On<E, B>, mut queue: MassPropertyQueue) {
     queue.push(event.event_target());
+}
+
+/// A new body has its mass at once, as far as it is its own: what hangs on it is linked to it afterwards.
+fn weigh_new(inserted: On<Insert, RigidBody>, mut helper: MassPropertyHelper) {
+    helper.update_mass_properties(inserted.entity);
 }
 
 /// A descendant that weighs something without being a collider leaves its parent. Where it arrives is seen by
@@ -148,6 +155,10 @@ pub(super) fn recompute(
     });
 }
 
+/// Bodies without mass that the app was told of.
+#[derive(Resource, Default)]
+pub(super) struct ToldOfNoMass(EntityHashSet);
+
 /// Names dynamic bodies that came out without mass, each once.
 ///
 /// Such a body falls, as gravity is an acceleration, but contacts, joints and forces do not move it: the
@@ -157,13 +168,13 @@ pub(super) fn warn_of_missing_mass(
         (Entity, &RigidBody, &ComputedMass, Option<&Mass>, Has<NoAutoMass>, Option<&Name>),
         With<RecomputeMassProperties>,
     >,
-    mut warned: Local<EntityHashSet>,
+    mut warned: ResMut<ToldOfNoMass>,
     _: OnThisThread,
 ) {
     for (entity, body, computed, mass, no_auto, name) in &marked {
         // Infinite mass may be wanted.
         let wanted = mass.is_some_and(|mass| mass.is_infinite()) || no_auto && mass.is_none();
-        if body.is_dynamic() && computed.is_infinite() && !wanted && warned.insert(entity) {
+        if body.is_dynamic() && computed.is_infinite() && !wanted && warned.0.insert(entity) {
             bevy_log::warn!(
                 "the dynamic body {} has no mass: it falls, but nothing that touches it moves it; \
                  insert a `Mass`, or a collider with a `ColliderDensity` above 0",

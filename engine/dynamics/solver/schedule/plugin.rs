@@ -45,7 +45,8 @@ impl Plugin for SolverSchedulePlugin {
             .init_resource::<OwnSubstepSystems>()
             .init_resource::<PhysicsLengthUnit>();
         step::install(app);
-        app.add_systems(
+        step::add_systems(
+            app,
             PhysicsSchedule,
             (
                 start_substep_clock.before(PhysicsStepSystems::First),

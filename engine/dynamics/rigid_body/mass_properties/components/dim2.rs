@@ -19,7 +19,7 @@ use crate::math::{AdjustPrecision, ComputeMassProperties, MassProperties, RecipO
 /// [`NoAutoAngularInertia`](super::NoAutoAngularInertia) says that this is all. Infinity is allowed; negative
 /// and NaN count as 0 and are warned of.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
-#[reflect(Component, Debug, Default, PartialEq)]
+#[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serialize",
     derive(serde::Serialize, serde::Deserialize),
@@ -27,6 +27,8 @@ use crate::math::{AdjustPrecision, ComputeMassProperties, MassProperties, RecipO
 )]
 #[doc(alias = "MomentOfInertia")]
 pub struct AngularInertia(pub f32);
+
+crate::type_path::type_path!(AngularInertia, "dynamics::rigid_body::mass_properties::components");
 
 impl AngularInertia {
     /// None given.
@@ -55,7 +57,7 @@ impl AngularInertia {
 /// Computed from [`AngularInertia`] and the colliders; static bodies have infinite inertia. Writing it is of
 /// use only with [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
-#[reflect(Component, Debug, Default, PartialEq)]
+#[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serialize",
     derive(serde::Serialize, serde::Deserialize),
@@ -65,6 +67,11 @@ impl AngularInertia {
 pub struct ComputedAngularInertia {
     inverse: Scalar,
 }
+
+crate::type_path::type_path!(
+    ComputedAngularInertia,
+    "dynamics::rigid_body::mass_properties::components::computed"
+);
 
 impl Default for ComputedAngularInertia {
     fn default() -> Self {

@@ -26,7 +26,7 @@ use crate::math::{
 /// [`NoAutoAngularInertia`](super::NoAutoAngularInertia) says that this is all. Infinity is allowed; negative
 /// and NaN count as 0 and are warned of.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
-#[reflect(Component, Debug, Default, PartialEq)]
+#[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serialize",
     derive(serde::Serialize, serde::Deserialize),
@@ -39,6 +39,8 @@ pub struct AngularInertia {
     /// The frame of the principal axes, in the entity's frame.
     pub local_frame: Quat,
 }
+
+crate::type_path::type_path!(AngularInertia, "dynamics::rigid_body::mass_properties::components");
 
 impl AngularInertia {
     /// None given.
@@ -156,7 +158,7 @@ impl From<AngularInertia> for AngularInertiaTensor {
 /// Computed from [`AngularInertia`] and the colliders; static bodies have infinite inertia. Writing it is of
 /// use only with [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
-#[reflect(Component, Debug, Default, PartialEq)]
+#[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serialize",
     derive(serde::Serialize, serde::Deserialize),
@@ -166,6 +168,11 @@ impl From<AngularInertia> for AngularInertiaTensor {
 pub struct ComputedAngularInertia {
     inverse: SymmetricMatrix,
 }
+
+crate::type_path::type_path!(
+    ComputedAngularInertia,
+    "dynamics::rigid_body::mass_properties::components::computed"
+);
 
 impl Default for ComputedAngularInertia {
     fn default() -> Self {

@@ -1,0 +1,36 @@
+//! The names under which scenes and other files know the engine's types.
+//!
+//! A reflected type is known by the path of its module. Where a file here has another path than the module in
+//! Avian, the type states Avian's path, so that files written for Avian still name it.
+
+/// Implements `TypePath` for a type that is not in the module that files know it by.
+///
+/// The type derives `Reflect` with `#[reflect(type_path = false)]`. The module is given without the crate's name,
+/// which differs between the dimensions.
+macro_rules! type_path {
+    ($type:ident, $module:literal) => {
+        impl bevy_reflect::TypePath for $type {
+            fn type_path() -> &'static str {
+                concat!(env!("CARGO_CRATE_NAME"), "::", $module, "::", stringify!($type))
+            }
+
+            fn short_type_path() -> &'static str {
+                stringify!($type)
+            }
+
+            fn type_ident() -> Option<&'static str> {
+                Some(stringify!($type))
+            }
+
+            fn crate_name() -> Option<&'static str> {
+                Some(env!("CARGO_CRATE_NAME"))
+            }
+
+            fn module_path() -> Option<&'static str> {
+                Some(concat!(env!("CARGO_CRATE_NAME"), "::", $module))
+            }
+        }
+    };
+}
+
+pub(crate) use type_path;

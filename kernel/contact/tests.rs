@@ -1,0 +1,314 @@
+//! Waking, and what carries islands: by brute force, and by how many bodies are visited for it. And that what a team
+//! leaves in the table does not depend on the team.
+
+use super::*;
+use crate::data::BitSet;
+use crate::graph::{ColorGraph, IslandId, Islands, SleepScan, VISITS};
+use crate::manifold::LocalManifold;
+use crate::math::{Pose, Vector, WorldPose};
+use crate::shape::{Aabb, Ball, Foreign, Shape};
+use crate::table::{
+    BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Fattening, Layers, Material,
+};
+use crate::team::Team;
+use proptest::prelude::*;
+
+/// The tables, without anything that moves.
+#[derive(Default)]
+struct World {
+    bodies: BodyTable,
+    colliders: ColliderTable,
+    contacts: ContactTable,
+    colors: ColorGraph,
+    islands: Islands,
+}
+
+impl World {
+    /// Bodies of one collider each, with the same id.
+    fn with(kinds: impl IntoIterator<Item = BodyKind>) -> Self {
+        Self::of(&Shape::Ball(Ball { radius: 1.0 }), kinds)
+    }
+
+    fn of(shape: &Shape, kinds: impl IntoIterator<Item = BodyKind>) -> Self {
+        let mut world = Self::default();
+        for kind in kinds {
+            let body = world.bodies.add(kind, Vector::ZERO, WorldPose::IDENTITY);
+            world.link().enter(body);
+            let def = ColliderDef {
+                shape: shape.clone(),
+                body,
+                local: Pose::IDENTITY,
+                material: Material::default(),
+                layers: Layers { memberships: 1, filters: u32::MAX },
+                flags: ColliderFlags::default(),
+                margin: 0.0,
+                speculative: f32::MAX,
+            };
+            assert_eq!(world.colliders.add(def, WorldPose::IDENTITY, &mut world.bodies), body);
+        }
+        world
+    }
+
+    /// `count` dynamic bodies in rows of 32; neighbours touch.
+    fn heap(count: u32) -> Self {
+        let mut world = Self::with((0..count).map(|_| BodyKind::Dynamic));
+        for id in 0..count {
+            for next in [id + 1, id + 32].into_iter().filter(|next| *next < count) {
+                world.touch(id, next);
+            }
+        }
+        assert_eq!(world.islands.len(), 1);
+        world
+    }
+
+    fn link(&mut self) -> Link<'_> {
+        Link {
+            bodies: &mut self.bodies,
+            colliders: &mut self.colliders,
+            contacts: &mut self.contacts,
+            colors: &mut self.colors,
+            islands: Some(&mut self.islands),
+        }
+    }
+
+    /// Lets two bodies touch, or part if they do.
+    fn touch(&mut self, a: u32, b: u32) {
+        let id = self.contacts.find(a, b).unwrap_or_else(|| self.link().create(a, b));
+        let flags = &mut self.contacts.get_mut(id).flags;
+        flags.set(ContactFlags::TOUCHING, !flags.has(ContactFlags::TOUCHING));
+        let mut changed = BitSet::new();
+        changed.insert(id);
+        self.link().apply(&changed, |_, _, _| {});
+    }
+
+    /// Tells all islands that nothing changed.
+    fn settle(&mut self) {
+        self.link().apply(&BitSet::new(), |_, _, _| {});
+    }
+
+    /// Whether a moving kinematic body touches one of the island, looked for at every contact.
+    fn is_carried_by_definition(&self, island: IslandId) -> bool {
+        let moves = |body: u32| self.bodies[body].kind == BodyKind::Kinematic && self.bodies[body].awake;
+        let in_island = |body: u32| self.islands.island_of(body) == Some(island);
+        self.contacts.iter().any(|(_, contact)| {
+            let [a, b] = contact.bodies;
+            contact.is_solved() && (moves(a) && in_island(b) || moves(b) && in_island(a))
+        })
+    }
+}
+
+/// How many bodies and links of islands a change of a heap looks at.
+fn visits(count: u32, change: impl Fn(&mut World)) -> usize {
+    let mut world = World::heap(count);
+    VISITS.set(0);
+    change(&mut world);
+    let visits = VISITS.get();
+    world.link().validate();
+    visits
+}
+
+/// Removing the colliders of ten thousand touching boxes one by one walked over all boxes for each contact.
+#[test]
+fn removing_all_of_a_heap_looks_at_each_body_a_few_times() {
+    for count in [100, 1_000, 10_000] {
+        let seen = visits(count, |world| {
+            for id in 0..count {
+                world.link().destroy_of_collider(id);
+            }
+            world.settle();
+        });
+        assert!(seen <= 2 * count as usize, "{seen} looks at {count} bodies");
+    }
+}
+
+/// The same, with the bodies, whose links were looked for in the whole heap.
+#[test]
+fn despawning_all_of_a_heap_looks_at_each_body_a_few_times() {
+    for count in [100, 1_000, 10_000] {
+        let seen = visits(count, |world| {
+            for id in 0..count {
+                world.link().destroy_of_collider(id);
+                world.colliders.remove(id, &mut world.bodies);
+                world.link().leave(id);
+            }
+            world.settle();
+        });
+        assert!(seen <= 2 * count as usize, "{seen} looks at {count} bodies");
+    }
+}
+
+/// As gravity that changes in every frame does.
+#[test]
+fn waking_every_body_of_a_heap_looks_at_each_once_a_step() {
+    for count in [100, 1_000, 10_000] {
+        let seen = visits(count, |world| {
+            for _ in 0..3 {
+                (0..count).for_each(|id| world.link().wake_body(id));
+                world.settle();
+            }
+        });
+        assert_eq!(seen, 3 * count as usize);
+    }
+}
+
+#[test]
+fn a_woken_island_rests_anew_before_it_sleeps() {
+    let mut world = World::heap(40);
+    let rest = |world: &mut World, time: f32| (0..40).for_each(|id| world.bodies[id].sleep_timer = time);
+    let scan = |world: &mut World| {
+        let mut scan = SleepScan::new();
+        scan.scan(&mut world.islands, 0.5, |body| Some(world.bodies[body].sleep_timer));
+        scan.sleepers().len()
+    };
+    rest(&mut world, 1.0);
+    assert_eq!(scan(&mut world), 1);
+    world.link().wake_body(7);
+    assert_eq!(scan(&mut world), 0, "nobody has looked at the others yet");
+    assert_eq!(world.bodies[7].sleep_timer, 0.0, "the body itself is told at once");
+    world.settle();
+    assert!((0..40).all(|id| world.bodies[id].sleep_timer == 0.0));
+    assert_eq!(scan(&mut world), 0);
+
+    // Woken once, they rest as ever.
+    rest(&mut world, 0.6);
+    world.settle();
+    assert!((0..40).all(|id| world.bodies[id].sleep_timer == 0.6));
+    assert_eq!(scan(&mut world), 1);
+
+    // From sleep, all are told at once, and nothing is left to do.
+    let island = world.islands.island_of(0).unwrap();
+    world.link().sleep_island(island);
+    world.link().wake_body(3);
+    assert!((0..40).all(|id| world.bodies[id].sleep_timer == 0.0 && world.bodies[id].awake));
+    assert!(!world.islands.is_woken(island));
+    world.link().validate();
+}
+
+/// A mark of a small island holds for the large one it merges with, and for both parts after a split.
+#[test]
+fn a_woken_body_rests_anew_in_whatever_island_it_comes_to() {
+    let mut world = World::with([BodyKind::Dynamic; 6]);
+    let mark = |world: &mut World, body: u32| {
+        (0..6).for_each(|id| world.bodies[id].sleep_timer = 1.0);
+        world.islands.mark_woken(world.islands.island_of(body).unwrap());
+    };
+    [(0, 1), (1, 2), (2, 3), (4, 5)].into_iter().for_each(|(a, b)| world.touch(a, b));
+    mark(&mut world, 4);
+    world.touch(3, 4);
+    assert!([4, 5].into_iter().all(|id| world.bodies[id].sleep_timer == 0.0));
+    world.link().validate();
+
+    world.touch(3, 4);
+    mark(&mut world, 0);
+    let island = world.islands.island_of(0).unwrap();
+    assert_eq!(world.islands.split(island).len(), 1);
+    world.settle();
+    assert!((0..6).all(|id| world.bodies[id].sleep_timer == 0.0));
+    world.link().validate();
+}
+
+/// A source of as many manifolds as it likes, other ones in each round.
+struct Rounds(u32);
+
+impl ManifoldSource for Rounds {
+    type Workspace = ();
+
+    fn manifolds(&self, a: u32, b: u32, _: f32, (): &mut (), out: &mut Vec<LocalManifold>) {
+        // Some take long, so that members take contacts in another order.
+        if a % 97 == 3 {
+            std::thread::sleep(std::time::Duration::from_micros(300));
+        }
+        for i in 0..(a * 7 + b * 3 + self.0 * 5) % 5 {
+            let mut manifold = LocalManifold { normal: Vector::Y, ..LocalManifold::default() };
+            manifold.push(Vector::X * (i as f32 + 0.1 * self.0 as f32), -0.01, i);
+            out.push(manifold);
+        }
+    }
+}
+
+/// Further manifolds had their place in the side pool by which member of the team found them.
+#[test]
+fn the_table_is_the_same_to_the_byte_whatever_team_updated_it() {
+    let aabb = Aabb { min: -Vector::ONE, max: Vector::ONE };
+    let after = |workers: usize| {
+        let count = 1_200;
+        let mut world = World::of(&Shape::Foreign(Foreign { aabb }), (0..count).map(|_| BodyKind::Dynamic));
+        for id in 0..count {
+            world.colliders.refresh(id, &world.bodies, Fattening { margin: 0.1, dt: 0.01 });
+            if id > 0 {
+                world.link().create(id - 1, id);
+            }
+        }
+        let team = Team::new(workers);
+        let mut scratches = Vec::new();
+        for round in 0..4 {
+            team.wake();
+            let phase = NarrowPhase {
+                bodies: &world.bodies,
+                colliders: &world.colliders,
+                source: &Rounds(round),
+                dt: 0.01,
+                tolerance: 0.005,
+                speculative: 0.02,
+                recycle_distance: 0.05,
+                match_points: true,
+                narrow: false,
+            };
+            let mut changed = BitSet::new();
+            world.contacts.update(&phase, &team, &mut scratches, &mut changed);
+            world.link().apply(&changed, |_, _, _| {});
+            world.link().validate();
+            // A place that becomes free is another's next.
+            world.contacts.recycle_ids();
+            for id in (round..count).step_by(50).filter(|id| *id > 0) {
+                let contact = world.contacts.find(id - 1, id).unwrap();
+                world.link().destroy(contact);
+                world.link().create(id - 1, id);
+            }
+        }
+        let more = world.contacts.iter().filter(|(_, contact)| contact.extra_count > 0).count();
+        assert!(more > 500, "{more} contacts have more than one manifold");
+        format!("{:?}", world.contacts)
+    };
+    let alone = after(1);
+    for workers in [2, 4, 8] {
+        assert!(after(workers) == alone, "other bytes with {workers} workers");
+    }
+}
+
+const KINDS: [BodyKind; 3] = [BodyKind::Static, BodyKind::Kinematic, BodyKind::Dynamic];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    /// Through contacts, lifts that start and stop, changes of kind, splits, sleep and removal.
+    #[test]
+    fn islands_know_what_carries_them(
+        kinds in prop::collection::vec(prop::sample::select(vec![KINDS[0], KINDS[1], KINDS[2], KINDS[2]]), 4..30),
+        operations in prop::collection::vec((0u8..20, any::<u32>(), any::<u32>()), 300),
+    ) {
+        let count = kinds.len() as u32;
+        let mut world = World::with(kinds);
+        for (kind, x, y) in operations {
+            let (a, b) = (x % count, y % count);
+            let island = world.islands.island_of(a);
+            match (kind, island) {
+                (0..10, _) if a != b => world.touch(a, b),
+                (10..13, _) => world.link().set_kinematic_awake(a, y % 2 == 0),
+                (13, _) => world.link().retype(a, KINDS[b as usize % 3]),
+                (14, Some(island)) => _ = world.islands.split(island),
+                (15, Some(island)) => world.link().sleep_island(island),
+                (16, _) => world.link().wake_body(a),
+                (17, _) => world.link().destroy_of_collider(a),
+                (18, Some(island)) => world.islands.mark_woken(island),
+                (19, _) => world.settle(),
+                _ => {}
+            }
+            world.link().validate();
+            for island in world.islands.islands().collect::<Vec<_>>() {
+                let expected = world.is_carried_by_definition(island);
+                prop_assert_eq!(world.link().is_carried(island), expected);
+            }
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Inverse inertia in world axes, also of needles, whose moments differ by more than `f32` resolves.
+
+use super::{InvInertia, Rot, Vector};
+
+/// The largest ratio of principal moments of inertia that `f32` resolves in world axes: that of a box 140 times as
+/// long as thick. With more, energy comes from rounding.
+pub(crate) const MAX_RATIO: f32 = 1.0e4;
+
+/// The relative rounding of an entry.
+const ROUNDING: f32 = 2.0e-7;
+
+impl InvInertia {
+    /// The tensor in world axes of a body turned by `rotation`: R I R⁻¹.
+    ///
+    /// A principal value that is over 10,000 times the others is cut down to that. Rounding of it would otherwise be all
+    /// there is of the others: a pole a thousand times as long as thick would turn across as easily as about its axis.
+    #[inline]
+    pub fn rotated(self, rotation: Rot) -> Self {
+        self.blunted(MAX_RATIO).turned(rotation)
+    }
+
+    /// The ratio of one principal value to the mean of the others, if it is large; infinite or negative where rounding
+    /// leaves nothing of the others.
+    ///
+    /// With the trace t = λ1 + λ2 + λ3 and the second invariant s = λ1 λ2 + λ1 λ3 + λ2 λ3 it is 2 t² / s.
+    #[inline]
+    pub(crate) fn needle_ratio(self) -> f32 {
+        let Self { xx, yy, zz, xy, xz, yz } = self.scaled(1.0 / (self.xx + self.yy + self.zz));
+        2.0 / ((xx * yy - xy * xy) + (xx * zz - xz * xz) + (yy * zz - yz * yz))
+    }
+
+    /// The principal axis of a value that is much larger than the others, by the power method.
+    pub(crate) fn thin_axis(self) -> Vector {
+        let unit = self.scaled(1.0 / (self.xx + self.yy + self.zz));
+        let (xx, yy, zz) = (unit.xx, unit.yy, unit.zz);
+        let start = if xx >= yy && xx >= zz {
+            Vector::X
+        } else if yy >= zz {
+            Vector::Y
+        } else {
+            Vector::Z
+        };
+        let axis = (0..4).fold(start, |v, _| unit.apply(v));
+        axis * (1.0 / axis.length())
+    }
+
+    /// With a principal value that is more than `ratio` times the others cut down to that.
+    #[inline]
+    pub(crate) fn blunted(self, ratio: f32) -> Self {
+        let actual = self.needle_ratio();
+        if actual > 0.0 && actual <= ratio {
+            return self;
+        }
+        self.blunted_from(actual, ratio)
+    }
+
+    #[cold]
+    fn blunted_from(self, actual: f32, ratio: f32) -> Self {
+        let trace = self.xx + self.yy + self.zz;
+        if trace <= 0.0 {
+            // No body has such a tensor: one that has does not turn.
+            return Self::ZERO;
+        }
+        if !trace.is_finite() {
+            return self;
+        }
+        // The entries of a diagonal tensor are the principal values themselves; two of 0 are held axes.
+        let is_diagonal = self.xy == 0.0 && self.xz == 0.0 && self.yz == 0.0;
+        if is_diagonal && !actual.is_finite() {
+            return self;
+        }
+        let resolved = is_diagonal || actual > 0.0 && actual * ROUNDING < 1.0;
+        let keep = if resolved { ratio / actual } else { ratio * ROUNDING };
+        let cut = self.cut(self.thin_axis(), super::min(keep, 1.0));
+        // Where the others are lost in rounding they may be negative.
+        let lift = if resolved { 0.0 } else { ROUNDING * trace };
+        Self { xx: cut.xx + lift, yy: cut.yy + lift, zz: cut.zz + lift, ..cut }
+    }
+
+    /// With the share `keep` of the value along a unit vector: S − (1 − k) (S a)(S a)ᵀ / aᵀ S a. Held axes stay held.
+    pub(crate) fn cut(self, axis: Vector, keep: f32) -> Self {
+        let column = self.apply(axis);
+        let along = axis.dot(column);
+        if !(along > 0.0) {
+            return self;
+        }
+        let (r, c) = (column * ((1.0 - keep) / along), column);
+        Self {
+            xx: self.xx - r.x * c.x,
+            yy: self.yy - r.y * c.y,
+            zz: self.zz - r.z * c.z,
+            xy: self.xy - r.x * c.y,
+            xz: self.xz - r.x * c.z,
+            yz: self.yz - r.y * c.z,
+        }
+    }
+
+    /// R I R⁻¹.
+    #[inline]
+    fn turned(self, rotation: Rot) -> Self {
+        let [cx, cy, cz] = rotation.axes();
+        // Rows of R are (cx.x, cy.x, cz.x), …; first T = R I, then T Rᵀ, of which six entries differ.
+        let row = |a: f32, b: f32, c: f32| Vector {
+            x: a * self.xx + b * self.xy + c * self.xz,
+            y: a * self.xy + b * self.yy + c * self.yz,
+            z: a * self.xz + b * self.yz + c * self.zz,
+        };
+        let r = [
+            Vector { x: cx.x, y: cy.x, z: cz.x },
+            Vector { x: cx.y, y: cy.y, z: cz.y },
+            Vector { x: cx.z, y: cy.z, z: cz.z },
+        ];
+        let t = [row(r[0].x, r[0].y, r[0].z), row(r[1].x, r[1].y, r[1].z), row(r[2].x, r[2].y, r[2].z)];
+        Self {
+            xx: t[0].dot(r[0]),
+            yy: t[1].dot(r[1]),
+            zz: t[2].dot(r[2]),
+            xy: t[0].dot(r[1]),
+            xz: t[0].dot(r[2]),
+            yz: t[1].dot(r[2]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_needle_is_blunted_about_its_axis_only() {
+        let turn = Rot::from_axis_angle(Vector::ONE * (1.0 / Vector::ONE.length()), 0.7);
+        for thin in [3.0e4f32, 1.0e6, 1.0e9] {
+            let needle = InvInertia::from_diagonal(Vector { x: 1.0, y: thin, z: 1.0 });
+            let (world, axes) = (needle.rotated(turn), turn.axes());
+            let along = axes[1].dot(world.apply(axes[1]));
+            assert!((along / MAX_RATIO - 1.0).abs() < 0.1, "{thin} becomes {along}");
+            for axis in [axes[0], axes[2]] {
+                let across = axis.dot(world.apply(axis));
+                assert!((across - 1.0).abs() < 0.02, "{thin}: across it is {across}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_needle_stays_as_it_is() {
+        for diagonal in [Vector::ONE, Vector { x: 1.0, y: 1.0, z: 0.5 }, Vector { x: 9.0e3, y: 1.0, z: 1.0 }]
+        {
+            let tensor = InvInertia::from_diagonal(diagonal);
+            assert_eq!(tensor.rotated(Rot::IDENTITY), tensor);
+        }
+    }
+}

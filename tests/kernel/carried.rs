@@ -1,0 +1,179 @@
+//! Bodies on platforms that turn: contacts are recycled while both turn together.
+
+use super::dim::{sized, spin, tilts, upright};
+use super::sim::Sim;
+use crate::kernel;
+use kernel::math::{Angular, Rot, Vector, WorldPose};
+use kernel::shape::{Ball, Cuboid, Shape};
+use kernel::table::{BodyKind, Velocity};
+
+const GRAVITY: f32 = 10.0;
+
+/// A plate of 20 m with a body lying on its middle, and which is which. The body is added first if `body_first`.
+struct Plate {
+    sim: Sim,
+    plate: u32,
+    body: u32,
+}
+
+impl Plate {
+    fn new(kind: BodyKind, shape: Shape, tilt: Rot, friction: f32, body_first: bool) -> Self {
+        let mut sim = Sim::new();
+        let height = match &shape {
+            Shape::Ball(ball) => ball.radius,
+            _ => 0.5,
+        };
+        let slab = Shape::Cuboid(Cuboid { half: sized(10.0, 0.25, 10.0) });
+        let add_plate = |sim: &mut Sim| {
+            sim.add_with(kind, slab.clone(), tilt.rotate(Vector::Y * -0.25), tilt, friction, 0.0)
+        };
+        let early = (!body_first).then(|| add_plate(&mut sim));
+        let place = tilt.rotate(Vector::Y * height);
+        let body = sim.add_with(BodyKind::Dynamic, shape, place, tilt, friction, 0.0);
+        let plate = early.unwrap_or_else(|| add_plate(&mut sim));
+        Self { sim, plate, body }
+    }
+
+    /// Turns the plate about an axis through its middle at one speed for some steps, and then holds it.
+    fn turn(&mut self, spin: Angular, steps: usize) {
+        for _ in 0..steps {
+            // The middle of the upper face stays where it is: about it the centre goes in a circle.
+            let linear = spin.cross(self.arm());
+            self.sim.bodies.set_velocity(self.plate, Velocity { linear, angular: spin });
+            self.sim.step();
+        }
+        self.sim.bodies.set_velocity(self.plate, Velocity::default());
+    }
+
+    fn arm(&self) -> Vector {
+        self.sim.bodies.poses[self.plate as usize].rotation.rotate(Vector::Y * -0.25)
+    }
+
+    /// How far the body gets along the plate in a time, from where it is.
+    fn slide(&mut self, seconds: f32) -> f32 {
+        let from = self.place();
+        self.sim.steps((seconds * 60.0) as usize);
+        (self.place() - from).length()
+    }
+
+    /// Where the body is in the plate's frame.
+    fn place(&self) -> Vector {
+        let plate = self.sim.bodies.frame(self.plate);
+        plate.rotation.inverse_rotate((self.sim.position(self.body) - plate.position).to_local())
+    }
+
+    fn stop(&mut self) {
+        self.sim.bodies.set_velocity(self.body, Velocity::default());
+    }
+}
+
+fn cube() -> Shape {
+    Shape::Cuboid(Cuboid { half: Vector::ONE * 0.5 })
+}
+
+fn shapes() -> [Shape; 2] {
+    [cube(), Shape::Ball(Ball { radius: 0.5 })]
+}
+
+#[test]
+fn what_lies_on_a_plate_that_is_tilted_a_little_slides_as_on_a_fixed_slope() {
+    for (k, shape) in shapes().into_iter().enumerate() {
+        for degrees in [0.5f32, 2.0, 5.0] {
+            for body_first in [false, true] {
+                let angle = degrees.to_radians();
+                let mut plate =
+                    Plate::new(BodyKind::Kinematic, shape.clone(), Rot::IDENTITY, 0.0, body_first);
+                plate.sim.steps(30);
+                plate.turn(spin(-angle), 60);
+                plate.stop();
+                let way = plate.slide(1.5);
+                let expected = 0.5 * GRAVITY * angle.sin() * 1.5 * 1.5;
+                let error = (way / expected - 1.0).abs();
+                assert!(error < 0.02, "shape {k}, {degrees}°, {body_first}: {way} m for {expected} m");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_plate_tilted_slowly_is_as_a_slope_that_was_always_there() {
+    for axis in tilts() {
+        for body_first in [false, true] {
+            // Friction as high as it takes holds the body until the plate stands.
+            let mut plate = Plate::new(BodyKind::Kinematic, cube(), Rot::IDENTITY, 2.0, body_first);
+            plate.turn(axis * (core::f32::consts::FRAC_PI_4 / 10.0), 600);
+            assert!((plate.place() - Vector::Y * 0.75).length() < 0.01, "it was held: {:?}", plate.place());
+            let tilt = plate.sim.bodies.poses[plate.plate as usize].rotation;
+            let mut fixed = Plate::new(BodyKind::Static, cube(), tilt, 2.0, body_first);
+            fixed.sim.steps(30);
+            for p in [&mut plate, &mut fixed] {
+                for id in [p.plate, p.body] {
+                    let mut material = p.sim.colliders[id].def.material;
+                    material.friction.coefficient = 0.1;
+                    p.sim.link().set_material(id, material);
+                }
+                p.stop();
+            }
+            let (way, expected) = (plate.slide(1.0), fixed.slide(1.0));
+            assert!((way - expected).abs() < 0.01 * expected.max(0.1), "{axis:?}: {way} m for {expected} m");
+        }
+    }
+}
+
+#[test]
+fn friction_on_a_tilted_plate_holds_below_its_angle_and_not_above() {
+    for body_first in [false, true] {
+        for (degrees, slides) in [(-0.5f32, false), (0.5, true)] {
+            let angle = 0.3f32.atan() + degrees.to_radians();
+            let mut plate = Plate::new(BodyKind::Kinematic, cube(), Rot::IDENTITY, 0.3, body_first);
+            plate.sim.steps(30);
+            plate.turn(spin(-angle / 5.0), 300);
+            // The plate stops at once, and the box some time after it.
+            plate.sim.steps(60);
+            let way = plate.slide(2.0);
+            assert_eq!(way > 0.05, slides, "{way} m, {degrees}° above the angle of friction");
+            assert!(slides || way < 2e-4, "it creeps {way} m");
+        }
+    }
+}
+
+#[test]
+fn a_box_rides_a_plate_that_rocks() {
+    for axis in tilts() {
+        for body_first in [false, true] {
+            let mut plate = Plate::new(BodyKind::Kinematic, cube(), Rot::IDENTITY, 0.6, body_first);
+            plate.sim.steps(30);
+            let from = plate.place();
+            plate.turn(axis * 0.175, 60);
+            for _ in 0..3 {
+                plate.turn(axis * -0.175, 120);
+                plate.turn(axis * 0.175, 120);
+            }
+            let way = (plate.place() - from).length();
+            assert!(way < 2e-3, "{axis:?}, {body_first}: it crept {way} m");
+        }
+    }
+}
+
+#[test]
+fn a_box_rides_a_turntable() {
+    if let Some(axis) = upright() {
+        for body_first in [false, true] {
+            let mut plate = Plate::new(BodyKind::Kinematic, cube(), Rot::IDENTITY, 0.6, body_first);
+            let frame = plate.sim.bodies.frame(plate.body);
+            let frame = WorldPose::new(frame.position + (Vector::X * 2.0).to_world(), frame.rotation);
+            plate.sim.bodies.teleport(plate.body, frame);
+            plate.sim.steps(30);
+            // Six seconds a turn, after a start without slipping.
+            let speed = core::f32::consts::TAU / 6.0;
+            (0..60).for_each(|k| plate.turn(axis * (speed * k as f32 / 60.0), 1));
+            plate.turn(axis * speed, 60);
+            let from = plate.place();
+            for turn in 1..=10 {
+                plate.turn(axis * speed, 360);
+                let way = (plate.place() - from).length();
+                assert!(way < 1e-3, "{body_first}: it crept {way} m in {turn} turns");
+            }
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! Random extreme worlds: no body is lost, and no body becomes much faster than the fastest was.
+
+use super::dim::{any_rotation, any_spin, hull_of};
+use super::sim::Sim;
+use crate::kernel;
+use kernel::math::{DIM, Rot, Vector};
+use kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Segment, Shape, Triangle};
+use kernel::table::BodyKind;
+
+/// Numbers from a seed.
+pub struct Dice(u64);
+
+impl Dice {
+    /// A number from 0 to 1.
+    pub fn unit(&mut self) -> f32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 40) as f32 / (1u32 << 24) as f32
+    }
+
+    /// A number from -1 to 1.
+    pub fn signed(&mut self) -> f32 {
+        2.0 * self.unit() - 1.0
+    }
+
+    /// A number between two others, whose logarithm is spread evenly.
+    fn between(&mut self, low: f32, high: f32) -> f32 {
+        low * (high / low).powf(self.unit())
+    }
+
+    /// A vector of up to a length along each axis.
+    fn vector(&mut self, length: f32) -> Vector {
+        Vector::from_array(core::array::from_fn(|_| length * self.signed()))
+    }
+
+    /// The half extents of something of 0.01 to 100 m, with one or more sides thinner by up to 10,000.
+    fn extents(&mut self) -> Vector {
+        let size = self.between(0.005, 50.0);
+        let thin = self.between(1.0e-4, 1.0);
+        let mut half = [size; DIM];
+        half[0] = size * thin;
+        if self.unit() < 0.3 {
+            half[DIM - 1] = size * self.between(thin, 1.0);
+        }
+        Vector::from_array(half)
+    }
+
+    /// A shape with a volume.
+    fn solid(&mut self) -> Shape {
+        let half = self.extents();
+        match (4.0 * self.unit()) as u32 {
+            0 => Shape::Ball(Ball { radius: half.max_element() }),
+            1 => {
+                let axis = self.vector(1.0);
+                let axis = axis * (half.max_element() / axis.length());
+                Shape::Capsule(Capsule { a: axis * -1.0, b: axis, radius: half.min_element() })
+            }
+            2 => Shape::Cuboid(Cuboid { half }),
+            _ => hull_of(half),
+        }
+    }
+
+    /// A shape of something immovable.
+    fn surface(&mut self) -> Shape {
+        let mut point = || self.vector(100.0);
+        match [point(), point(), point()] {
+            [a, b, _] if a.x > 50.0 => Shape::Segment(Segment { a, b }),
+            [a, b, c] if a.x > 0.0 => Shape::Triangle(Triangle { a, b, c }),
+            _ if self.unit() < 0.5 => Shape::HalfSpace(HalfSpace { normal: Vector::Y }),
+            _ => self.solid(),
+        }
+    }
+}
+
+/// How far a shape reaches from its frame.
+fn reach(shape: &Shape) -> f32 {
+    let aabb = shape.local_aabb(Rot::IDENTITY);
+    aabb.min.abs().max(aabb.max.abs()).length()
+}
+
+/// A world of up to 20 bodies, and the fastest any point of one of them moves.
+fn world(seed: u64) -> (Sim, f32) {
+    let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    for _ in 0..8 {
+        dice.unit();
+    }
+    let mut sim = Sim::new();
+    (sim.dt, sim.substeps) = if seed.is_multiple_of(2) { (1.0 / 60.0, 4) } else { (1.0 / 64.0, 6) };
+    let spread = dice.between(0.1, 50.0);
+    let mut fastest = 0.0f32;
+    for i in 0..2 + (18.0 * dice.unit()) as u32 {
+        let position = dice.vector(spread);
+        let rotation = any_rotation(&mut dice);
+        let (friction, restitution) = (dice.unit(), if dice.unit() < 0.3 { dice.unit() } else { 0.0 });
+        if i < 2 && dice.unit() < 0.7 {
+            let shape = dice.surface();
+            sim.add_with(BodyKind::Static, shape, position, rotation, friction, restitution);
+            continue;
+        }
+        let shape = dice.solid();
+        let kind = if dice.unit() < 0.1 { BodyKind::Kinematic } else { BodyKind::Dynamic };
+        let (speed, spin) = (dice.between(0.5, 500.0), dice.between(1.0, 1000.0));
+        let (v, w) = (dice.vector(1.0), any_spin(&mut dice));
+        let radius = reach(&shape);
+        let id = sim.add_with(kind, shape, position, rotation, friction, restitution);
+        let velocity = &mut sim.bodies.velocities[id as usize];
+        (velocity.linear, velocity.angular) = (v * (speed / v.length()), w * (spin / w.length()));
+        fastest = fastest.max(speed + spin * radius);
+    }
+    (sim, fastest)
+}
+
+/// Whether the fastest body of a world stays below three times its fastest start. A lost body makes a step panic.
+///
+/// The fastest that a point of a body may move at first counts as the start, and what bodies gain by falling.
+fn is_calm(seed: u64) -> bool {
+    let (mut sim, fastest) = world(seed);
+    (1..=180).all(|step| {
+        sim.step();
+        let allowed = 3.0 * (fastest + sim.gravity.length() * sim.dt * step as f32);
+        sim.bodies.velocities.iter().all(|velocity| velocity.linear.length() <= allowed)
+    })
+}
+
+/// Up to 1 % of the worlds throw a body. Contacts keep the arms of the step's start, so a splinter that is wedged
+/// between two walls and turns by several radians in a step can gain energy.
+#[test]
+fn in_random_extreme_worlds_no_body_is_lost_and_hardly_one_is_thrown() {
+    let thrown: Vec<u64> = (1..=300).filter(|seed| !is_calm(*seed)).collect();
+    assert!(thrown.len() <= 3, "bodies are thrown in the worlds {thrown:?}");
+}
