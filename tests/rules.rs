@@ -491,6 +491,21 @@ fn the_readme_shows_an_example() {
     assert_eq!(shown, example.split_once("\n\n").map(|(_, code)| code));
 }
 
+/// The workspace of the tests in f64 builds with what is compiled for all others: Bevy is compiled once.
+#[test]
+fn both_workspaces_lock_the_same_versions() {
+    let locked = |path: &str| -> Vec<String> {
+        let text = fs::read_to_string(root().join(path)).expect("a lock file stands beside its manifest");
+        let packages = text.split("[[package]]\n").filter(|package| package.contains("source = "));
+        packages.map(|package| package.lines().take(2).collect::<Vec<_>>().join(" ")).collect()
+    };
+    let all = locked("Cargo.lock");
+    let mut f64s = locked("crates/far_f64/Cargo.lock");
+    assert!(f64s.iter().any(|package| package.contains("\"bevy_ecs\"")));
+    f64s.retain(|package| !all.contains(package));
+    assert_none(&f64s, "what crates/far_f64/Cargo.lock has is in Cargo.lock too");
+}
+
 /// The rules would hold of any tree if nothing were ever found.
 #[test]
 fn what_is_shipped_is_told_from_what_is_not() {

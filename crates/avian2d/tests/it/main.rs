@@ -10,8 +10,6 @@ mod marble;
 mod plugins;
 #[path = "../../../../tests/reflection.rs"]
 mod reflection;
-#[path = "../../../../tests/rules.rs"]
-mod rules;
 #[path = "../../../../tests/schedule.rs"]
 mod schedule;
 #[path = "../../../../tests/type_paths.rs"]
