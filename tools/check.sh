@@ -1,66 +1,208 @@
 #!/usr/bin/env bash
-# Everything a change has to pass, from the quickest to the slowest. No arguments; fails at the first failure.
-#
-# Builds go to a folder of their own, outside of the tree, so that they neither wait for an editor's builds nor
-# throw them away; CARGO_TARGET_DIR overrides it.
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/avian-kernel-ci/target}"
-# Incremental files are of no use to a build that runs once, and many times the size of the result.
-export CARGO_INCREMENTAL=0
+usage() {
+    cat <<'EOF'
+Everything a change has to pass, from the quickest to the slowest. Fails at the first failure.
 
-SECONDS=0
-stage() {
-    echo "== ${SECONDS} s: $*"
-    "$@"
+    tools/check.sh            all of it, which is what CI runs
+    tools/check.sh --fast     formatting, rules of the source tree, and the kernel in f32: no Bevy, some minutes
+    tools/check.sh --hunt [N] the kernel's tests N times (10 if not told) with other random input each time
+    tools/check.sh --help     this
+
+Needs Rust with rustfmt and clippy, and a C compiler to link with.
+
+The same tree gets the same verdict: property tests draw their input from a fixed seed, PROPTEST_RNG_SEED, here 1
+if it is not set. `--hunt` prints the seed of each round; the round that fails is repeated by
+
+    PROPTEST_RNG_SEED=<seed> cargo test --package avian_kernel3d
+
+Plain `cargo test` takes a new seed each time.
+
+What is checked is a copy of the tree in the folder `check` of CARGO_TARGET_DIR, or of avian-kernel-ci/target in the
+user's cache: only what changed since the last check is compiled again, whichever clone that was of.
+EOF
 }
 
-# Cargo knows the crates of another clone of this tree by the same names, and looks for changes where that one
-# was: with sources outside of a package's folder it would test the other clone. Only dependencies are kept.
-# A call cleans one profile only.
-for manifest in Cargo.toml crates/far_f64/Cargo.toml; do
-    for profile in dev release; do
-        stage cargo clean --quiet --workspace --profile "$profile" --manifest-path "$manifest"
+mode=all
+rounds=10
+case "${1:-}" in
+    "") ;;
+    --fast | --hunt) mode="${1#--}" ;;
+    --help | -h)
+        usage
+        exit
+        ;;
+    *)
+        echo "unknown argument: $1" >&2
+        usage >&2
+        exit 2
+        ;;
+esac
+if [ "$mode" = hunt ] && [ $# -gt 1 ]; then
+    rounds="$2"
+    shift
+fi
+if [ $# -gt 1 ] || ! [[ "$rounds" =~ ^[1-9][0-9]*$ ]]; then
+    echo "unknown arguments" >&2
+    usage >&2
+    exit 2
+fi
+
+source="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+target="${CARGO_TARGET_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/avian-kernel-ci/target}/check"
+mkdir -p "$target"
+export CARGO_TARGET_DIR="$(cd "$target" && pwd)"
+copy="$CARGO_TARGET_DIR/tree"
+# Incremental files are many times the size of the result, and save little where a whole crate is compiled.
+export CARGO_INCREMENTAL=0
+export PROPTEST_RNG_SEED="${PROPTEST_RNG_SEED:-1}"
+
+SECONDS=0
+TIMEFORMAT='   %R s, %U s of processors'
+stage() {
+    echo "== $((SECONDS / 60)) min $((SECONDS % 60)) s: $*"
+    time "$@"
+}
+
+# The files of a folder, but for what is built and what is git's.
+files() {
+    (cd "$1" && find . \( -name target -o -name .git -o -path ./out \) -prune -o \( -type f -o -type l \) -print0)
+}
+
+# Makes the copy equal to the tree, and touches nothing that is equal already: cargo goes by the times of files.
+# Building each clone where it is would not do. Cargo takes the crates of two clones for the same, and as their
+# sources lie outside of their packages it would look for changes in the clone that was built last. For the same
+# reason nothing but this script builds into this folder.
+synchronise() {
+    local file
+    mkdir -p "$copy"
+    while IFS= read -r -d '' file; do
+        [ -f "$source/$file" ] || rm "$copy/$file"
+    done < <(files "$copy")
+    find "$copy" -depth -type d -empty -delete
+    mkdir -p "$copy"
+    while IFS= read -r -d '' file; do
+        cmp -s "$source/$file" "$copy/$file" && continue
+        mkdir -p "$copy/${file%/*}"
+        cp "$source/$file" "$copy/$file"
+    done < <(files "$source")
+}
+
+# Formatting first: it takes a second.
+formatting() {
+    stage cargo fmt --all --check
+    stage cargo fmt --manifest-path crates/far_f64/Cargo.toml --all --check
+}
+
+# What no compiler checks: which way imports point, where a dimension may be named, README against the example. And
+# that Cargo.lock fits the manifests: the first command would mend it in the copy otherwise.
+rules() {
+    stage cargo test --quiet --locked --package rules
+}
+
+# The bits of whole scenes, without any optimisation and with all of it. Tests of the kernel have them in between.
+golden_hashes() {
+    for dimension in 2d 3d; do
+        local plain="profile.dev.package.avian_kernel$dimension.opt-level=0"
+        stage cargo test --quiet --package "avian_kernel$dimension" --config "$plain" --test it golden_hashes
+        stage cargo test --quiet --package "avian_kernel$dimension" --release --test it golden
     done
-done
+}
 
-stage cargo fmt --all --check
+# The tests of the kernel alone. Dimensions and precisions are features, so each package is built by itself.
+kernel_tests() {
+    for dimension in 2d 3d; do
+        stage cargo test --quiet --package "avian_kernel$dimension" "$@"
+    done
+}
 
-# The kernel builds in seconds: what is wrong in it is known before Bevy is compiled. Its precisions and
-# dimensions are features, so each package is tested alone.
-for dimension in 2d 3d; do
-    stage cargo test --quiet --package "avian_kernel$dimension"
-    stage cargo test --quiet --package "avian_kernel$dimension" --features f64
-done
+# The kernel's lints where no Bevy is compiled.
+kernel_lints() {
+    for dimension in 2d 3d; do
+        stage cargo clippy --quiet --package "avian_kernel$dimension" --all-targets -- -D warnings
+    done
+}
 
-# The bits are the same without optimisation, and with all of it.
-for dimension in 2d 3d; do
-    plain="profile.dev.package.avian_kernel$dimension.opt-level=0"
-    stage cargo test --quiet --package "avian_kernel$dimension" --config "$plain" --test it golden_hashes
-    stage cargo test --quiet --package "avian_kernel$dimension" --release --test it golden
-done
+# All lints, of libraries, tests and benches. What draws is left out: its renderer needs system libraries, and the
+# testbed without its window is the package testbed_headless. Features are those of the tests below.
+lints() {
+    stage cargo clippy --quiet --workspace --exclude examples2d --exclude examples3d --exclude testbed \
+        --all-targets -- -D warnings
+}
 
-# The libraries with the features of the README's command, so that Bevy is compiled once for lints and once
-# for tests. What draws is linted and tested without a window: no renderer is built here.
-stage cargo clippy --workspace --exclude examples2d --exclude examples3d --exclude testbed --all-targets -- -D warnings
-stage cargo clippy --package testbed --no-default-features -- -D warnings
-stage cargo test --quiet --package testbed --no-default-features
-stage cargo test --quiet
+# What the README tells newcomers to run, to the letter. The kernel's tests in f32 are among these.
+readme_tests() {
+    stage cargo test --quiet
+}
 
-# World positions in f64 exclude f32 in one build, so their tests, and the engine's unit tests in f64, are a workspace
-# of their own.
-stage cargo test --quiet --manifest-path crates/far_f64/Cargo.toml
+# World positions in f64 exclude f32 in one build: their tests, and the engine's unit tests in f64, are a workspace
+# of their own. Bevy has the same features there, and is not compiled again.
+f64_tests() {
+    stage cargo test --quiet --locked --manifest-path crates/far_f64/Cargo.toml
+}
 
-# `parallel` changes nothing here but Bevy's features: with it, what clippy compiled of Bevy serves again.
-for dimension in 2d 3d; do
-    stage cargo check --package "avian$dimension" --no-default-features --features "$dimension,f64,parry-f64,parallel"
-done
+# The features of apps that no test has: f64 as Avian's users ask for it, and no default collider, as crates ask for
+# that bring none. With avian_derive in the command, Bevy has the features that it has for lints.
+feature_sets() {
+    for dimension in 2d 3d; do
+        stage cargo check --quiet --package "avian$dimension" --package avian_derive \
+            --no-default-features --features "$dimension,f64,parry-f64,parallel"
+    done
+    stage cargo check --quiet --package avian3d --no-default-features --features 3d,f32,parallel
+}
 
-# Without the default collider, as crates ask for that bring none.
-stage cargo check --package avian3d --no-default-features --features 3d,f32,parallel
+# Documentation without a broken link. Cargo looks for changes in the folder of a package only, and the sources are
+# outside, so what it made before goes first.
+documentation() {
+    stage cargo clean --quiet --doc
+    RUSTDOCFLAGS="-D warnings" stage cargo doc --quiet --no-deps --package avian_derive \
+        --package avian2d --package avian3d --package avian_kernel2d --package avian_kernel3d
+}
 
-RUSTDOCFLAGS="-D warnings" stage cargo doc --no-deps \
-    --package avian2d --package avian3d --package avian_kernel2d --package avian_kernel3d
+# Two checks at once would change the copy below each other.
+wait_for_others() {
+    command -v flock >/dev/null || return 0
+    exec 9>"$CARGO_TARGET_DIR/check.lock"
+    flock --nonblock 9 && return
+    echo "waiting for another check in $CARGO_TARGET_DIR"
+    flock 9
+}
 
-echo "== all passed in $((SECONDS / 60)) min $((SECONDS % 60)) s"
+main() {
+    wait_for_others
+    synchronise
+    cd "$copy"
+    case "$mode" in
+        fast)
+            formatting
+            rules
+            kernel_tests
+            kernel_lints
+            golden_hashes
+            ;;
+        hunt)
+            for round in $(seq "$rounds"); do
+                export PROPTEST_RNG_SEED=$((RANDOM << 30 | RANDOM << 15 | RANDOM))
+                echo "== round $round: PROPTEST_RNG_SEED=$PROPTEST_RNG_SEED"
+                kernel_tests --lib --test it
+            done
+            ;;
+        all)
+            # The kernel builds in seconds: what is wrong in it is known before Bevy is compiled.
+            formatting
+            rules
+            kernel_tests --features f64
+            golden_hashes
+            lints
+            readme_tests
+            f64_tests
+            feature_sets
+            documentation
+            ;;
+    esac
+    echo "== all passed in $((SECONDS / 60)) min $((SECONDS % 60)) s"
+}
+
+# In one line: a change of this file while it runs has no effect.
+{ main; exit; }
