@@ -6,7 +6,8 @@ usage() {
 Everything a change has to pass, from the quickest to the slowest. Fails at the first failure.
 
     tools/check.sh            all of it, which is what CI runs
-    tools/check.sh --fast     formatting, rules of the source tree, and the kernel in f32: no Bevy, some minutes
+    tools/check.sh --fast     formatting, rules of the source tree, lints and tests of the kernel in f32, golden hashes
+                              among them: no Bevy, a few minutes
     tools/check.sh --hunt [N] the kernel's tests N times (10 if not told) with other random input each time
     tools/check.sh --help     this
 
@@ -177,9 +178,8 @@ main() {
         fast)
             formatting
             rules
-            kernel_tests
             kernel_lints
-            golden_hashes
+            kernel_tests
             ;;
         hunt)
             for round in $(seq "$rounds"); do
