@@ -9,6 +9,8 @@ mod cuboids;
 mod gjk;
 mod half_space;
 #[cfg(test)]
+mod near_tests;
+#[cfg(test)]
 mod oracle;
 mod reduce;
 mod round;

@@ -28,11 +28,27 @@ impl Cores {
         }
     }
 
-    /// The contact along the line through the points, or along `fallback` if they coincide.
-    fn contact(&self, fallback: Vector, prediction: f32, out: &mut LocalManifold) {
-        out.normal = unit_or(self.b - self.a, fallback);
+    /// The contact along the line through the points, or along `fallback` if they are no farther apart than rounding
+    /// may have put them.
+    fn contact(&self, fallback: Vector, rounding: f32, prediction: f32, out: &mut LocalManifold) {
+        out.normal = self.direction_or(fallback, rounding);
         self.push(out.normal, prediction, 0, out);
     }
+
+    /// From A's point to B's, or `fallback` as above.
+    fn direction_or(&self, fallback: Vector, rounding: f32) -> Vector {
+        let between = self.b - self.a;
+        if between.abs().max_element() > rounding { unit_or(between, fallback) } else { fallback }
+    }
+}
+
+/// Points that were computed from numbers of a size are where they should be to within this share of it, and the
+/// direction from one to the other to within a hundredth if they are farther apart than a hundred times that.
+const ROUNDING: f32 = 2.0e-5;
+
+/// How far apart points must be to have a direction, if they were computed from these.
+fn rounding_of(points: &[Vector]) -> f32 {
+    ROUNDING * points.iter().fold(0.0, |size, p| max(size, p.abs().max_element()))
 }
 
 /// A vector's direction, also if its square is too small or too large for a float.
@@ -47,7 +63,7 @@ pub(super) fn unit_or(v: Vector, fallback: Vector) -> Vector {
 
 /// Two balls, the first at the origin.
 pub(super) fn balls(radius_a: f32, center: Vector, radius_b: f32, prediction: f32, out: &mut LocalManifold) {
-    Cores { a: Vector::ZERO, b: center, radius_a, radius_b }.contact(Vector::Y, prediction, out);
+    Cores { a: Vector::ZERO, b: center, radius_a, radius_b }.contact(Vector::Y, 0.0, prediction, out);
 }
 
 /// A capsule (or segment, with no radius) and a ball.
@@ -63,7 +79,10 @@ pub(super) fn capsule_ball(
     let t = if square > 0.0 { clamp((center - a.a).dot(axis) / square, 0.0, 1.0) } else { 0.0 };
     let fallback = unit_or(axis, Vector::X).any_orthonormal();
     let point = a.a + axis * t;
-    Cores { a: point, b: center, radius_a: a.radius, radius_b: radius }.contact(fallback, prediction, out);
+    // The axis is as good as hit where the centre is as near as rounding may put the nearest point.
+    let rounding = rounding_of(&[a.a, a.b]);
+    let cores = Cores { a: point, b: center, radius_a: a.radius, radius_b: radius };
+    cores.contact(fallback, rounding, prediction, out);
 }
 
 /// A box and a ball; a centre inside leaves by the nearest face.
@@ -77,7 +96,8 @@ pub(super) fn cuboid_ball(
     let nearest = center.max(-half).min(half);
     let cores = Cores { a: nearest, b: center, radius_a: 0.0, radius_b: radius };
     if center != nearest {
-        return cores.contact(Vector::Y, prediction, out);
+        // The centre is held to the box without rounding.
+        return cores.contact(Vector::Y, 0.0, prediction, out);
     }
     let (h, c) = (half.to_array(), center.to_array());
     let mut face = 0;
@@ -101,14 +121,43 @@ pub(super) fn triangle_ball(
     prediction: f32,
     out: &mut LocalManifold,
 ) {
-    let normal = unit_or((t.b - t.a).cross(t.c - t.a), Vector::Y);
+    let mut normal = match face(t) {
+        Some(normal) => normal,
+        None => {
+            let sides = [t.b - t.a, t.c - t.b, t.a - t.c];
+            let longest = sides
+                .into_iter()
+                .fold(Vector::ZERO, |l, s| if s.length_squared() > l.length_squared() { s } else { l });
+            unit_or(longest, Vector::X).any_orthonormal()
+        }
+    };
+    if normal.dot(center - t.a) < 0.0 {
+        normal = -normal;
+    }
     let nearest = nearest_on_triangle(t, center);
-    Cores { a: nearest, b: center, radius_a: 0.0, radius_b: radius }.contact(normal, prediction, out);
+    let cores = Cores { a: nearest, b: center, radius_a: 0.0, radius_b: radius };
+    cores.contact(normal, rounding_of(&[t.a, t.b, t.c]), prediction, out);
+}
+
+/// Triangles with a corner of a smaller sine count as segments.
+const SLIVER: f32 = 1.0e-5;
+
+/// A triangle's unit normal; `None` if its corners are on a line, or in one place.
+fn face(t: &Triangle) -> Option<Vector> {
+    let (ab, ac) = (t.b - t.a, t.c - t.a);
+    let cross = ab.cross(ac);
+    let size = ab.length() * ac.length();
+    // The third side may be the short one. NaN is no face.
+    let is_face = cross.length() > SLIVER * max(size, max(ab.length_squared(), ac.length_squared()));
+    is_face.then(|| unit_or(cross, Vector::Y))
 }
 
 /// The point of a triangle nearest to another, by Voronoi regions (Ericson, "Real-Time Collision
 /// Detection", 5.1.5).
 fn nearest_on_triangle(t: &Triangle, p: Vector) -> Vector {
+    if face(t).is_none() {
+        return nearest_on_sides(t, p);
+    }
     let (ab, ac, ap) = (t.b - t.a, t.c - t.a, p - t.a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {
@@ -140,6 +189,22 @@ fn nearest_on_triangle(t: &Triangle, p: Vector) -> Vector {
     t.a + ab * (vb * k) + ac * (vc * k)
 }
 
+/// The point of a triangle's sides nearest to another.
+fn nearest_on_sides(t: &Triangle, p: Vector) -> Vector {
+    let (mut nearest, mut least) = (t.a, f32::INFINITY);
+    for (from, to) in [(t.a, t.b), (t.b, t.c), (t.c, t.a)] {
+        let side = to - from;
+        let square = side.length_squared();
+        let along = if square > 0.0 { clamp((p - from).dot(side) / square, 0.0, 1.0) } else { 0.0 };
+        let point = from + side * along;
+        let distance = (p - point).length_squared();
+        if distance < least {
+            (nearest, least) = (point, distance);
+        }
+    }
+    nearest
+}
+
 /// Two capsules (or segments). Parallel ones touch at both ends of where they run side by side.
 pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
     let (b0, b1) = (pose.transform(b.a), pose.transform(b.b));
@@ -154,8 +219,17 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
     } else {
         unit_or(crossed, Vector::Y)
     };
-    if fallback.dot(pose.position) < 0.0 {
+    let rounding = rounding_of(&[a.a, a.b, b0, b1]);
+    // Cores in one place part to the side where B is. The distance is known better than the direction.
+    let between = fallback.dot(cores.b - cores.a);
+    let side = if between.abs() > 0.05 * rounding { between } else { fallback.dot(pose.position) };
+    if side < 0.0 {
         fallback = -fallback;
+    }
+    if !parallel && s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0 {
+        // Between the ends of both the normal is across both, however near they are.
+        out.normal = fallback;
+        return cores.push(fallback, prediction, 0, out);
     }
     if parallel && uu > 0.0 && vv > 0.0 {
         // B's ends along A, held to A: where the two run side by side.
@@ -167,7 +241,7 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
             Cores { a: p, b: q, ..cores }
         };
         if high - low > 0.01 {
-            out.normal = unit_or(cores.b - cores.a, fallback);
+            out.normal = cores.direction_or(fallback, rounding);
             for (feature, s) in [(1, low), (2, high)] {
                 across(s).push(out.normal, prediction, feature, out);
             }
@@ -175,7 +249,7 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
             return;
         }
     }
-    cores.contact(fallback, prediction, out);
+    cores.contact(fallback, rounding, prediction, out);
     if parallel {
         // Of parallel lines the closest points are found by rounding.
         out.apart = 0.0;
