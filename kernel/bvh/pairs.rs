@@ -116,19 +116,25 @@ pub struct Movers {
     moved: BitSet,
     /// By id; of use only where `moved` has it.
     masks: Vec<PairMask>,
+    /// Places in the list by id; as above.
+    places: Vec<u32>,
 }
 
 impl Movers {
-    /// Adds a mover; whether its id was absent. If it was not, nothing changes.
+    /// Adds a mover; whether its id was absent. If it was not, what is said now counts.
     pub fn insert(&mut self, mover: Mover) -> bool {
         let absent = self.moved.insert(mover.id);
+        let i = mover.id as usize;
+        if i >= self.masks.len() {
+            self.masks.resize(i + 1, PairMask::NONE);
+            self.places.resize(i + 1, 0);
+        }
+        self.masks[i] = mover.mask;
         if absent {
-            let i = mover.id as usize;
-            if i >= self.masks.len() {
-                self.masks.resize(i + 1, PairMask::NONE);
-            }
-            self.masks[i] = mover.mask;
+            self.places[i] = self.list.len() as u32;
             self.list.push(mover);
+        } else {
+            self.list[self.places[i] as usize] = mover;
         }
         absent
     }

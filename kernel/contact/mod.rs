@@ -6,6 +6,7 @@ mod phase;
 mod record;
 mod recycle;
 mod shared;
+mod sweep;
 mod table;
 mod update;
 

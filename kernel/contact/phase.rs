@@ -3,7 +3,7 @@
 use super::record::Contact;
 use crate::manifold::LocalManifold;
 use crate::math::{Lane, WorldPose, max, min};
-use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity};
+use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity, is_swinging, turn};
 
 /// Whoever computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign) in them.
 pub trait ManifoldSource: Sync {
@@ -110,7 +110,7 @@ impl<S> NarrowPhase<'_, S> {
         [Self::revision(a, poses[0]), Self::revision(b, poses[1])]
     }
 
-    /// How far apart surfaces may be to count as a contact: as far as they can close in this step, but
+    /// How far apart surfaces may be to count as a contact: as far as they can close in this step if nothing turns, but
     /// not beyond the colliders' speculative margins.
     pub(super) fn prediction(&self, contact: &Contact) -> f32 {
         let [a, b] = self.reaches(contact);
@@ -118,6 +118,28 @@ impl<S> NarrowPhase<'_, S> {
         let closing =
             (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;
         max(self.tolerance, min(max(self.speculative, closing), limit))
+    }
+
+    /// The [`prediction`](Self::prediction), and as far as turning may close as well.
+    pub(super) fn farthest(&self, contact: &Contact, prediction: f32) -> f32 {
+        let reaches = self.reaches(contact);
+        let mut turning = 0.0;
+        for (side, reach) in reaches.into_iter().enumerate() {
+            let turn = turn(self.velocity(contact, side).angular.length(), self.dt);
+            if is_swinging(reach, turn, self.speculative) {
+                turning += self.arm(contact, side) * turn;
+            }
+        }
+        // Most bodies hardly turn.
+        if turning == 0.0 {
+            return prediction;
+        }
+        max(prediction, min(prediction + turning, reaches[0].speculative + reaches[1].speculative))
+    }
+
+    /// How far normals of a side's surface pass from its body's centre of mass at most, in metres.
+    pub(super) fn arm(&self, contact: &Contact, side: usize) -> f32 {
+        self.colliders[contact.colliders[side]].arm(self.bodies)
     }
 }
 

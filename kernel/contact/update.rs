@@ -3,6 +3,7 @@
 use super::phase::{ManifoldSource, NarrowPhase, smaller};
 use super::record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
 use super::recycle::Group;
+use super::sweep::Meeting;
 use crate::manifold::{self, FeatureCache, LocalManifold};
 use crate::math::{Rot, Vector, max, min};
 use crate::shape::Shape;
@@ -117,8 +118,8 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         // What has just come together, or was changed by hand, was put where it is; all else was pressed there, if not
         // by those that were put there.
         let placed = crowded || contact.revisions != self.revisions(contact, poses);
-        self.compute(contact, poses, scratch);
-        self.replace(contact, extra, poses[0], scratch);
+        let meeting = self.compute(contact, poses, scratch);
+        self.replace(contact, extra, poses[0], meeting.as_ref(), scratch);
         let deep = match (contact.flags.has(ContactFlags::DEEP), placed) {
             (true, _) => self.overlaps_by(NO_LONGER_DEEP, contact),
             (false, true) => self.overlaps_by(DEEP, contact),
@@ -135,8 +136,14 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         deepest < 0.0 && deepest < -share * reach
     }
 
-    /// Computes the manifolds at the present pose, into `scratch.local`, and freezes the contact there.
-    fn compute(&self, contact: &mut Contact, poses: [&BodyPose; 2], scratch: &mut Scratch<S::Workspace>) {
+    /// Computes the manifolds at the present pose, into `scratch.local`, and freezes the contact there. Where the shapes will
+    /// meet only because a body turns, it is the manifold of then.
+    fn compute(
+        &self,
+        contact: &mut Contact,
+        poses: [&BodyPose; 2],
+        scratch: &mut Scratch<S::Workspace>,
+    ) -> Option<Meeting> {
         let [a, b] = contact.colliders;
         let margin = self.margin(contact);
         let revisions = self.revisions(contact, poses);
@@ -147,24 +154,30 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         let mut reach = self.prediction(contact);
         let prediction = reach + margin;
 
+        let mut meeting = None;
         scratch.local.clear();
         if contact.flags.has(ContactFlags::FOREIGN) {
+            // These can be looked at where they are now only.
+            let prediction = self.farthest(contact, reach) + margin;
             self.source.manifolds(a, b, prediction, &mut scratch.foreign, &mut scratch.local);
         } else {
             let mut apart = self.colliders.tight[a as usize].gap(&self.colliders.tight[b as usize]);
-            if !(apart > prediction) {
+            let (sa, sb): (&Shape, &Shape) = (&self.colliders[a].def.shape, &self.colliders[b].def.shape);
+            let mut local = LocalManifold::default();
+            if !(apart > prediction) || !(apart - margin > self.farthest(contact, reach)) {
                 let (pose_a, pose_b) = (&self.colliders.poses[a as usize], &self.colliders.poses[b as usize]);
-                let (sa, sb): (&Shape, &Shape) = (&self.colliders[a].def.shape, &self.colliders[b].def.shape);
-                let mut local = LocalManifold::default();
                 let relative = pose_a.relative(pose_b);
                 manifold::collide(sa, sb, &relative, prediction, &mut contact.cache, &mut local);
-                apart = local.apart;
-                if local.count > 0 {
-                    self.note_platform(contact, [sa, sb]);
-                    scratch.local.push(local);
+                // Shapes that turn are often much farther apart than their boxes.
+                apart = max(apart, local.apart);
+                if local.count == 0 {
+                    meeting = self.meeting(contact, poses, apart - margin, reach, &mut local);
                 }
             }
-            if scratch.local.is_empty() {
+            if local.count > 0 {
+                self.note_platform(contact, [sa, sb]);
+                scratch.local.push(local);
+            } else {
                 reach = max(apart - margin, reach);
             }
         }
@@ -175,8 +188,13 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
             prediction: reach,
         };
         contact.revisions = revisions;
-        let recyclable = self.recycle_distance > 0.0 && !contact.flags.has(ContactFlags::FOREIGN);
+        let recyclable =
+            self.recycle_distance > 0.0 && !contact.flags.has(ContactFlags::FOREIGN) && meeting.is_none();
         contact.flags.set(ContactFlags::FROZEN, recyclable);
+        if let Some(meeting) = meeting {
+            contact.frozen.offset = meeting.offset;
+        }
+        meeting
     }
 
     /// Notes in the flags which body is a platform. Two round shapes have none, since one can roll under the same normal.
@@ -196,6 +214,7 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         contact: &mut Contact,
         extra: &[Manifold],
         body_a: &BodyPose,
+        meeting: Option<&Meeting>,
         scratch: &mut Scratch<S::Workspace>,
     ) {
         scratch.extra.clear();
@@ -206,13 +225,17 @@ impl<S: ManifoldSource> NarrowPhase<'_, S> {
         let [a, b] = contact.colliders;
         let (ca, cb) = (&self.colliders[a].def, &self.colliders[b].def);
         let margin = self.margin(contact);
-        let pose_a = &self.colliders.poses[a as usize];
+        let pose_a = meeting.map_or(&self.colliders.poses[a as usize], |meeting| &meeting.pose_a);
+        let body_a = meeting.map_or(body_a, |meeting| &meeting.body_a);
         // From body A's centre of mass to collider A's origin, in world axes.
         let to_shape = (pose_a.position - body_a.center).to_local();
         let old = core::mem::take(&mut contact.manifold);
         for (i, local) in scratch.local.iter().enumerate() {
             let mut m = to_world(local, pose_a.rotation, to_shape, margin);
             m.rounding = [ca.shape.rounding(), cb.shape.rounding()];
+            if let Some(meeting) = meeting {
+                meeting.take_back(&mut m);
+            }
             if !m.normal.is_finite()
                 || m.points().iter().any(|p| !p.separation.is_finite() || !p.anchor.is_finite())
             {

@@ -94,6 +94,12 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// What both have in common; empty if that is nothing.
+    #[inline]
+    pub fn intersection(&self, other: &Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
     /// The box with every face moved outward by `margin` metres.
     #[inline]
     pub fn grown(&self, margin: f32) -> Self {

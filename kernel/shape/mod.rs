@@ -123,6 +123,20 @@ impl Shape {
         }
     }
 
+    /// How far normals of the surface pass from a point of the shape's frame at most, in metres; 0 of a half-space, which
+    /// has no end.
+    pub fn arm(&self, center: Vector) -> f32 {
+        let farthest = self.extent(center) - self.rounding();
+        match self {
+            // A normal at the distance a passes a face at √(r² − a²) from there.
+            Self::Cuboid(s) => {
+                let inside = crate::math::max((s.half - center.abs()).min_element(), 0.0);
+                crate::math::max(farthest * farthest - inside * inside, 0.0).sqrt()
+            }
+            _ => farthest,
+        }
+    }
+
     /// The radius that the shape adds to its core, in metres: the surface is that of a ball rolling around a
     /// point, a segment or a polygon. Zero for sharp and foreign shapes.
     pub fn rounding(&self) -> f32 {

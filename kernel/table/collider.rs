@@ -3,7 +3,7 @@
 
 use super::{BodyKind, BodyTable, NONE};
 use crate::data::{BitSet, IdPool, Parts, prefetch};
-use crate::math::{DIM, Pose, Vector, WorldPose, min};
+use crate::math::{DIM, Pose, Rot, Vector, WorldPose, min};
 use crate::shape::{Aabb, Shape};
 use crate::team::Team;
 use core::ops::{Index, IndexMut};
@@ -151,6 +151,21 @@ pub struct Reach {
     pub margin: f32,
     /// Counts changes that make cached contacts wrong: shape, place on the body, margins.
     pub revision: u32,
+}
+
+/// Bodies that turn further in a step are looked at as if they turned by this, in radians.
+pub(crate) const MOST_TURN: f32 = 1.5;
+
+/// How far a body that turns at `spin` rad/s turns in `dt` seconds, as far as it is looked at, in radians.
+#[inline(always)]
+pub(crate) fn turn(spin: f32, dt: f32) -> f32 {
+    min(spin * dt, MOST_TURN)
+}
+
+/// Whether a turn may take the surface farther than `small`, or far for its size.
+#[inline(always)]
+pub(crate) fn is_swinging(reach: &Reach, turn: f32, small: f32) -> bool {
+    reach.extent * turn > min(small, FAT_SHARE * reach.extent)
 }
 
 /// All colliders that take part in the simulation.
@@ -399,6 +414,40 @@ impl ColliderTable {
 }
 
 impl Collider {
+    /// How far normals of the surface pass from the body's centre of mass at most, in metres: how fast the surface moves
+    /// along its normals for each radian a second.
+    pub(crate) fn arm(&self, bodies: &BodyTable) -> f32 {
+        let def = &self.def;
+        if def.body == NONE {
+            return 0.0;
+        }
+        def.shape.arm(def.local.inverse_transform(bodies[def.body].local_center))
+    }
+
+    /// The box of all places that the shape, whose box is `tight` now, takes in a step while its body turns.
+    #[inline(never)]
+    fn swung(&self, bodies: &BodyTable, fattening: Fattening, reach: &Reach, tight: &Aabb) -> Aabb {
+        let def = &self.def;
+        let arm = self.arm(bodies);
+        if arm == 0.0 {
+            return *tight;
+        }
+        let mut body = bodies.poses[def.body as usize];
+        // Turning takes nothing farther out than the farthest point is.
+        let round = Aabb::new(Vector::ZERO, Vector::ZERO).at(body.center).grown(reach.extent);
+        let velocity = bodies.velocities[def.body as usize].angular;
+        let spin = velocity.length();
+        let turn = min(turn(spin, fattening.dt), def.speculative / arm);
+        let rotation = Rot::IDENTITY.turned_by(velocity * (turn / spin)).mul(body.rotation);
+        if !rotation.is_finite() {
+            return round;
+        }
+        body.rotation = rotation;
+        let after = def.shape.aabb(&body.frame(bodies[def.body].local_center).then(&def.local));
+        // A point goes along an arc. Off the line between its ends that is by r (1 - cos φ/2) < r φ²/8 at most.
+        tight.union(&after).grown(0.125 * reach.extent * turn * turn).intersection(&round)
+    }
+
     /// Finds pose and box of a collider as it stands, and enlarges the fat box if it must. Returns whether it did.
     #[inline]
     fn fit(
@@ -409,27 +458,29 @@ impl Collider {
         (pose, tight, fat): (&mut WorldPose, &mut Aabb, &mut Aabb),
     ) -> bool {
         let def = &self.def;
-        let mut motion = Vector::ZERO;
+        let (mut motion, mut turning) = (Vector::ZERO, 0.0);
         if def.body != NONE {
             *pose = bodies.frame(def.body).then(&def.local);
-            let velocity = bodies.velocities[def.body as usize].linear;
+            let velocity = &bodies.velocities[def.body as usize];
             let speed = bodies.poses[def.body as usize].speed;
-            motion = velocity * fattening.dt;
+            motion = velocity.linear * fattening.dt;
             if speed * fattening.dt > def.speculative {
-                motion = velocity * (def.speculative / speed);
+                motion = velocity.linear * (def.speculative / speed);
             }
             if !motion.is_finite() {
                 motion = Vector::ZERO;
             }
+            turning = velocity.angular.length() * fattening.dt;
         }
         *tight = def.shape.aabb(pose);
-        let needed = tight.grown(def.margin).swept(motion);
+        let mut needed = tight.grown(def.margin);
+        if is_swinging(reach, turning, fattening.margin) {
+            needed = needed.union(&self.swung(bodies, fattening, reach, tight).grown(def.margin));
+        }
+        let needed = needed.swept(motion);
         let outgrown = !fat.contains(&needed);
         if outgrown {
-            let spin =
-                if def.body == NONE { 0.0 } else { bodies.velocities[def.body as usize].angular.length() };
-            let turning = reach.turning * spin * fattening.dt;
-            *fat = needed.grown(min(FAT_SHARE * reach.extent + turning, fattening.margin));
+            *fat = needed.grown(min(FAT_SHARE * reach.extent + reach.turning * turning, fattening.margin));
         }
         outgrown
     }

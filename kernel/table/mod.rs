@@ -9,6 +9,7 @@ pub use body::{Body, BodyKind, BodyPose, BodyTable, RestSpeed, Velocity};
 pub use collider::{
     Collider, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material, Reach, Surface,
 };
+pub(crate) use collider::{MOST_TURN, is_swinging, turn};
 
 /// No body, collider, contact or row.
 pub const NONE: u32 = u32::MAX;

@@ -11,6 +11,15 @@ use kernel::table::BodyKind;
 pub struct Dice(u64);
 
 impl Dice {
+    /// Numbers from a seed, none of them near those of another.
+    pub fn new(seed: u64) -> Self {
+        let mut dice = Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        for _ in 0..8 {
+            dice.unit();
+        }
+        dice
+    }
+
     /// A number from 0 to 1.
     pub fn unit(&mut self) -> f32 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -79,10 +88,7 @@ fn reach(shape: &Shape) -> f32 {
 
 /// A world of up to 20 bodies, and the fastest any point of one of them moves.
 fn world(seed: u64) -> (Sim, f32) {
-    let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
-    for _ in 0..8 {
-        dice.unit();
-    }
+    let mut dice = Dice::new(seed);
     let mut sim = Sim::new();
     (sim.dt, sim.substeps) = if seed.is_multiple_of(2) { (1.0 / 60.0, 4) } else { (1.0 / 64.0, 6) };
     let spread = dice.between(0.1, 50.0);

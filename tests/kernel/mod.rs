@@ -20,4 +20,5 @@ mod sim;
 mod sound;
 #[cfg(feature = "3d")]
 mod spin;
+mod swept_spin;
 mod unrest;
