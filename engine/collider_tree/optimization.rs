@@ -2,11 +2,15 @@
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 /// How the trees of colliders are optimized after they moved.
 ///
 /// Everything runs on one thread so far: trees are always optimized in place, within the step.
 #[derive(Resource, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Debug, Default, PartialEq)]
 pub struct ColliderTreeOptimization {
     /// What is done; [`TreeOptimizationMode::Adaptive`] by default.
@@ -29,6 +33,8 @@ impl Default for ColliderTreeOptimization {
 
 /// What is done to a tree to keep it good to search, from the cheapest to the most thorough.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Clone, Debug, Default, PartialEq)]
 pub enum TreeOptimizationMode {
     /// Leaves that moved are taken out and inserted where they fit best.

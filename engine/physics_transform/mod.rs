@@ -55,9 +55,13 @@ pub use sync::{position_to_transform, transform_to_position};
 
 use bevy_ecs::{prelude::*, reflect::ReflectResource};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 /// What the sync between transforms and poses does. Everything is on by default.
 #[derive(Resource, Reflect, Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Default, Debug, PartialEq)]
 pub struct PhysicsTransformConfig {
     /// Whether a change to an ancestor's `Transform` moves the bodies and colliders below, and whether their

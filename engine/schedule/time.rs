@@ -4,6 +4,8 @@
 use bevy_ecs::world::World;
 use bevy_log::warn_once;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_time::Time;
 use core::time::Duration;
 
@@ -49,10 +51,24 @@ use crate::math::Scalar;
 /// or only advance the clock: the next run of the schedule that hosts physics then takes that one step, with all that belongs to it
 /// (transforms are read before and written after).
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Clone, PartialEq)]
 pub struct Physics {
     paused: bool,
+    #[cfg_attr(feature = "serialize", serde(deserialize_with = "deserialize_speed"))]
     relative_speed: f64,
+}
+
+/// A speed that was stored, if it is one that can be [set](PhysicsTime::set_relative_speed).
+#[cfg(feature = "serialize")]
+fn deserialize_speed<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let speed: f64 = serde::Deserialize::deserialize(deserializer)?;
+    if speed.is_finite() && speed >= 0.0 {
+        Ok(speed)
+    } else {
+        Err(serde::de::Error::custom("a relative speed is a finite ratio of 0 or more"))
+    }
 }
 
 impl Default for Physics {
@@ -148,6 +164,8 @@ impl PhysicsTime for Time<Physics> {
 ///
 /// Within [`SubstepSchedule`](crate::dynamics::solver::schedule::SubstepSchedule) the generic `Time` shows it too.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Clone, PartialEq)]
 pub struct Substeps;
 

@@ -6,6 +6,8 @@ pub use plugin::NarrowPhasePlugin;
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::Scalar;
 
@@ -19,6 +21,8 @@ pub struct CollisionEventSystems;
 
 /// How contacts are computed.
 #[derive(Resource, Reflect, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Resource, Default, PartialEq)]
 pub struct NarrowPhaseConfig {
     /// The [`SpeculativeMargin`](crate::dynamics::ccd::SpeculativeMargin) of colliders and bodies without one, in metres. Unbounded by default.

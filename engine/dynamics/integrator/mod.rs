@@ -6,6 +6,8 @@ pub use plugin::IntegratorPlugin;
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::Vector;
 
@@ -41,6 +43,8 @@ pub type IntegrationSet = IntegrationSystems;
 /// app.insert_resource(Gravity::ZERO);
 /// ```
 #[derive(Reflect, Resource, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Resource, Default)]
 pub struct Gravity(pub Vector);
 
@@ -57,6 +61,8 @@ impl Gravity {
 
 /// Leaves the velocity of this body to the app: no gravity, forces, damping or speed limits are applied. Contacts still push it.
 #[derive(Component, Debug, Default, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default)]
 pub struct CustomVelocityIntegration;
 
@@ -65,5 +71,7 @@ pub struct CustomVelocityIntegration;
 /// It rests, and may fall asleep, while the app does not move it and its velocity is within its
 /// [`SleepThreshold`](crate::dynamics::rigid_body::sleeping::SleepThreshold).
 #[derive(Component, Debug, Default, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default)]
 pub struct CustomPositionIntegration;

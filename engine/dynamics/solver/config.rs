@@ -4,6 +4,8 @@ use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
 use bevy_log::{warn, warn_once};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_time::Time;
 
 use super::{
@@ -28,6 +30,8 @@ use crate::{
 /// App::new().add_plugins((TransformPlugin, PhysicsPlugins::default().with_length_unit(100.0)));
 /// ```
 #[derive(Resource, Clone, Debug, Deref, DerefMut, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Resource, Default, Debug, PartialEq)]
 pub struct PhysicsLengthUnit(pub Scalar);
 
@@ -63,6 +67,8 @@ impl PhysicsLengthUnit {
 
 /// How stiff, how fast and how bouncy contacts are. "LU" is [`PhysicsLengthUnit`].
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Resource, Default, Debug, PartialEq)]
 pub struct SolverConfig {
     /// The damping ratio ζ of overlap recovery; 10 by default. Above 1 overlap creeps out without bouncing; lower is springier.
@@ -96,6 +102,8 @@ impl Default for SolverConfig {
 
 /// How softly contacts push, recomputed from [`SolverConfig`] and the timestep before every solve.
 #[derive(Resource, Clone, Copy, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Resource, Default, PartialEq)]
 pub struct ContactSoftnessCoefficients {
     /// For contacts between dynamic bodies.

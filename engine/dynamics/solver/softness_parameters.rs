@@ -1,6 +1,8 @@
 //! Soft constraints: a spring given by damping ratio and frequency, and the coefficients that make a velocity constraint behave like it.
 
 use bevy_reflect::Reflect;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::{Scalar, TAU};
 
@@ -9,10 +11,22 @@ const LIMIT: Scalar = 1e9;
 
 /// A damped spring, given by how it swings instead of by stiffness, so that it behaves alike for every mass.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Clone, PartialEq)]
 pub struct SoftnessParameters {
+    #[cfg_attr(feature = "serialize", serde(deserialize_with = "deserialize_sanitized"))]
     damping_ratio: Scalar,
+    #[cfg_attr(feature = "serialize", serde(deserialize_with = "deserialize_sanitized"))]
     angular_frequency: Scalar,
+}
+
+/// Values that were stored are held to the same limits as those that are given.
+#[cfg(feature = "serialize")]
+fn deserialize_sanitized<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Scalar, D::Error> {
+    let value: Scalar = serde::Deserialize::deserialize(deserializer)?;
+    // Angular frequencies go up to TAU times the limit.
+    Ok(if value > 0.0 { value.min(TAU * LIMIT) } else { 0.0 })
 }
 
 impl SoftnessParameters {
@@ -70,6 +84,8 @@ fn sanitized(value: Scalar) -> Scalar {
 
 /// What a velocity constraint needs to act as a spring: λ = −mass_scale · m · (v + bias · c) − impulse_scale · Σλ.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Clone, PartialEq)]
 pub struct SoftnessCoefficients {
     /// The velocity wanted per length of error, in 1/s.

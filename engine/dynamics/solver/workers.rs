@@ -2,6 +2,8 @@
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_tasks::ComputeTaskPool;
 use kernel::team::Team;
 
@@ -15,6 +17,8 @@ use kernel::team::Team;
 /// The threads are the engine's own. They are started by the first step with more than a thousand contacts of
 /// awake bodies, work in such steps only, and sleep otherwise. Without the feature `parallel` there are none.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Debug, Default, PartialEq)]
 pub struct WorkerCount(pub usize);
 
@@ -37,6 +41,8 @@ impl WorkerCount {
 /// How many contacts are computed side by side. The result has the same bits with any; this is for comparing and
 /// measuring.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Debug, Default, PartialEq)]
 pub enum RowWidth {
     /// As many as the CPU can: eight with AVX2, else four.

@@ -12,5 +12,7 @@ mod plugins;
 mod reflection;
 #[path = "../../../../tests/schedule.rs"]
 mod schedule;
+#[path = "../../../../tests/stored.rs"]
+mod stored;
 #[path = "../../../../tests/type_paths.rs"]
 mod type_paths;

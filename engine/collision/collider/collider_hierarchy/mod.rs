@@ -13,6 +13,8 @@ use bevy_ecs::{
     world::DeferredWorld,
 };
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use super::collider_transform::ColliderTransform;
 use crate::physics_transform::tree::FollowsBody;
@@ -35,6 +37,8 @@ use crate::physics_transform::tree::FollowsBody;
 /// }
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, FromWorld)]
 #[component(
     immutable,
@@ -112,6 +116,8 @@ fn list_collider(world: &mut World, collider: Entity) {
 /// On a body: the colliders that belong to it, the body's own entity among them if it has a collider.
 /// Despawning the body despawns them.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[relationship_target(relationship = ColliderOf, linked_spawn)]
 pub struct RigidBodyColliders(Vec<Entity>);

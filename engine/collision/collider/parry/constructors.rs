@@ -8,7 +8,7 @@ use crate::parry::shape::{SharedShape, TopologyError, TriMesh};
 use crate::physics_transform::{Position, Rotation};
 
 /// The largest coordinate of a voxel: farther ones overflow parry's chunk arithmetic.
-const MAX_VOXEL: i32 = 1 << 24;
+pub(super) const MAX_VOXEL: i32 = 1 << 24;
 
 impl Collider {
     /// A collider made from several at poses relative to it.

@@ -25,6 +25,8 @@ mod primitives3d;
 mod queries;
 #[cfg(feature = "2d")]
 mod regular_polygon;
+#[cfg(feature = "serialize")]
+mod stored;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -77,6 +79,9 @@ pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
 /// zero sizes, indices out of range) are mended, with one warning per constructor. Sizes become positive
 /// and at least 10 µm; if nothing is left, the collider is a ball of that size.
 ///
+/// With feature `serialize` a collider is stored as what its shape is made of and its scale, and comes back with
+/// the same bits; what describes no shape is an error. Shapes of a type of the app's own cannot be stored.
+///
 /// Parry's shapes are in its own types: `Collider::from(SharedShape)` takes any of them, and
 /// [`shape_scaled`](Self::shape_scaled) gives what the engine uses.
 #[derive(Clone, Component, Debug)]
@@ -93,6 +98,8 @@ pub struct Collider {
     /// The shape without scale.
     shape: SharedShape,
     scale: Vector,
+    /// How finely a curved shape is resolved that is scaled unevenly.
+    detail: u32,
     /// Empty from when `shape` was handed out to be changed until it is next asked for.
     scaled: OnceLock<Scaled>,
 }
@@ -128,7 +135,7 @@ impl From<SharedShape> for Collider {
         let shape = usable(shape);
         // At once, so that clones share it.
         let scaled = Scaled { native: native_shape(&shape), shape: shape.clone() };
-        Self { shape, scale: Vector::ONE, scaled: OnceLock::from(scaled) }
+        Self { shape, scale: Vector::ONE, detail: DEFAULT_SUBDIVISIONS, scaled: OnceLock::from(scaled) }
     }
 }
 
@@ -162,7 +169,7 @@ impl Collider {
     }
 
     fn scaled(&self) -> &Scaled {
-        self.scaled.get_or_init(|| Scaled::new(&self.shape, self.scale, DEFAULT_SUBDIVISIONS))
+        self.scaled.get_or_init(|| Scaled::new(&self.shape, self.scale, self.detail))
     }
 
     /// Replaces the shape, and keeps the scale.
@@ -194,6 +201,7 @@ impl Collider {
         if scale != self.scale || self.scaled.get().is_none() {
             self.scaled = Scaled::new(&self.shape, scale, num_subdivisions).into();
             self.scale = scale;
+            self.detail = num_subdivisions;
         }
     }
 }
@@ -201,16 +209,21 @@ impl Collider {
 /// The shape, if it has an extent; parry's own constructors take any number for a size. Else a tiny ball, with
 /// one warning.
 fn usable(shape: SharedShape) -> SharedShape {
-    let aabb = shape.compute_local_aabb();
-    let (low, high) = (aabb.mins, aabb.maxs);
-    if low.is_finite() && high.is_finite() && low.cmple(high).all() {
+    if has_extent(&shape) {
         return shape;
     }
     bevy_log::warn_once!("a shape of type {:?} has no finite extent; it becomes a point", shape.shape_type());
     SharedShape::ball(input::MIN_LENGTH)
 }
 
-/// How finely curved shapes are approximated when only the shape was set.
+/// Whether the box of a shape is finite and not inside out.
+fn has_extent(shape: &SharedShape) -> bool {
+    let aabb = shape.compute_local_aabb();
+    let (low, high) = (aabb.mins, aabb.maxs);
+    low.is_finite() && high.is_finite() && low.cmple(high).all()
+}
+
+/// How finely curved shapes are approximated before a scale is set.
 const DEFAULT_SUBDIVISIONS: u32 = 10;
 
 impl AnyCollider for Collider {

@@ -6,6 +6,8 @@ pub use plugin::SolverSchedulePlugin;
 
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_time::Time;
 use core::time::Duration;
 
@@ -78,6 +80,8 @@ pub type SubstepSolverSet = SubstepSolverSystems;
 /// app.insert_resource(SubstepCount(12));
 /// ```
 #[derive(Debug, Reflect, Resource, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Resource, Default, PartialEq)]
 pub struct SubstepCount(pub u32);
 

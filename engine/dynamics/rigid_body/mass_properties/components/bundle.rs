@@ -7,6 +7,7 @@ use crate::math::ComputeMassProperties;
 
 /// The mass properties of one entity, to be spawned together.
 #[derive(Bundle, Debug, Default, Clone, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct MassPropertiesBundle {
     /// In kg.
     pub mass: Mass,

@@ -148,6 +148,8 @@ pub struct NoAutoCenterOfMass;
 /// The engine inserts it where it sees a change. It does not see everything: see
 /// [`MassPropertyPlugin`](super::MassPropertyPlugin) for when to insert it by hand.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[component(storage = "SparseSet")]
 pub struct RecomputeMassProperties;
