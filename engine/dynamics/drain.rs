@@ -5,7 +5,7 @@ use bevy_log::warn;
 use kernel::{
     bvh::TreeKind,
     math::{Pose, WorldPose},
-    table::{BodyKind, ColliderDef, ColliderFlags, Layers, NONE},
+    table::{BodyKind, ColliderDef, ColliderFlags, Layers, NONE, Velocity},
 };
 
 use crate::{
@@ -166,6 +166,9 @@ impl Census<'_, '_> {
                 // Once set it stays: a static body's dominance is not read again.
                 tables.bodies.table.any_dominance |= dominance != 0;
                 put(&mut tables.bodies.entities, id, entity, Entity::PLACEHOLDER);
+                if let Some(kept) = tables.bodies.kept.get_mut(id as usize) {
+                    *kept = Velocity::default();
+                }
                 put(&mut tables.bodies.seen, id, said_pose(position, rotation), WorldPose::IDENTITY);
                 tables.link().enter(id);
                 if let Ok(mut component) = self.body_ids.get_mut(entity) {

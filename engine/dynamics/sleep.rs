@@ -5,14 +5,14 @@ use bevy_ecs::{entity_disabling::Disabled, error::Result, prelude::*, system::Co
 use bevy_time::Time;
 use kernel::{
     graph::SleepScan,
-    table::{BodyKind, NONE},
+    table::{BodyKind, NONE, Velocity},
 };
 
 use crate::{
     dynamics::{
         ids::BodyId,
         rigid_body::{
-            AngularVelocity, LinearVelocity, RigidBody,
+            RigidBody,
             sleeping::{Sleeping, SleepingDisabled, TimeToSleep},
         },
         tables::{Bodies, Tables},
@@ -146,6 +146,16 @@ pub(crate) fn follow_requests(
             tables.link().sleep_island(island);
         }
     }
+    let bodies = &mut *tables.bodies;
+    for i in 0..bodies.table.flipped.len() {
+        let id = bodies.table.flipped[i];
+        if bodies.table.ids.is_live(id)
+            && bodies.table[id].kind == BodyKind::Dynamic
+            && !bodies.table[id].awake
+        {
+            bodies.still(id);
+        }
+    }
     for (entity, ()) in wake.drain() {
         if let Ok((id, false, _) | (id, true, true)) = ids.get(entity)
             && id.0 != NONE
@@ -179,14 +189,10 @@ pub(crate) fn sleep_islands(
     }
 }
 
-/// Adds and removes [`Sleeping`] where a body fell asleep or woke, and stops what fell asleep. Observers of
-/// one body's `Sleeping` may despawn the next before it gets its own.
-pub(crate) fn mirror_sleeping(
-    mut tables: Tables,
-    sleeping: Query<Has<Sleeping>>,
-    mut velocities: Query<(&mut LinearVelocity, &mut AngularVelocity)>,
-    mut commands: Commands,
-) {
+/// Adds and removes [`Sleeping`] where a body fell asleep or woke. Observers of one body's `Sleeping` may despawn
+/// the next before it gets its own.
+///
+pub(crate) fn mirror_sleeping(mut tables: Tables, sleeping: Query<Has<Sleeping>>, mut commands: Commands) {
     let bodies = &mut *tables.bodies;
     for id in core::mem::take(&mut bodies.table.flipped) {
         if !bodies.table.ids.is_live(id) || bodies.table[id].kind != BodyKind::Dynamic {
@@ -194,11 +200,10 @@ pub(crate) fn mirror_sleeping(
         }
         let entity = bodies.entities[id as usize];
         let asleep = !bodies.table[id].awake;
-        // Also those that the app put to sleep, and that bear the marker already.
-        if asleep && let Ok((mut v, mut w)) = velocities.get_mut(entity) {
-            v.0 = Default::default();
-            w.0 = Default::default();
-            bodies.table.set_velocity(id, Default::default());
+        if asleep {
+            bodies.still(id);
+        } else if let Some(kept) = bodies.kept.get_mut(id as usize) {
+            *kept = Velocity::default();
         }
         match (asleep, sleeping.get(entity)) {
             (true, Ok(false)) => {

@@ -7,7 +7,7 @@ use kernel::{
     data::BitSet,
     graph::{ColorGraph, Islands},
     math::WorldPose,
-    table::{BodyTable, ColliderTable},
+    table::{BodyTable, ColliderTable, Velocity},
 };
 
 use crate::{
@@ -24,6 +24,10 @@ pub(crate) struct Bodies {
     /// The pose that the components of each id last said, read or written: what differs, the app changed. The
     /// table's own, from the centre of mass, would differ in the last bit.
     pub(crate) seen: Vec<WorldPose>,
+    /// The velocity of each body that fell asleep in motion, by id as far as one did. Components keep it, and the
+    /// body wakes with it: a stack goes on as if it had not slept. To the kernel a sleeping body stands still, or
+    /// its velocity would widen boxes and bring contacts that wake it.
+    pub(crate) kept: Vec<Velocity>,
     /// When the engine last wrote poses and velocities: what bears this tick the app did not change.
     pub(crate) written: Tick,
     /// When poses were last read in this step: what is newer the app changed within it.
@@ -36,6 +40,21 @@ pub(crate) struct Bodies {
     pub(crate) some: Vec<Entity>,
     /// The ids of a few bodies, kept for its memory.
     pub(crate) ids: Vec<u32>,
+}
+
+impl Bodies {
+    /// Stops a body that fell asleep, and keeps its velocity.
+    pub(crate) fn still(&mut self, id: u32) {
+        let velocity = self.table.velocities[id as usize];
+        if velocity == Velocity::default() {
+            return;
+        }
+        if self.kept.len() <= id as usize {
+            self.kept.resize(self.entities.len(), Velocity::default());
+        }
+        self.kept[id as usize] = velocity;
+        self.table.set_velocity(id, Velocity::default());
+    }
 }
 
 /// All colliders in the simulation, and the trees they are in.

@@ -1,6 +1,9 @@
 //! Islands fall asleep together and wake when something happens to them.
 
-use avian::{math::Vector, prelude::*};
+use avian::{
+    math::{Scalar, Vector},
+    prelude::*,
+};
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
 use scenes::scene::at;
@@ -41,7 +44,6 @@ fn a_tower_sleeps_as_one_after_half_a_second_of_rest() {
     let step = fell_asleep.expect("it sleeps");
     assert!((29..120).contains(&step), "after {step} steps");
     assert!(counts[..step].iter().all(|&n| n == 0) && counts[step..].iter().all(|&n| n == 3), "{counts:?}");
-    assert!(boxes.iter().all(|&b| lab.velocity(b) == Vector::ZERO), "what sleeps has no velocity");
 }
 
 #[test]
@@ -235,21 +237,73 @@ fn issue_with_no_time_to_sleep_bodies_froze_in_flight() {
 }
 
 #[test]
-fn issue_a_body_put_to_sleep_kept_its_velocity() {
+fn issue_falling_asleep_zeroed_the_velocity() {
     let mut lab = Lab::new();
     lab.surfaces(0.0, 0.0);
     lab.floor();
     let boxes = [0.5, 1.5].map(|y| lab.unit_box(at(0.0, y, 0.0)));
     for body in boxes {
-        lab.insert(body, LinearVelocity(Vector::X));
+        lab.insert(body, (LinearVelocity(Vector::X * 0.02), AngularVelocity::default()));
     }
-    lab.steps(5);
-    lab.insert(boxes[0], Sleeping);
+    while asleep(&lab, &boxes) == 0 {
+        lab.steps(1);
+    }
+    let (velocity, place) = (boxes.map(|b| lab.velocity(b)), boxes.map(|b| lab.at(b)));
+    assert!(velocity.iter().all(|v| (v.x - 0.02).abs() < 1.0e-3), "{velocity:?}");
+    lab.seconds(2.0);
+    // The same again is no push.
+    lab.insert(boxes[1], LinearVelocity(velocity[1]));
     lab.steps(2);
     assert_eq!(asleep(&lab, &boxes), 2);
-    assert_eq!(boxes.map(|b| lab.velocity(b)), [Vector::ZERO; 2]);
+    assert_eq!((boxes.map(|b| lab.velocity(b)), boxes.map(|b| lab.at(b))), (velocity, place));
+
+    lab.app.world_mut().commands().queue(WakeBody(boxes[0]));
     lab.steps(10);
-    assert_eq!(asleep(&lab, &boxes), 2, "stopping them is no push");
+    let way = lab.at(boxes[0]).x - place[0].x;
+    assert!((way - 10.0 * 0.02 / 60.0).abs() < 1.0e-4, "woken it goes on as fast as it was: {way}");
+}
+
+#[test]
+fn a_body_put_to_sleep_goes_on_when_it_wakes() {
+    let mut lab = Lab::new();
+    lab.surfaces(0.0, 0.0);
+    lab.floor();
+    let body = lab.unit_box(at(0.0, 0.5, 0.0));
+    // Nearer than a step's way: to contacts, what sleeps does not come closer.
+    let awake = lab.unit_box(at(1.1, 0.5, 0.0));
+    lab.insert(awake, SleepingDisabled);
+    lab.steps(5);
+    lab.insert(body, (Sleeping, LinearVelocity(Vector::X * 10.0)));
+    for _ in 0..30 {
+        lab.steps(1);
+        assert_eq!((asleep(&lab, &[body]), lab.velocity(body)), (1, Vector::X * 10.0));
+        assert!(lab.at(body).x == 0.0 && lab.velocity(awake).x == 0.0);
+    }
+    lab.remove::<Sleeping>(body);
+    lab.steps(10);
+    assert!(lab.at(awake).x > 1.5, "it is hit: {:?}", lab.at(awake));
+
+    // Another velocity wakes, as ever.
+    lab.insert(body, (Sleeping, LinearVelocity(-Vector::X)));
+    lab.steps(3);
+    assert_eq!(asleep(&lab, &[body]), 1);
+    lab.insert(body, LinearVelocity(-Vector::X * 2.0));
+    lab.steps(2);
+    assert_eq!(asleep(&lab, &[body]), 0);
+}
+
+#[test]
+fn a_tower_that_is_woken_again_and_again_stands() {
+    let (mut lab, _, boxes) = sleeping_tower();
+    let before = boxes.map(|b| lab.at(b));
+    for _ in 0..30 {
+        lab.app.world_mut().commands().queue(WakeBody(boxes[1]));
+        lab.seconds(1.5);
+        assert_eq!(asleep(&lab, &boxes), 3);
+    }
+    let moved = boxes.iter().zip(before).map(|(&b, before)| lab.at(b).distance(before));
+    let farthest = moved.fold(0.0, Scalar::max);
+    assert!(farthest < 1.0e-3, "it moved by {farthest}");
 }
 
 /// Puts something that does not move into a sleeper, in one of some ways.
@@ -320,7 +374,8 @@ fn a_level_may_be_spawned_asleep() {
     let boxes = |lab: &mut Lab, x: f32| {
         [0.5, 1.5, 2.5].map(|y| {
             let body = lab.unit_box(at(x, y, 0.0));
-            lab.insert(body, Sleeping);
+            // As it was saved.
+            lab.insert(body, (Sleeping, LinearVelocity(Vector::Y * 0.01)));
             body
         })
     };

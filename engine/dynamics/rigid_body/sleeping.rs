@@ -9,7 +9,10 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use derive_more::From;
 
 /// Marks a body that sleeps. Inserting or removing it puts the body's whole island to sleep or wakes it.
-/// Whatever falls asleep, by itself or so, loses its velocity.
+///
+/// Whatever falls asleep, by itself or so, stays where it is and keeps [`LinearVelocity`](super::LinearVelocity) and
+/// [`AngularVelocity`](super::AngularVelocity): it wakes with them, so that a stack goes on as if it had not slept.
+/// Setting another velocity wakes it, unless the marker is inserted in the same step.
 ///
 /// A body's table row should not move whenever it falls asleep: the marker is stored apart, as a sparse set.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]

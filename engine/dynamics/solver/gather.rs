@@ -162,12 +162,13 @@ struct Change {
 #[inline]
 fn read_in(entity: Entity, body: &StateInputItem, tables: &mut Tables, commands: &mut Commands) -> Change {
     let id = body.id.0;
-    let Bodies { table: bodies, seen, .. } = &*tables.bodies;
+    let Bodies { table: bodies, seen, kept, .. } = &*tables.bodies;
     let velocity = velocity(body.linear_velocity, body.angular_velocity);
     let center = vector_to_kernel(body.center.0);
     let said = said_pose(body.position, body.rotation);
-    let change =
-        Change { moved: seen[id as usize] != said, pushed: bodies.velocities[id as usize] != velocity };
+    let asleep = !bodies[id].awake && bodies[id].kind == BodyKind::Dynamic;
+    let held = if asleep { kept.get(id as usize) } else { None }.unwrap_or(&bodies.velocities[id as usize]);
+    let change = Change { moved: seen[id as usize] != said, pushed: *held != velocity };
     let recentered = bodies[id].local_center != center && center.is_finite();
     if !(change.moved || change.pushed || recentered) {
         return change;
@@ -223,6 +224,9 @@ pub(crate) fn wake_changed(
     system: SystemChangeTick,
 ) {
     let written = tables.bodies.written;
+    // What was put to sleep in this very step was so with this velocity and under this gravity: a level may be
+    // spawned asleep.
+    let flipped = tables.bodies.table.flipped_set();
     let mut wake = |entity: Entity| {
         let Ok(body) = states.get(entity) else { return };
         let id = body.id.0;
@@ -233,8 +237,11 @@ pub(crate) fn wake_changed(
         if change.moved {
             tables.link().wake_touching(id);
         }
-        if change.moved || change.pushed {
+        let kept = flipped.contains(id) && tables.bodies.table[id].kind == BodyKind::Dynamic;
+        if change.moved || change.pushed && !kept {
             tables.link().wake_body(id);
+        } else if change.pushed {
+            tables.bodies.still(id);
         }
     };
     for (entities, position, rotation, linear, angular) in watched.contiguous_iter().expect(IN_TABLES) {
@@ -254,8 +261,6 @@ pub(crate) fn wake_changed(
     if scaled.is_empty() && !gravity.is_changed() {
         return;
     }
-    // What was put to sleep in this very step was so under this gravity: a level may be spawned asleep.
-    let flipped = tables.bodies.table.flipped_set();
     for id in scaled.iter().filter(|id| id.0 != NONE && !flipped.contains(id.0)) {
         tables.link().wake_body(id.0);
     }
