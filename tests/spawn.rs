@@ -175,3 +175,66 @@ fn issue_a_removed_collider_left_its_link_and_its_mass() {
     assert_eq!(mass(&app, body), unit);
     is_near(get::<Position>(&app, body).y, 0.5);
 }
+
+/// All that is computed of what a body weighs.
+fn weighed(app: &App, body: Entity) -> String {
+    let (mass, center) = (get::<ComputedMass>(app, body), get::<ComputedCenterOfMass>(app, body));
+    format!("{mass:?} {:?} {center:?}", get::<ComputedAngularInertia>(app, body))
+}
+
+#[test]
+fn issue_colliders_below_a_body_weighed_nothing_until_the_next_step() {
+    let mut app = app();
+    let unit = ColliderMassProperties::from_shape(&ball(0.5), 1.0).mass;
+    let part = |x: f32| (ball(0.5), at(x, 0.0));
+    // What it weighs after the command it weighs after the step.
+    let check = |app: &mut App, body: Entity, parts: f32, center: f32| {
+        let now = weighed(app, body);
+        let (mass, at) = (mass(app, body), get::<ComputedCenterOfMass>(app, body).0.x);
+        assert!((mass - parts * unit).abs() < 1.0e-4 * unit, "{mass} is not {parts} of {unit}");
+        assert!((at - center).abs() < 1.0e-4, "{at} is not {center}");
+        by_hand(app, 1);
+        assert_eq!(now, weighed(app, body));
+    };
+    let body = app.world_mut().spawn((RigidBody::Dynamic, at(3.0, 2.0))).with_child(part(1.0)).id();
+    check(&mut app, body, 1.0, 1.0);
+    let later = app.world_mut().spawn((part(-2.0), ChildOf(body))).id();
+    check(&mut app, body, 2.0, -0.5);
+    app.world_mut().entity_mut(later).insert(Sensor);
+    check(&mut app, body, 1.0, 1.0);
+    app.world_mut().entity_mut(later).remove::<Sensor>();
+    check(&mut app, body, 2.0, -0.5);
+    app.world_mut().entity_mut(later).insert(ColliderDensity(3.0));
+    check(&mut app, body, 4.0, -1.25);
+    app.world_mut().entity_mut(later).insert((ball(0.25), ColliderDensity(1.0)));
+    let small = ColliderMassProperties::from_shape(&ball(0.25), 1.0).mass / unit;
+    check(&mut app, body, 1.0 + small, (1.0 - 2.0 * small) / (1.0 + small));
+    app.world_mut().entity_mut(later).insert(ColliderDisabled);
+    check(&mut app, body, 1.0, 1.0);
+    app.world_mut().entity_mut(later).remove::<ColliderDisabled>().insert(ball(0.5));
+    check(&mut app, body, 2.0, -0.5);
+
+    let other = app.world_mut().spawn((RigidBody::Dynamic, at(-30.0, 2.0), part(0.0).0)).id();
+    app.world_mut().entity_mut(later).insert(ChildOf(other));
+    check(&mut app, body, 1.0, 1.0);
+    check(&mut app, other, 2.0, -1.0);
+    app.world_mut().entity_mut(later).despawn();
+    check(&mut app, other, 1.0, 0.0);
+    // The body's own collider, too.
+    app.world_mut().entity_mut(other).insert(ColliderDensity(2.0));
+    check(&mut app, other, 2.0, 0.0);
+    app.world_mut().entity_mut(other).remove::<Collider>();
+    assert!(get::<ComputedMass>(&app, other).is_infinite(), "nothing is left of it");
+}
+
+#[test]
+fn a_body_of_hundreds_of_colliders_weighs_what_they_do_in_the_next_step() {
+    let mut app = app();
+    let body = app.world_mut().spawn((RigidBody::Dynamic, at(0.0, 50.0))).id();
+    for i in 0..300 {
+        app.world_mut().spawn((ball(0.5), at(i as f32, 0.0), ChildOf(body)));
+    }
+    by_hand(&mut app, 1);
+    let unit = ColliderMassProperties::from_shape(&ball(0.5), 1.0).mass;
+    assert!((mass(&app, body) / (300.0 * unit) - 1.0).abs() < 1.0e-4);
+}

@@ -17,7 +17,8 @@ use bevy_ecs::change_detection::{DetectChanges, DetectChangesMut};
 use bevy_ecs::entity_disabling::Disabled;
 use bevy_ecs::intern::Interned;
 use bevy_ecs::prelude::{
-    Add, Allow, Commands, Entity, IntoScheduleConfigs, On, Query, Ref, Remove, With, Without, World,
+    Add, Allow, Commands, Discard, Entity, EntityRef, In, IntoScheduleConfigs, On, Query, Ref, Remove, With,
+    Without, World,
 };
 use bevy_ecs::schedule::ScheduleLabel;
 use bevy_ecs::system::{SystemChangeTick, SystemParam};
@@ -59,6 +60,7 @@ impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
         let _ = app.try_register_required_components::<C, ColliderId>();
 
         app.add_observer(weigh_added::<C>)
+            .add_observer(weigh_replaced::<C>)
             .add_observer(weigh_former_sensor::<C>)
             .add_observer(strip::<C>)
             .add_systems(
@@ -82,13 +84,19 @@ pub struct ColliderScales<'w, 's, C: AnyCollider> {
 }
 
 impl<C: AnyCollider> ColliderScales<'_, '_, C> {
+    /// Weighs a collider, and its body when the command is done.
     fn weigh(&mut self, entity: Entity) {
-        let Ok((collider, density, mut properties)) = self.colliders.get_mut(entity) else { return };
-        // Masses of NaN or below zero would reach the solver through sums: no mass is the safe reading.
-        let density = if density.0.is_finite() && density.0 > 0.0 { density.0 } else { 0.0 };
-        if properties.set_if_neq(ColliderMassProperties::from_shape(collider, density)) {
+        if self.update(entity) {
             self.queue.push(entity);
         }
+    }
+
+    /// Weighs a collider. Returns whether it weighs something else than before.
+    fn update(&mut self, entity: Entity) -> bool {
+        let Ok((collider, density, mut properties)) = self.colliders.get_mut(entity) else { return false };
+        // Masses of NaN or below zero would reach the solver through sums: no mass is the safe reading.
+        let density = if density.0.is_finite() && density.0 > 0.0 { density.0 } else { 0.0 };
+        properties.set_if_neq(ColliderMassProperties::from_shape(collider, density))
     }
 }
 
@@ -103,8 +111,24 @@ fn weigh_added<C: AnyCollider>(
     }
 }
 
-/// Takes what the engine added to a collider away with it.
-fn strip<C: AnyCollider>(removed: On<Remove, C>, mut queue: MassPropertyQueue, mut commands: Commands) {
+/// Weighs a collider whose shape or density is replaced, when it has been.
+fn weigh_replaced<C: AnyCollider>(replaced: On<Discard, (C, ColliderDensity)>, mut commands: Commands) {
+    let entity = replaced.entity;
+    commands.queue(move |world: &mut World| {
+        let weighs = |entity: EntityRef| {
+            entity.contains::<C>() && entity.contains::<ColliderDensity>() && !entity.contains::<Sensor>()
+        };
+        if world.get_entity(entity).is_ok_and(weighs) {
+            let scales = |In(entity): In<Entity>, mut scales: ColliderScales<C>| scales.weigh(entity);
+            let weighed = world.run_system_cached_with(scales, entity);
+            debug_assert!(weighed.is_ok(), "the parameters are there");
+        }
+    });
+}
+
+/// Takes what the engine added to a collider away with it, and then has the body weighed: commands of parameters are
+/// done in their order.
+fn strip<C: AnyCollider>(removed: On<Remove, C>, mut commands: Commands, mut queue: MassPropertyQueue) {
     let former = removed.entity;
     queue.push(former);
     commands.queue(move |world: &mut World| {
@@ -145,7 +169,11 @@ pub fn update_collider_mass_properties<C: AnyCollider>(
         };
         changed.extend(all.iter().filter(is_new).map(|(entity, ..)| entity));
     }
-    changed.into_iter().for_each(|entity| scales.weigh(entity));
+    for entity in changed {
+        if scales.update(entity) {
+            scales.queue.mark(entity);
+        }
+    }
 }
 
 #[cfg(all(test, feature = "default-collider"))]

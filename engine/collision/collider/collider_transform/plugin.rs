@@ -18,7 +18,7 @@ use crate::{
             AttachesColliders, ColliderOf, CompoundBody, PlacesColliders, RigidBodyColliders, attach_now,
         },
     },
-    dynamics::rigid_body::RigidBody,
+    dynamics::rigid_body::{RigidBody, mass_properties::MassPropertyQueue},
     math::vector_from_xyz,
     noted::Noted,
     physics_transform::{
@@ -128,6 +128,7 @@ struct Placer<'w, 's> {
     transforms: Query<'w, 's, (&'static Transform, Has<RigidBody>)>,
     parents: Parents<'w, 's>,
     colliders: Offsets<'w, 's>,
+    weights: MassPropertyQueue<'w, 's>,
 }
 
 type Offsets<'w, 's> = Query<
@@ -159,14 +160,19 @@ fn place_now(world: &mut World) {
     let Some(mut state) = world.get_resource_mut::<PlacerState>().and_then(|mut state| state.0.take()) else {
         return;
     };
-    if let Ok(Placer { mut placement, transforms, parents, mut colliders }) = state.get_mut(world) {
+    if let Ok(Placer { mut placement, transforms, parents, mut colliders, mut weights }) =
+        state.get_mut(world)
+    {
         for entity in placement.unplaced.drain(..) {
             if let Ok((transform, is_body)) = transforms.get(entity) {
                 let path = path_above(entity, &parents, &transforms).child(is_body, transform);
-                put_offset(&mut colliders, entity, path.collider_transform());
+                if put_offset(&mut colliders, entity, path.collider_transform()) {
+                    weights.push(entity);
+                }
             }
         }
     }
+    state.apply(world);
     world.resource_mut::<PlacerState>().0 = Some(state);
 }
 

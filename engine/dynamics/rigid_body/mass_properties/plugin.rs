@@ -14,8 +14,10 @@ use crate::{
 
 /// Keeps the computed mass properties of bodies up to date. Part of `PhysicsPlugins`.
 ///
-/// A body is computed when it is spawned, from what it is spawned with. After that it is computed before a step if it carries [`RecomputeMassProperties`](super::components::RecomputeMassProperties), never
-/// otherwise, so that resting worlds cost nothing. The marker is inserted when the body is spawned or changes
+/// A body is computed when it is spawned, and when the command is done with which a collider came, went, was replaced or
+/// became a sensor; one with hundreds of colliders only before the next step. Before a step a body is computed if it
+/// carries [`RecomputeMassProperties`](super::components::RecomputeMassProperties), never otherwise, so that resting
+/// worlds cost nothing. The marker is inserted when the body is spawned or changes
 /// type; when one of its colliders comes, goes, changes shape or density, becomes a sensor, is disabled or is
 /// moved within the body; when one of the components named in the [module](super) comes, goes or changes, on the
 /// body or on a descendant. What goes unseen is a change of place of a descendant *without collider* that comes
@@ -54,14 +56,14 @@ impl Plugin for MassPropertyPlugin {
         // For what came since then, where steps are taken by hand.
         app.add_systems(
             PhysicsSchedule,
-            (recompute, warn_of_missing_mass).chain().before(PhysicsStepSystems::First),
+            (recompute, warn_of_missing_mass).chain_ignore_deferred().before(PhysicsStepSystems::First),
         );
         app.add_systems(
             self.schedule,
             (
                 queue_changed.in_set(MassPropertySystems::QueueRecomputation),
                 (recompute, warn_of_missing_mass)
-                    .chain()
+                    .chain_ignore_deferred()
                     .in_set(MassPropertySystems::UpdateComputedMassProperties),
             ),
         );

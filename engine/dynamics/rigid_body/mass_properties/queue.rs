@@ -1,7 +1,11 @@
 //! Which bodies have to be weighed again, and the systems that weigh them.
 
 use bevy_ecs::{
-    entity::EntityHashSet, entity_disabling::Disabled, event::EntityEvent, prelude::*, system::SystemParam,
+    entity::{Entities, EntityHashSet},
+    entity_disabling::Disabled,
+    event::EntityEvent,
+    prelude::*,
+    system::{SystemParam, SystemState},
 };
 use bevy_transform::prelude::Transform;
 
@@ -31,14 +35,21 @@ pub struct MassPropertyQueue<'w, 's> {
 
 impl MassPropertyQueue<'_, '_> {
     /// Marks the body that `entity` is, or that it is a collider of, or below which it hangs; none if there is
-    /// no such body.
+    /// no such body. It is weighed when the command is done, and again before the next step.
     pub(crate) fn push(&mut self, entity: Entity) {
-        let Some(body) = self.body_of(entity) else {
-            return;
-        };
+        if let Some(body) = self.mark(entity) {
+            // One for each: links are made by commands between them.
+            self.commands.queue(move |world: &mut World| weigh_now(world, body));
+        }
+    }
+
+    /// Marks the body to be weighed before the next step.
+    pub(crate) fn mark(&mut self, entity: Entity) -> Option<Entity> {
+        let body = self.body_of(entity)?;
         if self.bodies.get(body) == Ok(false) {
             self.commands.entity(body).try_insert(RecomputeMassProperties);
         }
+        Some(body)
     }
 
     fn body_of(&self, entity: Entity) -> Option<Entity> {
@@ -52,9 +63,36 @@ impl MassPropertyQueue<'_, '_> {
     }
 }
 
+/// How many parts a body may have to be weighed after each command. Those of larger ones may come one by one, and to
+/// add all up for each would be quadratic: such a body is weighed before the next step only.
+const MOST_PARTS_AT_ONCE: usize = 256;
+
+/// Kept, as making it anew takes longer than using it.
+#[derive(Resource)]
+struct Scales(Option<SystemState<MassPropertyHelper<'static, 'static>>>);
+
+impl FromWorld for Scales {
+    fn from_world(world: &mut World) -> Self {
+        Self(Some(SystemState::new(world)))
+    }
+}
+
+/// Weighs a body between two commands.
+fn weigh_now(world: &mut World, body: Entity) {
+    let scales = |world: &mut World| world.get_resource_mut::<Scales>()?.0.take();
+    let Some(mut scales) = scales(world) else { return };
+    if let Ok(mut helper) = scales.get_mut(world)
+        && helper.count_parts(body) <= MOST_PARTS_AT_ONCE
+    {
+        helper.update_mass_properties(body);
+    }
+    world.resource_mut::<Scales>().0 = Some(scales);
+}
+
 /// Registers what makes bodies be weighed again without a scan.
 pub(super) fn observe(app: &mut bevy_app::App) {
     app.init_resource::<ToldOfNoMass>()
+        .init_resource::<Scales>()
         .add_observer(weigh_new)
         .add_observer(on_event::<Remove, (Mass, AngularInertia, CenterOfMass)>)
         .add_observer(on_event::<Add, (Sensor, ColliderDisabled, Disabled)>)
@@ -68,7 +106,8 @@ fn on_event<E: EntityEvent, B: Bundle>(event: On<E, B>, mut queue: MassPropertyQ
     queue.push(event.event_target());
 }
 
-/// A new body has its mass at once, as far as it is its own: what hangs on it is linked to it afterwards.
+/// A new body has its mass at once, as far as it is its own: what hangs on it is linked to it afterwards, and weighed
+/// then.
 fn weigh_new(inserted: On<Insert, RigidBody>, mut helper: MassPropertyHelper) {
     helper.update_mass_properties(inserted.entity);
 }
@@ -104,11 +143,12 @@ pub(super) fn queue_changed(
     >,
     moved_colliders: Query<&ColliderOf, (With<ChildOf>, Changed<ColliderTransform>)>,
     mut queue: MassPropertyQueue,
-    mut warned: Local<EntityHashSet>,
+    mut told: Local<Told>,
+    entities: &Entities,
     _: OnThisThread,
 ) {
     for (entity, mass, inertia, center, name) in &changed {
-        queue.push(entity);
+        queue.mark(entity);
         let wrong = match (mass, inertia, center) {
             (Some(Mass(mass)), ..) if mass.is_nan() || *mass < 0.0 => Some("`Mass` is negative or NaN"),
             (_, Some(inertia), _) if !inertia.is_valid() => Some("`AngularInertia` is negative or NaN"),
@@ -116,7 +156,7 @@ pub(super) fn queue_changed(
             _ => None,
         };
         if let Some(wrong) = wrong
-            && warned.insert(entity)
+            && told.is_new(entity, entities)
         {
             bevy_log::warn!(
                 "the {wrong} of {}, and counts as 0; give it a valid value",
@@ -125,10 +165,10 @@ pub(super) fn queue_changed(
         }
     }
     for entity in &moved_parts {
-        queue.push(entity);
+        queue.mark(entity);
     }
     for collider in &moved_colliders {
-        queue.push(collider.body);
+        queue.mark(collider.body);
     }
 }
 
@@ -155,9 +195,36 @@ pub(super) fn recompute(
     });
 }
 
+/// Entities that the app was told of, each once. Those that are gone are forgotten now and then.
+#[derive(Default)]
+pub(super) struct Told {
+    entities: EntityHashSet,
+    /// How many there are when those that are gone are looked for.
+    full: usize,
+}
+
+impl Told {
+    /// Notes an entity. Returns whether it was not noted before.
+    fn is_new(&mut self, entity: Entity, alive: &Entities) -> bool {
+        if self.entities.len() >= self.full {
+            self.entities.retain(|entity| alive.contains(*entity));
+            self.full = 2 * self.entities.len() + 64;
+        }
+        self.entities.insert(entity)
+    }
+}
+
 /// Bodies without mass that the app was told of.
 #[derive(Resource, Default)]
-pub(super) struct ToldOfNoMass(EntityHashSet);
+pub(super) struct ToldOfNoMass(Told);
+
+#[cfg(test)]
+impl ToldOfNoMass {
+    /// How many bodies are noted.
+    pub fn len(&self) -> usize {
+        self.0.entities.len()
+    }
+}
 
 /// Names dynamic bodies that came out without mass, each once.
 ///
@@ -168,13 +235,14 @@ pub(super) fn warn_of_missing_mass(
         (Entity, &RigidBody, &ComputedMass, Option<&Mass>, Has<NoAutoMass>, Option<&Name>),
         With<RecomputeMassProperties>,
     >,
-    mut warned: ResMut<ToldOfNoMass>,
+    mut told: ResMut<ToldOfNoMass>,
+    entities: &Entities,
     _: OnThisThread,
 ) {
     for (entity, body, computed, mass, no_auto, name) in &marked {
         // Infinite mass may be wanted.
         let wanted = mass.is_some_and(|mass| mass.is_infinite()) || no_auto && mass.is_none();
-        if body.is_dynamic() && computed.is_infinite() && !wanted && warned.0.insert(entity) {
+        if body.is_dynamic() && computed.is_infinite() && !wanted && told.0.is_new(entity, entities) {
             bevy_log::warn!(
                 "the dynamic body {} has no mass: it falls, but nothing that touches it moves it; \
                  insert a `Mass`, or a collider with a `ColliderDensity` above 0",

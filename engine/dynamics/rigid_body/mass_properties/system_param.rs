@@ -107,6 +107,12 @@ impl MassPropertyHelper<'_, '_> {
         }
     }
 
+    /// How many colliders and children a body has.
+    pub(super) fn count_parts(&self, body: Entity) -> usize {
+        let Ok((children, colliders, ..)) = self.hierarchy.get(body) else { return 0 };
+        children.map_or(0, |list| list.len()) + colliders.map_or(0, |list| list.len())
+    }
+
     /// The mass properties of an entity and its descendants, in the entity's frame, as if nothing were
     /// restricted by [`NoAutoMass`] and its siblings.
     pub fn total_mass_properties(&self, entity: Entity) -> MassProperties {

@@ -313,3 +313,17 @@ fn a_sum_does_not_depend_on_its_order() {
     let backward = Part::sum(&reversed).to_properties();
     assert_eq!(forward, backward);
 }
+
+#[test]
+fn issue_bodies_without_mass_were_remembered_for_ever() {
+    let mut scale = Scale::new();
+    for _ in 0..20 {
+        let bodies: Vec<_> = (0..100).map(|_| scale.world().spawn(RigidBody::Dynamic).id()).collect();
+        scale.app.update();
+        for body in bodies {
+            scale.world().despawn(body);
+        }
+    }
+    let kept = scale.world().resource::<super::queue::ToldOfNoMass>().len();
+    assert!((100..400).contains(&kept), "{kept} of 2,000");
+}
