@@ -9,7 +9,11 @@ use avian::{
     prelude::*,
 };
 use bevy_app::prelude::*;
-use bevy_ecs::{entity_disabling::Disabled, prelude::*};
+use bevy_ecs::{
+    entity_disabling::Disabled,
+    prelude::*,
+    schedule::{Schedules, SingleThreadedExecutor},
+};
 use bevy_time::{TimePlugin, TimeUpdateStrategy, prelude::*};
 use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
@@ -197,6 +201,10 @@ fn app(frames_per_second: u32, case: &Case) -> App {
         .add_systems(Update, change_in_update);
     app.finish();
     app.cleanup();
+    // Handing systems of nearly empty schedules from thread to thread would be most of the time.
+    for (_, schedule) in app.world_mut().resource_mut::<Schedules>().iter_mut() {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
     let actors = spawn_scene(app.world_mut());
     app.insert_resource(actors);
     if !case.predicts {

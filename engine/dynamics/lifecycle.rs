@@ -285,4 +285,48 @@ mod tests {
             assert_eq!(app.world().resource::<TransformTree>().len(), 0, "hosted: {hosted}");
         }
     }
+
+    /// A redefined collider's manifolds are computed anew, which costs what keeping them saves.
+    #[test]
+    fn issue_writing_what_a_collider_is_already_dropped_its_kept_contacts() {
+        use crate::dynamics::tables::Contacts;
+        use crate::prelude::{CollisionLayers, Friction, SleepingDisabled};
+
+        let mut app = App::new();
+        app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update)));
+        app.finish();
+        app.cleanup();
+        let step = |app: &mut App| {
+            app.world_mut().resource_mut::<Time>().advance_by(core::time::Duration::from_millis(16));
+            app.update();
+        };
+        let floor = Collider::half_space(crate::math::Vector::Y);
+        let floor = app.world_mut().spawn((RigidBody::Static, floor)).id();
+        let shape = Collider::capsule(0.5, 1.0);
+        let surface = Friction::new(0.3);
+        let body = (
+            RigidBody::Dynamic,
+            shape.clone(),
+            surface,
+            SleepingDisabled,
+            Transform::from_xyz(0.0, 1.01, 0.0),
+        );
+        let body = app.world_mut().spawn(body).id();
+        (0..30).for_each(|_| step(&mut app));
+        let revisions = |app: &App| {
+            let contacts = &app.world().resource::<Contacts>().table;
+            contacts.iter().map(|(id, contact)| (id, contact.revisions)).collect::<Vec<_>>()
+        };
+        let before = revisions(&app);
+        assert_eq!(before.len(), 1);
+        for _ in 0..5 {
+            app.world_mut().entity_mut(body).insert((shape.clone(), surface, CollisionLayers::default()));
+            app.world_mut().get_mut::<Collider>(floor).expect("a collider").set_changed();
+            step(&mut app);
+            assert_eq!(revisions(&app), before);
+        }
+        app.world_mut().entity_mut(body).insert(Collider::capsule(0.5, 0.9));
+        step(&mut app);
+        assert_ne!(revisions(&app), before, "another shape is another contact");
+    }
 }

@@ -152,16 +152,22 @@ impl Link<'_> {
         }
     }
 
-    /// Re-reads what its colliders say of a contact after one of them was redefined in place.
+    /// Re-reads what its colliders say of a contact after one of them was redefined in place. Its manifold is
+    /// computed anew; its colour and island change only if it responds now and did not before, or the reverse.
     pub fn reflag_of_collider(&mut self, collider: u32) {
         let ids: Vec<u32> = self.contacts.of_collider(collider, self.colliders).collect();
         for id in ids {
             let flags = self.fresh_flags(id);
-            if flags != self.contacts.get(id).flags {
-                self.detach(id);
-                self.contacts.get_mut(id).flags = flags;
-                self.attach(id);
+            let contact = self.contacts.get_mut(id);
+            let (was_solved, inert) = (contact.is_solved(), contact.is_inert());
+            contact.flags = flags;
+            if inert == contact.is_inert() {
+                continue;
             }
+            if was_solved {
+                self.detach(id);
+            }
+            self.attach(id);
         }
         self.mix_of_collider(collider);
     }

@@ -107,6 +107,40 @@ fn visits(count: u32, change: impl Fn(&mut World)) -> usize {
     visits
 }
 
+/// Every contact of the collider lost its colour and its link, and got them back behind all others.
+#[test]
+fn issue_a_collider_of_another_material_gave_up_the_place_of_its_contacts() {
+    let mut world = World::heap(100);
+    let places =
+        |world: &World| world.contacts.iter().map(|(id, contact)| (id, contact.slot)).collect::<Vec<_>>();
+    let before = places(&world);
+    for (id, _) in &before {
+        // As the narrow phase leaves them.
+        world.contacts.get_mut(*id).flags.set(ContactFlags::FROZEN, true);
+        world.contacts.get_mut(*id).flags.set(ContactFlags::PLATFORM_A, true);
+    }
+    VISITS.set(0);
+    let change = |world: &mut World, id: u32, change: fn(&mut ColliderDef)| {
+        let mut def = world.colliders[id].def.clone();
+        change(&mut def);
+        let mut link = world.link();
+        link.colliders.redefine(id, def, link.bodies);
+        link.reflag_of_collider(id);
+        link.validate();
+    };
+    change(&mut world, 40, |def| def.margin = 0.1);
+    assert_eq!((places(&world), VISITS.get()), (before.clone(), 0));
+    let frozen = |(_, contact): (u32, &Contact)| contact.flags.has(ContactFlags::FROZEN);
+    assert_eq!(world.contacts.iter().filter(|found| !frozen(*found)).count(), 4, "these are computed anew");
+
+    // What does not respond any more has no place.
+    change(&mut world, 40, |def| def.flags.sensor = true);
+    let placed = |world: &World| places(world).iter().filter(|(_, slot)| slot.is_some()).count();
+    assert_eq!(placed(&world), before.len() - 4);
+    change(&mut world, 40, |def| def.flags.sensor = false);
+    assert_eq!(placed(&world), before.len());
+}
+
 /// Removing the colliders of ten thousand touching boxes one by one walked over all boxes for each contact.
 #[test]
 fn removing_all_of_a_heap_looks_at_each_body_a_few_times() {
