@@ -16,6 +16,11 @@ use crate::{
     },
 };
 
+/// Whether a shape has its faces; of the plane none lacks them.
+pub(super) fn has_faces(_: &SharedShape) -> bool {
+    true
+}
+
 /// A rotation as it is stored: its cosine and sine.
 pub(super) type Turn = [Scalar; 2];
 

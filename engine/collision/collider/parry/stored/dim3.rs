@@ -18,6 +18,16 @@ use crate::{
     },
 };
 
+/// Whether a shape has its faces: hulls that parry makes of what is scaled to a needle have none, and panic.
+pub(super) fn has_faces(shape: &SharedShape) -> bool {
+    match shape.as_typed_shape() {
+        TypedShape::ConvexPolyhedron(hull) => !hull.faces().is_empty(),
+        TypedShape::RoundConvexPolyhedron(round) => !round.inner_shape.faces().is_empty(),
+        TypedShape::Compound(compound) => compound.shapes().iter().all(|(_, part)| has_faces(part)),
+        _ => true,
+    }
+}
+
 /// A rotation as it is stored: x, y, z, w of the quaternion.
 pub(super) type Turn = [Scalar; 4];
 
@@ -234,7 +244,7 @@ impl HullFields {
             && self.vertices_adj_to_face.len() == self.edges_adj_to_face.len();
         let around_vertices = self.vertices.iter().all(|v| {
             let list = &self.faces_adj_to_vertex;
-            v.num_adj_faces_or_edge >= 1 && within(v.first_adj_face_or_edge, v.num_adj_faces_or_edge, list)
+            within(v.first_adj_face_or_edge, v.num_adj_faces_or_edge, list)
         });
         let around_faces = self.faces.iter().all(|f| {
             let list = &self.vertices_adj_to_face;

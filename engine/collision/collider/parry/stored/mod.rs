@@ -20,7 +20,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
 
 use super::{
     Collider, has_extent,
-    input::{MIN_LENGTH, without_panic},
+    input::{MAX_LENGTH, MIN_LENGTH, without_panic},
 };
 use crate::{
     math::{Scalar, Vector},
@@ -98,9 +98,9 @@ impl<'de> Deserialize<'de> for Collider {
 
 impl StoredCollider {
     fn collider(self) -> Result<Collider, Fault> {
-        let usable = |s: Scalar| s.is_finite() && s.abs() >= MIN_LENGTH;
+        let usable = |s: Scalar| (MIN_LENGTH..=MAX_LENGTH).contains(&s.abs());
         if !self.scale.to_array().into_iter().all(usable) {
-            return Err("a collider's scale is zero or not finite");
+            return Err("a collider's scale is zero, too large or not a number");
         }
         if self.detail > MAX_DETAIL {
             return Err("a collider's scale is resolved too finely");
@@ -112,6 +112,9 @@ impl StoredCollider {
         let mut collider = Collider::from(shape);
         collider.set_scale(self.scale, self.detail);
         collider.detail = self.detail;
+        if !dim::has_faces(collider.shape_scaled()) {
+            return Err("a collider's shape has no faces at its scale");
+        }
         Ok(collider)
     }
 }
