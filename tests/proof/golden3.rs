@@ -7,18 +7,18 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0xd9cea250dfd32ffd),
     ("pyramids", 0x7029bf7b80ae7227),
     ("tumbler", 0x6005dbfa129e5b1d),
-    ("dominoes", 0x40308d6d064a7cf0),
-    ("card_house", 0x90d749d490421cda),
-    ("towers", 0xd2a8b3dee5310c3d),
+    ("dominoes", 0xaf0253aebc50182a),
+    ("card_house", 0xa8b54312fea60f02),
+    ("towers", 0x731bb49d21a6ade1),
     ("smash", 0x32a2ad9a5a3523f1),
     ("crowd", 0xb426d1d6efcb702d),
-    ("sleepers", 0x871d60db30bc3664),
-    ("bounces", 0x5616e359153bb436),
-    ("settings", 0x3b1fd4246782c1e4),
+    ("sleepers", 0x420de4f6f14d4a56),
+    ("bounces", 0xb47084a268eb926b),
+    ("settings", 0x52473f9774201a3d),
 ];
 
 /// The same for scenes with shapes of parry's.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xbf6cd3b56dfe9545), ("slopes", 0xba42dad610ed3d14)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xbe23090c16dc7a47), ("slopes", 0xe3b17166bffd97c2)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 7;
