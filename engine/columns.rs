@@ -2,9 +2,15 @@
 
 use bevy_ecs::change_detection::{ContiguousComponentTicksMut, ContiguousMut, MaybeLocation, Mut, Tick};
 use bevy_ecs::prelude::DetectChangesMut;
+use core::ops::Range;
 
 /// How many rows are a piece.
 pub(crate) const PIECE: usize = 256;
+
+/// The rows of a table, in pieces.
+pub(crate) fn pieces(rows: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..rows).step_by(PIECE).map(move |start| start..(start + PIECE).min(rows))
+}
 
 /// Whether Bevy notes who changed what (its feature `track_location`). Pieces of tables cannot: what is written
 /// then has to be looked up one by one.

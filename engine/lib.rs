@@ -68,6 +68,7 @@ mod noted;
 mod plugins;
 mod scan;
 mod step;
+mod threads;
 mod type_path;
 mod type_registration;
 

@@ -18,12 +18,13 @@ use crate::{
         rigid_body::{DefaultFriction, DefaultRestitution},
         solver::{
             schedule::{SolverSystems, SubstepSolverSystems},
-            substeps::{StepSolver, call_team, dismiss_team},
+            substeps::{StepSolver, call_team},
             workers::{RowWidth, WorkerCount},
         },
         tables::{Bodies, Colliders, Contacts},
     },
     schedule::{PhysicsSchedule, PhysicsStepSystems, StepTimes},
+    threads::Threads,
 };
 
 macro_rules! stages {
@@ -117,6 +118,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<WorkerCount>()
         .init_resource::<RowWidth>()
         .init_resource::<StepTimes>()
+        .init_resource::<Threads>()
         // Colliders have a surface whether or not the narrow phase is there to use it.
         .init_resource::<DefaultFriction>()
         .init_resource::<DefaultRestitution>()
@@ -159,7 +161,7 @@ pub(crate) fn install(app: &mut App) {
             (lifecycle::note_changed_colliders, crate::dynamics::drain::drain_lifecycle)
                 .chain()
                 .in_set(Stage::DrainLifecycle),
-            (dismiss_team, crate::dynamics::drain::remove_lost_late).chain().in_set(Stage::RemoveLost),
+            crate::dynamics::drain::remove_lost_late.in_set(Stage::RemoveLost),
         ),
     );
     for (i, &(stage, name)) in Stage::ALL.iter().enumerate() {

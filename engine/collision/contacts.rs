@@ -15,11 +15,12 @@ use crate::{
         narrow_phase::NarrowPhaseConfig,
     },
     dynamics::{
-        solver::{RowWidth, WorkerCount, config::PhysicsLengthUnit, substeps::StepSolver},
+        solver::{RowWidth, WorkerCount, config::PhysicsLengthUnit},
         tables::Tables,
     },
     math::to_f32,
     schedule::Physics,
+    threads::Threads,
 };
 
 /// Contacts at rest are predicted up to this distance, times the length unit: four times the linear slop
@@ -73,7 +74,7 @@ pub(crate) struct Settings<'w> {
 pub(crate) fn update_contacts(
     shapes: Query<&Collider>,
     Settings { config, unit, time, workers, width }: Settings,
-    mut solver: ResMut<StepSolver>,
+    mut threads: ResMut<Threads>,
     mut scratch: ResMut<NarrowScratch>,
     mut diagnostics: ResMut<CollisionDiagnostics>,
     mut tables: Tables,
@@ -95,8 +96,8 @@ pub(crate) fn update_contacts(
     };
     let contacts = &mut *tables.contacts;
     contacts.changed.clear();
-    solver.call_team(contacts.table.active_len(), *workers);
-    contacts.table.update(&phase, &solver.kernel.team, &mut scratch.0, &mut contacts.changed);
+    threads.call(contacts.table.active_len(), workers.0, || workers.resolve());
+    contacts.table.update(&phase, &threads.team, &mut scratch.0, &mut contacts.changed);
     diagnostics.contact_count = contacts.table.len() as u32;
     diagnostics.narrow_phase += start.elapsed();
 }

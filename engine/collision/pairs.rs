@@ -17,12 +17,13 @@ use crate::{
     columns::{Column, PIECE, Put, is_change_tracked},
     dynamics::{
         ids::ColliderId,
-        solver::{config::PhysicsLengthUnit, substeps::StepSolver},
+        solver::config::PhysicsLengthUnit,
         tables::{Bodies, Colliders, Tables, is_minority},
     },
     math::vector_from_kernel,
     scan::IN_TABLES,
     schedule::Physics,
+    threads::Threads,
 };
 
 /// What is added to a box on every side when it is made fat, times the length unit, if its shape is not small.
@@ -47,7 +48,7 @@ type Boxes = (&'static ColliderId, &'static mut ColliderAabb, &'static mut Enlar
 /// Puts what entered or was changed by hand where it is, and in its tree. The boxes of bodies that the app gave a
 /// velocity are swept along it: they may pass through something in this very step.
 pub(crate) fn update_stale_boxes(
-    (fat_boxes, solver): (FatBoxes, Res<StepSolver>),
+    (fat_boxes, threads): (FatBoxes, Res<Threads>),
     mut bodies: ResMut<Bodies>,
     mut colliders: ResMut<Colliders>,
     mut boxes: Query<Boxes>,
@@ -73,7 +74,7 @@ pub(crate) fn update_stale_boxes(
         }
     }
     stale.clear();
-    let (mode, team) = (optimization.optimization_mode, &solver.kernel.team);
+    let (mode, team) = (optimization.optimization_mode, &threads.team);
     diagnostics.optimize += trees.update(&changed, &table.fat, mode, team);
     moved.union_with(&changed);
     diagnostics.update += start.elapsed();
@@ -91,7 +92,7 @@ fn mark_pushed(bodies: &mut BodyTable, colliders: &mut Colliders) {
 
 /// After the solver: boxes of bodies that moved, in the trees and in the components.
 pub(crate) fn refit_awake(
-    (fat_boxes, solver): (FatBoxes, Res<StepSolver>),
+    (fat_boxes, threads): (FatBoxes, Res<Threads>),
     bodies: Res<Bodies>,
     mut colliders: ResMut<Colliders>,
     mut boxes: Query<Boxes>,
@@ -100,7 +101,7 @@ pub(crate) fn refit_awake(
     mut changed: Local<BitSet>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let team = &solver.kernel.team;
+    let team = &threads.team;
     let Colliders { table, trees, moved, entities, .. } = &mut *colliders;
     table.refresh_listed(&bodies.listed, &bodies.table, fat_boxes.fattening(), team, &mut changed);
 
@@ -195,7 +196,7 @@ impl Known for Contacted<'_> {
 /// of ids.
 pub(crate) fn find_new_pairs(
     mut search: ResMut<PairSearch>,
-    solver: Res<StepSolver>,
+    threads: Res<Threads>,
     mut tables: Tables,
     mut diagnostics: ResMut<CollisionDiagnostics>,
 ) {
@@ -210,7 +211,7 @@ pub(crate) fn find_new_pairs(
         trees.movers(moved, &table.fat, movers);
         moved.clear();
         let known = Contacted { colliders: table, pairs: tables.contacts.table.pairs() };
-        let team = &solver.kernel.team;
+        let team = &threads.team;
         if movers.list().len() >= MANY_MOVERS {
             team.wake();
         }

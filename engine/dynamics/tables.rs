@@ -13,6 +13,7 @@ use kernel::{
 use crate::{
     collider_tree::proxies::ProxyTable,
     physics_transform::{Position, Rotation},
+    scan::Since,
 };
 
 /// All bodies in the simulation.
@@ -54,6 +55,11 @@ impl Bodies {
         }
         self.kept[id as usize] = velocity;
         self.table.set_velocity(id, Velocity::default());
+    }
+
+    /// Whether the app, not the engine, changed what bears a tick.
+    pub(crate) fn is_set_by_app(&self, changed: Tick, since: Since) -> bool {
+        since.is_new(changed) && changed != self.written
     }
 }
 

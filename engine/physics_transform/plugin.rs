@@ -12,7 +12,7 @@ use super::{
     },
     tree::{HierarchyQueue, TransformTree, TreeChanges, enqueue, enqueue_parented, update_tree},
 };
-use crate::{dynamics::rigid_body::RigidBody, schedule::PhysicsSystems};
+use crate::{dynamics::rigid_body::RigidBody, schedule::PhysicsSystems, threads::Threads};
 
 /// Keeps [`Position`] and [`Rotation`] in step with `Transform`; see [`PhysicsTransformConfig`].
 pub struct PhysicsTransformPlugin {
@@ -87,6 +87,7 @@ impl Plugin for TransformTreePlugin {
             .init_resource::<TransformTree>()
             .init_resource::<TreeChanges>()
             .init_resource::<SyncTicks>()
+            .init_resource::<Threads>()
             .add_observer(enqueue::<Add, (Position, RigidBody, ApplyPosToTransform)>)
             .add_observer(enqueue::<Remove, (Position, RigidBody, ApplyPosToTransform)>)
             .add_observer(enqueue_parented::<Insert>)

@@ -23,12 +23,13 @@ use super::{
     turn::Turn,
 };
 use crate::{
-    columns::{Column, is_change_tracked},
+    columns::{Column, is_change_tracked, pieces},
     dynamics::rigid_body::RigidBody,
     math::Vector,
     noted::Noted,
     scan::{IN_TABLES, Since},
     schedule::OnThisThread,
+    threads::Threads,
 };
 
 /// When the sync last looked and wrote.
@@ -361,13 +362,26 @@ pub struct TransformWriter<'w, 's> {
     hierarchy: Res<'w, HierarchyQueue>,
     changes: ResMut<'w, TreeChanges>,
     physical: Physical<'w, 's>,
+    threads: Res<'w, Threads>,
+    /// What each thread found that has to be written one by one.
+    found: Local<'s, Vec<Vec<Entity>>>,
 }
 
 /// Writes the poses that moved since the last write-back into `Transform`: of bodies, and of entities with
 /// [`ApplyPosToTransform`]. Bodies below a moved one keep their pose in the world, so theirs are written
 /// too. Scale is kept; in 2D also the depth and any tilt.
 pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTick, _: OnThisThread) {
-    let TransformWriter { mut tree, mut ticks, config, mut queries, parents, following, .. } = writer;
+    let TransformWriter {
+        mut tree,
+        mut ticks,
+        config,
+        mut queries,
+        parents,
+        following,
+        threads,
+        mut found,
+        ..
+    } = writer;
     let (last, read) = (ticks.writeback, ticks.read);
     let since = Since::new(last, system);
     ticks.writeback = system.this_run();
@@ -382,31 +396,38 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
         tree.follow(&noted, &parents, &writer.physical, &mut writer.changes.early);
     }
     let looks_up = is_change_tracked();
-    // What hangs in a hierarchy, and all where tables cannot be written in whole.
-    let mut late: Vec<Entity> = Vec::new();
     for (pose, transforms) in queries.p0().contiguous_iter_mut().expect(IN_TABLES) {
         let (entities, positions, rotations) = pose;
         let (at, turned) = (positions.changed_ticks_slice(), rotations.changed_ticks_slice());
         let mut changed = None;
         let mut column = Column::new(transforms, &mut changed);
-        since.rows([at, turned], |row| {
-            if !is_own(at[row]) && !is_own(turned[row]) {
-                return;
-            }
-            if looks_up || tree.is_tied(entities[row]) {
-                late.push(entities[row]);
-                return;
-            }
-            let slot = column.slot(row);
-            let written = write_pose(None, slot.get(), positions[row].0, rotations[row]);
-            if !same_pose(slot.get(), &written) {
-                slot.set(written);
-            }
+        let pieces = pieces(entities.len()).map(|rows| (rows, column.cut()));
+        threads.team.each_into(&mut found, pieces, |late, (rows, mut column)| {
+            let start = rows.start;
+            since.rows([&at[rows.clone()], &turned[rows]], |i| {
+                let row = start + i;
+                if !is_own(at[row]) && !is_own(turned[row]) {
+                    return;
+                }
+                if looks_up || tree.is_tied(entities[row]) {
+                    late.push(entities[row]);
+                    return;
+                }
+                let slot = column.slot(i);
+                let written = write_pose(None, slot.get(), positions[row].0, rotations[row]);
+                if !same_pose(slot.get(), &written) {
+                    slot.set(written);
+                }
+            });
         });
     }
+    // What hangs in a hierarchy, and all where tables cannot be written in whole.
+    let mut late: Vec<Entity> = Vec::new();
+    found.iter_mut().for_each(|found| late.append(found));
     if late.is_empty() {
         return;
     }
+    late.sort_unstable();
     let (poses, mut transforms) = queries.p1();
     let set: EntityHashSet = late.iter().copied().collect();
     tree.begin_walk();

@@ -20,6 +20,8 @@ use bevy_time::Time;
 use bevy_transform::TransformSystems;
 use core::time::Duration;
 
+use crate::threads::Threads;
+
 /// Adds [`PhysicsSchedule`], the clocks, the system sets and the system that takes a step whenever the hosting schedule runs.
 ///
 /// Without it there are no clocks and no step is taken.
@@ -48,7 +50,8 @@ impl Plugin for PhysicsSchedulePlugin {
             .init_resource::<Time<Substeps>>()
             .init_resource::<LastPhysicsTick>()
             .init_resource::<SimulatedTime>()
-            .init_resource::<StepTimes>();
+            .init_resource::<StepTimes>()
+            .init_resource::<Threads>();
 
         app.configure_sets(
             self.schedule,
@@ -69,9 +72,7 @@ impl Plugin for PhysicsSchedulePlugin {
                     .after(PhysicsSystems::First)
                     .before(PhysicsSystems::Prepare),
                 run_physics_schedule.in_set(PhysicsSystems::StepSimulation),
-                (|mut times: ResMut<StepTimes>, _: OnThisThread| times.end("Writeback"))
-                    .after(PhysicsSystems::Writeback)
-                    .before(PhysicsSystems::Last),
+                end_writeback.after(PhysicsSystems::Writeback).before(PhysicsSystems::Last),
             ),
         );
 
@@ -91,6 +92,13 @@ impl Plugin for PhysicsSchedulePlugin {
         );
         app.add_systems(PhysicsSchedule, record_step.after(PhysicsStepSystems::Last).ambiguous_with_all());
     }
+}
+
+/// The last part of a step ends. What follows may want the cores of the helpers.
+fn end_writeback(mut times: ResMut<StepTimes>, threads: Res<Threads>, _: OnThisThread) {
+    times.end("Writeback");
+    times.note_shared(&threads.team);
+    threads.team.rest();
 }
 
 /// A parameter that keeps a system of the hosting schedule on the thread that runs the schedule. Most have so little

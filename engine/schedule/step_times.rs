@@ -4,6 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_platform::time::Instant;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use core::time::Duration;
+use kernel::team::Team;
 
 /// How long each part of the last step took, in the order in which they ran: from `Prepare`, where transforms are
 /// read, through the stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
@@ -27,6 +28,9 @@ pub struct StepTimes {
     parts: Vec<(&'static str, Duration)>,
     #[reflect(ignore)]
     last: Option<Instant>,
+    counts_shared: bool,
+    /// Of the last step, and the sum of all before.
+    shared: [Duration; 2],
 }
 
 impl StepTimes {
@@ -38,6 +42,26 @@ impl StepTimes {
     /// The time of all parts.
     pub fn total(&self) -> Duration {
         self.parts.iter().map(|(_, time)| *time).sum()
+    }
+
+    /// Has [`shared`](Self::shared) counted from the next step on.
+    pub fn count_shared(&mut self) {
+        self.counts_shared = true;
+    }
+
+    /// For how long the last step was worked on by several threads. The rest of it one thread did alone: it takes as long
+    /// on any number of cores. Zero unless [counted](Self::count_shared), which costs a little.
+    pub fn shared(&self) -> Duration {
+        self.shared[0]
+    }
+
+    /// Notes for how long a team has shared work.
+    pub(crate) fn note_shared(&mut self, team: &Team) {
+        if self.counts_shared {
+            team.count_shared_time();
+            let sum = team.shared_time();
+            self.shared = [sum.saturating_sub(self.shared[1]), sum];
+        }
     }
 
     /// The next part begins now.

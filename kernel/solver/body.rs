@@ -1,6 +1,6 @@
 //! The dense bodies of one step: rows that contact rows refer to by index.
 
-use super::{BodyRow, MassRow, RowView, gyro::Gyro};
+use super::{BodyRow, MassRow, RowView, fill::Claims, gyro::Gyro};
 use crate::data::BitSet;
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
 
@@ -43,7 +43,7 @@ impl Limits {
     pub const NONE: Self =
         Self { locks: AxisLocks::NONE, max_speed: f32::INFINITY, max_angular_speed: f32::INFINITY };
 
-    fn is_none(&self) -> bool {
+    pub(super) fn is_none(&self) -> bool {
         self.locks.0 == 0 && !self.max_speed.is_finite() && !self.max_angular_speed.is_finite()
     }
 }
@@ -110,6 +110,7 @@ pub struct BodyRows {
     pub(super) spins: OnceEach<Spin>,
     /// Which axes are held, by row; empty where nobody is held along any.
     pub(super) locks: Vec<AxisLocks>,
+    pub(super) claims: Claims,
     /// The first row of a dynamic body.
     pub(super) first_dynamic: u32,
 }
@@ -152,9 +153,14 @@ impl BodyRows {
     #[inline]
     pub fn spin(&mut self, row: usize, inv_inertia: InvInertia, rotation: Rot) {
         if let Some(gyro) = Gyro::of(inv_inertia) {
-            let is_first = self.spins.push(row, Spin { row: row as u32, gyro, rotation });
-            debug_assert!(is_first, "body row {row} spins twice");
+            self.add_spin(Spin { row: row as u32, gyro, rotation });
         }
+    }
+
+    #[inline]
+    pub(super) fn add_spin(&mut self, spin: Spin) {
+        let is_first = self.spins.push(spin.row as usize, spin);
+        debug_assert!(is_first, "body row {} spins twice", spin.row);
     }
 
     /// Has the contacts of the step see what inertia they may of bodies that swing fast; `h` is the length of a substep.

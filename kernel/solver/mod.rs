@@ -17,6 +17,7 @@ mod body;
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 mod exclusive;
+mod fill;
 mod finish;
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]
 #[cfg_attr(feature = "3d", path = "gyro3.rs")]
@@ -35,6 +36,7 @@ mod view;
 pub use batch::{PointClass, RowSet};
 pub use body::{BodyRows, Limits, Motion};
 pub use dim::{BodyRow, MassRow, Twist};
+pub use fill::{BodyFiller, FewBodies, FilledBody};
 pub use input::RowInput;
 pub use inv_mass::InvMass;
 pub use prepare::ContactSource;

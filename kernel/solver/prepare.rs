@@ -89,79 +89,87 @@ pub struct ContactSource {
 }
 
 /// Whether a body of the contact is held along some axes.
-pub(super) fn is_held(input: &RowInput, locks: &[AxisLocks], contact: u32) -> bool {
+fn is_held(input: &RowInput, locks: &[AxisLocks], contact: u32) -> bool {
     input.contacts.get(contact).bodies.iter().any(|body| {
         let row = input.row_of(*body);
         locks[row as usize].is_translation_held()
     })
 }
 
-/// Manifolds sorted by who solves them and by point class; kept between steps.
+/// The manifolds of one member's part, by point class.
+pub(super) type Lists = [Vec<ContactSource>; 3];
+
+/// Manifolds of one colour and one layer, sorted by set, by the part of the stage they belong to and by point class.
+///
+/// The first layer are the first manifolds of all contacts, the next one the second ones, and so on.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Buckets {
-    pub(super) shares: Shares,
-    lists: Vec<[Vec<ContactSource>; 3]>,
+pub(super) struct Sorted {
+    /// Contacts of bodies held along some axes, and all others.
+    pub(super) held: Vec<Lists>,
+    pub(super) free: Vec<Lists>,
+    pub(super) parts: usize,
+    /// How many contacts have manifolds in the next layer too.
+    more: usize,
 }
 
-impl Buckets {
-    /// Sorts the manifolds of that number into so many parts. Returns how many contacts have more of them.
-    fn sort(&mut self, contacts: &[u32], layer: u32, parts: usize, input: &RowInput) -> usize {
-        let Self { shares, lists } = self;
-        if lists.len() < parts {
-            lists.resize_with(parts, Default::default);
+impl Sorted {
+    /// Sorts the manifolds of a layer: the first, or the one after the last that was sorted.
+    pub(super) fn sort(&mut self, contacts: &[u32], layer: u32, sorter: &Sorter) {
+        let Self { held, free, parts, more } = self;
+        let Sorter { input, locks, shares } = sorter;
+        *parts = shares.parts(if layer == 0 { contacts.len() } else { *more });
+        *more = 0;
+        for lists in [&mut *held, &mut *free] {
+            lists.resize_with(lists.len().max(*parts), Lists::default);
+            lists.iter_mut().flatten().for_each(Vec::clear);
         }
-        lists.iter_mut().flatten().for_each(Vec::clear);
-        let mut more = 0;
         for &id in contacts {
             let count = match input.contacts.point_count(id).of_only_manifold() {
                 Some(count) if layer == 0 => count,
                 Some(_) => 0,
                 None => {
                     let contact = input.contacts.get(id);
-                    more += usize::from(u32::from(contact.extra_count) > layer);
+                    *more += usize::from(u32::from(contact.extra_count) > layer);
                     input.contacts.manifold(contact, layer).map_or(0, |manifold| manifold.count)
                 }
             };
             if count > 0 {
-                let list = &mut lists[shares.part(input, id, parts)][PointClass::of(count) as usize];
+                let lists =
+                    if !locks.is_empty() && is_held(input, locks, id) { &mut *held } else { &mut *free };
+                let list = &mut lists[shares.part(input, id, *parts)][PointClass::of(count) as usize];
                 list.push(ContactSource { contact: id, manifold: layer });
             }
         }
-        more
+    }
+
+    /// Whether some contacts have manifolds in the next layer.
+    pub(super) fn has_more(&self) -> bool {
+        self.more > 0
     }
 }
 
+/// What manifolds are sorted by.
+pub(super) struct Sorter<'a> {
+    pub(super) input: &'a RowInput<'a>,
+    /// Which axes are held, by body row; empty where none is.
+    pub(super) locks: &'a [AxisLocks],
+    pub(super) shares: &'a Shares,
+}
+
 impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
-    /// Lays out the rows of contacts whose dynamic bodies are all different.
-    ///
-    /// A contact with several manifolds has them solved one after the other: the first manifolds of all
-    /// contacts form the first stage, the second ones the next, and so on, so that a stage still holds
-    /// no body twice.
-    pub(super) fn lay(
-        &mut self,
-        set: Set,
-        contacts: &[u32],
-        input: &RowInput,
-        buckets: &mut Buckets,
-        plan: &mut Plan,
-    ) {
-        let (mut layer, mut left) = (0, contacts.len());
-        while left > 0 {
-            let parts = buckets.shares.parts(left);
-            left = buckets.sort(contacts, layer, parts, input);
-            for member in 0..buckets.shares.members() {
-                if let Some(part) = buckets.shares.of_member(member, parts) {
-                    for class in PointClass::ALL {
-                        let manifolds = &buckets.lists[part][class as usize];
-                        let range = with_rows!(self, class, |rows| rows.lay(manifolds));
-                        plan.add(set, class, range, manifolds.len());
-                    }
+    /// Appends the rows of sorted manifolds, and plans a stage of them.
+    pub(super) fn lay(&mut self, set: Set, lists: &[Lists], parts: usize, shares: &Shares, plan: &mut Plan) {
+        for member in 0..shares.members() {
+            if let Some(part) = shares.of_member(member, parts) {
+                for class in PointClass::ALL {
+                    let manifolds = &lists[part][class as usize];
+                    let range = with_rows!(self, class, |rows| rows.lay(manifolds));
+                    plan.add(set, class, range, manifolds.len());
                 }
-                plan.end_part();
             }
-            plan.end_stage(parts > 1);
-            layer += 1;
+            plan.end_part();
         }
+        plan.end_stage(parts > 1);
     }
 }
 

@@ -2,12 +2,13 @@
 
 use super::batch::{Plan, RowSet, Set};
 use super::block::{SetsView, Wide, WideView};
-use super::input::RowInput;
-use super::prepare::{Buckets, is_held};
-use crate::graph::{ColorGraph, OVERFLOW};
+use super::prepare::{Sorted, Sorter};
+use super::shares::Shares;
+use crate::graph::{COLOR_COUNT, ColorGraph, OVERFLOW};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
-use crate::math::{AxisLocks, F32x4, Lane, Vector, Width};
+use crate::math::{F32x4, Lane, Vector, Width};
+use crate::team::Team;
 
 /// The rows of every width; of the wide ones only one is in use.
 #[derive(Clone, Debug, Default)]
@@ -35,34 +36,44 @@ impl<N: Lane> Default for WideRows<N> {
 
 /// What rows are laid out from, and buffers kept between steps.
 pub(super) struct Layout<'a> {
-    pub(super) input: &'a RowInput<'a>,
-    /// Which axes are held, by body row; empty where nobody is held along any.
-    pub(super) locks: &'a [AxisLocks],
+    pub(super) sorter: &'a Sorter<'a>,
     pub(super) any_deep: bool,
     pub(super) buffers: &'a mut Buffers,
     pub(super) plan: &'a mut Plan,
+    pub(super) team: &'a Team,
 }
 
-/// Kept between steps.
+/// The sorted manifolds of each colour; kept between steps.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Buffers {
-    pub(super) buckets: Buckets,
-    held: Vec<u32>,
-    free: Vec<u32>,
-}
+pub(super) struct Buffers(Vec<Sorted>);
 
 impl AllRows {
     /// Decides which contact has which row, and what is solved when.
     pub(super) fn lay_out(&mut self, colors: &ColorGraph, layout: &mut Layout) {
+        let Layout { sorter, any_deep, buffers: Buffers(sorted), plan, team } = layout;
+        sorted.resize_with(COLOR_COUNT, Sorted::default);
+        let (sorted, of_overflow) = sorted.split_at_mut(usize::from(OVERFLOW));
         self.overflow.clear();
         for id in colors.overflow() {
-            self.overflow.lay([Set::OverflowHeld, Set::Overflow], core::slice::from_ref(id), layout);
+            let (contact, sorted) = (core::slice::from_ref(id), &mut of_overflow[0]);
+            sorted.sort(contact, 0, sorter);
+            self.overflow.lay_layers([Set::OverflowHeld, Set::Overflow], contact, sorted, sorter, plan);
         }
-        self.overflow.make_room(layout.any_deep);
+        self.overflow.make_room(*any_deep);
+        // The first layer of all colours at once: most contacts have no other.
+        team.each(sorted.iter_mut().zip(0..), |(sorted, color)| {
+            sorted.sort(colors.contacts(color), 0, sorter);
+        });
         match self.width {
             #[cfg(target_arch = "x86_64")]
-            Width::Eight(_) => self.eight.lay_colors(colors, layout),
-            _ => self.four.lay_colors(colors, layout),
+            Width::Eight(_) => {
+                self.eight.lay_colors(colors, sorted, sorter, plan);
+                self.eight.make_room(*any_deep);
+            }
+            _ => {
+                self.four.lay_colors(colors, sorted, sorter, plan);
+                self.four.make_room(*any_deep);
+            }
         }
     }
 
@@ -87,30 +98,38 @@ impl<N: Lane> WideRows<N> {
         self.held.make_room(any_deep);
     }
 
-    /// Lays out the rows of all colours but overflow.
-    fn lay_colors(&mut self, colors: &ColorGraph, layout: &mut Layout) {
+    /// Lays out the rows of all colours but overflow, whose first layer is sorted.
+    fn lay_colors(&mut self, colors: &ColorGraph, sorted: &mut [Sorted], sorter: &Sorter, plan: &mut Plan) {
         self.clear();
-        for color in 0..OVERFLOW {
-            self.lay([Set::WideHeld, Set::Wide], colors.contacts(color), layout);
+        for (sorted, color) in sorted.iter_mut().zip(0..) {
+            self.lay_layers([Set::WideHeld, Set::Wide], colors.contacts(color), sorted, sorter, plan);
         }
-        self.make_room(layout.any_deep);
     }
 
-    /// Lays out the rows of contacts whose dynamic bodies are all different.
-    fn lay(&mut self, [held_set, free_set]: [Set; 2], contacts: &[u32], layout: &mut Layout) {
-        let Layout { input, locks, buffers, plan, .. } = layout;
-        let Buffers { buckets, held, free } = &mut **buffers;
-        if locks.is_empty() {
-            self.free.lay(free_set, contacts, input, buckets, plan);
-            return;
+    /// Lays out the rows of contacts whose dynamic bodies are all different, and whose first layer is sorted.
+    ///
+    /// A contact with several manifolds has them solved one after the other: each layer has stages of its own, so that a
+    /// stage still holds no body twice.
+    fn lay_layers(
+        &mut self,
+        sets: [Set; 2],
+        contacts: &[u32],
+        sorted: &mut Sorted,
+        sorter: &Sorter,
+        plan: &mut Plan,
+    ) {
+        self.lay(sets, sorted, sorter.shares, plan);
+        let mut layer = 1;
+        while sorted.has_more() {
+            sorted.sort(contacts, layer, sorter);
+            self.lay(sets, sorted, sorter.shares, plan);
+            layer += 1;
         }
-        held.clear();
-        free.clear();
-        for id in contacts {
-            if is_held(input, locks, *id) { held.push(*id) } else { free.push(*id) }
-        }
-        self.held.lay(held_set, held, input, buckets, plan);
-        self.free.lay(free_set, free, input, buckets, plan);
+    }
+
+    fn lay(&mut self, [held, free]: [Set; 2], sorted: &Sorted, shares: &Shares, plan: &mut Plan) {
+        self.held.lay(held, &sorted.held, sorted.parts, shares, plan);
+        self.free.lay(free, &sorted.free, sorted.parts, shares, plan);
     }
 
     fn view(&mut self) -> WideView<'_, N> {

@@ -5,8 +5,9 @@ use super::batch::{Plan, Stage};
 use super::block::Pass;
 use super::exclusive::Exclusive;
 use super::input::RowInput;
-use super::prepare::{DeepCounts, Filler};
+use super::prepare::{DeepCounts, Filler, Sorter};
 use super::rows::{AllRows, Buffers, Layout};
+use super::shares::Shares;
 use super::{BodyRows, RowView, SubstepParams};
 use crate::contact::ContactTable;
 use crate::data::Parts;
@@ -34,6 +35,7 @@ pub struct Solver {
     rows: AllRows,
     plan: Plan,
     buffers: Buffers,
+    shares: Shares,
     deep: DeepCounts,
     exclusive: Exclusive,
 }
@@ -48,7 +50,7 @@ impl Solver {
     /// From how many contacts a member of the team on a colour is shared by several, from the next
     /// [`build_rows`](Self::build_rows) on: so that tests need not have as many as it takes to pay.
     pub fn share_from(&mut self, contacts: usize) {
-        self.buffers.buckets.shares.worth = contacts;
+        self.shares.worth = contacts;
     }
 
     /// Forgets the rows of the last step, and makes room for so many [`bodies`](Self::bodies): every one of their rows is
@@ -66,15 +68,16 @@ impl Solver {
     /// # Panics
     /// If a contact or body of the graph is not in the input, or a row of the input not among the [`bodies`](Self::bodies).
     pub fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
-        let Self { bodies, team, rows, plan, buffers, deep, exclusive } = self;
+        let Self { bodies, team, rows, plan, buffers, shares, deep, exclusive } = self;
         deep.count(input, bodies);
         exclusive.look(input, colors, bodies.first_dynamic, team);
         bodies.blunt(params.h);
         let BodyRows { rows: body_rows, masses, motions, locks, first_dynamic, .. } = bodies;
         let members = team.members();
         plan.begin(if members > 1 { BLOCK_ROWS } else { u32::MAX }, members);
-        buffers.buckets.shares.divide(members, body_rows.len(), input, colors);
-        rows.lay_out(colors, &mut Layout { input, locks, any_deep: deep.any(), buffers, plan });
+        shares.divide(members, body_rows.len(), input, colors);
+        let sorter = &Sorter { input, locks, shares };
+        rows.lay_out(colors, &mut Layout { sorter, any_deep: deep.any(), buffers, plan, team });
         let filler = &Filler {
             input,
             view: RowView::over(body_rows, *first_dynamic),

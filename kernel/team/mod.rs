@@ -63,7 +63,11 @@ mod sync;
 mod tests;
 
 use board::Board;
-use std::sync::{Arc, PoisonError};
+use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::{
+    sync::{Arc, PoisonError},
+    time::{Duration, Instant},
+};
 use sync::{Builder, JoinHandle, Mutex};
 
 /// The caller and its helpers, who run the blocks of one stage at a time.
@@ -81,6 +85,9 @@ pub struct Team(Option<Arc<Helpers>>);
 struct Helpers {
     board: Arc<Board>,
     threads: Vec<JoinHandle<()>>,
+    /// Whether the time of shared runs is counted, and what it has come to in nanoseconds.
+    is_timed: AtomicBool,
+    shared: AtomicU64,
 }
 
 impl Team {
@@ -95,7 +102,11 @@ impl Team {
                 Builder::new().name(name).spawn(move || board.help(member)).ok()
             })
             .collect();
-        if threads.is_empty() { Self(None) } else { Self(Some(Arc::new(Helpers { board, threads }))) }
+        if threads.is_empty() {
+            return Self(None);
+        }
+        let (is_timed, shared) = (AtomicBool::new(false), AtomicU64::new(0));
+        Self(Some(Arc::new(Helpers { board, threads, is_timed, shared })))
     }
 
     /// How many there are, the caller among them.
@@ -121,6 +132,21 @@ impl Team {
         if let Some(helpers) = &self.0 {
             helpers.board.rest();
         }
+    }
+
+    /// Has the time of shared runs counted from now on, for measurements: it costs two looks at a clock a run.
+    pub fn count_shared_time(&self) {
+        if let Some(helpers) = &self.0 {
+            helpers.is_timed.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// For how long callers have run blocks together with helpers since that is counted. The rest of their time is one
+    /// thread's, however many members there are.
+    pub fn shared_time(&self) -> Duration {
+        self.0
+            .as_ref()
+            .map_or(Duration::ZERO, |helpers| Duration::from_nanos(helpers.shared.load(Ordering::Relaxed)))
     }
 
     /// Runs `job(block, member)` for every block below `blocks`, and returns when all are done. Members are
@@ -154,7 +180,14 @@ impl Team {
         let board = self.0.as_ref().map(|helpers| &*helpers.board);
         let shared = board.filter(|board| blocks > 1 && board.is_anyone_awake()).and_then(Board::begin);
         match shared {
-            Some(ours) => ours.share(blocks, ends, &|block, member| job(block as usize, member)),
+            Some(ours) => {
+                let clock = self.0.as_ref().filter(|helpers| helpers.is_timed.load(Ordering::Relaxed));
+                let clock = clock.map(|helpers| (helpers, Instant::now()));
+                ours.share(blocks, ends, &|block, member| job(block as usize, member));
+                if let Some((helpers, start)) = clock {
+                    helpers.shared.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+                }
+            }
             None => (0..blocks as usize).for_each(|block| job(block, 0)),
         }
     }
@@ -166,14 +199,36 @@ impl Team {
     /// # Panics
     /// If a job or the iterator does.
     pub fn each<I: Iterator + Send>(&self, items: I, job: impl Fn(I::Item) + Sync) {
-        let items = Mutex::new(items);
-        let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
+        self.each_into(&mut vec![(); self.members()], items, |(), item| job(item));
+    }
+
+    /// As [`each`](Self::each), where each member has a result of its own to add to, of the first as many of `results` as
+    /// there are members. What is in which is left to chance.
+    ///
+    /// # Panics
+    /// If a job or the iterator does.
+    pub fn each_into<I: Iterator + Send, R: Default + Send>(
+        &self,
+        results: &mut Vec<R>,
+        items: I,
+        job: impl Fn(&mut R, I::Item) + Sync,
+    ) {
+        results.resize_with(results.len().max(self.members()), R::default);
+        let (items, results) = (Mutex::new(items), Mutex::new(results.iter_mut()));
         self.run(self.members(), |_, _| {
-            while let Some(item) = next() {
-                job(item);
+            let Some(result) = locked(&results).next() else { return };
+            loop {
+                let item = locked(&items).next();
+                let Some(item) = item else { return };
+                job(result, item);
             }
         });
     }
+}
+
+/// What a mutex guards, also after a panic of another thread.
+fn locked<T>(mutex: &Mutex<T>) -> sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Drop for Helpers {

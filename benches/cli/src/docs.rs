@@ -3,7 +3,7 @@
 use std::{fmt::Write as _, path::Path};
 
 use bench_core::{
-    engine::{Share, Stage},
+    engine::{SHARED, Share, Stage},
     measure::{Report, sum_of},
     scene::Family,
 };
@@ -32,6 +32,7 @@ pub fn write_all(results: &Results, folder: &Path) -> Result<(), String> {
         bulk(&mut page, &plain, dim);
         queries(&mut page, &plain, dim);
         stages(&mut page, &cells(&results.reports, true), dim);
+        serial(&mut page, &cells(&results.reports, true), dim);
     }
     write(&folder.join("benchmarks.md"), &page)?;
     println!("{}", folder.join("benchmarks.md").display());
@@ -289,6 +290,42 @@ fn stages(page: &mut String, staged: &[Cell], dim: u32) {
         let (engine, mean, shares) = (shown(engine), ms(*mean), shares.join(" | "));
         let _ =
             writeln!(page, "| {scene} | {threads} | {engine} | {mean} | {shares} | {} |", own.join(" | "));
+    }
+    page.push('\n');
+}
+
+/// What one thread does alone while others wait, from runs of several threads whose shared time the engine counted.
+fn serial(page: &mut String, staged: &[Cell], dim: u32) {
+    let ours = || staged.iter().filter(|cell| cell.first.dim == dim && cell.first.engine == "ours");
+    let rows: Vec<_> = ours()
+        .filter(|cell| cell.first.threads > 1)
+        .filter_map(|cell| {
+            let of = |name| cell.first.stages.iter().find(|stage| stage.name == name).map(|stage| stage.ms);
+            let alone = ours().find(|one| one.first.threads == 1 && one.first.scene == cell.first.scene)?;
+            Some((cell.first, alone.first.mean, of(SHARED)?))
+        })
+        .collect();
+    if rows.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        page,
+        "### What one thread does alone\n\nMilliseconds of a step for which only one thread works, in a run with several, and \
+         their share of the step on one thread. It bounds what more cores can give: with a share s, no more than 1/s. \
+         *Bevy* is its part around physics.\n\n\
+         | scene | threads | step on one thread | alone | *Bevy* | share | with *Bevy* |\n|---|--:|--:|--:|--:|--:|--:|"
+    );
+    for (Report { scene, threads, stages, .. }, one, shared) in rows {
+        let [kernel, ecs, bevy] = [Share::Kernel, Share::Ecs, Share::Bevy].map(|share| sum_of(stages, share));
+        let alone = kernel + ecs - shared;
+        let percent = |time: f64| format!("{:.0} %", 100.0 * time / one);
+        let times = [one, alone, bevy].map(ms).join(" | ");
+        let _ = writeln!(
+            page,
+            "| {scene} | {threads} | {times} | {} | {} |",
+            percent(alone),
+            percent(alone + bevy)
+        );
     }
     page.push('\n');
 }

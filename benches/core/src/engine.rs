@@ -38,6 +38,9 @@ pub enum Share {
     Own,
 }
 
+/// The name of the time for which several threads worked on a step.
+pub const SHARED: &str = "shared";
+
 /// How long a part of the last step took.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Stage {

@@ -1,14 +1,16 @@
 //! From components to rows: the awake bodies of this step, and what the app changed by hand.
 
-use bevy_ecs::{prelude::*, query::QueryData, system::SystemChangeTick};
+use bevy_ecs::{change_detection::ContiguousRef, prelude::*, query::QueryData, system::SystemChangeTick};
 use bevy_log::warn_once;
+use core::ops::Range;
 use kernel::{
     math::{AxisLocks, Vector as KernelVector, WorldPose, max},
-    solver::{BodyRow, BodyRows, Limits, MassRow, Motion},
+    solver::{BodyFiller, BodyRow, FewBodies, FilledBody, Limits, MassRow, Motion},
     table::{BodyKind, BodyTable, NONE, RestSpeed, Velocity},
 };
 
 use crate::{
+    columns::pieces,
     dynamics::{
         ids::BodyId,
         integrator::{CustomVelocityIntegration, Gravity},
@@ -25,10 +27,12 @@ use crate::{
     math::{Scalar, angular_to_kernel, inv_inertia_to_kernel, to_f32, vector_to_kernel},
     physics_transform::{Position, Rotation, said_pose, world_pose},
     scan::{IN_TABLES, Since},
+    threads::Threads,
 };
 
 /// Where a body is and how it moves, as the app sees it.
 #[derive(QueryData)]
+#[query_data(contiguous(mutable))]
 pub(crate) struct StateInput {
     id: &'static BodyId,
     position: &'static Position,
@@ -36,6 +40,21 @@ pub(crate) struct StateInput {
     linear_velocity: &'static LinearVelocity,
     angular_velocity: &'static AngularVelocity,
     center: &'static ComputedCenterOfMass,
+}
+
+impl<'w, 's> StateInputContiguousItem<'w, 's> {
+    /// The body at a row of the table.
+    #[inline(always)]
+    fn row(&self, i: usize) -> StateInputItem<'w, 's> {
+        StateInputItem {
+            id: &self.id[i],
+            position: &self.position[i],
+            rotation: &self.rotation[i],
+            linear_velocity: &self.linear_velocity[i],
+            angular_velocity: &self.angular_velocity[i],
+            center: &self.center[i],
+        }
+    }
 }
 
 /// What a body's row is made of.
@@ -296,37 +315,40 @@ pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
 type RestInput = (Option<&'static SleepThreshold>, Has<SleepingDisabled>, Option<Ref<'static, SleepTimer>>);
 
 /// Reads pose and velocity of every awake body, before anything is computed from them, and what counts as at rest.
+///
+/// The team looks for bodies of which components and table differ; it only reads. The bodies it finds are then read in
+/// the order of ids.
 pub(crate) fn read_awake(
-    query: Query<(Entity, StateInput, RestInput)>,
-    unit: Res<PhysicsLengthUnit>,
+    query: Query<(StateInput, RestInput)>,
+    (unit, threads): (Res<PhysicsLengthUnit>, Res<Threads>),
     mut tables: Tables,
     mut commands: Commands,
+    mut found: Local<Vec<Vec<u32>>>,
     system: SystemChangeTick,
 ) {
-    let unit = unit.metres();
-    let written = tables.bodies.written;
     tables.bodies.read = system.this_run();
-    let mut some = core::mem::take(&mut tables.bodies.some);
-    let Bodies { table, entities, .. } = &*tables.bodies;
-    let minority = is_minority(table.awake_count(), [query.iter().size_hint()]);
-    some.clear();
-    if minority {
-        let awake = table.awake_kinematic().chain(table.awake_dynamic());
-        some.extend(awake.map(|id| entities[id as usize]));
-    }
-    let read = |(entity, body, (threshold, sleepless, timer)): (
-        Entity,
-        StateInputItem,
-        (_, _, Option<Ref<SleepTimer>>),
-    )| {
-        let id = body.id.0;
-        if id == NONE || !tables.bodies.table[id].awake {
-            return;
+    let mut changed = core::mem::take(&mut tables.bodies.ids);
+    changed.clear();
+    let (unit, since) = (unit.metres(), Since::last_run(system));
+    let table = &tables.bodies.table;
+    if is_minority(table.awake_count(), [query.iter().size_hint()]) {
+        changed.extend(table.awake_kinematic().chain(table.awake_dynamic()));
+    } else {
+        let differs = Differs { bodies: &tables.bodies, unit, since };
+        for (bodies, rest) in query.contiguous_iter().expect(IN_TABLES) {
+            threads.team.each_into(&mut found, pieces(bodies.id.len()), |found, rows| {
+                differs.among(&bodies, &rest, rows, found);
+            });
         }
+        found.iter_mut().for_each(|found| changed.append(found));
+        changed.sort_unstable();
+    }
+    for &id in &changed {
+        let entity = tables.bodies.entities[id as usize];
+        let Ok((body, (threshold, sleepless, timer))) = query.get(entity) else { continue };
         tables.bodies.table[id].rest_speed = rest_speed(threshold, sleepless, unit);
         if let Some(timer) = timer
-            && timer.is_changed()
-            && timer.last_changed() != written
+            && tables.bodies.is_set_by_app(timer.last_changed(), since)
         {
             // NaN counts as no rest.
             tables.bodies.table[id].sleep_timer = max(timer.0, 0.0);
@@ -338,13 +360,51 @@ pub(crate) fn read_awake(
         if change.moved || change.pushed {
             tables.bodies.table[id].sleep_timer = 0.0;
         }
-    };
-    if minority {
-        query.iter_many(&some).for_each(read);
-    } else {
-        query.iter().for_each(read);
     }
-    tables.bodies.some = some;
+    tables.bodies.ids = changed;
+}
+
+/// Which awake bodies have components that say something else than the tables.
+struct Differs<'a> {
+    bodies: &'a Bodies,
+    unit: f32,
+    since: Since,
+}
+
+impl Differs<'_> {
+    /// Adds the ids of those among some rows of a table of components.
+    fn among(
+        &self,
+        states: &StateInputContiguousItem,
+        (thresholds, sleepless, timers): &(
+            Option<&[SleepThreshold]>,
+            bool,
+            Option<ContiguousRef<SleepTimer>>,
+        ),
+        rows: Range<usize>,
+        found: &mut Vec<u32>,
+    ) {
+        let timers = timers.as_ref().map(ContiguousRef::changed_ticks_slice);
+        let differs = |i: usize| {
+            let id = states.id[i].0;
+            if id == NONE || !self.bodies.table[id].awake {
+                return false;
+            }
+            let rest = rest_speed(thresholds.map(|all| &all[i]), *sleepless, self.unit);
+            self.bodies.table[id].rest_speed != rest
+                || timers.is_some_and(|ticks| self.bodies.is_set_by_app(ticks[i], self.since))
+                || self.state_differs(id, &states.row(i))
+        };
+        found.extend(rows.filter(|i| differs(*i)).map(|i| states.id[i].0));
+    }
+
+    #[inline(always)]
+    fn state_differs(&self, id: u32, body: &StateInputItem) -> bool {
+        let Bodies { table, seen, .. } = self.bodies;
+        seen[id as usize] != said_pose(body.position, body.rotation)
+            || table.velocities[id as usize] != velocity(body.linear_velocity, body.angular_velocity)
+            || table[id].local_center != vector_to_kernel(body.center.0)
+    }
 }
 
 fn rest_speed(threshold: Option<&SleepThreshold>, sleepless: bool, unit: f32) -> RestSpeed {
@@ -357,115 +417,129 @@ fn rest_speed(threshold: Option<&SleepThreshold>, sleepless: bool, unit: f32) ->
 
 /// Gives every awake body its row and fills it.
 ///
-/// Iterates tables where most bodies are awake and looks up entities where most sleep: rows are written
-/// by id either way, so the order of entities does not matter.
+/// The team walks tables where most bodies are awake; where most sleep, the caller looks entities up. Rows are written by
+/// id either way, so the order of entities does not matter.
 pub(crate) fn gather_bodies(
     query: Query<(RowInput, MotionInput)>,
-    gravity: Res<Gravity>,
+    (gravity, threads): (Res<Gravity>, Res<Threads>),
     mut solver: ResMut<StepSolver>,
     mut bodies: ResMut<Bodies>,
     mut diagnostics: ResMut<SolverDiagnostics>,
     mut commands: Commands,
+    mut gathered: Local<Vec<Gathered>>,
 ) {
     let start = bevy_platform::time::Instant::now();
     let Bodies { table, listed, entities, some, .. } = &mut *bodies;
     let kinematic = table.assign_rows(listed);
     let count = listed.len();
-    solver.kernel.begin_step(kinematic, count - kinematic);
-    let rows = &mut solver.kernel.bodies;
-    let gather = Gather { gravity: finite_gravity(&gravity) };
-    let mut filled = 0;
-    let mut fill = |body: RowInputItem, options: &MotionInputItem| {
-        filled += usize::from(gather.body(&body, options, rows, table, &mut commands));
-    };
+    let kernel = &mut solver.kernel;
+    kernel.team = threads.team.clone();
+    kernel.begin_step(kinematic, count - kinematic);
+    let first_dynamic = kernel.bodies.first_dynamic() as usize;
+    let filler = kernel.bodies.filler();
+    let gather = Gather { gravity: finite_gravity(&gravity), table, filler, first_dynamic };
     if is_minority(count, [query.iter().size_hint()]) {
+        if gathered.is_empty() {
+            gathered.push(Gathered::default());
+        }
         some.clear();
         some.extend(listed.iter().map(|id| entities[*id as usize]));
-        query.iter_many(&*some).for_each(|(body, options)| fill(body, &options));
+        query.iter_many(&*some).for_each(|(body, options)| gather.body(&body, &options, &mut gathered[0]));
     } else {
         for (bodies, options) in query.contiguous_iter().expect(IN_TABLES) {
-            let all = 0..bodies.id.len();
-            if options.is_none() {
-                all.for_each(|i| fill(bodies.row(i), &MotionInputItem::NONE));
-            } else {
-                all.for_each(|i| fill(bodies.row(i), &options.row(i)));
-            }
+            let is_plain = options.is_none();
+            threads.team.each_into(&mut gathered, pieces(bodies.id.len()), |gathered, rows| {
+                for i in rows {
+                    let options = if is_plain { MotionInputItem::NONE } else { options.row(i) };
+                    gather.body(&bodies.row(i), &options, gathered);
+                }
+            });
         }
     }
-    if filled < count {
-        // Some body lost a component within the step: nobody knows which.
-        let is_there = |id: &u32| query.contains(entities[*id as usize]);
-        listed.iter().enumerate().filter(|(_, id)| !is_there(id)).for_each(|(i, _)| rows.still(1 + i));
+    // Some body may have lost a component within the step.
+    if gathered.iter().map(|some| some.filled).sum::<usize>() < count {
+        kernel.bodies.still_unfilled();
+    }
+    let mut refused = Vec::new();
+    for Gathered { filled, few, dominances, refused: some } in gathered.iter_mut() {
+        *filled = 0;
+        kernel.bodies.add_few(few);
+        for (id, dominance) in dominances.drain(..) {
+            table[id].dominance = dominance;
+            table.any_dominance = true;
+        }
+        refused.append(some);
+    }
+    refused.sort_unstable();
+    for id in refused {
+        quarantine(entities[id as usize], Some(table.frame(id)), &mut commands);
     }
     diagnostics.prepare_constraints += start.elapsed();
 }
 
-/// What is the same for all bodies.
-struct Gather {
-    gravity: KernelVector,
+/// What a member of the team gathered beside the rows it filled.
+#[derive(Default)]
+pub(crate) struct Gathered {
+    /// How many rows.
+    filled: usize,
+    few: FewBodies,
+    /// Bodies whose dominance is not what the table says.
+    dominances: Vec<(u32, i8)>,
+    /// Bodies whose velocity is not finite.
+    refused: Vec<u32>,
 }
 
-impl Gather {
-    /// Fills a body's row, if it has one. Returns whether it has.
+/// What is the same for all bodies.
+struct Gather<'a> {
+    gravity: KernelVector,
+    table: &'a BodyTable,
+    filler: BodyFiller<'a>,
+    first_dynamic: usize,
+}
+
+impl Gather<'_> {
+    /// Fills a body's row, if it has one.
     #[inline(always)]
-    fn body(
-        &self,
-        body: &RowInputItem,
-        options: &MotionInputItem,
-        rows: &mut BodyRows,
-        table: &mut BodyTable,
-        commands: &mut Commands,
-    ) -> bool {
+    fn body(&self, body: &RowInputItem, options: &MotionInputItem, gathered: &mut Gathered) {
         let id = body.id.0;
-        let row = if id == NONE { 0 } else { table.row(id) as usize };
+        let row = if id == NONE { 0 } else { self.table.row(id) as usize };
         if row == 0 {
-            return false;
+            return;
         }
         // The velocity may have been changed since it was read; the pose counts from the next step on: see
         // `note_moved_within`.
         let Velocity { linear, angular } = velocity(body.linear_velocity, body.angular_velocity);
         let finite = linear.is_finite() && angular.is_finite();
         if !finite {
-            quarantine(body.entity, Some(table.frame(id)), commands);
+            gathered.refused.push(id);
         }
         // What was put under quarantine in this step stays put until it leaves.
         if !finite || options.disabled {
-            rows.still(row);
-            return true;
+            gathered.filled += usize::from(self.filler.fill(row, &FilledBody::still()));
+            return;
         }
-        rows.rows[row] = BodyRow::new(linear, angular);
+        let mut filled = FilledBody { row: BodyRow::new(linear, angular), ..FilledBody::still() };
         let locks = options.locks.map_or(AxisLocks::NONE, |l| l.to_kernel());
+        let mut limits = Limits { locks, ..Limits::NONE };
         let dominance = options.dominance.map_or(0, |d| d.0);
-        if dominance != 0 || table.any_dominance {
-            table[id].dominance = dominance;
-            table.any_dominance = true;
+        if dominance != self.table[id].dominance {
+            gathered.dominances.push((id, dominance));
         }
-        if row >= rows.first_dynamic() as usize {
+        if row >= self.first_dynamic {
             let inv_mass = max(to_f32(body.mass.inverse()), 0.0);
             let inv_mass = if inv_mass.is_finite() { inv_mass } else { 0.0 };
             let local = inv_inertia_to_kernel(body.inertia.inverse());
-            let rotation = table.poses[id as usize].rotation;
-            rows.masses[row] = MassRow::new(inv_mass, local.rotated(rotation).locked(locks));
-            rows.motions[row] = self.motion(options);
+            let rotation = self.table.poses[id as usize].rotation;
+            filled.mass = MassRow::new(inv_mass, local.rotated(rotation).locked(locks));
+            filled.motion = self.motion(options);
             if !options.own_velocity {
-                let (max_speed, max_angular_speed) = (options.max_speed, options.max_angular_speed);
-                rows.spin(row, local, rotation);
-                rows.limit(
-                    row,
-                    Limits {
-                        locks,
-                        max_speed: limit(max_speed.map(|m| m.0)),
-                        max_angular_speed: limit(max_angular_speed.map(|m| m.0)),
-                    },
-                );
-                return true;
+                limits.max_speed = limit(options.max_speed.map(|m| m.0));
+                limits.max_angular_speed = limit(options.max_angular_speed.map(|m| m.0));
+                gathered.few.spin(row, local, rotation);
             }
-        } else {
-            rows.masses[row] = MassRow::default();
-            rows.motions[row] = Motion::FREE;
         }
-        rows.limit(row, Limits { locks, ..Limits::NONE });
-        true
+        gathered.few.limit(row, limits);
+        gathered.filled += usize::from(self.filler.fill(row, &filled));
     }
 
     fn motion(&self, options: &MotionInputItem) -> Motion {

@@ -16,12 +16,13 @@ use crate::{
             diagnostics::SolverDiagnostics,
             schedule::{SubstepCount, SubstepSchedule, advance_substep, substep_delta},
             softness_parameters::SoftnessCoefficients,
-            workers::{Crew, RowWidth, WorkerCount},
+            workers::{RowWidth, WorkerCount},
         },
         tables::{Bodies, Contacts},
     },
     math::{Scalar, to_f32},
     schedule::{Physics, Substeps},
+    threads::Threads,
 };
 
 /// The kernel's solver, and what its rows share in this step.
@@ -30,25 +31,11 @@ pub(crate) struct StepSolver {
     pub(crate) kernel: Solver,
     pub(crate) params: SubstepParams,
     pub(crate) substeps: u32,
-    crew: Crew,
 }
 
-impl StepSolver {
-    /// Has the team's helpers come, where there is much to do.
-    pub(crate) fn call_team(&mut self, contacts: usize, count: WorkerCount) {
-        self.crew.call(&mut self.kernel.team, contacts, count);
-    }
-}
-
-/// Has helpers come before there is work for them, if there was much of it in the last step: to wake takes a
-/// processor long.
-pub(crate) fn call_team(mut solver: ResMut<StepSolver>, contacts: Res<Contacts>, workers: Res<WorkerCount>) {
-    solver.call_team(contacts.table.active_len(), *workers);
-}
-
-/// Sends the helpers to sleep: what follows the step may want their cores.
-pub(crate) fn dismiss_team(solver: Res<StepSolver>) {
-    solver.kernel.team.rest();
+/// Wakes helpers before there is work for them, if there was much in the last step: to wake takes a processor long.
+pub(crate) fn call_team(mut threads: ResMut<Threads>, contacts: Res<Contacts>, workers: Res<WorkerCount>) {
+    threads.call(contacts.table.active_len(), workers.0, || workers.resolve());
 }
 
 impl Default for StepSolver {
@@ -66,7 +53,6 @@ impl Default for StepSolver {
                 friction_fade: 0.02,
             },
             substeps: 1,
-            crew: Crew::default(),
         }
     }
 }

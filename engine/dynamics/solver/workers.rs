@@ -5,7 +5,6 @@ use bevy_reflect::prelude::*;
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_tasks::ComputeTaskPool;
-use kernel::team::Team;
 
 /// How many threads a step uses, the one that runs the schedule among them. The result has the same bits with
 /// any number.
@@ -23,7 +22,8 @@ use kernel::team::Team;
 pub struct WorkerCount(pub usize);
 
 impl WorkerCount {
-    fn resolve(self) -> usize {
+    /// How many threads that is on this machine.
+    pub(crate) fn resolve(self) -> usize {
         if !cfg!(feature = "parallel") {
             return 1;
         }
@@ -54,25 +54,3 @@ pub enum RowWidth {
 
 /// More threads than this are a slip of the keyboard.
 const MOST: usize = 256;
-
-/// Waking a helper takes as long as some hundred contacts.
-const MANY_CONTACTS: usize = 1024;
-
-/// The team of the engine's steps, and the setting it was made for.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Crew(Option<WorkerCount>);
-
-impl Crew {
-    /// Has helpers come, where there is much to do.
-    pub(crate) fn call(&mut self, team: &mut Team, contacts: usize, count: WorkerCount) {
-        let many = contacts >= MANY_CONTACTS;
-        // Until there is much to do for the first time there is no team.
-        if self.0 != Some(count) && (many || self.0.is_some()) {
-            self.0 = Some(count);
-            *team = Team::new(count.resolve());
-        }
-        if many {
-            team.wake();
-        }
-    }
-}

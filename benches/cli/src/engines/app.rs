@@ -133,6 +133,17 @@ macro_rules! own_timers {
 #[cfg(feature = "diagnostics")]
 pub(crate) use own_timers;
 
+/// For how long several threads worked on the last step, as the engine counts it.
+#[cfg(feature = "sharing")]
+macro_rules! shared {
+    ($avian:ident, $world:expr) => {{
+        let shared = $world.resource::<$avian::schedule::StepTimes>().shared();
+        Stage::own(bench_core::engine::SHARED, shared.as_secs_f64() * 1e3)
+    }};
+}
+#[cfg(feature = "sharing")]
+pub(crate) use shared;
+
 /// Makes an app in which one update runs exactly one fixed step.
 ///
 /// As many compute threads are made as the process is pinned to cores. Bevy's main thread also works while it waits

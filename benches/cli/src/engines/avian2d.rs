@@ -36,6 +36,8 @@ pub fn make(gravity: V2, settings: &Settings) -> Box<dyn Engine<D2>> {
     app.insert_resource(SubstepCount(SUBSTEPS));
     if settings.stages {
         app::put_clocks!(app);
+        #[cfg(feature = "sharing")]
+        app.world_mut().resource_mut::<avian::schedule::StepTimes>().count_shared();
     }
     Box::new(Sim {
         app,
@@ -166,6 +168,8 @@ impl Engine<D2> for Sim {
         let mut stages = app::stages(world);
         #[cfg(feature = "diagnostics")]
         stages.extend(app::own_timers!(avian, world));
+        #[cfg(feature = "sharing")]
+        stages.push(app::shared!(avian, world));
         stages
     }
 }

@@ -36,6 +36,8 @@ pub fn make(gravity: V3, settings: &Settings) -> Box<dyn Engine<D3>> {
     app.insert_resource(SubstepCount(SUBSTEPS));
     if settings.stages {
         app::put_clocks!(app);
+        #[cfg(feature = "sharing")]
+        app.world_mut().resource_mut::<avian::schedule::StepTimes>().count_shared();
     }
     Box::new(Sim {
         app,
@@ -189,6 +191,8 @@ impl Engine<D3> for Sim {
         let mut stages = app::stages(world);
         #[cfg(feature = "diagnostics")]
         stages.extend(app::own_timers!(avian, world));
+        #[cfg(feature = "sharing")]
+        stages.push(app::shared!(avian, world));
         stages
     }
 }
