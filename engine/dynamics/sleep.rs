@@ -191,7 +191,6 @@ pub(crate) fn sleep_islands(
 
 /// Adds and removes [`Sleeping`] where a body fell asleep or woke. Observers of one body's `Sleeping` may despawn
 /// the next before it gets its own.
-///
 pub(crate) fn mirror_sleeping(mut tables: Tables, sleeping: Query<Has<Sleeping>>, mut commands: Commands) {
     let bodies = &mut *tables.bodies;
     for id in core::mem::take(&mut bodies.table.flipped) {
