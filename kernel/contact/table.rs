@@ -143,12 +143,14 @@ impl ContactTable {
     /// A contact.
     #[inline(always)]
     pub fn get(&self, id: u32) -> &Contact {
+        debug_assert!(self.is_live(id), "contact {id} is in use");
         &self.contacts[id as usize]
     }
 
     /// A contact.
     #[inline(always)]
     pub(crate) fn get_mut(&mut self, id: u32) -> &mut Contact {
+        debug_assert!(self.is_live(id), "contact {id} is in use");
         &mut self.contacts[id as usize]
     }
 
@@ -175,6 +177,7 @@ impl ContactTable {
     }
 
     pub(super) fn store_extra(&mut self, id: u32, manifolds: &[Manifold]) {
+        debug_assert!(self.is_live(id), "contact {id} is in use");
         let contact = &mut self.contacts[id as usize];
         if contact.extra == NONE {
             contact.extra = self.free_extra.pop().unwrap_or_else(|| {
@@ -194,6 +197,15 @@ impl ContactTable {
     pub(super) fn add(&mut self, contact: Contact, colliders: &mut ColliderTable) -> u32 {
         let id = self.ids.allocate();
         let [a, b] = contact.colliders;
+        debug_assert!(a < b, "the lower collider comes first: {a}, {b}");
+        debug_assert!(self.find(a, b).is_none(), "colliders {a} and {b} have no contact yet");
+        debug_assert!([a, b].iter().all(|c| colliders.ids.is_live(*c)), "colliders {a} and {b} are in use");
+        debug_assert_eq!(
+            contact.bodies,
+            [a, b].map(|c| colliders[c].def.body),
+            "bodies are those of the colliders"
+        );
+        debug_assert_eq!(contact.extra, NONE, "a new contact has no manifolds in the side pool");
         self.pairs.insert(a, b, id);
         if id as usize == self.contacts.len() {
             self.bodies.push(contact.bodies);
@@ -220,6 +232,7 @@ impl ContactTable {
     pub(super) fn remove(&mut self, id: u32, colliders: &mut ColliderTable) {
         self.deactivate(id);
         let Contact { colliders: [a, b], next, previous, extra, .. } = *self.get(id);
+        debug_assert_eq!(self.find(a, b), Some(id), "the pair's contact is this one");
         self.pairs.remove(a, b);
         for side in 0..2 {
             match previous[side] {
@@ -239,6 +252,7 @@ impl ContactTable {
     }
 
     pub(super) fn activate(&mut self, id: u32) {
+        debug_assert!(self.is_live(id), "contact {id} is in use");
         self.active_count += usize::from(self.active.insert(id));
     }
 

@@ -90,6 +90,8 @@ impl Plan {
 
     /// Cuts the rows of so many manifolds into blocks of the stage that is being planned.
     pub(super) fn add(&mut self, set: Set, class: PointClass, rows: Range<u32>, manifolds: usize) {
+        debug_assert!(self.block_rows > 0, "a plan is begun before it is added to");
+        debug_assert!(rows.len() <= manifolds, "{manifolds} manifolds in {rows:?}: no row is empty");
         self.manifolds += manifolds;
         let mut start = rows.start;
         while start < rows.end {
@@ -107,6 +109,7 @@ impl Plan {
     /// Ends a stage, which is shared or not: what is added from now on waits for what was added before.
     pub(super) fn end_stage(&mut self, is_shared: bool) {
         let end = self.blocks.len() as u32;
+        debug_assert_eq!(self.parts.len(), (self.ends.len() + 1) * self.members, "each member has a part");
         if self.start() < end {
             self.ends.push((end, is_shared));
         }
@@ -254,6 +257,7 @@ impl<'a, N: Lane, M, const P: usize> RowsView<'a, N, M, P> {
     #[inline(always)]
     pub(super) unsafe fn take(&self, block: &Block) -> BlockRows<'a, N, M, P> {
         let range = block.start as usize..(block.start + block.len) as usize;
+        debug_assert!(!range.is_empty() && range.end <= self.sources.len(), "block {block:?} has rows");
         let deeps = if self.deeps.len() < range.end { 0..0 } else { range.clone() };
         // SAFETY: by the contract.
         unsafe {

@@ -120,6 +120,7 @@ impl BodyRows {
     /// one of them is to be filled. Nobody is limited.
     pub(super) fn reset(&mut self, kinematic: usize, dynamic: usize) {
         let count = 1 + kinematic + dynamic;
+        debug_assert!(u32::try_from(count).is_ok(), "{count} rows have ids of 32 bits");
         self.rows.resize(count, BodyRow::REST);
         self.masses.resize(count, MassRow::default());
         self.motions.resize(count, Motion::FREE);
@@ -137,6 +138,9 @@ impl BodyRows {
 
     /// Limits a body's velocity: at most once a step. What comes after the first time counts for nothing.
     pub fn limit(&mut self, row: usize, limits: Limits) {
+        debug_assert!((1..self.rows.len()).contains(&row), "row {row} is a body's");
+        let [speed, turn] = [limits.max_speed, limits.max_angular_speed];
+        debug_assert!(speed >= 0.0 && turn >= 0.0, "limits are not negative: {limits:?}");
         if limits.is_none() {
             return;
         }
@@ -159,6 +163,11 @@ impl BodyRows {
 
     #[inline]
     pub(super) fn add_spin(&mut self, spin: Spin) {
+        debug_assert!(
+            (self.first_dynamic..self.rows.len() as u32).contains(&spin.row),
+            "row {} is dynamic",
+            spin.row
+        );
         let is_first = self.spins.push(spin.row as usize, spin);
         debug_assert!(is_first, "body row {} spins twice", spin.row);
     }
@@ -176,6 +185,16 @@ impl BodyRows {
     /// Forgets how far a body has moved and turned in this step.
     pub fn put_back(&mut self, row: u32) {
         self.rows[row as usize].set_delta(Vector::ZERO, Rot::IDENTITY);
+    }
+
+    /// Whether all that contact rows are built from is finite.
+    pub(super) fn are_finite(&self) -> bool {
+        let velocity = |row: &BodyRow| {
+            let (v, w) = row.velocity();
+            v.is_finite() && w.is_finite()
+        };
+        let mass = |mass: &MassRow| mass.inv_mass().is_finite() && mass.inv_mass() >= 0.0;
+        self.rows.iter().all(velocity) && self.masses.iter().all(mass)
     }
 
     /// Fills a row with a body at rest that nothing moves.

@@ -86,6 +86,7 @@ impl BodyFiller<'_> {
         if self.claims.get(row).is_none_or(|claim| claim.swap(true, Ordering::Relaxed)) {
             return false;
         }
+        debug_assert!(body.mass.inv_mass() >= 0.0, "an inverse mass of {}", body.mass.inv_mass());
         // SAFETY: the filler borrows the rows mutably, and only the thread that claimed a row takes it, once.
         unsafe {
             *self.rows.one(row) = body.row;

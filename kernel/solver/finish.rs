@@ -24,6 +24,9 @@ impl Solver {
         frames: &mut [WorldPose],
         dt: f32,
     ) -> Vec<u32> {
+        debug_assert!(dt.is_finite() && dt >= 0.0, "a step of {dt} s");
+        let is_known = |id: &u32| (*id as usize) < frames.len() && bodies.ids.is_live(*id);
+        debug_assert!(listed.iter().all(is_known), "listed bodies are in use and have frames");
         let listed = &listed[..listed.len().min(self.bodies.rows.len().saturating_sub(1))];
         let finish = Finish {
             first_dynamic: self.bodies.first_dynamic,

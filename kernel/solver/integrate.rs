@@ -26,6 +26,7 @@ fn each_of<T: Sync>(
 }
 
 fn limit_factor(speed: f32, max: f32) -> f32 {
+    debug_assert!(max >= 0.0, "a limit of {max}");
     if speed > max { max / speed } else { 1.0 }
 }
 
@@ -34,6 +35,8 @@ impl BodyRows {
     /// without forces v falls by exactly 1 / (1 + c h). In 3D then one step of the gyroscopic torque.
     pub(super) fn integrate_velocities(&mut self, h: f32, team: &Team) {
         let Self { rows, motions, spins, first_dynamic, .. } = self;
+        debug_assert_eq!(rows.len(), motions.len(), "each row has its motion");
+        debug_assert!(*first_dynamic as usize <= rows.len(), "dynamic rows begin within the rows");
         let (first, count) = (*first_dynamic as usize, rows.len());
         let view = RowView::over(rows, 0);
         team.run((count - first).div_ceil(BLOCK), |block, _| {

@@ -117,6 +117,7 @@ impl Sorted {
     pub(super) fn sort(&mut self, contacts: &[u32], layer: u32, sorter: &Sorter) {
         let Self { held, free, parts, more } = self;
         let Sorter { input, locks, shares } = sorter;
+        debug_assert!(layer == 0 || *more > 0, "the layer before had more");
         *parts = shares.parts(if layer == 0 { contacts.len() } else { *more });
         *more = 0;
         for lists in [&mut *held, &mut *free] {
@@ -159,6 +160,7 @@ pub(super) struct Sorter<'a> {
 impl<N: Lane, M: InvMass<N>> RowSet<N, M> {
     /// Appends the rows of sorted manifolds, and plans a stage of them.
     pub(super) fn lay(&mut self, set: Set, lists: &[Lists], parts: usize, shares: &Shares, plan: &mut Plan) {
+        debug_assert!((1..=shares.members()).contains(&parts) && parts <= lists.len(), "{parts} parts");
         for member in 0..shares.members() {
             if let Some(part) = shares.of_member(member, parts) {
                 for class in PointClass::ALL {
@@ -299,6 +301,13 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let input = filler.input;
         let contact = input.contacts.get(from.contact);
         let manifold = input.contacts.manifold(contact, from.manifold).expect("it was there to be counted");
+        debug_assert!((1..=P as u32).contains(&manifold.count), "{} points fit into {P}", manifold.count);
+        debug_assert!(
+            (manifold.normal.length() - 1.0).abs() < 1.0e-3,
+            "a normal of unit length: {:?}",
+            manifold.normal
+        );
+        debug_assert!(manifold.points().iter().all(|p| p.separation.is_finite()), "separations are finite");
         let ids = contact.bodies.map(|body| input.row_of(body));
         for side in 0..2 {
             row.ids[side].set(lane, ids[side]);
@@ -312,6 +321,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             self.dominate(input.bodies, contact, lane);
         }
         let [friction, restitution] = contact.surface;
+        debug_assert!(friction >= 0.0 && restitution >= 0.0, "a surface: {friction}, {restitution}");
         row.friction.set(lane, friction);
         bounce.restitution.set(lane, restitution);
         if restitution > 0.0 {
@@ -319,6 +329,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             bounce.gained.set(lane, (a - b).dot(manifold.normal) * filler.params.h);
         }
         let share = filler.deep.share(ids, filler.first_dynamic);
+        debug_assert!(share > 0.0 && share <= 1.0, "a share: {share}");
         row.push_speed.set(lane, filler.params.max_push_speed * share);
         self.copy(manifold, contact.frozen.offset, filler.params, lane, row);
     }

@@ -34,6 +34,7 @@ impl Shares {
     /// Divides the rows of dynamic bodies, of which there are `rows` with all others, so that about as many contacts
     /// fall to each member.
     pub(super) fn divide(&mut self, members: usize, rows: usize, input: &RowInput, colors: &ColorGraph) {
+        debug_assert!(members > 0, "a team has its caller");
         self.members = members.min(usize::from(NOBODY));
         self.of_row.clear();
         if self.members == 1 {
@@ -64,6 +65,7 @@ impl Shares {
             return 0;
         }
         let of = |body: u32| if body == NONE { NOBODY } else { self.of_row[input.row_of(body) as usize] };
+        debug_assert!(parts <= self.members, "{parts} parts for {} members", self.members);
         let member = match input.contacts.bodies_of(contact).map(of) {
             [NOBODY, NOBODY] => 0,
             [member, NOBODY] | [NOBODY, member] => member,
@@ -74,6 +76,7 @@ impl Shares {
 
     /// The part that a member begins with, if there is one: neighbours have one together where there are fewer parts.
     pub(super) fn of_member(&self, member: usize, parts: usize) -> Option<usize> {
+        debug_assert!(member < self.members, "member {member} of {}", self.members);
         let part = member * parts / self.members;
         (member == 0 || part > (member - 1) * parts / self.members).then_some(part)
     }

@@ -20,6 +20,12 @@ impl Softness {
     /// No softness: the velocity error vanishes, position error is left alone.
     pub const RIGID: Self = Self { bias_rate: 0.0, mass_scale: 1.0, impulse_scale: 0.0 };
 
+    /// Whether a row may be solved with it.
+    fn is_valid(&self) -> bool {
+        let share = 0.0..=1.0;
+        self.bias_rate.is_finite() && share.contains(&self.mass_scale) && share.contains(&self.impulse_scale)
+    }
+
     /// The coefficients for a frequency in Hz, a damping ratio and a time step in seconds. Rigid where
     /// the frequency or the time step is not positive.
     pub fn new(frequency: f32, damping_ratio: f32, h: f32) -> Self {
@@ -53,4 +59,18 @@ pub struct SubstepParams {
     pub restitution_threshold: f32,
     /// The separation over which a point's weight in the friction centre fades, in metres.
     pub friction_fade: f32,
+}
+
+impl SubstepParams {
+    /// Whether a substep may be taken with them.
+    pub(super) fn is_valid(&self) -> bool {
+        let [h, inv_h] = [self.h, self.inv_h];
+        let is_step = h.is_finite() && h >= 0.0 && inv_h.is_finite() && inv_h >= 0.0;
+        let limits = [self.max_push_speed, self.restitution_threshold, self.friction_fade];
+        is_step
+            && self.soft.is_valid()
+            && self.stiff.is_valid()
+            && (0.0..=1.0).contains(&self.warm_start)
+            && limits.iter().all(|limit| *limit >= 0.0)
+    }
 }

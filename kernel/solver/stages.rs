@@ -69,6 +69,8 @@ impl Solver {
     /// If a contact or body of the graph is not in the input, or a row of the input not among the [`bodies`](Self::bodies).
     pub fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
         let Self { bodies, team, rows, plan, buffers, shares, deep, exclusive } = self;
+        debug_assert!(params.is_valid(), "{params:?}");
+        debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
         deep.count(input, bodies);
         exclusive.look(input, colors, bodies.first_dynamic, team);
         bodies.blunt(params.h);
@@ -112,6 +114,7 @@ impl Solver {
 
     /// Accelerations, damping, gyroscopic torque, speed limits.
     pub fn integrate_velocities(&mut self, params: &SubstepParams) {
+        debug_assert!(params.is_valid(), "{params:?}");
         self.bodies.integrate_velocities(params.h, &self.team);
     }
 
@@ -135,6 +138,7 @@ impl Solver {
 
     /// Moves the bodies.
     pub fn integrate_positions(&mut self, params: &SubstepParams) {
+        debug_assert!(params.is_valid(), "{params:?}");
         self.bodies.integrate_positions(params.h, &self.team);
     }
 
@@ -163,6 +167,7 @@ impl Solver {
 
     /// Puts the impulses back into the manifolds, for the next step to start from.
     pub fn store_impulses(&mut self, contacts: &mut ContactTable) {
+        debug_assert!(self.plan.manifolds == 0 || !contacts.is_empty(), "the rows came from these contacts");
         let (sets, manifolds) = (self.rows.view(), contacts.manifolds_view());
         for Stage { blocks, parts } in self.plan.stages() {
             // SAFETY: each block is run once, no two have a row together, and either no contact is there twice or they are run
@@ -179,6 +184,11 @@ impl Solver {
 
     /// Runs all blocks, stage by stage. Returns whether any of them found an impact.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams) -> bool {
+        debug_assert!(params.is_valid(), "{params:?}");
+        debug_assert!(
+            self.plan.blocks.is_empty() || self.exclusive.first_dynamic() == self.bodies.first_dynamic(),
+            "bodies have the rows that contact rows were built for"
+        );
         let (sets, bodies) = (self.rows.view(), self.bodies.view(self.exclusive.first_dynamic()));
         let hit = AtomicBool::new(false);
         for Stage { blocks, parts } in self.plan.stages() {

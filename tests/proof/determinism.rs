@@ -137,3 +137,53 @@ fn the_number_of_workers_does_not_matter() {
         assert_same_bits(&alone, &run(workers), "by a team");
     }
 }
+
+/// What the app changes is found, and rows of bodies are filled, by several threads.
+#[test]
+fn the_number_of_workers_does_not_matter_to_what_the_app_changes() {
+    let run = |workers: usize| {
+        let mut lab = Lab::new();
+        lab.app.insert_resource(WorkerCount(workers));
+        let bodies = scenes::pyramid::large(lab.app.world_mut(), 36);
+        for (i, &body) in bodies.iter().enumerate() {
+            match i % 9 {
+                0 => lab.insert(body, Dominance(i as i8 % 3)),
+                1 => lab.insert(body, LockedAxes::ROTATION_LOCKED),
+                2 => lab.insert(body, (MaxLinearSpeed(2.0), LinearDamping(0.1))),
+                3 => drop(lab.spawn((Transform::default(), ChildOf(body)))),
+                _ => {}
+            }
+        }
+        for step in 0..60 {
+            for (i, &body) in bodies.iter().enumerate() {
+                if (i + step) % 41 == 0 {
+                    lab.insert(body, LinearVelocity(Vector::Y * 3.0));
+                }
+                if (i + step) % 97 == 0 {
+                    let mut body = lab.app.world_mut().entity_mut(body);
+                    body.get_mut::<Position>().expect("it is a body").0.x += 0.01;
+                }
+                if i % 100 == 50 && step == 20 {
+                    lab.insert(body, LinearVelocity(Vector::splat(Scalar::NAN)));
+                }
+            }
+            lab.steps(1);
+        }
+        let world = lab.app.world();
+        for &body in &bodies {
+            let (position, transform) = (world.get::<Position>(body), world.get::<Transform>(body));
+            let (position, transform) = (position.expect("it is a body"), transform.expect("it is a body"));
+            assert_eq!(
+                (position.x as f32, position.y as f32),
+                (transform.translation.x, transform.translation.y)
+            );
+        }
+        let disabled = bodies.iter().filter(|body| world.get::<RigidBodyDisabled>(**body).is_some()).count();
+        assert_eq!(disabled, bodies.len().div_ceil(100) - usize::from(bodies.len() % 100 < 51));
+        lab.bits(&bodies)
+    };
+    let alone = run(1);
+    for workers in [2, 4] {
+        assert_same_bits(&alone, &run(workers), "by a team");
+    }
+}
