@@ -7,18 +7,18 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0x6c2e4a04e7dbe439),
     ("pyramids", 0x888870d04d87832e),
     ("tumbler", 0x3f9c0f5cebc2e3a5),
-    ("dominoes", 0x32d104eef11a046e),
-    ("card_house", 0xfb05f5bf417f986f),
-    ("towers", 0xf7210e556bbf3a1d),
+    ("dominoes", 0x06dafc1a4544454e),
+    ("card_house", 0x452e86ea9cf7f716),
+    ("towers", 0x41e006eb86452b02),
     ("smash", 0x0521470a968ae6e0),
     ("crowd", 0x97af27847daa3ae7),
-    ("sleepers", 0x02ebb3db6b76e847),
-    ("bounces", 0x6e9957ea06ca368c),
-    ("settings", 0xfd94d2dfd21655d2),
+    ("sleepers", 0xf00c401d7cc8af5d),
+    ("bounces", 0x0336727b7fba97c6),
+    ("settings", 0xd356963ecfc9b879),
 ];
 
 /// The same for scenes with shapes of parry's.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x2aba55a7206580dc), ("slopes", 0xeffe19ef4eff022f)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x2aba55a7206580dc), ("slopes", 0x71b94385298d2184)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 20;

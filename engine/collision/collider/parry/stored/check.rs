@@ -39,6 +39,16 @@ pub(super) fn check_lengths<const N: usize>(lengths: [Scalar; N]) -> Result<(), 
     }
 }
 
+/// Whether the heights of a height field are finite and not farther than parry's algorithms reach, also times its scale.
+pub(super) fn check_heights(heights: &[Scalar], scale: Scalar) -> Result<(), Fault> {
+    let usable = |v: Scalar| v.abs() <= MAX_LENGTH;
+    if heights.iter().all(|h| usable(*h) && usable(*h * scale)) {
+        Ok(())
+    } else {
+        Err("a height is too large or not a number")
+    }
+}
+
 /// A shape with a border.
 pub(super) fn round<S>(
     inner_shape: S,

@@ -4,7 +4,7 @@ use bevy_math::primitives::{Ellipse, RegularPolygon};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    check::{Fault, check_lengths, check_normals, check_points, round},
+    check::{Fault, check_heights, check_lengths, check_normals, check_points, round},
     piece::Piece,
 };
 use crate::{
@@ -68,8 +68,8 @@ impl StoredHeights {
             return Err("a height field has no cells, or others than heights");
         }
         check_lengths([self.scale.x])?;
-        let finite = self.heights.iter().chain(&[self.scale.y]).all(|v| v.is_finite());
-        if !finite || self.scale.x == 0.0 {
+        check_heights(&self.heights, self.scale.y)?;
+        if self.scale.x == 0.0 {
             return Err("a height field has no size");
         }
         let mut field = HeightField::new(self.heights, self.scale);

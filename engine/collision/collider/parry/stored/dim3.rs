@@ -3,7 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{
-    check::{Fault, check_lengths, check_normals, check_points, round},
+    check::{Fault, check_heights, check_lengths, check_normals, check_points, round},
     piece::Piece,
 };
 use crate::{
@@ -89,8 +89,8 @@ impl StoredHeights {
             return Err("a height field has other rows and columns than cells");
         }
         check_lengths([self.scale.x, self.scale.z])?;
-        let finite = self.heights.iter().chain(&[self.scale.y]).all(|v| v.is_finite());
-        if !finite || self.scale.x == 0.0 || self.scale.z == 0.0 {
+        check_heights(&self.heights, self.scale.y)?;
+        if self.scale.x == 0.0 || self.scale.z == 0.0 {
             return Err("a height field has no size");
         }
         let status = |bits: &u8| HeightFieldCellStatus::from_bits(*bits).ok_or("a cell has unknown flags");

@@ -1,7 +1,8 @@
 //! How a [`Collider`] is stored by serde: as what its shape is made of, its scale, and how finely that is resolved.
 //!
-//! Trees of boxes, topology and all else that follows from that is computed anew, to the same bits. Input that
-//! describes no shape is an error of the deserializer.
+//! Trees of boxes, topology and all else that follows from that is computed anew, to the same bits; only parry's tree over
+//! voxels depends on the order of a hash map, as it does without storing. Input that describes no shape is an error of the
+//! deserializer.
 
 mod check;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
