@@ -5,6 +5,7 @@ use bevy_platform::time::Instant;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use core::time::Duration;
 use kernel::team::Team;
+use std::sync::OnceLock;
 
 /// How long each part of the last step took, in the order in which they ran: from `Prepare`, where transforms are
 /// read, through the stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
@@ -58,8 +59,8 @@ impl StepTimes {
     /// Notes for how long a team has shared work.
     pub(crate) fn note_shared(&mut self, team: &Team) {
         if self.counts_shared {
-            team.count_shared_time();
-            let sum = team.shared_time();
+            team.count_shared_time(nanoseconds);
+            let sum = Duration::from_nanos(team.shared_time());
             self.shared = [sum.saturating_sub(self.shared[1]), sum];
         }
     }
@@ -78,4 +79,10 @@ impl StepTimes {
             None => self.parts.push((part, now - last)),
         }
     }
+}
+
+/// Since it was first asked.
+fn nanoseconds() -> u64 {
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed().as_nanos() as u64
 }

@@ -1,8 +1,9 @@
 //! The dense bodies of one step: rows that contact rows refer to by index.
 
-use super::{BodyRow, MassRow, RowView, fill::Claims, gyro::Gyro};
+use super::{BodyRow, MassRow, RowView, gyro::Gyro};
 use crate::data::BitSet;
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
+use core::sync::atomic::AtomicBool;
 
 /// How a body's velocity changes by itself. Constant over a step.
 #[derive(Clone, Copy, Debug)]
@@ -90,6 +91,27 @@ impl<T> OnceEach<T> {
     /// Rows and what they have: no row twice.
     pub(super) fn list(&self) -> &[(u32, T)] {
         &self.list
+    }
+}
+
+/// Which rows are filled; row 0, the dummy, always is.
+#[derive(Debug, Default)]
+pub(super) struct Claims(pub(super) Vec<AtomicBool>);
+
+impl Clone for Claims {
+    /// A copy is for steps of its own.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Claims {
+    pub(super) fn reset(&mut self, rows: usize) {
+        self.0.clear();
+        self.0.resize_with(rows, || AtomicBool::new(false));
+        if let Some(dummy) = self.0.first_mut() {
+            *dummy = AtomicBool::new(true);
+        }
     }
 }
 

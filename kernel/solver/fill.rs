@@ -6,27 +6,6 @@ use crate::data::Parts;
 use crate::math::{InvInertia, Rot};
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// Which rows are filled; row 0, the dummy, always is.
-#[derive(Debug, Default)]
-pub(super) struct Claims(Vec<AtomicBool>);
-
-impl Clone for Claims {
-    /// A copy is for steps of its own.
-    fn clone(&self) -> Self {
-        Self::default()
-    }
-}
-
-impl Claims {
-    fn reset(&mut self, rows: usize) {
-        self.0.clear();
-        self.0.resize_with(rows, || AtomicBool::new(false));
-        if let Some(dummy) = self.0.first_mut() {
-            *dummy = AtomicBool::new(true);
-        }
-    }
-}
-
 /// All that a row of a body holds.
 #[derive(Clone, Copy, Debug)]
 pub struct FilledBody {

@@ -63,11 +63,8 @@ mod sync;
 mod tests;
 
 use board::Board;
-use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::{
-    sync::{Arc, PoisonError},
-    time::{Duration, Instant},
-};
+use core::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock, PoisonError};
 use sync::{Builder, JoinHandle, Mutex};
 
 /// The caller and its helpers, who run the blocks of one stage at a time.
@@ -80,13 +77,16 @@ use sync::{Builder, JoinHandle, Mutex};
 #[derive(Clone, Debug, Default)]
 pub struct Team(Option<Arc<Helpers>>);
 
+/// Tells the time in nanoseconds since some moment. The kernel has no clock of its own.
+pub type Clock = fn() -> u64;
+
 /// The threads, which end when this is dropped.
 #[derive(Debug)]
 struct Helpers {
     board: Arc<Board>,
     threads: Vec<JoinHandle<()>>,
-    /// Whether the time of shared runs is counted, and what it has come to in nanoseconds.
-    is_timed: AtomicBool,
+    /// Tells the time if that of shared runs is counted, and what it has come to.
+    clock: OnceLock<Clock>,
     shared: AtomicU64,
 }
 
@@ -105,8 +105,8 @@ impl Team {
         if threads.is_empty() {
             return Self(None);
         }
-        let (is_timed, shared) = (AtomicBool::new(false), AtomicU64::new(0));
-        Self(Some(Arc::new(Helpers { board, threads, is_timed, shared })))
+        let (clock, shared) = (OnceLock::new(), AtomicU64::new(0));
+        Self(Some(Arc::new(Helpers { board, threads, clock, shared })))
     }
 
     /// How many there are, the caller among them.
@@ -135,18 +135,16 @@ impl Team {
     }
 
     /// Has the time of shared runs counted from now on, for measurements: it costs two looks at a clock a run.
-    pub fn count_shared_time(&self) {
+    pub fn count_shared_time(&self, clock: Clock) {
         if let Some(helpers) = &self.0 {
-            helpers.is_timed.store(true, Ordering::Relaxed);
+            helpers.clock.get_or_init(|| clock);
         }
     }
 
-    /// For how long callers have run blocks together with helpers since that is counted. The rest of their time is one
+    /// For how many nanoseconds callers have run blocks together with helpers since that is counted. The rest of their time is one
     /// thread's, however many members there are.
-    pub fn shared_time(&self) -> Duration {
-        self.0
-            .as_ref()
-            .map_or(Duration::ZERO, |helpers| Duration::from_nanos(helpers.shared.load(Ordering::Relaxed)))
+    pub fn shared_time(&self) -> u64 {
+        self.0.as_ref().map_or(0, |helpers| helpers.shared.load(Ordering::Relaxed))
     }
 
     /// Runs `job(block, member)` for every block below `blocks`, and returns when all are done. Members are
@@ -181,11 +179,11 @@ impl Team {
         let shared = board.filter(|board| blocks > 1 && board.is_anyone_awake()).and_then(Board::begin);
         match shared {
             Some(ours) => {
-                let clock = self.0.as_ref().filter(|helpers| helpers.is_timed.load(Ordering::Relaxed));
-                let clock = clock.map(|helpers| (helpers, Instant::now()));
+                let timed = self.0.as_ref().and_then(|helpers| Some((helpers, helpers.clock.get()?)));
+                let timed = timed.map(|(helpers, clock)| (helpers, clock, clock()));
                 ours.share(blocks, ends, &|block, member| job(block as usize, member));
-                if let Some((helpers, start)) = clock {
-                    helpers.shared.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+                if let Some((helpers, clock, start)) = timed {
+                    helpers.shared.fetch_add(clock().saturating_sub(start), Ordering::Relaxed);
                 }
             }
             None => (0..blocks as usize).for_each(|block| job(block, 0)),
