@@ -6,19 +6,19 @@ use avian::prelude::*;
 pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0x6c2e4a04e7dbe439),
     ("pyramids", 0x888870d04d87832e),
-    ("tumbler", 0x3f9c0f5cebc2e3a5),
-    ("dominoes", 0x06dafc1a4544454e),
+    ("tumbler", 0xb67db5a988ba8dbd),
+    ("dominoes", 0x7d8a9b7741a2e923),
     ("card_house", 0x452e86ea9cf7f716),
     ("towers", 0x41e006eb86452b02),
-    ("smash", 0x0521470a968ae6e0),
+    ("smash", 0xba9c1a4e4fc745da),
     ("crowd", 0x97af27847daa3ae7),
     ("sleepers", 0xf00c401d7cc8af5d),
-    ("bounces", 0x0336727b7fba97c6),
+    ("bounces", 0x1211ff4950806e37),
     ("settings", 0xd356963ecfc9b879),
 ];
 
 /// The same for scenes with shapes of parry's.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x2aba55a7206580dc), ("slopes", 0x71b94385298d2184)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x514e34ed84e24e59), ("slopes", 0x71b94385298d2184)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 20;

@@ -6,19 +6,19 @@ use avian::prelude::*;
 pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0xd9cea250dfd32ffd),
     ("pyramids", 0x7029bf7b80ae7227),
-    ("tumbler", 0x6005dbfa129e5b1d),
-    ("dominoes", 0xaf0253aebc50182a),
+    ("tumbler", 0x707d6493c37f26e9),
+    ("dominoes", 0xe722adfcc0d9ec37),
     ("card_house", 0xa8b54312fea60f02),
     ("towers", 0x731bb49d21a6ade1),
-    ("smash", 0x32a2ad9a5a3523f1),
+    ("smash", 0x295fe2b091d792cd),
     ("crowd", 0xb426d1d6efcb702d),
     ("sleepers", 0x420de4f6f14d4a56),
-    ("bounces", 0xb47084a268eb926b),
+    ("bounces", 0x18da6393fc8a039a),
     ("settings", 0x52473f9774201a3d),
 ];
 
 /// The same for scenes with shapes of parry's.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xbe23090c16dc7a47), ("slopes", 0xe3b17166bffd97c2)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xb230adaf20142ebb), ("slopes", 0xe3b17166bffd97c2)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 7;
