@@ -130,7 +130,7 @@ pub struct BodyRows {
     pub(super) limits: OnceEach<Limits>,
     /// Those that their own spin turns: none in 2D.
     pub(super) spins: OnceEach<Spin>,
-    /// Which axes are held, by row; empty where nobody is held along any.
+    /// Which axes are held, by row; empty if no body is held along any.
     pub(super) locks: Vec<AxisLocks>,
     pub(super) claims: Claims,
     /// The first row of a dynamic body.

@@ -13,7 +13,7 @@ pub(super) struct RowView<'a, T> {
     first_writable: u32,
 }
 
-// SAFETY: threads only touch disjoint rows, or rows that nobody writes, by the contracts of `get` and `put`.
+// SAFETY: by the contracts of `get` and `put`, threads write disjoint rows and read only rows that no thread writes.
 unsafe impl<T: Send + Sync> Sync for RowView<'_, T> {}
 
 impl<'a, T> RowView<'a, T> {

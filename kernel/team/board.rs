@@ -10,14 +10,14 @@ use std::sync::PoisonError;
 /// What caller and helpers share.
 #[derive(Debug, Default)]
 pub(super) struct Board {
-    /// What each member is told.
+    /// One desk per member: its unclaimed blocks and the job they belong to.
     desks: Box<[Desk]>,
     /// How many blocks each member has done in its life, in a line of its own.
     done: Box<[Apart<AtomicU32>]>,
     caller: Apart<Caller>,
-    /// Which helpers sleep. Who wakes one says so before it is awake.
+    /// Whether each helper sleeps. The waking thread clears the flag before it unparks the helper.
     asleep: Box<[AtomicBool]>,
-    /// How many do not, or are about to be woken.
+    /// Number of helpers that are awake or about to be woken.
     awake: AtomicU32,
     /// Whether helpers are to sleep without looking for more work.
     rests: AtomicBool,
@@ -44,10 +44,10 @@ struct Apart<T>(T);
 #[derive(Debug, Default)]
 #[repr(align(128))]
 struct Desk {
-    /// The blocks that are the member's to claim first, and that nobody has claimed.
+    /// Unclaimed blocks of this member's part.
     claims: Claims,
-    /// The stage. Written only while all blocks of the last one are done, read only by who has claimed a block here
-    /// that is not.
+    /// The job. The caller writes it only while no block is unfinished; a member reads it only while its claimed block is
+    /// unfinished.
     job: Slot<Option<Job>>,
 }
 
@@ -60,7 +60,7 @@ impl Claims {
         self.0.store(u64::from(blocks.start) << 32 | u64::from(blocks.end), Ordering::Release);
     }
 
-    /// A block that nobody else has or will have: the first for whom they are, the last for others.
+    /// Claims one block exclusively: the owner of the part takes the first, other members take the last.
     #[inline]
     fn take(&self, is_own: bool) -> Option<u32> {
         let mut claims = self.0.load(Ordering::Acquire);
@@ -78,7 +78,7 @@ impl Claims {
         }
     }
 
-    /// Lets nobody claim any more. Returns how many blocks were left.
+    /// Withdraws all unclaimed blocks. Returns their number.
     fn close(&self) -> u32 {
         let claims = self.0.swap(0, Ordering::AcqRel);
         (claims as u32).saturating_sub((claims >> 32) as u32)
@@ -166,7 +166,7 @@ impl Board {
         impl Drop for Wait<'_> {
             fn drop(&mut self) {
                 let Self(board, blocks) = self;
-                // What nobody has claimed when the caller panics is nobody's.
+                // Unclaimed blocks are not run after the caller panicked.
                 let left = board.desks.iter().map(|desk| desk.claims.close()).sum::<u32>();
                 let posted = &board.caller.0.posted;
                 let all = posted.load(Ordering::Relaxed).wrapping_add(*blocks - left);
@@ -179,7 +179,7 @@ impl Board {
         let mut start = 0;
         for (desk, end) in self.desks.iter().zip(ends) {
             let end = end.clamp(start, blocks);
-            // SAFETY: all blocks of the last job are done, and nobody can have claimed one here of this.
+            // SAFETY: all blocks of the last job are done, and no block of this job can be claimed here yet.
             unsafe { desk.job.write(Some(posted)) };
             desk.claims.put(start..end);
             start = end;
@@ -202,7 +202,7 @@ impl Board {
         }
     }
 
-    /// A block of the member's own part that nobody else has or will have. Members begin with the same part in every
+    /// Claims a block of the member's own part. Members begin with the same part in every
     /// run: what runs over the same data one after another finds it in the cache of its core.
     #[inline]
     fn claim_own(&self, member: usize) -> Option<(u32, &Desk)> {
@@ -210,7 +210,7 @@ impl Board {
         desk.claims.take(true).map(|block| (block, desk))
     }
 
-    /// A block of another member's part that nobody else has or will have.
+    /// Claims a block of another member's part.
     #[inline]
     fn claim_others(&self, member: usize) -> Option<(u32, &Desk)> {
         let (before, from) = self.desks.split_at(member);
@@ -262,7 +262,7 @@ impl Board {
     /// Runs a block that a helper has claimed at a desk.
     fn run_block(&self, block: u32, desk: &Desk, member: usize) {
         let _done = Done(self, member);
-        // SAFETY: it has a block from there that is not done: nobody writes the job, and its closure is there.
+        // SAFETY: the member's claimed block is unfinished, so the caller does not write the job and keeps its closure alive.
         let Some(job) = (unsafe { desk.job.read() }) else { return };
         // SAFETY: as above.
         let run = || unsafe { (job.run)(job.data, block, member) };
