@@ -1,7 +1,7 @@
 //! The dense bodies of one step: rows that contact rows refer to by index.
 
-use super::{BodyRow, MassRow, RowView, gyro::Gyro};
-use crate::data::BitSet;
+use super::{BodyRow, MassRow, RowView, gyro::*};
+use crate::data::{BitSet, Parts};
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
 use core::sync::atomic::AtomicBool;
 
@@ -56,6 +56,32 @@ pub(super) struct Spin {
     pub(super) gyro: Gyro,
     /// When the step begins.
     pub(super) rotation: Rot,
+    /// The angular velocity after the last substep, in the body's frame and in world axes.
+    after: [Angular; 2],
+}
+
+impl Spin {
+    pub(super) fn new(row: u32, gyro: Gyro, rotation: Rot) -> Self {
+        Self { row, gyro, rotation, after: [Angular::ZERO; 2] }
+    }
+
+    /// Gives the body the angular velocity at which it turns in the middle of the substep.
+    pub(super) fn begin_turn(&mut self, row: &mut BodyRow, h: f32) {
+        let (v, w) = row.velocity();
+        let rotation = world_rotation(row.delta().1, self.rotation);
+        // Only what has changed since the last substep is turned into the body's frame: in free spin nothing is rounded.
+        let local = self.after[0] + to_body(rotation, w - self.after[1]);
+        let (middle, after) = self.gyro.spun(local, h);
+        self.after[0] = after;
+        row.set_velocity(v, to_world(rotation, middle));
+    }
+
+    /// Gives the turned body the angular velocity that it has at the end of the substep.
+    pub(super) fn end_turn(&mut self, row: &mut BodyRow) {
+        let (v, _) = row.velocity();
+        self.after[1] = to_world(world_rotation(row.delta().1, self.rotation), self.after[0]);
+        row.set_velocity(v, self.after[1]);
+    }
 }
 
 /// What some body rows have, each once: their threads write these rows.
@@ -91,6 +117,11 @@ impl<T> OnceEach<T> {
     /// Rows and what they have: no row twice.
     pub(super) fn list(&self) -> &[(u32, T)] {
         &self.list
+    }
+
+    /// As [`list`](Self::list), each row's to be changed by one thread.
+    pub(super) fn parts(&mut self) -> Parts<'_, (u32, T)> {
+        Parts::of(&mut self.list)
     }
 }
 
@@ -179,7 +210,7 @@ impl BodyRows {
     #[inline]
     pub fn spin(&mut self, row: usize, inv_inertia: InvInertia, rotation: Rot) {
         if let Some(gyro) = Gyro::of(inv_inertia) {
-            self.add_spin(Spin { row: row as u32, gyro, rotation });
+            self.add_spin(Spin::new(row as u32, gyro, rotation));
         }
     }
 

@@ -104,7 +104,7 @@ impl BodyRows {
             self.limit(row, limits);
         }
         for (row, gyro, rotation) in few.spins.drain(..) {
-            self.add_spin(Spin { row: row as u32, gyro, rotation });
+            self.add_spin(Spin::new(row as u32, gyro, rotation));
         }
     }
 }

@@ -23,8 +23,8 @@ impl Gyro {
         match *self {}
     }
 
-    /// The angular velocity after `h` seconds of free spin.
-    pub(super) fn spun(&self, _w: Angular, _rotation: Rot, _h: f32) -> Angular {
+    /// The angular velocity in the middle and at the end of `h` seconds of free spin.
+    pub(super) fn spun(&self, _w: Angular, _h: f32) -> (Angular, Angular) {
         match *self {}
     }
 }
@@ -32,6 +32,16 @@ impl Gyro {
 /// The componentwise product.
 pub(super) fn scale_angular(w: Angular, factors: Angular) -> Angular {
     Angular { z: w.z * factors.z }
+}
+
+/// An angular velocity is the same in all frames of the plane.
+pub(super) fn to_body(_rotation: Rot, w: Angular) -> Angular {
+    w
+}
+
+/// An angular velocity is the same in all frames of the plane.
+pub(super) fn to_world(_rotation: Rot, w: Angular) -> Angular {
+    w
 }
 
 /// A body's rotation now.

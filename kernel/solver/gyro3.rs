@@ -75,34 +75,34 @@ impl Gyro {
         (allowed < ratio).then(|| world.cut(axis, allowed / ratio))
     }
 
-    /// The angular velocity after `h` seconds of free spin.
+    /// The angular velocity in the middle and at the end of `h` seconds of free spin, all in the body's frame.
     ///
-    /// Euler's equation I ω̇ = −ω × I ω in the body's frame, by the implicit midpoint rule:
+    /// Euler's equation I ω̇ = −ω × I ω by the implicit midpoint rule:
     ///
     /// I (ω' − ω) + h m × I m = 0, with m = (ω + ω') / 2.
     ///
     /// Multiplied by m it gives ω' · I ω' = ω · I ω, multiplied by I m it gives |I ω'| = |I ω|: the rule conserves
     /// energy and the length of the angular momentum at any step length (Hairer, Lubich and Wanner, "Geometric
     /// Numerical Integration", IV.2.1: quadratic invariants). Implicit Euler (Catto, "Numerical Methods", GDC 2015) loses
-    /// both at the rate h |ω|².
+    /// both at the rate h |ω|². A body that turns by h m keeps the direction of the momentum to third order in h.
     ///
     /// In m it reads I (m − ω) + ½ h m × I m = 0. It is solved by Newton's method from the explicit guess
     /// m = ω − ½ h I⁻¹ (ω × I ω), whose Jacobian is I + ½ h ([m]× I − [I m]×). The difference between |I ω'| and
     /// |I ω| that is left is scaled away.
-    pub(super) fn spun(&self, w: Angular, rotation: Rot, h: f32) -> Angular {
+    pub(super) fn spun(&self, w: Angular, h: f32) -> (Angular, Angular) {
         let turn = w.length() * h;
         if turn < MIN_TURN {
-            return w;
+            return (w, w);
         }
-        let local = rotation.inverse_rotate(w);
         let k = if turn > MAX_TURN { 0.5 * h * (MAX_TURN / turn) } else { 0.5 * h };
-        let momentum = self.inertia.apply(local);
-        let guess = self.inv_inertia.apply(local.cross(momentum)) * -k;
-        let mut middle = local + guess;
+        let momentum = self.inertia.apply(w);
+        let guess = self.inv_inertia.apply(w.cross(momentum)) * -k;
+        let mut middle = w + guess;
         for _ in 0..if turn > SMALL_TURN { 3 } else { 1 } {
-            middle = self.newton(local, middle, k);
+            middle = self.newton(w, middle, k);
         }
-        w + rotation.rotate(self.kept(local, momentum, (middle - local) * 2.0))
+        let change = self.kept(w, momentum, (middle - w) * 2.0);
+        (w + change * 0.5, w + change)
     }
 
     /// One Newton step for the middle `m`.
@@ -142,6 +142,16 @@ impl Gyro {
 /// The componentwise product.
 pub(super) fn scale_angular(w: Angular, factors: Angular) -> Angular {
     w.scale(factors)
+}
+
+/// An angular velocity, in the frame of a body with this rotation.
+pub(super) fn to_body(rotation: Rot, w: Angular) -> Angular {
+    rotation.inverse_rotate(w)
+}
+
+/// An angular velocity of a body with this rotation, in world axes.
+pub(super) fn to_world(rotation: Rot, w: Angular) -> Angular {
+    rotation.rotate(w)
 }
 
 /// A body's rotation now.

@@ -9,16 +9,18 @@ use crate::team::Team;
 /// How many bodies a member of the team moves at a stretch: a multiple of the lanes.
 const BLOCK: usize = 256;
 
-/// Changes the rows of some bodies.
-fn each_of<T: Sync>(
-    listed: &OnceEach<T>,
+/// Changes the rows of some bodies, and what is listed of them.
+fn each_of<T: Send>(
+    listed: &mut OnceEach<T>,
     rows: &mut [BodyRow],
     team: &Team,
-    change: impl Fn(&T, &mut BodyRow) + Sync,
+    change: impl Fn(&mut T, &mut BodyRow) + Sync,
 ) {
-    let (list, view) = (listed.list(), RowView::over(rows, 0));
-    team.run(list.len().div_ceil(BLOCK), |block, _| {
-        for (row, item) in &list[block * BLOCK..list.len().min((block + 1) * BLOCK)] {
+    let (count, items, view) = (listed.list().len(), listed.parts(), RowView::over(rows, 0));
+    team.run(count.div_ceil(BLOCK), |block, _| {
+        // SAFETY: an item is in one block.
+        let items = unsafe { items.take(block * BLOCK..count.min((block + 1) * BLOCK)) };
+        for (row, item) in items {
             // SAFETY: no row is listed twice, and an item is in one block.
             unsafe { view.put(*row, |row| change(item, row)) };
         }
@@ -34,7 +36,7 @@ impl BodyRows {
     /// v ← v / (1 + c h) + h a for every dynamic body; the damping acts on the old velocity, so that
     /// without forces v falls by exactly 1 / (1 + c h). In 3D then one step of the gyroscopic torque.
     pub(super) fn integrate_velocities(&mut self, h: f32, team: &Team) {
-        let Self { rows, motions, spins, first_dynamic, .. } = self;
+        let Self { rows, motions, first_dynamic, .. } = self;
         debug_assert_eq!(rows.len(), motions.len(), "each row has its motion");
         debug_assert!(*first_dynamic as usize <= rows.len(), "dynamic rows begin within the rows");
         let (first, count) = (*first_dynamic as usize, rows.len());
@@ -54,18 +56,17 @@ impl BodyRows {
                 unsafe { view.put(id as u32, change) };
             }
         });
-        each_of(spins, rows, team, |spin, row| {
-            let (v, w) = row.velocity();
-            let rotation = world_rotation(row.delta().1, spin.rotation);
-            // The torque acts in the middle of the free spin: at its beginning, a heavy top would lean ever more.
-            let half = motions[spin.row as usize].angular_acceleration * (0.5 * h);
-            row.set_velocity(v, spin.gyro.spun(w - half, rotation, h) + half);
-        });
         self.hold_back(team);
     }
 
     /// Δx ← Δx + h v and Δθ ← Δθ turned by h ω, for every body.
+    ///
+    /// A body that its own spin turns takes the ω of the middle of its free spin. Contacts see the ω before it, which
+    /// belongs to the rotation that their arms are from: with a step of the gyroscopic torque between them, the axis of a
+    /// fast spinner moved aside of where its contacts let it, and they threw it back.
     pub(super) fn integrate_positions(&mut self, h: f32, team: &Team) {
+        self.hold_back(team);
+        each_of(&mut self.spins, &mut self.rows, team, |spin, row| spin.begin_turn(row, h));
         self.hold_back(team);
         let count = self.rows.len();
         let view = self.view_all();
@@ -82,11 +83,13 @@ impl BodyRows {
                 unsafe { move_bodies::<f32>(&view, &[id as u32], h) };
             }
         });
+        each_of(&mut self.spins, &mut self.rows, team, |spin, row| spin.end_turn(row));
+        self.hold_back(team);
     }
 
     /// Keeps velocities within their limits.
     fn hold_back(&mut self, team: &Team) {
-        each_of(&self.limits, &mut self.rows, team, |limits, row| {
+        each_of(&mut self.limits, &mut self.rows, team, |limits, row| {
             let (v, w) = row.velocity();
             let v = v.scale(limits.locks.translation_factors());
             let w = scale_angular(w, limits.locks.rotation_factors());

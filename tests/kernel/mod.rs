@@ -11,6 +11,8 @@ mod golden;
 #[cfg_attr(feature = "3d", path = "golden3.rs")]
 mod golden_dim;
 mod held;
+#[cfg(feature = "3d")]
+mod leaning;
 mod memory;
 mod physics;
 mod pushed;
