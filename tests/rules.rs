@@ -492,6 +492,52 @@ fn the_readme_shows_an_example() {
 }
 
 /// The workspace of the tests in f64 builds with what is compiled for all others: Bevy is compiled once.
+/// Paths between backticks or in links, with `{a,b}` written out.
+fn paths_in(document: &str) -> Vec<String> {
+    let ticks = document.split('`').skip(1).step_by(2);
+    let links = document.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let mut paths = Vec::new();
+    for path in ticks.chain(links).filter(|path| path.contains('/') && !path.contains("://")) {
+        match (path.find('{'), path.find('}')) {
+            (Some(open), Some(close)) if open < close => {
+                let parts = path[open + 1..close].split(',');
+                paths.extend(
+                    parts.map(|part| format!("{}{}{}", &path[..open], part.trim(), &path[close + 1..])),
+                );
+            }
+            _ => paths.push(path.to_owned()),
+        }
+    }
+    paths
+}
+
+#[test]
+fn documents_name_files_that_exist() {
+    let mut names = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
+    for folder in ["docs", "docs/design"] {
+        let entries = fs::read_dir(root().join(folder)).expect("a folder can be listed");
+        names.extend(
+            entries.map(|e| format!("{folder}/{}", e.expect("an entry").file_name().to_string_lossy())),
+        );
+    }
+    let folders =
+        ["kernel/", "engine/", "tests/", "tools/", "benches/", "scenes/", "testbed/", "crates/", "docs/"];
+    let mut missing = Vec::new();
+    for name in names.iter().filter(|name| name.ends_with(".md")) {
+        let text = fs::read_to_string(root().join(name)).expect("a document can be read");
+        let folder = root().join(name).parent().expect("a file is in a folder").to_owned();
+        for path in paths_in(&text).iter().map(|path| path.split('#').next().unwrap_or_default()) {
+            let from_root = folders.iter().any(|folder| path.starts_with(folder));
+            let is_link = path.ends_with(".md") || path.ends_with(".png");
+            let exists = root().join(path).exists() || folder.join(path).exists();
+            if (from_root || is_link) && !path.contains(['*', ' ', '<']) && !exists {
+                missing.push(format!("{name}: {path}"));
+            }
+        }
+    }
+    assert_none(&missing, "documents name files that exist");
+}
+
 #[test]
 fn both_workspaces_lock_the_same_versions() {
     let locked = |path: &str| -> Vec<String> {
