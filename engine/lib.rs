@@ -1,8 +1,8 @@
 //! Rigid-body physics for [Bevy](https://bevy.org), in two dimensions (`avian2d`) and three (`avian3d`).
 //!
-//! The API is that of Avian: bodies, shapes and settings are components and resources, results are components, and every stage of a step
-//! is a plugin that can be configured, disabled or replaced. What is inside was written anew: a dense, wide and deterministic solver with
-//! soft contacts and substeps.
+//! The API is that of Avian: bodies, shapes and settings are components and resources, and each stage of a step is a plugin
+//! that can be configured, disabled or replaced. Inside is a dense, wide and deterministic solver with soft contacts and
+//! substeps.
 //!
 //! # Quick start
 //!
@@ -25,23 +25,50 @@
 //! }
 //!
 //! fn setup(mut commands: Commands) {
-//!     commands.spawn((RigidBody::Dynamic, Transform::from_xyz(0.0, 4.0, 0.0)));
+//!     // A floor: everything below y = 0. And a capsule that falls on it.
+//!     commands.spawn((RigidBody::Static, Collider::half_space(Vector::Y)));
+//!     commands.spawn((
+//!         RigidBody::Dynamic,
+//!         Collider::capsule(0.4, 1.0),
+//!         Transform::from_xyz(0.0, 4.0, 0.0),
+//!     ));
 //! }
 //! ```
 //!
+//! # What to use for what
+//!
+//! | I want to | look at |
+//! |---|---|
+//! | make something fall, stand or move on rails | [`RigidBody`](prelude::RigidBody) |
+//! | give it a shape | `Collider` and its constructors; child entities with a `Collider` for a body of several shapes |
+//! | set its mass | `ColliderDensity`, [`Mass`](prelude::Mass), [`AngularInertia`](prelude::AngularInertia), [`CenterOfMass`](prelude::CenterOfMass) |
+//! | move it | [`LinearVelocity`](prelude::LinearVelocity), [`AngularVelocity`](prelude::AngularVelocity); [`Position`](prelude::Position) or `Transform` to teleport |
+//! | change how it falls | [`Gravity`](prelude::Gravity), [`GravityScale`](prelude::GravityScale), [`LinearDamping`](prelude::LinearDamping), [`MaxLinearSpeed`](prelude::MaxLinearSpeed) |
+//! | hold it along or about axes | [`LockedAxes`](prelude::LockedAxes) |
+//! | make it slide or bounce | [`Friction`](prelude::Friction), [`Restitution`](prelude::Restitution) |
+//! | choose what it collides with | [`CollisionLayers`](prelude::CollisionLayers), [`Sensor`](prelude::Sensor), [`Dominance`](prelude::Dominance) |
+//! | let it sleep, or wake it | [`Sleeping`](prelude::Sleeping), [`SleepingDisabled`](prelude::SleepingDisabled), [`WakeBody`](prelude::WakeBody) |
+//! | take it out of the simulation | [`RigidBodyDisabled`](prelude::RigidBodyDisabled), [`ColliderDisabled`](prelude::ColliderDisabled) |
+//! | draw it smoothly between steps | [`TransformInterpolation`](prelude::TransformInterpolation), [`TransformExtrapolation`](prelude::TransformExtrapolation) |
+//! | pause, slow down or step by hand | [`Time<Physics>`](schedule::Physics), [`PhysicsSchedule`](prelude::PhysicsSchedule) |
+//! | run a system within the step | [`PhysicsStepSystems`](schedule::PhysicsStepSystems), [`SubstepSchedule`](prelude::SubstepSchedule) |
+//! | make it more accurate | [`SubstepCount`](prelude::SubstepCount), [`SolverConfig`](prelude::SolverConfig), [`SpeculativeMargin`](prelude::SpeculativeMargin) |
+//! | see where time goes | [`StepTimes`](schedule::StepTimes) |
+//!
 //! # When it runs
 //!
-//! Physics takes one step per run of the schedule given to [`PhysicsPlugins::new`], by default `FixedPostUpdate`: 64 times a second
-//! whatever the frame rate. [`schedule::PhysicsSystems`] are its place in that schedule, [`schedule::PhysicsStepSystems`] the stages of a step,
-//! [`Time<Physics>`](schedule::Physics) its clock, which can be paused, slowed and stepped by hand.
+//! Physics takes one step per run of the schedule given to [`PhysicsPlugins::new`], by default `FixedPostUpdate`: 64 times a
+//! second at any frame rate. [`schedule::PhysicsSystems`] are its place in that schedule, [`schedule::PhysicsStepSystems`] the
+//! stages of a step, and [`Time<Physics>`](schedule::Physics) is its clock.
 //!
 //! # Units
 //!
-//! Metres, seconds, kilograms and radians. If a metre is 100 pixels in your game, say so with [`PhysicsPlugins::with_length_unit`].
+//! Metres, seconds, kilograms and radians. If a metre is 100 pixels in your game, set [`PhysicsPlugins::with_length_unit`] to
+//! 100.
 //!
 //! # Features
 //!
-//! `f32` (default) or `f64` is the precision of positions; `parry-f32` or `parry-f64` bring the default `Collider`. Exactly one dimension
+//! `f32` (default) or `f64` is the precision of positions; `parry-f32` or `parry-f64` add the default `Collider`. One dimension
 //! and one precision must be enabled.
 
 #[cfg(not(any(feature = "2d", feature = "3d")))]

@@ -20,6 +20,19 @@ use crate::math::{Scalar, Vector, vector_from_xyz};
 ///
 /// A nested body (a body that is a child of another) moves on its own: its position is not changed by
 /// the simulated motion of its parent.
+///
+/// ```
+/// # use avian::{math::Vector, prelude::*};
+/// # use bevy_ecs::prelude::*;
+/// fn back_to_start(mut bodies: Query<(&mut Position, &mut LinearVelocity)>) {
+///     for (mut position, mut velocity) in &mut bodies {
+///         if position.y < -100.0 {
+///             position.0 = Vector::Y * 2.0;
+///             velocity.0 = Vector::ZERO;
+///         }
+///     }
+/// }
+/// ```
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

@@ -143,6 +143,21 @@ pub enum PhysicsSystems {
 pub type PhysicsSet = PhysicsSystems;
 
 /// The stages of a step, in this order, in [`PhysicsSchedule`].
+///
+/// ```
+/// # use avian::{math::Vector, prelude::*};
+/// # use bevy_app::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// /// Wind, in every step before bodies are solved.
+/// fn blow(mut bodies: Query<&mut LinearVelocity>) {
+///     for mut velocity in &mut bodies {
+///         velocity.0 += Vector::X * 0.1;
+///     }
+/// }
+///
+/// # let mut app = App::new();
+/// app.add_systems(PhysicsSchedule, blow.in_set(PhysicsStepSystems::First));
+/// ```
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PhysicsStepSystems {
     /// Before anything of the step.

@@ -7,8 +7,8 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0xd9cea250dfd32ffd),
     ("pyramids", 0x7029bf7b80ae7227),
     ("tumbler", 0x707d6493c37f26e9),
-    ("dominoes", 0xe722adfcc0d9ec37),
-    ("card_house", 0xa8b54312fea60f02),
+    ("dominoes", 0xfc7d9b2f1da5e5b4),
+    ("card_house", 0x9493cc329b9e35b2),
     ("towers", 0x731bb49d21a6ade1),
     ("smash", 0x295fe2b091d792cd),
     ("crowd", 0xb426d1d6efcb702d),
@@ -18,7 +18,7 @@ pub const NATIVE: [(&str, u64); 11] = [
 ];
 
 /// The same for scenes with shapes of parry's.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xb230adaf20142ebb), ("slopes", 0xe3b17166bffd97c2)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x9d28443301e18bfc), ("slopes", 0x063d153ea24b9ba8)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 7;

@@ -153,6 +153,22 @@ impl Not for LayerMask {
 /// Two colliders interact if each one's filters have a layer that the other is a member of. By default
 /// a collider is in layer 0 and interacts with all. Immutable: insert the component anew to change it,
 /// and existing contacts are filtered again.
+///
+/// ```
+/// # use avian::prelude::*;
+/// #[derive(PhysicsLayer, Default, Clone, Copy)]
+/// enum Layer {
+///     #[default]
+///     World,
+///     Player,
+///     Bullet,
+/// }
+///
+/// let player = CollisionLayers::new(Layer::Player, LayerMask::ALL);
+/// let bullet = CollisionLayers::new(Layer::Bullet, [Layer::World, Layer::Player]);
+/// assert!(player.interacts_with(bullet));
+/// assert!(!bullet.interacts_with(bullet));
+/// ```
 #[derive(Reflect, Clone, Copy, Component, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

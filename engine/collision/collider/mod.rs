@@ -50,6 +50,15 @@ pub struct ColliderDisabled;
 
 /// Makes a collider a sensor: it reports what it touches, but nothing collides with it, and it adds no
 /// mass.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// # fn setup(mut commands: Commands) {
+/// // A region that bodies pass through.
+/// commands.spawn((RigidBody::Static, Collider::capsule(2.0, 4.0), Sensor));
+/// # }
+/// ```
 #[derive(Reflect, Clone, Component, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

@@ -95,6 +95,16 @@ impl RigidBody {
 
 /// Takes a body out of the simulation while present: it does not move, its contacts and joints do nothing,
 /// and what rested on it wakes. All its components keep their values.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// fn freeze(mut commands: Commands, bodies: Query<Entity, With<RigidBody>>) {
+///     for body in &bodies {
+///         commands.entity(body).insert(RigidBodyDisabled);
+///     }
+/// }
+/// ```
 #[derive(Component, Reflect, Clone, Copy, Debug, Default)]
 #[reflect(Component, Debug, Default)]
 #[cfg_attr(
@@ -105,6 +115,20 @@ impl RigidBody {
 pub struct RigidBodyDisabled;
 
 /// The velocity of a body's centre of mass, in m/s along the world's axes.
+///
+/// ```
+/// # use avian::{math::Vector, prelude::*};
+/// # use bevy_ecs::prelude::*;
+/// #[derive(Component)]
+/// struct Rocket;
+///
+/// fn launch(mut rockets: Query<&mut LinearVelocity, With<Rocket>>) {
+///     for mut velocity in &mut rockets {
+///         // Writing the velocity wakes a body that sleeps.
+///         velocity.0 = Vector::Y * 20.0;
+///     }
+/// }
+/// ```
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -152,6 +176,15 @@ impl Default for MaxAngularSpeed {
 }
 
 /// How strongly gravity acts on a body: 1 as on every other (the default), 0 not at all, below 0 upwards.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// # fn setup(mut commands: Commands) {
+/// // A balloon that rises at half the acceleration at which others fall.
+/// commands.spawn((RigidBody::Dynamic, Collider::capsule(0.3, 0.1), GravityScale(-0.5)));
+/// # }
+/// ```
 #[derive(Component, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, PartialOrd, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(

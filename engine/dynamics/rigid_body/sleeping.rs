@@ -15,6 +15,14 @@ use derive_more::From;
 /// Setting another velocity wakes it, unless the marker is inserted in the same step.
 ///
 /// A body's table row should not move whenever it falls asleep: the marker is stored apart, as a sparse set.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// fn count_awake(bodies: Query<&RigidBody, Without<Sleeping>>) -> usize {
+///     bodies.iter().filter(|body| body.is_dynamic()).count()
+/// }
+/// ```
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[component(storage = "SparseSet")]

@@ -1,0 +1,61 @@
+//! Two thousand discs rain into a bowl. Look at the console: once a second it prints how long each part of a step took.
+//!
+//! `cargo run --release -p examples2d --example step_times`
+
+use avian2d::{prelude::*, schedule::StepTimes};
+use bevy::{prelude::*, time::common_conditions::on_timer};
+use core::time::Duration;
+
+fn main() {
+    App::new()
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default()))
+        .add_systems(Startup, setup)
+        .add_systems(Update, print.run_if(on_timer(Duration::from_secs(1))))
+        .run();
+}
+
+fn print(times: Res<StepTimes>) {
+    info!("{:?} in one step", times.total());
+    for (part, time) in times.parts() {
+        info!("    {part}: {time:?}");
+    }
+}
+
+fn setup(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<ColorMaterial>>,
+) {
+    // Sizes are in metres; the camera shows 50 pixels for each.
+    commands.spawn((
+        Camera2d,
+        Projection::Orthographic(OrthographicProjection {
+            scale: 1.0 / 50.0,
+            ..OrthographicProjection::default_2d()
+        }),
+        Transform::from_xyz(0.0, 5.0, 0.0),
+    ));
+
+    let grey = materials.add(Color::srgb(0.35, 0.4, 0.45));
+    for (x, angle) in [(-6.0, -0.5f32), (6.0, 0.5)] {
+        commands.spawn((
+            RigidBody::Static,
+            Collider::rectangle(16.0, 0.5),
+            Transform::from_xyz(x, 2.5, 0.0).with_rotation(Quat::from_rotation_z(angle)),
+            Mesh2d(meshes.add(Rectangle::new(16.0, 0.5))),
+            MeshMaterial2d(grey.clone()),
+        ));
+    }
+    let disc = meshes.add(Circle::new(0.1));
+    let teal = materials.add(Color::srgb(0.2, 0.65, 0.6));
+    for i in 0..2000 {
+        let (x, y) = (0.25 * (i % 40) as f32 - 4.9, 7.0 + 0.25 * (i / 40) as f32);
+        commands.spawn((
+            RigidBody::Dynamic,
+            Collider::circle(0.1),
+            Transform::from_xyz(x + 0.05 * (i / 40 % 3) as f32, y, 0.0),
+            Mesh2d(disc.clone()),
+            MeshMaterial2d(teal.clone()),
+        ));
+    }
+}

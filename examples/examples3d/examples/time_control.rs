@@ -1,0 +1,88 @@
+//! A tower is hit by a ball. Space pauses physics, Enter takes one step, the arrow keys make time slower and faster. Look at the
+//! console for the speed.
+//!
+//! `cargo run --release -p examples3d --example time_control`
+
+use avian3d::prelude::*;
+use bevy::prelude::*;
+
+fn main() {
+    App::new()
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default()))
+        .add_systems(Startup, setup)
+        .add_systems(Update, control)
+        .run();
+}
+
+/// Physics has a clock of its own.
+fn control(keys: Res<ButtonInput<KeyCode>>, mut time: ResMut<Time<Physics>>, mut commands: Commands) {
+    if keys.just_pressed(KeyCode::Space) {
+        if time.is_paused() {
+            time.unpause();
+        } else {
+            time.pause();
+        }
+    }
+    if keys.just_pressed(KeyCode::Enter) {
+        commands.queue(|world: &mut World| {
+            let step = world.resource::<Time<Fixed>>().timestep();
+            world.resource_mut::<Time<Physics>>().advance_by(step);
+            world.run_schedule(PhysicsSchedule);
+        });
+    }
+    let factor = match () {
+        () if keys.just_pressed(KeyCode::ArrowUp) => 2.0,
+        () if keys.just_pressed(KeyCode::ArrowDown) => 0.5,
+        () => return,
+    };
+    let speed = (time.relative_speed() * factor).clamp(0.125, 4.0);
+    time.set_relative_speed(speed);
+    info!("speed {speed}");
+}
+
+fn setup(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    commands.spawn((
+        Camera3d::default(),
+        Transform::from_xyz(-8.0, 6.0, 14.0).looking_at(Vec3::new(0.0, 4.0, 0.0), Vec3::Y),
+    ));
+    commands.spawn((
+        DirectionalLight { shadow_maps_enabled: true, ..default() },
+        Transform::from_xyz(-3.0, 8.0, 5.0).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+
+    commands.spawn((
+        RigidBody::Static,
+        Collider::cuboid(30.0, 1.0, 30.0),
+        Transform::from_xyz(0.0, -0.5, 0.0),
+        Mesh3d(meshes.add(Cuboid::new(30.0, 1.0, 30.0))),
+        MeshMaterial3d(materials.add(Color::srgb(0.35, 0.4, 0.45))),
+    ));
+    let brick = meshes.add(Cuboid::new(1.0, 0.5, 0.5));
+    let clay = materials.add(Color::srgb(0.75, 0.4, 0.3));
+    for layer in 0..16 {
+        let rotation = Quat::from_rotation_y(core::f32::consts::FRAC_PI_2 * (layer % 2) as f32);
+        for side in [-0.25, 0.25] {
+            commands.spawn((
+                RigidBody::Dynamic,
+                Collider::cuboid(1.0, 0.5, 0.5),
+                Transform::from_translation(rotation * Vec3::new(0.0, 0.25 + 0.5 * layer as f32, side))
+                    .with_rotation(rotation),
+                Mesh3d(brick.clone()),
+                MeshMaterial3d(clay.clone()),
+            ));
+        }
+    }
+    commands.spawn((
+        RigidBody::Dynamic,
+        Collider::sphere(0.4),
+        ColliderDensity(4.0),
+        LinearVelocity(Vec3::new(12.0, 4.0, 0.0)),
+        Transform::from_xyz(-12.0, 3.0, 0.0),
+        Mesh3d(meshes.add(Sphere::new(0.4))),
+        MeshMaterial3d(materials.add(Color::srgb(0.3, 0.3, 0.35))),
+    ));
+}
