@@ -59,8 +59,8 @@ assembly | awk '
         if (match($0, /(f32|F32x4|F32x8) as [a-z0-9_]*::solver::block::Entry>::sweep(::avx2)?>:$/)) {
             name = substr($0, RSTART); sub(/ as .*::sweep.*$/, "::sweep", name)
         }
-        if (/::recycle::Group>?::answer::avx2>:$/) name = "F32x8::answer"
-        if (/::recycle::Group>?::answer::baseline>:$/) name = "F32x4::answer"
+        if (/::recycle::RecycleBatch>?::evaluate_at::avx2>:$/) name = "F32x8::recycle"
+        if (/::recycle::RecycleBatch>?::evaluate_at::baseline>:$/) name = "F32x4::recycle"
         next
     }
     name != "" && /^ +[0-9a-f]+:\t/ {

@@ -3,7 +3,7 @@
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
 use kernel::{
-    contact::{ManifoldSource, NarrowPhase, Scratch},
+    contact::{ManifoldSource, NarrowPhaseInput, WorkerBuffers},
     manifold::LocalManifold,
     table::ColliderTable,
 };
@@ -32,7 +32,7 @@ const RECYCLE: f32 = 0.05;
 
 /// Buffers of the narrow phase.
 #[derive(Resource, Default)]
-pub(crate) struct NarrowScratch(Vec<Scratch<Workspace>>);
+pub(crate) struct NarrowPhaseBuffers(Vec<WorkerBuffers<Workspace>>);
 
 /// Manifolds of pairs that the kernel does not know, by parry.
 struct Foreign<'a, 'w, 's, 'c> {
@@ -75,7 +75,7 @@ pub(crate) fn update_contacts(
     shapes: Query<&Collider>,
     Settings { config, unit, time, workers, width }: Settings,
     mut threads: ResMut<Threads>,
-    mut scratch: ResMut<NarrowScratch>,
+    mut buffers: ResMut<NarrowPhaseBuffers>,
     mut diagnostics: ResMut<CollisionDiagnostics>,
     mut tables: Tables,
 ) {
@@ -83,7 +83,7 @@ pub(crate) fn update_contacts(
     let unit = unit.metres();
     let colliders = &tables.colliders;
     let source = Foreign { colliders: &shapes, entities: &colliders.entities, table: &colliders.table };
-    let phase = NarrowPhase {
+    let input = NarrowPhaseInput {
         bodies: &tables.bodies.table,
         colliders: &colliders.table,
         source: &source,
@@ -97,7 +97,7 @@ pub(crate) fn update_contacts(
     let contacts = &mut *tables.contacts;
     contacts.changed.clear();
     threads.call(contacts.table.active_len(), workers.0, || workers.resolve());
-    contacts.table.update(&phase, &threads.team, &mut scratch.0, &mut contacts.changed);
+    contacts.table.update(&input, &threads.team, &mut buffers.0, &mut contacts.changed);
     diagnostics.contact_count = contacts.table.len() as u32;
     diagnostics.narrow_phase += start.elapsed();
 }

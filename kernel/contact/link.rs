@@ -56,7 +56,7 @@ impl Link<'_> {
             }
             let contact = self.contacts.get(id);
             let touching = contact.flags.has(ContactFlags::TOUCHING);
-            if contact.flags.has(ContactFlags::APART) {
+            if contact.flags.has(ContactFlags::SEPARATED) {
                 if touching {
                     report(id, contact, Status::Ended);
                 }

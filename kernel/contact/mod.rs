@@ -1,21 +1,28 @@
-//! Pairs of colliders that are near each other: their records, the manifold update with recycling, and
-//! the one door through which contacts, colours and islands change.
+//! Pairs of colliders that are near each other: their records, the narrow phase that keeps manifolds up to date, and
+//! [`Link`], which alone changes contacts, colours and islands.
+//!
+//! [`narrow_phase`] is read top to bottom; [`input`], [`recycle`], [`manifolds`], [`sweep`] and [`flags`] are its helpers
+//! and do not know it.
 
+mod buffers;
+mod flags;
+mod input;
 mod link;
-mod phase;
+mod manifolds;
+mod narrow_phase;
 mod record;
 mod recycle;
-mod shared;
 mod sweep;
 mod table;
-mod update;
+mod view;
 
+pub use buffers::WorkerBuffers;
+pub use input::{ManifoldSource, NarrowPhaseInput};
 pub use link::{Link, Status};
-pub use phase::{ManifoldSource, NarrowPhase};
+pub use narrow_phase::{Outcome, update_contact};
 pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
-pub(crate) use shared::ManifoldsView;
 pub use table::ContactTable;
-pub use update::{Found, Scratch};
+pub(crate) use view::ManifoldsView;
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! What is kept of a pair of colliders from step to step.
+//! The record of a contact, kept from step to step.
 
 use crate::graph::ColorSlot;
 use crate::manifold::FeatureCache;
@@ -10,19 +10,20 @@ use crate::table::NONE;
 pub struct ContactFlags(pub u16);
 
 impl ContactFlags {
-    /// Has points, so that it takes part in the solver (or would, were it not a sensor's).
+    /// Has points. Unless it is a sensor's or immovable, the solver takes it.
     pub const TOUCHING: Self = Self(1 << 0);
     /// Detects only: no rows, no colour, no island.
     pub const SENSOR: Self = Self(1 << 1);
     /// Neither body moves by impulses: no rows, no colour, no island.
     pub const IMMOVABLE: Self = Self(1 << 2);
-    /// A shape is known only to the embedder: manifolds come through its source, and are not recycled.
+    /// A shape is known only to the embedder. Manifolds come from its [`ManifoldSource`](super::ManifoldSource), and are not
+    /// recycled.
     pub const FOREIGN: Self = Self(1 << 3);
-    /// The frozen pose is valid, so that the manifold may be recycled.
+    /// The frozen pose is valid: the manifold may be recycled.
     pub const FROZEN: Self = Self(1 << 4);
-    /// The fat boxes do not overlap any more: to be destroyed.
-    pub const APART: Self = Self(1 << 5);
-    /// Was put to overlap by more than a tenth of the smaller side's reach, and has not come apart since.
+    /// The fat boxes do not overlap any more: the contact is to be destroyed.
+    pub const SEPARATED: Self = Self(1 << 5);
+    /// The bodies were placed with deep overlap and have not separated since. Split impulses push them out.
     pub const DEEP: Self = Self(1 << 6);
     /// Body A is not dynamic: normal and anchors turn with it.
     pub const PLATFORM_A: Self = Self(1 << 7);
@@ -61,21 +62,21 @@ pub struct ManifoldPoint {
     pub separation: f32,
     /// The normal impulse of the last substep, N·s; the next step starts from it.
     pub impulse: f32,
-    /// Which features of the shapes make this point.
+    /// The features of both shapes that make this point.
     pub feature: u32,
 }
 
-/// The contact of two convex parts: what the solver's rows are made of.
+/// The contact of two convex shapes, from which the solver's rows are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Manifold {
     /// The unit normal from A to B, in world axes.
     pub normal: Vector,
     /// The points; the first `count` are valid.
     pub points: [ManifoldPoint; MAX_POINTS],
-    /// How many points there are.
+    /// The number of points.
     pub count: u32,
-    /// How far below the surfaces of A and B their cores are, in metres. As a round shape turns, the contact
-    /// stays where it is on the surface, and keeps its place against the core only.
+    /// The radii of A and B around their cores (centre, axis, polygon), in metres. Anchors are of the cores: as a round shape
+    /// turns, its contact keeps its place relative to the core, not on the surface.
     pub rounding: [f32; 2],
     /// The friction impulse in world axes, N·s; the next step starts from it.
     pub friction_impulse: Vector,
@@ -91,48 +92,46 @@ impl Manifold {
     }
 }
 
-/// The pose of the bodies that the manifold belongs to: how they stood when it was last computed in full, turned
-/// since then with a platform.
+/// The relative pose of the bodies at which the manifold was computed, turned since then with a platform.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Frozen {
     /// The rotations of bodies A and B.
     pub rotations: [Rot; 2],
     /// From A's to B's centre of mass.
     pub offset: Vector,
-    /// The distance up to which points were looked for, or, if there were none, up to which there are none; margins
-    /// aside, in metres.
+    /// The distance up to which points were looked for. If there are none, a lower bound of the distance between the shapes.
+    /// Margins are subtracted; in metres.
     pub prediction: f32,
 }
 
 /// A pair of colliders whose fat boxes overlap.
 ///
-/// What a contact without points is asked for in every step comes first, in the plane within one cache line; then what
-/// pushing needs; last what is of use only when it comes or goes.
+/// Field order: hot for all contacts (one cache line in 2D), hot while touching, cold.
 #[derive(Clone, Debug)]
 #[repr(C)]
 #[cfg_attr(feature = "2d", repr(align(64)))]
 pub struct Contact {
     /// The colliders, the lower id first.
     pub colliders: [u32; 2],
-    /// The bodies they belong to, or [`NONE`].
+    /// The bodies of the colliders, or [`NONE`].
     pub bodies: [u32; 2],
     /// Each side's revisions of collider and body when the manifold was computed.
     pub revisions: [u32; 2],
     /// State bits.
     pub flags: ContactFlags,
-    /// How many manifolds stand in the side pool besides the inline one.
+    /// The number of manifolds in the side pool.
     pub extra_count: u16,
-    /// The pose that anchors and normal were computed at.
+    /// The pose at which the manifold was computed.
     pub frozen: Frozen,
     /// The last separating axis or reference feature.
     pub cache: FeatureCache,
     /// The first (for native pairs: only) manifold.
     pub manifold: Manifold,
-    /// The coefficients of friction and restitution of both surfaces together.
+    /// The mixed coefficients of friction and restitution.
     pub surface: [f32; 2],
-    /// Where in the side pool, or [`NONE`].
+    /// The slot in the side pool, or [`NONE`].
     pub extra: u32,
-    /// The place among its colour's contacts; `None` unless it touches, responds and is awake.
+    /// The place among its colour's contacts; `None` unless the contact is solved and awake.
     pub slot: Option<ColorSlot>,
     /// Next and previous contact of the same collider, for each side, as `contact << 1 | side`.
     pub(super) next: [u32; 2],
@@ -159,13 +158,13 @@ impl Contact {
         }
     }
 
-    /// Whether it has points and pushes.
+    /// Whether the solver takes it: it has points and is not inert.
     #[inline(always)]
     pub fn is_solved(&self) -> bool {
         self.flags.has(ContactFlags::TOUCHING) && !self.is_inert()
     }
 
-    /// Whether it would not push if it had points.
+    /// Whether the solver ignores it even if it has points.
     #[inline(always)]
     pub fn is_inert(&self) -> bool {
         self.flags.any(ContactFlags::SENSOR.union(ContactFlags::IMMOVABLE))

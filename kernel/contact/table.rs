@@ -1,4 +1,4 @@
-//! All contacts by id, the pairs they are of, and the set of the awake ones.
+//! All contacts by id, the map from pairs to contacts, and the set of awake contacts.
 
 use super::record::{Contact, Manifold};
 use crate::data::{BitSet, IdPool, PairSet, prefetch};
@@ -6,20 +6,20 @@ use crate::table::{ColliderTable, NONE};
 
 /// All contacts.
 ///
-/// One dense array by id with the first manifold inline: native pairs have just one, so a step follows no
-/// pointer and allocates nothing. Further manifolds, of composite foreign shapes, stand in a side pool.
+/// One dense array by id with the first manifold inline. Native pairs have one manifold, so a step follows no pointer and
+/// allocates nothing. Further manifolds, of composite foreign shapes, are in a side pool.
 #[derive(Clone, Debug, Default)]
 pub struct ContactTable {
     ids: IdPool,
     pub(super) contacts: Vec<Contact>,
-    /// What [`PointCount`] says of each contact.
+    /// The number of points of each contact.
     pub(super) points: Vec<PointCount>,
-    /// The bodies of each contact, once more for who asks for no more than them.
+    /// A copy of each contact's bodies, for readers that need nothing else of the record.
     bodies: Vec<[u32; 2]>,
     pairs: PairSet,
-    /// Contacts with an awake body, ...
+    /// Contacts with an awake body.
     pub(super) active: BitSet,
-    /// ... and how many they are.
+    /// The number of active contacts.
     active_count: usize,
     /// Whether the last update found a deeply overlapping contact.
     pub(super) any_deep: bool,
@@ -27,27 +27,27 @@ pub struct ContactTable {
     pub(super) crowded: BitSet,
     pub(super) extra: Vec<Vec<Manifold>>,
     free_extra: Vec<u32>,
-    /// What an update is to store, by contact; empty between updates.
+    /// Buffer of the narrow phase's commit; empty between updates.
     pub(super) stored: Vec<Stored>,
 }
 
-/// Manifolds after the first that a member of the team computed.
+/// Manifolds after the first that a worker computed.
 #[derive(Clone, Debug)]
 pub(super) struct Stored {
     pub(super) contact: u32,
-    pub(super) member: usize,
-    /// Where they stand in the member's pool.
+    pub(super) worker: usize,
+    /// The range in the worker's pool.
     pub(super) range: core::ops::Range<usize>,
 }
 
-/// How many points a contact has, beside the record: who only counts need not have the records come.
+/// The number of points of a contact, in an array beside the records: counting does not load the records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PointCount(u8);
 
 impl PointCount {
     const IN_RECORD: u8 = u8::MAX;
 
-    /// The points of the first manifold; `None` if there may be more manifolds, and the record must be asked.
+    /// The points of the first manifold; `None` if there may be more manifolds, which are in the record.
     #[inline(always)]
     pub(crate) fn of_only_manifold(self) -> Option<u32> {
         (self.0 != Self::IN_RECORD).then_some(u32::from(self.0))
@@ -60,17 +60,16 @@ impl PointCount {
 }
 
 impl ContactTable {
-    /// How many bytes are kept of each contact here, but for two bits, for the [`pairs`](Self::pairs), and for
-    /// manifolds after the first.
+    /// The bytes kept of each contact, without two bits, the [`pairs`](Self::pairs), and manifolds after the first.
     pub const BYTES_PER_CONTACT: usize =
         size_of::<Contact>() + size_of::<PointCount>() + size_of::<[u32; 2]>();
 
-    /// How many contacts there are.
+    /// The number of contacts.
     pub fn len(&self) -> usize {
         self.ids.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no contacts.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -95,7 +94,7 @@ impl ContactTable {
         self.active.iter()
     }
 
-    /// How many contacts have an awake body.
+    /// The number of contacts with an awake body.
     pub fn active_len(&self) -> usize {
         self.active_count
     }
@@ -115,12 +114,12 @@ impl ContactTable {
         self.pairs.get(a.min(b), a.max(b))
     }
 
-    /// The pairs of colliders that have a contact, and which.
+    /// The map from pairs of colliders to contacts.
     pub fn pairs(&self) -> &PairSet {
         &self.pairs
     }
 
-    /// How many points a contact has.
+    /// The number of points of a contact.
     #[inline(always)]
     pub(crate) fn point_count(&self, id: u32) -> PointCount {
         self.points[id as usize]
@@ -132,7 +131,7 @@ impl ContactTable {
         self.bodies[id as usize]
     }
 
-    /// Has contacts brought near that are needed soon; those that do not exist are left out.
+    /// Prefetches contacts that are needed soon. Ids without a contact are skipped.
     #[inline(always)]
     pub(crate) fn prefetch(&self, ids: &[u32]) {
         for id in ids {
@@ -154,7 +153,7 @@ impl ContactTable {
         &mut self.contacts[id as usize]
     }
 
-    /// A contact's manifold by its number, if it has that many.
+    /// A contact's manifold by its number, if there is one.
     #[inline(always)]
     pub fn manifold<'a>(&'a self, contact: &'a Contact, index: u32) -> Option<&'a Manifold> {
         match index {
@@ -193,7 +192,7 @@ impl ContactTable {
         self.points[id as usize] = PointCount::of(&self.contacts[id as usize]);
     }
 
-    /// Adds the contact of a pair that has none, not active yet, and enters it in both colliders' lists.
+    /// Adds the contact of a pair that has none to all lists of both colliders. It is not active yet.
     pub(super) fn add(&mut self, contact: Contact, colliders: &mut ColliderTable) -> u32 {
         let id = self.ids.allocate();
         let [a, b] = contact.colliders;
@@ -228,7 +227,7 @@ impl ContactTable {
         id
     }
 
-    /// Takes a contact out of all lists but the colours and islands, and frees its id.
+    /// Removes a contact from all lists but the colours and islands, and frees its id.
     pub(super) fn remove(&mut self, id: u32, colliders: &mut ColliderTable) {
         self.deactivate(id);
         let Contact { colliders: [a, b], next, previous, extra, .. } = *self.get(id);

@@ -1,5 +1,5 @@
-//! Waking, and what carries islands: by brute force, and by how many bodies are visited for it. And that what a team
-//! leaves in the table does not depend on the team.
+//! Waking and carried islands, against brute force and by the number of visited bodies. The table does not depend on the
+//! workers that updated it.
 
 use super::*;
 use crate::data::BitSet;
@@ -276,10 +276,10 @@ fn the_table_is_the_same_to_the_byte_whatever_team_updated_it() {
             }
         }
         let team = Team::new(workers);
-        let mut scratches = Vec::new();
+        let mut buffers = Vec::new();
         for round in 0..4 {
             team.wake();
-            let phase = NarrowPhase {
+            let input = NarrowPhaseInput {
                 bodies: &world.bodies,
                 colliders: &world.colliders,
                 source: &Rounds(round),
@@ -291,7 +291,7 @@ fn the_table_is_the_same_to_the_byte_whatever_team_updated_it() {
                 narrow: false,
             };
             let mut changed = BitSet::new();
-            world.contacts.update(&phase, &team, &mut scratches, &mut changed);
+            world.contacts.update(&input, &team, &mut buffers, &mut changed);
             world.link().apply(&changed, |_, _, _| {});
             world.link().validate();
             // A place that becomes free is another's next.

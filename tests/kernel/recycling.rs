@@ -3,7 +3,7 @@
 use super::dim::{sized, spin, turned};
 use super::sim::Sim;
 use crate::kernel;
-use kernel::contact::Found;
+use kernel::contact::Outcome;
 use kernel::math::{Pose, Rot, Vector, WorldPose};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::table::{BodyKind, ColliderDef, Velocity};
@@ -14,7 +14,7 @@ fn at_rest() -> (Sim, [u32; 2]) {
     let floor = sim.floor();
     let id = sim.cuboid(Vector::ONE * 0.5, Vector::Y * 0.5);
     sim.steps(30);
-    assert_eq!(sim.look(floor, id).0, Found::Recycled, "nothing moves");
+    assert_eq!(sim.look(floor, id).0, Outcome::Recycled, "nothing moves");
     (sim, [floor, id])
 }
 
@@ -33,7 +33,7 @@ fn redefine(sim: &mut Sim, id: u32, change: impl FnOnce(&mut ColliderDef)) {
 }
 
 /// What becomes of the contact of a box at rest after a change to box and floor.
-fn after(change: impl FnOnce(&mut Sim, [u32; 2])) -> Found {
+fn after(change: impl FnOnce(&mut Sim, [u32; 2])) -> Outcome {
     let (mut sim, ids) = at_rest();
     change(&mut sim, ids);
     sim.look(ids[0], ids[1]).0
@@ -44,10 +44,10 @@ fn small_motion_is_followed() {
     let (mut sim, [floor, id]) = at_rest();
     shift(&mut sim, id, Vector::Y * 0.002 + Vector::X * 0.01, turned(0.01));
     let (found, followed) = sim.look(floor, id);
-    assert_eq!(found, Found::Recycled);
+    assert_eq!(found, Outcome::Recycled);
     sim.recycle = false;
     let (found, computed) = sim.look(floor, id);
-    assert_eq!(found, Found::Computed);
+    assert_eq!(found, Outcome::Recomputed);
     assert_eq!(followed.manifold.count, computed.manifold.count);
     for p in computed.manifold.points() {
         let same = followed.manifold.points().iter().find(|f| f.feature == p.feature).expect("same corners");
@@ -57,13 +57,13 @@ fn small_motion_is_followed() {
 
 #[test]
 fn motion_beyond_the_limits_is_computed_anew() {
-    assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::X * 0.045, Rot::IDENTITY)), Found::Recycled);
-    assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::X * 0.055, Rot::IDENTITY)), Found::Computed);
-    assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::ZERO, turned(0.09))), Found::Computed);
-    assert_eq!(after(|sim, _| sim.recycle = false), Found::Computed);
+    assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::X * 0.045, Rot::IDENTITY)), Outcome::Recycled);
+    assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::X * 0.055, Rot::IDENTITY)), Outcome::Recomputed);
+    assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::ZERO, turned(0.09))), Outcome::Recomputed);
+    assert_eq!(after(|sim, _| sim.recycle = false), Outcome::Recomputed);
     // Fast enough to need a farther look than the manifold was computed with.
     let fast = Velocity { linear: Vector::X * 3.0, angular: spin(0.0) };
-    assert_eq!(after(|sim, [_, id]| sim.bodies.set_velocity(id, fast)), Found::Computed);
+    assert_eq!(after(|sim, [_, id]| sim.bodies.set_velocity(id, fast)), Outcome::Recomputed);
 }
 
 #[test]
@@ -96,12 +96,12 @@ fn what_makes_a_manifold_wrong_has_it_computed_anew() {
         ("kind of the support", |sim, [floor, _]| sim.link().retype(floor, BodyKind::Kinematic)),
     ];
     for (what, change) in changes {
-        assert_eq!(after(change), Found::Computed, "{what}");
+        assert_eq!(after(change), Outcome::Recomputed, "{what}");
     }
     let found = after(|sim, [_, id]| redefine(sim, id, |def| def.local = local));
-    assert_eq!(found, Found::Computed, "place on the body");
+    assert_eq!(found, Outcome::Recomputed, "place on the body");
     let found = after(|sim, [_, id]| sim.reshape(id, Shape::Cuboid(Cuboid { half })));
-    assert_eq!(found, Found::Computed, "another size");
+    assert_eq!(found, Outcome::Recomputed, "another size");
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn a_pair_with_a_new_owner_of_an_id_begins_anew() {
     sim.link().destroy_of_collider(id);
     let again = sim.link().create(floor, id);
     assert_eq!(sim.contacts.get(again).manifold.count, 0, "nothing is left of the last owner");
-    assert_eq!(sim.look(floor, id).0, Found::Computed);
+    assert_eq!(sim.look(floor, id).0, Outcome::Recomputed);
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn a_new_surface_takes_effect_on_a_recycled_contact() {
         material.friction.coefficient = 0.0;
         sim.link().set_material(body, material);
     }
-    assert_eq!(sim.look(floor, id).0, Found::Recycled);
+    assert_eq!(sim.look(floor, id).0, Outcome::Recycled);
     sim.step();
     let v = sim.bodies.velocities[id as usize].linear.x;
     assert!((v - 2.0 / 60.0).abs() < 1e-3, "it slides: {v}");
@@ -188,13 +188,13 @@ fn watch(mut sim: Sim, [a, b]: [u32; 2], steps: usize, what: &str) -> [usize; 2]
         sim.recycle = false;
         let (anew, fresh) = sim.look(a, b);
         sim.recycle = true;
-        assert_ne!(anew, Found::Recycled, "{what}: not looked at anew");
+        assert_ne!(anew, Outcome::Recycled, "{what}: not looked at anew");
         let nearest = fresh.manifold.points().iter().fold(f32::MAX, |least, p| least.min(p.separation));
-        let is_near = anew == Found::Computed && nearest < -1e-3;
+        let is_near = anew == Outcome::Recomputed && nearest < -1e-3;
         assert!(!(was_left_alone && is_near), "{what}: met, {nearest} m deep, while left alone");
-        was_left_alone = found == Found::Recycled && known.manifold.count == 0;
-        if found != Found::Apart && known.manifold.count == 0 {
-            counts[usize::from(found == Found::Computed)] += 1;
+        was_left_alone = found == Outcome::Recycled && known.manifold.count == 0;
+        if found != Outcome::Separated && known.manifold.count == 0 {
+            counts[usize::from(found == Outcome::Recomputed)] += 1;
             assert!(nearest > 0.005, "{what}: nobody knew of a point {nearest} m away");
         }
     }

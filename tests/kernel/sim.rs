@@ -4,7 +4,9 @@
 use super::dim::inverse_inertia;
 use crate::kernel;
 use kernel::bvh::{FoundPairs, Mover, Movers, PairMask, ProxyId, TreeKind, Trees};
-use kernel::contact::{Contact, ContactTable, Found, Link, NarrowPhase, Scratch};
+use kernel::contact::{
+    Contact, ContactTable, Link, NarrowPhaseInput, Outcome, WorkerBuffers, update_contact,
+};
 use kernel::data::BitSet;
 use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
@@ -22,8 +24,8 @@ fn phase<'a>(
     dt: f32,
     recycle: bool,
     narrow: bool,
-) -> NarrowPhase<'a, ()> {
-    NarrowPhase {
+) -> NarrowPhaseInput<'a, ()> {
+    NarrowPhaseInput {
         bodies,
         colliders,
         source: &(),
@@ -69,7 +71,7 @@ pub struct Sim {
     masses: Vec<(f32, InvInertia)>,
     movers: Movers,
     solver: Solver,
-    scratch: Vec<Scratch>,
+    scratch: Vec<WorkerBuffers>,
     is_narrow: bool,
     scan: SleepScan,
     listed: Vec<u32>,
@@ -336,11 +338,11 @@ impl Sim {
     }
 
     /// What the narrow phase makes of the contact of two bodies as they are now, and the contact.
-    pub fn look(&self, a: u32, b: u32) -> (Found, Contact) {
+    pub fn look(&self, a: u32, b: u32) -> (Outcome, Contact) {
         let id = self.contacts.find(a, b).expect("they have a contact");
         let mut contact = self.contacts.get(id).clone();
         let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle, self.is_narrow);
-        (phase.update(&mut contact, &[], false, &mut Scratch::default()), contact)
+        (update_contact(&phase, &mut contact, &[], false, &mut WorkerBuffers::default()), contact)
     }
 
     fn narrow(&mut self) {

@@ -2,7 +2,7 @@
 
 use super::pairs::{PREDICTION, Pair};
 use crate::kernel;
-use kernel::contact::{ContactTable, Link, NarrowPhase, Scratch};
+use kernel::contact::{ContactTable, Link, NarrowPhaseInput, WorkerBuffers};
 use kernel::data::BitSet;
 use kernel::graph::ColorGraph;
 use kernel::math::{Pose, Vector, WorldPose};
@@ -17,7 +17,7 @@ pub struct Contacts {
     pub colliders: ColliderTable,
     pub contacts: ContactTable,
     team: Team,
-    scratches: Vec<Scratch>,
+    buffers: Vec<WorkerBuffers>,
     changed: BitSet,
 }
 
@@ -56,8 +56,8 @@ impl Contacts {
             };
             link.create(2 * i as u32, 2 * i as u32 + 1);
         }
-        let (team, scratches) = (Team::default(), Vec::new());
-        Self { bodies, colliders, contacts, team, scratches, changed: BitSet::default() }
+        let (team, buffers) = (Team::default(), Vec::new());
+        Self { bodies, colliders, contacts, team, buffers, changed: BitSet::default() }
     }
 
     /// Moves every second body a little.
@@ -70,7 +70,7 @@ impl Contacts {
 
     /// Updates all contacts, and recycles those that may be if `recycle` says so.
     pub fn update(&mut self, recycle: bool) {
-        let phase = NarrowPhase {
+        let input = NarrowPhaseInput {
             bodies: &self.bodies,
             colliders: &self.colliders,
             source: &(),
@@ -82,6 +82,6 @@ impl Contacts {
             narrow: false,
         };
         self.changed.clear();
-        self.contacts.update(&phase, &self.team, &mut self.scratches, &mut self.changed);
+        self.contacts.update(&input, &self.team, &mut self.buffers, &mut self.changed);
     }
 }

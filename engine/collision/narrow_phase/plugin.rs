@@ -8,7 +8,7 @@ use super::{CollisionEventSystems, ContactResponse, NarrowPhaseConfig, NarrowPha
 use crate::{
     collision::{
         collider::AnyCollider,
-        contacts::{NarrowScratch, link_contacts, update_contacts},
+        contacts::{NarrowPhaseBuffers, link_contacts, update_contacts},
         diagnostics::{CollisionDiagnostics, reset_collision},
     },
     dynamics::{
@@ -61,7 +61,7 @@ impl Plugin for SharedNarrowPhasePlugin {
         app.init_resource::<NarrowPhaseConfig>()
             .init_resource::<DefaultFriction>()
             .init_resource::<DefaultRestitution>()
-            .init_resource::<NarrowScratch>()
+            .init_resource::<NarrowPhaseBuffers>()
             .init_resource::<CollisionDiagnostics>()
             .init_resource::<PhysicsLengthUnit>()
             .insert_resource(ContactResponse(self.generate_constraints));

@@ -48,15 +48,17 @@ pub fn collide(
     if !(pose_b_in_a.position.is_finite() && pose_b_in_a.rotation.is_finite()) {
         return;
     }
+    use Shape::{Ball, Capsule, Cuboid, Foreign, HalfSpace, Hull, Segment, Triangle};
+    // All pairs by name: a new shape does not compile until its pairs are here.
     match (a, b) {
-        (Shape::Cuboid(a), Shape::Cuboid(b)) => cuboids::collide(a, b, pose_b_in_a, prediction, cache, out),
-        (Shape::HalfSpace(a), b) => {
+        (Cuboid(a), Cuboid(b)) => cuboids::collide(a, b, pose_b_in_a, prediction, cache, out),
+        (HalfSpace(a), b) => {
             let mut room = Buffer::EMPTY;
             if let Some(b) = polygonal::view(b, &mut room) {
                 half_space::collide(a, &b, pose_b_in_a, prediction, half_space::Order::First, out);
             }
         }
-        (a, Shape::HalfSpace(b)) => {
+        (a, HalfSpace(b)) => {
             let mut room = Buffer::EMPTY;
             if let Some(a) = polygonal::view(a, &mut room) {
                 let pose = pose_b_in_a.inverse();
@@ -64,12 +66,18 @@ pub fn collide(
                 *out = out.flipped(&pose);
             }
         }
-        (a, b) => {
+        (
+            Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_),
+            Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_),
+        ) => {
             let (mut room_a, mut room_b) = (Buffer::EMPTY, Buffer::EMPTY);
             if let (Some(a), Some(b)) = (polygonal::view(a, &mut room_a), polygonal::view(b, &mut room_b)) {
                 collide_polygonal(&a, &b, pose_b_in_a, prediction, cache, out);
             }
         }
+        // Manifolds of foreign shapes come from elsewhere.
+        (Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_) | Foreign(_), Foreign(_))
+        | (Foreign(_), Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_)) => {}
     }
 }
 

@@ -67,22 +67,23 @@ fn rank(shape: &Shape) -> u8 {
     }
 }
 
-/// Sizes out of all proportion can overflow on the way: no contact then, rather than a bad one.
+/// Drops a contact whose numbers overflowed, as they do with sizes out of all proportion.
 #[inline]
 fn drop_unusable(out: &mut LocalManifold) {
     if out.count == 0 {
         return;
     }
-    // Nothing times a finite number is nothing.
-    let mut nothing = 0.0;
+    // `x * 0.0` is 0 unless x is infinite or NaN.
+    let mut zero = 0.0;
     for p in out.points() {
-        nothing += p.point.x * 0.0 + p.point.y * 0.0 + p.point.z * 0.0 + p.separation * 0.0;
+        zero += p.point.x * 0.0 + p.point.y * 0.0 + p.point.z * 0.0 + p.separation * 0.0;
     }
-    if !((out.normal.length_squared() - 1.0).abs() < 1.0e-3 && nothing == 0.0) {
+    if !((out.normal.length_squared() - 1.0).abs() < 1.0e-3 && zero == 0.0) {
         out.count = 0;
     }
 }
 
+/// The function of each pair, all by name: a new shape does not compile until its pairs are here.
 fn dispatch(
     a: &Shape,
     b: &Shape,
@@ -91,23 +92,33 @@ fn dispatch(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
+    use Shape::{Ball, Capsule, Cuboid, Foreign, HalfSpace, Hull, Segment, Triangle};
     let center = pose.position;
     match (a, b) {
-        (Shape::HalfSpace(a), b) => half_space::collide(a.normal, b, pose, prediction, out),
-        (Shape::Ball(a), Shape::Ball(b)) => round::balls(a.radius, center, b.radius, prediction, out),
-        (Shape::Cuboid(a), Shape::Ball(b)) => round::cuboid_ball(a.half, center, b.radius, prediction, out),
-        (Shape::Triangle(a), Shape::Ball(b)) => round::triangle_ball(a, center, b.radius, prediction, out),
-        (Shape::Capsule(_) | Shape::Segment(_), Shape::Ball(b)) => {
-            if let Some(a) = as_capsule(a) {
-                round::capsule_ball(&a, center, b.radius, prediction, out);
-            }
+        (HalfSpace(a), b) => half_space::collide(a.normal, b, pose, prediction, out),
+        (Ball(a), Ball(b)) => round::balls(a.radius, center, b.radius, prediction, out),
+        (Cuboid(a), Ball(b)) => round::cuboid_ball(a.half, center, b.radius, prediction, out),
+        (Triangle(a), Ball(b)) => round::triangle_ball(a, center, b.radius, prediction, out),
+        (Capsule(a), Ball(b)) => round::capsule_ball(a, center, b.radius, prediction, out),
+        (Segment(a), Ball(b)) => round::capsule_ball(&capsule(a), center, b.radius, prediction, out),
+        (Capsule(a), Capsule(b)) => round::capsules(a, b, pose, prediction, out),
+        (Capsule(a), Segment(b)) => round::capsules(a, &capsule(b), pose, prediction, out),
+        (Segment(a), Capsule(b)) => round::capsules(&capsule(a), b, pose, prediction, out),
+        (Segment(a), Segment(b)) => round::capsules(&capsule(a), &capsule(b), pose, prediction, out),
+        (Hull(_), Ball(_))
+        | (Cuboid(_) | Hull(_) | Triangle(_), Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_)) => {
+            polyhedra(a, b, pose, prediction, cache, out);
         }
-        (Shape::Capsule(_) | Shape::Segment(_), _) => {
-            if let (Some(a), Some(b)) = (as_capsule(a), as_capsule(b)) {
-                round::capsules(&a, &b, pose, prediction, out);
-            }
-        }
-        _ => polyhedra(a, b, pose, prediction, cache, out),
+        // Manifolds of foreign shapes come from elsewhere.
+        (Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Ball(_) | Foreign(_), Foreign(_)) => {}
+        // `collide` swaps these.
+        (
+            Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Ball(_) | Foreign(_),
+            HalfSpace(_),
+        )
+        | (Capsule(_) | Segment(_) | Ball(_) | Foreign(_), Cuboid(_) | Hull(_) | Triangle(_))
+        | (Ball(_) | Foreign(_), Capsule(_) | Segment(_))
+        | (Foreign(_), Ball(_)) => debug_assert!(false, "shapes come in the order of their ranks"),
     }
 }
 
@@ -124,12 +135,9 @@ fn polyhedra(
     with_view(a, |a| with_view(b, |b| convex::collide(a, b, pose, prediction, cache, out)));
 }
 
-fn as_capsule(shape: &Shape) -> Option<Capsule> {
-    match shape {
-        Shape::Capsule(s) => Some(*s),
-        Shape::Segment(Segment { a, b }) => Some(Capsule { a: *a, b: *b, radius: 0.0 }),
-        _ => None,
-    }
+/// A segment as a capsule without radius.
+fn capsule(segment: &Segment) -> Capsule {
+    Capsule { a: segment.a, b: segment.b, radius: 0.0 }
 }
 
 /// Calls `f` with the polyhedral core of a shape, if it has one.

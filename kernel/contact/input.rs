@@ -1,13 +1,13 @@
-//! What the update of any contact reads.
+//! What the narrow phase reads, and what follows from it for the two sides of a contact.
 
 use super::record::Contact;
 use crate::manifold::LocalManifold;
 use crate::math::{Lane, WorldPose, max, min};
 use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity, is_swinging, turn};
 
-/// Whoever computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign) in them.
+/// Computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign).
 pub trait ManifoldSource: Sync {
-    /// Its buffers, kept between calls.
+    /// Buffers of the source, kept between calls.
     type Workspace: Default + Send;
 
     /// Adds the manifolds of colliders `a` and `b`, in `a`'s frame with normals from `a` to `b`, with
@@ -28,8 +28,8 @@ impl ManifoldSource for () {
     fn manifolds(&self, _: u32, _: u32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
 }
 
-/// What the update of any contact reads; constant over the narrow phase.
-pub struct NarrowPhase<'a, S> {
+/// What the narrow phase reads; constant while it runs.
+pub struct NarrowPhaseInput<'a, S> {
     /// The bodies.
     pub bodies: &'a BodyTable,
     /// The colliders.
@@ -48,11 +48,11 @@ pub struct NarrowPhase<'a, S> {
     pub recycle_distance: f32,
     /// Whether points inherit the impulses of the last step.
     pub match_points: bool,
-    /// No more than four contacts side by side, though this CPU may have wider lanes: the results are the same.
+    /// Recycles four contacts side by side even if the CPU has wider lanes. Results are the same.
     pub narrow: bool,
 }
 
-impl<S> NarrowPhase<'_, S> {
+impl<S> NarrowPhaseInput<'_, S> {
     /// The poses of both sides' bodies; of a collider without one, its own, kept in `fixed`. By reference: a copy is
     /// written in other pieces than it is read in, which a processor waits for.
     #[inline(always)]
@@ -90,7 +90,7 @@ impl<S> NarrowPhase<'_, S> {
         reach.revision.wrapping_add(pose.revision.wrapping_mul(0x9E37_79B1))
     }
 
-    /// The reaches of both sides. Not by `map`, which the compiler makes a call of.
+    /// The reaches of both sides. Without `map`, which the compiler does not inline here.
     #[inline(always)]
     pub(super) fn reaches(&self, contact: &Contact) -> [&Reach; 2] {
         let [a, b] = contact.colliders;
@@ -110,7 +110,7 @@ impl<S> NarrowPhase<'_, S> {
         [Self::revision(a, poses[0]), Self::revision(b, poses[1])]
     }
 
-    /// How far apart surfaces may be to count as a contact: as far as they can close in this step if nothing turns, but
+    /// Surfaces up to this distance apart count as a contact: as far as they can close in this step if nothing turns, but
     /// not beyond the colliders' speculative margins.
     pub(super) fn prediction(&self, contact: &Contact) -> f32 {
         let [a, b] = self.reaches(contact);
@@ -135,6 +135,12 @@ impl<S> NarrowPhase<'_, S> {
             return prediction;
         }
         max(prediction, min(prediction + turning, reaches[0].speculative + reaches[1].speculative))
+    }
+
+    /// The gap between the tight boxes of both sides, margins not subtracted.
+    pub(super) fn box_gap(&self, contact: &Contact) -> f32 {
+        let [a, b] = contact.colliders;
+        self.colliders.tight[a as usize].gap(&self.colliders.tight[b as usize])
     }
 
     /// How far normals of a side's surface pass from its body's centre of mass at most, in metres.

@@ -1,0 +1,37 @@
+//! What one worker of the narrow phase computes with, and what it leaves for the table.
+
+use super::record::Manifold;
+use super::recycle::RecycleBatch;
+use crate::manifold::LocalManifold;
+
+/// Buffers of one worker, kept between steps; `W` are those of its [`ManifoldSource`](super::ManifoldSource). They are
+/// written with every contact, so each worker's are in cache lines of their own.
+#[derive(Clone, Debug, Default)]
+#[repr(align(128))]
+pub struct WorkerBuffers<W = ()> {
+    /// The manifolds of the contact at hand, in A's frame.
+    pub(super) local: Vec<LocalManifold>,
+    pub(super) foreign: W,
+    /// Contacts that may be recycled.
+    pub(super) batch: RecycleBatch,
+    /// The manifolds after the first of the contact that was updated last.
+    pub extra: Vec<Manifold>,
+    /// Contacts that began or ended to touch, or whose boxes came apart.
+    pub(super) changed: Vec<u32>,
+    /// Contacts whose manifolds after the first are to be stored, and how many these are.
+    pub(super) stored: Vec<(u32, usize)>,
+    /// The manifolds of `stored`, one contact's after the other's.
+    pub(super) pool: Vec<Manifold>,
+    /// Whether any contact overlaps deeply.
+    pub(super) any_deep: bool,
+}
+
+impl<W> WorkerBuffers<W> {
+    /// Empties what the last update left for the table.
+    pub(super) fn clear(&mut self) {
+        self.changed.clear();
+        self.stored.clear();
+        self.pool.clear();
+        self.any_deep = false;
+    }
+}

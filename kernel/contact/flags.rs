@@ -1,0 +1,53 @@
+//! The state bits of a contact that follow from its manifold: deep overlap and platforms.
+
+use super::input::{NarrowPhaseInput, smaller};
+use super::record::{Contact, ContactFlags};
+use crate::math::min;
+use crate::shape::Shape;
+use crate::table::{BodyKind, NONE};
+
+/// Overlap above this share of the smaller side's reach is deep, where bodies were placed into one another. Overlap by
+/// load or a blow is not: if it were pushed out gently, a heap would sink into itself.
+const DEEP: f32 = 0.1;
+
+/// Deep overlap remains deep down to this share of the smaller side's reach. With [`DEEP`] here too, springs would push
+/// out the last tenth, and a row of a hundred bodies would fly apart.
+const NO_LONGER_DEEP: f32 = 0.01;
+
+/// Sets the bit of deep overlap after the manifold was recomputed. Only contacts whose bodies were `placed` where they are
+/// can become deep.
+pub(super) fn recomputed<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, placed: bool) {
+    let deep = match (contact.flags.has(ContactFlags::DEEP), placed) {
+        (true, _) => overlaps_by(input, NO_LONGER_DEEP, contact),
+        (false, true) => overlaps_by(input, DEEP, contact),
+        (false, false) => false,
+    };
+    contact.flags.set(ContactFlags::DEEP, deep);
+}
+
+/// Clears the bit of deep overlap if a recycled contact does not overlap deeply any more.
+#[inline(always)]
+pub(super) fn recycled<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact) {
+    if contact.flags.has(ContactFlags::DEEP) {
+        contact.flags.set(ContactFlags::DEEP, overlaps_by(input, NO_LONGER_DEEP, contact));
+    }
+}
+
+/// Whether the shapes overlap by more than a share of the smaller one's reach.
+fn overlaps_by<S>(input: &NarrowPhaseInput<S>, share: f32, contact: &Contact) -> bool {
+    let deepest = contact.manifold.points().iter().fold(0.0, |d, p| min(d, p.separation));
+    let [a, b] = input.reaches(contact);
+    let reach = smaller([a.extent, b.extent]);
+    deepest < 0.0 && deepest < -share * reach
+}
+
+/// Sets the bits that name the platform, the body which contacts do not turn. Two round shapes have none, since one can
+/// roll under the same normal.
+pub(super) fn set_platform<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact) {
+    let is_platform = |body: u32| body == NONE || input.bodies[body].kind != BodyKind::Dynamic;
+    let is_round = |s: &Shape| matches!(s, Shape::Ball(_) | Shape::Capsule(_) | Shape::Segment(_));
+    let are_round = contact.colliders.iter().all(|id| is_round(&input.colliders[*id].def.shape));
+    let [a, b] = contact.bodies.map(|body| !are_round && is_platform(body));
+    contact.flags.set(ContactFlags::PLATFORM_A, a);
+    contact.flags.set(ContactFlags::PLATFORM_B, b && !a);
+}

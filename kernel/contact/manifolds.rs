@@ -1,0 +1,137 @@
+//! The manifolds of one contact: computed in A's frame, then put in place of the old ones in world axes.
+
+use super::buffers::WorkerBuffers;
+use super::input::{ManifoldSource, NarrowPhaseInput};
+use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint};
+use super::sweep::Meeting;
+use crate::manifold::{self, LocalManifold};
+use crate::math::{Rot, Vector};
+use crate::table::BodyPose;
+
+/// A manifold continues an old one if the cosine between their normals is above this: 25°. More loses impulses of bodies
+/// that turn; less hands them to another face.
+const SAME_FACE: f32 = 0.9;
+
+/// Computes the manifold of two native shapes where they are now, with points up to `prediction` apart, margins not
+/// subtracted.
+pub(super) fn collide<S>(
+    input: &NarrowPhaseInput<S>,
+    contact: &mut Contact,
+    prediction: f32,
+    local: &mut LocalManifold,
+) {
+    let [a, b] = contact.colliders;
+    let shapes = [&input.colliders[a].def.shape, &input.colliders[b].def.shape];
+    let [pose_a, pose_b] = [&input.colliders.poses[a as usize], &input.colliders.poses[b as usize]];
+    let relative = pose_a.relative(pose_b);
+    manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, local);
+}
+
+/// Puts the manifolds in `buffers.local` in place of the contact's. Old points hand on their impulses. `body_a` is the pose
+/// of A's body. Manifolds after the first come to `buffers.extra`; `old_extra` are the old ones.
+pub(super) fn replace<S: ManifoldSource>(
+    input: &NarrowPhaseInput<S>,
+    contact: &mut Contact,
+    old_extra: &[Manifold],
+    body_a: &BodyPose,
+    meeting: Option<&Meeting>,
+    buffers: &mut WorkerBuffers<S::Workspace>,
+) {
+    buffers.extra.clear();
+    if contact.manifold.count == 0 && buffers.local.is_empty() {
+        contact.flags.set(ContactFlags::TOUCHING, false);
+        return;
+    }
+    let [a, b] = contact.colliders;
+    let (ca, cb) = (&input.colliders[a].def, &input.colliders[b].def);
+    let margin = input.margin(contact);
+    let pose_a = meeting.map_or(&input.colliders.poses[a as usize], |meeting| &meeting.pose_a);
+    let body_a = meeting.map_or(body_a, |meeting| &meeting.body_a);
+    // From body A's centre of mass to collider A's origin, in world axes.
+    let to_shape = (pose_a.position - body_a.center).to_local();
+    let old = core::mem::take(&mut contact.manifold);
+    for (i, local) in buffers.local.iter().enumerate() {
+        let mut m = to_world(local, pose_a.rotation, to_shape, margin);
+        m.rounding = [ca.shape.rounding(), cb.shape.rounding()];
+        if let Some(meeting) = meeting {
+            meeting.rewind(&mut m);
+        }
+        if !m.normal.is_finite()
+            || m.points().iter().any(|p| !p.separation.is_finite() || !p.anchor.is_finite())
+        {
+            continue;
+        }
+        vary_first(&mut m, contact.colliders);
+        if input.match_points {
+            inherit(&mut m, core::iter::once(&old).chain(old_extra.iter()));
+        }
+        if i == 0 {
+            contact.manifold = m;
+        } else {
+            buffers.extra.push(m);
+        }
+    }
+    let touching = contact.manifold.count > 0 || !buffers.extra.is_empty();
+    contact.flags.set(ContactFlags::TOUCHING, touching);
+}
+
+/// A manifold in world axes, with anchors from body A's centre of mass.
+fn to_world(local: &LocalManifold, rotation: Rot, to_shape: Vector, margin: f32) -> Manifold {
+    let mut m =
+        Manifold { normal: rotation.rotate(local.normal), count: local.count as u32, ..Manifold::default() };
+    for (out, p) in m.points.iter_mut().zip(local.points()) {
+        let separation = p.separation - margin;
+        *out = ManifoldPoint {
+            anchor: to_shape + rotation.rotate(p.point),
+            frozen_separation: separation,
+            separation,
+            impulse: 0.0,
+            feature: p.feature,
+        };
+    }
+    m
+}
+
+/// Varies which point comes first over the contacts. Points that follow each other in pairs still do.
+///
+/// The solver takes points one after the other, which favours some a little. If these were on the same side in every
+/// contact, a stack would lean to that side as it settles. So the ids of the colliders choose the first point, by the R₂
+/// sequence (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018): it spreads evenly along ids
+/// that count up in one collider and in both. Bits of the sum of the ids would follow the rows of a wall.
+fn vary_first(m: &mut Manifold, [a, b]: [u32; 2]) {
+    // 2³² / ρ and 2³² / ρ², where ρ³ = ρ + 1.
+    const R2: [u32; 2] = [0xC13F_A9A9, 0x91E1_0DA6];
+    if !m.count.is_power_of_two() {
+        return;
+    }
+    let spread = a.wrapping_mul(R2[0]).wrapping_add(b.wrapping_mul(R2[1])) >> 30;
+    let flip = (spread & (m.count - 1)) as usize;
+    let old = m.points;
+    for i in 0..m.count as usize {
+        m.points[i] = old[i ^ flip];
+    }
+}
+
+/// Copies the impulses of the old manifold that this one continues, the one with the nearest normal. Points are matched by
+/// feature id.
+fn inherit<'a>(m: &mut Manifold, old: impl Iterator<Item = &'a Manifold>) {
+    let mut best: Option<(&Manifold, f32)> = None;
+    for o in old.filter(|o| o.count > 0) {
+        let cos = o.normal.dot(m.normal);
+        if cos > SAME_FACE && best.is_none_or(|(_, c)| cos > c) {
+            best = Some((o, cos));
+        }
+    }
+    let Some((old, _)) = best else { return };
+    let mut any = false;
+    for p in &mut m.points[..m.count as usize] {
+        if let Some(o) = old.points().iter().find(|o| o.feature == p.feature) {
+            p.impulse = o.impulse;
+            any = true;
+        }
+    }
+    if any {
+        m.friction_impulse = old.friction_impulse;
+        m.twist_impulse = old.twist_impulse;
+    }
+}

@@ -1,0 +1,366 @@
+//! The narrow phase, top to bottom: awake contacts are classified by their boxes and motion, then recycled or recomputed,
+//! and what only the table can store is committed at the end.
+//!
+//! Helpers are called from here and do not call back: [`recycle`](super::recycle) keeps manifolds, [`manifolds`] and
+//! [`sweep`] compute them, [`flags`] holds what follows from them.
+#![expect(unsafe_code, reason = "several threads change contacts, each other ones")]
+
+use super::buffers::WorkerBuffers;
+use super::flags;
+use super::input::{ManifoldSource, NarrowPhaseInput};
+use super::manifolds;
+use super::record::{Contact, ContactFlags, Frozen, Manifold};
+use super::recycle::RecycleBatch;
+use super::sweep::{self, Meeting};
+use super::table::{ContactTable, PointCount, Stored};
+use crate::data::{BitSet, Parts};
+use crate::manifold::{FeatureCache, LocalManifold};
+use crate::math::max;
+use crate::table::{BodyKind, BodyPose, BodyTable, NONE};
+use crate::team::Team;
+
+/// The size of a block that one worker updates, in words of 64 contact ids. Recycling so many takes some microseconds;
+/// smaller blocks cost more to hand out than larger ones lose at the end.
+const BLOCK: usize = 2;
+
+/// The prefetch distance, in contacts. Shorter does not hide the latency of memory; longer evicts records before use.
+const PREFETCH_DISTANCE: usize = 4;
+
+/// The result of a contact's update.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// The fat boxes do not overlap any more.
+    Separated,
+    /// The manifold followed the motion.
+    Recycled,
+    /// The manifold was computed anew.
+    Recomputed,
+}
+
+/// What is known of a contact before its manifold is looked at.
+enum Class {
+    /// The fat boxes do not overlap any more.
+    Separated,
+    /// The contact waits in the batch for whether it is recycled.
+    Recyclable,
+    /// The manifold cannot be kept.
+    Stale,
+}
+
+impl ContactTable {
+    /// Updates all awake contacts. `workers` are buffers, kept between steps. `changed` receives the contacts that began or
+    /// ended to touch or whose boxes came apart.
+    pub fn update<S: ManifoldSource>(
+        &mut self,
+        input: &NarrowPhaseInput<S>,
+        team: &Team,
+        workers: &mut Vec<WorkerBuffers<S::Workspace>>,
+        changed: &mut BitSet,
+    ) {
+        workers.iter_mut().for_each(WorkerBuffers::clear);
+        if workers.len() < team.members() {
+            workers.resize_with(team.members(), WorkerBuffers::default);
+        }
+        self.find_crowded(input.bodies);
+        let Self { contacts, points, active, extra, .. } = self;
+        let crowded = self.any_deep.then_some(&self.crowded);
+        let pass = Pass {
+            input,
+            contacts: Parts::of(contacts),
+            points: Parts::of(points),
+            old_extra: extra,
+            crowded,
+        };
+        let buffers = Parts::of(workers);
+        team.run(active.blocks(BLOCK), |block, worker| {
+            let mut ids = [0; 64 * BLOCK];
+            let mut count = 0;
+            for id in active.iter_block(BLOCK, block) {
+                ids[count] = id;
+                count += 1;
+            }
+            // SAFETY: a worker runs one block at a time, and an id is in one block, once.
+            unsafe { pass.update_block(&ids[..count], buffers.one(worker)) };
+        });
+        self.commit(workers, changed);
+    }
+
+    /// Finds the dynamic bodies that overlap others deeply.
+    fn find_crowded(&mut self, bodies: &BodyTable) {
+        self.crowded.clear();
+        if !self.any_deep {
+            return;
+        }
+        for id in self.active.iter() {
+            let contact = &self.contacts[id as usize];
+            if contact.flags.has(ContactFlags::DEEP) {
+                let dynamic = |body: &u32| *body != NONE && bodies[*body].kind == BodyKind::Dynamic;
+                contact.bodies.into_iter().filter(dynamic).for_each(|body| _ = self.crowded.insert(body));
+            }
+        }
+    }
+
+    /// Commits what the workers found. Manifolds after the first are stored in the order of contacts, not of workers, so that
+    /// equal steps give equal tables.
+    fn commit<W>(&mut self, workers: &[WorkerBuffers<W>], changed: &mut BitSet) {
+        self.any_deep = workers.iter().any(|worker| worker.any_deep);
+        let mut stored = core::mem::take(&mut self.stored);
+        for (worker, found) in workers.iter().enumerate() {
+            found.changed.iter().for_each(|id| _ = changed.insert(*id));
+            let mut start = 0;
+            for &(contact, count) in &found.stored {
+                stored.push(Stored { contact, worker, range: start..start + count });
+                start += count;
+            }
+        }
+        stored.sort_unstable_by_key(|stored| stored.contact);
+        for Stored { contact, worker, range } in stored.drain(..) {
+            self.store_extra(contact, &workers[worker].pool[range]);
+        }
+        self.stored = stored;
+    }
+}
+
+/// An update of all contacts while it runs; shared by the workers.
+struct Pass<'a, S> {
+    input: &'a NarrowPhaseInput<'a, S>,
+    contacts: Parts<'a, Contact>,
+    points: Parts<'a, PointCount>,
+    old_extra: &'a [Vec<Manifold>],
+    /// The bodies that overlapped others deeply before this update, if there are any.
+    crowded: Option<&'a BitSet>,
+}
+
+impl<S: ManifoldSource> Pass<'_, S> {
+    /// Updates some contacts.
+    ///
+    /// # Safety
+    /// While it runs no other thread may have one of these contacts, nor its count of points.
+    #[inline(always)]
+    unsafe fn update_block(&self, ids: &[u32], worker: &mut WorkerBuffers<S::Workspace>) {
+        // A panic in an earlier block may have left contacts in the batch.
+        worker.batch.clear();
+        ids[..PREFETCH_DISTANCE.min(ids.len())].iter().for_each(|id| self.contacts.prefetch(*id));
+        for (i, &id) in ids.iter().enumerate() {
+            if let Some(next) = ids.get(i + PREFETCH_DISTANCE) {
+                self.contacts.prefetch(*next);
+            }
+            // SAFETY: by the contract the contact is this thread's, and no reference to it is in use.
+            let contact = unsafe { self.contacts.one(id as usize) };
+            match classify(self.input, id, contact, &mut worker.batch) {
+                Class::Separated => separate(id, contact, worker),
+                Class::Recyclable => {}
+                // SAFETY: as above.
+                Class::Stale => self.recompute(id, contact, unsafe { self.points.one(id as usize) }, worker),
+            }
+            if worker.batch.is_full() {
+                // SAFETY: the batch holds contacts of this block, and the references above are in use no more.
+                unsafe { self.recycle_batch(worker) };
+            }
+        }
+        // SAFETY: as above.
+        unsafe { self.recycle_batch(worker) };
+    }
+
+    /// Recycles the contacts of the batch where the motion allows it, recomputes the others, and empties the batch.
+    ///
+    /// # Safety
+    /// While it runs no other thread may have one of these contacts, nor its count of points.
+    #[inline(always)]
+    unsafe fn recycle_batch(&self, worker: &mut WorkerBuffers<S::Workspace>) {
+        worker.batch.evaluate(self.input);
+        for place in 0..worker.batch.ids().len() {
+            let id = worker.batch.ids()[place];
+            // SAFETY: by the contract both are this thread's; those of the contact before are in use no more.
+            let (contact, count) = unsafe { (self.contacts.one(id as usize), self.points.one(id as usize)) };
+            if recycle(self.input, &worker.batch, place, contact) {
+                worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
+            } else {
+                self.recompute(id, contact, count, worker);
+            }
+        }
+        worker.batch.clear();
+    }
+
+    /// Recomputes a contact, and notes what is to be committed.
+    fn recompute(
+        &self,
+        id: u32,
+        contact: &mut Contact,
+        count: &mut PointCount,
+        worker: &mut WorkerBuffers<S::Workspace>,
+    ) {
+        let is_among = |crowd: &BitSet| contact.bodies.iter().any(|b| *b != NONE && crowd.contains(*b));
+        let is_crowded = self.crowded.is_some_and(is_among);
+        let touched = contact.flags.has(ContactFlags::TOUCHING);
+        let old_extra: &[Manifold] = match contact.extra {
+            NONE => &[],
+            slot => &self.old_extra[slot as usize][..usize::from(contact.extra_count)],
+        };
+        recompute(self.input, contact, old_extra, is_crowded, worker);
+        if touched != contact.flags.has(ContactFlags::TOUCHING) {
+            worker.changed.push(id);
+        }
+        if contact.extra != NONE || !worker.extra.is_empty() {
+            worker.stored.push((id, worker.extra.len()));
+            worker.pool.extend_from_slice(&worker.extra);
+        }
+        worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
+        // Blocks share cache lines of counts, so equal counts are not written.
+        let now = PointCount::of(contact);
+        if *count != now {
+            *count = now;
+        }
+    }
+}
+
+/// Updates one contact alone, as [`ContactTable::update`] does all. `crowded` tells that one of its bodies overlapped
+/// another deeply before. Manifolds after the first are left in `buffers.extra`, for the caller to store.
+pub fn update_contact<S: ManifoldSource>(
+    input: &NarrowPhaseInput<S>,
+    contact: &mut Contact,
+    extra: &[Manifold],
+    crowded: bool,
+    buffers: &mut WorkerBuffers<S::Workspace>,
+) -> Outcome {
+    buffers.batch.clear();
+    match classify(input, 0, contact, &mut buffers.batch) {
+        Class::Separated => return Outcome::Separated,
+        Class::Recyclable => {
+            buffers.batch.evaluate(input);
+            if recycle(input, &buffers.batch, 0, contact) {
+                return Outcome::Recycled;
+            }
+        }
+        Class::Stale => {}
+    }
+    recompute(input, contact, extra, crowded, buffers);
+    Outcome::Recomputed
+}
+
+/// Classifies a contact; one that may be recycled is put into the batch.
+#[inline(always)]
+fn classify<S>(input: &NarrowPhaseInput<S>, id: u32, contact: &Contact, batch: &mut RecycleBatch) -> Class {
+    let [a, b] = contact.colliders;
+    if !input.colliders.fat[a as usize].overlaps(&input.colliders.fat[b as usize]) {
+        return Class::Separated;
+    }
+    let is_waiting = batch.push(input, id, contact, input.poses(contact, &mut [None; 2]));
+    if is_waiting { Class::Recyclable } else { Class::Stale }
+}
+
+/// Notes that the boxes of a contact came apart.
+fn separate<W>(id: u32, contact: &mut Contact, worker: &mut WorkerBuffers<W>) {
+    contact.flags.set(ContactFlags::SEPARATED, true);
+    worker.changed.push(id);
+    worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
+}
+
+/// Recycles a contact of an evaluated batch; `false` if its bodies moved too far.
+#[inline(always)]
+fn recycle<S>(
+    input: &NarrowPhaseInput<S>,
+    batch: &RecycleBatch,
+    place: usize,
+    contact: &mut Contact,
+) -> bool {
+    let is_kept = batch.apply(place, contact);
+    if is_kept {
+        flags::recycled(input, contact);
+    }
+    is_kept
+}
+
+/// Computes the manifolds of a contact at the present poses, or those of its swept shapes, and freezes it there.
+fn recompute<S: ManifoldSource>(
+    input: &NarrowPhaseInput<S>,
+    contact: &mut Contact,
+    old_extra: &[Manifold],
+    is_crowded: bool,
+    buffers: &mut WorkerBuffers<S::Workspace>,
+) {
+    let mut fixed = [None; 2];
+    let poses = input.poses(contact, &mut fixed);
+    let revisions = input.revisions(contact, poses);
+    let is_changed = contact.revisions != revisions;
+    if is_changed {
+        // The cached features may be of other shapes.
+        contact.cache = FeatureCache::NONE;
+    }
+    contact.revisions = revisions;
+    buffers.local.clear();
+    let search = if contact.flags.has(ContactFlags::FOREIGN) {
+        search_foreign(input, contact, buffers)
+    } else {
+        search_native(input, contact, poses, &mut buffers.local)
+    };
+    freeze(input, contact, poses, &search);
+    manifolds::replace(input, contact, old_extra, poses[0], search.meeting.as_ref(), buffers);
+    // Only what has just come together, or was changed by hand, was placed where it is; all else was pressed there,
+    // unless its bodies are crowded by those that were placed.
+    flags::recomputed(input, contact, is_crowded || is_changed);
+}
+
+/// The result of looking for points, beside the points themselves.
+struct Search {
+    /// Points were looked for up to this distance, or there are none up to it; margins subtracted.
+    prediction: f32,
+    /// When the shapes meet, if the points are those of swept shapes.
+    meeting: Option<Meeting>,
+}
+
+/// Computes the manifolds of a pair with a foreign shape. It is not swept, but looked at as far as turning may close.
+fn search_foreign<S: ManifoldSource>(
+    input: &NarrowPhaseInput<S>,
+    contact: &Contact,
+    buffers: &mut WorkerBuffers<S::Workspace>,
+) -> Search {
+    let [a, b] = contact.colliders;
+    let prediction = input.prediction(contact);
+    let farthest = input.farthest(contact, prediction) + input.margin(contact);
+    input.source.manifolds(a, b, farthest, &mut buffers.foreign, &mut buffers.local);
+    Search { prediction, meeting: None }
+}
+
+/// Computes the manifold of two native shapes where they are now. If there are no points, that of when a turn brings them
+/// together within the step.
+fn search_native<S>(
+    input: &NarrowPhaseInput<S>,
+    contact: &mut Contact,
+    poses: [&BodyPose; 2],
+    found: &mut Vec<LocalManifold>,
+) -> Search {
+    let (prediction, margin) = (input.prediction(contact), input.margin(contact));
+    let mut gap = input.box_gap(contact);
+    let mut local = LocalManifold::default();
+    let mut meeting = None;
+    let with_margin = prediction + margin;
+    // Negated, so that a NaN is not taken for a gap.
+    if !(gap > with_margin) || !(gap - margin > input.farthest(contact, prediction)) {
+        manifolds::collide(input, contact, with_margin, &mut local);
+        if local.count == 0 {
+            // Shapes that turn are often much farther apart than their boxes.
+            gap = max(gap, local.apart);
+            meeting = sweep::find_meeting(input, contact, poses, gap - margin, prediction, &mut local);
+        }
+    }
+    if local.count == 0 {
+        return Search { prediction: max(gap - margin, prediction), meeting: None };
+    }
+    flags::set_platform(input, contact);
+    found.push(local);
+    Search { prediction, meeting }
+}
+
+/// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is not recycled.
+fn freeze<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, poses: [&BodyPose; 2], search: &Search) {
+    let offset = (poses[1].center - poses[0].center).to_local();
+    contact.frozen = Frozen {
+        rotations: poses.map(|p| p.rotation),
+        offset: search.meeting.as_ref().map_or(offset, |meeting| meeting.offset),
+        prediction: search.prediction,
+    };
+    let is_native = !contact.flags.has(ContactFlags::FOREIGN);
+    let is_recyclable = input.recycle_distance > 0.0 && is_native && search.meeting.is_none();
+    contact.flags.set(ContactFlags::FROZEN, is_recyclable);
+}
