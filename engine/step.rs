@@ -1,24 +1,37 @@
 //! The step: every system of the engine in [`PhysicsSchedule`], in the order it runs.
 //!
-//! Plugins add the systems to the stages below, so that disabling a plugin takes its systems out; this list
-//! says where each stage stands. The public sets are attached to the same list, so they cannot drift apart.
+//! One list names each stage, its public set, its systems, and the plugin that adds each system. Order and registration
+//! both come from it. Disabling a plugin takes its systems out.
 
 use bevy_app::{App, Plugin};
-use bevy_ecs::{prelude::*, schedule::ScheduleLabel, system::ScheduleSystem};
+use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel, system::ScheduleSystem};
 
 use crate::{
-    collider_tree::ColliderTreeSystems,
+    collider_tree::{ColliderTreeSystems, diagnostics::reset_trees},
     collision::{
         broad_phase::BroadPhaseSystems,
+        contacts::{link_contacts, update_contacts},
+        diagnostics::reset_collision,
         narrow_phase::{NarrowPhaseConfig, NarrowPhaseSystems},
+        pairs::{find_new_pairs, refit_awake, update_stale_boxes},
     },
     dynamics::{
+        drain::{drain_lifecycle, remove_lost_late},
         integrator::IntegrationSystems,
-        lifecycle,
+        lifecycle::{self, note_changed_colliders},
+        materials::refresh_surfaces,
         rigid_body::{DefaultFriction, DefaultRestitution},
+        sleep::{follow_requests, mirror_sleeping, sleep_islands},
         solver::{
-            schedule::{SolverSystems, SubstepSolverSystems},
-            substeps::{StepSolver, call_team},
+            config::update_contact_softness,
+            diagnostics::reset_solver,
+            gather::{gather_bodies, read_awake, rest_kinematic, wake_changed},
+            scatter::{finish_bodies, keep_moved_within, note_moved_late, note_moved_within, scatter_bodies},
+            schedule::{SolverSystems, SubstepSolverSystems, start_substep_clock},
+            substeps::{
+                StepSolver, apply_restitution, call_team, prepare_params, prepare_rows, run_substeps,
+                store_impulses,
+            },
             workers::{RowWidth, WorkerCount},
         },
         tables::{Bodies, Colliders, Contacts},
@@ -27,8 +40,13 @@ use crate::{
     threads::Threads,
 };
 
+/// Makes the stages from the list below. A stage is `Name .place(set) => { Owner: systems, … }`: the public set that it
+/// runs in, and its systems with the plugin that adds them.
 macro_rules! stages {
-    ($($(#[$doc:meta])* $stage:ident,)+) => {
+    ($(
+        $(#[$doc:meta])*
+        $stage:ident $(.$place:ident($set:expr))+ => { $($owner:ident: $systems:expr),+ $(,)? }
+    )+) => {
         /// The stages of a step, in order.
         #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub(crate) enum Stage {
@@ -36,55 +54,105 @@ macro_rules! stages {
         }
 
         impl Stage {
-            /// All of them, with their names.
+            /// All stages, with their names.
             const ALL: &[(Self, &str)] = &[$((Self::$stage, stringify!($stage))),+];
+        }
+
+        /// Puts each stage into its public set.
+        fn place_stages(app: &mut App) {
+            $(app.configure_sets(PhysicsSchedule, Stage::$stage$(.$place($set))+);)+
+        }
+
+        /// Adds the systems of an owner to [`PhysicsSchedule`] or one that takes its place, each in its stage.
+        pub(crate) fn add_systems_of(owner: Owner, app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
+            $($(
+                if owner == Owner::$owner {
+                    add_systems(app, schedule, ($systems).in_set(Stage::$stage));
+                }
+            )+)+
         }
     };
 }
 
+/// The plugin that adds a system of the step; without the plugin the system does not run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Owner {
+    /// Any plugin of the step.
+    Step,
+    /// `ColliderTreePlugin`.
+    Trees,
+    /// `BvhBroadPhasePlugin`.
+    BroadPhase,
+    /// `NarrowPhasePlugin`.
+    NarrowPhase,
+    /// `SolverSchedulePlugin`.
+    SolverSchedule,
+    /// `SolverBodyPlugin`.
+    SolverBodies,
+    /// `SolverPlugin`.
+    Solver,
+    /// `IslandSleepingPlugin`.
+    Sleeping,
+}
+
 stages! {
-    /// Counters and timers start anew.
-    ResetDiagnostics,
+    /// The clock of the substeps starts anew.
+    StartSubstepClock.before(PhysicsStepSystems::First) => { SolverSchedule: start_substep_clock }
+    /// Counters and timers start anew, and workers wake.
+    ResetDiagnostics.in_set(PhysicsStepSystems::First) => {
+        Step: call_team,
+        Trees: reset_trees,
+        NarrowPhase: reset_collision,
+        Solver: reset_solver,
+    }
     /// Bodies and colliders enter and leave.
-    DrainLifecycle,
+    DrainLifecycle.in_set(PhysicsStepSystems::First) => { Step: (note_changed_colliders, drain_lifecycle).chain() }
     /// Surfaces follow their components.
-    RefreshSurfaces,
+    RefreshSurfaces.in_set(PhysicsStepSystems::First) => { NarrowPhase: refresh_surfaces }
     /// Islands fall asleep and wake as the app asked.
-    FollowSleep,
+    FollowSleep.in_set(PhysicsStepSystems::First) => { Sleeping: follow_requests }
     /// What the app moved or pushed wakes.
-    FollowApp,
+    FollowApp.in_set(PhysicsStepSystems::First) => { SolverBodies: (wake_changed, rest_kinematic).chain() }
     /// Poses and velocities of awake bodies are read.
-    ReadAwake,
+    ReadAwake.in_set(PhysicsStepSystems::First) => { SolverBodies: read_awake }
     /// Boxes of what entered or was moved by hand.
-    UpdateBoxes,
+    UpdateBoxes.in_set(ColliderTreeSystems::UpdateAabbs) => { Trees: update_stale_boxes }
     /// New pairs become contacts.
-    FindPairs,
+    FindPairs.in_set(BroadPhaseSystems::CollectCollisions) => { BroadPhase: find_new_pairs }
     /// Manifolds of awake contacts.
-    UpdateContacts,
+    UpdateContacts.in_set(NarrowPhaseSystems::Update) => { NarrowPhase: update_contacts }
     /// Colours, islands, waking.
-    LinkContacts,
+    LinkContacts.in_set(NarrowPhaseSystems::Update) => { NarrowPhase: link_contacts }
+    /// The softness of contacts follows the length of the substeps.
+    UpdateSoftness.after(PhysicsStepSystems::NarrowPhase).before(PhysicsStepSystems::Solver) => {
+        Solver: update_contact_softness,
+    }
     /// Awake bodies become rows.
-    Gather,
+    Gather.in_set(SolverSystems::PrepareSolverBodies) => { SolverBodies: gather_bodies }
+    /// The parameters of the substeps. Bodies move by them also where no contacts are solved.
+    PrepareParams.in_set(SolverSystems::PrepareJoints) => { SolverSchedule: prepare_params }
     /// Touching manifolds become rows.
-    PrepareRows,
+    PrepareRows.in_set(SolverSystems::PrepareContactConstraints) => { Solver: prepare_rows }
     /// The substeps.
-    Substeps,
+    Substeps.in_set(SolverSystems::Substep) => { SolverSchedule: run_substeps }
     /// What hit fast bounces.
-    Restitution,
-    /// What bodies did in the substeps is folded into their poses.
-    FinishBodies,
-    /// Poses and velocities become components.
-    Scatter,
+    Restitution.in_set(SolverSystems::Restitution) => { Solver: apply_restitution }
+    /// The motion in the substeps is added to the poses. One system, so that none of the app's runs within.
+    FinishBodies.in_set(SolverSystems::Finalize) => { SolverBodies: note_moved_within.pipe(finish_bodies) }
+    /// Poses and velocities become components. One system, so that none of the app's runs within.
+    Scatter.in_set(SolverSystems::Finalize) => {
+        SolverBodies: note_moved_late.pipe(scatter_bodies).pipe(keep_moved_within),
+    }
     /// Impulses go back into the manifolds.
-    StoreImpulses,
+    StoreImpulses.in_set(SolverSystems::StoreContactImpulses) => { Solver: store_impulses }
     /// Islands at rest fall asleep.
-    Sleep,
+    Sleep.in_set(PhysicsStepSystems::Sleeping) => { Sleeping: sleep_islands }
     /// Boxes of what moved.
-    Refit,
+    Refit.in_set(PhysicsStepSystems::Finalize) => { Trees: refit_awake }
     /// What was despawned during the step leaves.
-    RemoveLost,
+    RemoveLost.in_set(PhysicsStepSystems::Finalize) => { Step: remove_lost_late }
     /// [`Sleeping`](crate::dynamics::rigid_body::sleeping::Sleeping) follows.
-    MirrorSleep,
+    MirrorSleep.in_set(PhysicsStepSystems::Finalize) => { Sleeping: mirror_sleeping }
 }
 
 /// Adds systems of the engine to [`PhysicsSchedule`] or one that takes its place.
@@ -124,60 +192,26 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<DefaultRestitution>()
         .init_resource::<NarrowPhaseConfig>();
     lifecycle::watch(app);
-    app.configure_sets(
-        PhysicsSchedule,
-        (
-            (
-                Stage::ResetDiagnostics,
-                Stage::DrainLifecycle,
-                Stage::RefreshSurfaces,
-                Stage::FollowSleep,
-                Stage::FollowApp,
-                Stage::ReadAwake,
-            )
-                .chain()
-                .in_set(PhysicsStepSystems::First),
-            Stage::UpdateBoxes.in_set(ColliderTreeSystems::UpdateAabbs),
-            Stage::FindPairs.in_set(BroadPhaseSystems::CollectCollisions),
-            (Stage::UpdateContacts, Stage::LinkContacts).chain().in_set(NarrowPhaseSystems::Update),
-            Stage::Gather.in_set(SolverSystems::PrepareSolverBodies),
-            Stage::PrepareRows.in_set(SolverSystems::PrepareContactConstraints),
-            Stage::Substeps.in_set(SolverSystems::Substep),
-            Stage::Restitution.in_set(SolverSystems::Restitution),
-            (Stage::FinishBodies, Stage::Scatter).chain().in_set(SolverSystems::Finalize),
-            Stage::StoreImpulses.in_set(SolverSystems::StoreContactImpulses),
-            Stage::Sleep.in_set(PhysicsStepSystems::Sleeping),
-            (Stage::Refit, Stage::RemoveLost, Stage::MirrorSleep)
-                .chain()
-                .in_set(PhysicsStepSystems::Finalize),
-        )
-            .chain(),
-    );
-    add_systems(
-        app,
-        PhysicsSchedule,
-        (
-            call_team.in_set(Stage::ResetDiagnostics),
-            (lifecycle::note_changed_colliders, crate::dynamics::drain::drain_lifecycle)
-                .chain()
-                .in_set(Stage::DrainLifecycle),
-            crate::dynamics::drain::remove_lost_late.in_set(Stage::RemoveLost),
-        ),
-    );
+    place_stages(app);
+    add_systems_of(Owner::Step, app, PhysicsSchedule.intern());
     for (i, &(stage, name)) in Stage::ALL.iter().enumerate() {
-        let end = (move |mut times: ResMut<StepTimes>| times.end(name)).after(stage);
-        add_systems(
-            app,
-            PhysicsSchedule,
-            match Stage::ALL.get(i + 1) {
-                Some((next, _)) => end.before(*next),
-                None => end.before(PhysicsStepSystems::Last),
-            },
-        );
+        let end = (move |mut times: ResMut<StepTimes>| times.end(name)).in_set(Timers).after(stage);
+        let end = match Stage::ALL.get(i + 1) {
+            Some(&(next, _)) => {
+                app.configure_sets(PhysicsSchedule, next.after(stage));
+                end.before(next)
+            }
+            None => end.before(PhysicsStepSystems::Last),
+        };
+        add_systems(app, PhysicsSchedule, end);
     }
     #[cfg(feature = "validate")]
     crate::dynamics::validate::install(app);
 }
+
+/// The systems that note the time after each stage.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Timers;
 
 /// Adds what all instances of a generic plugin share: with the first of them.
 pub(crate) fn add_once<P: Plugin>(app: &mut App, shared: P) {
@@ -245,6 +279,40 @@ mod tests {
     use super::*;
     use crate::{PhysicsPlugins, dynamics::solver::schedule::SubstepSchedule};
     use bevy_app::{TaskPoolPlugin, Update};
+    use bevy_ecs::schedule::{ApplyDeferred, InternedSystemSet};
+    use core::any::TypeId;
+
+    /// Every system of the step runs in a stage or after one, stages run in the order of the list, and none is empty.
+    #[test]
+    fn every_system_of_the_step_is_in_one_stage_and_stages_run_in_order() {
+        let mut app = App::new();
+        app.insert_resource(Strict).add_plugins((TaskPoolPlugin::default(), PhysicsPlugins::new(Update)));
+        app.finish();
+        app.world_mut().schedule_scope(PhysicsSchedule, |world, schedule| {
+            schedule.initialize(world).expect("the order is determined");
+            let members =
+                |set: InternedSystemSet| schedule.graph().systems_in_set(set).expect("the set exists");
+            let timers = members(Timers.intern());
+            let last = members(PhysicsStepSystems::Last.intern());
+            let (mut ran, mut others) = (Vec::new(), Vec::new());
+            for (place, (key, system)) in schedule.systems().expect("the schedule is built").enumerate() {
+                let stages = Stage::ALL.iter().filter(|(stage, _)| members(stage.intern()).contains(&key));
+                let stages: Vec<_> = stages.map(|(stage, _)| *stage).collect();
+                assert!(stages.len() <= 1, "{}: {stages:?}", system.name());
+                let is_known = timers.contains(&key) || last.contains(&key);
+                let is_bevys = system.system_type() == TypeId::of::<ApplyDeferred>();
+                if stages.is_empty() && !is_known && !is_bevys {
+                    others.push((place, system.name()));
+                }
+                ran.extend(stages);
+            }
+            // What records the length of the step follows everything.
+            let count = schedule.systems_len();
+            assert!(others.len() == 1 && others[0].0 == count - 1, "in no stage: {others:?} of {count}");
+            ran.dedup();
+            assert_eq!(ran, Stage::ALL.iter().map(|(stage, _)| *stage).collect::<Vec<_>>());
+        });
+    }
 
     /// Both schedules fail to build where an order is not determined.
     #[test]

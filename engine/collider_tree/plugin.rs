@@ -1,23 +1,17 @@
 //! The plugin that keeps the trees.
 
 use bevy_app::{App, Plugin};
-use bevy_ecs::prelude::*;
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use core::marker::PhantomData;
 
 use super::{
-    ColliderTreeSystems,
-    diagnostics::{ColliderTreeDiagnostics, reset_trees},
-    optimization::ColliderTreeOptimization,
+    ColliderTreeSystems, diagnostics::ColliderTreeDiagnostics, optimization::ColliderTreeOptimization,
 };
 use crate::{
-    collision::{
-        broad_phase::BroadPhaseSystems,
-        collider::AnyCollider,
-        pairs::{refit_awake, update_stale_boxes},
-    },
+    collision::{broad_phase::BroadPhaseSystems, collider::AnyCollider},
     dynamics::solver::config::PhysicsLengthUnit,
     schedule::{PhysicsSchedule, PhysicsStepSystems},
-    step::{self, Stage},
+    step::{self, Owner},
 };
 
 /// Keeps the trees up to date with colliders of type `C`, one instance per type. What does not depend on the
@@ -45,15 +39,7 @@ impl Plugin for SharedTreePlugin {
             .init_resource::<ColliderTreeDiagnostics>()
             .init_resource::<PhysicsLengthUnit>();
         step::install(app);
-        step::add_systems(
-            app,
-            PhysicsSchedule,
-            (
-                reset_trees.in_set(Stage::ResetDiagnostics),
-                update_stale_boxes.in_set(Stage::UpdateBoxes),
-                refit_awake.in_set(Stage::Refit),
-            ),
-        );
+        step::add_systems_of(Owner::Trees, app, PhysicsSchedule.intern());
 
         app.configure_sets(
             PhysicsSchedule,

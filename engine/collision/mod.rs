@@ -4,7 +4,7 @@
 pub mod broad_phase;
 pub mod collider;
 pub(crate) mod contacts;
-mod diagnostics;
+pub(crate) mod diagnostics;
 pub mod narrow_phase;
 pub(crate) mod pairs;
 

@@ -1,17 +1,14 @@
 //! The plugins of the broad phase: its stages, and the one that finds pairs.
 
 use bevy_app::{App, Plugin};
-use bevy_ecs::prelude::*;
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use core::marker::PhantomData;
 
 use super::BroadPhaseSystems;
 use crate::{
-    collision::{
-        diagnostics::CollisionDiagnostics,
-        pairs::{PairSearch, find_new_pairs},
-    },
+    collision::{diagnostics::CollisionDiagnostics, pairs::PairSearch},
     schedule::{PhysicsSchedule, PhysicsStepSystems},
-    step::{self, Stage},
+    step::{self, Owner},
 };
 
 /// The stages that every broad phase shares.
@@ -54,6 +51,6 @@ impl Plugin for SharedBroadPhasePlugin {
     fn build(&self, app: &mut App) {
         step::install(app);
         app.init_resource::<PairSearch>().init_resource::<CollisionDiagnostics>();
-        step::add_systems(app, PhysicsSchedule, find_new_pairs.in_set(Stage::FindPairs));
+        step::add_systems_of(Owner::BroadPhase, app, PhysicsSchedule.intern());
     }
 }

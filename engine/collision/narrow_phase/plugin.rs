@@ -6,18 +6,14 @@ use core::marker::PhantomData;
 
 use super::{CollisionEventSystems, ContactResponse, NarrowPhaseConfig, NarrowPhaseSystems};
 use crate::{
-    collision::{
-        collider::AnyCollider,
-        contacts::{NarrowPhaseBuffers, link_contacts, update_contacts},
-        diagnostics::{CollisionDiagnostics, reset_collision},
-    },
+    collision::{collider::AnyCollider, contacts::NarrowPhaseBuffers, diagnostics::CollisionDiagnostics},
     dynamics::{
-        materials::{refresh_surfaces, watch_surfaces},
+        materials::watch_surfaces,
         rigid_body::{DefaultFriction, DefaultRestitution},
         solver::config::PhysicsLengthUnit,
     },
     schedule::{PhysicsSchedule, PhysicsStepSystems},
-    step::{self, Stage},
+    step::{self, Owner},
 };
 
 /// Computes the contacts between colliders of type `C`, one instance per type. What does not depend on the
@@ -67,16 +63,7 @@ impl Plugin for SharedNarrowPhasePlugin {
             .insert_resource(ContactResponse(self.generate_constraints));
         step::install(app);
         watch_surfaces(app);
-        step::add_systems(
-            app,
-            self.schedule,
-            (
-                reset_collision.in_set(Stage::ResetDiagnostics),
-                refresh_surfaces.in_set(Stage::RefreshSurfaces),
-                update_contacts.in_set(Stage::UpdateContacts),
-                link_contacts.in_set(Stage::LinkContacts),
-            ),
-        );
+        step::add_systems_of(Owner::NarrowPhase, app, self.schedule);
 
         app.configure_sets(
             self.schedule,

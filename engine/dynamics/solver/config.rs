@@ -146,7 +146,7 @@ impl ContactSoftnessCoefficients {
 }
 
 /// Derives this step's softness from the settings.
-pub(super) fn update_contact_softness(
+pub(crate) fn update_contact_softness(
     mut softness: ResMut<ContactSoftnessCoefficients>,
     config: Res<SolverConfig>,
     substeps: Option<Res<SubstepCount>>,

@@ -3,7 +3,7 @@
 pub use crate::dynamics::sleep::{SleepBody, WakeBody};
 
 use bevy_app::{App, Plugin};
-use bevy_ecs::prelude::*;
+use bevy_ecs::schedule::ScheduleLabel;
 
 use crate::{
     dynamics::{
@@ -11,11 +11,11 @@ use crate::{
             RigidBody,
             sleeping::{SleepThreshold, SleepTimer, TimeToSleep},
         },
-        sleep::{follow_requests, mirror_sleeping, sleep_islands, watch_sleeping},
+        sleep::watch_sleeping,
         tables::PhysicsIslands,
     },
     schedule::PhysicsSchedule,
-    step::{self, Stage},
+    step::{self, Owner},
 };
 
 /// Keeps track of which awake bodies touch or are joined: the islands.
@@ -38,14 +38,6 @@ impl Plugin for IslandSleepingPlugin {
         // Each fails only where the requirement is there already.
         let _ = app.try_register_required_components::<RigidBody, SleepThreshold>();
         let _ = app.try_register_required_components::<RigidBody, SleepTimer>();
-        step::add_systems(
-            app,
-            PhysicsSchedule,
-            (
-                follow_requests.in_set(Stage::FollowSleep),
-                sleep_islands.in_set(Stage::Sleep),
-                mirror_sleeping.in_set(Stage::MirrorSleep),
-            ),
-        );
+        step::add_systems_of(Owner::Sleeping, app, PhysicsSchedule.intern());
     }
 }

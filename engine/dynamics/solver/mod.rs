@@ -6,7 +6,7 @@ pub mod softness_parameters;
 pub mod solver_body;
 
 pub(crate) mod config;
-mod diagnostics;
+pub(crate) mod diagnostics;
 pub(crate) mod gather;
 mod plugin;
 pub(crate) mod scatter;

@@ -1,21 +1,20 @@
 //! The plugin that solves contacts, and the group of all the plugins of the solver.
 
 use bevy_app::{App, Plugin, PluginGroup, PluginGroupBuilder};
-use bevy_ecs::prelude::*;
+use bevy_ecs::schedule::ScheduleLabel;
 
 use super::{
-    config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig, update_contact_softness},
-    diagnostics::{SolverDiagnostics, reset_solver},
+    config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig},
+    diagnostics::SolverDiagnostics,
     islands::{IslandPlugin, IslandSleepingPlugin},
     schedule::SolverSchedulePlugin,
     solver_body::SolverBodyPlugin,
-    substeps::{apply_restitution, prepare_rows, store_impulses},
 };
 use crate::{
     dynamics::integrator::IntegratorPlugin,
     math::Scalar,
-    schedule::{PhysicsSchedule, PhysicsStepSystems},
-    step::{self, Stage},
+    schedule::PhysicsSchedule,
+    step::{self, Owner},
 };
 
 /// The plugins of the solver; part of [`PhysicsPlugins`](crate::PhysicsPlugins).
@@ -77,18 +76,6 @@ impl Plugin for SolverPlugin {
         app.init_resource::<SolverDiagnostics>();
         step::install(app);
         step::substep::add_contacts(app);
-        step::add_systems(
-            app,
-            PhysicsSchedule,
-            (
-                reset_solver.in_set(Stage::ResetDiagnostics),
-                update_contact_softness
-                    .after(PhysicsStepSystems::NarrowPhase)
-                    .before(PhysicsStepSystems::Solver),
-                prepare_rows.in_set(Stage::PrepareRows),
-                apply_restitution.in_set(Stage::Restitution),
-                store_impulses.in_set(Stage::StoreImpulses),
-            ),
-        );
+        step::add_systems_of(Owner::Solver, app, PhysicsSchedule.intern());
     }
 }

@@ -100,7 +100,7 @@ pub(crate) fn substep_delta(step: Duration, count: SubstepCount) -> Duration {
 
 /// Advances [`Time<Substeps>`](Substeps) to the end of the first substep, so that systems before the substeps know how long one is.
 /// The substeps after it advance it to theirs.
-fn start_substep_clock(
+pub(crate) fn start_substep_clock(
     mut substeps: ResMut<Time<Substeps>>,
     physics: Res<Time<Physics>>,
     count: Res<SubstepCount>,

@@ -1,20 +1,16 @@
 //! The plugin that puts the solver's stages in order.
 
 use bevy_app::{App, Plugin};
-use bevy_ecs::prelude::*;
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 
-use super::{SolverSystems, SubstepCount, SubstepSchedule, SubstepSolverSystems, start_substep_clock};
+use super::{SolverSystems, SubstepCount, SubstepSchedule, SubstepSolverSystems};
 use crate::{
     dynamics::{
         integrator::IntegrationSystems,
-        solver::{
-            config::PhysicsLengthUnit,
-            diagnostics::SolverDiagnostics,
-            substeps::{OwnSubstepSystems, prepare_params, run_substeps},
-        },
+        solver::{config::PhysicsLengthUnit, diagnostics::SolverDiagnostics, substeps::OwnSubstepSystems},
     },
     schedule::{PhysicsSchedule, PhysicsStepSystems, make_deterministic},
-    step::{self, Stage},
+    step::{self, Owner},
 };
 
 /// Adds [`SubstepSchedule`], [`SubstepCount`] and the order of [`SolverSystems`] and [`SubstepSolverSystems`].
@@ -45,16 +41,7 @@ impl Plugin for SolverSchedulePlugin {
             .init_resource::<OwnSubstepSystems>()
             .init_resource::<PhysicsLengthUnit>();
         step::install(app);
-        step::add_systems(
-            app,
-            PhysicsSchedule,
-            (
-                start_substep_clock.before(PhysicsStepSystems::First),
-                // Bodies move by these parameters also when no contacts are solved.
-                prepare_params.in_set(SolverSystems::PrepareJoints),
-                run_substeps.in_set(Stage::Substeps),
-            ),
-        );
+        step::add_systems_of(Owner::SolverSchedule, app, PhysicsSchedule.intern());
 
         app.edit_schedule(SubstepSchedule, make_deterministic);
         app.configure_sets(
