@@ -1,17 +1,17 @@
-//! Builds many branches at once: whole trees, and the part of a tree above what did not move.
+//! Builds many branches at once: whole trees, and the part of a tree above unchanged subtrees.
 
 use super::stack::Stack;
 use super::tree::{Branch, Entry, FREE_BRANCH, Item, LEAF, MAX_HEIGHT, NONE, ProxyId, ROOT, Tree, admitted};
 use crate::math::{DIM, Vector};
 use crate::shape::Aabb;
 
-/// Places tried for a split, plus one. More make builds slower and trees hardly better.
+/// The number of bins of a split. More make builds slower and trees hardly better.
 const BINS: usize = 8;
-/// Splits below this depth halve the number of items, so that the height is bounded whatever the boxes.
+/// Splits below this depth halve the number of items, which bounds the height for any boxes.
 const MAX_FREE_DEPTH: u32 = 40;
 
 impl Tree {
-    /// Makes the tree anew from `(id, box)` pairs. The `i`-th becomes `ProxyId(i)`.
+    /// Replaces the tree by one of `(id, box)` pairs. The `i`-th becomes `ProxyId(i)`.
     pub fn build(&mut self, leaves: &[(u32, Aabb)]) {
         self.clear();
         for (i, (id, aabb)) in leaves.iter().enumerate() {
@@ -22,8 +22,8 @@ impl Tree {
         self.build_all();
     }
 
-    /// Adds many leaves; their proxies are appended to `proxies` in order. Rebuilds the tree if they are
-    /// many compared with what is there.
+    /// Adds many leaves and appends their proxies to `proxies` in order. Rebuilds the tree if there are many compared with
+    /// the leaves in it.
     pub fn insert_many(&mut self, leaves: &[(u32, Aabb)], proxies: &mut Vec<ProxyId>) {
         if leaves.len() * 8 < self.len() {
             proxies.extend(leaves.iter().map(|(id, aabb)| self.insert(*id, *aabb)));
@@ -38,21 +38,21 @@ impl Tree {
         self.build_all();
     }
 
-    /// Makes all branches anew, and lays them out in the order of a walk.
+    /// Rebuilds all branches and sorts them in the order of a walk.
     pub fn rebuild_full(&mut self) {
         self.gather_leaves();
         self.build_all();
     }
 
-    /// Makes the branches above enlarged and inserted leaves anew; the largest subtrees without any
-    /// stay as they are. Gives the number of subtrees and leaves it sorted: 0 if nothing had changed.
+    /// Rebuilds the branches above enlarged and inserted leaves. The largest subtrees without such leaves stay as they are.
+    /// Returns the number of subtrees and leaves that were sorted, 0 if nothing had changed.
     ///
-    /// Costs as much as what moved. To be called once per step, while nobody queries.
+    /// The cost depends on the changed part of the tree.
     pub fn rebuild_partial(&mut self) -> usize {
         if self.root & LEAF != 0 || self.branches[self.root as usize].enlarged == 0 {
             return 0;
         }
-        // The branches to be made anew serve as the queue of those still to be opened.
+        // The branches to rebuild are also the queue of branches to open.
         self.order.push(self.root);
         let mut opened = 0;
         while let Some(&branch) = self.order.get(opened) {
@@ -98,10 +98,10 @@ impl Tree {
         self.build_over_items();
     }
 
-    /// Builds a tree over `items`, of the branches in `order`, one fewer; empties both.
+    /// Builds a tree over `items` with the branches in `order`, one fewer than items. Empties both.
     ///
-    /// Top down the items are split and the branches linked, in the order of a walk; then backwards
-    /// through the same order, which meets children before parents, boxes and heights are taken.
+    /// Items are split and branches linked top down, in the order of a walk. Then boxes and heights are computed in the
+    /// reverse order, children before parents.
     fn build_over_items(&mut self) {
         let mut items = core::mem::take(&mut self.items);
         let mut order = core::mem::take(&mut self.order);
@@ -138,7 +138,7 @@ impl Tree {
     }
 }
 
-/// Items `start..end` are to become the content of a slot.
+/// A range of items that becomes the content of a slot.
 #[derive(Clone, Copy, Default)]
 struct Task {
     slot: u32,
@@ -147,13 +147,13 @@ struct Task {
     depth: u32,
 }
 
-/// Twice the centre, with 0 where that is not a number or overflows.
+/// Twice the centre, with 0 for components that are NaN or overflow.
 #[inline(always)]
 fn center(aabb: &Aabb) -> Vector {
     Vector::from_array((aabb.min + aabb.max).to_array().map(|c| if c.is_finite() { c } else { 0.0 }))
 }
 
-/// Orders at least two items into two groups, neither empty; gives the size of the first.
+/// Splits at least two items into two groups that are not empty. Returns the size of the first.
 fn split(items: &mut [Item], depth: u32) -> usize {
     if items.len() == 2 {
         return 1;
@@ -216,7 +216,7 @@ fn best_bin(items: &[Item], bin: impl Fn(&Item) -> usize) -> Option<usize> {
     best
 }
 
-/// Moves the items for which `first` holds to the front; gives their number.
+/// Moves the items for which `first` holds to the front. Returns their number.
 fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
     let (mut i, mut j) = (0, items.len());
     while i < j {

@@ -1,4 +1,4 @@
-//! All boxes of a tree anew, by a team.
+//! Sets all boxes of a tree, shared by workers.
 #![expect(unsafe_code, reason = "branches are changed by several threads, each its own subtrees")]
 
 use super::tree::{Branch, LEAF, Leaf, NONE, Tree, admitted};
@@ -6,28 +6,28 @@ use crate::data::Parts;
 use crate::shape::Aabb;
 use crate::team::Team;
 
-/// Into about so many subtrees a tree is cut for the members of a team.
+/// The approximate number of subtrees that workers fit. Fewer balance worse; more take longer to find.
 const SUBTREES: usize = 64;
 
-/// Where leaves get their boxes, and who they are.
+/// The source of the leaves' boxes.
 struct Source<'a, F> {
     leaves: &'a [Leaf],
     boxes: &'a F,
 }
 
 impl Tree {
-    /// Gives every leaf the box of its id, and fits the boxes above. Costs as much as the tree is large: for when much
-    /// of it moved.
+    /// Sets the box of every leaf by its id, and recomputes the boxes above. The cost depends on the size of the tree: use it
+    /// where a large share of the leaves moved. [`Tree`] compares it with other changes.
     pub fn fit(&mut self, boxes: &(impl Fn(u32) -> Aabb + Sync), team: &Team) {
         if self.root == NONE {
             return;
         }
-        // Taken out, so that a panic of `boxes` leaves nothing in it.
+        // Taken out of the tree, so that it is empty after a panic of `boxes`.
         let mut list = core::mem::take(&mut self.order);
         let Self { branches, leaves, root, root_box, .. } = self;
         let source = Source { leaves, boxes };
         if *root & LEAF == 0 {
-            // From the root down, until there are enough branches to begin below.
+            // From the root down, until there are enough subtrees.
             list.push(*root);
             let mut above = 0;
             while above < list.len() && list.len() - above < SUBTREES {
@@ -37,7 +37,7 @@ impl Tree {
             }
             let (above, below) = list.split_at(above);
             let shared = Parts::of(branches);
-            // SAFETY: no branch is below two others neither of which is below the other.
+            // SAFETY: the subtrees are disjoint.
             team.run(below.len(), |i, _| _ = unsafe { source.fit_below(&shared, below[i]) });
             for &branch in above.iter().rev() {
                 let fitted = branches[branch as usize].children.map(|child| source.fitted(branches, child));
@@ -50,10 +50,10 @@ impl Tree {
     }
 }
 
-/// A box, and whether a leaf in it moved since the last rebuild, if it is one of a branch.
+/// A box, and whether a leaf in it moved since the last rebuild (for a branch).
 type Fitted = (Aabb, bool);
 
-/// Gives a branch the boxes of its children.
+/// Sets the boxes of a branch to those of its children.
 #[inline(always)]
 fn put(branch: &mut Branch, fitted: [Fitted; 2]) {
     for (i, (aabb, is_enlarged)) in fitted.into_iter().enumerate() {
@@ -64,7 +64,7 @@ fn put(branch: &mut Branch, fitted: [Fitted; 2]) {
     }
 }
 
-/// The box around a branch whose boxes are right.
+/// The box around a branch whose boxes are up to date.
 #[inline(always)]
 fn around(branch: &Branch) -> Fitted {
     (branch.boxes[0].union(&branch.boxes[1]), branch.enlarged != 0)
@@ -76,15 +76,15 @@ impl<F: Fn(u32) -> Aabb> Source<'_, F> {
         (admitted((self.boxes)(self.leaves[(node & !LEAF) as usize].id)), false)
     }
 
-    /// The box of a node below which all boxes are right.
+    /// The box of a node; all boxes below it are up to date.
     fn fitted(&self, branches: &[Branch], node: u32) -> Fitted {
         if node & LEAF != 0 { self.leaf(node) } else { around(&branches[node as usize]) }
     }
 
-    /// Fits all boxes below a branch, and gives the box around them. As deep as a tree is high.
+    /// Sets all boxes below a branch and returns the box around them. Recurses as deep as the tree is high.
     ///
     /// # Safety
-    /// Nobody may use the branch nor those below it meanwhile.
+    /// While it runs no other thread may use the branch or those below it.
     unsafe fn fit_below(&self, branches: &Parts<Branch>, branch: u32) -> Fitted {
         // SAFETY: by the contract.
         let branch = unsafe { branches.one(branch as usize) };
@@ -92,7 +92,7 @@ impl<F: Fn(u32) -> Aabb> Source<'_, F> {
             if child & LEAF != 0 {
                 self.leaf(child)
             } else {
-                // SAFETY: it is below the branch, and is not the branch.
+                // SAFETY: it is below the branch, and not the branch itself.
                 unsafe { self.fit_below(branches, child) }
             }
         });

@@ -1,19 +1,19 @@
-//! Two trees walked at once, or one against itself: which leaves meet.
+//! Walks of two trees at once, or one against itself, for pairs of leaves that touch.
 //!
-//! Where most leaves moved this visits each branch a few times, while a search for each of them goes down from the
-//! root again and finds every pair twice.
+//! Where most leaves moved a walk visits each branch a few times. Queries for each leaf would start at the root and find every
+//! pair twice.
 
 use super::tree::{LEAF, MAX_HEIGHT, NONE, ROOT, Tree};
 
-/// Two slots, one in each tree, to be searched for pairs of leaves. Of a tree against itself the same slot twice
-/// stands for the pairs within it.
+/// Two slots, one in each tree, to be searched for pairs of leaves. In a walk of a tree against itself, the same slot twice
+/// means the pairs within it.
 pub(super) type Slots = [u32; 2];
 
-/// No walk has more slots before it than these: at most three are left behind where it goes down in both trees, one where
-/// it does in one, two where it does in one tree against itself.
+/// The most slots on the stack of a walk: at most three per level of both trees, one per level of one tree, two per level of
+/// one tree against itself.
 const DEEPEST: usize = 3 * MAX_HEIGHT as usize + 4;
 
-/// The slots still before a walk: memory to use again.
+/// The stack of a walk, kept between walks.
 #[derive(Clone, Debug)]
 pub(super) struct Walk {
     slots: Box<[Slots; DEEPEST]>,
@@ -27,7 +27,7 @@ impl Default for Walk {
 }
 
 impl Walk {
-    /// Notes slots, if there is need. Without a branch: nobody can foresee which boxes touch.
+    /// Pushes slots if `wanted`. Without a branch, which would be mispredicted.
     #[inline(always)]
     fn push_if(&mut self, needed: bool, slots: Slots) {
         self.slots[self.len] = slots;
@@ -40,8 +40,8 @@ impl Walk {
         Some(self.slots[self.len])
     }
 
-    /// Calls `found` with the ids of the leaves, one of each tree, whose boxes touch, below slots whose boxes do. Without
-    /// `b` with those of `a` that touch each other, each pair once.
+    /// Calls `found` with the ids of leaves, one of each tree, whose boxes touch, below slots whose boxes touch. Without `b`:
+    /// leaves of `a` that touch each other, each pair once.
     pub(super) fn meet(&mut self, a: &Tree, b: Option<&Tree>, slots: Slots, mut found: impl FnMut(u32, u32)) {
         self.len = 0;
         self.push_if(true, slots);
@@ -50,7 +50,7 @@ impl Walk {
         }
     }
 
-    /// Divides a walk into parts: breadth first, until there are at least `count` or nothing is left to divide.
+    /// Divides a walk into parts: breadth first, until there are at least `count` or none can be divided.
     pub(super) fn divide(&mut self, a: &Tree, b: Option<&Tree>, count: usize, parts: &mut Vec<Slots>) {
         parts.clear();
         let touch = match b {
@@ -121,7 +121,7 @@ impl Walk {
 }
 
 impl Tree {
-    /// What stands in a slot.
+    /// The content of a slot.
     #[inline(always)]
     fn node_in(&self, slot: u32) -> u32 {
         if slot == ROOT { self.root } else { self.branches[slot as usize >> 1].children[slot as usize & 1] }

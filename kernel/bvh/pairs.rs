@@ -1,5 +1,5 @@
-//! Which pairs of boxes came to touch: every mover asks the trees it may touch, or, where most moved, the trees are
-//! walked at once.
+//! Pairs of boxes that began to touch: by a query of the trees for every mover, or, where most moved, by walking two trees at
+//! once.
 
 use super::meet::{Slots, Walk};
 use super::tree::Tree;
@@ -8,19 +8,20 @@ use crate::shape::Aabb;
 use crate::team::Team;
 use std::sync::{Mutex, PoisonError};
 
-/// How many movers a member of the team asks for at a stretch.
+/// The movers of one block. Smaller blocks cost more to hand out, larger ones balance worse.
 const BLOCK: usize = 32;
 
-/// Two trees are walked at once if one of so many leaves in them moved, and at least so many in all.
+/// Two trees are walked at once if at least one in `MANY.0` of their leaves moved, and at least `MANY.1` leaves in all. A
+/// walk visits also what did not move, queries go down from the root for each mover.
 const MANY: (usize, usize) = (3, 64);
 
-/// Into about how many parts such a walk is cut for each tree against another.
+/// The approximate number of parts of a walk of two trees, which workers share. Fewer balance worse.
 const PARTS: usize = 64;
 
-/// Pairs found are held against those known when there are so many: what was prefetched is still there.
-const TO_LOOK_UP: usize = 128;
+/// The number of found pairs that are compared with the known ones at once: their prefetched slots are still in the cache.
+const LOOK_UP_BATCH: usize = 128;
 
-/// What moves a collider decides in which tree it stands.
+/// The kinds of colliders, by what moves them. Each has a tree of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum TreeKind {
     /// On a static body.
@@ -38,7 +39,7 @@ impl TreeKind {
     pub const ALL: [Self; 4] = [Self::Static, Self::Kinematic, Self::Dynamic, Self::Standalone];
 }
 
-/// A set of kinds: those a mover may form pairs with.
+/// A set of kinds that a mover may form pairs with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PairMask(u8);
 
@@ -64,8 +65,8 @@ impl PairMask {
         self.0 >> kind as u8 & 1 != 0
     }
 
-    /// The kinds that solid colliders of a kind can push or be pushed by: dynamic ones touch
-    /// everything, all others only what is dynamic. Sensors and event collectors ask for more.
+    /// The kinds that solid colliders of a kind can touch: dynamic ones touch everything, all others only dynamic ones. Sensors
+    /// and event collectors need more.
     pub const fn solid(kind: TreeKind) -> Self {
         match kind {
             TreeKind::Dynamic => Self::ALL,
@@ -101,9 +102,9 @@ impl core::ops::IndexMut<TreeKind> for Trees {
 pub struct Mover {
     /// The collider: the id its leaf was inserted with.
     pub id: u32,
-    /// The tree its leaf stands in.
+    /// The tree of its leaf.
     pub kind: TreeKind,
-    /// The kinds to look for partners among.
+    /// The kinds that it may form pairs with.
     pub mask: PairMask,
     /// Its box, as in the tree.
     pub aabb: Aabb,
@@ -114,14 +115,14 @@ pub struct Mover {
 pub struct Movers {
     list: Vec<Mover>,
     moved: BitSet,
-    /// By id; of use only where `moved` has it.
+    /// By id; valid only for ids in `moved`.
     masks: Vec<PairMask>,
-    /// Places in the list by id; as above.
+    /// Indices in the list by id; as above.
     places: Vec<u32>,
 }
 
 impl Movers {
-    /// Adds a mover; whether its id was absent. If it was not, what is said now counts.
+    /// Adds a mover, or replaces the one of the same id. Returns whether the id was absent.
     pub fn insert(&mut self, mover: Mover) -> bool {
         let absent = self.moved.insert(mover.id);
         let i = mover.id as usize;
@@ -151,7 +152,7 @@ impl Movers {
         self.moved.contains(id)
     }
 
-    /// Takes all out; the storage stays.
+    /// Removes all movers and keeps the storage.
     pub fn clear(&mut self) {
         for mover in &self.list {
             self.moved.remove(mover.id);
@@ -159,25 +160,25 @@ impl Movers {
         self.list.clear();
     }
 
-    /// Whether a collider is a mover that looks for partners of a kind.
+    /// Whether a collider is a mover that may form pairs with a kind.
     #[inline(always)]
     fn asks(&self, id: u32, kind: TreeKind) -> bool {
         self.moved.contains(id) && self.masks[id as usize].contains(kind)
     }
 
-    /// Whether the pair of a mover and what it found is left to the other, who finds it as well.
+    /// Whether the other collider of a pair is a mover that finds the pair as well, and reports it.
     #[inline(always)]
     fn is_left_to(&self, found: u32, mover: &Mover) -> bool {
         found < mover.id && self.asks(found, mover.kind)
     }
 }
 
-/// Which pairs are of no interest.
+/// The pairs that are not to be reported.
 pub trait Known: Sync {
-    /// Whether it is plain to see that a pair, lower id first, is none: asked for every two boxes that touch and of which
-    /// one moved.
+    /// A cheap test whether a pair, lower id first, is not to be reported. Called for every two boxes that touch if one
+    /// moved.
     fn is_plain(&self, a: u32, b: u32) -> bool;
-    /// Has the memory brought near that [`contains`](Self::contains) looks at.
+    /// Prefetches the memory that [`contains`](Self::contains) reads.
     fn prefetch(&self, a: u32, b: u32);
     /// Whether the pair is known.
     fn contains(&self, a: u32, b: u32) -> bool;
@@ -200,15 +201,15 @@ impl Known for PairSet {
     }
 }
 
-/// What the movers of a step are searched by: kinds between which most leaves moved by walking both trees at once,
-/// the others by a query for each mover.
+/// How pairs of each two kinds are searched: by walking both trees at once if most leaves moved, else by a query for each
+/// mover.
 #[derive(Debug, Default)]
 struct Plan {
-    /// For each kind those it is queried against.
+    /// The kinds that are queried for movers of each kind.
     queried: [PairMask; 4],
-    /// Parts of walks, and between which kinds.
+    /// Parts of walks with their two kinds.
     parts: Vec<([TreeKind; 2], Slots)>,
-    /// Room to divide a walk in.
+    /// Buffer for dividing walks.
     walk: Walk,
     divided: Vec<Slots>,
 }
@@ -247,14 +248,13 @@ impl Plan {
         }
     }
 
-    /// How many blocks of movers there are to query for.
+    /// The number of blocks of movers.
     fn query_blocks(&self, movers: &Movers) -> usize {
         if self.queried == [PairMask::NONE; 4] { 0 } else { movers.list().len().div_ceil(BLOCK) }
     }
 }
 
-/// What a member of the team needs: the pairs it found, and room. In cache lines of its own, for it is written with
-/// every step of a walk.
+/// The pairs that a worker found, and its buffers. In cache lines of its own, since walks write it all the time.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 struct Member {
@@ -263,9 +263,9 @@ struct Member {
 }
 
 impl Member {
-    /// Adds the pairs `(lower id, higher id)` that one mover is to report: what its box touches in the trees of the
-    /// `kinds` its mask names, less itself, less the pairs of two movers that the lower one reports, less those that
-    /// are [plain](Known::is_plain). Order as the trees have it.
+    /// Adds the pairs `(lower id, higher id)` that one mover reports: colliders whose boxes it touches in the trees of its
+    /// `kinds`, except itself, pairs that the other mover reports, and [plain](Known::is_plain) ones. In the order of the
+    /// trees.
     #[inline]
     fn query(&mut self, mover: &Mover, kinds: PairMask, trees: &Trees, movers: &Movers, known: &impl Known) {
         for kind in TreeKind::ALL.into_iter().filter(|k| mover.mask.contains(*k) && kinds.contains(*k)) {
@@ -279,8 +279,7 @@ impl Member {
         }
     }
 
-    /// Adds the pairs of one part of a walk, less those neither of whom moved and asks for the other, less those that
-    /// are plain or known.
+    /// Adds the pairs of one part of a walk, except those without a mover that may form them, and plain or known ones.
     fn walk(
         &mut self,
         ([a, b], part): ([TreeKind; 2], Slots),
@@ -295,7 +294,7 @@ impl Member {
             if (movers.asks(x, b) || movers.asks(y, a)) && !known.is_plain(pair.0, pair.1) {
                 known.prefetch(pair.0, pair.1);
                 found.push(pair);
-                if found.len() - start == TO_LOOK_UP {
+                if found.len() - start == LOOK_UP_BATCH {
                     drop_known(found, start, known);
                     start = found.len();
                 }
@@ -305,7 +304,7 @@ impl Member {
     }
 }
 
-/// Takes the pairs from `start` on out that are known.
+/// Removes known pairs, from `start` on.
 fn drop_known(found: &mut Vec<(u32, u32)>, start: usize, known: &impl Known) {
     let mut kept = start;
     for i in start..found.len() {
@@ -316,7 +315,7 @@ fn drop_known(found: &mut Vec<(u32, u32)>, start: usize, known: &impl Known) {
     found.truncate(kept);
 }
 
-/// The pairs that movers came into, and the memory to find them with.
+/// The pairs of movers that were found last, and the buffers to find them.
 #[derive(Debug, Default)]
 pub struct FoundPairs {
     sorted: Vec<(u32, u32)>,
@@ -325,7 +324,7 @@ pub struct FoundPairs {
 }
 
 impl FoundPairs {
-    /// Finds the pairs of all movers anew: sorted, each once. Every id must stand in one tree only, once.
+    /// Finds the pairs of all movers, sorted, each once. Every id must be in one tree only, once.
     pub fn find(&mut self, trees: &Trees, movers: &Movers, known: &impl Known, team: &Team) {
         if self.members.len() < team.members() {
             self.members.resize_with(team.members(), Mutex::default);
@@ -342,7 +341,7 @@ impl FoundPairs {
             for mover in &list[block * BLOCK..list.len().min((block + 1) * BLOCK)] {
                 member.query(mover, plan.queried[mover.kind as usize], trees, movers, known);
             }
-            // First all are asked for, then looked at: the memory's answers need not be waited for one by one.
+            // All are prefetched before any is read, so that loads overlap.
             member.found[start..].iter().for_each(|(a, b)| known.prefetch(*a, *b));
             drop_known(&mut member.found, start, known);
         });

@@ -1,4 +1,4 @@
-//! Walks: what overlaps a box or holds a point, what a ray or a swept box meets, what is near.
+//! Queries of one tree: by a box, a point, a ray, a swept box, or distance.
 
 use super::stack::Stack;
 use super::tree::{LEAF, NONE, Tree};
@@ -6,26 +6,24 @@ use crate::math::{DIM, Vector, max, min};
 use crate::shape::Aabb;
 
 impl Tree {
-    /// Calls `found` with the user's id of every leaf whose box touches `aabb`, until it says `false`.
-    /// Whether all were found: `false` if it was stopped. The order depends on the tree.
+    /// Calls `found` with the user's id of every leaf whose box touches `aabb`, until it returns `false`. Returns `false` if
+    /// it was stopped. The order depends on the tree.
     #[inline]
     pub fn query(&self, aabb: &Aabb, found: impl FnMut(u32) -> bool) -> bool {
         self.walk(|b| b.overlaps(aabb), found)
     }
 
-    /// As [`query`](Self::query), for the boxes a point lies in; the border counts.
+    /// As [`query`](Self::query), for boxes that contain a point, the border included.
     #[inline]
     pub fn query_point(&self, point: Vector, found: impl FnMut(u32) -> bool) -> bool {
         self.query(&Aabb::new(point, point), found)
     }
 
-    /// Visits the leaves whose boxes a ray meets, nearer branches first, with their ids and the greatest
-    /// distance still of interest.
+    /// Visits the leaves whose boxes a ray hits, nearer branches first, with their ids and the present maximum distance.
     ///
-    /// `hit` gives the new greatest distance: the distance of what the ray hit there, the same (or more)
-    /// to go on unchanged, negative to stop. Distances count in lengths of `direction`, which need not be
-    /// a unit vector; an infinite `max_distance` counts as `f32::MAX`. A direction of zero asks for the origin's boxes.
-    /// Input that is not a number meets nothing.
+    /// `hit` returns the new maximum distance: that of the hit, the same (or more) to go on unchanged, negative to stop.
+    /// Distances are in lengths of `direction`, which need not be a unit vector; an infinite `max_distance` counts as
+    /// `f32::MAX`. With a direction of zero the ray is its origin. NaN in the input hits nothing.
     #[inline]
     pub fn cast_ray(
         &self,
@@ -37,7 +35,7 @@ impl Tree {
         self.cast_box(Vector::ZERO, origin, direction, max_distance, hit);
     }
 
-    /// As [`cast_ray`](Self::cast_ray), for a box of half size `half` whose centre goes along the ray.
+    /// As [`cast_ray`](Self::cast_ray), for a box of half size `half` whose centre moves along the ray.
     #[inline]
     pub fn cast_box(
         &self,
@@ -53,9 +51,9 @@ impl Tree {
         }
     }
 
-    /// Visits leaves by the distance of their boxes from a point, nearer branches first, with their ids and
-    /// the greatest *squared* distance still of interest. `hit` gives the new one as in
-    /// [`cast_ray`](Self::cast_ray), squared. What is so far that its square overflows is not found.
+    /// Visits leaves by the distance of their boxes from a point, nearer branches first, with their ids and the present
+    /// maximum *squared* distance. `hit` returns the new one as in [`cast_ray`](Self::cast_ray), squared. Leaves whose squared
+    /// distance overflows are not found.
     pub fn query_nearest(&self, point: Vector, max_squared: f32, hit: impl FnMut(u32, f32) -> f32) {
         if point.is_finite() {
             let distance =
@@ -100,8 +98,8 @@ impl Tree {
         }
     }
 
-    /// Depth first, the nearer child first, through all boxes whose `entry` is at most the limit.
-    /// Infinity is a miss whatever the limit, which is held finite for that.
+    /// Depth first, the nearer child first, through all boxes whose `entry` is at most the limit. The limit is finite, so that
+    /// infinity is always a miss.
     #[inline(always)]
     fn walk_ordered(
         &self,
@@ -152,22 +150,22 @@ impl Tree {
     }
 }
 
-/// A box going along a ray, made ready for slab tests.
+/// A box that moves along a ray, prepared for slab tests.
 ///
 /// Per axis, the ray is between the box's planes from `(near − o) / d` to `(far − o) / d`, with near and
 /// far chosen by the sign of d (Williams et al., "An Efficient and Robust Ray–Box Intersection
-/// Algorithm", 2005); the swept box's half size moves the planes outward. Rounding is monotonic, so what
-/// contains a box that is met is met.
+/// Algorithm", 2005); the swept box's half size moves the planes outward. Rounding is monotonic, so a box around a hit box is
+/// hit.
 pub(super) struct Sweep {
-    /// The origin, moved against the planes that are entered.
+    /// The origin, shifted by the half size for the near planes.
     near_origin: [f32; DIM],
-    /// The origin, moved against the planes that are left.
+    /// The origin, shifted by the half size for the far planes.
     far_origin: [f32; DIM],
     inverse: [f32; DIM],
     backward: [bool; DIM],
 }
 
-/// 1 + 2 γ₃: makes up for the rounding of the distances (Ize, "Robust BVH Ray Traversal", 2013).
+/// 1 + 2 γ₃: covers the rounding of the distances (Ize, "Robust BVH Ray Traversal", 2013).
 const OUTWARD: f32 = 1.0 + 6.0 * f32::EPSILON;
 
 impl Sweep {
@@ -185,15 +183,14 @@ impl Sweep {
         }
     }
 
-    /// Where the box is first touched, 0 if it is from the start; infinity if it is not within `limit`,
-    /// which is finite.
+    /// The distance at which the box is first touched, 0 if from the start; infinity if beyond the finite `limit`.
     #[inline(always)]
     pub fn entry(&self, aabb: &Aabb, limit: f32) -> f32 {
         let (low, high) = (aabb.min.to_array(), aabb.max.to_array());
         let (mut enter, mut exit) = (0.0, limit);
         for i in 0..DIM {
             let (near, far) = if self.backward[i] { (high[i], low[i]) } else { (low[i], high[i]) };
-            // On a plane the ray runs along, 0 · ∞ is NaN, which the min/max rule drops.
+            // For a ray along a plane 0 · ∞ is NaN, which the min/max rule drops.
             enter = max((near - self.near_origin[i]) * self.inverse[i], enter);
             exit = min((far - self.far_origin[i]) * self.inverse[i] * OUTWARD, exit);
         }

@@ -1,9 +1,9 @@
 //! The stack of a tree walk.
 
-/// What fits without allocating. A walk needs at most one entry per level, and trees are kept lower.
+/// The entries that fit without allocating. A walk needs at most one entry per level, and nearly all trees are lower.
 const FIXED: usize = 64;
 
-/// A stack whose first entries live on the machine's stack; deeper ones spill to the heap.
+/// A stack with its first entries inline; deeper ones spill to the heap.
 pub(super) struct Stack<T> {
     fixed: [T; FIXED],
     len: usize,
@@ -28,7 +28,7 @@ impl<T: Copy + Default> Stack<T> {
 
     #[inline(always)]
     pub fn pop(&mut self) -> Option<T> {
-        // Only a full fixed part can have spilled.
+        // Entries spill only while the inline part is full.
         if self.len == FIXED
             && let Some(value) = self.spill.pop()
         {

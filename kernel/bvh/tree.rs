@@ -1,33 +1,43 @@
-//! The tree itself: its layout, and changes of one leaf at a time.
+//! The tree: its layout, and changes of one leaf at a time.
 
 use crate::math::DIM;
 use crate::shape::Aabb;
 
 /// A dynamic tree of boxes with a `u32` of the user's each.
 ///
-/// *Layout.* A node with a box of its own is visited only to find that its box misses. So here a
-/// `Branch` holds the boxes of *both* children in one cache line, and a leaf's box stands in its
-/// parent: a walk touches one line per branch that was hit and none for what was missed, and the whole
-/// takes 72 bytes per leaf. (Bounds turned sideways for four-lane tests made rays some 15 % faster and box
-/// queries, which wait for unpredictable jumps, no faster: not worth it.) Leaves keep their number (the [`ProxyId`]) wherever the branches move, so
-/// that a full rebuild can lay the branches out in the order of a walk.
+/// *Layout.* A `Branch` holds the boxes of *both* children in one cache line, and a leaf's box is in its parent. So a walk
+/// reads one line per branch that was hit and none for what was missed. A leaf takes 72 bytes. (Bounds transposed for
+/// four-lane tests made rays some 15 % faster and box queries, which wait for mispredicted jumps, no faster.) Leaves keep
+/// their number (the [`ProxyId`]) when branches move, so that a full rebuild can sort the branches in the order of a walk.
 ///
-/// *Total behaviour.* A box that is not `min ≤ max` in every component (inverted, NaN) is stored as
-/// [`Aabb::EMPTY`]: the leaf lives on, and no query finds it. Infinite boxes are found by everything they
-/// touch. A stale proxy is a bug of the caller: caught in debug builds, else ignored.
+/// *Which change to use when:*
+///
+/// | function | changes | cost | use it |
+/// |---|---|---|---|
+/// | [`set`](Self::set) | the leaf's place in the tree | as removing and inserting | for a leaf that moved far |
+/// | [`enlarge`](Self::enlarge) | the leaf's box, and the boxes above grow | the way to the root, at most | for a few small motions; queries stay right |
+/// | [`place`](Self::place) | the leaf's box alone | least | for many small motions, followed by `refit` or `fit` before any query |
+/// | [`refit`](Self::refit) | the boxes above changed leaves, which may shrink | the changed part of the tree | after `place` or `enlarge`, on one thread |
+/// | [`fit`](Self::fit) | all leaves' boxes, by a function of their ids, and all above | the whole tree, shared by workers | where a third of the leaves moved |
+/// | [`rebuild_partial`](Self::rebuild_partial) | the branches above changed leaves | as the changed part | when [`cost`](Self::cost) has grown |
+/// | [`rebuild_full`](Self::rebuild_full) | all branches | the whole tree, sorted | when it has grown much |
+///
+/// *Invalid input.* A box that is not `min ≤ max` in every component (inverted, NaN) is stored as [`Aabb::EMPTY`]: the leaf
+/// stays, and no query finds it. Infinite boxes are found by all that they touch. A stale proxy is a bug of the caller: it
+/// panics in debug builds and is ignored in release builds.
 ///
 /// *Determinism.* The shape of the tree depends only on the calls made, in order.
 #[derive(Clone, Debug)]
 pub struct Tree {
     pub(super) branches: Vec<Branch>,
     pub(super) leaves: Vec<Leaf>,
-    /// What stands at the top, [`NONE`] if nothing, and its box.
+    /// The node at the top, [`NONE`] if the tree is empty, and its box.
     pub(super) root: u32,
     pub(super) root_box: Aabb,
     pub(super) free_branch: u32,
     pub(super) free_leaf: u32,
     pub(super) len: u32,
-    /// Work space of the builders, empty between calls.
+    /// Buffers of the builders, empty between calls.
     pub(super) items: Vec<Item>,
     pub(super) order: Vec<u32>,
 }
@@ -43,7 +53,7 @@ pub(super) struct Branch {
     pub boxes: [Aabb; 2],
     /// Two nodes: branch numbers, or leaf numbers with [`LEAF`] set.
     pub children: [u32; 2],
-    /// The slot this branch stands in; the next free branch if this one is free.
+    /// The slot of this branch; the next free branch if this one is free.
     pub parent: u32,
     /// 1 above leaves; 0 if the branch is free.
     pub height: u16,
@@ -68,16 +78,16 @@ pub(super) const ROOT: u32 = u32::MAX;
 pub(super) const NONE: u32 = u32::MAX;
 /// Ends the free list of leaves. Differs from [`ROOT`] with [`LEAF`] set, too.
 pub(super) const NO_LEAF: u32 = LEAF - 2;
-/// Two children whose heights differ by more are rotated even if that costs area. Large, because such
-/// a rotation is for the sake of bounded walks only; smaller values make worse trees.
+/// Children whose heights differ by more are rotated even if that costs area. Smaller values make worse trees; the bound
+/// only limits the depth of walks.
 const MAX_IMBALANCE: u16 = 12;
-/// A tree that grew higher is rebuilt: walks would leave their fixed stack.
+/// A tree that grew higher is rebuilt, since walks have a stack of fixed size.
 pub(super) const MAX_HEIGHT: u16 = 72;
 
 pub(super) const FREE_BRANCH: Branch =
     Branch { boxes: [Aabb::EMPTY; 2], children: [NONE; 2], parent: NONE, height: 0, enlarged: 0 };
 
-/// What a slot holds, box and all.
+/// The content of a slot with its box.
 #[derive(Clone, Copy)]
 pub(super) struct Entry {
     pub aabb: Aabb,
@@ -85,7 +95,7 @@ pub(super) struct Entry {
     pub enlarged: bool,
 }
 
-/// What a build takes as given: a leaf, or a subtree that stays as it is.
+/// An item of a build: a leaf, or a subtree that stays as it is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
     pub aabb: Aabb,
@@ -98,7 +108,7 @@ impl Default for Tree {
     }
 }
 
-/// The box as it is stored; see [`Tree`] on total behaviour.
+/// The box as it is stored; see [`Tree`] on invalid input.
 #[inline(always)]
 pub(super) fn admitted(aabb: Aabb) -> Aabb {
     let (low, high) = (aabb.min.to_array(), aabb.max.to_array());
@@ -106,7 +116,7 @@ pub(super) fn admitted(aabb: Aabb) -> Aabb {
 }
 
 impl Tree {
-    /// How many bytes are kept of each leaf.
+    /// The bytes kept of each leaf.
     pub const BYTES_PER_LEAF: usize = size_of::<Branch>() + size_of::<Leaf>();
 
     /// An empty tree without storage.
@@ -164,7 +174,7 @@ impl Tree {
         if self.is_checked(proxy) { self.leaves[proxy.0 as usize].id } else { u32::MAX }
     }
 
-    /// Takes all leaves out; the storage stays.
+    /// Removes all leaves and keeps the storage.
     pub fn clear(&mut self) {
         self.branches.clear();
         self.leaves.clear();
@@ -172,14 +182,14 @@ impl Tree {
         (self.free_branch, self.free_leaf) = (NONE, NO_LEAF);
     }
 
-    /// Adds a leaf where it makes the tree's boxes grow least.
+    /// Adds a leaf at the place where the tree's boxes grow least.
     pub fn insert(&mut self, id: u32, aabb: Aabb) -> ProxyId {
         let leaf = self.new_leaf(id);
         self.attach(leaf, admitted(aabb));
         ProxyId(leaf)
     }
 
-    /// Takes a leaf out. Its proxy may come back from a later [`insert`](Self::insert).
+    /// Removes a leaf. Its proxy may be returned by a later [`insert`](Self::insert).
     pub fn remove(&mut self, proxy: ProxyId) {
         if self.is_checked(proxy) {
             self.detach(proxy.0);
@@ -187,13 +197,13 @@ impl Tree {
             self.free_leaf = proxy.0;
             self.len -= 1;
             if self.len == 0 {
-                // What comes next is numbered as in a new tree.
+                // The next leaves are numbered as in a new tree.
                 self.clear();
             }
         }
     }
 
-    /// Moves a leaf anywhere: as good a tree as after removing and inserting, with the proxy kept.
+    /// Moves a leaf: as removing and inserting it, but the proxy stays the same.
     pub fn set(&mut self, proxy: ProxyId, aabb: Aabb) {
         if self.is_checked(proxy) {
             self.detach(proxy.0);
@@ -201,8 +211,8 @@ impl Tree {
         }
     }
 
-    /// Gives a leaf another box in place: the boxes above it only grow. Cheap, and good for small motions
-    /// followed by [`rebuild_partial`](Self::rebuild_partial).
+    /// Changes the box of a leaf in place; the boxes above it only grow. For small motions, followed by
+    /// [`rebuild_partial`](Self::rebuild_partial).
     pub fn enlarge(&mut self, proxy: ProxyId, aabb: Aabb) {
         if !self.is_checked(proxy) {
             return;
@@ -220,7 +230,7 @@ impl Tree {
         while slot != ROOT {
             let branch = &mut self.branches[slot as usize >> 1];
             let (side, bit) = (slot as usize & 1, 1 << (slot & 1));
-            // An enlarged slot stands under enlarged slots, and a box within larger boxes.
+            // Slots above an enlarged slot are enlarged, and boxes above contain those below.
             if branch.enlarged & bit != 0 && branch.boxes[side].contains(&aabb) {
                 return;
             }
@@ -231,8 +241,8 @@ impl Tree {
         self.root_box = self.root_box.union(&aabb);
     }
 
-    /// Gives a leaf another box in place and leaves the boxes above it as they are: until [`refit`](Self::refit)
-    /// queries may miss it. Cheaper than [`enlarge`](Self::enlarge) where many leaves move.
+    /// Changes the box of a leaf in place, and not the boxes above it: until [`refit`](Self::refit) queries may miss the leaf.
+    /// Cheaper than [`enlarge`](Self::enlarge) where many leaves move.
     pub fn place(&mut self, proxy: ProxyId, aabb: Aabb) {
         if !self.is_checked(proxy) {
             return;
@@ -254,7 +264,7 @@ impl Tree {
         }
     }
 
-    /// Fits the boxes above leaves that were inserted or got another box since the last rebuild: they may shrink.
+    /// Recomputes the boxes above leaves that were inserted or changed since the last rebuild. They may shrink.
     pub fn refit(&mut self) {
         if self.root & LEAF != 0 || self.branches[self.root as usize].enlarged == 0 {
             return;
@@ -270,7 +280,7 @@ impl Tree {
                 }
             }
         }
-        // Children come after their parents, so backwards every box is there when it is needed.
+        // Children come after their parents, so in reverse order every box is computed before it is read.
         while let Some(branch) = self.order.pop() {
             let b = &self.branches[branch as usize];
             let (slot, joined) = (b.parent, b.boxes[0].union(&b.boxes[1]));
@@ -281,8 +291,8 @@ impl Tree {
         }
     }
 
-    /// What queries cost, to compare: the surface of all boxes (in 2D their perimeter), m² (m). Infinite ones are left
-    /// out. Takes O(n).
+    /// A measure of the cost of queries: the surface of all boxes in m², in 2D their perimeter in m. Infinite boxes are
+    /// skipped. Takes O(n).
     pub fn cost(&self) -> f32 {
         let costs = self.branches.iter().filter(|b| b.height > 0).flat_map(|b| b.boxes.map(|b| b.cost()));
         costs.filter(|cost| cost.is_finite()).sum()
@@ -311,7 +321,7 @@ impl Tree {
         Entry { aabb: b.boxes[side], node: b.children[side], enlarged: b.enlarged >> side & 1 != 0 }
     }
 
-    /// Writes a slot and the way back from what now stands there.
+    /// Writes a slot, and the slot's number into its content.
     #[inline(always)]
     pub(super) fn put(&mut self, slot: u32, entry: Entry) {
         if slot == ROOT {
@@ -352,7 +362,7 @@ impl Tree {
         i
     }
 
-    /// Hangs an unattached leaf into the tree.
+    /// Inserts an unattached leaf into the tree.
     pub(super) fn attach(&mut self, leaf: u32, aabb: Aabb) {
         let new = Entry { aabb, node: LEAF | leaf, enlarged: true };
         if self.root == NONE {
@@ -361,7 +371,7 @@ impl Tree {
         }
         let slot = self.best_sibling(&aabb);
         let sibling = if slot == ROOT {
-            // The root has no flag; a branch there is enlarged if anything below it is.
+            // The root has no flag: a branch there is enlarged if anything below it is.
             let enlarged = self.root & LEAF != 0 || self.branches[self.root as usize].enlarged != 0;
             Entry { aabb: self.root_box, node: self.root, enlarged }
         } else {
@@ -372,13 +382,13 @@ impl Tree {
         self.put(branch << 1, sibling);
         self.put(branch << 1 | 1, new);
         self.put(slot, Entry { aabb: sibling.aabb.union(&aabb), node: branch, enlarged: true });
-        self.mend_upward(branch, true);
+        self.update_upward(branch, true);
         if self.node_height(self.root) > MAX_HEIGHT {
             self.rebuild_full();
         }
     }
 
-    /// Takes a leaf out of the tree but keeps its record.
+    /// Removes a leaf from the tree but keeps its record.
     fn detach(&mut self, leaf: u32) {
         let slot = self.leaves[leaf as usize].slot;
         if slot == ROOT {
@@ -392,16 +402,16 @@ impl Tree {
         self.branches[branch as usize] = Branch { parent: self.free_branch, ..FREE_BRANCH };
         self.free_branch = branch;
         if parent != ROOT {
-            self.mend_upward(parent >> 1, false);
+            self.update_upward(parent >> 1, false);
         }
     }
 
     /// The slot whose content becomes the sibling of a new leaf.
     ///
-    /// Standing beside a node costs the area of the common box plus the growth of all boxes above it
-    /// (Catto 2019). One path is followed, towards the child that grows less; it ends where even the
-    /// new leaf's own area on top of the growth so far is no better than the best place seen. Of equal
-    /// places the deepest wins, by way of the lower child, so that a heap of equal boxes stays shallow.
+    /// A sibling costs the area of the common box plus the growth of all boxes above it (Catto 2019). The search follows one
+    /// path, towards the child that grows less. It ends where the new leaf's own area plus the growth so far is no better
+    /// than the best sibling found. Of equal siblings the deepest wins, by way of the lower child, so that a tree of equal
+    /// boxes stays shallow.
     fn best_sibling(&self, aabb: &Aabb) -> u32 {
         let own = aabb.cost();
         let mut node = self.root;
@@ -426,8 +436,8 @@ impl Tree {
         best
     }
 
-    /// The side for a box that makes neither child grow, or both alike (flat boxes have no surface in
-    /// 3D): the one with the nearer centre, of those the lower.
+    /// The side for a box that makes both children grow alike (flat boxes have no surface in 3D): the child with the nearer
+    /// centre, of those the lower one.
     #[cold]
     fn tied_side(&self, branch: &Branch, aabb: &Aabb) -> usize {
         let away = branch.boxes.map(|b| (b.min - aabb.min + (b.max - aabb.max)).length_squared());
@@ -435,9 +445,9 @@ impl Tree {
         usize::from(if away[0] == away[1] { heights[1] < heights[0] } else { away[1] < away[0] })
     }
 
-    /// Sets heights and boxes right from a branch to the root, rotating on the way. After an insertion
-    /// everything above is enlarged; after a removal the walk ends where nothing changes.
-    fn mend_upward(&mut self, mut branch: u32, inserted: bool) {
+    /// Updates heights and boxes from a branch to the root, and rotates. After an insertion all branches above are enlarged;
+    /// after a removal the walk ends where nothing changes.
+    fn update_upward(&mut self, mut branch: u32, inserted: bool) {
         loop {
             self.rotate(branch, inserted);
             let (height, joined) = self.measure(branch);
@@ -467,8 +477,8 @@ impl Tree {
         (1 + height[0].max(height[1]), b.boxes[0].union(&b.boxes[1]))
     }
 
-    /// Exchanges a child with a grandchild on the other side, if that shrinks the other child's box most
-    /// or if the children's heights have drifted too far apart.
+    /// Exchanges a child with a grandchild on the other side, if that shrinks the other child's box most, or if the heights of
+    /// the children differ too much.
     fn rotate(&mut self, branch: u32, for_area: bool) {
         let b = self.branches[branch as usize];
         let heights = b.children.map(|c| self.node_height(c));

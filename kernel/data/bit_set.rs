@@ -22,7 +22,7 @@ impl BitSet {
         }
     }
 
-    /// Adds an id; whether it was absent.
+    /// Adds an id. Returns whether it was absent.
     #[inline]
     pub fn insert(&mut self, id: u32) -> bool {
         let (word, bit) = split(id);
@@ -34,7 +34,7 @@ impl BitSet {
         absent
     }
 
-    /// Takes an id out; whether it was present.
+    /// Removes an id. Returns whether it was present.
     #[inline]
     pub fn remove(&mut self, id: u32) -> bool {
         let (word, bit) = split(id);
@@ -51,7 +51,7 @@ impl BitSet {
         self.words.get(word).is_some_and(|w| w & bit != 0)
     }
 
-    /// Takes everything out; the storage stays.
+    /// Removes all ids and keeps the storage.
     pub fn clear(&mut self) {
         self.words.fill(0);
     }
@@ -66,7 +66,7 @@ impl BitSet {
         self.words.iter().all(|w| *w == 0)
     }
 
-    /// Whether no id is in both.
+    /// Whether both sets have no id in common.
     pub fn is_disjoint(&self, other: &Self) -> bool {
         self.words.iter().zip(&other.words).all(|(a, b)| a & b == 0)
     }
@@ -98,7 +98,7 @@ impl BitSet {
         None
     }
 
-    /// How many blocks of so many times 64 ids there are up to the largest member.
+    /// The number of blocks of `words` times 64 ids, up to the largest member.
     pub fn blocks(&self, words: usize) -> usize {
         self.words.len().div_ceil(words)
     }

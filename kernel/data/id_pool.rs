@@ -1,14 +1,14 @@
-//! Hands out small ids and takes them back.
+//! Allocates and frees small ids.
 
 use super::BitSet;
 
 /// Small dense ids, reused lowest first, but not before the next [`recycle`](Self::recycle).
 ///
-/// Which id is given out follows from those in use alone, not from the order in which others came and went: the
-/// order of ids is the order of work, so a level that is loaded again behaves as it did.
+/// The next id depends only on the ids in use, not on the order in which others were allocated and freed. The order of ids
+/// is the order of work, so a level that is loaded again gives the same bits.
 ///
-/// Between being freed and being recycled an id is neither live nor given out again: whoever still
-/// holds it from this step finds nothing there, rather than a stranger.
+/// Between being freed and being recycled an id is neither live nor allocated again. An id that is still held from this step
+/// is then not live, rather than that of something else.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdPool {
     live: BitSet,
@@ -33,7 +33,7 @@ impl IdPool {
         }
     }
 
-    /// Gives out the lowest reusable id, or else the next id never given out.
+    /// Allocates the lowest reusable id, or else the next id that was never allocated.
     pub fn allocate(&mut self) -> u32 {
         let reusable = if self.free_count == 0 { None } else { self.free.first_from(self.lowest) };
         let id = match reusable {
@@ -52,8 +52,8 @@ impl IdPool {
         id
     }
 
-    /// Takes an id back; [`recycle`](Self::recycle) makes it reusable. Freeing an id that is not live is
-    /// a bug of the caller: ignored in release builds.
+    /// Frees an id; [`recycle`](Self::recycle) makes it reusable. Freeing an id that is not live is a bug of the caller, and
+    /// ignored in release builds.
     pub fn free(&mut self, id: u32) {
         let was_live = self.live.remove(id);
         debug_assert!(was_live, "id {id} is freed but not live");
@@ -71,7 +71,7 @@ impl IdPool {
         }
     }
 
-    /// Whether the id is given out.
+    /// Whether the id is in use.
     #[inline]
     pub fn is_live(&self, id: u32) -> bool {
         self.live.contains(id)
@@ -88,7 +88,7 @@ impl IdPool {
         self.len() == 0
     }
 
-    /// One more than the highest id ever given out: the length of a table indexed by these ids.
+    /// One more than the highest id ever allocated: the length of a table indexed by these ids.
     #[inline]
     pub fn capacity(&self) -> usize {
         self.capacity as usize

@@ -1,8 +1,8 @@
-//! Containers of ids, without a dimension: a pool that hands ids out, a set of them, a map from pairs
-//! of them; and slices that several threads change at once.
+//! Containers of ids for both dimensions: a pool that allocates ids, a set of ids, a map from pairs of ids; and slices that
+//! several threads change at once.
 //!
-//! The containers are plain values: `Clone` is a snapshot, and what they answer depends only on the calls
-//! made, never on addresses, hash seeds or threads.
+//! The containers are plain values: `Clone` is a snapshot, and results depend only on the calls made, never on addresses,
+//! hash seeds or threads.
 
 mod bit_set;
 mod id_pool;

@@ -1,13 +1,12 @@
-//! A hash map from unordered pairs of ids, for "do these two already have a contact?".
+//! A hash map from unordered pairs of ids: from two colliders to their contact.
 
 use super::prefetch;
 
 /// Maps pairs of `u32` ids to a `u32`. `(a, b)` and `(b, a)` are the same pair.
 ///
-/// Open addressing at a load of at most one half with linear probing: one cache line answers most
-/// look-ups. Removal shifts the rest of the run back, so there are no tombstones and a map that stays at
-/// one size never needs rehashing. There is no iteration: an order of hashes would leak into the
-/// simulation.
+/// Open addressing at a load of at most one half with linear probing: most look-ups read one cache line. Removal shifts the
+/// rest of the run back, so there are no tombstones, and a map that stays at one size is never rehashed. There is no
+/// iteration: results would depend on the order of hashes.
 #[derive(Clone, Debug, Default)]
 pub struct PairSet {
     /// Empty or a power of two long.
@@ -22,13 +21,13 @@ struct Slot {
     value: u32,
 }
 
-/// No pair of two different ids.
+/// The pair of a free slot. Two different ids never make it.
 const VACANT: [u32; 2] = [u32::MAX; 2];
 const FREE: Slot = Slot { pair: VACANT, value: 0 };
 const MIN_SLOTS: usize = 16;
 
 impl PairSet {
-    /// How many bytes a slot has; there are two to four for each pair.
+    /// The bytes of a slot. There are two to four slots for each pair.
     pub const BYTES_PER_SLOT: usize = size_of::<Slot>();
 
     /// An empty map without storage.
@@ -36,11 +35,11 @@ impl PairSet {
         Self { slots: Vec::new(), len: 0 }
     }
 
-    /// Maps a pair to a value; gives the value it had. The pair `(u32::MAX, u32::MAX)` cannot be held:
-    /// inserting it does nothing.
+    /// Maps a pair to a value. Returns the value it had. The pair `(u32::MAX, u32::MAX)` cannot be stored: inserting it does
+    /// nothing.
     pub fn insert(&mut self, a: u32, b: u32, value: u32) -> Option<u32> {
         let pair = ordered(a, b);
-        debug_assert!(pair != VACANT, "the pair of two u32::MAX cannot be held");
+        debug_assert!(pair != VACANT, "the pair of two u32::MAX cannot be stored");
         if pair == VACANT {
             return None;
         }
@@ -66,7 +65,7 @@ impl PairSet {
         (slot.pair == pair).then_some(slot.value)
     }
 
-    /// Has the pair's place brought near, to be looked at soon.
+    /// Prefetches the slot of a pair.
     #[inline]
     pub fn prefetch(&self, a: u32, b: u32) {
         if !self.slots.is_empty() {
@@ -80,7 +79,7 @@ impl PairSet {
         self.get(a, b).is_some()
     }
 
-    /// Takes a pair out; gives the value it had.
+    /// Removes a pair. Returns the value it had.
     pub fn remove(&mut self, a: u32, b: u32) -> Option<u32> {
         let pair = ordered(a, b);
         if self.slots.is_empty() || pair == VACANT {
@@ -91,7 +90,7 @@ impl PairSet {
         if removed.pair != pair {
             return None;
         }
-        // Whatever lies further in this run, and whose probe passes the hole, moves into it.
+        // Pairs further in this run whose probe passes the hole move into it.
         let mask = self.slots.len() - 1;
         let mut at = hole;
         loop {
@@ -122,7 +121,7 @@ impl PairSet {
         self.len == 0
     }
 
-    /// Makes room for `pairs` pairs in all, so that inserting them does not allocate.
+    /// Grows to a capacity of `pairs` pairs in all, so that inserting them does not allocate.
     pub fn reserve(&mut self, pairs: usize) {
         let slots = (pairs * 2).next_power_of_two().max(MIN_SLOTS);
         if slots > self.slots.len() {
@@ -130,7 +129,7 @@ impl PairSet {
         }
     }
 
-    /// Takes everything out; the storage stays.
+    /// Removes all pairs and keeps the storage.
     pub fn clear(&mut self) {
         self.slots.fill(FREE);
         self.len = 0;
@@ -150,7 +149,7 @@ fn ordered(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The slot that holds the pair, or the free one that ends its run. Ends because half are free.
+/// The slot of the pair, or the free slot that ends its run. The loop ends because half of the slots are free.
 #[inline(always)]
 fn find(slots: &[Slot], pair: [u32; 2]) -> usize {
     let mask = slots.len() - 1;

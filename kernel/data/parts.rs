@@ -1,13 +1,13 @@
-//! A slice that several threads change at once, each its own part.
-#![expect(unsafe_code, reason = "who takes parts answers for their being disjoint")]
+//! A slice that several threads change at once, each its own range.
+#![expect(unsafe_code, reason = "callers ensure that ranges in use are disjoint")]
 
 use super::prefetch::prefetch;
 use core::{cell::UnsafeCell, ops::Range};
 
-/// A slice whose parts are changed at once.
+/// A slice whose ranges are changed by several threads at once.
 pub(crate) struct Parts<'a, T>(&'a [UnsafeCell<T>]);
 
-// SAFETY: who takes parts takes care that no two overlap.
+// SAFETY: by the contracts below no two ranges in use overlap.
 unsafe impl<T: Send> Sync for Parts<'_, T> {}
 
 impl<'a, T> Parts<'a, T> {
@@ -20,26 +20,30 @@ impl<'a, T> Parts<'a, T> {
         self.0.len()
     }
 
-    /// Has an element brought near, if there is one.
+    /// Prefetches an element, if there is one.
     #[inline(always)]
     pub(crate) fn prefetch(&self, index: u32) {
         prefetch(self.0, index);
     }
 
+    /// The elements of a range.
+    ///
     /// # Safety
-    /// While the part is in use nobody may take one that overlaps it.
+    /// While the range is in use, no range or element that overlaps it may be taken.
     #[inline(always)]
     pub(crate) unsafe fn take(&self, range: Range<usize>) -> &'a mut [T] {
         let cells = &self.0[range];
-        // SAFETY: the layouts are the same, and by the contract nobody else has these.
+        // SAFETY: the layouts are the same, and by the contract this is the only reference to these elements.
         unsafe { core::slice::from_raw_parts_mut(UnsafeCell::raw_get(cells.as_ptr()), cells.len()) }
     }
 
+    /// One element.
+    ///
     /// # Safety
-    /// While the element is in use nobody may take it, nor a part that it is in.
+    /// While the element is in use, neither it nor a range with it may be taken.
     #[inline(always)]
     pub(crate) unsafe fn one(&self, index: usize) -> &'a mut T {
-        // SAFETY: by the contract nobody else has it.
+        // SAFETY: by the contract this is the only reference to the element.
         unsafe { &mut *self.0[index].get() }
     }
 }

@@ -1,8 +1,8 @@
-//! Asking for memory before it is needed.
+//! Prefetching memory.
 #![cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "the instruction is an intrinsic"))]
 
-/// Brings an element into the cache, if there is one: it will be needed some hundred nanoseconds from now, and no
-/// CPU can guess which. Changes nothing but time.
+/// Prefetches an element into the cache, if there is one. For elements that are needed in some hundred nanoseconds and that
+/// the CPU cannot predict. Results do not depend on it.
 #[inline(always)]
 pub(crate) fn prefetch<T>(slice: &[T], index: u32) {
     #[cfg(target_arch = "x86_64")]
@@ -13,7 +13,7 @@ pub(crate) fn prefetch<T>(slice: &[T], index: u32) {
             // SAFETY: a prefetch of any address is harmless, and this is within the element.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(64 * line)) };
         }
-        // It need not begin where a line does: the last byte may be in one line more.
+        // The element may begin within a line, so its last byte may be in one more line.
         if !align_of::<T>().is_multiple_of(64) {
             // SAFETY: as above.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(size_of::<T>().saturating_sub(1))) };

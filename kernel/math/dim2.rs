@@ -25,11 +25,17 @@ pub struct Angular<N = f32> {
     pub z: N,
 }
 
-/// The inverse of a moment of inertia; zero does not turn.
+/// A moment of inertia, in kg·m².
+pub type Inertia<N = f32> = SymTensor<N>;
+
+/// The inverse of a moment of inertia, in 1 / (kg·m²). A body with 0 does not turn.
+pub type InvInertia<N = f32> = SymTensor<N>;
+
+/// An [`Inertia`] or an [`InvInertia`]: in the plane one number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
-pub struct InvInertia<N = f32> {
-    /// 1 / I, in 1 / (kg·m²).
+pub struct SymTensor<N = f32> {
+    /// About the axis out of the plane.
     pub zz: N,
 }
 
@@ -238,8 +244,8 @@ impl Angular {
     }
 }
 
-impl<N: Num> InvInertia<N> {
-    /// Does not turn.
+impl<N: Num> SymTensor<N> {
+    /// All entries 0.
     pub const ZERO: Self = Self { zz: N::ZERO };
 
     /// Every entry times a factor.
@@ -247,28 +253,28 @@ impl<N: Num> InvInertia<N> {
     pub fn scaled(self, factor: N) -> Self {
         Self { zz: self.zz * factor }
     }
-    /// The change of angular velocity that an angular impulse makes.
+    /// The product with a vector; of an [`InvInertia`] the change of angular velocity by an angular impulse.
     #[inline(always)]
     pub fn apply(self, impulse: Angular<N>) -> Angular<N> {
         Angular { z: self.zz * impulse.z }
     }
 }
 
-impl<N: Lane> InvInertia<N> {
+impl<N: Lane> SymTensor<N> {
     /// Writes lane `i`.
     #[inline(always)]
-    pub fn set(&mut self, i: usize, v: InvInertia) {
+    pub fn set(&mut self, i: usize, v: SymTensor) {
         self.zz.set(i, v.zz);
     }
 }
 
-impl InvInertia {
+impl SymTensor {
     /// The inverse inertia in world axes of a body turned by `rotation`; in 2D the same.
     #[inline]
     pub fn rotated(self, _rotation: Rot) -> Self {
         self
     }
-    /// The inverse inertia of a body whose turning about the axes in `locks` is held.
+    /// The inverse inertia of a body that does not turn about the axes in `locks`.
     #[inline]
     pub fn locked(self, locks: AxisLocks) -> Self {
         if locks.rotation() == 0 { self } else { Self::ZERO }
@@ -341,8 +347,8 @@ impl<N: Num> Rot<N> {
 }
 
 impl<N: Lane> Rot<N> {
-    /// Scaled to unit length, cheaply where it is within 0.05 % of it, as after a product: by three terms of
-    /// (1 + e)^-½, exact to rounding.
+    /// Scaled to unit length. Within 0.05 % of it, as after a product, by three terms of (1 + e)^-½: cheap, and exact to
+    /// rounding.
     #[inline(always)]
     pub fn renormalized(self) -> Self {
         let e = self.cos * self.cos + self.sin * self.sin - N::ONE;
@@ -355,12 +361,12 @@ impl<N: Lane> Rot<N> {
     pub fn small_turn(self) -> Angular<N> {
         Angular { z: self.sin }
     }
-    /// The turn from one rotation to another, if small.
+    /// The small turn from one rotation to another.
     #[inline(always)]
     pub fn difference(self, other: Self) -> Angular<N> {
         self.inverse().mul(other).small_turn()
     }
-    /// The cosine of the angle it turns by.
+    /// The cosine of the rotation's angle.
     #[inline(always)]
     pub fn cos_angle(self) -> N {
         self.cos
@@ -396,8 +402,8 @@ impl Rot {
     pub fn turned_by(self, delta: Angular) -> Self {
         Self::from_angle(delta.z).mul(self).normalized()
     }
-    /// Scaled to unit length whatever its length, bit for bit the same where that is 1 to rounding; NaN where
-    /// it has no direction.
+    /// Scaled to unit length from any length. Bits stay the same where the length is 1 to rounding. NaN if all components
+    /// are 0.
     pub fn admitted(self) -> Self {
         let [cos, sin] = [self.cos, self.sin].map(f64::from);
         let square = cos * cos + sin * sin;
@@ -412,40 +418,40 @@ impl Rot {
     pub fn is_finite(self) -> bool {
         self.cos * 0.0 + self.sin * 0.0 == 0.0
     }
-    /// The columns of the rotation matrix: where the axes go.
+    /// The columns of the rotation matrix: the rotated axes.
     #[inline]
     pub fn axes(self) -> [Vector; DIM] {
         [Vector { x: self.cos, y: self.sin }, Vector { x: -self.sin, y: self.cos }]
     }
 }
 
-/// Translation and rotation axes of the world along or about which a body does not move.
+/// Axes of the world along which a body does not move or about which it does not turn.
 ///
 /// Bits as in Avian's `LockedAxes`: translation x, y at bits 5, 4; rotation at bit 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AxisLocks(pub u8);
 
 impl AxisLocks {
-    /// Nothing held.
+    /// No locks.
     pub const NONE: Self = Self(0);
 
-    /// The rotation bits, 0 if it may turn.
+    /// The rotation bits; 0 if the rotation is not locked.
     #[inline]
     pub fn rotation(self) -> u8 {
         self.0 & 0b000_001
     }
-    /// 1 along the free axes, 0 along the held ones.
+    /// 1 along the free axes, 0 along the locked ones.
     #[inline]
     pub fn translation_factors(self) -> Vector {
         let free = |bit: u8| if self.0 & bit == 0 { 1.0 } else { 0.0 };
         Vector { x: free(0b100_000), y: free(0b010_000) }
     }
-    /// 1 about the free axes, 0 about the held ones.
+    /// 1 about the free axes, 0 about the locked ones.
     #[inline]
     pub fn rotation_factors(self) -> Angular {
         Angular { z: if self.rotation() == 0 { 1.0 } else { 0.0 } }
     }
-    /// Whether any translation axis is held.
+    /// Whether any translation axis is locked.
     #[inline]
     pub fn is_translation_held(self) -> bool {
         self.0 & 0b110_000 != 0

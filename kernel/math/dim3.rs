@@ -22,10 +22,16 @@ pub struct Vector<N = f32> {
 /// An angular velocity, torque or moment, along its axis, right-handed.
 pub type Angular<N = f32> = Vector<N>;
 
-/// The inverse of an inertia tensor, symmetric; zero does not turn.
+/// An inertia tensor, in kg·m².
+pub type Inertia<N = f32> = SymTensor<N>;
+
+/// The inverse of an inertia tensor, in 1 / (kg·m²). A body with 0 does not turn.
+pub type InvInertia<N = f32> = SymTensor<N>;
+
+/// A symmetric 3 × 3 matrix: an [`Inertia`] or an [`InvInertia`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
-pub struct InvInertia<N = f32> {
+pub struct SymTensor<N = f32> {
     /// Diagonal, x.
     pub xx: N,
     /// Diagonal, y.
@@ -206,8 +212,8 @@ impl<N: Lane> Vector<N> {
     }
 }
 
-impl<N: Num> InvInertia<N> {
-    /// Does not turn.
+impl<N: Num> SymTensor<N> {
+    /// All entries 0.
     pub const ZERO: Self =
         Self { xx: N::ZERO, yy: N::ZERO, zz: N::ZERO, xy: N::ZERO, xz: N::ZERO, yz: N::ZERO };
 
@@ -223,7 +229,7 @@ impl<N: Num> InvInertia<N> {
             yz: self.yz * factor,
         }
     }
-    /// The change of angular velocity that an angular impulse makes.
+    /// The product with a vector; of an [`InvInertia`] the change of angular velocity by an angular impulse.
     #[inline(always)]
     pub fn apply(self, v: Angular<N>) -> Angular<N> {
         Vector {
@@ -234,10 +240,10 @@ impl<N: Num> InvInertia<N> {
     }
 }
 
-impl<N: Lane> InvInertia<N> {
+impl<N: Lane> SymTensor<N> {
     /// Writes lane `i`.
     #[inline(always)]
-    pub fn set(&mut self, i: usize, v: InvInertia) {
+    pub fn set(&mut self, i: usize, v: SymTensor) {
         self.xx.set(i, v.xx);
         self.yy.set(i, v.yy);
         self.zz.set(i, v.zz);
@@ -247,7 +253,7 @@ impl<N: Lane> InvInertia<N> {
     }
 }
 
-impl InvInertia {
+impl SymTensor {
     /// A diagonal tensor.
     #[inline]
     pub const fn from_diagonal(v: Vector) -> Self {
@@ -256,10 +262,10 @@ impl InvInertia {
 
     /// The inverse of this symmetric matrix; zero if it is singular, or if the inverse is not finite.
     ///
-    /// In `f64`: the determinant is a product of three entries, which in `f32` underflows for bodies of millimetres.
+    /// Computed in `f64`: the determinant is a product of three entries, which in `f32` underflows for bodies of millimetres.
     ///
-    /// One of the moments of a needle that lies askew may be lost in the rounding of the others, even be negative. It then
-    /// counts as about that rounding.
+    /// In axes other than its own, the smallest moment of a needle may be less than the rounding of the others, or negative.
+    /// It is then raised to about that rounding.
     pub fn inverse(self) -> Self {
         let [mut xx, mut yy, mut zz] = [self.xx, self.yy, self.zz].map(f64::from);
         let [xy, xz, yz] = [self.xy, self.xz, self.yz].map(f64::from);
@@ -283,15 +289,15 @@ impl InvInertia {
             xz: (c * k) as f32,
             yz: ((xy * xz - xx * yz) * k) as f32,
         };
-        // One that is infinite or NaN makes the sum NaN.
+        // An infinite or NaN entry makes the sum NaN.
         let Self { xx, yy, zz, xy, xz, yz } = inverse.scaled(0.0);
         if xx + yy + zz + xy + xz + yz == 0.0 { inverse } else { Self::ZERO }
     }
 
-    /// The inverse inertia, in world axes, of a body whose turning about the axes in `locks` is held.
+    /// The inverse inertia, in world axes, of a body that does not turn about the axes in `locks`.
     ///
-    /// Holding an axis is an infinite moment of inertia about it. In the inverse that is a rank-one
-    /// downdate per held axis: I⁻¹ − (I⁻¹ e)(I⁻¹ e)ᵀ / (eᵀ I⁻¹ e).
+    /// A locked axis has an infinite moment of inertia. In the inverse that is a rank-one
+    /// downdate per locked axis: I⁻¹ − (I⁻¹ e)(I⁻¹ e)ᵀ / (eᵀ I⁻¹ e).
     pub fn locked(self, locks: AxisLocks) -> Self {
         let mut m = self;
         for (bit, axis) in [(0b100, Vector::X), (0b010, Vector::Y), (0b001, Vector::Z)] {
@@ -308,7 +314,7 @@ impl InvInertia {
                 }
             }
         }
-        // What is held is exactly zero, whatever the rounding left.
+        // Entries of locked axes are exactly zero, without the rounding.
         let f = locks.rotation_factors();
         Self {
             xx: m.xx * f.x,
@@ -403,8 +409,8 @@ impl<N: Num> Rot<N> {
 }
 
 impl<N: Lane> Rot<N> {
-    /// Scaled to unit length, cheaply where it is within 0.05 % of it, as after a product: by three terms of
-    /// (1 + e)^-½, exact to rounding.
+    /// Scaled to unit length. Within 0.05 % of it, as after a product, by three terms of (1 + e)^-½: cheap, and exact to
+    /// rounding.
     #[inline(always)]
     pub fn renormalized(self) -> Self {
         let e = self.x * self.x + self.y * self.y + self.z * self.z + self.w * self.w - N::ONE;
@@ -417,12 +423,12 @@ impl<N: Lane> Rot<N> {
     pub fn small_turn(self) -> Angular<N> {
         Vector { x: self.x, y: self.y, z: self.z } * N::splat(2.0)
     }
-    /// The turn from one rotation to another, if small.
+    /// The small turn from one rotation to another.
     #[inline(always)]
     pub fn difference(self, other: Self) -> Angular<N> {
         self.inverse().mul(other).small_turn()
     }
-    /// The cosine of the angle it turns by.
+    /// The cosine of the rotation's angle.
     #[inline(always)]
     pub fn cos_angle(self) -> N {
         N::splat(2.0) * self.w * self.w - N::ONE
@@ -476,8 +482,8 @@ impl Rot {
     pub fn is_finite(self) -> bool {
         self.x * 0.0 + self.y * 0.0 + self.z * 0.0 + self.w * 0.0 == 0.0
     }
-    /// Scaled to unit length whatever its length, bit for bit the same where that is 1 to rounding; NaN where
-    /// it has no direction.
+    /// Scaled to unit length from any length. Bits stay the same where the length is 1 to rounding. NaN if all components
+    /// are 0.
     pub fn admitted(self) -> Self {
         let [x, y, z, w] = [self.x, self.y, self.z, self.w].map(f64::from);
         let square = x * x + y * y + z * z + w * w;
@@ -488,7 +494,7 @@ impl Rot {
         let [x, y, z, w] = [x, y, z, w].map(|c| (c / length) as f32);
         Self { x, y, z, w }
     }
-    /// The columns of the rotation matrix: where the axes go.
+    /// The columns of the rotation matrix: the rotated axes.
     #[inline]
     pub fn axes(self) -> [Vector; DIM] {
         let Self { x, y, z, w } = self;
@@ -504,34 +510,34 @@ impl Rot {
     }
 }
 
-/// Translation and rotation axes of the world along or about which a body does not move.
+/// Axes of the world along which a body does not move or about which it does not turn.
 ///
 /// Bits as in Avian's `LockedAxes`: translation x, y, z at bits 5, 4, 3; rotation x, y, z at 2, 1, 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AxisLocks(pub u8);
 
 impl AxisLocks {
-    /// Nothing held.
+    /// No locks.
     pub const NONE: Self = Self(0);
 
-    /// The rotation bits, 0 if it may turn about every axis.
+    /// The rotation bits; 0 if no rotation is locked.
     #[inline]
     pub fn rotation(self) -> u8 {
         self.0 & 0b000_111
     }
-    /// 1 along the free axes, 0 along the held ones.
+    /// 1 along the free axes, 0 along the locked ones.
     #[inline]
     pub fn translation_factors(self) -> Vector {
         let free = |bit: u8| if self.0 & bit == 0 { 1.0 } else { 0.0 };
         Vector { x: free(0b100_000), y: free(0b010_000), z: free(0b001_000) }
     }
-    /// 1 about the free axes, 0 about the held ones.
+    /// 1 about the free axes, 0 about the locked ones.
     #[inline]
     pub fn rotation_factors(self) -> Angular {
         let free = |bit: u8| if self.0 & bit == 0 { 1.0 } else { 0.0 };
         Vector { x: free(0b100), y: free(0b010), z: free(0b001) }
     }
-    /// Whether any translation axis is held.
+    /// Whether any translation axis is locked.
     #[inline]
     pub fn is_translation_held(self) -> bool {
         self.0 & 0b111_000 != 0

@@ -1,4 +1,4 @@
-//! The lane: what rows of numbers are computed with, one `f32` or several side by side.
+//! Lanes: one `f32`, or several that are computed with side by side.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -8,7 +8,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[repr(C, align(16))]
 pub struct Quad(pub [f32; 4]);
 
-/// The proof that the CPU has AVX2: only [`find`](Self::find) makes one.
+/// Proof that the CPU has AVX2. Only [`find`](Self::find) makes one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Avx2(());
 
@@ -23,24 +23,24 @@ impl Avx2 {
     }
 }
 
-/// How many floats the lanes have that rows are computed with. The results have the same bits with any.
+/// The number of floats in a lane of rows. Results have the same bits with any width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
-    /// Every CPU's: SSE2, NEON, or plain arrays.
+    /// On every CPU: SSE2, NEON, or plain arrays.
     Four,
-    /// AVX2's.
+    /// With AVX2.
     Eight(Avx2),
 }
 
 impl Default for Width {
-    /// The widest that this CPU has.
+    /// The widest lane of this CPU.
     fn default() -> Self {
         Self::of(false)
     }
 }
 
 impl Width {
-    /// The widest that this CPU has, or four if it is to be `narrow`.
+    /// The widest lane of this CPU, or four floats if `narrow`.
     pub fn of(narrow: bool) -> Self {
         match Avx2::find() {
             Some(avx2) if !narrow => Self::Eight(avx2),
@@ -49,7 +49,7 @@ impl Width {
     }
 }
 
-/// A number the vector types can be made of.
+/// A number that vector types consist of.
 pub trait Num:
     Copy
     + Debug
@@ -97,9 +97,9 @@ impl<const W: usize> Ids for [u32; W] {
 /// `max` and `min` follow `a > b ? a : b` and `a < b ? a : b`, so that a NaN in either operand gives
 /// `b`, on every instruction set.
 pub trait Lane: Num {
-    /// How many floats stand side by side.
+    /// The number of floats side by side.
     const WIDTH: usize;
-    /// The outcome of a comparison, lane by lane.
+    /// The result of a comparison, lane by lane.
     type Mask: Copy;
     /// The index of a row for each lane.
     type Ids: Ids;
@@ -124,7 +124,7 @@ pub trait Lane: Num {
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Both of two masks.
     fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// Whether the mask is set in any lane. Only for skipping work that would select the old value.
+    /// Whether the mask is set in any lane. Use it only to skip work that would select the old value.
     fn any(mask: Self::Mask) -> bool;
     /// The mask as bits, lane 0 lowest.
     fn bits(mask: Self::Mask) -> u32;
@@ -133,7 +133,7 @@ pub trait Lane: Num {
     /// Loads one quad for each lane through `fetch` and transposes: element `k` of the result holds
     /// float `k` of every quad.
     fn gather<'a>(ids: &Self::Ids, fetch: impl Fn(u32) -> &'a Quad) -> [Self; 4];
-    /// The inverse of [`gather`](Self::gather): hands each lane's quad to `put`.
+    /// The inverse of [`gather`](Self::gather): passes each lane's quad to `put`.
     fn scatter(values: [Self; 4], ids: &Self::Ids, put: impl FnMut(u32, Quad));
 }
 
@@ -235,7 +235,7 @@ pub fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// `value` held between `low` and `high`; NaN becomes `high`.
+/// `value` clamped to `low` … `high`; NaN becomes `high`.
 #[inline(always)]
 pub fn clamp(value: f32, low: f32, high: f32) -> f32 {
     max(min(value, high), low)

@@ -1,9 +1,9 @@
-//! Eight lanes on x86-64 with AVX2, chosen when the program runs.
+//! Eight lanes on x86-64 with AVX2, chosen at run time.
 //!
-//! The operations need AVX2, which their signatures cannot say: the traits are those of every lane. So the type is private
-//! to the crate, and only entry points with the feature `avx2`, into which every method is inlined, name it as their
-//! lane; an entry point is called with an [`Avx2`](super::Avx2) in hand. `tests/rules.rs` lists the files that may name the
-//! type. Each operation gives the bits that the four-lane type gives.
+//! The operations need AVX2, but the traits of lanes have no target feature. So the type is private to the crate, and only
+//! entry points with the feature `avx2` use it. All methods are inlined into these, and callers of an entry point have an
+//! [`Avx2`](super::Avx2). `tests/rules.rs` lists the files that may name the type. Each operation gives the bits of the
+//! four-lane type.
 #![expect(unsafe_code, reason = "AVX intrinsics; lanes of this width are only used where the CPU has them")]
 
 use super::lane::{Lane, Num, Quad};

@@ -1,7 +1,11 @@
-//! Numbers with a dimension and a lane. Owns the algebra every other module computes with.
+//! The algebra of all other modules, in both dimensions and for any lane.
 //!
-//! Each concept is its own small type with the *same operations* in 2D and 3D, so that solver rows are
-//! written once. `N` is `f32`, a wide lane, or (for world positions only) `f64`.
+//! Each concept is a small type with the *same operations* in 2D and 3D, so that solver rows are written once. `N` is `f32`,
+//! a wide lane, or (for world positions only) `f64`.
+//!
+//! Rotations: [`Rot`] is the only type of them (a unit complex number in 2D, a unit quaternion in 3D); [`Pose`] is a rotation
+//! and a translation between frames, [`WorldPose`] one with a position in [`Scalar`] precision. Quantities about an axis are
+//! [`Angular`].
 
 /// Implements `+`, `-`, unary `-`, `* N`, `+=` and `-=` field by field.
 macro_rules! componentwise {
@@ -88,8 +92,8 @@ pub use pose::{Pose, WorldPose, WorldVector};
 pub use tangent::{Tangent, TangentFrame, TangentMass};
 pub use trig::{atan2, cos, sin, sin_cos};
 
-/// How far the square of a rotation's length may be from 1 to count as 1. A product of a few rotations stays
-/// within a tenth of it; the renormalisation of what moves sees to the rest.
+/// A rotation counts as of unit length if the square of its length differs from 1 by at most this. A product of a few
+/// rotations differs by a tenth of it; the integrator renormalises rotations of moving bodies.
 const UNIT_TOLERANCE: f64 = 1.0e-5;
 
 /// The precision of world positions: `f64` with the feature `f64`, else `f32`. All else is `f32`.

@@ -1,6 +1,6 @@
-//! Inverse inertia in world axes, also of needles, whose moments differ by more than `f32` resolves.
+//! Inverse inertia in world axes, also of needles: their moments differ by more than `f32` resolves.
 
-use super::{InvInertia, Rot, Vector};
+use super::{Rot, SymTensor, Vector};
 
 /// The largest ratio of principal moments of inertia that `f32` resolves in world axes: that of a box 140 times as
 /// long as thick. With more, energy comes from rounding.
@@ -9,18 +9,18 @@ pub(crate) const MAX_RATIO: f32 = 1.0e4;
 /// The relative rounding of an entry.
 const ROUNDING: f32 = 2.0e-7;
 
-impl InvInertia {
+impl SymTensor {
     /// The tensor in world axes of a body turned by `rotation`: R I R⁻¹.
     ///
-    /// A principal value that is over 10,000 times the others is cut down to that. Rounding of it would otherwise be all
-    /// there is of the others: a pole a thousand times as long as thick would turn across as easily as about its axis.
+    /// A principal value over 10,000 times the others is reduced to that. Its rounding would otherwise exceed the others: a
+    /// pole a thousand times as long as thick would turn across its axis as easily as about it.
     #[inline]
     pub fn rotated(self, rotation: Rot) -> Self {
         self.blunted(MAX_RATIO).turned(rotation)
     }
 
-    /// The ratio of one principal value to the mean of the others, if it is large; infinite or negative where rounding
-    /// leaves nothing of the others.
+    /// The ratio of one principal value to the mean of the others, if it is large. It is infinite or negative if the others
+    /// are lost in rounding.
     ///
     /// With the trace t = λ1 + λ2 + λ3 and the second invariant s = λ1 λ2 + λ1 λ3 + λ2 λ3 it is 2 t² / s.
     #[inline]
@@ -44,7 +44,7 @@ impl InvInertia {
         axis * (1.0 / axis.length())
     }
 
-    /// With a principal value that is more than `ratio` times the others cut down to that.
+    /// The tensor with its largest principal value reduced to `ratio` times the others.
     #[inline]
     pub(crate) fn blunted(self, ratio: f32) -> Self {
         let actual = self.needle_ratio();
@@ -58,13 +58,13 @@ impl InvInertia {
     fn blunted_from(self, actual: f32, ratio: f32) -> Self {
         let trace = self.xx + self.yy + self.zz;
         if trace <= 0.0 {
-            // No body has such a tensor: one that has does not turn.
+            // No valid body has such a tensor. A body with one does not turn.
             return Self::ZERO;
         }
         if !trace.is_finite() {
             return self;
         }
-        // The entries of a diagonal tensor are the principal values themselves; two of 0 are held axes.
+        // The entries of a diagonal tensor are its principal values. Values of 0 are locked axes.
         let is_diagonal = self.xy == 0.0 && self.xz == 0.0 && self.yz == 0.0;
         if is_diagonal && !actual.is_finite() {
             return self;
@@ -72,12 +72,13 @@ impl InvInertia {
         let resolved = is_diagonal || actual > 0.0 && actual * ROUNDING < 1.0;
         let keep = if resolved { ratio / actual } else { ratio * ROUNDING };
         let cut = self.cut(self.thin_axis(), super::min(keep, 1.0));
-        // Where the others are lost in rounding they may be negative.
+        // The others may be negative where they are lost in rounding.
         let lift = if resolved { 0.0 } else { ROUNDING * trace };
         Self { xx: cut.xx + lift, yy: cut.yy + lift, zz: cut.zz + lift, ..cut }
     }
 
-    /// With the share `keep` of the value along a unit vector: S − (1 − k) (S a)(S a)ᵀ / aᵀ S a. Held axes stay held.
+    /// The tensor with the share `keep` of its value along a unit vector: S − (1 − k) (S a)(S a)ᵀ / aᵀ S a. Locked axes stay
+    /// locked.
     pub(crate) fn cut(self, axis: Vector, keep: f32) -> Self {
         let column = self.apply(axis);
         let along = axis.dot(column);
@@ -130,7 +131,7 @@ mod tests {
     fn a_needle_is_blunted_about_its_axis_only() {
         let turn = Rot::from_axis_angle(Vector::ONE * (1.0 / Vector::ONE.length()), 0.7);
         for thin in [3.0e4f32, 1.0e6, 1.0e9] {
-            let needle = InvInertia::from_diagonal(Vector { x: 1.0, y: thin, z: 1.0 });
+            let needle = SymTensor::from_diagonal(Vector { x: 1.0, y: thin, z: 1.0 });
             let (world, axes) = (needle.rotated(turn), turn.axes());
             let along = axes[1].dot(world.apply(axes[1]));
             assert!((along / MAX_RATIO - 1.0).abs() < 0.1, "{thin} becomes {along}");
@@ -145,7 +146,7 @@ mod tests {
     fn what_is_no_needle_stays_as_it_is() {
         for diagonal in [Vector::ONE, Vector { x: 1.0, y: 1.0, z: 0.5 }, Vector { x: 9.0e3, y: 1.0, z: 1.0 }]
         {
-            let tensor = InvInertia::from_diagonal(diagonal);
+            let tensor = SymTensor::from_diagonal(diagonal);
             assert_eq!(tensor.rotated(Rot::IDENTITY), tensor);
         }
     }

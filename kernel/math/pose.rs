@@ -1,5 +1,5 @@
-//! Where a thing is and how it is turned: relative poses in `f32`, world poses with a position in
-//! [`Scalar`] precision. Differences of world positions are formed in full precision, then narrowed.
+//! Poses: relative ones in `f32`, world poses with a position in [`Scalar`] precision. Differences of world positions are
+//! formed in full precision, then rounded to `f32`.
 
 use super::{Rot, Scalar, Vector};
 
@@ -11,7 +11,7 @@ pub type WorldVector = Vector<Scalar>;
 pub struct Pose {
     /// The origin of the inner frame, in metres.
     pub position: Vector,
-    /// The turn of the inner frame.
+    /// The rotation of the inner frame.
     pub rotation: Rot,
 }
 
@@ -20,7 +20,7 @@ pub struct Pose {
 pub struct WorldPose {
     /// The origin of the inner frame, in metres.
     pub position: WorldVector,
-    /// The turn of the inner frame.
+    /// The rotation of the inner frame.
     pub rotation: Rot,
 }
 
@@ -34,13 +34,13 @@ impl Pose {
         Self { position, rotation }
     }
 
-    /// Takes a point from the inner frame to the outer one.
+    /// Transforms a point from the inner frame to the outer one.
     #[inline]
     pub fn transform(&self, point: Vector) -> Vector {
         self.rotation.rotate(point) + self.position
     }
 
-    /// Takes a point from the outer frame to the inner one.
+    /// Transforms a point from the outer frame to the inner one.
     #[inline]
     pub fn inverse_transform(&self, point: Vector) -> Vector {
         self.rotation.inverse_rotate(point - self.position)
@@ -60,7 +60,7 @@ impl Pose {
 }
 
 impl WorldPose {
-    /// The origin of the world, unturned.
+    /// The origin of the world, without rotation.
     pub const IDENTITY: Self = Self { position: WorldVector::ZERO, rotation: Rot::IDENTITY };
 
     /// The pose that rotates by `rotation`, then translates by `position`.
@@ -88,13 +88,13 @@ impl WorldPose {
         }
     }
 
-    /// Takes a point from this frame to the world.
+    /// Transforms a point from this frame to the world.
     #[inline]
     pub fn transform(&self, point: Vector) -> WorldVector {
         self.position + self.rotation.rotate(point).to_world()
     }
 
-    /// Takes a world point to this frame.
+    /// Transforms a world point to this frame.
     #[inline]
     pub fn inverse_transform(&self, point: WorldVector) -> Vector {
         self.rotation.inverse_rotate((point - self.position).to_local())

@@ -86,7 +86,7 @@ impl<N: Lane> TangentFrame<N> {
 }
 
 impl<N: Num> TangentMass<N> {
-    /// The impulse that makes the tangent velocity `v` vanish, but for its sign.
+    /// Minus the impulse that stops the tangent velocity `v`.
     #[inline(always)]
     pub fn apply(self, v: Tangent<N>) -> Tangent<N> {
         Tangent { x: self.xx * v.x }

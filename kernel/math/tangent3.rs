@@ -64,8 +64,8 @@ impl<N: Lane> Tangent<N> {
     }
 }
 
-/// A symmetric 2 × 2 matrix whose determinant is a smaller share of its squared trace counts as singular: what is
-/// left then is rounding.
+/// A symmetric 2 × 2 matrix counts as singular if its determinant is below this share of its squared trace: below it the
+/// determinant is rounding.
 const SINGULAR: f32 = 1.0e-5;
 
 impl<N: Lane> TangentFrame<N> {
@@ -93,8 +93,8 @@ impl<N: Lane> TangentFrame<N> {
     }
     /// The inverse of the coupled tangent rows' 2 × 2 K matrix for two bodies of the inverse inertias
     /// and arms given: K_ab = t_aᵀ M⁻¹ t_b + Σ (rᵢ × t_a)ᵀ Iᵢ⁻¹ (rᵢ × t_b), where `inv_mass` is the
-    /// diagonal of the summed M⁻¹. Where K has one direction only, as between bodies that are held in a plane,
-    /// the inverse in that direction; zero where it has none.
+    /// diagonal of the summed M⁻¹. If K has rank one, as between bodies locked to a plane, the inverse in its one direction;
+    /// zero if K is zero.
     #[inline(always)]
     pub fn mass(&self, inv_mass: Vector<N>, bodies: [(InvInertia<N>, Vector<N>); 2]) -> TangentMass<N> {
         let (lx, ly) = (self.x.scale(inv_mass), self.y.scale(inv_mass));
@@ -117,7 +117,7 @@ impl<N: Lane> TangentFrame<N> {
 }
 
 impl<N: Num> TangentMass<N> {
-    /// The impulse that makes the tangent velocity `v` vanish, but for its sign.
+    /// Minus the impulse that stops the tangent velocity `v`.
     #[inline(always)]
     pub fn apply(self, v: Tangent<N>) -> Tangent<N> {
         Tangent { x: self.xx * v.x + self.xy * v.y, y: self.xy * v.x + self.yy * v.y }

@@ -1,10 +1,10 @@
-//! The kernel's own sine, cosine and arc tangent, in `f64`: the same bits on every machine, which libm
-//! does not promise. Taylor series after range reduction, accurate to about one unit in the last place
-//! of `f64`, so that results rounded to `f32` are the nearest `f32` but for rare ties.
+//! The kernel's own sine, cosine and arc tangent, in `f64`: the same bits on every machine, which libm does not guarantee.
+//! Taylor series after range reduction, accurate to about one unit in the last place of `f64`. Rounded to `f32`, results are
+//! the nearest `f32` but for rare ties.
 
 /// π/2 in three parts; the first two have 33 bits, so that `k` times them is exact for `k < 2^20`.
 const HALF_PI: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
-/// Arguments beyond this are first brought into one turn by the (exact) remainder.
+/// Larger arguments are first reduced to one turn by the (exact) remainder.
 const LARGE: f64 = 1.0e6;
 /// (−1)^n / (2n+1)! from n = 1.
 const SIN: [f64; 9] = [

@@ -7,7 +7,7 @@ pub use hull3::{Edge, Face, Hull};
 pub(crate) use hull3::{EdgeBlock, FaceBlock, farthest, largest, pack};
 
 use super::{Ball, Capsule, Cuboid, RayHit, Segment, Triangle};
-use crate::math::{InvInertia, Vector};
+use crate::math::{Inertia, Vector};
 use core::f32::consts::PI;
 
 /// Mass, centre of mass and moment of inertia.
@@ -18,12 +18,12 @@ pub struct MassProperties {
     /// The centre of mass in the shape's frame, in metres.
     pub center: Vector,
     /// The inertia tensor itself (not its inverse) about the centre, along the shape's axes, in kg·m².
-    pub inertia: InvInertia,
+    pub inertia: Inertia,
 }
 
 impl MassProperties {
     /// Nothing.
-    pub const ZERO: Self = Self { mass: 0.0, center: Vector::ZERO, inertia: InvInertia::ZERO };
+    pub const ZERO: Self = Self { mass: 0.0, center: Vector::ZERO, inertia: Inertia::ZERO };
 
     /// The same body, `density` times as dense.
     pub fn scaled(self, density: f32) -> Self {
@@ -31,7 +31,7 @@ impl MassProperties {
         Self {
             mass: self.mass * density,
             center: self.center,
-            inertia: InvInertia {
+            inertia: Inertia {
                 xx: i.xx * density,
                 yy: i.yy * density,
                 zz: i.zz * density,
@@ -47,7 +47,7 @@ impl MassProperties {
 pub fn mass_of_ball(ball: &Ball) -> MassProperties {
     let square = ball.radius * ball.radius;
     let mass = 4.0 / 3.0 * PI * square * ball.radius;
-    let inertia = InvInertia::from_diagonal(Vector::ONE * (0.4 * mass * square));
+    let inertia = Inertia::from_diagonal(Vector::ONE * (0.4 * mass * square));
     MassProperties { mass, center: Vector::ZERO, inertia }
 }
 
@@ -66,7 +66,7 @@ pub fn mass_of_capsule(capsule: &Capsule) -> MassProperties {
     // I = across · 1 + (along − across) u uᵀ for the unit axis u.
     let u = if h > 0.0 { axis * (1.0 / h) } else { Vector::Y };
     let k = along - across;
-    let inertia = InvInertia {
+    let inertia = Inertia {
         xx: across + k * u.x * u.x,
         yy: across + k * u.y * u.y,
         zz: across + k * u.z * u.z,
@@ -82,7 +82,7 @@ pub fn mass_of_cuboid(cuboid: &Cuboid) -> MassProperties {
     let h = cuboid.half;
     let mass = 8.0 * h.x * h.y * h.z;
     let s = h.scale(h) * (mass / 3.0);
-    let inertia = InvInertia::from_diagonal(Vector { x: s.y + s.z, y: s.x + s.z, z: s.x + s.y });
+    let inertia = Inertia::from_diagonal(Vector { x: s.y + s.z, y: s.x + s.z, z: s.x + s.y });
     MassProperties { mass, center: Vector::ZERO, inertia }
 }
 

@@ -1,166 +1,165 @@
-//! The kernel's own threads. A stage of a step is cut into blocks, a part of them for each member; members that are awake and
-//! have finished their own part claim blocks of others.
+//! The kernel's thread pool. A stage of a step is cut into blocks, and each worker gets a range of them in a queue of its
+//! own. Workers that finish their queue claim blocks from the queues of others.
 //!
 //! # The protocol
 //!
-//! A *job* is one closure and its blocks. Members are the caller, 0, and the helpers, each of which has a desk on the
-//! board (`board.rs`). The words of the board, and the only threads that write them:
+//! A *job* is one closure and its blocks. *Workers* are the calling thread, number 0, and the threads of the pool. The words
+//! they share (`state.rs`), and the only threads that write them:
 //!
-//! | word | says | written by |
+//! | word | meaning | written by |
 //! |---|---|---|
-//! | `busy` | some caller has the board | the caller that changes it from false to true, until it stores false |
-//! | `desk.job` | the closure, as a pointer | the caller that has the board |
-//! | `desk.claims` | blocks that no member has claimed: first, and one beyond the last | the caller that has the board fills it when it is empty, all members take from it, a caller that panics empties it |
-//! | `done[m]` | how many blocks member m has finished in its life | member m |
-//! | `posted` | the sum of all `done` after the last job | the caller that has the board |
-//! | `asleep[h]` | helper h waits for a call | helper h stores true, who wakes it swaps it to false |
-//! | `awake` | how many helpers are called | who wakes one adds 1, the helper subtracts 1 |
-//! | `rests`, `quit` | helpers are to stop looking, to end | callers, [`Drop`] |
+//! | `busy` | a caller runs a job | the caller that changes it from false to true, until it stores false |
+//! | `queue.job` | the closure, as a pointer | the caller that runs the job |
+//! | `queue.blocks` | unclaimed blocks: the first, and one beyond the last | the caller fills it while it is empty, all workers claim from it, a caller that panics drains it |
+//! | `finished[w]` | number of blocks that worker w has finished in its life | worker w |
+//! | `issued` | the sum of all `finished` after the last job | the caller that runs the job |
+//! | `parked[t]` | thread t waits for a wake-up | thread t stores true, the thread that wakes it swaps it to false |
+//! | `awake` | number of threads that were woken | a waking thread adds 1, the woken thread subtracts 1 |
+//! | `stop_spinning`, `quit` | threads are to park at once, to end | callers, [`Drop`] |
 //!
-//! **States of a helper.** *Asleep*: `asleep[h]` is true, and it parks. *Awake*: it looks for blocks until it has found none
-//! for some time or `rests` is set. *Ended*: it saw `quit`.
+//! **States of a thread.** *Parked*: `parked[t]` is true. *Awake*: it looks for blocks until it has found none for some time
+//! or `stop_spinning` is set. *Ended*: it saw `quit`.
 //!
 //! **One caller.** `busy` changes from false to true by a compare-exchange with Acquire and back by a store with Release: a
-//! caller sees all that the one before wrote, and two never post at once. Who does not get the board runs its blocks alone.
+//! caller sees all that the one before wrote, and two callers never issue jobs at once. A caller that finds the pool busy runs
+//! its blocks alone.
 //!
-//! **A block has one runner.** Both ends of a desk's unclaimed blocks are one 64-bit word, and a claim is a compare-exchange on
-//! it: of two claims of one block the second fails. That the word may have gone to another value and back in between, even by
-//! another job, does no harm: what it says is true when the exchange succeeds.
+//! **A block has one runner.** Both ends of a queue's unclaimed blocks are one 64-bit word, and a claim is a compare-exchange
+//! on it: of two claims of one block the second fails. The word may go to another value and back in between, even by another
+//! job. That does no harm, since its content is true when the exchange succeeds.
 //!
-//! **A runner sees its job.** The caller writes `desk.job`, then stores `desk.claims` with Release. Claims are exchanged with
-//! Acquire; they are read-modify-writes, so a claim after other claims still belongs to the release sequence of that store,
+//! **A runner sees its job.** The caller writes `queue.job`, then stores `queue.blocks` with Release. Claims are exchanged with
+//! Acquire. They are read-modify-writes, so a claim after other claims still belongs to the release sequence of that store,
 //! and the claimer sees the job and all that the caller wrote before it.
 //!
-//! **The caller sees every block.** A member adds to `done[m]` with a store with Release after its block, also if it panics.
-//! The caller loads all of them with Acquire until they sum up to `posted` and the job's blocks. No `done` falls, and their sum
-//! never exceeds what was posted; so an old value can only make the sum too small, and when it fits all blocks are
-//! finished, and what they wrote is seen.
+//! **The caller sees every block.** A worker adds to `finished[w]` by a store with Release after its block, also if the block
+//! panics. The caller loads all counts with Acquire until their sum is `issued` plus the job's blocks. No count falls, and the
+//! sum never exceeds what was issued. So an old value can only make the sum too small, and when it fits, all blocks are
+//! finished and their writes are seen.
 //!
-//! **When the closure dies.** It is on the caller's stack, and a helper calls it only for a block that it has claimed and not
-//! yet counted. The caller does not return, nor unwind, before the counts fit: the wait is the destructor of a value that lives
-//! when blocks are posted. If a block of the caller panics, the destructor first empties the desks, and waits for the rest. So
-//! between two jobs no desk has blocks and no helper reads `job`, and the next caller may write it. A panic in a helper is
-//! caught, kept, and thrown again by the caller.
+//! **The closure outlives its use.** It is on the caller's stack, and a thread calls it only for a block that it has claimed
+//! and not yet counted. The caller does not return or unwind before the counts fit: the wait is the destructor of a value that
+//! lives from before blocks are issued. If a block of the caller panics, the destructor first drains the queues, then waits
+//! for the rest. So between two jobs no queue has blocks and no thread reads `job`, and the next caller may write it. A panic
+//! in a pool thread is caught, kept, and thrown again by the caller.
 //!
-//! **No call is lost.** To wake a helper is to swap `asleep[h]` from true to false and then to unpark it. The helper parks only
-//! after it has read true, and reads again whenever park returns. Either it reads false and does not park, or the swap comes
-//! after its read, and then so does the unpark: it ends the park, or makes the next one return at once. A call to a helper that is
-//! just about to store true finds it awake and does nothing; then it may sleep while there is work, and the others run its part,
-//! since nothing waits for a member, only for blocks. [`Drop`] stores `quit` and unparks: by the same argument each helper reads
-//! it.
+//! **No wake-up is lost.** To wake a thread is to swap `parked[t]` from true to false and then to unpark it. The thread parks
+//! only after it has read true, and reads again whenever park returns. Either it reads false and does not park, or the swap
+//! comes after its read, and then so does the unpark: it ends the park, or makes the next one return at once. A wake-up of a
+//! thread that is about to store true finds it awake and does nothing. The thread may then park while there is work, and the
+//! others run its blocks, since a caller waits for blocks and not for threads. [`Drop`] stores `quit` and unparks: by the same
+//! argument each thread reads it.
 //!
-//! **Relaxed.** `awake`, `rests` and the first look at `asleep[h]` only decide whether it is worth sharing or looking.
-//! 1 is added to `awake` before the swap that lets the helper subtract it. `posted` is only used by who has the board.
+//! **Relaxed.** `awake`, `stop_spinning` and the first load of `parked[t]` only decide whether sharing or looking is worth it.
+//! `awake` is raised before the swap that lets the thread lower it. `issued` is only used by the caller that runs the job.
 //!
-//! `tools/model-check.sh` has loom try all this with two and three members (`model.rs`), and runs the tests under
+//! `tools/model-check.sh` checks all this with loom for two and three workers (`model.rs`), and runs the tests under
 //! ThreadSanitizer where there is one.
 
-mod board;
 #[cfg(all(loom, test))]
 mod model;
+mod state;
 mod sync;
 #[cfg(all(not(loom), test))]
 mod tests;
 
-use board::Board;
 use core::sync::atomic::{AtomicU64, Ordering};
+use state::State;
 use std::sync::{Arc, OnceLock, PoisonError};
 use sync::{Builder, JoinHandle, Mutex};
 
-/// The caller and its helpers, who run the blocks of one stage at a time.
+/// A thread pool: the calling thread and the pool's threads run the blocks of one job at a time.
 ///
-/// Blocks must not depend on the order in which they run, nor on who runs them; then the result does not
-/// depend on how many there are in the team.
+/// Blocks must not depend on the order in which they run, nor on the worker that runs them. Then the result does not depend
+/// on the number of workers.
 ///
-/// Clones share the helpers. While one clone is at work another runs its blocks alone. Helpers end with the
-/// last clone.
+/// Clones share the threads. While one clone runs a job, another runs its blocks alone. The threads end with the last clone.
 #[derive(Clone, Debug, Default)]
-pub struct Team(Option<Arc<Helpers>>);
+pub struct Team(Option<Arc<Threads>>);
 
-/// Tells the time in nanoseconds since some moment. The kernel has no clock of its own.
+/// Returns the time in nanoseconds since a fixed moment. The kernel has no clock of its own.
 pub type Clock = fn() -> u64;
 
 /// The threads, which end when this is dropped.
 #[derive(Debug)]
-struct Helpers {
-    board: Arc<Board>,
-    threads: Vec<JoinHandle<()>>,
-    /// Tells the time if that of shared runs is counted, and what it has come to.
+struct Threads {
+    state: Arc<State>,
+    handles: Vec<JoinHandle<()>>,
+    /// The clock, if the time of shared jobs is measured, and that time.
     clock: OnceLock<Clock>,
     shared: AtomicU64,
 }
 
 impl Team {
-    /// A team of `members`, the caller among them: with 1 or 0 there are no threads. Should the system
-    /// refuse a thread, the team is smaller.
-    pub fn new(members: usize) -> Self {
-        let board = Arc::new(Board::new(members));
-        let threads: Vec<_> = (1..members)
-            .map_while(|member| {
-                let board = Arc::clone(&board);
-                let name = format!("physics {member}");
-                Builder::new().name(name).spawn(move || board.help(member)).ok()
+    /// A pool of `workers`, the caller among them: with 1 or 0 there are no threads. If the system refuses a thread, the pool
+    /// is smaller.
+    pub fn new(workers: usize) -> Self {
+        let state = Arc::new(State::new(workers));
+        let handles: Vec<_> = (1..workers)
+            .map_while(|worker| {
+                let state = Arc::clone(&state);
+                let name = format!("physics {worker}");
+                Builder::new().name(name).spawn(move || state.run_thread(worker)).ok()
             })
             .collect();
-        if threads.is_empty() {
+        if handles.is_empty() {
             return Self(None);
         }
         let (clock, shared) = (OnceLock::new(), AtomicU64::new(0));
-        Self(Some(Arc::new(Helpers { board, threads, clock, shared })))
+        Self(Some(Arc::new(Threads { state, handles, clock, shared })))
     }
 
-    /// How many there are, the caller among them.
+    /// The number of workers, the caller among them.
     pub fn members(&self) -> usize {
-        1 + self.0.as_ref().map_or(0, |helpers| helpers.threads.len())
+        1 + self.0.as_ref().map_or(0, |threads| threads.handles.len())
     }
 
-    /// Has the helpers that sleep look for work, for a short while. To be called where there is much of it;
-    /// without, blocks are run by the caller alone.
+    /// Wakes the threads, which then look for work for a short while. Call it where there is much work; without it the caller
+    /// runs its blocks alone.
     pub fn wake(&self) {
-        let Some(helpers) = &self.0 else { return };
-        helpers.board.resume();
-        for (helper, handle) in helpers.threads.iter().enumerate() {
-            if helpers.board.rouse(helper) {
+        let Some(threads) = &self.0 else { return };
+        threads.state.resume();
+        for (thread, handle) in threads.handles.iter().enumerate() {
+            if threads.state.clear_parked(thread) {
                 handle.thread().unpark();
             }
         }
     }
 
-    /// Lets the helpers sleep at once, those of clones too, which are the same: there is no more work for them, and
-    /// others may want their cores.
+    /// Parks the threads, which clones share, as soon as they have no block: other programs may want their cores.
     pub fn rest(&self) {
-        if let Some(helpers) = &self.0 {
-            helpers.board.rest();
+        if let Some(threads) = &self.0 {
+            threads.state.stop_spinning();
         }
     }
 
-    /// Has the time of shared runs counted from now on, for measurements: it costs two looks at a clock a run.
+    /// Measures the time of shared jobs from now on. It costs two calls of the clock a job.
     pub fn count_shared_time(&self, clock: Clock) {
-        if let Some(helpers) = &self.0 {
-            helpers.clock.get_or_init(|| clock);
+        if let Some(threads) = &self.0 {
+            threads.clock.get_or_init(|| clock);
         }
     }
 
-    /// For how many nanoseconds callers have run blocks together with helpers since that is counted. The rest of their time is one
-    /// thread's, however many members there are.
+    /// The nanoseconds in which callers shared jobs with threads, since that is measured. All other time is of one thread,
+    /// whatever the number of workers.
     pub fn shared_time(&self) -> u64 {
-        self.0.as_ref().map_or(0, |helpers| helpers.shared.load(Ordering::Relaxed))
+        self.0.as_ref().map_or(0, |threads| threads.shared.load(Ordering::Relaxed))
     }
 
-    /// Runs `job(block, member)` for every block below `blocks`, and returns when all are done. Members are
-    /// numbered from 0, the caller; no two blocks of one run are run at once with the same member.
+    /// Runs `job(block, worker)` for every block below `blocks`, and returns when all are finished. The caller is worker 0. A
+    /// worker runs one block at a time.
     ///
     /// # Panics
     /// If a block does.
     pub fn run(&self, blocks: usize, job: impl Fn(usize, usize) + Sync) {
         let count = u32::try_from(blocks).expect("a block is many bytes of memory");
-        let members = self.members() as u64;
-        self.run_shares(count, (1..=members).map(|k| (u64::from(count) * k / members) as u32), job);
+        let workers = self.members() as u64;
+        self.run_shares(count, (1..=workers).map(|k| (u64::from(count) * k / workers) as u32), job);
     }
 
-    /// As [`run`](Self::run) for the blocks below the last of `ends`, where member `k` begins with those from
-    /// `ends[k - 1]` to `ends[k]`. Who has none does not take part. Ends that are not one for each member, made for
-    /// another team, are left out of account.
+    /// As [`run`](Self::run) for the blocks below the last of `ends`, where the queue of worker `k` gets those from
+    /// `ends[k - 1]` to `ends[k]`. Workers with an empty queue do not take part. `ends` of another length than there are
+    /// workers are made for another pool and ignored.
     ///
     /// # Panics
     /// If a block does.
@@ -173,17 +172,17 @@ impl Team {
         self.run_shares(blocks, ends.iter().copied(), job);
     }
 
-    /// Runs so many blocks, of which each member begins with those up to an end.
+    /// Runs the blocks below `blocks`; the queue of each worker gets those up to its end.
     fn run_shares(&self, blocks: u32, ends: impl Iterator<Item = u32>, job: impl Fn(usize, usize) + Sync) {
-        let board = self.0.as_ref().map(|helpers| &*helpers.board);
-        let shared = board.filter(|board| blocks > 1 && board.is_anyone_awake()).and_then(Board::begin);
+        let state = self.0.as_ref().map(|threads| &*threads.state);
+        let shared = state.filter(|state| blocks > 1 && state.is_any_awake()).and_then(State::try_begin);
         match shared {
-            Some(ours) => {
-                let timed = self.0.as_ref().and_then(|helpers| Some((helpers, helpers.clock.get()?)));
-                let timed = timed.map(|(helpers, clock)| (helpers, clock, clock()));
-                ours.share(blocks, ends, &|block, member| job(block as usize, member));
-                if let Some((helpers, clock, start)) = timed {
-                    helpers.shared.fetch_add(clock().saturating_sub(start), Ordering::Relaxed);
+            Some(guard) => {
+                let timed = self.0.as_ref().and_then(|threads| Some((threads, threads.clock.get()?)));
+                let timed = timed.map(|(threads, clock)| (threads, clock, clock()));
+                guard.run(blocks, ends, &|block, worker| job(block as usize, worker));
+                if let Some((threads, clock, start)) = timed {
+                    threads.shared.fetch_add(clock().saturating_sub(start), Ordering::Relaxed);
                 }
             }
             None => (0..blocks as usize).for_each(|block| job(block, 0)),
@@ -192,7 +191,7 @@ impl Team {
 }
 
 impl Team {
-    /// Runs `job` for each of some items; which member gets which is left to chance.
+    /// Runs `job` for each of some items. The worker of each item is not determined.
     ///
     /// # Panics
     /// If a job or the iterator does.
@@ -200,8 +199,8 @@ impl Team {
         self.each_into(&mut vec![(); self.members()], items, |(), item| job(item));
     }
 
-    /// As [`each`](Self::each), where each member has a result of its own to add to, of the first as many of `results` as
-    /// there are members. What is in which is left to chance.
+    /// As [`each`](Self::each), where each worker adds to a result of its own. `results` is extended to the number of workers;
+    /// their order is not determined.
     ///
     /// # Panics
     /// If a job or the iterator does.
@@ -224,17 +223,17 @@ impl Team {
     }
 }
 
-/// What a mutex guards, also after a panic of another thread.
+/// The value that a mutex guards, also after another thread panicked.
 fn locked<T>(mutex: &Mutex<T>) -> sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Drop for Helpers {
+impl Drop for Threads {
     fn drop(&mut self) {
-        self.board.quit();
-        for handle in self.threads.drain(..) {
+        self.state.quit();
+        for handle in self.handles.drain(..) {
             handle.thread().unpark();
-            // A helper panics only within a block, and there it is caught.
+            // A thread panics only within a block, and there it is caught.
             let _ = handle.join();
         }
     }

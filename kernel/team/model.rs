@@ -1,15 +1,15 @@
-//! The team under loom, which runs each model with the threads interleaved in every way, up to a number of preemptions, and
-//! lets loads see every value that they may. It finds what is not ordered: cells, deadlocks, loops without end.
+//! The pool under loom, which runs each model with all interleavings up to a number of preemptions, and lets loads return
+//! every value that they may. It finds unordered accesses to cells, deadlocks, and endless loops.
 
 #![expect(unsafe_code, reason = "cells whose use loom checks")]
 
 use super::Team;
-use super::sync::Slot;
+use super::sync::SharedCell;
 use loom::{cell::UnsafeCell, model::Builder};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 
-/// Tries a model with up to so many preemptions: most mistakes show with two.
+/// Checks a model with up to a number of preemptions. Most mistakes show with two.
 fn model(preemptions: usize, f: impl Fn() + Sync + Send + 'static) {
     let mut builder = Builder::new();
     builder.preemption_bound = Some(preemptions);
@@ -17,7 +17,7 @@ fn model(preemptions: usize, f: impl Fn() + Sync + Send + 'static) {
     builder.check(f);
 }
 
-/// What blocks write, each its own, without any order of their own making.
+/// Cells that blocks write, each its own, without any synchronisation.
 #[derive(Default)]
 struct Cells([UnsafeCell<u32>; 3]);
 
@@ -30,7 +30,7 @@ impl Cells {
         self.0[block].with_mut(|count| unsafe { *count += 1 });
     }
 
-    /// What the caller sees when a job is over.
+    /// Asserts the values that the caller sees when a job is over.
     fn are(&self, wanted: &[u32]) {
         for (cell, wanted) in self.0.iter().zip(wanted) {
             // SAFETY: as above.
@@ -39,7 +39,7 @@ impl Cells {
     }
 }
 
-/// Every block is run once, whoever claims it, and the caller sees what it did. The cells die with each job.
+/// Every block runs once, and the caller sees its writes. The cells are dropped after each job.
 #[test]
 fn blocks_run_once_and_are_seen() {
     model(3, || {
@@ -53,38 +53,38 @@ fn blocks_run_once_and_are_seen() {
     });
 }
 
-/// With two helpers, who also claim from each other.
+/// Two threads also claim blocks from each other.
 #[test]
-fn helpers_claim_from_each_other() {
+fn threads_claim_from_each_other() {
     model(2, || {
         let team = Team::new(3);
         team.wake();
         let cells = Cells::default();
-        // All blocks are the first helper's to begin with.
+        // All blocks begin in the queue of the first thread.
         team.run_parts(&[0, 3, 3], |block, _| cells.add(block));
         cells.are(&[1, 1, 1]);
     });
 }
 
-/// A helper that was roused works and falls asleep again, and can be roused again: no call is lost between its last look and
-/// its sleep. Were one, the helper would count as awake for ever.
+/// A woken thread parks again, and can be woken again: no wake-up is lost between its last round and its parking. After a
+/// lost one the thread would count as awake for ever.
 #[test]
-fn no_call_is_lost() {
+fn no_wake_up_is_lost() {
     model(3, || {
         let team = Team::new(2);
         for _ in 0..2 {
             team.wake();
-            let board = &team.0.as_ref().expect("it has a helper").board;
-            while board.is_anyone_awake() {
+            let state = &team.0.as_ref().expect("it has a thread").state;
+            while state.is_any_awake() {
                 loom::thread::yield_now();
             }
         }
     });
 }
 
-/// Helpers end with the team, whether they sleep, work, or are about to do either.
+/// Threads end with the pool, whether they are parked, work, or are about to do either.
 #[test]
-fn helpers_end_with_the_team() {
+fn threads_end_with_the_pool() {
     for calls in 0..3 {
         model(3, move || {
             let team = Team::new(2);
@@ -96,7 +96,7 @@ fn helpers_end_with_the_team() {
     }
 }
 
-/// A block that panics counts as done, whoever has it: the caller hears of it, when nobody runs the job any more.
+/// A block that panics counts as finished. The caller gets the panic when no thread runs the job any more.
 #[test]
 fn a_panic_reaches_the_caller() {
     model(2, || {
@@ -119,7 +119,7 @@ fn a_panic_reaches_the_caller() {
     });
 }
 
-/// Two callers share helpers: who comes second runs its blocks alone.
+/// Two callers share the threads. The second one runs its blocks alone.
 #[test]
 fn clones_do_not_mix() {
     model(2, || {
@@ -137,26 +137,26 @@ fn clones_do_not_mix() {
     });
 }
 
-/// That loom would find a slot that is written while another thread reads it: the model is not blind.
+/// Loom finds a cell that is written while another thread reads it.
 #[test]
 #[should_panic(expected = "Causality violation")]
 fn a_race_is_found() {
     model(2, || {
-        let slot = Arc::new(Slot::<Option<u32>>::default());
-        let theirs = Shared(Arc::clone(&slot));
+        let cell = Arc::new(SharedCell::<Option<u32>>::default());
+        let theirs = Shared(Arc::clone(&cell));
         let other = loom::thread::spawn(move || theirs.write());
-        // SAFETY: it is not, which is the point.
-        let _ = unsafe { slot.read() };
+        // SAFETY: it is unsafe on purpose.
+        let _ = unsafe { cell.read() };
         let _ = other.join();
     });
 }
 
-/// A slot that another thread has.
-struct Shared(Arc<Slot<Option<u32>>>);
+/// A cell of another thread.
+struct Shared(Arc<SharedCell<Option<u32>>>);
 
 impl Shared {
     fn write(self) {
-        // SAFETY: it is not, which is the point.
+        // SAFETY: it is unsafe on purpose.
         unsafe { self.0.write(Some(1)) };
     }
 }

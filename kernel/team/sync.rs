@@ -1,44 +1,45 @@
-//! What the team is made of: the standard library's atomics and threads, or loom's in its model, which tries out how
-//! they may interleave and what each load may see.
-#![expect(unsafe_code, reason = "a slot is read and written by several threads, one after the other")]
+//! The atomics and threads of the pool: the standard library's, or loom's in its model, which tries all interleavings and
+//! all values that a load may return.
+#![expect(unsafe_code, reason = "several threads read and write a cell, one after the other")]
 
+#[cfg(all(loom, test))]
+pub(super) use modelled::*;
 #[cfg(not(all(loom, test)))]
 pub(super) use real::*;
-#[cfg(all(loom, test))]
-pub(super) use tried::*;
 
-/// What a helper without work does next.
+/// What a thread without a block does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Next {
-    /// Look at once.
-    Look,
-    /// See whether it is to stop, and if not, look again.
-    Ask,
-    /// Stop.
-    Stop,
+pub(super) enum Idle {
+    /// Look for a block again at once.
+    Spin,
+    /// Check whether threads are to park, and if not, look again.
+    Check,
+    /// Park.
+    Park,
 }
 
 #[cfg(not(all(loom, test)))]
 mod real {
-    use super::Next;
+    use super::Idle;
     pub(in crate::team) use core::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
     use std::cell::UnsafeCell;
     pub(in crate::team) use std::sync::{Mutex, MutexGuard};
     pub(in crate::team) use std::thread::{Builder, JoinHandle, park};
     use std::time::{Duration, Instant};
 
-    /// How long a helper looks for work without letting others on its core.
-    const GREED: Duration = Duration::from_micros(50);
+    /// An idle thread spins for this time before it starts to yield its core. Longer takes cores from other programs, shorter
+    /// delays the next stage.
+    const SPIN_TIME: Duration = Duration::from_micros(50);
 
-    /// How long a helper looks for work before it goes to sleep: longer than what one thread does alone between two
-    /// stages of a step. Waking it takes a tenth of that, and its core may need as long to wake itself.
-    const PATIENCE: Duration = Duration::from_micros(500);
+    /// An idle thread parks after this time. It is longer than what one thread does alone between two stages of a step: with
+    /// 50 µs steps took up to 40 % longer, since waking a thread takes 35 to 140 µs.
+    const PARK_TIMEOUT: Duration = Duration::from_micros(500);
 
     /// A value that several threads read and write.
     #[derive(Debug, Default)]
-    pub(in crate::team) struct Slot<T>(UnsafeCell<T>);
+    pub(in crate::team) struct SharedCell<T>(UnsafeCell<T>);
 
-    impl<T: Copy> Slot<T> {
+    impl<T: Copy> SharedCell<T> {
         /// # Safety
         /// No other thread writes it meanwhile.
         #[inline]
@@ -56,60 +57,60 @@ mod real {
         }
     }
 
-    /// Lets the core do something else for a moment: `looks` is how often the thread has looked in vain.
+    /// Waits for a moment in a loop; `rounds` counts its rounds.
     #[inline]
-    pub(in crate::team) fn pause(looks: u32) {
-        // Who has the last block may have lost its core.
-        if looks.is_multiple_of(1 << 10) { std::thread::yield_now() } else { core::hint::spin_loop() }
+    pub(in crate::team) fn pause(rounds: u32) {
+        // The thread that runs the last block may have lost its core.
+        if rounds.is_multiple_of(1 << 10) { std::thread::yield_now() } else { core::hint::spin_loop() }
     }
 
-    /// How long a helper has had no work.
+    /// Measures for how long a thread has had no block.
     #[derive(Default)]
-    pub(in crate::team) struct Idle {
+    pub(in crate::team) struct IdleTimer {
         since: Option<Instant>,
-        looks: u32,
+        rounds: u32,
     }
 
-    impl Idle {
-        /// It had some.
+    impl IdleTimer {
+        /// The thread had a block.
         #[inline]
-        pub(in crate::team) fn end(&mut self) {
+        pub(in crate::team) fn reset(&mut self) {
             self.since = None;
         }
 
-        /// It looked in vain.
+        /// The thread found no block.
         #[inline]
-        pub(in crate::team) fn look(&mut self) -> Next {
-            self.looks = self.looks.wrapping_add(1);
+        pub(in crate::team) fn tick(&mut self) -> Idle {
+            self.rounds = self.rounds.wrapping_add(1);
             core::hint::spin_loop();
-            if !self.looks.is_multiple_of(64) {
-                return Next::Look;
+            if !self.rounds.is_multiple_of(64) {
+                return Idle::Spin;
             }
             let now = Instant::now();
             let idle = now - *self.since.get_or_insert(now);
-            if idle > PATIENCE {
-                return Next::Stop;
+            if idle > PARK_TIMEOUT {
+                return Idle::Park;
             }
-            if idle > GREED {
+            if idle > SPIN_TIME {
                 std::thread::yield_now();
             }
-            Next::Ask
+            Idle::Check
         }
     }
 }
 
 #[cfg(all(loom, test))]
-mod tried {
-    use super::Next;
+mod modelled {
+    use super::Idle;
     pub(in crate::team) use loom::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
     pub(in crate::team) use loom::sync::{Mutex, MutexGuard};
     pub(in crate::team) use loom::thread::{Builder, JoinHandle, park};
 
-    /// A value that several threads read and write. Loom panics if two that may not be at once are not ordered.
+    /// A value that several threads read and write. Loom panics if two conflicting accesses are not ordered.
     #[derive(Debug, Default)]
-    pub(in crate::team) struct Slot<T>(loom::cell::UnsafeCell<T>);
+    pub(in crate::team) struct SharedCell<T>(loom::cell::UnsafeCell<T>);
 
-    impl<T: Copy> Slot<T> {
+    impl<T: Copy> SharedCell<T> {
         /// # Safety
         /// No other thread writes it meanwhile.
         pub(in crate::team) unsafe fn read(&self) -> T {
@@ -129,22 +130,22 @@ mod tried {
         loom::thread::yield_now();
     }
 
-    /// A helper looks in vain three times before it stops: time is not what is tried.
+    /// A thread parks after three rounds without a block: time is not modelled.
     #[derive(Default)]
-    pub(in crate::team) struct Idle(u32);
+    pub(in crate::team) struct IdleTimer(u32);
 
-    impl Idle {
-        pub(in crate::team) fn end(&mut self) {
+    impl IdleTimer {
+        pub(in crate::team) fn reset(&mut self) {
             self.0 = 0;
         }
 
-        pub(in crate::team) fn look(&mut self) -> Next {
+        pub(in crate::team) fn tick(&mut self) -> Idle {
             self.0 += 1;
             loom::thread::yield_now();
             match self.0 {
-                1 => Next::Look,
-                2 => Next::Ask,
-                _ => Next::Stop,
+                1 => Idle::Spin,
+                2 => Idle::Check,
+                _ => Idle::Park,
             }
         }
     }

@@ -1,12 +1,12 @@
-//! Every block once, whoever runs it.
+//! Every block runs once, on any worker.
 
 use super::Team;
 use core::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
 fn counts(team: &Team, blocks: usize) -> Vec<u32> {
     let counts: Vec<AtomicU32> = (0..blocks).map(|_| AtomicU32::new(0)).collect();
-    team.run(blocks, |block, member| {
-        assert!(member < team.members());
+    team.run(blocks, |block, worker| {
+        assert!(worker < team.members());
         counts[block].fetch_add(1, Ordering::Relaxed);
     });
     counts.into_iter().map(AtomicU32::into_inner).collect()
@@ -14,9 +14,9 @@ fn counts(team: &Team, blocks: usize) -> Vec<u32> {
 
 #[test]
 fn every_block_runs_once() {
-    for members in [0, 1, 2, 3, 8] {
-        let team = Team::new(members);
-        assert_eq!(team.members(), members.max(1));
+    for workers in [0, 1, 2, 3, 8] {
+        let team = Team::new(workers);
+        assert_eq!(team.members(), workers.max(1));
         for round in 0..200 {
             match round % 3 {
                 0 => team.wake(),
@@ -24,7 +24,7 @@ fn every_block_runs_once() {
                 _ => {}
             }
             for blocks in [0, 1, 2, 3, 17, 200] {
-                assert_eq!(counts(&team, blocks), vec![1; blocks], "{members} members");
+                assert_eq!(counts(&team, blocks), vec![1; blocks], "{workers} workers");
             }
         }
     }
@@ -32,23 +32,23 @@ fn every_block_runs_once() {
 
 #[test]
 fn every_block_runs_once_wherever_parts_end() {
-    for members in [1, 2, 3, 8] {
-        let team = Team::new(members);
+    for workers in [1, 2, 3, 8] {
+        let team = Team::new(workers);
         for round in 0..600u32 {
             if round % 50 == 0 {
                 team.wake();
             }
             // Some parts are empty, and now and then all but the first.
-            let mut ends: Vec<u32> = (1..=members as u32).map(|k| (round * k * 7) % 23).collect();
+            let mut ends: Vec<u32> = (1..=workers as u32).map(|k| (round * k * 7) % 23).collect();
             ends.sort_unstable();
             if round % 5 == 0 {
-                let last = ends[members - 1];
+                let last = ends[workers - 1];
                 ends.fill(last);
             }
-            let blocks = ends[members - 1] as usize;
+            let blocks = ends[workers - 1] as usize;
             let counts: Vec<AtomicU32> = (0..blocks).map(|_| AtomicU32::new(0)).collect();
-            team.run_parts(&ends, |block, member| {
-                assert!(member < members);
+            team.run_parts(&ends, |block, worker| {
+                assert!(worker < workers);
                 counts[block].fetch_add(1, Ordering::Relaxed);
             });
             assert!(counts.iter().all(|count| count.load(Ordering::Relaxed) == 1), "{ends:?}");
@@ -90,15 +90,15 @@ fn jobs_in_quick_succession_do_not_mix() {
 }
 
 #[test]
-fn no_member_runs_two_blocks_at_once() {
+fn no_worker_runs_two_blocks_at_once() {
     let team = Team::new(4);
     let inside: Vec<AtomicU32> = (0..4).map(|_| AtomicU32::new(0)).collect();
     for _ in 0..200 {
         team.wake();
-        team.run(64, |_, member| {
-            assert_eq!(inside[member].fetch_add(1, Ordering::SeqCst), 0);
+        team.run(64, |_, worker| {
+            assert_eq!(inside[worker].fetch_add(1, Ordering::SeqCst), 0);
             std::hint::black_box((0..100).sum::<u32>());
-            inside[member].fetch_sub(1, Ordering::SeqCst);
+            inside[worker].fetch_sub(1, Ordering::SeqCst);
         });
     }
 }
@@ -123,8 +123,8 @@ fn clones_and_jobs_within_jobs_run_alone() {
 
 #[test]
 fn a_panic_reaches_the_caller_and_the_team_goes_on() {
-    for members in [1, 2, 4] {
-        let team = Team::new(members);
+    for workers in [1, 2, 4] {
+        let team = Team::new(workers);
         for round in 0..50 {
             team.wake();
             let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
@@ -138,19 +138,19 @@ fn a_panic_reaches_the_caller_and_the_team_goes_on() {
 }
 
 #[test]
-fn helpers_come_to_a_job_that_has_begun() {
+fn threads_join_a_job_that_has_begun() {
     let team = Team::new(2);
     let by: [AtomicU32; 2] = Default::default();
     for _ in 0..1000 {
         team.wake();
         // Some milliseconds of work in one job.
-        team.run(20, |_, member| {
-            by[member].fetch_add(1, Ordering::Relaxed);
+        team.run(20, |_, worker| {
+            by[worker].fetch_add(1, Ordering::Relaxed);
             (0..30_000u32).for_each(|i| _ = std::hint::black_box(i));
         });
         if by[1].load(Ordering::Relaxed) > 0 {
             return;
         }
     }
-    panic!("nobody came to help: {by:?}");
+    panic!("no thread joined: {by:?}");
 }

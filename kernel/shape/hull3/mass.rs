@@ -1,7 +1,7 @@
 //! The mass of a polyhedron by exact integrals over tetrahedra.
 
 use super::wide::{Wide, narrow, widen};
-use crate::math::{InvInertia, Vector};
+use crate::math::{Inertia, Vector};
 use crate::shape::MassProperties;
 
 /// Mass properties at 1 kg/m³ of a closed surface of counter-clockwise polygons.
@@ -43,7 +43,7 @@ pub(super) fn of_polyhedron(vertices: &[Vector], outlines: &[Vec<u32>]) -> MassP
         second[1] - volume * center.y * center.y,
         second[2] - volume * center.z * center.z,
     ];
-    let inertia = InvInertia {
+    let inertia = Inertia {
         xx: (yy + zz) as f32,
         yy: (xx + zz) as f32,
         zz: (xx + yy) as f32,

@@ -1,7 +1,7 @@
 //! Hulls: topology, errors, mass against closed forms, rays against brute force.
 
 use super::{Hull, size_of};
-use crate::math::{InvInertia, Rot, Vector};
+use crate::math::{Inertia, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Shape, ShapeError, Triangle};
 use crate::shape::{cast_ray_triangle, mass_of_ball, mass_of_capsule, mass_of_cuboid};
 use proptest::prelude::*;
@@ -24,18 +24,18 @@ fn rotation() -> impl Strategy<Value = Rot> {
         .prop_map(|[x, y, z, w]| Rot { x, y, z, w }.normalized())
 }
 
-fn entries(i: InvInertia) -> [f32; 6] {
+fn entries(i: Inertia) -> [f32; 6] {
     [i.xx, i.yy, i.zz, i.xy, i.xz, i.yz]
 }
 
-fn close(a: InvInertia, b: InvInertia, tolerance: f32) -> bool {
+fn close(a: Inertia, b: Inertia, tolerance: f32) -> bool {
     entries(a).iter().zip(entries(b)).all(|(x, y)| (x - y).abs() <= tolerance)
 }
 
 /// The inertia tensor of `m` about a point at `r` from its centre (Steiner's theorem).
-fn shifted(inertia: InvInertia, mass: f32, r: Vector) -> InvInertia {
+fn shifted(inertia: Inertia, mass: f32, r: Vector) -> Inertia {
     let s = r.length_squared();
-    InvInertia {
+    Inertia {
         xx: inertia.xx + mass * (s - r.x * r.x),
         yy: inertia.yy + mass * (s - r.y * r.y),
         zz: inertia.zz + mass * (s - r.z * r.z),
@@ -140,7 +140,7 @@ fn masses_equal_closed_forms() {
         (Hull::cuboid(half).expect("positive").unit_mass(), mass_of_cuboid(&Cuboid { half }));
     assert!((hull.mass - 8.0).abs() < 1e-5 && (cuboid.mass - 8.0).abs() < 1e-6);
     // I_x = m/12 (b² + c²) with the full sizes 1, 2, 4.
-    let expected = InvInertia::from_diagonal(v(8.0 / 12.0 * 20.0, 8.0 / 12.0 * 17.0, 8.0 / 12.0 * 5.0));
+    let expected = Inertia::from_diagonal(v(8.0 / 12.0 * 20.0, 8.0 / 12.0 * 17.0, 8.0 / 12.0 * 5.0));
     assert!(close(hull.inertia, expected, 1e-4) && close(cuboid.inertia, expected, 1e-4));
     // The corner tetrahedron of a cube: V = 1/6, centre (1,1,1)/4, and about the corner ∫x² = 1/60,
     // ∫xy = 1/120, so that about the centre I_xx = 1/30 − 2 V/16 and I_xy = −1/120 + V/16.
@@ -148,7 +148,7 @@ fn masses_equal_closed_forms() {
     let m = corner.unit_mass();
     assert!((m.mass - 1.0 / 6.0).abs() < 1e-7 && (m.center - Vector::ONE * 0.25).length() < 1e-7);
     let (on, off) = (1.0 / 30.0 - 1.0 / 48.0, -1.0 / 120.0 + 1.0 / 96.0);
-    let expected = InvInertia { xx: on, yy: on, zz: on, xy: off, xz: off, yz: off };
+    let expected = Inertia { xx: on, yy: on, zz: on, xy: off, xz: off, yz: off };
     assert!(close(m.inertia, expected, 1e-7), "{:?}", m.inertia);
     // A capsule without length is a ball; a long thin one a rod, I = m h²/12.
     let ball = mass_of_capsule(&Capsule { a: Vector::Y, b: Vector::Y, radius: 0.7 });
