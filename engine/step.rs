@@ -20,7 +20,10 @@ use crate::{
         integrator::IntegrationSystems,
         lifecycle::{self, note_changed_colliders},
         materials::refresh_surfaces,
-        rigid_body::{DefaultFriction, DefaultRestitution},
+        rigid_body::{
+            DefaultFriction, DefaultRestitution,
+            mass_properties::queue::{recompute, warn_of_missing_mass},
+        },
         sleep::{follow_requests, mirror_sleeping, sleep_islands},
         solver::{
             config::update_contact_softness,
@@ -58,15 +61,18 @@ macro_rules! stages {
             const ALL: &[(Self, &str)] = &[$((Self::$stage, stringify!($stage))),+];
         }
 
-        /// Puts each stage into its public set.
-        fn place_stages(app: &mut App) {
-            $(app.configure_sets(PhysicsSchedule, Stage::$stage$(.$place($set))+);)+
+        /// Puts a stage into its public set.
+        fn place(app: &mut App, stage: Stage) {
+            match stage {
+                $(Stage::$stage => app.configure_sets(PhysicsSchedule, stage$(.$place($set))+),)+
+            };
         }
 
         /// Adds the systems of an owner to [`PhysicsSchedule`] or one that takes its place, each in its stage.
         pub(crate) fn add_systems_of(owner: Owner, app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
             $($(
                 if owner == Owner::$owner {
+                    place(app, Stage::$stage);
                     add_systems(app, schedule, ($systems).in_set(Stage::$stage));
                 }
             )+)+
@@ -79,6 +85,8 @@ macro_rules! stages {
 pub(crate) enum Owner {
     /// Any plugin of the step.
     Step,
+    /// `MassPropertyPlugin`.
+    MassProperties,
     /// `ColliderTreePlugin`.
     Trees,
     /// `BvhBroadPhasePlugin`.
@@ -98,6 +106,10 @@ pub(crate) enum Owner {
 stages! {
     /// The clock of the substeps starts anew.
     StartSubstepClock.before(PhysicsStepSystems::First) => { SolverSchedule: start_substep_clock }
+    /// Masses of what came since they were last computed, where steps are taken by hand.
+    UpdateMassProperties.before(PhysicsStepSystems::First) => {
+        MassProperties: (recompute, warn_of_missing_mass).chain_ignore_deferred(),
+    }
     /// Counters and timers start anew, and workers wake.
     ResetDiagnostics.in_set(PhysicsStepSystems::First) => {
         Step: call_team,
@@ -192,7 +204,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<DefaultRestitution>()
         .init_resource::<NarrowPhaseConfig>();
     lifecycle::watch(app);
-    place_stages(app);
+    Stage::ALL.iter().for_each(|(stage, _)| place(app, *stage));
     add_systems_of(Owner::Step, app, PhysicsSchedule.intern());
     for (i, &(stage, name)) in Stage::ALL.iter().enumerate() {
         let end = (move |mut times: ResMut<StepTimes>| times.end(name)).in_set(Timers).after(stage);

@@ -38,7 +38,7 @@ pub mod components;
 mod eigen;
 mod inertia;
 mod plugin;
-mod queue;
+pub(crate) mod queue;
 mod system_param;
 #[cfg(feature = "3d")]
 mod tensor;

@@ -9,7 +9,8 @@ use super::{
 };
 use crate::{
     physics_transform::PhysicsTransformSystems,
-    schedule::{PhysicsSchedule, PhysicsStepSystems, PhysicsSystems},
+    schedule::{PhysicsSchedule, PhysicsSystems},
+    step::{self, Owner},
 };
 
 /// Keeps the computed mass properties of bodies up to date. Part of `PhysicsPlugins`.
@@ -53,11 +54,7 @@ impl Plugin for MassPropertyPlugin {
                 .in_set(PhysicsSystems::Prepare)
                 .after(PhysicsTransformSystems::TransformToPosition),
         );
-        // For what came since then, where steps are taken by hand.
-        app.add_systems(
-            PhysicsSchedule,
-            (recompute, warn_of_missing_mass).chain_ignore_deferred().before(PhysicsStepSystems::First),
-        );
+        step::add_systems_of(Owner::MassProperties, app, PhysicsSchedule.intern());
         app.add_systems(
             self.schedule,
             (

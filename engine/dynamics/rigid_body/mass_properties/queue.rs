@@ -173,7 +173,7 @@ pub(super) fn queue_changed(
 }
 
 /// Weighs the marked bodies and takes the marks off.
-pub(super) fn recompute(
+pub(crate) fn recompute(
     marked: Query<Entity, With<RecomputeMassProperties>>,
     mut helper: MassPropertyHelper,
     mut commands: Commands,
@@ -216,7 +216,7 @@ impl Told {
 
 /// Bodies without mass that the app was told of.
 #[derive(Resource, Default)]
-pub(super) struct ToldOfNoMass(Told);
+pub(crate) struct ToldOfNoMass(Told);
 
 #[cfg(test)]
 impl ToldOfNoMass {
@@ -230,7 +230,7 @@ impl ToldOfNoMass {
 ///
 /// Such a body falls, as gravity is an acceleration, but contacts, joints and forces do not move it: the
 /// alternative, a mass made up by the engine, would hide the mistake and be wrong by any factor.
-pub(super) fn warn_of_missing_mass(
+pub(crate) fn warn_of_missing_mass(
     marked: Query<
         (Entity, &RigidBody, &ComputedMass, Option<&Mass>, Has<NoAutoMass>, Option<&Name>),
         With<RecomputeMassProperties>,
