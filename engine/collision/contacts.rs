@@ -15,7 +15,10 @@ use crate::{
         narrow_phase::NarrowPhaseConfig,
     },
     dynamics::{
-        solver::{RowWidth, WorkerCount, config::PhysicsLengthUnit},
+        solver::{
+            RowWidth, WorkerCount,
+            config::{LINEAR_SLOP, PhysicsLengthUnit},
+        },
         tables::Tables,
     },
     math::to_f32,
@@ -23,12 +26,12 @@ use crate::{
     threads::Threads,
 };
 
-/// Contacts at rest are predicted up to this distance, times the length unit: four times the linear slop
-/// of 5 mm that contacts are left to overlap by.
-const SPECULATIVE: f32 = 0.02;
-/// A surface may move this far against another, times the length unit, before their manifold is computed
-/// anew. Further makes contacts lag behind rolling bodies; less makes stacks jitter and costs time.
-const RECYCLE: f32 = 0.05;
+/// The prediction distance of contacts at rest, times the length unit. Less makes stacks lose points; more computes contacts
+/// that never touch.
+const SPECULATIVE: f32 = (4.0 * LINEAR_SLOP) as f32;
+/// A manifold is recycled up to this motion of one surface against the other, times the length unit. More makes contacts lag
+/// behind rolling bodies; less makes stacks jitter and costs time.
+const RECYCLE: f32 = (10.0 * LINEAR_SLOP) as f32;
 
 /// Buffers of the narrow phase.
 #[derive(Resource, Default)]

@@ -9,7 +9,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
-use crate::math::Scalar;
+use crate::{dynamics::solver::config::LINEAR_SLOP, math::Scalar};
 
 /// Whether contacts push: false leaves detection and events, without a response.
 #[derive(Resource, Clone, Copy, Debug)]
@@ -36,7 +36,11 @@ pub struct NarrowPhaseConfig {
 
 impl Default for NarrowPhaseConfig {
     fn default() -> Self {
-        Self { default_speculative_margin: Scalar::MAX, contact_tolerance: 0.005, match_contacts: true }
+        Self {
+            default_speculative_margin: Scalar::MAX,
+            contact_tolerance: LINEAR_SLOP as Scalar,
+            match_contacts: true,
+        }
     }
 }
 

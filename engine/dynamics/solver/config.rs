@@ -17,6 +17,10 @@ use crate::{
     schedule::{Physics, TimePrecisionAdjusted},
 };
 
+/// The overlap that resting contacts are left with, times the [`PhysicsLengthUnit`]. Other tolerances of contacts are
+/// multiples of it. With less, contacts at rest begin and end in turn; with more, overlap is visible.
+pub(crate) const LINEAR_SLOP: f64 = 0.005;
+
 /// Roughly the length of a metre in the units of the app: the size of a typical object.
 ///
 /// Tolerances and thresholds that are lengths or speeds are multiplied by it, so that a 2D game with characters of 100 pixels is as

@@ -60,7 +60,7 @@ impl<'w, 's> StateInputContiguousItem<'w, 's> {
 /// What a body's row is made of.
 #[derive(QueryData)]
 #[query_data(contiguous(mutable))]
-pub(crate) struct RowInput {
+pub(crate) struct BodyInput {
     entity: Entity,
     id: &'static BodyId,
     linear_velocity: &'static LinearVelocity,
@@ -99,11 +99,11 @@ impl MotionInputItem<'_, '_> {
     };
 }
 
-impl<'w, 's> RowInputContiguousItem<'w, 's> {
+impl<'w, 's> BodyInputContiguousItem<'w, 's> {
     /// The body at a row of the table.
     #[inline(always)]
-    fn row(&self, i: usize) -> RowInputItem<'w, 's> {
-        RowInputItem {
+    fn row(&self, i: usize) -> BodyInputItem<'w, 's> {
+        BodyInputItem {
             entity: self.entity[i],
             id: &self.id[i],
             linear_velocity: &self.linear_velocity[i],
@@ -420,7 +420,7 @@ fn rest_speed(threshold: Option<&SleepThreshold>, sleepless: bool, unit: f32) ->
 /// The team walks tables where most bodies are awake; where most sleep, the caller looks entities up. Rows are written by
 /// id either way, so the order of entities does not matter.
 pub(crate) fn gather_bodies(
-    query: Query<(RowInput, MotionInput)>,
+    query: Query<(BodyInput, MotionInput)>,
     (gravity, threads): (Res<Gravity>, Res<Threads>),
     mut solver: ResMut<StepSolver>,
     mut bodies: ResMut<Bodies>,
@@ -500,7 +500,7 @@ struct Gather<'a> {
 impl Gather<'_> {
     /// Fills a body's row, if it has one.
     #[inline(always)]
-    fn body(&self, body: &RowInputItem, options: &MotionInputItem, gathered: &mut Gathered) {
+    fn body(&self, body: &BodyInputItem, options: &MotionInputItem, gathered: &mut Gathered) {
         let id = body.id.0;
         let row = if id == NONE { 0 } else { self.table.row(id) as usize };
         if row == 0 {

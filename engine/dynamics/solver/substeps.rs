@@ -12,7 +12,7 @@ use crate::{
     collision::narrow_phase::ContactResponse,
     dynamics::{
         solver::{
-            config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig},
+            config::{ContactSoftnessCoefficients, LINEAR_SLOP, PhysicsLengthUnit, SolverConfig},
             diagnostics::SolverDiagnostics,
             schedule::{SubstepCount, SubstepSchedule, advance_substep, substep_delta},
             softness_parameters::SoftnessCoefficients,
@@ -87,9 +87,9 @@ impl OwnSubstepSystems {
     }
 }
 
-/// The friction centre fades a separated point over this distance, times the length unit: four times the
-/// linear slop of 5 mm.
-const FRICTION_FADE: f32 = 0.02;
+/// The friction centre fades out a separated point over this distance, times the length unit. Less makes friction jump as
+/// points open and close.
+const FRICTION_FADE: f32 = (4.0 * LINEAR_SLOP) as f32;
 
 fn softness(c: SoftnessCoefficients) -> Softness {
     Softness {
