@@ -27,7 +27,7 @@ impl Default for Walk {
 }
 
 impl Walk {
-    /// Pushes slots if `wanted`. Without a branch, which would be mispredicted.
+    /// Pushes slots if `needed`. Without a branch, which would be mispredicted.
     #[inline(always)]
     fn push_if(&mut self, needed: bool, slots: Slots) {
         self.slots[self.len] = slots;

@@ -7,7 +7,7 @@ use crate::shape::Aabb;
 use crate::team::Team;
 use proptest::prelude::*;
 
-/// Numbers that look random: splitmix64.
+/// Pseudo-random numbers by splitmix64.
 #[derive(Clone)]
 pub(super) struct Noise(pub u64);
 
@@ -69,7 +69,7 @@ impl Noise {
     }
 }
 
-/// A tree beside a list of what should be in it.
+/// A tree and a list of its expected content.
 #[derive(Clone, Default)]
 struct Twin {
     tree: Tree,
@@ -161,7 +161,7 @@ impl Twin {
         }
     }
 
-    /// One random question, answered by both.
+    /// One random query of both.
     fn ask(&self, noise: &mut Noise) {
         match noise.below(5) {
             0 => {
@@ -346,7 +346,7 @@ proptest! {
     fn pairs_are_those_of_a_search_of_all(
         seed in any::<u64>(), count in 0..400u32, kinds in 1..=4usize, still in 1..6usize
     ) {
-        // The more kinds and the less that moves, the more is asked for one by one.
+        // With more kinds and fewer movers, more pairs are found by queries.
         const KINDS: [TreeKind; 4] =
             [TreeKind::Dynamic, TreeKind::Static, TreeKind::Kinematic, TreeKind::Standalone];
         let mut noise = Noise(seed);

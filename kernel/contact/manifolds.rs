@@ -52,7 +52,7 @@ pub(super) fn replace<S: ManifoldSource>(
     let old = core::mem::take(&mut contact.manifold);
     for (i, local) in buffers.local.iter().enumerate() {
         let mut m = to_world(local, pose_a.rotation, to_shape, margin);
-        m.rounding = [ca.shape.rounding(), cb.shape.rounding()];
+        m.radii = [ca.shape.radius(), cb.shape.radius()];
         if let Some(meeting) = meeting {
             meeting.rewind(&mut m);
         }

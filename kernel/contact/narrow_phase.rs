@@ -19,8 +19,8 @@ use crate::math::max;
 use crate::table::{BodyKind, BodyPose, BodyTable, NONE};
 use crate::team::Team;
 
-/// The size of a block that one worker updates, in words of 64 contact ids. Recycling so many takes some microseconds;
-/// smaller blocks cost more to hand out than larger ones lose at the end.
+/// The size of a block of contacts, in words of 64 ids. Recycling a block takes some microseconds. Smaller blocks cost more
+/// to hand out; larger ones balance worse.
 const BLOCK: usize = 2;
 
 /// The prefetch distance, in contacts. Shorter does not hide the latency of memory; longer evicts records before use.
@@ -340,7 +340,7 @@ fn search_native<S>(
         manifolds::collide(input, contact, with_margin, &mut local);
         if local.count == 0 {
             // Shapes that turn are often much farther apart than their boxes.
-            gap = max(gap, local.apart);
+            gap = max(gap, local.gap);
             meeting = sweep::find_meeting(input, contact, poses, gap - margin, prediction, &mut local);
         }
     }

@@ -77,7 +77,7 @@ pub struct Manifold {
     pub count: u32,
     /// The radii of A and B around their cores (centre, axis, polygon), in metres. Anchors are of the cores: as a round shape
     /// turns, its contact keeps its place relative to the core, not on the surface.
-    pub rounding: [f32; 2],
+    pub radii: [f32; 2],
     /// The friction impulse in world axes, N·s; the next step starts from it.
     pub friction_impulse: Vector,
     /// The impulse of the friction against turning about the normal, N·m·s; 0 in 2D.

@@ -68,7 +68,7 @@ struct RecycleRow<N: Num = f32> {
     /// The angular velocities. Unset if the manifold has [`MAX_POINTS`].
     angular: [Angular<N>; 2],
     /// As in [`Manifold`](super::Manifold). This and the fields below are unset if there are no points.
-    rounding: [N; 2],
+    radii: [N; 2],
     normal: Vector<N>,
     points: [RowPoint<N>; MAX_POINTS],
 }
@@ -199,7 +199,7 @@ impl RecycleBatch {
             row.angular = [a.angular, b.angular];
         }
         if m.count > 0 {
-            row.rounding = m.rounding;
+            row.radii = m.radii;
             row.normal = m.normal;
             for (out, p) in row.points.iter_mut().zip(&m.points) {
                 *out = RowPoint { anchor: p.anchor, frozen_separation: p.frozen_separation };
@@ -347,7 +347,7 @@ impl<N: Lane> RecycleRow<N> {
         let frame = Rot::select(self.is_turned(), self.platform_turn(), Rot::IDENTITY);
         let normal = self.normal;
         let along = (self.change() + frame.unturn(self.offset_now)).dot(normal);
-        let cores = [normal * self.rounding[0], self.offset - normal * self.rounding[1]];
+        let cores = [normal * self.radii[0], self.offset - normal * self.radii[1]];
         // n · (Q r − r) = (Q⁻¹ n − n) · r, of which only r differs from point to point. Without `map`: a closure that is not
         // inlined here makes a call of each lane operation.
         let [turn_a, turn_b] = self.turns();
@@ -409,7 +409,7 @@ mod tests {
         fn with_unset(mut self) -> Self {
             let nan = Vector::ONE * f32::NAN;
             if self.numbers.count == 0.0 {
-                self.numbers.rounding = [f32::NAN; 2];
+                self.numbers.radii = [f32::NAN; 2];
                 self.numbers.normal = nan;
                 self.numbers.points = [RowPoint { anchor: nan, frozen_separation: f32::NAN }; MAX_POINTS];
             }

@@ -134,7 +134,7 @@ impl Meeting {
     /// so reaches the given separations at the time of the meeting.
     pub(super) fn rewind(&self, m: &mut Manifold) {
         let n = m.normal;
-        let cores = [n * m.rounding[0], self.offset - n * m.rounding[1]];
+        let cores = [n * m.radii[0], self.offset - n * m.radii[1]];
         let along = self.shift.dot(n);
         for p in &mut m.points[..m.count as usize] {
             let shifts: [f32; 2] = core::array::from_fn(|side| {
@@ -150,7 +150,7 @@ impl Meeting {
 /// A lower bound of the distance between the shapes, margins not subtracted.
 fn lower_bound(local: &LocalManifold) -> f32 {
     if local.count == 0 {
-        return local.apart;
+        return local.gap;
     }
     local.points().iter().fold(f32::INFINITY, |least, p| min(least, p.separation))
 }

@@ -157,7 +157,7 @@ fn removing_all_of_a_heap_looks_at_each_body_a_few_times() {
     }
 }
 
-/// The same, with the bodies, whose links were looked for in the whole heap.
+/// The same for bodies, whose links were searched in the whole heap.
 #[test]
 fn despawning_all_of_a_heap_looks_at_each_body_a_few_times() {
     for count in [100, 1_000, 10_000] {

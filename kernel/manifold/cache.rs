@@ -1,9 +1,9 @@
-//! What a pair remembers of its last manifold, to start the next one from.
+//! The feature cache of a pair: what its next manifold starts from.
 
 /// The separating axis or reference feature of a pair's last manifold: eight bytes in its contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FeatureCache {
-    /// Which kind of axis: 0 none, then as the pair's function numbers them.
+    /// The kind of axis: 0 is none, the others are numbered by the function of the pair.
     pub kind: u8,
     /// A feature of shape A.
     pub a: u8,
@@ -14,6 +14,6 @@ pub struct FeatureCache {
 }
 
 impl FeatureCache {
-    /// Nothing is known.
+    /// An empty cache.
     pub const NONE: Self = Self { kind: 0, a: 0, b: 0, separation: 0.0 };
 }

@@ -1,9 +1,8 @@
-//! Two shapes and their relative pose give contact points with feature ids.
+//! Contact manifolds: points with feature ids, from two shapes and their relative pose.
 //!
-//! One allocation-free function per pair of native shapes. All of them work in the frame of shape A,
-//! with the normal from A to B; the narrow phase turns the result into the world. Points lie midway
-//! between the two surfaces. A point is given as long as its separation is below the prediction
-//! distance: a positive separation is a speculative contact.
+//! There is one function without allocations per pair of native shapes. All of them work in the frame of shape A, with the
+//! normal from A to B; the narrow phase transforms the result to the world. Points lie midway between the two surfaces. Points
+//! have separations up to the prediction distance; those with a positive separation are speculative contacts.
 
 mod cache;
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
@@ -22,7 +21,7 @@ pub struct LocalPoint {
     pub point: Vector,
     /// The distance between the surfaces along the normal; negative where they overlap.
     pub separation: f32,
-    /// Which features of the two shapes make this point; equal in the next step if the same ones do.
+    /// The features of both shapes that make this point; equal in the next step if the features are.
     pub feature: u32,
 }
 
@@ -33,10 +32,10 @@ pub struct LocalManifold {
     pub normal: Vector,
     /// The points; the first `count` are valid.
     pub points: [LocalPoint; MAX_POINTS],
-    /// How many points there are, 0 if the shapes are farther apart than the prediction distance.
+    /// The number of points, 0 if the shapes are farther apart than the prediction distance.
     pub count: usize,
-    /// Of shapes without points: they are no nearer than this, in metres; 0 where that is not known.
-    pub apart: f32,
+    /// A lower bound of the distance of shapes without points, in metres; 0 if it is not known.
+    pub gap: f32,
 }
 
 impl LocalManifold {

@@ -1,4 +1,4 @@
-//! The axis-aligned box: what the trees store. Always `f32`, rounded outward from `f64` positions.
+//! The axis-aligned box of the trees. Always `f32`, rounded outward from `f64` positions.
 
 use crate::math::{DIM, Rot, Vector, WorldVector};
 
@@ -71,8 +71,7 @@ impl Aabb {
         (0..DIM).fold(true, |all, i| all & (a[i] <= d[i]) & (c[i] <= b[i]))
     }
 
-    /// How far apart the boxes are along the axis along which they are farthest apart, in metres; not above 0 where they
-    /// overlap.
+    /// The distance between the boxes along the axis where it is largest, in metres; at most 0 if they overlap.
     #[inline(always)]
     pub fn gap(&self, other: &Self) -> f32 {
         (self.min - other.max).max(other.min - self.max).max_element()
@@ -94,7 +93,7 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// What both have in common; empty if that is nothing.
+    /// The intersection of both; empty if they do not overlap.
     #[inline]
     pub fn intersection(&self, other: &Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
@@ -162,7 +161,7 @@ impl Aabb {
         let (lo, hi) = (self.min.to_array(), self.max.to_array());
         let (o, inv) = (origin.to_array(), inverse.to_array());
         for i in 0..DIM {
-            // 0 · ∞ is NaN on a face of a box the ray runs along; the min/max rule drops it.
+            // For a ray along a face 0 · ∞ is NaN, which the min/max rule drops.
             let (a, b) = ((lo[i] - o[i]) * inv[i], (hi[i] - o[i]) * inv[i]);
             enter = crate::math::max(crate::math::min(a, b), enter);
             exit = crate::math::min(crate::math::max(a, b), exit);

@@ -23,10 +23,10 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// No mass.
+    /// All 0.
     pub const ZERO: Self = Self { mass: 0.0, center: Vector::ZERO, inertia: 0.0 };
 
-    /// The same shape at a density times as high. A density of 0 gives no mass but keeps the centre.
+    /// The properties at `density`. A density of 0 gives no mass but keeps the centre.
     #[inline]
     pub fn scaled(self, density: f32) -> Self {
         Self { mass: self.mass * density, center: self.center, inertia: self.inertia * density }
@@ -68,8 +68,7 @@ pub(super) fn mass_of_triangle(triangle: &Triangle) -> MassProperties {
     MassProperties { mass: area as f32, center, inertia: inertia as f32 }
 }
 
-/// Where a ray along the unit vector `direction` hits a solid triangle. Without area it acts as its
-/// longest side.
+/// The hit of a ray along the unit vector `direction` on a solid triangle. Without area it acts as its longest side.
 pub(super) fn cast_ray_triangle(
     triangle: &Triangle,
     origin: Vector,

@@ -17,15 +17,15 @@ pub struct MassProperties {
     pub mass: f32,
     /// The centre of mass in the shape's frame, in metres.
     pub center: Vector,
-    /// The inertia tensor itself (not its inverse) about the centre, along the shape's axes, in kg·m².
+    /// The inertia tensor about the centre of mass, along the shape's axes, in kg·m².
     pub inertia: Inertia,
 }
 
 impl MassProperties {
-    /// Nothing.
+    /// All 0.
     pub const ZERO: Self = Self { mass: 0.0, center: Vector::ZERO, inertia: Inertia::ZERO };
 
-    /// The same body, `density` times as dense.
+    /// The properties at `density`.
     pub fn scaled(self, density: f32) -> Self {
         let i = self.inertia;
         Self {
@@ -122,7 +122,7 @@ pub fn cast_ray_triangle(
     (length > 0.0).then(|| RayHit { distance, normal: normal * (sign / length) })
 }
 
-/// Always `None`: in space a ray passes by a line.
+/// Always `None`: in space a segment has no surface to hit.
 pub fn cast_ray_segment(_: &Segment, _: Vector, _: Vector, _: f32) -> Option<RayHit> {
     None
 }

@@ -1,8 +1,7 @@
-//! A shape with a pose answers: its box, its support point, its mass, where a ray hits it.
+//! Shapes: their boxes, support points, masses, and ray hits.
 //!
-//! Shapes are convex and in `f32`, in a frame of their own. What the kernel does not know natively
-//! stands in the tables as [`Shape::Foreign`] and gets its manifolds through
-//! [`ManifoldSource`](crate::contact::ManifoldSource).
+//! Shapes are convex, in `f32`, in a frame of their own. All other shapes are [`Shape::Foreign`] in the tables, and get their
+//! manifolds from a [`ManifoldSource`](crate::contact::ManifoldSource).
 
 mod aabb;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
@@ -34,13 +33,13 @@ pub enum Shape {
     Triangle(Triangle),
     /// A line segment without thickness.
     Segment(Segment),
-    /// All that lies behind a plane through the origin.
+    /// The half of space behind a plane through the origin.
     HalfSpace(HalfSpace),
-    /// Known only to the embedder, which gives its box and its manifolds.
+    /// A shape of the embedder, which provides its box and its manifolds.
     Foreign(Foreign),
 }
 
-/// A shape the kernel has no geometry for, by the box that its embedder computed.
+/// The box of a shape whose geometry only the embedder knows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foreign {
     /// The box around the shape in its own frame.
@@ -54,8 +53,8 @@ impl Shape {
         self.local_aabb(pose.rotation).at(pose.position)
     }
 
-    /// Whether another shape is known to be the same. Hulls are compared by what they share, and of foreign shapes
-    /// only the box is known, so they never are.
+    /// Whether another shape is known to be the same. Hulls are compared by reference. Foreign shapes are never known to be the
+    /// same.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Ball(a), Self::Ball(b)) => a == b,
@@ -69,7 +68,7 @@ impl Shape {
         }
     }
 
-    /// Has what the shape shares with others brought near: it is needed soon.
+    /// Prefetches the geometry that the shape shares with others.
     #[inline(always)]
     pub(crate) fn prefetch(&self) {
         if let Self::Hull(hull) = self {
@@ -77,7 +76,7 @@ impl Shape {
         }
     }
 
-    /// The box around the shape in its own frame turned by `rotation`, centred on nothing.
+    /// The box around the shape in its own frame turned by `rotation`, about the frame's origin.
     pub fn local_aabb(&self, rotation: crate::math::Rot) -> Aabb {
         match self {
             Self::Ball(s) => s.local_aabb(),
@@ -123,10 +122,9 @@ impl Shape {
         }
     }
 
-    /// How far normals of the surface pass from a point of the shape's frame at most, in metres; 0 of a half-space, which
-    /// has no end.
+    /// The largest distance at which a normal of the surface passes a point of the shape's frame, in metres; 0 for half-spaces.
     pub fn arm(&self, center: Vector) -> f32 {
-        let farthest = self.extent(center) - self.rounding();
+        let farthest = self.extent(center) - self.radius();
         match self {
             // A normal at the distance a passes a face at √(r² − a²) from there.
             Self::Cuboid(s) => {
@@ -137,9 +135,8 @@ impl Shape {
         }
     }
 
-    /// The radius that the shape adds to its core, in metres: the surface is that of a ball rolling around a
-    /// point, a segment or a polygon. Zero for sharp and foreign shapes.
-    pub fn rounding(&self) -> f32 {
+    /// The radius around the shape's core (a point, a segment or a polygon), in metres. Zero for sharp and foreign shapes.
+    pub fn radius(&self) -> f32 {
         match self {
             Self::Ball(s) => s.radius,
             Self::Capsule(s) => s.radius,
@@ -152,12 +149,12 @@ impl Shape {
         }
     }
 
-    /// Where a ray from `origin` along the unit vector `direction` first meets the shape within
+    /// The first hit of a ray from `origin` along the unit vector `direction` on the shape within
     /// `max_distance`, all in the shape's frame.
     ///
     /// A ray that starts inside hits at distance 0 with a zero normal if `solid`, else the boundary
     /// from within. Surfaces without an inside (3D triangles, segments) are hit from both sides;
-    /// segments in 3D are never hit, foreign shapes neither.
+    /// segments in 3D and foreign shapes are never hit.
     pub fn cast_ray(
         &self,
         origin: Vector,

@@ -1,8 +1,8 @@
-//! The shapes that read the same in the plane and in space: plain values with public fields, their
-//! support points, boxes and ray hits. Mass differs between dimensions and lives in the twin files.
+//! The shapes with the same code in both dimensions: plain values with public fields, their support points, boxes and ray hits.
+//! Masses differ and are in the twin files.
 //!
-//! Constructors refuse values that are not numbers and negative sizes. The fields are public, so the
-//! functions are total all the same: degenerate shapes act as the point or segment they amount to.
+//! Constructors return errors for values that are not finite and for negative sizes. Since the fields are public, functions
+//! accept all values: degenerate shapes act as points or segments.
 
 use super::aabb::rotate_half;
 use super::{Aabb, RayHit, ShapeError};
@@ -33,7 +33,7 @@ pub struct Cuboid {
     pub half: Vector,
 }
 
-/// All that lies behind a plane through the origin.
+/// The half of space behind a plane through the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
     /// The unit normal that points out of the solid.
@@ -90,11 +90,10 @@ pub(crate) fn nearest_fraction(a: Vector, b: Vector, p: Vector) -> f32 {
     if square > 0.0 { min(max((p - a).dot(axis) / square, 0.0), 1.0) } else { 0.0 }
 }
 
-/// The stretch of a ray that lies in a convex solid: enters at `.0`, leaves at `.1`, negative behind
-/// the origin.
+/// The range of a ray in a convex solid: it enters at `.0` and leaves at `.1`, negative behind the origin.
 pub(crate) type Stretch = (f32, f32);
 
-/// The hit for a ray whose stretch in a solid is known. `normal_at` gives the outward normal at the
+/// The hit of a ray whose range in a solid is known. `normal_at` gives the outward normal at the
 /// entry (`true`) or exit (`false`) at a distance.
 pub(crate) fn hit_of_stretch(
     (enter, exit): Stretch,
@@ -113,8 +112,8 @@ pub(crate) fn hit_of_stretch(
     (distance <= max_distance).then(|| RayHit { distance, normal: normal_at(outside, distance) })
 }
 
-/// The stretch of the line `origin + t direction` within `radius` of `center`. The nearest point of
-/// the line is found first, so that no large squares cancel.
+/// The range of the line `origin + t direction` within `radius` of `center`. The nearest point of
+/// the line is computed first, so that no large squares cancel.
 #[inline]
 fn stretch_in_ball(center: Vector, radius: f32, origin: Vector, direction: Vector) -> Option<Stretch> {
     let to_center = center - origin;
@@ -142,7 +141,7 @@ impl Ball {
         Aabb::new(Vector::ONE * -self.radius, Vector::ONE * self.radius)
     }
 
-    /// Where a ray along the unit vector `direction` hits; see [`Shape::cast_ray`](super::Shape::cast_ray).
+    /// The hit of a ray along the unit vector `direction`; see [`Shape::cast_ray`](super::Shape::cast_ray).
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -174,7 +173,7 @@ impl Capsule {
         Aabb::around([self.a, self.b].map(|v| rotation.rotate(v))).grown(self.radius)
     }
 
-    /// Where a ray along the unit vector `direction` hits; see [`Shape::cast_ray`](super::Shape::cast_ray).
+    /// The hit of a ray along the unit vector `direction`; see [`Shape::cast_ray`](super::Shape::cast_ray).
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -188,13 +187,13 @@ impl Capsule {
         })
     }
 
-    /// The direction to a point of the surface from the axis; `otherwise` for a point on the axis.
+    /// The direction from the axis to a point of the surface; `otherwise` for a point on the axis.
     pub(crate) fn normal_at(&self, point: Vector, otherwise: Vector) -> Vector {
         let fraction = nearest_fraction(self.a, self.b, point);
         direction_or(point - (self.a + (self.b - self.a) * fraction), otherwise)
     }
 
-    /// The stretch of a line in the capsule: in the union of two balls and the tube between them. All
+    /// The range of a line in the capsule: in the union of two balls and the tube between them. All
     /// three are convex and so is the union, so its ends are the outermost ends of theirs.
     pub(crate) fn stretch(&self, origin: Vector, direction: Vector) -> Option<Stretch> {
         let pieces = [
@@ -205,7 +204,7 @@ impl Capsule {
         pieces.into_iter().flatten().reduce(|p, q| (min(p.0, q.0), max(p.1, q.1)))
     }
 
-    /// The stretch of a line within `radius` of the infinite axis and between the planes at its ends.
+    /// The range of a line within `radius` of the infinite axis and between the planes at its ends.
     fn stretch_in_tube(&self, origin: Vector, line: Vector) -> Option<Stretch> {
         let (axis, length) = direction(self.b - self.a)?;
         let from_a = origin - self.a;
@@ -256,7 +255,7 @@ impl Cuboid {
         Aabb::new(-half, half)
     }
 
-    /// Where a ray along the unit vector `direction` hits; see [`Shape::cast_ray`](super::Shape::cast_ray).
+    /// The hit of a ray along the unit vector `direction`; see [`Shape::cast_ray`](super::Shape::cast_ray).
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -285,7 +284,7 @@ impl Cuboid {
         }
         hit_of_stretch((enter, exit), max_distance, solid, |entering, _| {
             let axis = if entering { enter_axis } else { exit_axis };
-            // Entering goes against the normal, leaving along it.
+            // A ray enters against the normal and leaves along it.
             let outward = if (d[axis] > 0.0) == entering { -1.0 } else { 1.0 };
             Vector::AXES[axis] * outward
         })
@@ -300,12 +299,12 @@ impl HalfSpace {
         if largest == 0.0 {
             return Err(ShapeError::Degenerate);
         }
-        // Brought near 1 first: the square of a tiny or huge length is no `f32`.
+        // Scaled to about 1 first: the square of a tiny or huge length is no finite `f32`.
         let scaled = Vector::from_array(normal.to_array().map(|c| c / largest));
         Ok(Self { normal: direction_or(scaled, Vector::Y) })
     }
 
-    /// Where a ray along the unit vector `direction` hits; see [`Shape::cast_ray`](super::Shape::cast_ray).
+    /// The hit of a ray along the unit vector `direction`; see [`Shape::cast_ray`](super::Shape::cast_ray).
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -323,7 +322,7 @@ impl HalfSpace {
         } else {
             return None;
         };
-        // Leaving at infinity is not leaving.
+        // A ray that leaves at infinity does not leave.
         hit_of_stretch(stretch, min(max_distance, f32::MAX), solid, |_, _| self.normal)
     }
 }
@@ -361,12 +360,12 @@ impl Triangle {
     }
 }
 
-/// The point, if all its coordinates are numbers.
+/// The point, if all its coordinates are finite.
 fn checked_point(v: Vector) -> Result<Vector, ShapeError> {
     if v.is_finite() { Ok(v) } else { Err(ShapeError::NotFinite) }
 }
 
-/// The length, if it is a number and not negative.
+/// The length, if it is finite and not negative.
 pub(crate) fn checked_length(v: f32) -> Result<f32, ShapeError> {
     if !v.is_finite() {
         Err(ShapeError::NotFinite)

@@ -1,8 +1,8 @@
-//! What shapes answer with: where a ray hits, and why something is no shape.
+//! Results of shapes: ray hits, and errors of constructors.
 
 use crate::math::Vector;
 
-/// Where a ray meets a shape.
+/// The hit of a ray on a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
     /// The distance along the (unit) direction, in metres.
@@ -11,7 +11,7 @@ pub struct RayHit {
     pub normal: Vector,
 }
 
-/// A shape with nothing in it or a value that is not a usable number.
+/// The reason why values do not make a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeError {
     /// A coordinate, length or radius is NaN or infinite.
@@ -20,7 +20,7 @@ pub enum ShapeError {
     Negative,
     /// Fewer distinct points than span the shape, or all on a line (or plane).
     Degenerate,
-    /// The points given as a convex outline or mesh are not convex.
+    /// An outline or mesh is not convex.
     NotConvex,
 }
 

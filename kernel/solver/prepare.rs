@@ -360,7 +360,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         row.normal.set(lane, manifold.normal);
         row.offset.set(lane, offset);
         self.friction_impulse.set(lane, manifold.friction_impulse * params.warm_start);
-        for (to, from) in self.rounding.iter_mut().zip(manifold.rounding) {
+        for (to, from) in self.rounding.iter_mut().zip(manifold.radii) {
             to.set(lane, from);
         }
         row.twist.set_impulse(lane, manifold.twist_impulse * params.warm_start);

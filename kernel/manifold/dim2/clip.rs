@@ -1,4 +1,4 @@
-//! From a reference edge and an incident edge to contact points.
+//! Clipping: from a reference edge and an incident edge to contact points.
 
 use super::super::LocalManifold;
 use super::points::{Limits, push_between};
@@ -19,15 +19,14 @@ impl Edge {
     }
 }
 
-/// Which shape the reference edge belongs to.
+/// The shape of the reference edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     A,
     B,
 }
 
-/// A reference edge with its unit normal and the edge of the other polygon that faces it, both in A's
-/// frame, and what of the polygons' surroundings the points depend on.
+/// A reference edge with its unit normal and the incident edge, both in A's frame, and what else the points depend on.
 pub(super) struct Facing {
     pub(super) side: Side,
     pub(super) normal: Vector,
@@ -37,15 +36,15 @@ pub(super) struct Facing {
     pub(super) limits: Limits,
 }
 
-/// Offsets along an edge below this part of the edges' lengths count as none.
+/// Offsets along an edge below this share of the edges' lengths count as 0. They are rounding.
 const ALIGNED: f32 = 1.0e-6;
 
 impl Facing {
-    /// Fills `out` for polygons whose cores are `apart` along the reference normal, or not known to be
-    /// (then a corner is never taken for the nearest feature).
+    /// Fills `out`. `is_separated` tells that the cores are separated along the reference normal; otherwise a corner is never taken
+    /// for the closest feature.
     #[inline]
-    pub(super) fn contact(&self, apart: bool, out: &mut LocalManifold) {
-        // All lengths from the start of the reference edge, which keeps them short.
+    pub(super) fn contact(&self, is_separated: bool, out: &mut LocalManifold) {
+        // Lengths are measured from the start of the reference edge, which keeps them small.
         let tangent = self.normal.perp();
         let start = self.reference.ends[0];
         let length = (self.reference.ends[1] - start).dot(tangent);
@@ -53,8 +52,8 @@ impl Facing {
         let along = offsets.map(|w| w.dot(tangent));
         let height = offsets.map(|w| w.dot(self.normal));
         let nothing = ALIGNED * (length + (along[1] - along[0]).abs());
-        // The end to look at is the lower one. Of an edge that lies wholly beside the reference it is the
-        // one nearer to the corner: level edges have no lower end.
+        // The closest end is the lower one. Of an edge wholly beside the reference it is the end nearer to the corner, since
+        // level edges have no lower end.
         let beside = along[1] > length || along[0] < 0.0;
         let end = if beside {
             let corner = self.reference.ends[usize::from(along[1] > length)];
@@ -65,9 +64,9 @@ impl Facing {
         };
 
         let beyond = max(-along[end], along[end] - length);
-        if apart && beyond > nothing {
-            // Beyond an end of the reference edge: either that end faces the inside of the incident edge, which
-            // passes over it and is nearly parallel, or two corners are nearest.
+        if is_separated && beyond > nothing {
+            // Beyond an end of the reference edge either that end faces the incident edge, which is then nearly parallel, or two
+            // corners are closest.
             let own_end = usize::from(along[end] > 0.0);
             let w = self.incident.ends[end];
             let toward = self.incident.ends[1 - end] - w;
@@ -87,33 +86,33 @@ impl Facing {
         out.normal = self.outward(normal);
     }
 
-    /// Up to two points where the edges face each other, from positions along the reference edge and
-    /// heights over it; `end` of the incident edge alone if they do not face each other.
+    /// Up to two points where the edges face each other, from positions along the reference edge and heights over it. If they
+    /// do not face each other, `end` of the incident edge alone.
     #[inline]
     fn edges(&self, length: f32, along: [f32; 2], height: [f32; 2], end: usize, out: &mut LocalManifold) {
         out.normal = self.outward(self.normal);
         // The incident edge runs against the reference edge: its end 1 pairs with the start.
         let run = along[0] - along[1];
         let nothing = ALIGNED * (length + run.abs());
-        // Ends as good as above an end of the reference edge are not clipped: the incident edge may be steep.
+        // Ends within rounding above an end of the reference edge are not clipped: the incident edge may be steep.
         let low = if along[1] < -nothing { 0.0 } else { along[1] };
         let high = if along[0] > length + nothing { length } else { along[0] };
         if high - low > nothing {
             let slope = (height[0] - height[1]) / run;
             let at = |t: f32| height[1] + (t - along[1]) * slope;
-            // The same order of points whichever polygon gave the reference.
+            // The order of points does not depend on the polygon of the reference.
             let (first, second) =
                 if self.side == Side::A { ((0, low), (1, high)) } else { ((1, high), (0, low)) };
             self.push(first.0, first.1, at(first.1), out);
             self.push(second.0, second.1, at(second.1), out);
         } else {
-            // One of them is upright or has no length, or rounding let them touch.
+            // An edge is upright or has no length, or the edges touch by rounding.
             self.push(1 - end, along[end], height[end], out);
         }
     }
 
-    /// Adds the point over position `t` of the reference edge where the incident edge is `height` over
-    /// it, if it is near enough. `end` names the end of the reference edge it is nearer to.
+    /// Adds the point at position `t` of the reference edge, where the incident edge is `height` over it, if that is near
+    /// enough. `end` is the end of the reference edge that it is nearer to.
     #[inline]
     fn push(&self, end: usize, t: f32, height: f32, out: &mut LocalManifold) {
         let separation = height - self.limits.radii[0] - self.limits.radii[1];

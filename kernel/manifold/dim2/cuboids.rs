@@ -1,5 +1,5 @@
-//! Two cuboids, the most frequent pair: the edges to test follow from the signs of the offset, so four
-//! separations do for what the polygons' way takes sixteen vertices.
+//! Two cuboids, the most frequent pair. The signs of the offset give the edges to test: four separations are computed, where
+//! polygons need sixteen vertices.
 
 use super::super::{FeatureCache, LocalManifold};
 use super::clip::{Edge, Facing, Side};
@@ -36,7 +36,7 @@ pub(super) fn collide(
     let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
     remember(cache, side, best);
     if best.separation > prediction {
-        out.apart = best.separation;
+        out.gap = best.separation;
         return;
     }
 
@@ -52,7 +52,7 @@ pub(super) fn collide(
         .contact(best.separation > 0.0, out);
 }
 
-/// The edge of a cuboid that faces `offset` and has the greater of the separations `over` its faces.
+/// The edge of a cuboid that faces `offset` and has the larger of the separations `over` its faces.
 #[inline]
 fn best_edge(offset: Vector, over: Vector) -> Best {
     if over.x > over.y {
@@ -62,7 +62,7 @@ fn best_edge(offset: Vector, over: Vector) -> Best {
     }
 }
 
-/// The edge whose outward normal goes most against `normal`.
+/// The edge with the outward normal most opposite to `normal`.
 #[inline]
 fn facing_edge(cuboid: &Cuboid, normal: Vector) -> Edge {
     let i = if normal.x.abs() > normal.y.abs() {

@@ -1,4 +1,4 @@
-//! A half-space against everything bounded: the lowest edge's ends.
+//! A half-space against bounded shapes: the ends of the lowest edge.
 
 use super::super::LocalManifold;
 use super::clip::pair;
@@ -6,7 +6,7 @@ use super::polygonal::Polygonal;
 use crate::math::{Pose, Vector};
 use crate::shape::HalfSpace;
 
-/// Which shape of the pair the half-space is.
+/// The place of the half-space in the pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
     First,
@@ -23,7 +23,7 @@ pub(super) fn collide(
     out: &mut LocalManifold,
 ) {
     let normal = plane.normal;
-    // The plane's normal and offset in the polygon's frame: only what becomes a point is transformed.
+    // The plane's normal and offset in the polygon's frame, so that only contact points are transformed.
     let down = pose.rotation.inverse_rotate(normal);
     let offset = pose.position.dot(normal);
     let (mut lowest, mut height) = (0, f32::INFINITY);
@@ -34,7 +34,7 @@ pub(super) fn collide(
         }
     }
     out.normal = normal;
-    out.apart = height + offset - other.radius;
+    out.gap = height + offset - other.radius;
     let mut push = |i: usize| {
         let v: Vector = pose.transform(other.vertices[i]);
         let h = other.vertices[i].dot(down) + offset;
@@ -48,8 +48,8 @@ pub(super) fn collide(
         push(0);
         return;
     }
-    // Of the two edges at the lowest vertex the one that faces the plane more; in the outline's order,
-    // so that the points keep their places while the polygon rocks.
+    // The edge of the two at the lowest vertex that faces the plane more. In the order of the outline, so that points keep
+    // their order while the polygon rocks.
     let before = other.previous(lowest);
     if other.normals[before].dot(down) < other.normals[lowest].dot(down) {
         push(before);

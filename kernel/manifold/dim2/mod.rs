@@ -1,10 +1,9 @@
 //! Contacts of convex shapes in the plane: at most two points, midway between the surfaces.
 //!
 //! Every bounded shape is seen as a polygon with a radius: a ball has one vertex, a capsule or segment
-//! two, the rest three and more. Which function makes the contact depends on the numbers of vertices
-//! only, so that seven kinds of shapes need five functions. (The view of capsules and rounded polygons
-//! as polygons with a radius, the pairing of vertices in feature ids and the early exit by a cached
-//! edge follow ideas of E. Catto's Box2D v3.)
+//! two, the others three or more. The function of a pair depends on the numbers of vertices only, so that seven kinds of
+//! shapes need five functions. (Capsules and rounded polygons as polygons with a radius, pairs of vertices as feature ids, and
+//! the early exit by a cached edge follow ideas of E. Catto's Box2D v3.)
 
 mod clip;
 mod cuboids;
@@ -25,15 +24,14 @@ use polygonal::{Buffer, Polygonal};
 /// frame with the normal from `a` to `b`.
 ///
 /// `out` is cleared first and stays empty if the surfaces are farther apart than `prediction` metres,
-/// for foreign shapes and for two half-spaces. All points have a separation of at most `prediction`. Of
-/// overlapping shapes the normal is that of the least translation that parts them; where the shapes'
-/// centres coincide and no direction is better than another, it is a fixed one. Segments are two-sided.
+/// for foreign shapes and for two half-spaces. All points have a separation of at most `prediction`. The normal of overlapping
+/// shapes is that of the least penetration; if all directions are equal, as for coinciding centres, it is a fixed one.
+/// Segments are two-sided.
 ///
-/// `cache` must be that of the same pair in the same order (or [`FeatureCache::NONE`]): polygons look at
-/// the edge it names first, to see that they are apart, and keep it as the reference while it is as good
-/// as any other, so that resting contacts do not flip. Feature ids pair a vertex of `a` (upper 16 bits)
-/// with a vertex of `b` (lower 16 bits) whichever of the two gave the reference edge; contacts that
-/// never have more than one point have id 0.
+/// `cache` must be that of the same pair in the same order (or [`FeatureCache::NONE`]). Polygons test the cached edge first for
+/// a separation, and keep it as the reference while it is as good as any other, so that resting contacts do not flip. Feature
+/// ids pair a vertex of `a` (upper 16 bits) with a vertex of `b` (lower 16 bits), whichever polygon has the reference edge.
+/// Contacts of one point at most have id 0.
 ///
 /// Poses that are not finite give no points.
 pub fn collide(
@@ -75,7 +73,7 @@ pub fn collide(
                 collide_polygonal(&a, &b, pose_b_in_a, prediction, cache, out);
             }
         }
-        // Manifolds of foreign shapes come from elsewhere.
+        // Manifolds of foreign shapes come from their `ManifoldSource`.
         (Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_) | Foreign(_), Foreign(_))
         | (Foreign(_), Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_)) => {}
     }

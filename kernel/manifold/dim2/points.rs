@@ -1,19 +1,19 @@
-//! Contacts with a ball, which has one point at most: two centres, or a centre and a polygon.
+//! Contacts with a ball, of one point at most: two centres, or a centre and a polygon.
 
 use super::super::LocalManifold;
 use super::polygonal::Polygonal;
 use crate::math::{Pose, Vector};
 use crate::shape::direction;
 
-/// The radii of the two shapes, and how far their surfaces may be apart for a contact.
+/// The radii of the two shapes, and the prediction distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
     pub(super) radii: [f32; 2],
     pub(super) prediction: f32,
 }
 
-/// Adds the point between two points `p`, `q` that have a radius each, if it is near enough, and gives
-/// the normal from `p` to `q`, which is `otherwise` if they coincide.
+/// Adds the contact point of two points `p`, `q` with a radius each, if they are near enough, and sets the normal from `p` to
+/// `q`, or `otherwise` if they coincide.
 #[inline]
 pub(super) fn push_between(
     p: Vector,
@@ -28,7 +28,7 @@ pub(super) fn push_between(
     if separation <= limits.prediction {
         out.push(p + normal * (0.5 * (distance + limits.radii[0] - limits.radii[1])), separation, feature);
     } else {
-        out.apart = separation;
+        out.gap = separation;
     }
     normal
 }
@@ -45,8 +45,8 @@ pub(super) fn collide_points(
     out.normal = push_between(p, q, Vector::Y, Limits { radii: [a.radius, b.radius], prediction }, 0, out);
 }
 
-/// A polygon `a` and a ball `b`: the edge the centre is farthest out of, or one of its ends if the
-/// centre is beyond it.
+/// A polygon `a` and a ball `b`: the edge with the largest separation of the centre, or one of its ends if the centre is
+/// beyond it.
 pub(super) fn collide_with_point(
     a: &Polygonal,
     b: &Polygonal,
@@ -60,7 +60,7 @@ pub(super) fn collide_with_point(
     for (i, (v, n)) in a.vertices.iter().zip(a.normals).enumerate() {
         let height = (center - *v).dot(*n);
         if height > reach {
-            out.apart = height - a.radius - b.radius;
+            out.gap = height - a.radius - b.radius;
             return;
         }
         if height > best.0 {
@@ -69,7 +69,7 @@ pub(super) fn collide_with_point(
     }
     let (height, i) = best;
     let (start, end, normal) = (a.vertices[i], a.vertices[a.next(i)], a.normals[i]);
-    // A segment's ends have no normals of their own: a centre on its line may still be beyond them.
+    // The ends of a segment have no normals, so a centre on its line may still be beyond them.
     if height > 0.0 || a.len() == 2 {
         let axis = end - start;
         let corner = if (center - start).dot(axis) < 0.0 {
@@ -96,6 +96,6 @@ pub(super) fn collide_with_point(
         out.normal = normal;
         out.push(center - normal * (0.5 * (height - a.radius + b.radius)), separation, 0);
     } else {
-        out.apart = separation;
+        out.gap = separation;
     }
 }

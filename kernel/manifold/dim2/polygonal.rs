@@ -13,7 +13,7 @@ pub(super) struct Polygonal<'a> {
     pub(super) radius: f32,
 }
 
-/// Room for the vertices and normals of shapes that do not store theirs.
+/// A buffer for the vertices and normals of shapes that do not store them.
 pub(super) struct Buffer {
     vertices: [Vector; 4],
     normals: [Vector; 4],

@@ -1,8 +1,7 @@
-//! Two convex polygons of which one has an area: the edge normal that separates them most.
+//! Two convex polygons, at least one with an area, by the edge normal that separates them most.
 //!
-//! The separation along a direction grows towards the best one and falls behind it, wherever it is
-//! positive; so the best edge of apart polygons is one beside the nearest corner, and looking at it and
-//! the edge facing it tells the nearest features.
+//! Where the separation along a direction is positive, it grows towards the best direction and falls behind it. So the best
+//! edge of separated polygons is beside the nearest corner, and this edge and the one facing it have the closest features.
 
 use super::super::{FeatureCache, LocalManifold};
 use super::clip::{Edge, Facing, Side};
@@ -18,9 +17,9 @@ pub(super) struct Best {
     pub(super) separation: f32,
 }
 
-/// How much better another edge must be to take the place of the reference, in metres: a thousandth of
-/// the prediction distance and what rounding may feign at the distance of the shapes' origins. Far below
-/// the overlap at which contacts rest, far above the noise of equal boxes on each other.
+/// Another edge must be better than the reference by this to replace it, in metres: a thousandth of the prediction distance
+/// plus the rounding at the distance of the shapes' origins. It is far below the overlap of resting contacts and far above
+/// the noise of equal boxes on each other.
 #[inline]
 pub(super) fn preference(prediction: f32, pose: &Pose) -> f32 {
     1.0e-3 * prediction + 1.0e-6 * pose.position.abs().max_element()
@@ -40,20 +39,20 @@ pub(super) fn collide(
     let known = cached(a, b, pose, &inverse, cache);
     if let Some((_, best)) = known.filter(|(_, best)| best.separation > reach) {
         cache.separation = best.separation;
-        out.apart = best.separation - a.radius - b.radius;
+        out.gap = best.separation - a.radius - b.radius;
         return;
     }
     let on_a = most_separating(a, b, &inverse, reach);
     if on_a.separation > reach {
         remember(cache, Side::A, on_a);
-        out.apart = on_a.separation - a.radius - b.radius;
+        out.gap = on_a.separation - a.radius - b.radius;
         return;
     }
     let on_b = most_separating(b, a, pose, reach);
     let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
     remember(cache, side, best);
     if best.separation > reach {
-        out.apart = best.separation - a.radius - b.radius;
+        out.gap = best.separation - a.radius - b.radius;
         return;
     }
 
@@ -62,7 +61,7 @@ pub(super) fn collide(
         if side == Side::A { (&Pose::IDENTITY, pose) } else { (pose, &Pose::IDENTITY) };
     let local = own.normals[best.edge];
     let normal = own_pose.rotation.rotate(local);
-    // Of the two edges at the lowest vertex the one that faces the reference more.
+    // The incident edge is that of the two at the lowest vertex that faces the reference more.
     let facing = other_pose.rotation.inverse_rotate(normal);
     let before = other.previous(best.support);
     let turned = other.normals[before].dot(facing) < other.normals[best.support].dot(facing);
@@ -77,8 +76,8 @@ pub(super) fn collide(
     .contact(best.separation > 0.0, out);
 }
 
-/// The reference: of two edges the better one. While the polygons overlap or touch, the one of the last
-/// step stays, or else that of A is taken, unless the other one is better by `preference`.
+/// The reference: the better one of two edges. While the polygons overlap or touch, it is the reference of the last step, or
+/// else that of A, unless the other one is better by `preference`.
 #[inline]
 pub(super) fn choose(on_a: Best, on_b: Best, known: Option<(Side, Best)>, preference: f32) -> (Side, Best) {
     let best = if on_b.separation > on_a.separation { (Side::B, on_b) } else { (Side::A, on_a) };
@@ -100,14 +99,14 @@ fn edge(polygon: &Polygonal, i: usize) -> Edge {
     Edge { ends: [polygon.vertices[i], polygon.vertices[j]], indices: [i, j] }
 }
 
-/// Up to this many vertices, looking at all of them for every edge is faster than walking: no branches.
+/// Up to this number of vertices, testing all of them for every edge is faster than walking: it has no branches.
 const FEW: usize = 16;
 
-/// The edge of `own` that `other` is farthest out of, given the pose of `own` in `other`'s frame; the
-/// first one beyond `reach` ends the search.
+/// The edge of `own` with the largest separation of `other`, given the pose of `own` in `other`'s frame. The first one above
+/// `reach` ends the search.
 ///
-/// Of a polygon with many vertices not all are looked at for every edge: the normals turn one way
-/// around, and so does the lowest vertex (rotating calipers; M. Shamos, 1978).
+/// Of a polygon with many vertices not all are tested for every edge: the lowest vertex moves around the polygon in the same
+/// direction as the normals (rotating calipers; M. Shamos, 1978).
 fn most_separating(own: &Polygonal, other: &Polygonal, pose: &Pose, reach: f32) -> Best {
     let mut best = (f32::NEG_INFINITY, 0, Vector::ZERO);
     let few = other.len() <= FEW;
@@ -131,9 +130,8 @@ fn most_separating(own: &Polygonal, other: &Polygonal, pose: &Pose, reach: f32) 
     Best { edge: best.1, support: lowest(other, best.2).0, separation: best.0 }
 }
 
-/// The vertex least far along `normal`, walking from one that was it for a normal up to half a turn
-/// behind. After nearly half a turn the walk may start on an edge that is level within rounding: it looks
-/// two vertices ahead.
+/// The vertex least far along `normal`. The walk starts at that of a normal up to half a turn behind. After nearly half a
+/// turn it may start on an edge that is level within rounding, so it tests two vertices ahead.
 #[inline]
 fn descend(polygon: &Polygonal, normal: Vector, start: usize) -> usize {
     let (mut support, mut height) = (start, polygon.vertices[start].dot(normal));
@@ -152,7 +150,7 @@ fn descend(polygon: &Polygonal, normal: Vector, start: usize) -> usize {
     support
 }
 
-/// The vertex least far along `normal`, and how far.
+/// The vertex least far along `normal`, and its distance.
 #[inline]
 fn lowest(polygon: &Polygonal, normal: Vector) -> (usize, f32) {
     let mut best = (0, f32::INFINITY);
@@ -170,7 +168,7 @@ const EDGE_OF_A: u8 = 1;
 /// [`FeatureCache::kind`] while the reference edge is one of B.
 const EDGE_OF_B: u8 = 2;
 
-/// The cached reference, looked at anew.
+/// The cached reference with its present separation.
 fn cached(
     a: &Polygonal,
     b: &Polygonal,
@@ -186,7 +184,7 @@ fn cached(
     Some((side, Best { edge, support, separation }))
 }
 
-/// The side and edge a cache names.
+/// The side and edge in a cache.
 #[inline]
 pub(super) fn known_edge(cache: &FeatureCache) -> Option<(Side, usize)> {
     match cache.kind {
@@ -196,7 +194,7 @@ pub(super) fn known_edge(cache: &FeatureCache) -> Option<(Side, usize)> {
     }
 }
 
-/// Keeps a reference edge for the next step, if its index fits.
+/// The cache of a reference edge; empty if its index does not fit.
 #[inline]
 pub(super) fn remember(cache: &mut FeatureCache, side: Side, best: Best) {
     *cache = FeatureCache::NONE;

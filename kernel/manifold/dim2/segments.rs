@@ -1,6 +1,6 @@
-//! Two segments with radii: capsules and segments among themselves.
+//! Two segments with radii: capsules and segments.
 //!
-//! Edge normals do not part segments that lie on one line, so the nearest points come first here.
+//! Edge normals do not separate segments on one line, so the closest points are computed first.
 
 use super::super::LocalManifold;
 use super::clip::{Edge, Facing, Side, pair};
@@ -11,7 +11,7 @@ use crate::math::{Pose, Vector};
 /// An end of one segment against the other segment.
 #[derive(Clone, Copy)]
 struct Candidate {
-    /// The segment the end is held against.
+    /// The segment that the end is compared with.
     side: Side,
     /// Which end of the other segment.
     end: usize,
@@ -22,8 +22,8 @@ struct Candidate {
     square: f32,
 }
 
-/// Among equally near features the first one wins unless another is nearer by this part: parallel
-/// capsules keep their reference.
+/// Among equally near features the first one wins, unless another is nearer by this share. Without it the reference of
+/// parallel capsules flips.
 const PREFERENCE: f32 = 1.0e-4;
 
 /// Fills `out` for two segments. Parallel segments side by side get two points.
@@ -42,7 +42,7 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32
     let best = if crossing { shallowest(&candidates) } else { nearest(&candidates) };
     let reach = prediction + a.radius + b.radius;
     if !crossing && best.square > reach * reach {
-        out.apart = best.square.sqrt() - a.radius - b.radius;
+        out.gap = best.square.sqrt() - a.radius - b.radius;
         return;
     }
 
@@ -58,8 +58,8 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32
         out.normal = if best.side == Side::A { normal } else { -normal };
         return;
     }
-    // The side of the segment where the other one is. The nearest end is there too, unless it has come
-    // through (they cross) or lies on the line; then the far end tells.
+    // The side of the segment where the other one is. The nearest end is there too, unless the segments cross or the end lies
+    // on the line; then the far end decides.
     let far_end = (other[1 - best.end] - own[0]).dot(own_axis(&axes, best.side).perp());
     let on_line = best.height.abs() <= 1.0e-6 * far_end.abs();
     let faces_left = if crossing || on_line { far_end > 0.0 } else { best.height > 0.0 };
@@ -107,7 +107,7 @@ fn candidate(side: Side, own: [Vector; 2], axis: Vector, other: [Vector; 2], end
     Candidate { side, end, corner, height, square }
 }
 
-/// The end that is least deep behind the other segment's line.
+/// The end with the least depth behind the other segment's line.
 fn shallowest(candidates: &[Candidate; 4]) -> Candidate {
     let mut best = candidates[0];
     for c in &candidates[1..] {
@@ -118,7 +118,7 @@ fn shallowest(candidates: &[Candidate; 4]) -> Candidate {
     best
 }
 
-/// The nearest end; one over the inside of a segment before one beyond it, when equally near.
+/// The nearest end. Of equally near ones, an end over the segment comes before one beyond it.
 fn nearest(candidates: &[Candidate; 4]) -> Candidate {
     let mut best = candidates[0];
     for c in &candidates[1..] {

@@ -246,8 +246,8 @@ proptest! {
         let m = contact(&a, &b, &pose);
         if m.count == 0 && bounded_by_planes(&a, &b) {
             let truth = oracle(&a, &b, &pose, [0.0; 2]);
-            prop_assert!(f64::from(m.apart) < truth + TOLERANCE, "{} but {truth}", m.apart);
-            prop_assert!(m.apart > 0.0, "nothing is said of {truth}");
+            prop_assert!(f64::from(m.gap) < truth + TOLERANCE, "{} but {truth}", m.gap);
+            prop_assert!(m.gap > 0.0, "nothing is said of {truth}");
         }
     }
 

@@ -1,17 +1,17 @@
 //! The part of an incident face that lies over a reference face (Sutherland and Hodgman, "Reentrant
-//! Polygon Clipping", 1974), with a name for each corner that lasts from step to step.
+//! Polygon Clipping", 1974), with a feature id for each corner.
 
-use super::view::{Frame, View};
+use super::view::{MatrixPose, View};
 use crate::math::Vector;
 
-/// The most corners a clipped polygon has. Cutting adds at most one per side.
+/// The most corners of a clipped polygon. A cut adds at most one per side.
 pub(super) const MAX_CORNERS: usize = 64;
-/// The most of most polygons, for which there is less to be cleared.
+/// The most corners of nearly all polygons; smaller buffers take less time to clear.
 pub(super) const FEW_CORNERS: usize = 16;
 /// Incident faces with more vertices are thinned to every second, fourth, … vertex.
 const MAX_INCIDENT: usize = 32;
-/// Side planes stand this share of the smaller shape's extent outside of the face: two equal faces on
-/// each other then keep their own corners in spite of rounding.
+/// Side planes are this share of the smaller shape's extent outside of the face, so that two equal faces on each other keep
+/// their own corners in spite of rounding.
 const MARGIN: f32 = 1.0e-3;
 /// Tags an edge that lies on a side of the reference face.
 const ON_SIDE: u32 = 0x200;
@@ -30,7 +30,7 @@ pub(super) struct Corner {
 pub(super) struct Polygon<const N: usize> {
     corners: [Corner; N],
     count: usize,
-    /// Where a corner is put for which there is no room.
+    /// Receives corners beyond the capacity.
     beyond: Corner,
 }
 
@@ -43,7 +43,7 @@ impl<const N: usize> Polygon<N> {
         &self.corners[..self.count]
     }
 
-    /// Adds a corner, or leaves it to the next to overwrite: without a branch. Beyond `N` there are none.
+    /// Writes a corner and counts it if `wanted`, without a branch. Corners beyond `N` are dropped.
     #[inline(always)]
     fn push_if(&mut self, wanted: bool, corner: Corner) {
         let has_room = self.count < N;
@@ -52,7 +52,7 @@ impl<const N: usize> Polygon<N> {
     }
 }
 
-/// How many corners there may be when a face of `reference` clips one of `incident`.
+/// The most corners when a face of `reference` clips one of `incident`.
 pub(super) fn most_corners(
     reference: &View,
     face: usize,
@@ -66,9 +66,8 @@ pub(super) fn most_corners(
     of_incident + reference.faces[face].count as usize
 }
 
-/// The face of `incident` that looks most against a direction in its own frame, among the faces around the
-/// vertex `deepest` along it; none if it has no faces. A face elsewhere may look more against it: the base of a
-/// cone that stands on its tip.
+/// The face of `incident` most opposite to a direction in its own frame, among the faces around the vertex `deepest` along it;
+/// none if it has no faces. A face elsewhere may be more opposite: the base of a cone that stands on its tip.
 pub(super) fn incident_face(incident: &View, normal: Vector, deepest: usize) -> Option<usize> {
     if incident.faces.is_empty() {
         return None;
@@ -83,11 +82,11 @@ pub(super) fn incident_face(incident: &View, normal: Vector, deepest: usize) -> 
     Some(face as usize)
 }
 
-/// A face of `incident`, or the edge or vertex that it is if it has no faces.
+/// A face of `incident`, or its edge or vertex if it has no faces.
 pub(super) fn incident_polygon<const N: usize>(
     incident: &View,
     face: Option<usize>,
-    frame: &Frame,
+    frame: &MatrixPose,
     polygon: &mut Polygon<N>,
 ) {
     let Some(face) = face else {
@@ -105,8 +104,8 @@ pub(super) fn incident_polygon<const N: usize>(
     }
 }
 
-/// Cuts a polygon by the side planes of a face of `reference`; `extent` is that of the smaller shape. There are
-/// two to work with; returns the one that the result is in.
+/// Cuts a polygon by the side planes of a face of `reference`; `extent` is that of the smaller shape. Alternates between two
+/// buffers and returns the one with the result.
 pub(super) fn clip<'a, const N: usize>(
     reference: &View,
     face: usize,
@@ -122,7 +121,7 @@ pub(super) fn clip<'a, const N: usize>(
         let outward = (head - tail).cross(normal);
         let margin = MARGIN * extent * outward.length();
         let offset = outward.dot(tail) + margin;
-        // Copied only when a side really cuts: most corners of a resting body are inside of all.
+        // Copied only when a side cuts: most corners of a resting body are inside of all sides.
         let mut any_outside = false;
         for (height, corner) in heights.iter_mut().zip(polygon.corners()) {
             *height = outward.dot(corner.point) - offset;
@@ -144,7 +143,7 @@ pub(super) fn clip<'a, const N: usize>(
 fn cut<const N: usize>(polygon: &Polygon<N>, heights: &[f32; N], side: u32, out: &mut Polygon<N>) {
     out.count = 0;
     let corners = polygon.corners();
-    // A segment is an outline that is walked once, not there and back.
+    // The outline of a segment is walked in one direction only.
     let walk = if corners.len() == 2 { 1 } else { corners.len() };
     let side_name = (side + 1) & 0x3ff;
     for k in 0..corners.len() {

@@ -1,14 +1,13 @@
 //! Any two polyhedra, with radii: the separating axis, then the points.
 //!
-//! The axis of the last step is tried first (digest of Gregorius, "Robust Contact Creation for Physics
-//! Simulations", GDC 2015). Faces are preferred to edges unless those are clearly better, which makes
-//! the choice of points the same from step to step.
+//! The axis of the last step is tested first (after Gregorius, "Robust Contact Creation for Physics Simulations", GDC 2015).
+//! Faces are preferred to edges unless edges are clearly better, so that the choice of points is the same from step to step.
 
 use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, clip};
 use super::gjk;
 use super::reduce::{Candidate, Candidates, reduce};
 use super::sat::{self, EdgeAxis, FaceAxis, Known};
-use super::view::{Frame, View, extents};
+use super::view::{MatrixPose, View, extents};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector, clamp, max, min};
 
@@ -18,22 +17,22 @@ pub(super) const FACE_A: u8 = 1;
 pub(super) const FACE_B: u8 = 2;
 /// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of an edge of each.
 pub(super) const EDGES: u8 = 3;
-/// A cached axis is taken again if its separation changed by less than this share of the smaller
-/// shape's extent since the full search: 5 mm for a shape of 1 m.
+/// A cached axis is kept if its separation changed by less than this share of the smaller shape's extent since the full
+/// search: 5 mm for a shape of 1 m. More keeps worse axes; less searches more often.
 pub(super) const CACHE_TOLERANCE: f32 = 0.005;
 /// An edge axis must beat the faces by this share of the smaller shape's extent, and the faces of B
 /// those of A by a tenth of it.
 pub(super) const PREFER_FACES: f32 = 0.002;
-/// By how much, as a share of the smaller shape's extent, the nearest point may be farther than the
-/// axis says while the axis still counts as exact.
+/// An axis counts as exact if the nearest point is farther than its separation by at most this share of the smaller shape's
+/// extent.
 pub(super) const EXACT: f32 = 1.0e-3;
 
-/// Two polyhedra and where they are to each other.
+/// Two polyhedra and their relative pose.
 struct Pair<'a> {
     a: &'a View<'a>,
     b: &'a View<'a>,
-    b_in_a: Frame,
-    a_in_b: Frame,
+    b_in_a: MatrixPose,
+    a_in_b: MatrixPose,
     prediction: f32,
     radius: f32,
     smaller: f32,
@@ -57,15 +56,15 @@ impl Axis {
     }
 }
 
-/// A face that clips, and what it clips.
+/// A reference face, and the incident polyhedron.
 struct Clipping<'a> {
     reference: &'a View<'a>,
     incident: &'a View<'a>,
-    /// Takes the incident polyhedron into the frame of the other.
-    frame: &'a Frame,
-    /// Of the incident polyhedron, if it has faces.
+    /// Transforms the incident polyhedron into the frame of the other.
+    frame: &'a MatrixPose,
+    /// The face of the incident polyhedron, if it has faces.
     face: Option<usize>,
-    /// Whether the polyhedron that clips is B.
+    /// Whether the reference face is of B.
     of_b: bool,
 }
 
@@ -89,9 +88,9 @@ pub(super) fn collide(
     let axis = pair.search();
     let separation = axis.separation();
     *cache = remember(axis);
-    // Sizes that are not numbers have no axis, or one whose separation is none.
+    // Sizes that are NaN give no axis, or one with a NaN separation.
     if !(separation <= pair.limit()) || separation == f32::NEG_INFINITY {
-        out.apart = max(separation - pair.radius, 0.0);
+        out.gap = max(separation - pair.radius, 0.0);
         return;
     }
     let exact = pair.build(axis, out);
@@ -100,8 +99,8 @@ pub(super) fn collide(
     }
 }
 
-/// One point between the closest features of two polyhedra that an axis separates, where the axis
-/// itself says less than the distance. Leaves points that there are alone if the distance is no larger.
+/// One point between the closest features of two separated polyhedra, where the axis understates the distance. Keeps present
+/// points if the distance is no larger.
 pub(super) fn collide_apart(
     a: &View,
     b: &View,
@@ -113,7 +112,7 @@ pub(super) fn collide_apart(
     Pair::new(a, b, pose, prediction).build_apart(separation, out);
 }
 
-/// What the next step tries first. Features beyond a byte are not remembered.
+/// The cache for the next step. Features with an index above a byte are not cached.
 fn remember(axis: Axis) -> FeatureCache {
     let separation = axis.separation();
     let (kind, a, b) = match axis {
@@ -129,7 +128,7 @@ fn remember(axis: Axis) -> FeatureCache {
 
 impl<'a> Pair<'a> {
     fn new(a: &'a View<'a>, b: &'a View<'a>, pose: &Pose, prediction: f32) -> Self {
-        let b_in_a = Frame::new(pose);
+        let b_in_a = MatrixPose::new(pose);
         let (larger, smaller) = extents(a, b);
         let radius = a.radius + b.radius;
         Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), prediction, radius, smaller, larger }
@@ -140,7 +139,7 @@ impl<'a> Pair<'a> {
         self.prediction + self.radius
     }
 
-    /// Whether the cached axis settles the matter.
+    /// Whether the cached axis decides the contact.
     fn try_cached(&self, cache: &FeatureCache, out: &mut LocalManifold) -> bool {
         let (i, j) = (cache.a as usize, cache.b as usize);
         let axis = match cache.kind {
@@ -160,7 +159,7 @@ impl<'a> Pair<'a> {
         };
         let separation = axis.separation();
         if separation > self.limit() {
-            out.apart = separation - self.radius;
+            out.gap = separation - self.radius;
             return true;
         }
         if !((separation - cache.separation).abs() < CACHE_TOLERANCE * self.smaller) {
@@ -194,8 +193,8 @@ impl<'a> Pair<'a> {
         sat::best_edges(self.a, self.b, &self.b_in_a, &known, self.limit()).map_or(face, Axis::Edges)
     }
 
-    /// Fills the manifold from an axis. Whether its nearest point is as near as the axis says, which
-    /// is then the true distance.
+    /// Fills the manifold from an axis. Returns whether its nearest point is as near as the separation along the axis, which is
+    /// then the true distance.
     fn build(&self, axis: Axis, out: &mut LocalManifold) -> bool {
         match axis {
             Axis::FaceA(face) => self.build_face(&face, false, out),
@@ -259,7 +258,7 @@ impl<'a> Pair<'a> {
             out.push(list[*k].point, list[*k].separation, list[*k].feature);
         }
         if out.count == 0 && separation <= gjk::resolution(self.larger, self.smaller) {
-            // Overlapping beside the face: the deepest vertex alone.
+            // Overlap beside the face: the deepest vertex alone.
             self.push_deepest(axis, of_b, out);
         }
         least <= separation + EXACT * self.smaller
@@ -312,7 +311,7 @@ impl<'a> Pair<'a> {
     /// See [`collide_apart`].
     fn build_apart(&self, separation: f32, out: &mut LocalManifold) {
         let is_farther = self.build_closest(separation, out);
-        // Beside the face, and yet no farther than its plane says: a sliver, or rounding.
+        // Beside the face, but no farther than its plane: a sliver, or rounding.
         if out.count == 0 && !is_farther {
             self.build_closest(f32::NEG_INFINITY, out);
         }
@@ -335,8 +334,8 @@ impl<'a> Pair<'a> {
     }
 }
 
-/// The closest points of two lines that are not parallel, held to the segments given by their ends,
-/// and whether they were inside of them.
+/// The closest points of two lines that are not parallel, clamped to the segments given by their ends, and whether they were
+/// inside of these.
 fn closest_of_lines(a: [Vector; 2], b: [Vector; 2]) -> (Vector, Vector, bool) {
     let (u, v, w) = (a[1] - a[0], b[1] - b[0], b[0] - a[0]);
     let (uu, vv, uv) = (u.length_squared(), v.length_squared(), u.dot(v));

@@ -1,29 +1,29 @@
-//! Two boxes: the hot pair, with its own separating-axis test and clipping.
+//! Two boxes, the most frequent pair, with a separating-axis test and clipping of its own.
 //!
 //! Fifteen axes (Gottschalk, Lin and Manocha, "OBBTree", 1996): three face normals each, nine products
-//! of edges. The choice rules are those of [`convex`](super::convex).
+//! of edges. The rules of choice are those of [`convex`](super::convex).
 
 use super::convex::{self, CACHE_TOLERANCE, EDGES, EXACT, FACE_A, FACE_B, PREFER_FACES};
 use super::gjk;
 use super::reduce::Patch;
-use super::view::{Frame, Small};
+use super::view::{MatrixPose, Small};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{F32x4, Lane, Num, Pose, Vector, clamp, max, min};
 
 /// Products of edges with a smaller squared sine between them have no direction.
 const PARALLEL: f32 = 2.5e-5;
-/// The reference rectangle is widened by this share of the smaller extent: equal boxes on each other
-/// then keep their own corners in spite of rounding.
+/// The reference rectangle is widened by this share of the smaller extent, so that equal boxes on each other keep their own
+/// corners in spite of rounding.
 const MARGIN: f32 = 1.0e-3;
-/// The axes after each, in turn.
+/// The two axes that follow each axis, cyclically.
 const NEXT: [usize; 3] = [1, 2, 0];
 
-/// Two boxes and where they are to each other.
+/// Two boxes and their relative pose.
 struct Pair {
     half_a: Vector,
     half_b: Vector,
-    frame: Frame,
-    /// The centre of B in A's frame, and of A in B's but for the sign.
+    frame: MatrixPose,
+    /// The centre of B in A's frame, and minus that of A in B's frame.
     offset: [Vector; 2],
     prediction: f32,
     smaller: f32,
@@ -39,14 +39,14 @@ pub(super) fn collide(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    let frame = Frame::new(pose);
+    let frame = MatrixPose::new(pose);
     let (size_a, size_b) = (half_a.max_element(), half_b.max_element());
     let (larger, smaller) = (max(size_a, size_b), min(size_a, size_b));
     let offset = [frame.position, frame.direction_in(frame.position)];
     let pair = Pair { half_a, half_b, frame, offset, prediction, smaller, larger };
     let exact = match pair.cached(cache) {
         Some(separation) if separation > prediction => {
-            out.apart = separation;
+            out.gap = separation;
             return;
         }
         Some(separation) if (separation - cache.separation).abs() < CACHE_TOLERANCE * smaller => {
@@ -62,7 +62,7 @@ pub(super) fn collide(
     let separation = cache.separation;
     out.count = 0;
     if separation > prediction {
-        out.apart = separation;
+        out.gap = separation;
         return;
     }
     let exact = pair.build(cache.kind, cache.a, cache.b, separation, out);
@@ -102,7 +102,7 @@ impl Pair {
         (distance.abs() - of_a - of_b, distance, b[i1] * b[i1] + b[i2] * b[i2])
     }
 
-    /// The separation along the cached axis now.
+    /// The present separation along the cached axis.
     #[inline(always)]
     fn cached(&self, cache: &FeatureCache) -> Option<f32> {
         let (i, j) = (cache.a as usize, cache.b as usize);
@@ -152,10 +152,10 @@ impl Pair {
         self.search_edges(found, preference)
     }
 
-    /// The better one of the face found and the best pair of edges, which has to be so by `preference`.
+    /// The face, or the best pair of edges if it is better by `preference`.
     #[inline(always)]
     fn search_edges(&self, mut found: FeatureCache, preference: f32) -> FeatureCache {
-        // Row i of the rotation: how far each axis of B goes along axis i of A.
+        // Row i of the rotation: the components of B's axes along axis i of A.
         let [x, y, z] = self.frame.axes;
         let rows = [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
         let lanes = |r: [f32; 3]| F32x4::new([r[0], r[1], r[2], 0.0]);
@@ -172,7 +172,7 @@ impl Pair {
             let of_b = of_b[0] * turned(rows[i], 2) + of_b[1] * turned(rows[i], 1);
             let square = signed[i1] * signed[i1] + signed[i2] * signed[i2];
             let value = absolute(distance) - of_a - of_b;
-            // For a negative value, division by a length below 1 only lowers it: most pairs end here, without a root.
+            // Dividing a negative value by a length below 1 lowers it, so most pairs end here without a square root.
             (value, square, F32x4::and(bar.lt(value), parallel.lt(square)))
         };
         let axes = [axis(0), axis(1), axis(2)];
@@ -194,7 +194,7 @@ impl Pair {
         found
     }
 
-    /// Fills the manifold from an axis. Whether its nearest point is as near as the axis says.
+    /// Fills the manifold from an axis. Returns whether its nearest point is as near as the separation along the axis.
     #[inline(always)]
     fn build(&self, kind: u8, a: u8, b: u8, separation: f32, out: &mut LocalManifold) -> bool {
         match kind {
@@ -208,13 +208,13 @@ impl Pair {
         }
     }
 
-    /// Clips the face of one box that looks most against the face on `axis` of the other, which is A unless `of_b`.
+    /// Clips the face of one box that is most opposite to the face on `axis` of the other, which is A unless `of_b`.
     ///
-    /// Of all directions and points the coordinates come in turn, so that the axis comes first. Which axes and faces
-    /// these are nobody foresees, so they are looked up instead of branched on.
+    /// Coordinates are permuted so that the axis comes first. Axes and faces are looked up in tables, since branches on them
+    /// would be mispredicted.
     fn build_face(&self, of_b: bool, axis: usize, separation: f32, out: &mut LocalManifold) -> bool {
         let [x, y, z] = self.frame.axes;
-        // The other box's axes and centre in the frame of the one with the face, and that one's in A's.
+        // The axes and centre of the other box in the frame of the box with the face, and those of the latter in A's.
         let (axes, position, this, other, columns, origin) = if of_b {
             let axes = [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
             (axes, -self.offset[1], self.half_b, self.half_a, self.frame.axes, self.frame.position)
@@ -248,7 +248,7 @@ impl Pair {
 
         out.count = 0;
         out.normal = columns[i0] * if of_b { -side } else { side };
-        // The axis and its side, the reference face; which face of the other box.
+        // The reference face by its axis and side, and the face of the other box.
         let face = ((axis | usize::from(of_b) << 2) * 2 + usize::from(side > 0.0)) as u32;
         let base = face << 8 | ((incident * 2 + usize::from(away > 0.0)) << 5) as u32;
         let (up, right, ahead) = (columns[i0] * side, columns[i1], columns[i2]);
@@ -326,24 +326,24 @@ impl Pair {
 /// The incident face: a parallelogram, in coordinates across the reference face and over it.
 struct Quad {
     center: Vector,
-    /// Half of one side.
+    /// Half of one side vector.
     p: Vector,
-    /// Half of the other.
+    /// Half of the other side vector.
     q: Vector,
 }
 
-/// A clipped quad: four corners of its own, four points where an edge enters the rectangle, four where one leaves,
-/// and four corners of the rectangle.
+/// The places of a clipped quad: its four corners, four points where an edge enters the rectangle, four where an edge leaves
+/// it, and four corners of the rectangle.
 struct Clipped {
     patch: Patch<4>,
-    /// Whether a point is where an edge meets the second pair of sides, as bits.
+    /// The points where an edge meets the second pair of sides, as bits.
     across: u32,
-    /// The smallest height of all that is over the rectangle.
+    /// The smallest height over the rectangle.
     least: f32,
 }
 
 impl Clipped {
-    /// A name for a point that lasts from step to step: which corner, or which edge is cut by which side.
+    /// The feature id of a point: its corner, or its edge and the side that cuts it.
     #[inline(always)]
     fn name(&self, point: usize) -> u32 {
         (point as u32) << 1 | self.across >> (point & 15) & 1
@@ -355,7 +355,7 @@ fn absolute(v: F32x4) -> F32x4 {
     v.max(-v)
 }
 
-/// The values whose bits are set, and infinity in place of the others.
+/// The values with set bits, and infinity for the others.
 #[inline(always)]
 fn only(bits: u32, values: F32x4) -> F32x4 {
     const LANES: [F32x4; 16] = {
@@ -374,9 +374,8 @@ fn only(bits: u32, values: F32x4) -> F32x4 {
 impl Quad {
     /// The part with |x| ≤ `half_u`, |y| ≤ `half_v` and a height up to `prediction`, in no order.
     ///
-    /// Unlike cutting side by side this is four lanes wide and without branches: each edge of the quad is cut by both
-    /// pairs of sides at once (Liang and Barsky, 1984), then the corners of the rectangle are looked up in
-    /// the quad.
+    /// Four lanes wide and without branches: all edges of the quad are cut by both pairs of sides (Liang and Barsky, 1984), then
+    /// the corners of the rectangle are tested against the quad.
     #[inline(always)]
     fn clip(&self, half_u: f32, half_v: f32, prediction: f32) -> Clipped {
         const P: F32x4 = F32x4::new([-1.0, 1.0, 1.0, -1.0]);
@@ -410,7 +409,7 @@ impl Quad {
         let sides = |p: f32, q: f32| F32x4::new([p, q, -p, -q]);
         let (dx, dy, dz) = (sides(p.x, q.x), sides(p.y, q.y), sides(p.z, q.z));
         let slab = |at: F32x4, d: F32x4, half: F32x4| {
-            // An edge along the slab: any tiny slope says whether it is inside.
+            // For an edge along the slab, any tiny slope decides whether it is inside.
             let tiny = F32x4::splat(1.0e-20);
             let d = F32x4::select(absolute(d).lt(tiny), tiny, d);
             let (s, t) = ((-half - at) / d, (half - at) / d);
@@ -426,7 +425,7 @@ impl Quad {
         for (block, t, bits) in
             [(1, enter, F32x4::bits(enters) & !inside), (2, exit, F32x4::bits(exits) & !next_inside)]
         {
-            // Where there is no such point the numbers may be none.
+            // Places without a point may be NaN.
             (patch.x[block], patch.y[block]) = (x + t * dx, y + t * dy);
             patch.separation[block] = only(bits, z + t * dz);
         }

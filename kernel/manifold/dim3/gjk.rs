@@ -1,15 +1,15 @@
-//! The closest points of two polyhedra that are apart (Gilbert, Johnson and Keerthi, "A Fast Procedure
+//! The closest points of two separated polyhedra (Gilbert, Johnson and Keerthi, "A Fast Procedure
 //! for Computing the Distance Between Complex Objects in Three-Dimensional Space", 1988).
 //!
-//! Used where separating axes understate the distance: between two vertices, or a vertex and an edge.
-//! The simplex is solved in `f64`, which takes the sting out of thin tetrahedra.
+//! Used where separating axes understate the distance: between two vertices, or a vertex and an edge. The simplex is solved in
+//! `f64`, since tetrahedra may be thin.
 
-use super::view::{Frame, View};
+use super::view::{MatrixPose, View};
 use crate::math::{Vector, max};
 
-/// More iterations are never needed for the hulls met here; it is a fuse.
+/// The most iterations. No tested hull needs as many; it only ends the loop.
 const MAX_ITERATIONS: usize = 48;
-/// The relative gap between the upper and the lower bound of the squared distance to stop at.
+/// The loop stops at this relative gap between the upper and the lower bound of the squared distance.
 const GAP: f64 = 1.0e-6;
 
 type Wide = Vector<f64>;
@@ -32,7 +32,7 @@ pub(super) struct Closest {
     /// The unit normal from A to B.
     pub normal: Vector,
     pub distance: f32,
-    /// Which vertices the points lie between.
+    /// The vertices that the points lie between.
     pub feature: u32,
 }
 
@@ -47,7 +47,7 @@ struct Vertex {
 }
 
 /// The closest points, or `None` if the polyhedra touch or overlap.
-pub(super) fn closest(a: &View, b: &View, frame: &Frame) -> Option<Closest> {
+pub(super) fn closest(a: &View, b: &View, frame: &MatrixPose) -> Option<Closest> {
     let vertex = |direction: Vector| {
         let (i, j) = (a.support(direction), b.support(-frame.direction_in(direction)));
         let (p, q) = (widen(a.vertices[i]), widen(frame.point(b.vertices[j])));
@@ -61,7 +61,7 @@ pub(super) fn closest(a: &View, b: &View, frame: &Frame) -> Option<Closest> {
     let mut scale = nearest.length_squared();
     for _ in 0..MAX_ITERATIONS {
         let square = nearest.length_squared();
-        // What is below the rounding of the vertices is contact.
+        // Distances below the rounding of the vertices count as touching.
         if !(square > 1.0e-13 * scale) {
             return None;
         }
@@ -85,7 +85,7 @@ pub(super) fn closest(a: &View, b: &View, frame: &Frame) -> Option<Closest> {
 fn witness(simplex: &[Vertex], nearest: Wide) -> Closest {
     let sum = |f: fn(&Vertex) -> Wide| simplex.iter().fold(Wide::ZERO, |s, v| s + f(v) * v.weight);
     let distance = nearest.length();
-    // Order-free names of the two features; only equality from step to step matters.
+    // Ids of both features, independent of the order of vertices. They are only compared from step to step.
     let mask = |f: fn(&Vertex) -> u32| {
         let mut bits = 0u32;
         for v in simplex {
@@ -102,8 +102,8 @@ fn witness(simplex: &[Vertex], nearest: Wide) -> Closest {
     }
 }
 
-/// Reduces the simplex to the face nearest to the origin: its size and point. `None` if the origin is
-/// inside.
+/// Reduces the simplex to its face nearest to the origin and returns the face's size and closest point. `None` if the origin
+/// is inside.
 fn solve(simplex: &mut [Vertex; 4], count: usize) -> Option<(usize, Wide)> {
     let w = |i: usize| simplex[i].w;
     let weights = match count {
@@ -192,8 +192,7 @@ fn on_tetrahedron(p: [Wide; 4]) -> Option<[f64; 4]> {
     best.map(|b| b.1)
 }
 
-/// The distance below which closest points say nothing about the direction between shapes of these
-/// extents: axes decide there.
+/// The distance below which closest points of shapes of these extents have no direction. Separating axes are used there.
 pub(super) fn resolution(larger: f32, smaller: f32) -> f32 {
     max(1.0e-3 * smaller, 1.0e-5 * larger)
 }

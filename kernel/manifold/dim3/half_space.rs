@@ -30,13 +30,13 @@ fn vertices(
     prediction: f32,
     out: &mut LocalManifold,
 ) {
-    // Heights in the frame of B: one product a vertex, and only what is near is turned.
+    // Heights are computed in the frame of B: one product per vertex, and only near vertices are transformed.
     let (local, base) = (pose.rotation.inverse_rotate(normal), normal.dot(pose.position) - radius);
     let mut candidates = Candidates::<MAX_CANDIDATES>::new();
-    out.apart = f32::INFINITY;
+    out.gap = f32::INFINITY;
     for (i, p) in points.into_iter().enumerate() {
         let separation = local.dot(p) + base;
-        out.apart = min(out.apart, separation);
+        out.gap = min(out.gap, separation);
         if separation <= prediction {
             let point = pose.transform(p) - normal * (radius + 0.5 * separation);
             candidates.push(Candidate { point, separation, feature: i as u32 });

@@ -1,7 +1,7 @@
 //! Contact manifolds in space. `dim2` has the same function for the plane.
 //!
-//! Balls and capsules have closed forms where there are any; two boxes have a path of their own; all
-//! other pairs of polyhedra (with radii) share [`convex`].
+//! Balls and capsules have closed forms where they exist, two boxes have a function of their own, and all other pairs of
+//! polyhedra (with radii) share [`convex`].
 
 mod clip;
 mod convex;
@@ -24,14 +24,13 @@ use crate::math::{Pose, Vector};
 use crate::shape::{Capsule, Segment, Shape};
 use view::{Small, View};
 
-/// Centres farther apart than this, in metres, are not looked at: squares would overflow.
+/// Centres farther apart than this, in metres, have no contact: their squares would overflow.
 const FARTHEST: f32 = 1.0e15;
 
 /// The contact of two shapes, `pose_b_in_a` being where B is in A's frame.
 ///
-/// `out` gets the points no farther apart than `prediction` metres, none if the pair has no contact, a
-/// pose or size is not finite, or no function knows the pair (two half-spaces, foreign shapes). Give
-/// the `cache` of the same pair from the step before, or [`FeatureCache::NONE`].
+/// `out` gets the points no farther apart than `prediction` metres. It has none if a pose or size is not finite, and for two
+/// half-spaces and foreign shapes. `cache` is that of the same pair from the step before, or [`FeatureCache::NONE`].
 pub fn collide(
     a: &Shape,
     b: &Shape,
@@ -40,7 +39,7 @@ pub fn collide(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    (out.count, out.apart) = (0, 0.0);
+    (out.count, out.gap) = (0, 0.0);
     if !(pose_b_in_a.position.abs().max_element() < FARTHEST) || !pose_b_in_a.rotation.is_finite() {
         return;
     }
@@ -56,7 +55,7 @@ pub fn collide(
     drop_unusable(out);
 }
 
-/// The functions below are written for pairs in this order.
+/// The order of the shapes in a pair for the functions below.
 fn rank(shape: &Shape) -> u8 {
     match shape {
         Shape::HalfSpace(_) => 0,
@@ -109,7 +108,7 @@ fn dispatch(
         | (Cuboid(_) | Hull(_) | Triangle(_), Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_)) => {
             polyhedra(a, b, pose, prediction, cache, out);
         }
-        // Manifolds of foreign shapes come from elsewhere.
+        // Manifolds of foreign shapes come from their `ManifoldSource`.
         (Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Ball(_) | Foreign(_), Foreign(_)) => {}
         // `collide` swaps these.
         (
@@ -122,7 +121,7 @@ fn dispatch(
     }
 }
 
-/// Two shapes with polyhedral cores. Apart from the others for the sake of its large stack frame.
+/// Two shapes with polyhedral cores. Not inlined, since its stack frame is large.
 #[inline(never)]
 fn polyhedra(
     a: &Shape,

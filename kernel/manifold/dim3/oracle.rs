@@ -1,4 +1,4 @@
-//! Distances of convex shapes by brute force in `f64`: what the tests compare with.
+//! Distances of convex shapes by brute force in `f64`, for tests.
 
 use crate::math::{Pose, Vector};
 use crate::shape::Shape;
@@ -75,7 +75,7 @@ impl Solid {
         self
     }
 
-    /// How far `other` is in front of this along a unit direction, radii included.
+    /// The separation of `other` along a unit direction, radii included.
     pub fn separation_along(&self, other: &Self, normal: Vector) -> f64 {
         self.gap(other, widen(normal)) - self.radius - other.radius
     }
@@ -97,7 +97,7 @@ impl Solid {
         self.edges.iter().map(|e| self.points[e[1]] - self.points[e[0]])
     }
 
-    /// The distance; if the cores overlap, minus the least translation that parts the shapes.
+    /// The distance; if the cores overlap, minus the least translation that separates the shapes.
     pub fn signed_distance(&self, other: &Self) -> f64 {
         let mut axes: Vec<Wide> = self.normals().chain(other.normals()).collect();
         for d in self.directions() {

@@ -1,18 +1,18 @@
-//! Many candidate points become at most four: the deepest, and those that span the most area with it.
+//! Reduction of many candidate points to at most four: the deepest one, and those that span the largest area with it.
 
 use crate::math::{F32x4, Lane, Num, Vector, max};
 
 /// The most candidates a manifold function collects before it reduces.
 pub(super) const MAX_CANDIDATES: usize = 64;
-/// The first candidate whose worth is at least this share of the best one's is taken. Candidates of about equal
-/// worth then keep their order from step to step, so that impulses find their points again.
+/// The first candidate with at least this share of the best score is taken. So the choice among nearly equal candidates is the
+/// same from step to step, and points keep their impulses.
 const ABOUT_EQUAL: f32 = 0.952;
-/// How much higher than the deepest a point may lie to count as equally deep, as a share of the patch's size.
+/// A point counts as deep as the deepest one within this share of the patch's size. Less makes the choice flicker.
 const DEEPER: f32 = 1.0e-3;
-/// A point that adds less than this share of the patch's squared size adds nothing.
+/// A point must add at least this share of the patch's squared size. Less keeps points on a line.
 const FLAT: f32 = 1.0e-6;
 
-/// A contact point that may be chosen.
+/// A candidate for a contact point.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Candidate {
     pub point: Vector,
@@ -35,7 +35,7 @@ impl<const N: usize> Candidates<N> {
         &self.list[..self.count]
     }
 
-    /// Adds a candidate; when full, in place of the one with the largest separation.
+    /// Adds a candidate. A full list replaces the one with the largest separation.
     pub fn push(&mut self, candidate: Candidate) {
         if self.count < N {
             self.list[self.count] = candidate;
@@ -54,7 +54,7 @@ impl<const N: usize> Candidates<N> {
     }
 }
 
-/// The numbers of the candidates to keep, and how many; see [`Patch::reduce`].
+/// The indices of the candidates to keep, and their number; see [`Patch::reduce`].
 #[inline]
 pub(super) fn reduce(list: &[Candidate], normal: Vector) -> ([usize; 4], usize) {
     match list.len() {
@@ -64,11 +64,11 @@ pub(super) fn reduce(list: &[Candidate], normal: Vector) -> ([usize; 4], usize) 
     }
 }
 
-/// Candidates by their place in the plane of contact, four side by side in each of `B` blocks; some may be missing.
+/// The positions of candidates in the plane of contact, four side by side in each of `B` blocks. The last may be unused.
 pub(super) struct Patch<const B: usize> {
     pub x: [F32x4; B],
     pub y: [F32x4; B],
-    /// Infinite where there is no candidate.
+    /// Infinite for unused places.
     pub separation: [F32x4; B],
 }
 
@@ -88,13 +88,13 @@ impl<const B: usize> Patch<B> {
         patch
     }
 
-    /// The numbers of the candidates that are not missing, as bits.
+    /// The used places, as bits.
     #[inline(always)]
     fn present(&self) -> u64 {
         self.those_with(|_, present| present)
     }
 
-    /// The candidates for which something holds, as bits.
+    /// The candidates that pass a test, as bits.
     #[inline(always)]
     fn those_with(&self, holds: impl Fn(usize, Mask) -> Mask) -> u64 {
         let mut bits = 0;
@@ -105,13 +105,13 @@ impl<const B: usize> Patch<B> {
         bits
     }
 
-    /// A candidate's place.
+    /// A candidate's position.
     #[inline(always)]
     pub fn at(&self, i: usize) -> (f32, f32) {
         (F32x4::flat(&self.x)[i], F32x4::flat(&self.y)[i])
     }
 
-    /// The first candidate of about the most worth, above 0, and its worth.
+    /// The first candidate of about the highest score above 0, and its score.
     #[inline(always)]
     fn pick(&self, worth: impl Fn(F32x4, F32x4) -> F32x4) -> (usize, f32) {
         let mut worths = [F32x4::ZERO; B];
@@ -126,9 +126,9 @@ impl<const B: usize> Patch<B> {
         (i, F32x4::flat(&worths)[i])
     }
 
-    /// The numbers of the candidates to keep, and how many: at most four. The first is the deepest but for
-    /// 0.1 % of the patch's size; then the one farthest from it, the largest triangle, and the point that
-    /// adds most to the triangle's area.
+    /// The indices of the candidates to keep, and their number, at most four. The first is the deepest, within 0.1 % of the
+    /// patch's size. Then come the one farthest from it, the one of the largest triangle, and the one that adds most to the
+    /// triangle's area.
     pub fn reduce(&self) -> ([usize; 4], usize) {
         let mut present = self.present();
         let count = present.count_ones() as usize;

@@ -1,13 +1,13 @@
-//! Balls and capsules against each other and against what has a closed form for its nearest point.
+//! Balls and capsules against each other and against shapes with a closed form for the closest point.
 
 use crate::manifold::LocalManifold;
 use crate::math::{Pose, Vector, clamp, max, min};
 use crate::shape::{Capsule, Triangle};
 
-/// Below this sine two capsules count as parallel and touch in two points.
+/// Below this sine two capsules count as parallel and get two points. Less makes resting capsules rock on one point.
 const PARALLEL: f32 = 0.02;
 
-/// A point on the core of either shape, and how far the surfaces lie outside of the cores.
+/// The closest points of both cores, and the radii.
 #[derive(Clone, Copy)]
 struct Cores {
     a: Vector,
@@ -24,29 +24,28 @@ impl Cores {
             let point = (self.a + normal * self.radius_a + self.b - normal * self.radius_b) * 0.5;
             out.push(point, separation, feature);
         } else {
-            out.apart = separation;
+            out.gap = separation;
         }
     }
 
-    /// The contact along the line through the points, or along `fallback` if they are no farther apart than rounding
-    /// may have put them.
+    /// The contact along the line through the points, or along `fallback` if their distance is within `rounding`.
     fn contact(&self, fallback: Vector, rounding: f32, prediction: f32, out: &mut LocalManifold) {
         out.normal = self.direction_or(fallback, rounding);
         self.push(out.normal, prediction, 0, out);
     }
 
-    /// From A's point to B's, or `fallback` as above.
+    /// The direction from A's point to B's, or `fallback` as above.
     fn direction_or(&self, fallback: Vector, rounding: f32) -> Vector {
         let between = self.b - self.a;
         if between.abs().max_element() > rounding { unit_or(between, fallback) } else { fallback }
     }
 }
 
-/// Points that were computed from numbers of a size are where they should be to within this share of it, and the
-/// direction from one to the other to within a hundredth if they are farther apart than a hundred times that.
+/// A hundred times the rounding of a point, as a share of the largest number it was computed from. The direction between
+/// points that are farther apart is accurate to a hundredth.
 const ROUNDING: f32 = 2.0e-5;
 
-/// How far apart points must be to have a direction, if they were computed from these.
+/// The distance below which points computed from these have no direction.
 fn rounding_of(points: &[Vector]) -> f32 {
     ROUNDING * points.iter().fold(0.0, |size, p| max(size, p.abs().max_element()))
 }
@@ -79,13 +78,13 @@ pub(super) fn capsule_ball(
     let t = if square > 0.0 { clamp((center - a.a).dot(axis) / square, 0.0, 1.0) } else { 0.0 };
     let fallback = unit_or(axis, Vector::X).any_orthonormal();
     let point = a.a + axis * t;
-    // The axis is as good as hit where the centre is as near as rounding may put the nearest point.
+    // A centre within rounding of the axis counts as on it.
     let rounding = rounding_of(&[a.a, a.b]);
     let cores = Cores { a: point, b: center, radius_a: a.radius, radius_b: radius };
     cores.contact(fallback, rounding, prediction, out);
 }
 
-/// A box and a ball; a centre inside leaves by the nearest face.
+/// A box and a ball. The normal of a centre inside is that of the nearest face.
 pub(super) fn cuboid_ball(
     half: Vector,
     center: Vector,
@@ -96,7 +95,7 @@ pub(super) fn cuboid_ball(
     let nearest = center.max(-half).min(half);
     let cores = Cores { a: nearest, b: center, radius_a: 0.0, radius_b: radius };
     if center != nearest {
-        // The centre is held to the box without rounding.
+        // The centre is clamped to the box without rounding.
         return cores.contact(Vector::Y, 0.0, prediction, out);
     }
     let (h, c) = (half.to_array(), center.to_array());
@@ -113,7 +112,7 @@ pub(super) fn cuboid_ball(
     Cores { a: Vector::from_array(on_face), ..cores }.push(out.normal, prediction, 0, out);
 }
 
-/// A triangle and a ball, from either side; a centre in the plane leaves along the normal.
+/// A triangle and a ball, from either side. For a centre in the plane the normal is the triangle's.
 pub(super) fn triangle_ball(
     t: &Triangle,
     center: Vector,
@@ -147,7 +146,7 @@ fn face(t: &Triangle) -> Option<Vector> {
     let (ab, ac) = (t.b - t.a, t.c - t.a);
     let cross = ab.cross(ac);
     let size = ab.length() * ac.length();
-    // The third side may be the short one. NaN is no face.
+    // The third side may be the short one. A NaN fails the comparison.
     let is_face = cross.length() > SLIVER * max(size, max(ab.length_squared(), ac.length_squared()));
     is_face.then(|| unit_or(cross, Vector::Y))
 }
@@ -205,7 +204,7 @@ fn nearest_on_sides(t: &Triangle, p: Vector) -> Vector {
     nearest
 }
 
-/// Two capsules (or segments). Parallel ones touch at both ends of where they run side by side.
+/// Two capsules (or segments). Parallel ones get a point at each end of the range in which they are side by side.
 pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
     let (b0, b1) = (pose.transform(b.a), pose.transform(b.b));
     let (u, v) = (a.b - a.a, b1 - b0);
@@ -220,19 +219,19 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
         unit_or(crossed, Vector::Y)
     };
     let rounding = rounding_of(&[a.a, a.b, b0, b1]);
-    // Cores in one place part to the side where B is. The distance is known better than the direction.
+    // The normal of coinciding cores points to the side of B. Its distance is more accurate than its direction.
     let between = fallback.dot(cores.b - cores.a);
     let side = if between.abs() > 0.05 * rounding { between } else { fallback.dot(pose.position) };
     if side < 0.0 {
         fallback = -fallback;
     }
     if !parallel && s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0 {
-        // Between the ends of both the normal is across both, however near they are.
+        // Between the ends of both, the normal is across both at any distance.
         out.normal = fallback;
         return cores.push(fallback, prediction, 0, out);
     }
     if parallel && uu > 0.0 && vv > 0.0 {
-        // B's ends along A, held to A: where the two run side by side.
+        // B's ends along A, clamped to A: the range in which both are side by side.
         let ends = [b0, b1].map(|p| clamp((p - a.a).dot(u) / uu, 0.0, 1.0));
         let (low, high) = (min(ends[0], ends[1]), max(ends[0], ends[1]));
         let across = |s: f32| {
@@ -245,18 +244,18 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
             for (feature, s) in [(1, low), (2, high)] {
                 across(s).push(out.normal, prediction, feature, out);
             }
-            out.apart = 0.0;
+            out.gap = 0.0;
             return;
         }
     }
     cores.contact(fallback, rounding, prediction, out);
     if parallel {
-        // Of parallel lines the closest points are found by rounding.
-        out.apart = 0.0;
+        // The closest points of parallel lines are found by rounding.
+        out.gap = 0.0;
     }
 }
 
-/// Where along two segments their closest points are (Ericson, "Real-Time Collision Detection",
+/// The closest points of two segments, as fractions along them (Ericson, "Real-Time Collision Detection",
 /// 5.1.9).
 fn closest_parameters(p: Vector, u: Vector, q: Vector, v: Vector) -> (f32, f32) {
     let r = p - q;

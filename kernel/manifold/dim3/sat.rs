@@ -1,31 +1,30 @@
-//! Separating axes of two polyhedra: the normals of their faces, and the products of their edges that
-//! the Gauss map leaves.
+//! Separating axes of two polyhedra: the normals of their faces, and the cross products of edges that pass the Gauss map
+//! test.
 //!
-//! Most axes are ruled out by one point. However a polyhedron B lies, none of its points can be closer to a
-//! plane than B is: the height of any one of them over a face of A bounds the face's separation from above.
-//! An outward axis n of one of A's edges is a positive combination of the normals of the two faces beside it; where
-//! a point of B is deeper than S < 0 under both planes, B is so along every such n too, since |n| is at most the
-//! sum of its parts. For the point the vertex of B that is lowest over the best face serves, since shapes that meet do so
-//! about there: of the 40 faces of two hulls with 12 vertices some nine are left, of their 900 pairs of edges about a tenth.
+//! One point rules out most axes. The height of any point of B over a face of A is an upper bound of the face's separation. An
+//! outward axis n of an edge of A is a positive combination of the normals of the two faces beside it. If a point of B is
+//! deeper than S < 0 under both planes, it is also deeper than S along every such n, since |n| is at most the sum of its
+//! parts. The point is the vertex of B that is lowest over the best face, since shapes touch near there. Of the 40 faces of two
+//! hulls with 12 vertices some nine remain, of their 900 pairs of edges about a tenth.
 
-use super::view::{Frame, View};
+use super::view::{MatrixPose, View};
 use crate::math::{F32x4, Lane, Num, Vector, min};
 use crate::shape::{EdgeBlock, largest};
 
-/// Edges with a smaller sine between them count as parallel: their product has no direction.
+/// Edges with a smaller sine between them count as parallel: the direction of their product is rounding.
 const PARALLEL: f32 = 0.005;
 
-/// The face of one polyhedron that separates best.
+/// A face of one polyhedron with its separation.
 #[derive(Clone, Copy)]
 pub(super) struct FaceAxis {
     pub face: usize,
     /// The signed distance of the other polyhedron from the face's plane.
     pub separation: f32,
-    /// The vertex of the other polyhedron that has that distance.
+    /// The vertex of the other polyhedron at that distance.
     pub lowest: usize,
 }
 
-/// The pair of edges that separates best.
+/// A pair of edges with its separation.
 #[derive(Clone, Copy)]
 pub(super) struct EdgeAxis {
     pub a: usize,
@@ -35,17 +34,17 @@ pub(super) struct EdgeAxis {
     pub separation: f32,
 }
 
-/// The signed distance of `other` from a face of `this`, where `frame` takes `other` into its frame.
+/// The signed distance of `other` from a face of `this`, where `frame` transforms `other` into its frame.
 #[inline(always)]
-pub(super) fn face_separation(this: &View, face: usize, other: &View, frame: &Frame) -> FaceAxis {
+pub(super) fn face_separation(this: &View, face: usize, other: &View, frame: &MatrixPose) -> FaceAxis {
     let f = &this.faces[face];
     let (lowest, depth) = other.farthest(-frame.direction_in(f.normal));
     FaceAxis { face, separation: (f.normal.dot(frame.position) - f.offset) - depth, lowest }
 }
 
-/// The face of `this` with the largest separation, where `frame` takes `other` into the frame of
-/// `this`. Stops at the first that is above `limit`.
-pub(super) fn best_face(this: &View, other: &View, frame: &Frame, limit: f32) -> FaceAxis {
+/// The face of `this` with the largest separation, where `frame` transforms `other` into the frame of `this`. Stops at the
+/// first above `limit`.
+pub(super) fn best_face(this: &View, other: &View, frame: &MatrixPose, limit: f32) -> FaceAxis {
     if this.faces.is_empty() {
         return FaceAxis { face: 0, separation: f32::NEG_INFINITY, lowest: 0 };
     }
@@ -72,7 +71,7 @@ pub(super) fn best_face(this: &View, other: &View, frame: &Frame, limit: f32) ->
     best
 }
 
-/// The face that a point is highest over.
+/// The face with the largest height of a point over it.
 fn face_under(view: &View, point: Vector) -> usize {
     let point = Vector::<F32x4>::splat(point);
     let mut best = F32x4::splat(f32::NEG_INFINITY);
@@ -87,8 +86,8 @@ fn face_under(view: &View, point: Vector) -> usize {
     largest(best, at).0.min(view.faces.len() - 1)
 }
 
-/// Which of four edges may have an axis along which `point`, one of the other polyhedron's, is not deeper than
-/// `depth` ≤ 0, as bits. See the module.
+/// The edges of four, as bits, that may have an axis along which `point` of the other polyhedron is not deeper than
+/// `depth` ≤ 0. See the module.
 #[inline(always)]
 fn open_edges(block: &EdgeBlock, point: Vector, depth: f32) -> u32 {
     let (arm, depth) = (Vector::<F32x4>::splat(point) - block.tail, F32x4::splat(depth));
@@ -113,9 +112,9 @@ struct EdgeTest {
 }
 
 impl EdgeTest {
-    /// One edge of four, taken into A's frame.
+    /// One edge of four, in A's frame.
     #[inline(always)]
-    fn new(of_b: &EdgeBlock, lane: usize, frame: &Frame) -> Self {
+    fn new(of_b: &EdgeBlock, lane: usize, frame: &MatrixPose) -> Self {
         Self {
             direction: Vector::splat(frame.direction(of_b.direction.get(lane))),
             left: Vector::splat(frame.direction(of_b.left.get(lane))),
@@ -124,7 +123,7 @@ impl EdgeTest {
         }
     }
 
-    /// The separations along the four axes, −∞ where there is none, and the signs of the products.
+    /// The separations along the four axes, −∞ for pairs that are no axis, and the signs of the products.
     #[inline(always)]
     fn run(&self, block: &EdgeBlock) -> Option<(F32x4, F32x4)> {
         let (a_left, a_right) = (block.left.dot(self.direction), block.right.dot(self.direction));
@@ -146,20 +145,26 @@ impl EdgeTest {
     }
 }
 
-/// So many blocks of A's edges are ruled out beforehand; of hulls with more the others are all looked at.
+/// The number of blocks of A's edges that are tested beforehand. Of hulls with more, all other blocks are searched.
 const LISTED: usize = 64;
 
-/// What is known when edges are searched: a point of either polyhedron in the frame of the other, and the
-/// separation that edges have to beat.
+/// The input of the search over edges: a point of each polyhedron in the frame of the other, and the separation that edges
+/// have to exceed.
 pub(super) struct Known {
     pub of_b_in_a: Vector,
     pub of_a_in_b: Vector,
     pub separation: f32,
 }
 
-/// The pair of edges with the largest separation, if that is larger than what is `known`; `frame` takes B into A's
-/// frame. Stops at the first that is above `limit`.
-pub(super) fn best_edges(a: &View, b: &View, frame: &Frame, known: &Known, limit: f32) -> Option<EdgeAxis> {
+/// The pair of edges with the largest separation, if that is larger than the `known` one. `frame` transforms B into A's frame.
+/// Stops at the first above `limit`.
+pub(super) fn best_edges(
+    a: &View,
+    b: &View,
+    frame: &MatrixPose,
+    known: &Known,
+    limit: f32,
+) -> Option<EdgeAxis> {
     let depth = min(known.separation, 0.0);
     let mut listed = [0u16; LISTED];
     let mut count = 0;
@@ -202,8 +207,14 @@ pub(super) fn best_edges(a: &View, b: &View, frame: &Frame, known: &Known, limit
     Some(EdgeAxis { a: i, b: j, normal: axis * (1.0 / axis.length()), separation: best })
 }
 
-/// One pair of edges again: `None` if it is no axis of the Minkowski difference any more.
-pub(super) fn edge_separation(a: &View, i: usize, b: &View, j: usize, frame: &Frame) -> Option<EdgeAxis> {
+/// The present separation of a pair of edges; `None` if it is no axis of the Minkowski difference any more.
+pub(super) fn edge_separation(
+    a: &View,
+    i: usize,
+    b: &View,
+    j: usize,
+    frame: &MatrixPose,
+) -> Option<EdgeAxis> {
     let test = EdgeTest::new(&b.edge_blocks[j / 4], j % 4, frame);
     let (separations, sign) = test.run(&a.edge_blocks[i / 4])?;
     let separation = separations.get(i % 4);
@@ -218,7 +229,7 @@ fn edge_direction(view: &View, edge: usize) -> Vector {
     view.edge_blocks[edge / 4].direction.get(edge % 4)
 }
 
-/// How many lanes of an edge block are edges and not padding.
+/// The number of lanes of an edge block that are not padding.
 fn remaining(view: &View, block: usize) -> usize {
     (view.edges.len() - 4 * block).min(4)
 }

@@ -4,7 +4,7 @@ use super::collide;
 use super::oracle::Solid;
 use super::reduce::{Candidate, reduce};
 use super::sat;
-use super::view::{Frame, View};
+use super::view::{MatrixPose, View};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, HalfSpace, Hull, Segment, Shape, Triangle};
@@ -129,7 +129,7 @@ proptest! {
         let m = fresh(&a, &b, &pose, 0.02);
         if m.count == 0 {
             let truth = Solid::new(&a).signed_distance(&Solid::new(&b).at(&pose));
-            prop_assert!(f64::from(m.apart) < truth + 1e-4, "{} but {truth}", m.apart);
+            prop_assert!(f64::from(m.gap) < truth + 1e-4, "{} but {truth}", m.gap);
         }
     }
 
@@ -138,7 +138,7 @@ proptest! {
         let m = fresh(&Shape::HalfSpace(HalfSpace { normal: Vector::Y }), &b, &pose, 0.02);
         let lowest = b.support(pose.rotation.inverse_rotate(-Vector::Y)).expect("it is bounded");
         let height = pose.transform(lowest).y;
-        prop_assert!(m.count > 0 || (m.apart - height).abs() < 1e-5, "{} for {height}", m.apart);
+        prop_assert!(m.count > 0 || (m.gap - height).abs() < 1e-5, "{} for {height}", m.gap);
     }
 
     #[test]
@@ -206,7 +206,7 @@ proptest! {
     #[test]
     fn what_is_ruled_out_beforehand_would_not_have_been_found(a in hull(), b in hull(), pose in pose(1.5)) {
         let (Shape::Hull(a), Shape::Hull(b)) = (&a, &b) else { unreachable!() };
-        let (a, b, frame) = (View::from(&**a), View::from(&**b), Frame::new(&pose));
+        let (a, b, frame) = (View::from(&**a), View::from(&**b), MatrixPose::new(&pose));
         let best = sat::best_face(&a, &b, &frame, f32::INFINITY);
         let all = (0..a.faces.len()).map(|i| sat::face_separation(&a, i, &b, &frame).separation);
         prop_assert!((best.separation - all.fold(f32::NEG_INFINITY, f32::max)).abs() < 1e-5);

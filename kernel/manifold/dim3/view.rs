@@ -1,10 +1,10 @@
-//! One view of every polyhedral core: hulls by reference, boxes, triangles, segments and points
-//! scaled onto the stack. The same code then collides them all.
+//! A view of every polyhedral core: hulls by reference; boxes, triangles, segments and points as scaled copies on the stack.
+//! The same code collides all of them.
 
 use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
 use crate::shape::{Capsule, Edge, EdgeBlock, Face, FaceBlock, Hull, farthest, pack};
 
-/// The convex polyhedron (or flat limit of one) that a shape is, but for a radius around it.
+/// The convex polyhedron, possibly flat, that a shape is without its radius.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
     pub vertices: &'a [Vector],
@@ -16,18 +16,18 @@ pub(super) struct View<'a> {
     pub face_blocks: &'a [FaceBlock],
     /// The faces around each vertex, one vertex after another.
     pub fans: &'a [u32],
-    /// Where the faces around each vertex begin among these, and where all end.
+    /// The index of each vertex' first face in that list, and the length of the list.
     pub fan_starts: &'a [u32],
     /// A point inside.
     pub center: Vector,
-    /// About the distance from the centre to the farthest vertex.
+    /// The approximate distance from the centre to the farthest vertex.
     pub extent: f32,
-    /// How far the surface lies outside of the polyhedron.
+    /// The radius of the surface around the polyhedron.
     pub radius: f32,
 }
 
 impl View<'_> {
-    /// The vertex farthest along a direction, and how far that is.
+    /// The vertex farthest along a direction, and its distance.
     #[inline(always)]
     pub fn farthest(&self, direction: Vector) -> (usize, f32) {
         let (index, value) = farthest(self.blocks, direction);
@@ -77,7 +77,7 @@ const fn edge(tail: u32, head: u32, left: u32, right: u32) -> Edge {
     Edge { tail, head, left, right }
 }
 
-/// Bit k of a corner's number says on which side of axis k it lies; face 2k is the lower of axis k.
+/// Bit k of a corner's index is its side of axis k; face 2k is the lower one of axis k.
 const CUBE_LOOPS: [u32; 24] = [0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6];
 const CUBE_EDGES: [Edge; 12] = [
     edge(0, 1, 2, 4),
@@ -141,7 +141,7 @@ const EMPTY_EDGES: EdgeBlock =
     EdgeBlock { direction: Vector::ZERO, left: Vector::ZERO, right: Vector::ZERO, tail: Vector::ZERO };
 const NO_FACE: Face = Face { normal: Vector::ZERO, offset: 0.0, first: 0, count: 0 };
 
-/// Room on the stack for a small polyhedron.
+/// A small polyhedron on the stack.
 pub(super) struct Small {
     vertices: [Vector; 8],
     blocks: [Vector<F32x4>; 2],
@@ -182,7 +182,7 @@ impl Small {
         small
     }
 
-    /// A box: that of half extents 1, of which but corners and offsets stay as they are.
+    /// A box: a copy of that of half extents 1 with other corners and offsets.
     pub fn cuboid(half: Vector) -> Self {
         let side = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
         let h = half.to_array();
@@ -260,8 +260,8 @@ impl Small {
         small
     }
 
-    /// A segment with a radius: one edge whose Gauss map is the whole great circle about it, given as
-    /// three arcs of 120°, as of a prism that has become thin. It has no faces.
+    /// A segment with a radius: an edge whose Gauss map is the great circle about it, as three arcs of 120°, like a thin prism.
+    /// It has no faces.
     pub fn segment(a: Vector, b: Vector, radius: f32) -> Self {
         let along = b - a;
         let size = along.abs().max_element();
@@ -309,7 +309,7 @@ impl Small {
         }
     }
 
-    /// The view that the queries take.
+    /// The view of it.
     pub fn view(&self) -> View<'_> {
         View {
             vertices: &self.vertices[..self.vertex_count],
@@ -328,16 +328,16 @@ impl Small {
     }
 }
 
-/// A pose as a matrix: several vectors are turned by it.
+/// A pose with a rotation matrix, which is faster for several vectors.
 #[derive(Clone, Copy)]
-pub(super) struct Frame {
-    /// Where the axes of the inner frame point.
+pub(super) struct MatrixPose {
+    /// The axes of the inner frame.
     pub axes: [Vector; 3],
-    /// Where the inner origin is.
+    /// The origin of the inner frame.
     pub position: Vector,
 }
 
-impl Frame {
+impl MatrixPose {
     #[inline]
     pub fn new(pose: &Pose) -> Self {
         Self { axes: pose.rotation.axes(), position: pose.position }
@@ -355,20 +355,20 @@ impl Frame {
         Self { axes, position: -self.direction_in(self.position) }
     }
 
-    /// Turns a direction outward.
+    /// Rotates a direction to the outer frame.
     #[inline(always)]
     pub fn direction<N: Lane>(&self, v: Vector<N>) -> Vector<N> {
         let [x, y, z] = self.axes.map(Vector::<N>::splat);
         x * v.x + y * v.y + z * v.z
     }
 
-    /// Takes a point outward.
+    /// Transforms a point to the outer frame.
     #[inline(always)]
     pub fn point<N: Lane>(&self, v: Vector<N>) -> Vector<N> {
         self.direction(v) + Vector::<N>::splat(self.position)
     }
 
-    /// Turns a direction inward.
+    /// Rotates a direction to the inner frame.
     #[inline(always)]
     pub fn direction_in(&self, v: Vector) -> Vector {
         Vector { x: self.axes[0].dot(v), y: self.axes[1].dot(v), z: self.axes[2].dot(v) }

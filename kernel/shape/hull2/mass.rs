@@ -14,7 +14,7 @@ struct Moments {
 }
 
 impl Moments {
-    /// Adds a piece by its area, its first moment and its polar moment about `at`.
+    /// Adds a part by its area, and its first and polar moment about `at`.
     fn add(&mut self, area: f64, at: Point, first_about: Point, polar_about: f64) {
         // ∫ |at + s|² = polar + 2 at · first + area |at|².
         self.area += area;

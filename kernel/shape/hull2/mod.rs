@@ -21,7 +21,7 @@ use wide::{cross, length, sub, wide};
 /// their neighbours; edge `i` leads from vertex `i` to the next one and has normal `i`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    /// The vertices, then the normals; up to eight of each lie within the struct.
+    /// The vertices, then the normals; up to eight of each are inline.
     points: SmallVec<[Vector; 16]>,
     radius: f32,
     aabb: Aabb,
@@ -31,12 +31,12 @@ pub struct Hull {
 impl Hull {
     /// The polygon with the given outline, rounded by `radius` metres (0 leaves it sharp).
     ///
-    /// Takes either orientation. Duplicate points and points on the line of their neighbours, within
-    /// 1e-6 of the size, are left out.
+    /// The outline may have either orientation. Duplicate points and points on the line of their neighbours, within 1e-6 of the
+    /// size, are dropped.
     ///
     /// # Errors
-    /// `NotFinite` and `Negative` for such numbers, `Degenerate` if less than a triangle is left,
-    /// `NotConvex` if the outline turns both ways or goes round more than once.
+    /// `NotFinite` and `Negative` for such numbers, `Degenerate` if less than a triangle remains, `NotConvex` if the outline
+    /// turns both ways or winds more than once.
     pub fn from_convex(vertices: &[Vector], radius: f32) -> Result<Self, ShapeError> {
         let radius = check(vertices, radius)?;
         let mut outline = vertices.to_vec();
@@ -85,7 +85,7 @@ impl Hull {
         &self.points[self.points.len() / 2..]
     }
 
-    /// How far the surface stands off the core, in metres; 0 for a sharp polygon.
+    /// The radius around the core, in metres; 0 for a sharp polygon.
     #[inline]
     pub fn radius(&self) -> f32 {
         self.radius
@@ -110,7 +110,7 @@ impl Hull {
         if self.radius > 0.0 { best.0 + direction_or(direction, Vector::X) * self.radius } else { best.0 }
     }
 
-    /// Where a ray along the unit vector `direction` hits; see `Shape::cast_ray`.
+    /// The hit of a ray along the unit vector `direction`; see `Shape::cast_ray`.
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -150,7 +150,7 @@ impl Hull {
     }
 }
 
-/// The radius, if all numbers are usable.
+/// The radius, if all numbers are valid.
 fn check(points: &[Vector], radius: f32) -> Result<f32, ShapeError> {
     if points.iter().all(|p| p.is_finite()) { checked_length(radius) } else { Err(ShapeError::NotFinite) }
 }

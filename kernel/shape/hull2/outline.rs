@@ -1,13 +1,12 @@
-//! Outlines of convex polygons: what is left out of them, whether they are convex, the hull of
-//! points, and where a ray meets them.
+//! Outlines of convex polygons: simplification, test for convexity, convex hull, and ray hits.
 
 use super::wide::{Point, cross, dot, length, sub, wide};
 use crate::math::Vector;
 use crate::shape::primitives::hit_of_stretch;
 use crate::shape::{Aabb, RayHit, ShapeError};
 
-/// How close two points, or a point and the line of its neighbours, may be before they count as one
-/// or as on it: 1e-6 of the outline's size, and no less than the spacing of `f32` at its place.
+/// Two points count as one, and a point as on the line of its neighbours, within this distance: 1e-6 of the outline's size,
+/// and at least the spacing of `f32` at its coordinates.
 pub(super) fn merge_distance(points: &[Vector]) -> f64 {
     let bounds = Aabb::around(points.iter().copied());
     let size = (bounds.max - bounds.min).max_element();
@@ -22,7 +21,7 @@ pub(super) fn edges(outline: &[Vector]) -> impl Iterator<Item = (Vector, Vector)
 }
 
 /// The outline without points that are within `tolerance` of the one before, or of the line of both
-/// neighbours while between them. Spikes stay: they are not convex, and found as such later.
+/// neighbours while between them. Spikes remain, and are then found not to be convex.
 pub(super) fn simplified(mut outline: Vec<Vector>, tolerance: f64) -> Result<Vec<Vector>, ShapeError> {
     loop {
         let before = outline.len();
@@ -68,7 +67,7 @@ pub(super) fn turns_left_once(outline: &[Vector]) -> bool {
 /// algorithm for convex hulls in two dimensions", 1979). Fewer than three points if it has no area.
 pub(super) fn monotone_chain(points: &[Vector]) -> Vec<Vector> {
     let mut sorted = points.to_vec();
-    // −0 and 0 are one place: adding 0 makes them one number.
+    // Adding 0 turns −0 into 0.
     sorted.iter_mut().for_each(|p| *p += Vector::ZERO);
     sorted.sort_unstable_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
     sorted.dedup();

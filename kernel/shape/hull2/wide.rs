@@ -1,4 +1,4 @@
-//! Vectors in `f64`: shapes are checked and measured in full precision, once, when they are made.
+//! Vectors in `f64`: shapes are checked and measured in full precision when they are made.
 
 use crate::math::Vector;
 

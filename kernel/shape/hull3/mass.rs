@@ -1,4 +1,4 @@
-//! The mass of a polyhedron by exact integrals over tetrahedra.
+//! The mass properties of a polyhedron by exact integrals over tetrahedra.
 
 use super::wide::{Wide, narrow, widen};
 use crate::math::{Inertia, Vector};

@@ -1,4 +1,4 @@
-//! From a closed convex mesh to a hull: weld, merge coplanar faces, check.
+//! From a closed convex mesh to a hull: vertices are welded, coplanar faces merged, and the result checked.
 //!
 //! All checks are relative to the largest extent of the mesh.
 
@@ -7,12 +7,11 @@ use super::{Hull, mass, size_of};
 use crate::math::Vector;
 use crate::shape::ShapeError;
 
-/// How far, as a share of the size, a vertex may lie off a face's plane to be part of the face, and off an
-/// edge to be part of the edge. Larger eats small bevels, smaller leaves the slivers that hull builders
-/// make. Thin solids would lose corners: each next one is tried if the one before joins faces that are not
-/// one polygon.
+/// The tolerances, as shares of the size, within which a vertex is in a face's plane or on an edge. Larger ones remove small
+/// bevels, smaller ones leave the slivers of hull builders. In thin solids a large one joins faces that are not one polygon;
+/// then the next one is tried.
 const FLATNESS: [f64; 4] = [1.0e-4, 1.0e-5, 1.0e-6, 0.0];
-/// How far, as a share of the size, a vertex may lie in front of a face.
+/// A vertex may lie in front of a face by this share of the size. More accepts meshes that are not convex.
 const CONVEXITY: f64 = 1.0e-3;
 /// Faces are merged only if the cosine between their normals is above this.
 const SAME_DIRECTION: f64 = 0.99;
@@ -60,7 +59,7 @@ impl Hull {
         Err(refusal)
     }
 
-    /// The hull with faces merged that lie in a plane to within `tolerance` metres.
+    /// The hull with coplanar faces merged within `tolerance` metres.
     fn merged(
         vertices: &[Vector],
         faces: &[Vec<u32>],
@@ -79,7 +78,7 @@ impl Hull {
         Ok(Self::assemble(vertices, &planes, &outlines))
     }
 
-    /// A hull from a triangle mesh, as builders of convex hulls give it; see
+    /// A hull from a triangle mesh, as from builders of convex hulls; see
     /// [`from_mesh`](Self::from_mesh).
     ///
     /// # Errors
@@ -90,7 +89,7 @@ impl Hull {
     }
 }
 
-/// Joins vertices at the same place; drops what that collapses.
+/// Joins vertices at the same position and drops faces that collapse.
 fn weld(vertices: Vec<Vector>, mut faces: Vec<Vec<u32>>) -> Result<(Vec<Vector>, Vec<Vec<u32>>), ShapeError> {
     if vertices.iter().any(|v| !v.is_finite()) {
         return Err(ShapeError::NotFinite);
@@ -119,7 +118,7 @@ fn weld(vertices: Vec<Vector>, mut faces: Vec<Vec<u32>>) -> Result<(Vec<Vector>,
     Ok((vertices, faces))
 }
 
-/// The half edges, sorted. Each must be there once, and its twin too.
+/// The half edges, sorted. Each must occur once, and so must its twin.
 fn half_edges(faces: &[Vec<u32>]) -> Result<Vec<HalfEdge>, ShapeError> {
     let mut list = Vec::new();
     for (f, face) in faces.iter().enumerate() {
@@ -145,10 +144,10 @@ fn area_vector(vertices: &[Vector], outline: &[u32]) -> Wide {
     (1..outline.len() - 1).fold(Wide::ZERO, |sum, k| sum + (at(k) - at(0)).cross(at(k + 1) - at(0)))
 }
 
-/// Gives each face the number of its group of coplanar neighbours.
+/// The group of coplanar neighbours of each face.
 ///
-/// Groups grow from the largest face on, and a face is compared with that seed alone: comparing
-/// neighbours with each other would melt a finely tessellated ball into one face.
+/// Groups grow from the largest face, and faces are compared with that face alone: comparing neighbours with each other would
+/// join all faces of a finely tessellated ball.
 fn merge_coplanar(
     vertices: &[Vector],
     faces: &[Vec<u32>],
@@ -174,7 +173,7 @@ fn merge_coplanar(
             let sliver = area < tolerance * longest;
             let flat =
                 faces[face].iter().all(|v| normal.dot(widen(vertices[*v as usize]) - base).abs() < tolerance);
-            // A needle joins what it leans to, but not the other side of a thin solid.
+            // A sliver joins the face that it is coplanar with, but not the other side of a thin solid.
             let least = if sliver { 0.0 } else { SAME_DIRECTION * area };
             flat && normal.dot(areas[face]) > least
         };
@@ -195,8 +194,8 @@ fn merge_coplanar(
     group
 }
 
-/// The boundary loop of each group; vertices that only two groups share are left out, and must lie on a
-/// straight edge, to within `tolerance` metres.
+/// The boundary loop of each group. Vertices that only two groups share are dropped, and must lie on a straight edge within
+/// `tolerance` metres.
 fn outlines(
     vertices: &[Vector],
     group: &[u32],
@@ -248,7 +247,7 @@ fn outlines(
     Ok(result)
 }
 
-/// How far a vertex lies from the segment between two others.
+/// The distance of a vertex from the segment between two others.
 fn off_edge(vertices: &[Vector], v: u32, a: u32, b: u32) -> f64 {
     let [v, a, b] = [v, a, b].map(|i| widen(vertices[i as usize]));
     let edge = b - a;
@@ -256,7 +255,7 @@ fn off_edge(vertices: &[Vector], v: u32, a: u32, b: u32) -> f64 {
     (v - a - edge * along).length()
 }
 
-/// Renumbers the vertices that are left.
+/// Renumbers the remaining vertices.
 fn drop_unused(vertices: &[Vector], mut outlines: Vec<Vec<u32>>) -> (Vec<Vector>, Vec<Vec<u32>>) {
     let mut number = vec![u32::MAX; vertices.len()];
     for i in outlines.iter().flatten() {
@@ -275,7 +274,7 @@ fn drop_unused(vertices: &[Vector], mut outlines: Vec<Vec<u32>>) -> (Vec<Vector>
     (kept, outlines)
 }
 
-/// The planes of the faces, if no vertex, of the ones left out either, lies in front of one.
+/// The planes of the faces, if no vertex, dropped ones included, lies in front of one.
 fn checked_planes(
     vertices: &[Vector],
     outlines: &[Vec<u32>],

@@ -1,4 +1,4 @@
-//! The convex polyhedron: vertices, polygonal faces, and edges that know the faces beside them.
+//! The convex polyhedron: vertices, polygonal faces, and edges with the faces beside them.
 
 mod mass;
 mod mesh;
@@ -11,28 +11,28 @@ use super::MassProperties;
 use crate::math::{F32x4, Lane, Num, Vector, max, min};
 use crate::shape::{RayHit, ShapeError};
 
-/// A face of a hull: its plane and where its vertices stand in the list of loops.
+/// A face of a hull: its plane and the range of its vertices in the list of loops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     /// The outward unit normal.
     pub normal: Vector,
     /// The signed distance from the origin to the plane along the normal, in metres.
     pub offset: f32,
-    /// Where the loop of the face starts.
+    /// The start of the face's loop.
     pub(crate) first: u32,
-    /// How many vertices the loop has.
+    /// The number of vertices of the loop.
     pub(crate) count: u32,
 }
 
-/// An edge of a hull. Seen from outside, the `left` face has it counter-clockwise.
+/// An edge of a hull. Seen from outside, it runs counter-clockwise around the `left` face.
 ///
 /// On the Gauss map (each face a point of the unit sphere, its normal) the edge is the arc from the
 /// left normal to the right one, a turn about the direction of the edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// The vertex it starts at.
+    /// The vertex at its start.
     pub tail: u32,
-    /// The vertex it ends at.
+    /// The vertex at its end.
     pub head: u32,
     /// The face it runs counter-clockwise around.
     pub left: u32,
@@ -49,11 +49,11 @@ pub(crate) struct EdgeBlock {
     pub left: Vector<F32x4>,
     /// The normal of the right face.
     pub right: Vector<F32x4>,
-    /// The vertex it starts at.
+    /// The vertex at its start.
     pub tail: Vector<F32x4>,
 }
 
-/// Four faces side by side, for the search for the face that separates best.
+/// Four faces side by side, for the search for the face of the largest separation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceBlock {
     /// The outward unit normal.
@@ -64,8 +64,8 @@ pub(crate) struct FaceBlock {
 
 /// A convex polyhedron.
 ///
-/// Immutable once made. Vertices, faces and edges are stored twice: one by one, and four side by side for
-/// the searches, which are most of what a hull is asked.
+/// Immutable. Vertices, faces and edges are stored twice: one by one, and four side by side for the searches of the narrow
+/// phase.
 #[derive(Clone, Debug)]
 pub struct Hull {
     vertices: Vec<Vector>,
@@ -98,7 +98,7 @@ pub(crate) fn pack(values: &[Vector]) -> impl Iterator<Item = Vector<F32x4>> + '
     })
 }
 
-/// The number of the vector farthest along `direction`, the lowest of equals, and how far that is.
+/// The index of the vector farthest along `direction`, the lowest of equals, and its distance.
 #[inline(always)]
 pub(crate) fn farthest(blocks: &[Vector<F32x4>], direction: Vector) -> (usize, f32) {
     let d = Vector::<F32x4>::splat(direction);
@@ -115,8 +115,8 @@ pub(crate) fn farthest(blocks: &[Vector<F32x4>], direction: Vector) -> (usize, f
     largest(best, at)
 }
 
-/// The number of the largest of some values and the value, given the largest of each lane and which of its lane it
-/// is. Without branches: which lane it is nobody foresees.
+/// The largest of some values and its index, given the largest value and its index of each lane. Without branches, which
+/// would be mispredicted.
 #[inline(always)]
 pub(crate) fn largest(best: F32x4, at: F32x4) -> (usize, f32) {
     const LANES: F32x4 = F32x4::new([0.0, 1.0, 2.0, 3.0]);
@@ -143,7 +143,7 @@ impl Hull {
         Self::from_mesh((0..8).map(corner).collect(), faces.iter().map(|f| f.to_vec()).collect())
     }
 
-    /// Puts a hull together from checked parts: each face is a loop of vertices.
+    /// Makes a hull from valid parts: each face is a loop of vertices.
     fn assemble(vertices: Vec<Vector>, planes: &[(Vector, f32)], outlines: &[Vec<u32>]) -> Self {
         let mut faces = Vec::with_capacity(planes.len());
         let mut loops = Vec::new();
@@ -189,7 +189,7 @@ impl Hull {
         &self.vertices
     }
 
-    /// How far the surface lies outside of the polyhedron: always 0 in space.
+    /// The radius around the polyhedron: always 0 in space.
     pub fn radius(&self) -> f32 {
         0.0
     }
@@ -239,7 +239,7 @@ impl Hull {
         &self.face_blocks
     }
 
-    /// The faces around each vertex, one vertex after another, and where each vertex' begin.
+    /// The faces around each vertex, one vertex after another, and the index of each vertex' first face.
     pub(crate) fn fans(&self) -> (&[u32], &[u32]) {
         (&self.fans, &self.fan_starts)
     }
@@ -254,11 +254,11 @@ impl Hull {
         self.unit_mass
     }
 
-    /// Where a ray along the unit vector `direction` first meets the hull; see
+    /// The first hit of a ray along the unit vector `direction` on the hull; see
     /// [`Shape::cast_ray`](crate::shape::Shape::cast_ray).
     ///
-    /// The ray is cut by the plane of each face: what enters last and leaves first bounds the part
-    /// inside (Cyrus and Beck, 1978).
+    /// The ray is clipped by the plane of each face. The last entry and the first exit bound the range inside (Cyrus and Beck,
+    /// 1978).
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -304,7 +304,7 @@ fn edge_blocks(vertices: &[Vector], faces: &[Face], edges: &[Edge]) -> Vec<EdgeB
     };
     let direction = column(&|e| {
         let d = vertices[e.head as usize] - vertices[e.tail as usize];
-        // Scaled first: the square of a short edge may not be a normal number.
+        // Scaled first, since the square of a short edge may be subnormal.
         let scale = d.abs().max_element();
         let d = d * (1.0 / max(scale, f32::MIN_POSITIVE));
         d * (1.0 / max(d.length(), f32::MIN_POSITIVE))
@@ -330,7 +330,7 @@ fn face_blocks(faces: &[Face]) -> Vec<FaceBlock> {
     pack(&normals).zip(offsets).map(|(normal, offset)| FaceBlock { normal, offset }).collect()
 }
 
-/// The faces around each of so many vertices, and where each vertex' begin; the last number is where all end.
+/// The faces around each of `count` vertices, and the index of each vertex' first face, followed by the number of all.
 fn fans(vertices: usize, outlines: &[Vec<u32>]) -> (Vec<u32>, Vec<u32>) {
     let mut around = vec![Vec::new(); vertices];
     for (face, outline) in outlines.iter().enumerate() {

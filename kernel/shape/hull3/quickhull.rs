@@ -1,17 +1,17 @@
-//! The convex hull of a cloud of points, for users of the bare kernel and for tests.
+//! The convex hull of points, for users of the kernel alone and for tests.
 //!
 //! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", 1996) in `f64`
-//! about one of the points, which are `f32` and leave nine digits for the rounding of planes.
+//! about one of the points. Points are `f32`, so nine digits remain for the rounding of planes.
 
 use super::wide::{Wide, widen};
 use super::{Hull, size_of};
 use crate::math::Vector;
 use crate::shape::ShapeError;
 
-/// Points closer to each other than this share of the size are one, and points this close to a plane flat.
+/// Points closer to each other than this share of the size are one, and points this close to a plane are in it.
 const TOLERANCE: f64 = 1.0e-5;
-/// A point in front of a face by less than this share of the tolerance is on it. It must be small: beyond
-/// the edge of a thin solid a point may be far away and hardly in front of either face.
+/// A point in front of a face by less than this share of the tolerance is on it. It must be small: a point beyond the edge of
+/// a thin solid may be far away, but hardly in front of either face.
 const ON_FACE: f64 = 1.0e-4;
 
 /// A triangle of the growing hull.
@@ -67,7 +67,7 @@ impl Hull {
     }
 }
 
-/// The index of the point with the largest measure, if that is above the tolerance.
+/// The index of the point with the largest measure, if above the tolerance.
 fn farthest(points: &[Wide], tolerance: f64, measure: impl Fn(Wide) -> f64) -> Option<usize> {
     let mut best = None;
     let mut most = tolerance;
@@ -99,7 +99,7 @@ fn quickhull(points: &[Wide], tolerance: f64) -> Option<Vec<[u32; 3]>> {
         [[a, b, c], [a, d, b], [b, d, c], [c, d, a]].map(|t| Facet::new(points, t)).into();
     let tolerance = tolerance * ON_FACE;
     assign(points, &mut facets, 0, (0..points.len()).collect(), tolerance);
-    // Every round uses up at least the point it adds.
+    // Every round removes at least the point it adds.
     for _ in 0..points.len() {
         let Some(facet) = facets.iter().position(|f| f.alive && !f.outside.is_empty()) else { break };
         let height = |i: &usize| facets[facet].height(points[*i]);
@@ -121,7 +121,7 @@ fn quickhull(points: &[Wide], tolerance: f64) -> Option<Vec<[u32; 3]>> {
     Some(facets.iter().filter(|f| f.alive).map(|f| f.corners.map(|i| i as u32)).collect())
 }
 
-/// Gives each point to the facet, from number `from` on, that it lies farthest in front of.
+/// Assigns each point to the facet, from index `from` on, that it is farthest in front of.
 fn assign(points: &[Wide], facets: &mut [Facet], from: usize, candidates: Vec<usize>, tolerance: f64) {
     for p in candidates {
         let mut best = None;
@@ -168,7 +168,7 @@ fn visible_from(
             if visible.contains(&other) {
                 continue;
             }
-            // A facet without area goes with whatever is replaced next to it.
+            // A facet without area is replaced together with its neighbours.
             let flat = facets[other].normal == Wide::ZERO;
             if flat || facets[other].height(eye) > tolerance * 1.0e-3 {
                 visible.push(other);
