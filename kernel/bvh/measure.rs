@@ -8,8 +8,7 @@ use crate::shape::Aabb;
 use crate::team::Team;
 use std::time::Instant;
 
-/// The fastest of many rounds, printed per item: rounds are short, so that on a busy machine some run
-/// undisturbed.
+/// Prints the fastest of many short rounds per item, some of which run undisturbed on a busy machine.
 fn time<T>(what: &str, count: usize, mut f: impl FnMut() -> T) -> T {
     let (mut best, mut result) = (f64::INFINITY, None);
     for _ in 0..40 {
@@ -26,7 +25,7 @@ fn time<T>(what: &str, count: usize, mut f: impl FnMut() -> T) -> T {
 fn measure() {
     const N: usize = 100_000;
     let mut noise = Noise(42);
-    // About the density of a pile: each box touches a handful.
+    // About the density of a pile: each box touches a few others.
     let side = if DIM == 2 { 316.0 } else { 46.4 };
     let leaves: Vec<_> = (0..N as u32)
         .map(|id| {
@@ -49,7 +48,7 @@ fn measure() {
     for (name, tree) in [("grown", &grown), ("built", &tree)] {
         measure_queries(name, tree, &leaves, side, &mut noise);
     }
-    // What fits the nearest cache: a small world.
+    // A small world, which fits the first-level cache.
     let few = &leaves[..2_000];
     let small = side * if DIM == 2 { 0.141 } else { 0.271 };
     let few: Vec<_> = few
@@ -102,7 +101,7 @@ fn measure_queries(name: &str, tree: &Tree, leaves: &[(u32, Aabb)], side: f32, n
     println!("    {:.2} visited per ray ({sum:.0})", found as f64 / N as f64);
 }
 
-/// A twentieth of all move a little each step, scattered or all in one region.
+/// A twentieth of all boxes moves a little each step, scattered or in one region.
 fn measure_steps(leaves: &[(u32, Aabb)], side: f32, noise: &mut Noise) {
     const STEPS: usize = 40;
     const MOVED: usize = 5_000;

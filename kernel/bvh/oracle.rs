@@ -1,4 +1,4 @@
-//! Tests of trees against lists searched in full.
+//! Tests of trees against exhaustive searches.
 
 use super::query::Sweep;
 use super::*;
@@ -29,7 +29,7 @@ impl Noise {
     pub fn vector(&mut self, low: f32, high: f32) -> Vector {
         Vector::from_array(core::array::from_fn(|_| low + (high - low) * self.unit()))
     }
-    /// Whole coordinates, so that boxes often touch exactly.
+    /// Integer coordinates, so that boxes often touch exactly.
     fn grid(&mut self, n: usize) -> Vector {
         Vector::from_array(core::array::from_fn(|_| self.below(n) as f32))
     }
@@ -115,7 +115,7 @@ impl Twin {
             }
             110..140 => {
                 if let Some(i) = self.pick(noise) {
-                    // Mostly near where it was, as bodies move.
+                    // Mostly near its old place, as bodies move.
                     let near = self.list[i].2.swept(noise.vector(-0.5, 0.5));
                     let aabb = if noise.below(8) == 0 { aabb } else { near };
                     self.tree.enlarge(self.list[i].0, aabb);
@@ -228,8 +228,8 @@ impl Twin {
             self.expected(|b| sweep.entry(b, reach) <= reach),
             "from {origin:?} along {direction:?}"
         );
-        // The same against boxes of another size in double precision: what is met by a hair is met, and
-        // what is missed by more than a hair is missed.
+        // Against slightly smaller and larger boxes in double precision: hits of the smaller ones are hits, misses of the
+        // larger ones are misses.
         for (_, id, b) in &self.list {
             let hit = found.binary_search(id).is_ok();
             let far = if direction == Vector::ZERO { 1.0 } else { reach };
@@ -275,7 +275,7 @@ fn met(b: &Aabb, half: Vector, origin: Vector, direction: Vector, reach: f32, ha
     enter <= exit
 }
 
-/// Known are the pairs for which this holds; some of them it is plain to see.
+/// The known pairs, and those of them that a cheap test finds.
 struct Where<F>(F);
 
 impl<F: Fn(u32, u32) -> bool + Sync> Known for Where<F> {
@@ -362,7 +362,7 @@ proptest! {
             let moved = noise.below(still) == 0;
             all.push((mover, moved));
         }
-        // In no order.
+        // The order is not determined.
         for k in 0..all.len() {
             let (mover, moved) = all[(k * 7919 + 13) % all.len()];
             if moved {
@@ -508,7 +508,7 @@ fn hard_sets(n: usize) -> Vec<(&'static str, Vec<Aabb>)> {
             (0..n)
                 .map(|k| cube((k % 200) as f32, 0.0))
                 .map(|b| {
-                    // Centres at powers of two: each split by bins takes off the last few.
+                    // Centres at powers of two: each split by bins separates only the last few.
                     let p = Vector::ONE * f32::from_bits((b.min.x as u32 + 20) << 23);
                     Aabb::new(p, p)
                 })

@@ -4,8 +4,12 @@ use super::tree::{LEAF, NO_LEAF, NONE, ROOT, Tree};
 use crate::shape::Aabb;
 
 impl Tree {
-    /// Panics, naming what is broken, unless every link leads back, boxes contain what is below them,
-    /// heights and flags are right and every record is either in the tree or in a free list, once.
+    /// Checks that links match, boxes contain those below them, heights and flags are right, and every record is either in the
+    /// tree or in a free list, once.
+    ///
+    /// # Panics
+    ///
+    /// With the invariant that does not hold.
     pub fn validate(&self) {
         let mut branches = vec![false; self.branches.len()];
         let mut leaves = vec![false; self.leaves.len()];

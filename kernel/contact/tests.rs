@@ -71,7 +71,7 @@ impl World {
         }
     }
 
-    /// Lets two bodies touch, or part if they do.
+    /// Lets two bodies begin to touch, or end it if they do.
     fn touch(&mut self, a: u32, b: u32) {
         let id = self.contacts.find(a, b).unwrap_or_else(|| self.link().create(a, b));
         let flags = &mut self.contacts.get_mut(id).flags;
@@ -81,12 +81,12 @@ impl World {
         self.link().apply(&changed, |_, _, _| {});
     }
 
-    /// Tells all islands that nothing changed.
+    /// Applies an empty set of changes.
     fn settle(&mut self) {
         self.link().apply(&BitSet::new(), |_, _, _| {});
     }
 
-    /// Whether a moving kinematic body touches one of the island, looked for at every contact.
+    /// Whether a moving kinematic body touches a body of the island, by testing every contact.
     fn is_carried_by_definition(&self, island: IslandId) -> bool {
         let moves = |body: u32| self.bodies[body].kind == BodyKind::Kinematic && self.bodies[body].awake;
         let in_island = |body: u32| self.islands.island_of(body) == Some(island);
@@ -97,7 +97,7 @@ impl World {
     }
 }
 
-/// How many bodies and links of islands a change of a heap looks at.
+/// The number of bodies and links of islands that a change of a heap visits.
 fn visits(count: u32, change: impl Fn(&mut World)) -> usize {
     let mut world = World::heap(count);
     VISITS.set(0);
@@ -107,7 +107,7 @@ fn visits(count: u32, change: impl Fn(&mut World)) -> usize {
     visits
 }
 
-/// Every contact of the collider lost its colour and its link, and got them back behind all others.
+/// Every contact of the collider lost its colour and its link, and was added again behind all others.
 #[test]
 fn issue_a_collider_of_another_material_gave_up_the_place_of_its_contacts() {
     let mut world = World::heap(100);
@@ -115,7 +115,7 @@ fn issue_a_collider_of_another_material_gave_up_the_place_of_its_contacts() {
         |world: &World| world.contacts.iter().map(|(id, contact)| (id, contact.slot)).collect::<Vec<_>>();
     let before = places(&world);
     for (id, _) in &before {
-        // As the narrow phase leaves them.
+        // As after the narrow phase.
         world.contacts.get_mut(*id).flags.set(ContactFlags::FROZEN, true);
         world.contacts.get_mut(*id).flags.set(ContactFlags::PLATFORM_A, true);
     }
@@ -135,7 +135,7 @@ fn issue_a_collider_of_another_material_gave_up_the_place_of_its_contacts() {
     let frozen = |(_, contact): (u32, &Contact)| contact.flags.has(ContactFlags::FROZEN);
     assert_eq!(world.contacts.iter().filter(|found| !frozen(*found)).count(), 4, "these are computed anew");
 
-    // What does not respond any more has no place.
+    // Contacts of sensors have no colour.
     change(&mut world, 40, |def| def.flags.sensor = true);
     let placed = |world: &World| places(world).iter().filter(|(_, slot)| slot.is_some()).count();
     assert_eq!(placed(&world), before.len() - 4);
@@ -173,7 +173,7 @@ fn despawning_all_of_a_heap_looks_at_each_body_a_few_times() {
     }
 }
 
-/// As gravity that changes in every frame does.
+/// Gravity that changes in every frame wakes all bodies.
 #[test]
 fn waking_every_body_of_a_heap_looks_at_each_once_a_step() {
     for count in [100, 1_000, 10_000] {
@@ -205,13 +205,13 @@ fn a_woken_island_rests_anew_before_it_sleeps() {
     assert!((0..40).all(|id| world.bodies[id].sleep_timer == 0.0));
     assert_eq!(scan(&mut world), 0);
 
-    // Woken once, they rest as ever.
+    // After that they fall asleep as before.
     rest(&mut world, 0.6);
     world.settle();
     assert!((0..40).all(|id| world.bodies[id].sleep_timer == 0.6));
     assert_eq!(scan(&mut world), 1);
 
-    // From sleep, all are told at once, and nothing is left to do.
+    // From sleep, all timers are reset at once, and no mark remains.
     let island = world.islands.island_of(0).unwrap();
     world.link().sleep_island(island);
     world.link().wake_body(3);
@@ -243,14 +243,14 @@ fn a_woken_body_rests_anew_in_whatever_island_it_comes_to() {
     world.link().validate();
 }
 
-/// A source of as many manifolds as it likes, other ones in each round.
+/// A source of varying numbers of manifolds, different in each round.
 struct Rounds(u32);
 
 impl ManifoldSource for Rounds {
     type Workspace = ();
 
     fn manifolds(&self, a: u32, b: u32, _: f32, (): &mut (), out: &mut Vec<LocalManifold>) {
-        // Some take long, so that members take contacts in another order.
+        // Some take long, so that workers take contacts in another order.
         if a % 97 == 3 {
             std::thread::sleep(std::time::Duration::from_micros(300));
         }
@@ -262,7 +262,7 @@ impl ManifoldSource for Rounds {
     }
 }
 
-/// Further manifolds had their place in the side pool by which member of the team found them.
+/// The place of further manifolds in the side pool depended on the worker that found them.
 #[test]
 fn the_table_is_the_same_to_the_byte_whatever_team_updated_it() {
     let aabb = Aabb { min: -Vector::ONE, max: Vector::ONE };
@@ -294,7 +294,7 @@ fn the_table_is_the_same_to_the_byte_whatever_team_updated_it() {
             world.contacts.update(&input, &team, &mut buffers, &mut changed);
             world.link().apply(&changed, |_, _, _| {});
             world.link().validate();
-            // A place that becomes free is another's next.
+            // Freed places are used again.
             world.contacts.recycle_ids();
             for id in (round..count).step_by(50).filter(|id| *id > 0) {
                 let contact = world.contacts.find(id - 1, id).unwrap();
@@ -317,7 +317,7 @@ const KINDS: [BodyKind; 3] = [BodyKind::Static, BodyKind::Kinematic, BodyKind::D
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
 
-    /// Through contacts, lifts that start and stop, changes of kind, splits, sleep and removal.
+    /// With contacts, lifts that start and stop, changes of kind, splits, sleep and removal.
     #[test]
     fn islands_know_what_carries_them(
         kinds in prop::collection::vec(prop::sample::select(vec![KINDS[0], KINDS[1], KINDS[2], KINDS[2]]), 4..30),

@@ -1,4 +1,4 @@
-//! Contacts against brute force in `f64`, and against what must not change them.
+//! Contacts against brute force in `f64`, and invariances.
 
 use super::super::{FeatureCache, LocalManifold, LocalPoint};
 use super::collide;
@@ -95,8 +95,8 @@ impl Core {
     }
 }
 
-/// The signed distance of two shapes' surfaces by exhaustion: the nearest vertex or edge of disjoint
-/// cores, the least translation along an edge normal of overlapping ones.
+/// The signed distance of two shapes' surfaces by brute force: to the nearest vertex or edge of disjoint cores, minus the least
+/// penetration along an edge normal of overlapping ones.
 fn oracle(a: &Shape, b: &Shape, pose: &Pose, shift: P) -> f64 {
     let (core_a, core_b) = (Core::new(a, &Pose::IDENTITY, [0.0; 2]), Core::new(b, pose, shift));
     match (core_a, core_b, a, b) {
@@ -247,7 +247,7 @@ proptest! {
         if m.count == 0 && bounded_by_planes(&a, &b) {
             let truth = oracle(&a, &b, &pose, [0.0; 2]);
             prop_assert!(f64::from(m.gap) < truth + TOLERANCE, "{} but {truth}", m.gap);
-            prop_assert!(m.gap > 0.0, "nothing is said of {truth}");
+            prop_assert!(m.gap > 0.0, "no bound for {truth}");
         }
     }
 
@@ -263,7 +263,7 @@ proptest! {
                 prop_assert!(d <= reach, "{d} off a surface, {m:?}");
             }
         }
-        // The deepest point is on both surfaces but for half of the separation.
+        // The deepest point is half of the separation off both surfaces.
         let Some(p) = m.points().iter().min_by(|p, q| p.separation.total_cmp(&q.separation)) else { return Ok(()) };
         let half = wide(m.normal * (0.5 * p.separation));
         let at = wide(p.point);
@@ -280,7 +280,7 @@ proptest! {
         let inverse = pose.inverse();
         let swapped = contact(&b, &a, &inverse).flipped(&inverse);
         prop_assert!(m.count == 0 || swapped.count == 0 || (least(&m) - least(&swapped)).abs() < TOLERANCE);
-        // Where two normals are as good, either may be taken.
+        // Of two equally good normals, either may be chosen.
         if m.count == 0 || m.normal.dot(swapped.normal) < 0.999_999_9 {
             return Ok(());
         }
@@ -460,7 +460,7 @@ fn segments_are_two_sided_and_meet_end_to_end() {
         let m = contact(&s, &ball, &Pose::new(Vector { x: 0.5, y }, Rot::IDENTITY));
         assert_eq!((m.count, m.normal), (1, Vector::Y * y.signum()));
     }
-    // On one line: apart by 1 m, by 1 cm, overlapping.
+    // On one line: 1 m apart, 1 cm apart, overlapping.
     let meet = |x: f32| contact(&s, &s, &Pose::new(Vector::X * x, Rot::IDENTITY));
     assert_eq!(meet(2.0).count, 0);
     assert_eq!((meet(1.01).count, meet(1.01).normal), (1, Vector::X));
@@ -529,7 +529,7 @@ fn resting_contacts_keep_their_features_and_reference() {
         let mut features = None;
         let mut kept = None;
         for k in 0..200 {
-            // Slides by 1 mm a step while it rocks within the noise of a solver.
+            // The box slides by 1 mm a step and rocks by the noise of a solver.
             let rock = 4.0e-5 * ((k * 7 % 5) as f32 - 2.0);
             let pose =
                 Pose::new(Vector { x: -0.1 + 0.001 * k as f32, y: rest + 0.1 * rock }, Rot::from_angle(rock));

@@ -1,4 +1,4 @@
-//! Cores that all but touch, and triangles that are no triangles, against closed forms.
+//! Nearly touching cores and degenerate triangles, against closed forms.
 
 use super::super::LocalManifold;
 use super::tests::fresh;
@@ -24,13 +24,13 @@ fn rotation() -> impl Strategy<Value = Rot> {
     (unit(), 0.0f32..3.0).prop_map(|(axis, angle)| Rot::from_axis_angle(axis, angle))
 }
 
-/// Distances of cores, down to what rounding makes of none.
+/// Distances of cores, down to the rounding of 0.
 fn gap() -> impl Strategy<Value = f32> {
     let tenths = |(gap, times): (f32, u32)| (0..times).fold(gap, |gap, _| 0.1 * gap);
     prop_oneof![Just(0.0f32), (0.03f32..0.3, 0..9u32).prop_map(tenths)]
 }
 
-/// A point on the way from `a` to `b`, not near its ends.
+/// A point between `a` and `b`, not near either.
 fn inner() -> impl Strategy<Value = f32> {
     0.1f32..0.9
 }
@@ -48,7 +48,7 @@ proptest! {
         [ra, rb] in [0.05f32..0.5, 0.05..0.5],
     ) {
         let across = u.cross(v) * (1.0 / u.cross(v).length());
-        // B's frame is turned, and its middle somewhere on its axis.
+        // B's frame is rotated, with its origin at any point of its axis.
         let middle = u * (2.0 * s - 1.0) + across * gap - v * (2.0 * t - 1.0);
         let pose = Pose::new(middle + at, turn);
         let a = Shape::Capsule(Capsule { a: -u, b: u, radius: ra });

@@ -1,4 +1,4 @@
-//! Manifolds against brute-force distances in `f64`, and the laws every pair obeys.
+//! Manifolds against brute-force distances in `f64`, and the invariants of every pair.
 
 use super::collide;
 use super::oracle::Solid;
@@ -219,7 +219,7 @@ proptest! {
         };
         let edges = |separation| sat::best_edges(&a, &b, &frame, &known(separation), f32::INFINITY);
         let bar = best.separation.max(of_b.separation) + 1e-4;
-        // Below minus infinity nothing can be: nothing is ruled out.
+        // No separation is below minus infinity, so no pair is ruled out.
         match (edges(bar), edges(f32::NEG_INFINITY)) {
             (Some(found), Some(full)) => prop_assert!((found.separation - full.separation).abs() < 1e-5),
             (None, Some(full)) => prop_assert!(full.separation <= bar + 1e-5, "{} {bar}", full.separation),
@@ -334,7 +334,7 @@ fn a_tilted_box_touches_with_an_edge() {
 
 #[test]
 fn edges_that_cross_touch_in_one_point() {
-    // Two boxes turned onto an edge each, the edges at right angles.
+    // Two boxes that stand on an edge each, the edges at right angles.
     let eighth = core::f32::consts::FRAC_PI_4;
     let (about_x, about_z) =
         (Rot::from_axis_angle(Vector::X, eighth), Rot::from_axis_angle(Vector::Z, eighth));
@@ -370,7 +370,7 @@ fn a_lying_capsule_touches_in_two_points() {
     }
     let above = Pose::new(v(0.5, 0.5, 0.0), Rot::IDENTITY);
     assert!(has_points(&fresh(&capsule, &capsule, &above, 0.02), &[v(-0.5, 0.25, 0.0), v(1.0, 0.25, 0.0)]));
-    // Half over the rim: from the rim on only.
+    // Half of the box is over the rim: points are beyond the rim only.
     let shelf = Shape::Cuboid(Cuboid { half: v(1.0, 0.5, 1.0) });
     let m = fresh(&shelf, &capsule, &Pose::new(v(0.5, 0.75, 0.0), Rot::IDENTITY), 0.02);
     assert!(has_points(&m, &[v(-0.5, 0.5, 0.0), v(1.0, 0.5, 0.0)]), "{m:?}");
@@ -415,7 +415,7 @@ fn many_sided_faces_are_handled() {
 
 #[test]
 fn points_of_turned_prisms_lie_in_both() {
-    // As many corners as there is room for: the part of one face over the other has those of both.
+    // The most corners that fit: the clipped face has those of both faces.
     let prism = |sides: u32, phase: f64| {
         let corner = |i: u32, y: f32| {
             let (s, c) =
@@ -482,7 +482,7 @@ fn hostile_input_gives_no_contact() {
 
 #[test]
 fn a_ball_beside_a_face_as_near_as_its_plane_is_not_missed() {
-    // Past the edge of a sliver's face, so that clipping leaves nothing, and no farther than the face's plane within rounding.
+    // Beyond the edge of a sliver's face, so that clipping leaves no points, and within rounding of the face's plane.
     let points = [
         v(0.0, 0.0, -0.21818882),
         v(0.0, 0.0, -0.5602403),

@@ -89,7 +89,7 @@ proptest! {
     fn hulls_are_convex_contain_their_points_and_have_no_others(
         points in prop::collection::vec(vector(2.0), 3..60), grid in any::<bool>(),
     ) {
-        // Points of a coarse grid are full of duplicates and points on lines.
+        // A coarse grid gives many duplicates and points on lines.
         let points: Vec<Vector> = points
             .into_iter()
             .map(|p| if grid { Vector { x: p.x.round(), y: p.y.round() } } else { p })
@@ -110,7 +110,7 @@ proptest! {
             let n = hull.normals()[i];
             prop_assert!((n.length() - 1.0).abs() < 1e-6 && n.dot(q - p).abs() < 1e-5 && n.perp().dot(q - p) > 0.0);
         }
-        // Its own outline, in either orientation and from any start, makes the same polygon.
+        // The hull's own outline, in either orientation and from any start, gives the same polygon.
         let mut outline = v.to_vec();
         outline.rotate_left(v.len() / 2);
         outline.reverse();

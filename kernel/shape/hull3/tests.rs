@@ -115,7 +115,7 @@ fn a_needle_keeps_its_tips() {
 
 #[test]
 fn a_fine_ball_keeps_its_faces() {
-    // Fibonacci points: every face turns little against its neighbours, and none may be merged away.
+    // Fibonacci points: faces turn little against their neighbours, and none may be merged.
     let count = 300;
     let points: Vec<Vector> = (0..count)
         .map(|i| {
@@ -175,7 +175,7 @@ fn ray_by_brute_force(hull: &Hull, origin: Vector, direction: Vector) -> Option<
     best
 }
 
-/// That the hull of some points has all of them, along `axes` too, and is refused only if they are flat.
+/// Asserts that the hull contains its points, along `axes` too, and is an error only if they are flat.
 fn surrounds(points: &[Vector], axes: [Vector; 3]) -> Result<(), TestCaseError> {
     let size = size_of(points);
     let Ok(hull) = Hull::convex_hull_of(points) else {
@@ -309,7 +309,7 @@ proptest! {
                     prop_assert!((hit.normal.dot(direction) > 0.0) == inside);
                 }
                 (None, None) => {}
-                // A ray through an edge may slip by either test.
+                // A ray through an edge may miss by either test.
                 (hit, brute) => {
                     let grazing = hull.edges().iter().any(|e| {
                         let [a, b] = [e.tail, e.head].map(|i| hull.vertices()[i as usize]);
@@ -326,7 +326,7 @@ proptest! {
     }
 }
 
-/// About the distance of a line from a segment, by samples along it.
+/// The approximate distance of a line from a segment, by samples along it.
 fn line_distance(origin: Vector, direction: Vector, a: Vector, b: Vector) -> f32 {
     let off = |p: Vector| {
         let r = p - origin;
