@@ -11,6 +11,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 dimension="${1:-3d}"
 export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/avian-kernel-ci/target}"
+# With this mangling names say which job an entry point runs.
+export RUSTFLAGS="${RUSTFLAGS:-} -Csymbol-mangling-version=v0"
 cargo build --quiet --release --lib --package "avian_kernel$dimension"
 library="$CARGO_TARGET_DIR/release/libavian_kernel$dimension.rlib"
 
@@ -56,11 +58,11 @@ assembly | awk '
     BEGIN { printf "%-12s %9s %5s %12s %6s %11s %9s %7s\n", "entry point", "functions", "loops", "instructions", "calls", "full width", "narrower", "scalar" }
     /^[0-9a-f]+ <.*>:$/ {
         finish(); clear(); name = ""
-        if (match($0, /(f32|F32x4|F32x8) as [a-z0-9_]*::solver::block::Entry>::sweep(::avx2)?>:$/)) {
-            name = substr($0, RSTART); sub(/ as .*::sweep.*$/, "::sweep", name)
+        if (match($0, /(f32|F32x4|F32x8) as [a-z0-9_]*::math::entry::Entry>::enter(::avx2)?::<[a-z0-9_]*::solver::contact_batch::RunJob</)) {
+            name = substr($0, RSTART); sub(/ as .*$/, "::sweep", name)
         }
-        if (/::recycle::RecycleBatch>?::evaluate_at::avx2>:$/) name = "F32x8::recycle"
-        if (/::recycle::RecycleBatch>?::evaluate_at::baseline>:$/) name = "F32x4::recycle"
+        if (/::recycle::RecycleBatch>?::evaluate_at::avx2(::<.*>)?>:$/) name = "F32x8::recycle"
+        if (/::recycle::RecycleBatch>?::evaluate_at::baseline(::<.*>)?>:$/) name = "F32x4::recycle"
         next
     }
     name != "" && /^ +[0-9a-f]+:\t/ {

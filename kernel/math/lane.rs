@@ -53,6 +53,8 @@ impl Width {
 pub trait Num:
     Copy
     + Debug
+    + Send
+    + Sync
     + Default
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -71,7 +73,7 @@ pub trait Num:
 }
 
 /// Indices of rows, one for each lane.
-pub trait Ids: Copy + Debug {
+pub trait Ids: Copy + Debug + Send + Sync {
     /// The same index in every lane.
     fn splat(id: u32) -> Self;
     /// The indices, lane by lane.

@@ -63,6 +63,7 @@ macro_rules! componentwise {
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod entry;
 mod lane;
 #[cfg(target_arch = "x86_64")]
 mod lane_avx;
@@ -79,6 +80,7 @@ mod tangent;
 mod trig;
 
 pub use dim::*;
+pub(crate) use entry::{Entry, Job};
 pub use lane::{Avx2, Ids, Lane, Num, Quad, Width, clamp, max, min};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lane_avx::F32x8;

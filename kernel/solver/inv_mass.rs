@@ -4,7 +4,7 @@ use crate::math::{Lane, Num, Vector};
 
 /// How an impulse changes a velocity. A body held along some axes has another inverse mass
 /// along each, so its rows carry a vector; all other rows carry a number.
-pub trait InvMass<N: Lane>: Copy {
+pub trait InvMass<N: Lane>: Copy + Send + Sync {
     /// Immovable.
     const ZERO: Self;
     /// The change of velocity that an impulse makes.

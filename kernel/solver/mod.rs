@@ -7,12 +7,17 @@
 //! The method is Erin Catto's (Solver2D, Box2D v3, Box3D): soft constraints, relaxation, positions kept
 //! as deltas over the step. Rows here differ in that both dimensions have one central friction row per
 //! manifold (in 2D the two points of an edge have the same tangent Jacobian up to the edge's slope),
-//! in that the second anchor is the first less one offset per manifold, and in that what pushes deep
-//! overlap out leaves the velocities alone ([`DeepRow`]).
+//! in that the second anchor is the first less one offset per manifold, and in that deep overlap is pushed
+//! out by split impulses, which leave the velocities alone ([`SplitImpulseRow`]).
+//!
+//! A kind of constraint is a file that implements `Batch` (`batch.rs`) and a line for it in `batches.rs`. The plan and its
+//! stages know of rows only their batch and number.
 
 mod batch;
-mod block;
+mod batches;
 mod body;
+mod contact_batch;
+mod contact_fill;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
@@ -25,22 +30,22 @@ mod gyro;
 mod input;
 mod integrate;
 mod inv_mass;
-mod prepare;
+mod layer;
+mod pair;
+mod plan;
 mod row;
-mod rows;
 mod shares;
 mod softness;
+mod split;
 mod stages;
 mod view;
 
-pub use batch::{PointClass, RowSet};
 pub use body::{BodyRows, Limits, Motion};
 pub use dim::{BodyRow, MassRow, Twist};
 pub use fill::{BodyFiller, FewBodies, FilledBody};
 pub use input::RowInput;
 pub use inv_mass::InvMass;
-pub use prepare::ContactSource;
-pub use row::{ContactRow, DeepRow, PointRow, RestitutionRow};
+pub use row::{ContactRow, PointRow, RestitutionRow, SplitImpulseRow};
 pub use softness::{Softness, SubstepParams};
 pub use stages::Solver;
 use view::RowView;

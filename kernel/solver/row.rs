@@ -1,7 +1,8 @@
 //! One contact manifold as solver rows, written once for 2D and 3D, one lane or many.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::{BodyRow, InvMass, RowView, Softness, SubstepParams, Twist};
+use super::pair::{Pair, SoftLanes};
+use super::{BodyRow, InvMass, RowView, SubstepParams, Twist};
 use crate::math::{Angular, Ids, InvInertia, Lane, Tangent, TangentFrame, TangentMass, Vector};
 
 /// One point of a manifold.
@@ -79,7 +80,7 @@ pub struct RestitutionRow<N: Lane, const P: usize> {
 /// edge is flung off. The pass without bias stops what approaches, as ever.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub struct DeepRow<N: Lane, const P: usize> {
+pub struct SplitImpulseRow<N: Lane, const P: usize> {
     /// 1 where a body of the contact overlaps something deeply, else 0.
     pub deep: N,
     /// The share of the impulses that a substep starts from.
@@ -122,55 +123,9 @@ impl<N: Lane, const P: usize> Default for RestitutionRow<N, P> {
     }
 }
 
-impl<N: Lane, const P: usize> Default for DeepRow<N, P> {
+impl<N: Lane, const P: usize> Default for SplitImpulseRow<N, P> {
     fn default() -> Self {
         Self { deep: N::ZERO, warm: N::ONE, before: [N::ZERO; P] }
-    }
-}
-
-/// The velocities of a row's two bodies.
-#[derive(Clone, Copy)]
-struct Pair<N> {
-    v: [Vector<N>; 2],
-    w: [Angular<N>; 2],
-}
-
-impl<N: Lane> Pair<N> {
-    /// # Safety
-    /// No other thread writes these rows meanwhile.
-    #[inline(always)]
-    unsafe fn load(rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) -> Self {
-        // SAFETY: by the contract.
-        let [(va, wa), (vb, wb)] = unsafe {
-            [BodyRow::gather_velocity::<N>(rows, &ids[0]), BodyRow::gather_velocity::<N>(rows, &ids[1])]
-        };
-        Self { v: [va, vb], w: [wa, wb] }
-    }
-
-    /// This where the mask is set, else `other`.
-    #[inline(always)]
-    fn or_where_not(self, mask: N::Mask, other: Self) -> Self {
-        Self {
-            v: core::array::from_fn(|i| Vector::select(mask, self.v[i], other.v[i])),
-            w: core::array::from_fn(|i| Angular::select(mask, self.w[i], other.w[i])),
-        }
-    }
-
-    /// How fast B leaves A along `n`, at the point whose moments with it are given.
-    #[inline(always)]
-    fn along(&self, n: Vector<N>, [ma, mb]: [Angular<N>; 2]) -> N {
-        (self.v[1] - self.v[0]).dot(n) + self.w[1].dot(mb) - self.w[0].dot(ma)
-    }
-
-    /// # Safety
-    /// No other thread reads or writes those of these rows that may be written.
-    #[inline(always)]
-    unsafe fn store(&self, rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) {
-        // SAFETY: by the contract.
-        unsafe {
-            BodyRow::scatter_velocity::<N>(rows, &ids[0], self.v[0], self.w[0]);
-            BodyRow::scatter_velocity::<N>(rows, &ids[1], self.v[1], self.w[1]);
-        }
     }
 }
 
@@ -254,16 +209,16 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
 
     /// Lets the substep start from the row's share of the impulses.
     #[inline(always)]
-    pub(super) fn cool(&mut self, deep: &DeepRow<N, P>) {
+    pub(super) fn scale_impulses(&mut self, split: &SplitImpulseRow<N, P>) {
         for point in &mut self.points {
-            point.impulse = point.impulse * deep.warm;
+            point.impulse = point.impulse * split.warm;
         }
     }
 
-    /// Notes the impulses that [`take_back`](Self::take_back) returns to.
+    /// Notes the impulses that [`undo_split`](Self::undo_split) returns to.
     #[inline(always)]
-    pub(super) fn note_before(&self, deep: &mut DeepRow<N, P>) {
-        for (before, point) in deep.before.iter_mut().zip(&self.points) {
+    pub(super) fn save_impulses(&self, split: &mut SplitImpulseRow<N, P>) {
+        for (before, point) in split.before.iter_mut().zip(&self.points) {
             *before = point.impulse;
         }
     }
@@ -273,25 +228,25 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// # Safety
     /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
     #[inline(always)]
-    pub(super) unsafe fn take_back(&mut self, rows: &RowView<BodyRow>, deep: &DeepRow<N, P>) {
+    pub(super) unsafe fn undo_split(&mut self, rows: &RowView<BodyRow>, split: &SplitImpulseRow<N, P>) {
         // SAFETY: by the contract.
         let before = unsafe { Pair::load(rows, &self.ids) };
         let mut pair = before;
         let n = self.normal;
         for i in 0..P {
             let point = self.points[i];
-            let delta = (deep.before[i] - point.impulse) * deep.deep;
+            let delta = (split.before[i] - point.impulse) * split.deep;
             let (ma, mb) = (point.anchor.cross(n), (point.anchor - self.offset).cross(n));
             self.points[i].impulse = point.impulse + delta;
             self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
         }
         // SAFETY: by the contract.
-        unsafe { pair.or_where_not(N::ZERO.lt(deep.deep), before).store(rows, &self.ids) };
+        unsafe { pair.or_where_not(N::ZERO.lt(split.deep), before).store(rows, &self.ids) };
     }
 
     /// Notes the impulses that the restitution pass looks back on.
     #[inline(always)]
-    pub(super) fn note_impulses(&self, bounce: &mut RestitutionRow<N, P>) {
+    pub(super) fn note_largest_impulses(&self, bounce: &mut RestitutionRow<N, P>) {
         for (max, point) in bounce.max_impulse.iter_mut().zip(&self.points) {
             *max = max.max(point.impulse);
         }
@@ -559,24 +514,5 @@ impl<N: Lane, const P: usize> RestitutionRow<N, P> {
         let e2 = self.restitution * self.restitution;
         let parting = (b * b + (e2 + e2) * kept.max(N::ZERO)).sqrt() - b;
         (parting, gap + parting * time)
-    }
-}
-
-/// [`Softness`], chosen lane by lane.
-#[derive(Clone, Copy)]
-struct SoftLanes<N> {
-    bias_rate: N,
-    mass_scale: N,
-    impulse_scale: N,
-}
-
-impl<N: Lane> SoftLanes<N> {
-    #[inline(always)]
-    fn select(mask: N::Mask, a: &Softness, b: &Softness) -> Self {
-        Self {
-            bias_rate: N::select(mask, N::splat(a.bias_rate), N::splat(b.bias_rate)),
-            mass_scale: N::select(mask, N::splat(a.mass_scale), N::splat(b.mass_scale)),
-            impulse_scale: N::select(mask, N::splat(a.impulse_scale), N::splat(b.impulse_scale)),
-        }
     }
 }

@@ -1,13 +1,14 @@
 //! The stages of a step, in the order they run.
-#![expect(unsafe_code, reason = "blocks are filled at once, each by one member of the team")]
+#![expect(unsafe_code, reason = "blocks of a stage are changed at once, each by one worker")]
 
-use super::batch::{Plan, Stage};
-use super::block::Pass;
-use super::exclusive::Exclusive;
+use super::batch::{Filling, Pass, Sweep};
+use super::batches::{AllRows, Layers};
+use super::exclusive;
 use super::input::RowInput;
-use super::prepare::{DeepCounts, Filler, Sorter};
-use super::rows::{AllRows, Buffers, Layout};
+use super::layer::Sorter;
+use super::plan::{Plan, Stage};
 use super::shares::Shares;
+use super::split::DeepCounts;
 use super::{BodyRows, RowView, SubstepParams};
 use crate::contact::ContactTable;
 use crate::data::Parts;
@@ -16,10 +17,10 @@ use crate::math::Width;
 use crate::team::Team;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// How many rows a member of a team solves at a stretch: some microseconds of work.
+/// The most rows of a block where several workers share them: some microseconds of work.
 const BLOCK_ROWS: u32 = 32;
 
-/// From so many rows on helpers are woken to fill and solve them.
+/// Minimum number of rows for which waking workers pays.
 const WORTH_WAKING: u32 = 256;
 
 /// The bodies and rows of one step.
@@ -30,14 +31,15 @@ const WORTH_WAKING: u32 = 256;
 pub struct Solver {
     /// The bodies; the embedder fills them and reads them back.
     pub bodies: BodyRows,
-    /// Who solves. The result does not depend on how many they are.
+    /// The thread pool that solves. The result does not depend on its size.
     pub team: Team,
     rows: AllRows,
+    layers: Layers,
     plan: Plan,
-    buffers: Buffers,
     shares: Shares,
     deep: DeepCounts,
-    exclusive: Exclusive,
+    /// The first body row that rows of constraints may write, whatever becomes of the bodies after rows are built.
+    first_dynamic: u32,
 }
 
 impl Solver {
@@ -47,42 +49,53 @@ impl Solver {
         self.rows.width = Width::of(narrow);
     }
 
-    /// From how many contacts a member of the team on a colour is shared by several, from the next
-    /// [`build_rows`](Self::build_rows) on: so that tests need not have as many as it takes to pay.
-    pub fn share_from(&mut self, contacts: usize) {
-        self.shares.worth = contacts;
+    /// Sets the fewest constraints a worker for which a colour is shared, from the next [`build_rows`](Self::build_rows) on:
+    /// so that tests need not have as many as it takes to pay.
+    pub fn share_from(&mut self, constraints: usize) {
+        self.shares.worth = constraints;
     }
 
     /// Forgets the rows of the last step, and makes room for so many [`bodies`](Self::bodies): every one of their rows is
     /// to be filled, whether or not there are contacts.
     pub fn begin_step(&mut self, kinematic: usize, dynamic: usize) {
-        self.plan.begin(0, 1);
+        self.plan.begin(0, 1, 0);
         self.bodies.reset(kinematic, dynamic);
     }
 
     /// Builds the rows of all touching contacts in the colours.
     ///
-    /// With the graph of other contacts, or bodies that are not what they were when the contacts got their colours, all rows
-    /// are solved by the caller alone, whatever that means for the motion.
+    /// # Safety
+    /// No two contacts of a colour but the overflow have a body together whose row is a dynamic body's, and no contact is
+    /// in the graph twice: with several workers two threads would write one body. It holds where contacts, bodies and
+    /// colours belong together: since they were empty, contacts, colours and the kinds of bodies were changed through one
+    /// [`Link`](crate::contact::Link) to all three alone. Debug builds check it.
     ///
     /// # Panics
     /// If a contact or body of the graph is not in the input, or a row of the input not among the [`bodies`](Self::bodies).
-    pub fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
-        let Self { bodies, team, rows, plan, buffers, shares, deep, exclusive } = self;
+    pub unsafe fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
+        let Self { bodies, team, rows, layers, plan, shares, deep, first_dynamic } = self;
         debug_assert!(params.is_valid(), "{params:?}");
         debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
+        if cfg!(debug_assertions) {
+            exclusive::check(input, colors, bodies.first_dynamic);
+        }
+        *first_dynamic = bodies.first_dynamic;
         deep.count(input, bodies);
-        exclusive.look(input, colors, bodies.first_dynamic, team);
         bodies.blunt(params.h);
-        let BodyRows { rows: body_rows, masses, motions, locks, first_dynamic, .. } = bodies;
-        let members = team.members();
-        plan.begin(if members > 1 { BLOCK_ROWS } else { u32::MAX }, members);
-        shares.divide(members, body_rows.len(), input, colors);
+        let workers = team.members();
+        shares.divide(workers, *first_dynamic, input, colors);
+        let BodyRows { rows: body_rows, masses, motions, locks, .. } = bodies;
         let sorter = &Sorter { input, locks, shares };
-        rows.lay_out(colors, &mut Layout { sorter, any_deep: deep.any(), buffers, plan, team });
-        let filler = &Filler {
+        layers.sort(colors, sorter, team);
+        plan.begin(if workers > 1 { BLOCK_ROWS } else { u32::MAX }, workers, AllRows::BATCHES);
+        layers.plan(rows.width, sorter, plan);
+        rows.make_room(plan.rows(), deep.any());
+        if plan.rows().iter().sum::<u32>() >= WORTH_WAKING {
+            team.wake();
+        }
+        let filling = &Filling {
             input,
-            view: RowView::over(body_rows, *first_dynamic),
+            bodies: RowView::over(body_rows, *first_dynamic),
             masses,
             motions,
             first_dynamic: *first_dynamic,
@@ -90,26 +103,29 @@ impl Solver {
             deep,
             locks,
         };
-        let many = plan.rows() >= WORTH_WAKING;
-        let (sets, blocks) = (rows.view(), Parts::of(&mut plan.blocks));
-        if many {
-            team.wake();
-        }
-        team.run(blocks.len(), |block, _| {
-            // SAFETY: each block is run once, and no two have a row together; bodies and contacts are only read.
-            unsafe { sets.fill(blocks.one(block), filler) };
+        let mut blocks = core::mem::take(&mut plan.blocks);
+        rows.with(|batches| {
+            let blocks = Parts::of(&mut blocks);
+            team.run(blocks.len(), |block, _| {
+                // SAFETY: each block is run once, and no two have a row together; bodies and contacts are only read.
+                unsafe {
+                    let block = blocks.one(block);
+                    let items = plan.items(block, layers.colors());
+                    block.passes = batches[usize::from(block.batch)].fill(block.rows(), items, filling);
+                }
+            });
         });
+        plan.blocks = blocks;
     }
 
-    /// How many stages of each sweep are shared by several members of the team.
+    /// How many stages of each sweep are shared by several workers.
     pub fn shared_stages(&self) -> usize {
-        let shared = self.plan.stages().filter(|stage| stage.parts.is_some()).count();
-        if self.exclusive.holds() { shared } else { 0 }
+        self.plan.stages().filter(|stage| stage.parts.is_some()).count()
     }
 
     /// How many manifolds are solved in the step.
     pub fn manifold_count(&self) -> usize {
-        self.plan.manifolds
+        self.plan.items
     }
 
     /// Accelerations, damping, gyroscopic torque, speed limits.
@@ -122,7 +138,7 @@ impl Solver {
     ///
     /// An impact runs on through a row of bodies, as in Newton's cradle: two bodies further with each sweep.
     pub fn warm_start(&mut self, params: &SubstepParams) {
-        if self.plan.blocks.iter().any(|block| block.bouncy) {
+        if self.plan.blocks.iter().any(|block| block.passes.has(Pass::Impact)) {
             let mut sweeps = 0;
             while sweeps < IMPACT_SWEEPS && self.sweep(Pass::Impact, params) {
                 sweeps += 1;
@@ -142,11 +158,11 @@ impl Solver {
         self.bodies.integrate_positions(params.h, &self.team);
     }
 
-    /// Takes out the velocity that the bias added, and applies friction. What pushed deep overlap out is
-    /// taken back first.
+    /// Takes out the velocity that the bias added, and applies friction. Split impulses, which push deep overlap out, are
+    /// taken out of the velocities first.
     pub fn relax(&mut self, params: &SubstepParams) {
         if self.deep.any() {
-            self.sweep(Pass::TakeBack, params);
+            self.sweep(Pass::UndoSplit, params);
         }
         self.sweep(Pass::Relax, params);
     }
@@ -167,43 +183,57 @@ impl Solver {
 
     /// Puts the impulses back into the manifolds, for the next step to start from.
     pub fn store_impulses(&mut self, contacts: &mut ContactTable) {
-        debug_assert!(self.plan.manifolds == 0 || !contacts.is_empty(), "the rows came from these contacts");
-        let (sets, manifolds) = (self.rows.view(), contacts.manifolds_view());
-        for Stage { blocks, parts } in self.plan.stages() {
-            // SAFETY: each block is run once, no two have a row together, and either no contact is there twice or they are run
-            // one after the other.
-            let store = |block: usize, _| unsafe { sets.store(&blocks[block], &manifolds) };
-            match parts {
-                _ if !self.exclusive.holds() => (0..blocks.len()).for_each(|block| store(block, 0)),
-                Some(parts) => self.team.run_parts(parts, store),
-                None => self.team.run(blocks.len(), store),
+        debug_assert!(self.plan.items == 0 || !contacts.is_empty(), "the rows came from these contacts");
+        let Self { rows, plan, layers, team, .. } = self;
+        let manifolds = &contacts.manifolds_view();
+        rows.with(|batches| {
+            for Stage { blocks, parts } in plan.stages() {
+                // SAFETY: each block is run once, no two have a row together, and by the contract of `build_rows` no contact is
+                // there twice.
+                let store = |block: usize, _| unsafe {
+                    let block = &blocks[block];
+                    let items = plan.items(block, layers.colors());
+                    batches[usize::from(block.batch)].store(block.rows(), items, manifolds);
+                };
+                match parts {
+                    Some(parts) => team.run_parts(parts, store),
+                    None => team.run(blocks.len(), store),
+                }
             }
-        }
-        self.plan.begin(0, 1);
+        });
+        self.plan.begin(0, 1, 0);
     }
 
-    /// Runs all blocks, stage by stage. Returns whether any of them found an impact.
+    /// Runs all blocks that need a pass, stage by stage. Returns whether any of them found an impact.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams) -> bool {
         debug_assert!(params.is_valid(), "{params:?}");
+        let Self { bodies, rows, plan, team, first_dynamic, .. } = self;
         debug_assert!(
-            self.plan.blocks.is_empty() || self.exclusive.first_dynamic() == self.bodies.first_dynamic(),
-            "bodies have the rows that contact rows were built for"
+            plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),
+            "bodies have the rows that rows of constraints were built for"
         );
-        let (sets, bodies) = (self.rows.view(), self.bodies.view(self.exclusive.first_dynamic()));
+        let sweep = &Sweep { pass, bodies: bodies.view(*first_dynamic), params };
         let hit = AtomicBool::new(false);
-        for Stage { blocks, parts } in self.plan.stages() {
-            let solve = |block: usize, _| {
-                // SAFETY: each block is run once, no two have a row together, and either no two contacts of a stage have a dynamic
-                // body together or they are run one after the other. Of the bodies only the dynamic ones are written.
-                if unsafe { sets.run(&blocks[block], pass, &bodies, params) } {
-                    hit.store(true, Ordering::Relaxed);
+        rows.with(|batches| {
+            for Stage { blocks, parts } in plan.stages() {
+                let solve = |block: usize, _| {
+                    let block = &blocks[block];
+                    if !block.passes.has(pass) {
+                        return;
+                    }
+                    let batch = batches[usize::from(block.batch)];
+                    // SAFETY: each block is run once, no two have a row together, and by the contract of `build_rows` no two of a
+                    // shared stage have a dynamic body together. Of the bodies only the dynamic ones are written.
+                    if unsafe { batch.run(block.rows(), block.passes, sweep) } {
+                        hit.store(true, Ordering::Relaxed);
+                    }
+                };
+                match parts {
+                    Some(parts) => team.run_parts(parts, solve),
+                    None => (0..blocks.len()).for_each(|block| solve(block, 0)),
                 }
-            };
-            match parts {
-                Some(parts) if self.exclusive.holds() => self.team.run_parts(parts, solve),
-                _ => (0..blocks.len()).for_each(|block| solve(block, 0)),
             }
-        }
+        });
         hit.into_inner()
     }
 }

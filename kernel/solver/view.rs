@@ -7,11 +7,19 @@ use core::cell::UnsafeCell;
 ///
 /// A colour holds no dynamic body twice, so no two contact rows of a colour write the same row; what is
 /// not dynamic is read by many and written by none. That is what makes the shared writes sound. The type cannot
-/// know it, so reading and writing are unsafe; [`Exclusive`](super::exclusive::Exclusive) looks at the colours.
+/// know it, so reading and writing are unsafe: [`Solver::build_rows`](super::Solver::build_rows) has the condition.
 pub(super) struct RowView<'a, T> {
     cells: &'a [UnsafeCell<T>],
     first_writable: u32,
 }
+
+impl<T> Clone for RowView<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for RowView<'_, T> {}
 
 // SAFETY: by the contracts of `get` and `put`, threads write disjoint rows and read only rows that no thread writes.
 unsafe impl<T: Send + Sync> Sync for RowView<'_, T> {}

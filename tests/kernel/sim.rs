@@ -1,5 +1,6 @@
 //! A step made of the kernel's parts, in the order in which the engine runs them: what an embedder without
 //! an ECS would write.
+#![expect(unsafe_code, reason = "who has rows built answers for colours and contacts belonging together")]
 
 use super::dim::inverse_inertia;
 use crate::kernel;
@@ -253,18 +254,15 @@ impl Sim {
         }
     }
 
-    /// Has rows built and a step solved from colours that may be another simulation's. Returns how many stages were shared,
-    /// and what became of the bodies' rows.
-    pub fn solve_colors_of(&mut self, other: &Self) -> (usize, Vec<BodyRow>) {
+    /// Has rows built from colours that may be another simulation's. Returns how many stages are shared.
+    #[cfg(debug_assertions)]
+    pub fn solve_colors_of(&mut self, other: &Self) -> usize {
         self.gather();
         let params = self.params();
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies };
-        self.solver.team.wake();
-        self.solver.build_rows(&input, &other.colors, &params);
-        let shared = self.solver.shared_stages();
-        (0..self.substeps).for_each(|_| self.solver.substep(&params));
-        self.solver.store_impulses(&mut self.contacts);
-        (shared, self.solver.bodies.rows.clone())
+        // SAFETY: debug builds refuse colours that do not fit.
+        unsafe { self.solver.build_rows(&input, &other.colors, &params) };
+        self.solver.shared_stages()
     }
 
     /// The rows of the bodies, to be filled.
@@ -298,7 +296,8 @@ impl Sim {
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies };
         self.solver.team.wake();
         if self.builds_rows {
-            self.solver.build_rows(&input, &self.colors, &params);
+            // SAFETY: contacts, colours and kinds of bodies are changed through one link.
+            unsafe { self.solver.build_rows(&input, &self.colors, &params) };
             self.shared = self.solver.shared_stages();
         }
         for _ in 0..self.substeps {

@@ -1,4 +1,4 @@
-//! What safe callers do wrong makes no thread write what another does.
+//! What callers do wrong makes no thread write what another does: it is refused, in debug builds at least, or without effect.
 
 use super::dim::inverse_inertia;
 use super::sim::Sim;
@@ -26,34 +26,28 @@ fn wall(columns: u32, rows: u32) -> Sim {
     sim
 }
 
-/// The colours of a wall of another shape name contacts that share bodies. They are solved by one thread then, so to the same
-/// bits each time.
+/// The colours of a wall of another shape name contacts that share bodies. Release builds take the caller's word.
 #[test]
-fn the_graph_of_another_table_is_solved_by_one_thread() {
+#[cfg(debug_assertions)]
+fn the_graph_of_another_table_is_refused() {
     let (mut sim, other) = (wall(12, 12), wall(20, 5));
     assert!(other.contacts.capacity() < sim.contacts.capacity());
     sim.set_workers(4);
     let own = sim.clone();
-    assert!(sim.clone().solve_colors_of(&own).0 > 4, "its own colours are shared");
-    let (_, first) = sim.clone().solve_colors_of(&other);
-    for _ in 0..20 {
-        let (shared, rows) = sim.clone().solve_colors_of(&other);
-        assert_eq!(shared, 0, "nothing is shared");
-        for (row, want) in rows.iter().zip(&first) {
-            assert_eq!((row.velocity(), row.delta()), (want.velocity(), want.delta()));
-        }
-    }
+    assert!(sim.clone().solve_colors_of(&own) > 4, "its own colours are shared");
+    assert!(catch_unwind(AssertUnwindSafe(|| sim.solve_colors_of(&other))).is_err());
 }
 
-/// A body that became dynamic behind the back of the colours is in one many times.
+/// The colours do not know that a body became dynamic without them, and is in one many times.
 #[test]
-fn a_body_retyped_by_hand_is_solved_by_one_thread() {
+#[cfg(debug_assertions)]
+fn a_body_retyped_by_hand_is_refused() {
     use kernel::table::BodyKind;
     let mut sim = wall(12, 6);
     sim.set_workers(4);
     sim.bodies.set_kind(0, BodyKind::Dynamic);
     let own = sim.clone();
-    assert_eq!(sim.solve_colors_of(&own).0, 0, "the floor is in many contacts of a colour");
+    assert!(catch_unwind(AssertUnwindSafe(|| sim.solve_colors_of(&own))).is_err());
 }
 
 /// Limits and spins are applied by threads, each its own: a row named twice has one of either.

@@ -134,6 +134,7 @@ pub(crate) fn prepare_params(
 }
 
 /// Builds the rows of all touching contacts.
+#[expect(unsafe_code, reason = "who has rows built answers for colours and contacts belonging together")]
 pub(crate) fn prepare_rows(
     bodies: Res<Bodies>,
     contacts: Res<Contacts>,
@@ -145,11 +146,11 @@ pub(crate) fn prepare_rows(
     let input = RowInput { contacts: &contacts.table, bodies: &bodies.table };
     let StepSolver { kernel, params, .. } = &mut *solver;
     kernel.set_narrow(*width == RowWidth::Four);
-    if response.is_none_or(|r| r.0) {
-        kernel.build_rows(&input, &contacts.colors, params);
-    } else {
-        kernel.build_rows(&input, &ColorGraph::new(), params);
-    }
+    let none = ColorGraph::new();
+    let colors = if response.is_none_or(|r| r.0) { &contacts.colors } else { &none };
+    // SAFETY: the engine has one table of contacts, one graph and one table of bodies, which apps cannot reach, and changes
+    // contacts, colours and the kinds of bodies through `Link` alone. An empty graph has no contact twice.
+    unsafe { kernel.build_rows(&input, colors, params) };
     diagnostics.contact_constraint_count = kernel.manifold_count() as u32;
     diagnostics.prepare_constraints += start.elapsed();
 }

@@ -1,0 +1,170 @@
+//! All rows of a step: a list of what kinds there are, and how their constraints are sorted into batches.
+
+use super::batch::Batch;
+use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, sort_contacts};
+use super::layer::{Layer, Sorter};
+use super::plan::{Plan, Planned};
+use crate::graph::{COLOR_COUNT, ColorGraph, OVERFLOW};
+#[cfg(target_arch = "x86_64")]
+use crate::math::F32x8;
+use crate::math::{Entry, F32x4, Lane, Width};
+use crate::team::Team;
+
+/// The rows of every width; of the wide ones only one is in use.
+#[derive(Clone, Debug, Default)]
+pub(super) struct AllRows {
+    pub(super) width: Width,
+    overflow: KindRows<f32>,
+    four: KindRows<F32x4>,
+    #[cfg(target_arch = "x86_64")]
+    eight: KindRows<F32x8>,
+}
+
+/// The rows of one width, by kind.
+#[derive(Clone, Debug, Default)]
+struct KindRows<N: Lane> {
+    contacts: ContactRows<N>,
+}
+
+/// How many batches there are of one width.
+const BATCHES: usize = CONTACT_BATCHES;
+
+/// The layers of each colour, sorted; memory is kept between steps.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Layers {
+    colors: Vec<Vec<Layer>>,
+    /// How many layers of each colour are in use.
+    used: Vec<usize>,
+}
+
+impl Layers {
+    /// The layers of each colour; there may be more than are in use.
+    pub(super) fn colors(&self) -> &[Vec<Layer>] {
+        &self.colors
+    }
+
+    /// Sorts the constraints of all colours, one colour by one worker.
+    pub(super) fn sort(&mut self, colors: &ColorGraph, sorter: &Sorter, team: &Team) {
+        self.colors.resize_with(COLOR_COUNT, Vec::new);
+        self.used.resize(COLOR_COUNT, 0);
+        let layers = self.colors.iter_mut().zip(&mut self.used).zip(0..);
+        team.each(layers, |((layers, used), color)| {
+            *used = if color == OVERFLOW {
+                sort_overflow(colors, sorter, layers)
+            } else {
+                sort_color(colors, color, sorter, layers)
+            };
+        });
+    }
+
+    /// Plans the stages of all colours: the overflow first, then from low to high.
+    pub(super) fn plan(&self, width: Width, sorter: &Sorter, plan: &mut Plan) {
+        let lanes = match width {
+            Width::Eight(_) => 8,
+            Width::Four => 4,
+        };
+        if let [layer] = &self.colors[usize::from(OVERFLOW)][..self.used[usize::from(OVERFLOW)]] {
+            plan.add_singly(&Planned { color: OVERFLOW, number: 0, layer, first_batch: 0, width: 1 });
+        }
+        for color in 0..OVERFLOW {
+            let used = self.used[usize::from(color)];
+            for (layer, number) in self.colors[usize::from(color)][..used].iter().zip(0..) {
+                let planned = Planned { color, number, layer, first_batch: BATCHES, width: lanes };
+                plan.add(&planned, sorter.shares);
+            }
+        }
+    }
+}
+
+/// The layer of a number, which is at most the next one.
+fn layer(layers: &mut Vec<Layer>, number: usize) -> &mut Layer {
+    if number == layers.len() {
+        layers.push(Layer::default());
+    }
+    &mut layers[number]
+}
+
+/// Sorts the constraints of a colour. Returns how many layers they have.
+fn sort_color(colors: &ColorGraph, color: u8, sorter: &Sorter, layers: &mut Vec<Layer>) -> usize {
+    let contacts = colors.contacts(color);
+    let (mut left, mut number) = (contacts.len(), 0);
+    while left > 0 {
+        let layer = layer(layers, number);
+        layer.begin(BATCHES, sorter.shares.parts(left));
+        left = sort_contacts(contacts, number as u32, sorter, layer);
+        number += 1;
+    }
+    number
+}
+
+/// Puts the constraints of the overflow into one layer, in the order in which they are solved. Returns how many layers
+/// there are.
+fn sort_overflow(colors: &ColorGraph, sorter: &Sorter, layers: &mut Vec<Layer>) -> usize {
+    if colors.overflow().is_empty() {
+        return 0;
+    }
+    let layer = layer(layers, 0);
+    layer.begin_ordered(BATCHES);
+    for contact in colors.overflow() {
+        let mut index = 0;
+        while sort_contacts(core::slice::from_ref(contact), index, sorter, layer) > 0 {
+            index += 1;
+        }
+    }
+    1
+}
+
+impl AllRows {
+    /// How many batches there are: those of the overflow, then those of the wide rows.
+    pub(super) const BATCHES: usize = 2 * BATCHES;
+
+    /// Makes room for the rows of each batch. What they hold is old.
+    pub(super) fn make_room(&mut self, rows: &[u32], any_deep: bool) {
+        let (overflow, wide) = rows.split_at(BATCHES);
+        self.overflow.make_room(overflow, any_deep);
+        match self.width {
+            #[cfg(target_arch = "x86_64")]
+            Width::Eight(_) => self.eight.make_room(wide, any_deep),
+            _ => self.four.make_room(wide, any_deep),
+        }
+    }
+
+    /// Calls a function with all batches in the order of their numbers.
+    pub(super) fn with<R>(&mut self, f: impl FnOnce(&[&dyn Batch]) -> R) -> R {
+        let overflow = self.overflow.view(());
+        match self.width {
+            #[cfg(target_arch = "x86_64")]
+            Width::Eight(avx2) => overflow.and(&self.eight.view(avx2), f),
+            _ => overflow.and(&self.four.view(()), f),
+        }
+    }
+}
+
+impl<N: Entry> KindRows<N> {
+    fn make_room(&mut self, rows: &[u32], any_deep: bool) {
+        self.contacts.make_room(rows, any_deep);
+    }
+
+    fn view(&mut self, proof: N::Proof) -> KindViews<'_, N> {
+        KindViews { contacts: self.contacts.view(proof) }
+    }
+}
+
+/// [`KindRows`], changed block by block.
+struct KindViews<'a, N: Entry> {
+    contacts: ContactView<'a, N>,
+}
+
+impl<N: Entry> KindViews<'_, N> {
+    fn batches(&self) -> [&dyn Batch; BATCHES] {
+        self.contacts.batches()
+    }
+
+    /// Calls a function with these batches and those of another width.
+    fn and<W: Entry, R>(&self, wide: &KindViews<W>, f: impl FnOnce(&[&dyn Batch]) -> R) -> R {
+        let [narrow, wide] = [self.batches(), wide.batches()];
+        let all: [&dyn Batch; 2 * BATCHES] =
+            core::array::from_fn(|i| if i < BATCHES { narrow[i] } else { wide[i - BATCHES] });
+        f(&all)
+    }
+}

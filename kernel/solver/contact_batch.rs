@@ -1,0 +1,428 @@
+//! Contacts as batches of rows: one for each lane width, number of points and kind of inverse mass.
+#![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
+
+use super::batch::{Batch, Filling, Item, Pass, Passes, Sweep};
+use super::contact_fill::{BlockRows, PREFETCH_DISTANCE, fill_rows};
+use super::layer::{Layer, Sorter};
+use super::{BodyRow, ContactRow, InvMass, RestitutionRow, RowView, SplitImpulseRow, SubstepParams};
+use crate::contact::ManifoldsView;
+use crate::data::Parts;
+use crate::math::{Entry, Job, Lane, TangentFrame, Vector};
+use core::marker::PhantomData;
+use core::ops::Range;
+
+/// The rows of one width.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ContactRows<N: Lane> {
+    held: ByPoints<N, Vector<N>>,
+    free: ByPoints<N, N>,
+}
+
+/// The rows of one kind of inverse mass, by how many points they have room for.
+#[derive(Clone, Debug)]
+struct ByPoints<N: Lane, M> {
+    four: Rows<N, M, 4>,
+    two: Rows<N, M, 2>,
+    one: Rows<N, M, 1>,
+}
+
+/// The rows of one batch: there may be more than are in use.
+#[derive(Clone, Debug)]
+struct Rows<N: Lane, M, const P: usize> {
+    /// What every pass sweeps.
+    rows: Vec<ContactRow<N, M, P>>,
+    /// What bouncing needs besides.
+    bounces: Vec<RestitutionRow<N, P>>,
+    /// What deep overlap needs besides.
+    splits: Vec<SplitImpulseRow<N, P>>,
+}
+
+impl<N: Lane, M: InvMass<N>> Default for ByPoints<N, M> {
+    fn default() -> Self {
+        Self { four: Rows::default(), two: Rows::default(), one: Rows::default() }
+    }
+}
+
+impl<N: Lane, M, const P: usize> Default for Rows<N, M, P> {
+    fn default() -> Self {
+        Self { rows: Vec::new(), bounces: Vec::new(), splits: Vec::new() }
+    }
+}
+
+/// How many batches contacts have in one width.
+pub(super) const CONTACT_BATCHES: usize = 6;
+
+/// The batch of a manifold: first those of bodies held along some axes; of either the one with the most points is first.
+#[inline(always)]
+fn batch_of(is_held: bool, points: u32) -> usize {
+    let by_points = match points {
+        0 | 1 => 2,
+        2 => 1,
+        _ => 0,
+    };
+    if is_held { by_points } else { 3 + by_points }
+}
+
+/// Sorts those manifolds of some contacts that have a number. Returns how many contacts have one of the next number too.
+pub(super) fn sort_contacts(contacts: &[u32], index: u32, sorter: &Sorter, layer: &mut Layer) -> usize {
+    let table = sorter.input.contacts;
+    let (parts, mut more) = (layer.parts(), 0);
+    for &id in contacts {
+        let points = match table.point_count(id).of_only_manifold() {
+            Some(points) if index == 0 => points,
+            Some(_) => 0,
+            None => {
+                let contact = table.get(id);
+                more += usize::from(u32::from(contact.extra_count) > index);
+                table.manifold(contact, index).map_or(0, |manifold| manifold.count)
+            }
+        };
+        if points > 0 {
+            let bodies = table.bodies_of(id);
+            let batch = batch_of(sorter.is_held(bodies), points);
+            layer.push(sorter.part(id, bodies, parts), batch, Item { id, index });
+        }
+    }
+    more
+}
+
+impl<N: Entry> ContactRows<N> {
+    /// Makes room for the rows of each batch. What they hold is old.
+    pub(super) fn make_room(&mut self, rows: &[u32], any_deep: bool) {
+        let Self { held, free } = self;
+        let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(|batch| rows[batch] as usize);
+        held.make_room([a, b, c], any_deep);
+        free.make_room([d, e, f], any_deep);
+    }
+
+    pub(super) fn view(&mut self, proof: N::Proof) -> ContactView<'_, N> {
+        ContactView { held: self.held.view(proof), free: self.free.view(proof) }
+    }
+}
+
+impl<N: Entry, M: InvMass<N>> ByPoints<N, M> {
+    fn make_room(&mut self, [four, two, one]: [usize; 3], any_deep: bool) {
+        self.four.make_room(four, any_deep);
+        self.two.make_room(two, any_deep);
+        self.one.make_room(one, any_deep);
+    }
+
+    fn view(&mut self, proof: N::Proof) -> ByPointsView<'_, N, M> {
+        ByPointsView { four: self.four.view(proof), two: self.two.view(proof), one: self.one.view(proof) }
+    }
+}
+
+impl<N: Entry, M: InvMass<N>, const P: usize> Rows<N, M, P> {
+    fn make_room(&mut self, count: usize, any_deep: bool) {
+        if self.rows.len() < count {
+            self.rows.resize(count, ContactRow::default());
+            self.bounces.resize(count, RestitutionRow::default());
+        }
+        if any_deep && self.splits.len() < count {
+            self.splits.resize(count, SplitImpulseRow::default());
+        }
+    }
+
+    fn view(&mut self, proof: N::Proof) -> RowsView<'_, N, M, P> {
+        RowsView {
+            proof,
+            rows: Parts::of(&mut self.rows),
+            bounces: Parts::of(&mut self.bounces),
+            splits: Parts::of(&mut self.splits),
+        }
+    }
+}
+
+/// [`ContactRows`], changed block by block.
+pub(super) struct ContactView<'a, N: Entry> {
+    held: ByPointsView<'a, N, Vector<N>>,
+    free: ByPointsView<'a, N, N>,
+}
+
+struct ByPointsView<'a, N: Entry, M> {
+    four: RowsView<'a, N, M, 4>,
+    two: RowsView<'a, N, M, 2>,
+    one: RowsView<'a, N, M, 1>,
+}
+
+impl<N: Entry> ContactView<'_, N> {
+    /// All batches, in the order in which they are numbered.
+    pub(super) fn batches(&self) -> [&dyn Batch; CONTACT_BATCHES] {
+        let Self { held, free } = self;
+        [&held.four, &held.two, &held.one, &free.four, &free.two, &free.one]
+    }
+}
+
+/// The rows of one batch, changed block by block.
+struct RowsView<'a, N: Entry, M, const P: usize> {
+    /// That the CPU has the features of the lanes.
+    proof: N::Proof,
+    rows: Parts<'a, ContactRow<N, M, P>>,
+    bounces: Parts<'a, RestitutionRow<N, P>>,
+    splits: Parts<'a, SplitImpulseRow<N, P>>,
+}
+
+impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
+    /// # Safety
+    /// While the rows are in use no other thread may take any of them.
+    #[inline(always)]
+    unsafe fn take(&self, range: Range<usize>) -> BlockRows<'a, N, M, P> {
+        debug_assert!(!range.is_empty() && range.end <= self.rows.len(), "block {range:?} has rows");
+        let splits = if self.splits.len() < range.end { 0..0 } else { range.clone() };
+        // SAFETY: by the contract.
+        unsafe {
+            BlockRows {
+                rows: self.rows.take(range.clone()),
+                bounces: self.bounces.take(range),
+                splits: self.splits.take(splits),
+            }
+        }
+    }
+
+    /// Runs a pass over rows in an entry point of its own.
+    ///
+    /// # Safety
+    /// As [`Batch::run`].
+    unsafe fn enter<S: ContactPass>(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) -> bool {
+        let Sweep { bodies, params, .. } = *sweep;
+        // SAFETY: by the contract.
+        unsafe {
+            let rows = Swept { block: self.take(rows), passes, bodies, params: *params };
+            N::enter(self.proof, RunJob::<S, N, M, P> { rows, pass: PhantomData })
+        }
+    }
+}
+
+impl<N: Entry, M: InvMass<N>, const P: usize> Batch for RowsView<'_, N, M, P> {
+    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes {
+        // SAFETY: by the contract.
+        unsafe { N::enter(self.proof, FillJob { block: self.take(rows), items, from: *from }) }
+    }
+
+    unsafe fn run(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) -> bool {
+        // SAFETY: by the contract.
+        unsafe {
+            match sweep.pass {
+                Pass::Impact => self.enter::<Impact>(rows, passes, sweep),
+                Pass::WarmStart => self.enter::<WarmStart>(rows, passes, sweep),
+                Pass::Solve => self.enter::<Solve>(rows, passes, sweep),
+                Pass::UndoSplit => self.enter::<UndoSplit>(rows, passes, sweep),
+                Pass::Relax if can_bounce(passes) => self.enter::<RelaxBouncing>(rows, passes, sweep),
+                Pass::Relax => self.enter::<Relax>(rows, passes, sweep),
+                Pass::Restitute => self.enter::<Restitute>(rows, passes, sweep),
+            }
+        }
+    }
+
+    unsafe fn store(&self, rows: Range<usize>, items: &[Item], contacts: &ManifoldsView) {
+        // SAFETY: by the contract.
+        unsafe { N::enter(self.proof, StoreJob { block: self.take(rows), items, contacts }) }
+    }
+}
+
+struct FillJob<'a, N: Lane, M, const P: usize> {
+    block: BlockRows<'a, N, M, P>,
+    items: &'a [Item],
+    from: Filling<'a>,
+}
+
+impl<N: Lane, M: InvMass<N>, const P: usize> Job for FillJob<'_, N, M, P> {
+    type Output = Passes;
+
+    #[inline(always)]
+    unsafe fn run(self) -> Passes {
+        fill_rows(self.block, self.items, &self.from)
+    }
+}
+
+/// What a pass works on.
+///
+/// Views and numbers are copies: the compiler then knows that no row which is written is part of them, and keeps them in
+/// registers (the sweeps in 2D take 8 % less time (m)).
+struct Swept<'a, N: Lane, M, const P: usize> {
+    block: BlockRows<'a, N, M, P>,
+    passes: Passes,
+    bodies: RowView<'a, BodyRow>,
+    params: SubstepParams,
+}
+
+struct RunJob<'a, S, N: Lane, M, const P: usize> {
+    rows: Swept<'a, N, M, P>,
+    pass: PhantomData<S>,
+}
+
+impl<S: ContactPass, N: Lane, M: InvMass<N>, const P: usize> Job for RunJob<'_, S, N, M, P> {
+    type Output = bool;
+
+    #[inline(always)]
+    unsafe fn run(self) -> bool {
+        // SAFETY: by the contract.
+        unsafe { S::over(self.rows) }
+    }
+}
+
+/// Whether a block with these passes has rows that can bounce.
+#[inline(always)]
+fn can_bounce(passes: Passes) -> bool {
+    passes.has(Pass::Impact)
+}
+
+/// Whether a block with these passes has rows with split impulses.
+#[inline(always)]
+fn has_split(passes: Passes) -> bool {
+    passes.has(Pass::UndoSplit)
+}
+
+/// A pass over the rows of a block.
+///
+/// Plain loops, not iterator adaptors: what is to be compiled for the caller's CPU feature must be inlined into it.
+trait ContactPass {
+    /// Returns whether it found an impact.
+    ///
+    /// # Safety
+    /// As [`Batch::run`].
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool;
+}
+
+struct Impact;
+
+impl ContactPass for Impact {
+    #[inline(always)]
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+        let mut hit = false;
+        for (row, bounce) in all.block.rows.iter_mut().zip(all.block.bounces) {
+            // SAFETY: by the contract.
+            hit |= unsafe { row.impact(&all.bodies, bounce, &all.params) };
+        }
+        hit
+    }
+}
+
+struct WarmStart;
+
+impl ContactPass for WarmStart {
+    #[inline(always)]
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+        if has_split(all.passes) {
+            for (row, split) in all.block.rows.iter_mut().zip(&*all.block.splits) {
+                row.scale_impulses(split);
+            }
+        }
+        for row in all.block.rows.iter() {
+            // SAFETY: by the contract.
+            unsafe { row.warm_start(&all.bodies) };
+        }
+        false
+    }
+}
+
+struct Solve;
+
+impl ContactPass for Solve {
+    #[inline(always)]
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+        if has_split(all.passes) {
+            for (row, split) in all.block.rows.iter().zip(all.block.splits) {
+                row.save_impulses(split);
+            }
+        }
+        for row in all.block.rows.iter_mut() {
+            // SAFETY: by the contract.
+            unsafe { row.solve(&all.bodies, &all.params) };
+        }
+        if can_bounce(all.passes) {
+            for (row, bounce) in all.block.rows.iter().zip(all.block.bounces) {
+                row.note_largest_impulses(bounce);
+            }
+        }
+        false
+    }
+}
+
+struct UndoSplit;
+
+impl ContactPass for UndoSplit {
+    #[inline(always)]
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+        for (row, split) in all.block.rows.iter_mut().zip(&*all.block.splits) {
+            // SAFETY: by the contract.
+            unsafe { row.undo_split(&all.bodies, split) };
+        }
+        false
+    }
+}
+
+struct Relax;
+
+impl ContactPass for Relax {
+    #[inline(always)]
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+        for row in all.block.rows.iter_mut() {
+            // SAFETY: by the contract.
+            unsafe { row.relax(&all.bodies, &all.params, None) };
+        }
+        false
+    }
+}
+
+/// [`Relax`] for rows of which some can bounce.
+struct RelaxBouncing;
+
+impl ContactPass for RelaxBouncing {
+    #[inline(always)]
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+        for (row, bounce) in all.block.rows.iter_mut().zip(&*all.block.bounces) {
+            // SAFETY: by the contract.
+            unsafe { row.relax(&all.bodies, &all.params, Some(bounce.restitution)) };
+        }
+        for (row, bounce) in all.block.rows.iter().zip(all.block.bounces) {
+            row.note_largest_impulses(bounce);
+        }
+        false
+    }
+}
+
+struct Restitute;
+
+impl ContactPass for Restitute {
+    #[inline(always)]
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+        for (row, bounce) in all.block.rows.iter_mut().zip(all.block.bounces) {
+            // SAFETY: by the contract.
+            unsafe { row.restitute(&all.bodies, bounce, &all.params) };
+        }
+        false
+    }
+}
+
+struct StoreJob<'a, N: Lane, M, const P: usize> {
+    block: BlockRows<'a, N, M, P>,
+    items: &'a [Item],
+    contacts: &'a ManifoldsView<'a>,
+}
+
+impl<N: Lane, M: InvMass<N>, const P: usize> Job for StoreJob<'_, N, M, P> {
+    type Output = ();
+
+    #[inline(always)]
+    unsafe fn run(self) {
+        let Self { block, items, contacts } = self;
+        for (i, (row, lanes)) in block.rows.iter().zip(items.chunks(N::WIDTH)).enumerate() {
+            let next = (i + PREFETCH_DISTANCE) * N::WIDTH;
+            for item in items.iter().skip(next).take(N::WIDTH) {
+                contacts.prefetch(&[item.id]);
+            }
+            let friction = TangentFrame::new(row.normal).expand(row.tangent_impulse);
+            for (lane, item) in lanes.iter().enumerate() {
+                // SAFETY: by the contract; the one before is in use no more.
+                let manifold = unsafe { contacts.manifold(item.id, item.index) };
+                manifold.friction_impulse = friction.get(lane);
+                manifold.twist_impulse = row.twist.impulse(lane);
+                let count = manifold.count as usize;
+                for (p, point) in manifold.points[..count].iter_mut().zip(&row.points) {
+                    p.impulse = point.impulse.get(lane);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! Rows of contacts are filled: lane by lane from manifolds, then the effective masses for all lanes of a row at once.
+#![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
+
+use super::batch::{Filling, Item, Pass, Passes};
+use super::split::DeepCounts;
+use super::{BodyRow, ContactRow, InvMass, MassRow, RestitutionRow, RowView, SplitImpulseRow, SubstepParams};
+use crate::contact::{Contact, Manifold};
+use crate::math::{Ids, Lane, TangentFrame, Vector};
+use crate::table::{BodyTable, NONE};
+
+/// How many rows ahead contacts are prefetched: those of a colour stand anywhere in the table.
+pub(super) const PREFETCH_DISTANCE: usize = 1;
+
+/// The rows of one block.
+pub(super) struct BlockRows<'a, N: Lane, M, const P: usize> {
+    pub(super) rows: &'a mut [ContactRow<N, M, P>],
+    pub(super) bounces: &'a mut [RestitutionRow<N, P>],
+    /// Empty in steps without deep overlap.
+    pub(super) splits: &'a mut [SplitImpulseRow<N, P>],
+}
+
+/// Fills the rows of a block. Returns the passes that they need.
+#[inline(always)]
+pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
+    block: BlockRows<N, M, P>,
+    items: &[Item],
+    from: &Filling,
+) -> Passes {
+    let (mut can_bounce, mut any_deep) = (false, false);
+    for (i, lanes) in items.chunks(N::WIDTH).enumerate() {
+        let next = (i + PREFETCH_DISTANCE) * N::WIDTH;
+        for item in items.iter().skip(next).take(N::WIDTH) {
+            from.input.contacts.prefetch(&[item.id]);
+        }
+        let (row, bounce) = (&mut block.rows[i], &mut block.bounces[i]);
+        *row = ContactRow::default();
+        *bounce = RestitutionRow::default();
+        let mut fill = Fill::<N, P>::new();
+        for (lane, item) in lanes.iter().enumerate() {
+            fill.lane(from, *item, lane, row, bounce);
+        }
+        fill.finish(row, bounce, from.masses, &from.bodies);
+        can_bounce |= N::any(N::ZERO.lt(bounce.restitution));
+        if from.deep.any() {
+            let split = &mut block.splits[i];
+            *split = SplitImpulseRow::default();
+            any_deep |= split.mark(from.deep, &row.ids, from.first_dynamic);
+        }
+    }
+    let mut passes = Passes::BASIC;
+    if can_bounce {
+        passes = passes.with(Pass::Impact).with(Pass::Restitute);
+    }
+    if any_deep {
+        passes = passes.with(Pass::UndoSplit);
+    }
+    passes
+}
+
+impl<N: Lane, const P: usize> SplitImpulseRow<N, P> {
+    /// Marks the lanes of bodies that overlap something deeply. Returns whether there are any.
+    #[inline(always)]
+    fn mark(&mut self, counts: &DeepCounts, ids: &[N::Ids; 2], first_dynamic: u32) -> bool {
+        let mut any = false;
+        for lane in 0..N::WIDTH {
+            let rows = [ids[0].lanes()[lane], ids[1].lanes()[lane]];
+            if counts.concern(rows) {
+                self.deep.set(lane, 1.0);
+                self.warm.set(lane, counts.warm_share(rows, first_dynamic));
+                any = true;
+            }
+        }
+        any
+    }
+}
+
+/// A point whose K is a smaller share of what it were if no body was held along an axis cannot be pushed along
+/// the normal: what is left is rounding.
+const HELD: f32 = 1.0e-6;
+
+/// It is not taken for a smaller share than this. A normal nearly along the axis on which a body is held would
+/// else throw it out sideways.
+const HARDLY: f32 = 0.1;
+
+/// What is needed of a row only while it is prepared.
+struct Fill<N, const P: usize> {
+    friction_impulse: Vector<N>,
+    weights: [N; P],
+    rounding: [N; 2],
+    free: [Vector<N>; 2],
+    dominated: [N; 2],
+}
+
+impl<N: Lane, const P: usize> Fill<N, P> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            friction_impulse: Vector::ZERO,
+            weights: [N::ZERO; P],
+            rounding: [N::ZERO; 2],
+            free: [Vector::splat(Vector::ONE); 2],
+            dominated: [N::ZERO; 2],
+        }
+    }
+
+    /// Copies one manifold into a lane.
+    #[inline(always)]
+    fn lane<M: InvMass<N>>(
+        &mut self,
+        from: &Filling,
+        item: Item,
+        lane: usize,
+        row: &mut ContactRow<N, M, P>,
+        bounce: &mut RestitutionRow<N, P>,
+    ) {
+        let input = from.input;
+        let contact = input.contacts.get(item.id);
+        let manifold = input.contacts.manifold(contact, item.index).expect("it was there to be counted");
+        debug_assert!((1..=P as u32).contains(&manifold.count), "{} points fit into {P}", manifold.count);
+        debug_assert!(
+            (manifold.normal.length() - 1.0).abs() < 1.0e-3,
+            "a normal of unit length: {:?}",
+            manifold.normal
+        );
+        debug_assert!(manifold.points().iter().all(|p| p.separation.is_finite()), "separations are finite");
+        let ids = contact.bodies.map(|body| input.row_of(body));
+        for side in 0..2 {
+            row.ids[side].set(lane, ids[side]);
+            if let Some(locks) = from.locks.get(ids[side] as usize)
+                && locks.is_translation_held()
+            {
+                self.free[side].set(lane, locks.translation_factors());
+            }
+        }
+        if input.bodies.any_dominance {
+            self.dominate(input.bodies, contact, lane);
+        }
+        let [friction, restitution] = contact.surface;
+        debug_assert!(friction >= 0.0 && restitution >= 0.0, "a surface: {friction}, {restitution}");
+        row.friction.set(lane, friction);
+        bounce.restitution.set(lane, restitution);
+        if restitution > 0.0 {
+            let [a, b] = ids.map(|row| from.motions[row as usize].acceleration);
+            bounce.gained.set(lane, (a - b).dot(manifold.normal) * from.params.h);
+        }
+        let share = from.deep.share(ids, from.first_dynamic);
+        debug_assert!(share > 0.0 && share <= 1.0, "a share: {share}");
+        row.push_speed.set(lane, from.params.max_push_speed * share);
+        self.copy(manifold, contact.frozen.offset, from.params, lane, row);
+    }
+
+    /// Marks the side that cannot be moved by the other because it dominates it.
+    #[inline(always)]
+    fn dominate(&mut self, bodies: &BodyTable, contact: &Contact, lane: usize) {
+        let [a, b] = contact.bodies;
+        if a != NONE && b != NONE {
+            let (a, b) = (bodies[a].effective_dominance(), bodies[b].effective_dominance());
+            if a > b {
+                self.dominated[0].set(lane, 1.0);
+            } else if b > a {
+                self.dominated[1].set(lane, 1.0);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn copy<M: InvMass<N>>(
+        &mut self,
+        manifold: &Manifold,
+        offset: Vector,
+        params: &SubstepParams,
+        lane: usize,
+        row: &mut ContactRow<N, M, P>,
+    ) {
+        row.normal.set(lane, manifold.normal);
+        row.offset.set(lane, offset);
+        self.friction_impulse.set(lane, manifold.friction_impulse * params.warm_start);
+        for (to, from) in self.rounding.iter_mut().zip(manifold.radii) {
+            to.set(lane, from);
+        }
+        row.twist.set_impulse(lane, manifold.twist_impulse * params.warm_start);
+        for (i, p) in manifold.points().iter().enumerate() {
+            let point = &mut row.points[i];
+            point.anchor.set(lane, p.anchor);
+            point.separation.set(lane, p.separation);
+            point.impulse.set(lane, p.impulse * params.warm_start);
+            // 1 marks the point as present until its mass is known.
+            point.mass.set(lane, 1.0);
+            // A point that is still apart counts less the farther it is, so that the friction centre
+            // does not jump when a point comes or goes.
+            let weight = 2.0 - p.separation / params.friction_fade;
+            self.weights[i].set(lane, crate::math::clamp(weight, 1.0e-10, 1.0));
+        }
+    }
+
+    /// Computes what follows from the lanes, for all at once: effective masses, friction centre,
+    /// approach speeds.
+    #[inline(always)]
+    fn finish<M: InvMass<N>>(
+        &self,
+        row: &mut ContactRow<N, M, P>,
+        bounce: &mut RestitutionRow<N, P>,
+        masses: &[MassRow],
+        view: &RowView<BodyRow>,
+    ) {
+        let mut unheld = N::ZERO;
+        for side in 0..2 {
+            let (inv_mass, inertia) = MassRow::gather::<N>(masses, &row.ids[side]);
+            let movable = N::select(N::ZERO.lt(self.dominated[side]), N::ZERO, N::ONE);
+            let inv_mass = inv_mass * movable;
+            row.inv_mass[side] = M::new(inv_mass, self.free[side]);
+            row.inv_inertia[side] = inertia.scaled(movable);
+            unheld += inv_mass;
+        }
+        // SAFETY: no thread writes bodies while rows are filled.
+        let [(va, wa), (vb, wb)] =
+            unsafe { row.ids.each_ref().map(|ids| BodyRow::gather_velocity::<N>(view, ids)) };
+        let n = row.normal;
+        let linear = n.dot(row.inv_mass[0].apply(n)) + n.dot(row.inv_mass[1].apply(n));
+        let (mut total, mut center) = (N::ZERO, Vector::ZERO);
+        let to_surface = n * self.rounding[0];
+        row.rounding = self.rounding[0] + self.rounding[1];
+        row.offset -= n * row.rounding;
+        for i in 0..P {
+            let point = &mut row.points[i];
+            point.anchor -= to_surface;
+            let (ma, mb) = (point.anchor.cross(n), (point.anchor - row.offset).cross(n));
+            let k = linear + ma.dot(row.inv_inertia[0].apply(ma)) + mb.dot(row.inv_inertia[1].apply(mb));
+            let present = N::and((unheld * N::splat(HELD)).lt(k), N::ZERO.lt(point.mass));
+            point.mass = N::select(present, N::ONE / k.max(unheld * N::splat(HARDLY)), N::ZERO);
+            bounce.approach[i] = (vb - va).dot(n) + wb.dot(mb) - wa.dot(ma);
+            total += self.weights[i];
+            center += point.anchor * self.weights[i];
+        }
+        let total = N::select(N::ZERO.lt(total), total, N::ONE);
+        let core = center * (N::ONE / total);
+        row.center = core + to_surface;
+        let frame = TangentFrame::new(n);
+        let [ra, rb] = row.surface_arms();
+        let arms = [(row.inv_inertia[0], ra), (row.inv_inertia[1], rb)];
+        let [m0, m1] = row.inv_mass;
+        row.tangent_mass = frame.mass(m0.diagonal() + m1.diagonal(), arms);
+        row.tangent_impulse = frame.project(self.friction_impulse);
+        let mut anchors = [core; P];
+        for i in 0..P {
+            // A point that is not there must not add a lever.
+            let there = N::select(N::ZERO.lt(self.weights[i]), N::ONE, N::ZERO);
+            anchors[i] += (row.points[i].anchor - core) * there;
+        }
+        row.twist.prepare(n, core, anchors, row.inv_inertia);
+    }
+}

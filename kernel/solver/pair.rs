@@ -1,0 +1,70 @@
+//! What rows of two bodies compute with: their velocities, and softness lane by lane.
+#![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
+
+use super::{BodyRow, RowView, Softness};
+use crate::math::{Angular, Lane, Vector};
+
+/// The velocities of a row's two bodies.
+#[derive(Clone, Copy)]
+pub(super) struct Pair<N> {
+    pub(super) v: [Vector<N>; 2],
+    pub(super) w: [Angular<N>; 2],
+}
+
+impl<N: Lane> Pair<N> {
+    /// # Safety
+    /// No other thread writes these rows meanwhile.
+    #[inline(always)]
+    pub(super) unsafe fn load(rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) -> Self {
+        // SAFETY: by the contract.
+        let [(va, wa), (vb, wb)] = unsafe {
+            [BodyRow::gather_velocity::<N>(rows, &ids[0]), BodyRow::gather_velocity::<N>(rows, &ids[1])]
+        };
+        Self { v: [va, vb], w: [wa, wb] }
+    }
+
+    /// This where the mask is set, else `other`.
+    #[inline(always)]
+    pub(super) fn or_where_not(self, mask: N::Mask, other: Self) -> Self {
+        Self {
+            v: core::array::from_fn(|i| Vector::select(mask, self.v[i], other.v[i])),
+            w: core::array::from_fn(|i| Angular::select(mask, self.w[i], other.w[i])),
+        }
+    }
+
+    /// How fast B leaves A along `n`, at the point whose moments with it are given.
+    #[inline(always)]
+    pub(super) fn along(&self, n: Vector<N>, [ma, mb]: [Angular<N>; 2]) -> N {
+        (self.v[1] - self.v[0]).dot(n) + self.w[1].dot(mb) - self.w[0].dot(ma)
+    }
+
+    /// # Safety
+    /// No other thread reads or writes those of these rows that may be written.
+    #[inline(always)]
+    pub(super) unsafe fn store(&self, rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) {
+        // SAFETY: by the contract.
+        unsafe {
+            BodyRow::scatter_velocity::<N>(rows, &ids[0], self.v[0], self.w[0]);
+            BodyRow::scatter_velocity::<N>(rows, &ids[1], self.v[1], self.w[1]);
+        }
+    }
+}
+
+/// [`Softness`], chosen lane by lane.
+#[derive(Clone, Copy)]
+pub(super) struct SoftLanes<N> {
+    pub(super) bias_rate: N,
+    pub(super) mass_scale: N,
+    pub(super) impulse_scale: N,
+}
+
+impl<N: Lane> SoftLanes<N> {
+    #[inline(always)]
+    pub(super) fn select(mask: N::Mask, a: &Softness, b: &Softness) -> Self {
+        Self {
+            bias_rate: N::select(mask, N::splat(a.bias_rate), N::splat(b.bias_rate)),
+            mass_scale: N::select(mask, N::splat(a.mass_scale), N::splat(b.mass_scale)),
+            impulse_scale: N::select(mask, N::splat(a.impulse_scale), N::splat(b.impulse_scale)),
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! When which rows are solved: stages, cut into blocks that the workers share.
+
+use super::batch::{Item, Passes};
+use super::layer::Layer;
+use super::shares::Shares;
+
+/// Consecutive rows of one batch. The dynamic bodies of all blocks of a stage are different, so that they may be solved
+/// in any order or at once.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Block {
+    pub(super) batch: u16,
+    /// The passes that its rows need.
+    pub(super) passes: Passes,
+    start: u32,
+    len: u32,
+    /// Where its items are: a list of the plan, and the first of the list's items.
+    list: u32,
+    first_item: u32,
+    items: u32,
+}
+
+impl Block {
+    /// Its rows in the batch.
+    #[inline(always)]
+    pub(super) fn rows(&self) -> core::ops::Range<usize> {
+        self.start as usize..(self.start + self.len) as usize
+    }
+}
+
+/// Where a list of items is.
+#[derive(Clone, Copy, Debug)]
+struct ListPlace {
+    color: u8,
+    layer: u32,
+    part: u32,
+    batch: u32,
+}
+
+/// The order in which blocks are solved.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Plan {
+    pub(super) blocks: Vec<Block>,
+    /// The end of each stage among the blocks, and whether workers share it.
+    ends: Vec<(u32, bool)>,
+    /// For each stage and worker, the end of the worker's part within the stage.
+    parts: Vec<u32>,
+    lists: Vec<ListPlace>,
+    /// How many rows each batch has.
+    rows: Vec<u32>,
+    workers: usize,
+    /// The most rows of a block.
+    block_rows: u32,
+    /// The next item of each batch, while items are added singly.
+    next: Vec<u32>,
+    /// How many items have a place in a row.
+    pub(super) items: usize,
+}
+
+/// Blocks that may be solved in any order or at once.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stage<'a> {
+    pub(super) blocks: &'a [Block],
+    /// The end of each worker's part of them; `None` if there are too few to share.
+    pub(super) parts: Option<&'a [u32]>,
+}
+
+/// The layer of a colour that is planned, and which batches its lists belong to.
+pub(super) struct Planned<'a> {
+    pub(super) color: u8,
+    pub(super) number: u32,
+    pub(super) layer: &'a Layer,
+    /// The batch of the layer's first list.
+    pub(super) first_batch: usize,
+    /// How many items a row has room for.
+    pub(super) width: u32,
+}
+
+impl Plan {
+    /// Forgets everything. From now on blocks have at most `block_rows` rows, and stages a part for each worker.
+    pub(super) fn begin(&mut self, block_rows: u32, workers: usize, batches: usize) {
+        self.blocks.clear();
+        self.ends.clear();
+        self.parts.clear();
+        self.lists.clear();
+        self.rows.clear();
+        self.rows.resize(batches, 0);
+        self.workers = workers;
+        self.block_rows = block_rows;
+        self.items = 0;
+    }
+
+    /// Plans a stage of a layer.
+    pub(super) fn add(&mut self, planned: &Planned, shares: &Shares) {
+        let parts = planned.layer.parts();
+        debug_assert!((1..=shares.workers()).contains(&parts), "{parts} parts");
+        for worker in 0..shares.workers() {
+            if let Some(part) = shares.of_worker(worker, parts) {
+                for batch in 0..planned.layer.batches() {
+                    self.add_list(planned, part, batch);
+                }
+            }
+            self.end_part();
+        }
+        self.end_stage(parts > 1);
+    }
+
+    /// Plans a stage for each item of a layer, in the order in which they were added.
+    pub(super) fn add_singly(&mut self, planned: &Planned) {
+        let layer = planned.layer;
+        let mut next = core::mem::take(&mut self.next);
+        next.clear();
+        next.resize(layer.batches(), 0);
+        let first_list = self.lists.len() as u32;
+        for batch in 0..layer.batches() as u32 {
+            let Planned { color, number, .. } = *planned;
+            self.lists.push(ListPlace { color, layer: number, part: 0, batch });
+        }
+        for &batch in layer.order() {
+            let (list, batch) = (first_list + u32::from(batch), usize::from(batch));
+            self.add_block(planned.first_batch + batch, list, next[batch], 1, 1);
+            next[batch] += 1;
+            (0..self.workers).for_each(|_| self.end_part());
+            self.end_stage(false);
+        }
+        self.next = next;
+    }
+
+    /// Cuts the rows of a list into blocks of the stage that is being planned.
+    fn add_list(&mut self, planned: &Planned, part: usize, batch: usize) {
+        debug_assert!(self.block_rows > 0, "a plan is begun before it is added to");
+        let all = planned.layer.list(part, batch).len() as u32;
+        if all == 0 {
+            return;
+        }
+        let list = self.lists.len() as u32;
+        let Planned { color, number, width, .. } = *planned;
+        self.lists.push(ListPlace { color, layer: number, part: part as u32, batch: batch as u32 });
+        let (most, mut first) = (self.block_rows.saturating_mul(width), 0);
+        while first < all {
+            let items = most.min(all - first);
+            self.add_block(planned.first_batch + batch, list, first, items, width);
+            first += items;
+        }
+    }
+
+    /// Adds a block of items of a list.
+    fn add_block(&mut self, batch: usize, list: u32, first_item: u32, items: u32, width: u32) {
+        let (start, len) = (self.rows[batch], items.div_ceil(width));
+        let (batch, passes) = (batch as u16, Passes::BASIC);
+        self.blocks.push(Block { batch, passes, start, len, list, first_item, items });
+        self.rows[usize::from(batch)] += len;
+        self.items += items as usize;
+    }
+
+    /// Ends a worker's part of the stage that is being planned.
+    fn end_part(&mut self) {
+        self.parts.push(self.blocks.len() as u32 - self.start());
+    }
+
+    /// Ends a stage, which is shared or not: what is added from now on waits for what was added before.
+    fn end_stage(&mut self, is_shared: bool) {
+        let end = self.blocks.len() as u32;
+        debug_assert_eq!(self.parts.len(), (self.ends.len() + 1) * self.workers, "each worker has a part");
+        if self.start() < end {
+            self.ends.push((end, is_shared));
+        }
+        self.parts.truncate(self.ends.len() * self.workers);
+    }
+
+    /// Where the stage that is being planned begins.
+    fn start(&self) -> u32 {
+        self.ends.last().map_or(0, |(end, _)| *end)
+    }
+
+    /// How many rows each batch has.
+    pub(super) fn rows(&self) -> &[u32] {
+        &self.rows
+    }
+
+    /// The items of a block.
+    #[inline(always)]
+    pub(super) fn items<'a>(&self, block: &Block, layers: &'a [Vec<Layer>]) -> &'a [Item] {
+        let ListPlace { color, layer, part, batch } = self.lists[block.list as usize];
+        let list = layers[usize::from(color)][layer as usize].list(part as usize, batch as usize);
+        &list[block.first_item as usize..(block.first_item + block.items) as usize]
+    }
+
+    /// The stages in their order.
+    pub(super) fn stages(&self) -> impl Iterator<Item = Stage<'_>> {
+        let mut start = 0;
+        self.ends.iter().zip(self.parts.chunks(self.workers.max(1))).map(move |(&(end, is_shared), parts)| {
+            let blocks = &self.blocks[start..end as usize];
+            start = end as usize;
+            Stage { blocks, parts: is_shared.then_some(parts) }
+        })
+    }
+}
