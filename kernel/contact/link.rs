@@ -1,13 +1,13 @@
-//! The one door through which contacts come and go, and colours, islands and sleep change.
+//! The one door through which contacts and other constraints come and go, and colours, islands and sleep change.
 //!
-//! Rules it keeps: a contact is active while one of its bodies is awake; it has a colour while it is
+//! Rules it keeps: a contact is active while one of its bodies is awake; a constraint has a colour while it is
 //! solved and one of its dynamic bodies is awake; two dynamic bodies it is solved between are in one
 //! island; the bodies of an island are awake or asleep together.
 
 use super::record::{Contact, ContactFlags};
 use super::table::ContactTable;
 use crate::data::BitSet;
-use crate::graph::{ColorGraph, IslandId, Islands, LinkId};
+use crate::graph::{ColorGraph, ConstraintId, ConstraintKind, IslandId, Islands};
 use crate::shape::Shape;
 use crate::table::{BodyKind, BodyTable, ColliderTable, Material, NONE};
 
@@ -20,7 +20,7 @@ pub enum Status {
     Ended,
 }
 
-/// All that a change of contacts touches.
+/// All that a change of contacts and other constraints touches.
 pub struct Link<'a> {
     /// The bodies.
     pub bodies: &'a mut BodyTable,
@@ -28,7 +28,7 @@ pub struct Link<'a> {
     pub colliders: &'a mut ColliderTable,
     /// The contacts.
     pub contacts: &'a mut ContactTable,
-    /// The colours of solved contacts.
+    /// The colours of solved constraints.
     pub colors: &'a mut ColorGraph,
     /// The islands of dynamic bodies; without them every body wakes alone and none is put to sleep.
     pub islands: Option<&'a mut Islands>,
@@ -43,7 +43,7 @@ impl Link<'_> {
         let surface = self.mixed(colliders);
         let contact = Contact { surface, ..Contact::new(colliders, bodies, flags) };
         let id = self.contacts.add(contact, self.colliders);
-        self.refresh(id);
+        self.refresh(ConstraintId::contact(id));
         id
     }
 
@@ -60,14 +60,14 @@ impl Link<'_> {
                 if touching {
                     report(id, contact, Status::Ended);
                 }
-                self.detach(id);
+                self.detach(ConstraintId::contact(id));
                 self.contacts.remove(id, self.colliders);
             } else if touching {
                 report(id, contact, Status::Began);
-                self.attach(id);
+                self.attach(ConstraintId::contact(id));
             } else {
                 report(id, contact, Status::Ended);
-                self.detach(id);
+                self.detach(ConstraintId::contact(id));
             }
         }
         if let Some(islands) = &mut self.islands {
@@ -83,7 +83,7 @@ impl Link<'_> {
                 self.wake_body(body);
             }
         }
-        self.detach(id);
+        self.detach(ConstraintId::contact(id));
         self.contacts.remove(id, self.colliders);
     }
 
@@ -116,26 +116,27 @@ impl Link<'_> {
         }
     }
 
-    /// Removes a body whose colliders are gone.
+    /// Removes a body whose colliders are gone, with its constraints. What these held is woken.
     pub fn leave(&mut self, body: u32) {
+        self.disconnect_body(body);
         self.leave_island(body);
         self.bodies.remove(body);
     }
 
-    /// Changes what moves a body. Its contacts stay, in new colours and islands; it wakes, and so does
-    /// what it touches.
+    /// Changes what moves a body. Its contacts and other constraints stay, in new colours and islands; it wakes, and so
+    /// does what it touches or is held by.
     pub fn retype(&mut self, body: u32, kind: BodyKind) {
         let old = self.bodies[body].kind;
         if old == kind {
             return;
         }
         self.wake_body(body);
-        let contacts = self.contacts_of_body(body);
-        for id in &contacts {
-            for other in self.contacts.get(*id).bodies {
+        let constraints = self.constraints_of_body(body);
+        for constraint in &constraints {
+            for other in self.tie(*constraint).bodies {
                 self.wake_body(other);
             }
-            self.detach(*id);
+            self.detach(*constraint);
         }
         self.leave_island(body);
         self.bodies.set_kind(body, kind);
@@ -145,10 +146,12 @@ impl Link<'_> {
             collider = self.colliders.next_of_body(collider);
         }
         self.enter(body);
-        for id in contacts {
-            self.contacts.get_mut(id).flags = self.fresh_flags(id);
-            self.refresh(id);
-            self.attach(id);
+        for constraint in constraints {
+            if let ConstraintId { kind: ConstraintKind::Contact, id } = constraint {
+                self.contacts.get_mut(id).flags = self.fresh_flags(id);
+            }
+            self.refresh(constraint);
+            self.attach(constraint);
         }
     }
 
@@ -165,9 +168,9 @@ impl Link<'_> {
                 continue;
             }
             if was_solved {
-                self.detach(id);
+                self.detach(ConstraintId::contact(id));
             }
-            self.attach(id);
+            self.attach(ConstraintId::contact(id));
         }
         self.mix_of_collider(collider);
     }
@@ -214,24 +217,24 @@ impl Link<'_> {
         if contact.is_inert() || contact.bodies.iter().any(|b| self.is_awake(*b)) {
             return None;
         }
-        match self.movable(contact) {
+        match self.movable(contact.bodies) {
             [Some(_), Some(_)] => None,
             [a, b] => a.or(b),
         }
     }
 
-    /// Wakes what a body touches, as after it was moved by hand; and what it is near, where the contact is
+    /// Wakes what a body touches or is held by, as after it was moved by hand; and what it is near, where the contact is
     /// [unseen](Self::unseen_sleeper).
     pub fn wake_touching(&mut self, body: u32) {
         for id in self.contacts_of_body(body) {
             if let Some(sleeper) = self.unseen_sleeper(id).filter(|sleeper| *sleeper != body) {
                 self.wake_body(sleeper);
             }
-            let contact = self.contacts.get(id);
-            if contact.is_solved() {
-                for other in contact.bodies {
-                    self.wake_body(other);
-                }
+        }
+        for constraint in self.constraints_of_body(body) {
+            let tie = self.tie(constraint);
+            if tie.is_solved {
+                tie.bodies.into_iter().for_each(|other| self.wake_body(other));
             }
         }
     }
@@ -270,16 +273,16 @@ impl Link<'_> {
     }
 
     fn set_awake(&mut self, bodies: &[u32], awake: bool) {
-        let mut contacts = Vec::new();
+        let mut constraints = Vec::new();
         for &body in bodies {
             self.bodies.set_awake(body, awake);
-            contacts.extend(self.contacts_of_body(body));
+            constraints.extend(self.constraints_of_body(body));
         }
-        // Colours depend on the order in which contacts enter them.
-        contacts.sort_unstable();
-        contacts.dedup();
-        for id in contacts {
-            self.refresh(id);
+        // Colours depend on the order in which constraints enter them.
+        constraints.sort_unstable();
+        constraints.dedup();
+        for constraint in constraints {
+            self.refresh(constraint);
         }
     }
 
@@ -289,19 +292,19 @@ impl Link<'_> {
             return;
         }
         self.bodies.set_awake(body, awake);
-        for id in self.contacts_of_body(body) {
-            let contact = self.contacts.get(id);
-            if awake && contact.is_solved() {
-                for other in contact.bodies.into_iter().filter(|b| *b != body) {
+        for constraint in self.constraints_of_body(body) {
+            let tie = self.tie(constraint);
+            if awake && tie.is_solved {
+                for other in tie.bodies.into_iter().filter(|b| *b != body) {
                     self.wake_body(other);
                 }
             }
-            self.refresh(id);
+            self.refresh(constraint);
         }
     }
 
     /// The contacts of a body's colliders, ascending.
-    fn contacts_of_body(&self, body: u32) -> Vec<u32> {
+    pub(super) fn contacts_of_body(&self, body: u32) -> Vec<u32> {
         let mut ids = Vec::new();
         for collider in self.colliders.of_body(body, self.bodies) {
             ids.extend(self.contacts.of_collider(collider, self.colliders));
@@ -351,93 +354,6 @@ impl Link<'_> {
         flags
     }
 
-    /// The bodies that bar a colour: the dynamic ones.
-    fn movable(&self, contact: &Contact) -> [Option<u32>; 2] {
-        contact.bodies.map(|b| (b != NONE && self.bodies[b].kind == BodyKind::Dynamic).then_some(b))
-    }
-
-    fn is_awake(&self, body: u32) -> bool {
-        body != NONE && self.bodies[body].awake
-    }
-
-    /// Makes a contact active and coloured exactly if its state asks for it.
-    fn refresh(&mut self, id: u32) {
-        let contact = self.contacts.get(id);
-        let active = contact.bodies.iter().any(|b| self.is_awake(*b));
-        let movable = self.movable(contact);
-        let colored = contact.is_solved() && movable.iter().flatten().any(|b| self.is_awake(*b));
-        let carried = self.carried(contact);
-        match (colored, contact.slot) {
-            (true, None) => {
-                let slot = self.colors.assign(id, movable);
-                self.contacts.get_mut(id).slot = Some(slot);
-            }
-            (false, Some(_)) => self.uncolor(id),
-            _ => {}
-        }
-        if let (Some(islands), [_, None] | [None, _]) = (&mut self.islands, movable) {
-            match carried {
-                Some(body) if !islands.is_linked(LinkId(2 * id)) => {
-                    islands.link_carrier(LinkId(2 * id), body);
-                }
-                None => _ = islands.unlink(LinkId(2 * id)),
-                Some(_) => {}
-            }
-        }
-        if active {
-            self.contacts.activate(id);
-        } else {
-            self.contacts.deactivate(id);
-        }
-    }
-
-    /// The dynamic body of a contact with a kinematic one that moves.
-    fn carried(&self, contact: &Contact) -> Option<u32> {
-        let moves = |body: u32| self.is_awake(body) && self.bodies[body].kind == BodyKind::Kinematic;
-        if !contact.is_solved() || !contact.bodies.into_iter().any(moves) {
-            return None;
-        }
-        self.movable(contact).into_iter().flatten().next()
-    }
-
-    fn uncolor(&mut self, id: u32) {
-        let contact = self.contacts.get(id);
-        let movable = self.movable(contact);
-        if let Some(slot) = self.contacts.get_mut(id).slot.take()
-            && let Some(moved) = self.colors.release(slot, movable)
-        {
-            self.contacts.get_mut(moved).slot = Some(slot);
-        }
-    }
-
-    /// Lets a touching contact take effect: wakes both sides, joins their islands, gives it a colour.
-    fn attach(&mut self, id: u32) {
-        let contact = self.contacts.get(id);
-        if !contact.is_solved() {
-            return;
-        }
-        let bodies = contact.bodies;
-        let [a, b] = self.movable(contact);
-        for body in [a, b].into_iter().flatten() {
-            // Whoever is touched by something awake wakes up; a pair at rest stays asleep.
-            if bodies.iter().any(|other| self.is_awake(*other)) && !self.bodies[body].awake {
-                self.wake_body(body);
-            }
-        }
-        if let (Some(a), Some(b), Some(islands)) = (a, b, &mut self.islands) {
-            islands.link(LinkId(2 * id), a, b);
-        }
-        self.refresh(id);
-    }
-
-    /// Takes away the effect of a contact.
-    fn detach(&mut self, id: u32) {
-        self.uncolor(id);
-        if let Some(islands) = &mut self.islands {
-            islands.unlink(LinkId(2 * id));
-        }
-    }
-
     /// Checks that colours, islands and sleep agree with every contact and body.
     ///
     /// # Panics
@@ -445,11 +361,11 @@ impl Link<'_> {
     /// With the invariant that does not hold.
     pub fn validate(&self) {
         self.contacts.validate(self.colliders);
-        self.colors.validate(|id| {
-            let contact = self.contacts.get(id);
-            (contact.slot.expect("a coloured contact knows its slot"), self.movable(contact))
+        self.colors.validate(|kind, id| {
+            let tie = self.tie(ConstraintId { kind, id });
+            (tie.slot.expect("a coloured constraint knows its slot"), self.movable(tie.bodies))
         });
-        let (mut colored, mut carrying) = (0, 0);
+        let mut constraints = Vec::new();
         for (id, contact) in self.contacts.iter() {
             assert_eq!(contact.surface, self.mixed(contact.colliders), "contact {id} knows its surfaces");
             let awake = contact.bodies.iter().any(|b| self.is_awake(*b));
@@ -458,23 +374,23 @@ impl Link<'_> {
                 awake,
                 "contact {id} is active exactly if a body is awake"
             );
-            let movable = self.movable(contact);
-            let moving = movable.iter().flatten().any(|b| self.is_awake(*b));
-            assert_eq!(contact.slot.is_some(), contact.is_solved() && moving, "contact {id}'s colour");
-            colored += usize::from(contact.slot.is_some());
-            carrying += u32::from(self.carried(contact).is_some());
-            if let ([Some(a), Some(b)], Some(islands)) = (movable, &self.islands) {
-                assert_eq!(islands.is_linked(LinkId(2 * id)), contact.is_solved(), "contact {id}'s link");
-                if contact.is_solved() {
-                    assert_eq!(islands.island_of(a), islands.island_of(b), "touching is together");
-                }
-            }
+            constraints.push(ConstraintId::contact(id));
         }
-        assert_eq!(self.colors.len(), colored, "only contacts have colours");
+        for kind in ConstraintKind::ALL {
+            self.bodies.constraints(kind).validate();
+            constraints.extend(self.bodies.constraints(kind).iter().map(|(id, _)| ConstraintId { kind, id }));
+        }
+        let (mut colored, mut carrying) = (0, 0);
+        for constraint in constraints {
+            let [has_color, is_carried] = self.validate_tie(constraint);
+            colored += usize::from(has_color);
+            carrying += u32::from(is_carried);
+        }
+        assert_eq!(self.colors.len(), colored, "only constraints have colours");
         if let Some(islands) = &self.islands {
             islands.validate();
             let carriers: u32 = islands.islands().map(|island| islands.carriers(island)).sum();
-            assert_eq!(carriers, carrying, "islands count the contacts that carry them");
+            assert_eq!(carriers, carrying, "islands count the constraints that carry them");
             for island in islands.islands() {
                 for body in islands.bodies(island) {
                     let awake = self.bodies[*body].awake;

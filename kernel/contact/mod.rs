@@ -5,6 +5,7 @@
 //! and do not know it.
 
 mod buffers;
+mod constraint;
 mod flags;
 mod input;
 mod link;

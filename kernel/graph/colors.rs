@@ -1,5 +1,7 @@
-//! Graph colouring of contacts: no two contacts of one colour share a dynamic body, so that all contacts
+//! Graph colouring of constraints: no two of one colour share a dynamic body, so that all constraints
 //! of a colour can be solved at once, in lanes and on threads.
+
+use super::kind::ConstraintKind;
 
 /// The number of colours, the overflow included.
 pub const COLOR_COUNT: usize = 24;
@@ -13,7 +15,7 @@ const DYNAMIC_COLORS: u32 = (1 << 20) - 1;
 /// Where contacts with one dynamic body may go: 1..=22, from the top.
 const STATIC_COLORS: u32 = ((1 << OVERFLOW) - 1) & !1;
 
-/// Where a contact lies among the contacts of its colour; another one may move here when one before it leaves.
+/// Where a constraint lies among those of its kind and colour; another one may move here when one before it leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColorSlot {
     /// The colour, below [`COLOR_COUNT`].
@@ -22,11 +24,17 @@ pub struct ColorSlot {
     pub index: u32,
 }
 
-/// The lists of one colour. A list of joints would stand beside the contacts: both take the same bits of
-/// the bodies, so that a joint and a contact of one pair never share a colour.
+/// The constraints of one colour, by kind. All kinds take the same bits of the bodies, so that a joint and a contact of one
+/// pair never share a colour.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Color {
-    contacts: Vec<u32>,
+    lists: [Vec<u32>; ConstraintKind::COUNT],
+}
+
+impl Color {
+    fn len(&self) -> usize {
+        self.lists.iter().map(Vec::len).sum()
+    }
 }
 
 /// An incremental greedy edge colouring.
@@ -44,7 +52,7 @@ struct Color {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ColorGraph {
     colors: [Color; COLOR_COUNT],
-    /// Bit `c` of `used[body]`: the body has a contact of colour `c`. Never the overflow bit.
+    /// Bit `c` of `used[body]`: the body has a constraint of colour `c`. Never the overflow bit.
     used: Vec<u32>,
 }
 
@@ -57,26 +65,31 @@ impl ColorGraph {
         Self::default()
     }
 
-    /// Gives a contact a colour. `bodies` are the ids of its dynamic bodies, `None` for a static or
+    /// Gives a constraint a colour. `bodies` are the ids of its dynamic bodies, `None` for a static or
     /// kinematic one.
     ///
-    /// Two distinct dynamic bodies are expected. A body with itself goes to the overflow; a contact
+    /// Two distinct dynamic bodies are expected. A body with itself goes to the overflow; a constraint
     /// without a dynamic body can share a colour with anything and takes the highest.
-    pub(crate) fn assign(&mut self, contact: u32, bodies: [Option<u32>; 2]) -> ColorSlot {
+    pub(crate) fn assign(&mut self, kind: ConstraintKind, id: u32, bodies: [Option<u32>; 2]) -> ColorSlot {
         let color = self.take_color(bodies);
-        let list = &mut self.colors[usize::from(color)].contacts;
-        list.push(contact);
+        let list = &mut self.colors[usize::from(color)].lists[kind as usize];
+        list.push(id);
         ColorSlot { color, index: list.len() as u32 - 1 }
     }
 
-    /// Takes a contact out of the graph, with the same `bodies` as it was assigned with.
+    /// Takes a constraint out of the graph, with the same `bodies` as it was assigned with.
     ///
-    /// Returns the contact that was moved into its slot, if any: the caller must store `slot` as that
+    /// Returns the constraint of the same kind that was moved into its slot, if any: the caller must store `slot` as that
     /// one's new slot.
-    pub(crate) fn release(&mut self, slot: ColorSlot, bodies: [Option<u32>; 2]) -> Option<u32> {
-        let list = self.colors.get_mut(usize::from(slot.color)).map(|color| &mut color.contacts);
+    pub(crate) fn release(
+        &mut self,
+        kind: ConstraintKind,
+        slot: ColorSlot,
+        bodies: [Option<u32>; 2],
+    ) -> Option<u32> {
+        let list = self.colors.get_mut(usize::from(slot.color)).map(|color| &mut color.lists[kind as usize]);
         let Some(list) = list.filter(|list| (slot.index as usize) < list.len()) else {
-            debug_assert!(false, "no contact lies in the slot to release: {slot:?}");
+            debug_assert!(false, "no constraint lies in the slot to release: {slot:?}");
             return None;
         };
         list.swap_remove(slot.index as usize);
@@ -87,7 +100,12 @@ impl ColorGraph {
 
     /// The contacts of a colour; none for a colour that does not exist.
     pub fn contacts(&self, color: u8) -> &[u32] {
-        self.colors.get(usize::from(color)).map_or(&[], |color| &color.contacts)
+        self.constraints(ConstraintKind::Contact, color)
+    }
+
+    /// The constraints of a kind and colour; none for a colour that does not exist.
+    pub fn constraints(&self, kind: ConstraintKind, color: u8) -> &[u32] {
+        self.colors.get(usize::from(color)).map_or(&[], |color| &color.lists[kind as usize])
     }
 
     /// The contacts that share bodies with others and must be solved one by one, first.
@@ -101,17 +119,17 @@ impl ColorGraph {
         (0..OVERFLOW).map(|color| (color, self.contacts(color))).filter(|(_, contacts)| !contacts.is_empty())
     }
 
-    /// The number of contacts in all colours.
+    /// The number of constraints in all colours.
     pub fn len(&self) -> usize {
-        self.colors.iter().map(|color| color.contacts.len()).sum()
+        self.colors.iter().map(Color::len).sum()
     }
 
-    /// Whether there are no contacts.
+    /// Whether there are no constraints.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The colours a body has contacts of, as a bit mask without the overflow.
+    /// The colours a body has constraints of, as a bit mask without the overflow.
     pub fn colors_of(&self, body: u32) -> u32 {
         self.used.get(body as usize).copied().unwrap_or(0)
     }
@@ -145,7 +163,7 @@ impl ColorGraph {
         for body in bodies.into_iter().flatten() {
             debug_assert!(
                 self.colors_of(body) & (1 << color) != 0,
-                "body {body} has no contact of colour {color}"
+                "body {body} has no constraint of colour {color}"
             );
             if let Some(used) = self.used.get_mut(body as usize) {
                 *used &= !(1 << color);
@@ -153,15 +171,16 @@ impl ColorGraph {
         }
     }
 
-    /// Checks everything against the caller's records, by contact: its slot and the bodies it was
-    /// assigned with. Panics with the broken invariant. O(contacts + bodies).
-    pub fn validate(&self, record: impl Fn(u32) -> (ColorSlot, [Option<u32>; 2])) {
+    /// Checks everything against the caller's records, by constraint: its slot and the bodies it was
+    /// assigned with. Panics with the broken invariant. O(constraints + bodies).
+    pub fn validate(&self, record: impl Fn(ConstraintKind, u32) -> (ColorSlot, [Option<u32>; 2])) {
         let mut used = vec![0u32; self.used.len()];
-        for (color, lists) in self.colors.iter().enumerate() {
-            for (index, &contact) in lists.contacts.iter().enumerate() {
-                let (slot, bodies) = record(contact);
-                let here = ColorSlot { color: color as u8, index: index as u32 };
-                assert_eq!(slot, here, "contact {contact} lies where its record says");
+        let of_kind = |kind| (0..COLOR_COUNT as u8).map(move |color| (kind, color));
+        for (kind, color) in ConstraintKind::ALL.into_iter().flat_map(of_kind) {
+            for (index, &id) in self.constraints(kind, color).iter().enumerate() {
+                let (slot, bodies) = record(kind, id);
+                let here = ColorSlot { color, index: index as u32 };
+                assert_eq!(slot, here, "{kind:?} {id} lies where its record says");
                 if here.color == OVERFLOW {
                     continue;
                 }
@@ -174,7 +193,7 @@ impl ColorGraph {
                 }
             }
         }
-        assert_eq!(used, self.used, "the masks are those of the contacts");
+        assert_eq!(used, self.used, "the masks are those of the constraints");
     }
 }
 
@@ -205,7 +224,7 @@ mod tests {
 
     impl World {
         fn assign(&mut self, contact: u32, bodies: Bodies) -> u8 {
-            let slot = self.graph.assign(contact, bodies);
+            let slot = self.graph.assign(ConstraintKind::Contact, contact, bodies);
             assert_eq!(self.graph.contacts(slot.color)[slot.index as usize], contact);
             self.records.insert(contact, (slot, bodies));
             slot.color
@@ -213,7 +232,7 @@ mod tests {
 
         fn release(&mut self, contact: u32) {
             let (slot, bodies) = self.records.remove(&contact).unwrap();
-            if let Some(moved) = self.graph.release(slot, bodies) {
+            if let Some(moved) = self.graph.release(ConstraintKind::Contact, slot, bodies) {
                 self.records.get_mut(&moved).unwrap().0 = slot;
             }
         }
@@ -231,7 +250,7 @@ mod tests {
         }
 
         fn check(&self) {
-            self.graph.validate(|contact| self.records[&contact]);
+            self.graph.validate(|_, contact| self.records[&contact]);
             assert_eq!(self.graph.len(), self.records.len());
             let mut seen: BTreeMap<u8, BTreeSet<u32>> = BTreeMap::new();
             for (slot, bodies) in self.records.values() {

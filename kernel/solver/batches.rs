@@ -2,6 +2,9 @@
 
 use super::batch::Batch;
 use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, sort_contacts};
+use super::distance::{
+    DISTANCE_BATCHES, DistanceRows, DistanceTable, DistanceView, Records, distances, sort_distances,
+};
 use super::layer::{Layer, Sorter};
 use super::plan::{Plan, Planned};
 use crate::graph::{COLOR_COUNT, ColorGraph, OVERFLOW};
@@ -24,10 +27,13 @@ pub(super) struct AllRows {
 #[derive(Clone, Debug, Default)]
 struct KindRows<N: Lane> {
     contacts: ContactRows<N>,
+    distances: DistanceRows<N>,
 }
 
 /// How many batches there are of one width.
-const BATCHES: usize = CONTACT_BATCHES;
+const BATCHES: usize = DISTANCE + DISTANCE_BATCHES;
+/// The batch of distances: the first ones are those of contacts.
+const DISTANCE: usize = CONTACT_BATCHES;
 
 /// The layers of each colour, sorted; memory is kept between steps.
 #[derive(Clone, Debug, Default)]
@@ -86,12 +92,15 @@ fn layer(layers: &mut Vec<Layer>, number: usize) -> &mut Layer {
 
 /// Sorts the constraints of a colour. Returns how many layers they have.
 fn sort_color(colors: &ColorGraph, color: u8, sorter: &Sorter, layers: &mut Vec<Layer>) -> usize {
-    let contacts = colors.contacts(color);
-    let (mut left, mut number) = (contacts.len(), 0);
+    let (contacts, distances) = (colors.contacts(color), distances(colors, color));
+    let (mut left, mut number) = (contacts.len() + distances.len(), 0);
     while left > 0 {
         let layer = layer(layers, number);
         layer.begin(BATCHES, sorter.shares.parts(left));
         left = sort_contacts(contacts, number as u32, sorter, layer);
+        if number == 0 {
+            sort_distances(distances, DISTANCE, sorter, layer);
+        }
         number += 1;
     }
     number
@@ -100,11 +109,13 @@ fn sort_color(colors: &ColorGraph, color: u8, sorter: &Sorter, layers: &mut Vec<
 /// Puts the constraints of the overflow into one layer, in the order in which they are solved. Returns how many layers
 /// there are.
 fn sort_overflow(colors: &ColorGraph, sorter: &Sorter, layers: &mut Vec<Layer>) -> usize {
-    if colors.overflow().is_empty() {
+    let distances = distances(colors, OVERFLOW);
+    if colors.overflow().is_empty() && distances.is_empty() {
         return 0;
     }
     let layer = layer(layers, 0);
     layer.begin_ordered(BATCHES);
+    sort_distances(distances, DISTANCE, sorter, layer);
     for contact in colors.overflow() {
         let mut index = 0;
         while sort_contacts(core::slice::from_ref(contact), index, sorter, layer) > 0 {
@@ -129,13 +140,20 @@ impl AllRows {
         }
     }
 
+    /// How many of the items of each batch are manifolds.
+    pub(super) fn count_manifolds(items: &[u32]) -> usize {
+        let of_contacts = items.chunks(BATCHES).flat_map(|batches| &batches[..CONTACT_BATCHES]);
+        of_contacts.sum::<u32>() as usize
+    }
+
     /// Calls a function with all batches in the order of their numbers.
-    pub(super) fn with<R>(&mut self, f: impl FnOnce(&[&dyn Batch]) -> R) -> R {
-        let overflow = self.overflow.view(());
+    pub(super) fn with<R>(&mut self, distances: &mut DistanceTable, f: impl FnOnce(&[&dyn Batch]) -> R) -> R {
+        let records = &distances.records();
+        let overflow = self.overflow.view((), records);
         match self.width {
             #[cfg(target_arch = "x86_64")]
-            Width::Eight(avx2) => overflow.and(&self.eight.view(avx2), f),
-            _ => overflow.and(&self.four.view(()), f),
+            Width::Eight(avx2) => overflow.and(&self.eight.view(avx2, records), f),
+            _ => overflow.and(&self.four.view((), records), f),
         }
     }
 }
@@ -143,21 +161,25 @@ impl AllRows {
 impl<N: Entry> KindRows<N> {
     fn make_room(&mut self, rows: &[u32], any_deep: bool) {
         self.contacts.make_room(rows, any_deep);
+        self.distances.make_room(rows[DISTANCE]);
     }
 
-    fn view(&mut self, proof: N::Proof) -> KindViews<'_, N> {
-        KindViews { contacts: self.contacts.view(proof) }
+    fn view<'a>(&'a mut self, proof: N::Proof, records: &'a Records<'a>) -> KindViews<'a, N> {
+        let Self { contacts, distances } = self;
+        KindViews { contacts: contacts.view(proof), distances: distances.view(proof, records) }
     }
 }
 
 /// [`KindRows`], changed block by block.
 struct KindViews<'a, N: Entry> {
     contacts: ContactView<'a, N>,
+    distances: DistanceView<'a, N>,
 }
 
 impl<N: Entry> KindViews<'_, N> {
     fn batches(&self) -> [&dyn Batch; BATCHES] {
-        self.contacts.batches()
+        let [a, b, c, d, e, f] = self.contacts.batches();
+        [a, b, c, d, e, f, &self.distances]
     }
 
     /// Calls a function with these batches and those of another width.

@@ -1,6 +1,7 @@
 //! What rows are made from.
 
 use crate::contact::ContactTable;
+use crate::graph::ConstraintKind;
 use crate::table::{BodyTable, NONE};
 
 /// What rows are made from.
@@ -12,6 +13,14 @@ pub struct RowInput<'a> {
 }
 
 impl RowInput<'_> {
+    /// The bodies of a constraint.
+    pub(super) fn bodies_of(&self, kind: ConstraintKind, id: u32) -> [u32; 2] {
+        match kind {
+            ConstraintKind::Contact => self.contacts.bodies_of(id),
+            _ => self.bodies.constraints(kind).get(id).bodies,
+        }
+    }
+
     /// A body's row in this step; the dummy for none.
     #[inline(always)]
     pub(super) fn row_of(&self, body: u32) -> u32 {

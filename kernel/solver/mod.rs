@@ -21,6 +21,7 @@ mod contact_fill;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod distance;
 mod exclusive;
 mod fill;
 mod finish;
@@ -42,6 +43,7 @@ mod view;
 
 pub use body::{BodyRows, Limits, Motion};
 pub use dim::{BodyRow, MassRow, Twist};
+pub use distance::{Distance, DistanceError, DistanceTable, Spring};
 pub use fill::{BodyFiller, FewBodies, FilledBody};
 pub use input::RowInput;
 pub use inv_mass::InvMass;

@@ -52,8 +52,8 @@ pub(super) struct Plan {
     block_rows: u32,
     /// The next item of each batch, while items are added singly.
     next: Vec<u32>,
-    /// How many items have a place in a row.
-    pub(super) items: usize,
+    /// How many items of each batch have a place in a row.
+    items: Vec<u32>,
 }
 
 /// Blocks that may be solved in any order or at once.
@@ -86,7 +86,8 @@ impl Plan {
         self.rows.resize(batches, 0);
         self.workers = workers;
         self.block_rows = block_rows;
-        self.items = 0;
+        self.items.clear();
+        self.items.resize(batches, 0);
     }
 
     /// Plans a stage of a layer.
@@ -149,7 +150,7 @@ impl Plan {
         let (batch, passes) = (batch as u16, Passes::BASIC);
         self.blocks.push(Block { batch, passes, start, len, list, first_item, items });
         self.rows[usize::from(batch)] += len;
-        self.items += items as usize;
+        self.items[usize::from(batch)] += items;
     }
 
     /// Ends a worker's part of the stage that is being planned.
@@ -175,6 +176,11 @@ impl Plan {
     /// How many rows each batch has.
     pub(super) fn rows(&self) -> &[u32] {
         &self.rows
+    }
+
+    /// How many items each batch has.
+    pub(super) fn item_counts(&self) -> &[u32] {
+        &self.items
     }
 
     /// The items of a block.

@@ -3,6 +3,7 @@
 
 use super::batch::{Filling, Pass, Sweep};
 use super::batches::{AllRows, Layers};
+use super::distance::DistanceTable;
 use super::exclusive;
 use super::input::RowInput;
 use super::layer::Sorter;
@@ -33,6 +34,8 @@ pub struct Solver {
     pub bodies: BodyRows,
     /// The thread pool that solves. The result does not depend on its size.
     pub team: Team,
+    /// Distances between bodies.
+    pub distances: DistanceTable,
     rows: AllRows,
     layers: Layers,
     plan: Plan,
@@ -62,18 +65,18 @@ impl Solver {
         self.bodies.reset(kinematic, dynamic);
     }
 
-    /// Builds the rows of all touching contacts in the colours.
+    /// Builds the rows of all constraints in the colours: touching contacts, and [`distances`](Self::distances).
     ///
     /// # Safety
-    /// No two contacts of a colour but the overflow have a body together whose row is a dynamic body's, and no contact is
-    /// in the graph twice: with several workers two threads would write one body. It holds where contacts, bodies and
+    /// No two constraints of a colour but the overflow have a body together whose row is a dynamic body's, and none is in
+    /// the graph twice: with several workers two threads would write one body. It holds where contacts, bodies and
     /// colours belong together: since they were empty, contacts, colours and the kinds of bodies were changed through one
     /// [`Link`](crate::contact::Link) to all three alone. Debug builds check it.
     ///
     /// # Panics
     /// If a contact or body of the graph is not in the input, or a row of the input not among the [`bodies`](Self::bodies).
     pub unsafe fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
-        let Self { bodies, team, rows, layers, plan, shares, deep, first_dynamic } = self;
+        let Self { bodies, team, distances, rows, layers, plan, shares, deep, first_dynamic } = self;
         debug_assert!(params.is_valid(), "{params:?}");
         debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
         if cfg!(debug_assertions) {
@@ -104,7 +107,7 @@ impl Solver {
             locks,
         };
         let mut blocks = core::mem::take(&mut plan.blocks);
-        rows.with(|batches| {
+        rows.with(distances, |batches| {
             let blocks = Parts::of(&mut blocks);
             team.run(blocks.len(), |block, _| {
                 // SAFETY: each block is run once, and no two have a row together; bodies and contacts are only read.
@@ -125,7 +128,7 @@ impl Solver {
 
     /// How many manifolds are solved in the step.
     pub fn manifold_count(&self) -> usize {
-        self.plan.items
+        AllRows::count_manifolds(self.plan.item_counts())
     }
 
     /// Accelerations, damping, gyroscopic torque, speed limits.
@@ -161,7 +164,7 @@ impl Solver {
     /// Takes out the velocity that the bias added, and applies friction. Split impulses, which push deep overlap out, are
     /// taken out of the velocities first.
     pub fn relax(&mut self, params: &SubstepParams) {
-        if self.deep.any() {
+        if self.plan.blocks.iter().any(|block| block.passes.has(Pass::UndoSplit)) {
             self.sweep(Pass::UndoSplit, params);
         }
         self.sweep(Pass::Relax, params);
@@ -181,12 +184,15 @@ impl Solver {
         self.sweep(Pass::Restitute, params);
     }
 
-    /// Puts the impulses back into the manifolds, for the next step to start from.
+    /// Puts the impulses back into manifolds and distances, for the next step to start from.
     pub fn store_impulses(&mut self, contacts: &mut ContactTable) {
-        debug_assert!(self.plan.items == 0 || !contacts.is_empty(), "the rows came from these contacts");
-        let Self { rows, plan, layers, team, .. } = self;
+        debug_assert!(
+            self.manifold_count() == 0 || !contacts.is_empty(),
+            "the rows came from these contacts"
+        );
+        let Self { distances, rows, plan, layers, team, .. } = self;
         let manifolds = &contacts.manifolds_view();
-        rows.with(|batches| {
+        rows.with(distances, |batches| {
             for Stage { blocks, parts } in plan.stages() {
                 // SAFETY: each block is run once, no two have a row together, and by the contract of `build_rows` no contact is
                 // there twice.
@@ -207,14 +213,14 @@ impl Solver {
     /// Runs all blocks that need a pass, stage by stage. Returns whether any of them found an impact.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams) -> bool {
         debug_assert!(params.is_valid(), "{params:?}");
-        let Self { bodies, rows, plan, team, first_dynamic, .. } = self;
+        let Self { bodies, distances, rows, plan, team, first_dynamic, .. } = self;
         debug_assert!(
             plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),
             "bodies have the rows that rows of constraints were built for"
         );
         let sweep = &Sweep { pass, bodies: bodies.view(*first_dynamic), params };
         let hit = AtomicBool::new(false);
-        rows.with(|batches| {
+        rows.with(distances, |batches| {
             for Stage { blocks, parts } in plan.stages() {
                 let solve = |block: usize, _| {
                     let block = &blocks[block];

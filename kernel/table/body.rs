@@ -1,7 +1,8 @@
 //! Bodies by id: what kind, where, how fast, and which row they have in this step.
 
-use super::NONE;
+use super::{ConstraintTable, NONE};
 use crate::data::{BitSet, IdPool, Parts};
+use crate::graph::ConstraintKind;
 use crate::math::{Angular, Rot, Vector, WorldPose, WorldVector};
 
 /// What moves a body.
@@ -117,6 +118,8 @@ pub struct BodyTable {
     pub any_dominance: bool,
     awake_kinematic: BitSet,
     awake_dynamic: BitSet,
+    /// By kind; contacts are elsewhere.
+    constraints: [ConstraintTable; ConstraintKind::COUNT],
 }
 
 impl BodyTable {
@@ -160,7 +163,16 @@ impl BodyTable {
         id
     }
 
-    /// Frees a body's id. Its colliders and contacts must be gone.
+    /// The constraints of a kind between bodies; none for contacts, which have a table of their own.
+    pub fn constraints(&self, kind: ConstraintKind) -> &ConstraintTable {
+        &self.constraints[kind as usize]
+    }
+
+    pub(crate) fn constraints_mut(&mut self, kind: ConstraintKind) -> &mut ConstraintTable {
+        &mut self.constraints[kind as usize]
+    }
+
+    /// Frees a body's id. Its colliders, contacts and other constraints must be gone.
     pub fn remove(&mut self, id: u32) {
         debug_assert!(self[id].first_collider == NONE, "a removed body has no colliders");
         self.set_awake(id, false);

@@ -5,6 +5,7 @@ mod crowds;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod distance;
 mod extreme;
 mod golden;
 #[cfg_attr(feature = "2d", path = "golden2.rs")]

@@ -12,7 +12,10 @@ use kernel::data::BitSet;
 use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
 use kernel::shape::{Ball, Cuboid, Shape};
-use kernel::solver::{BodyRow, BodyRows, Limits, MassRow, Motion, RowInput, Softness, Solver, SubstepParams};
+use kernel::solver::{
+    BodyRow, BodyRows, Distance, DistanceError, DistanceTable, Limits, MassRow, Motion, RowInput, Softness,
+    Solver, SubstepParams,
+};
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
     RestSpeed, Surface,
@@ -224,6 +227,28 @@ impl Sim {
         self.weigh(id, &shape);
         let def = ColliderDef { shape, ..self.colliders[id].def.clone() };
         self.colliders.redefine(id, def, &mut self.bodies);
+    }
+
+    /// Keeps two points of two bodies at a distance.
+    pub fn join(&mut self, def: Distance) -> Result<u32, DistanceError> {
+        self.with_distances(|distances, link| distances.add(link, def))
+    }
+
+    /// Removes what keeps two points at a distance.
+    pub fn part(&mut self, id: u32) -> Result<(), DistanceError> {
+        self.with_distances(|distances, link| distances.remove(link, id))
+    }
+
+    fn with_distances<R>(&mut self, f: impl FnOnce(&mut DistanceTable, &mut Link) -> R) -> R {
+        let mut distances = core::mem::take(&mut self.solver.distances);
+        let result = f(&mut distances, &mut self.link());
+        self.solver.distances = distances;
+        result
+    }
+
+    /// The impulse of a distance in the last substep.
+    pub fn distance_impulse(&self, id: u32) -> f32 {
+        self.solver.distances.impulse(id)
     }
 
     pub fn floor(&mut self) -> u32 {

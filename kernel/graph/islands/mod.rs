@@ -4,6 +4,7 @@
 mod split;
 mod validate;
 
+use super::kind::{ConstraintId, ConstraintKind};
 use super::union_find::DisjointSets;
 use crate::data::IdPool;
 
@@ -11,12 +12,18 @@ use crate::data::IdPool;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct IslandId(pub u32);
 
-/// The caller's name of a link: a contact or joint between two dynamic bodies.
+/// The caller's name of a link: a contact or other constraint between two dynamic bodies.
 ///
-/// A table is indexed by it, so keep ids small. With several kinds of links put the kind into the low
-/// bits (`2 * contact`, `2 * joint + 1`), not the high ones.
+/// A table is indexed by it, so keep ids small.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkId(pub u32);
+
+impl LinkId {
+    /// The name of a constraint. The kind is in the low digit: so the table is as long as the kind with the most asks for.
+    pub fn of(ConstraintId { kind, id }: ConstraintId) -> Self {
+        Self(id * ConstraintKind::COUNT as u32 + kind as u32)
+    }
+}
 
 /// A link with the two bodies it holds together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
