@@ -16,6 +16,7 @@ const NO_LONGER_DEEP: f32 = 0.01;
 
 /// Sets the bit of deep overlap after the manifold was recomputed. Only contacts whose bodies were `placed` where they are
 /// can become deep.
+#[inline(always)]
 pub(super) fn recomputed<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, placed: bool) {
     let deep = match (contact.flags.has(ContactFlags::DEEP), placed) {
         (true, _) => overlaps_by(input, NO_LONGER_DEEP, contact),
@@ -43,6 +44,7 @@ fn overlaps_by<S>(input: &NarrowPhaseInput<S>, share: f32, contact: &Contact) ->
 
 /// Sets the bits that name the platform, the body which contacts do not turn. Two round shapes have none, since one can
 /// roll under the same normal.
+#[inline(always)]
 pub(super) fn set_platform<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact) {
     let is_platform = |body: u32| body == NONE || input.bodies[body].kind != BodyKind::Dynamic;
     let is_round = |s: &Shape| matches!(s, Shape::Ball(_) | Shape::Capsule(_) | Shape::Segment(_));

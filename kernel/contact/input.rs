@@ -138,6 +138,7 @@ impl<S> NarrowPhaseInput<'_, S> {
     }
 
     /// The gap between the tight boxes of both sides, margins not subtracted.
+    #[inline(always)]
     pub(super) fn box_gap(&self, contact: &Contact) -> f32 {
         let [a, b] = contact.colliders;
         self.colliders.tight[a as usize].gap(&self.colliders.tight[b as usize])

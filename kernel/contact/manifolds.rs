@@ -14,6 +14,7 @@ const SAME_FACE: f32 = 0.9;
 
 /// Computes the manifold of two native shapes where they are now, with points up to `prediction` apart, margins not
 /// subtracted.
+#[inline(always)]
 pub(super) fn collide<S>(
     input: &NarrowPhaseInput<S>,
     contact: &mut Contact,

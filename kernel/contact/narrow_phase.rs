@@ -324,6 +324,7 @@ fn search_foreign<S: ManifoldSource>(
 
 /// Computes the manifold of two native shapes where they are now. If there are no points, that of when a turn brings them
 /// together within the step.
+#[inline(always)]
 fn search_native<S>(
     input: &NarrowPhaseInput<S>,
     contact: &mut Contact,
@@ -353,6 +354,7 @@ fn search_native<S>(
 }
 
 /// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is not recycled.
+#[inline(always)]
 fn freeze<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, poses: [&BodyPose; 2], search: &Search) {
     let offset = (poses[1].center - poses[0].center).to_local();
     contact.frozen = Frozen {

@@ -209,8 +209,9 @@ impl BodyRows {
     /// step. `rotation` is the body's when the step begins. What comes after the first time counts for nothing.
     #[inline]
     pub fn spin(&mut self, row: usize, inv_inertia: InvInertia, rotation: Rot) {
-        if let Some(gyro) = Gyro::of(inv_inertia) {
-            self.add_spin(Spin::new(row as u32, gyro, rotation));
+        let spin = Gyro::of(inv_inertia).map(|gyro| Spin::new(row as u32, gyro, rotation));
+        if let Some(spin) = spin {
+            self.add_spin(spin);
         }
     }
 

@@ -103,8 +103,8 @@ impl BodyRows {
         for (row, limits) in few.limits.drain(..) {
             self.limit(row, limits);
         }
-        for (row, gyro, rotation) in few.spins.drain(..) {
-            self.add_spin(Spin::new(row as u32, gyro, rotation));
+        for spin in few.spins.drain(..).map(|(row, gyro, rotation)| Spin::new(row as u32, gyro, rotation)) {
+            self.add_spin(spin);
         }
     }
 }
