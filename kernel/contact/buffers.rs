@@ -22,6 +22,10 @@ pub struct WorkerBuffers<W = ()> {
     pub(super) stored: Vec<(u32, usize)>,
     /// The manifolds of `stored`, one contact's after the other's.
     pub(super) pool: Vec<Manifold>,
+    /// Contacts whose manifolds may be of internal edges.
+    pub(super) sliding: Vec<u32>,
+    /// Contacts, and the numbers of those of their manifolds, whose [`is_internal`](Manifold::is_internal) changes.
+    pub(super) internal: Vec<(u32, u32)>,
     /// Whether any contact overlaps deeply.
     pub(super) any_deep: bool,
 }
@@ -32,6 +36,8 @@ impl<W> WorkerBuffers<W> {
         self.changed.clear();
         self.stored.clear();
         self.pool.clear();
+        self.sliding.clear();
+        self.internal.clear();
         self.any_deep = false;
     }
 }

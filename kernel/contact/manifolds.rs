@@ -79,7 +79,7 @@ pub(super) fn replace<S: ManifoldSource>(
 /// A manifold in world axes, with anchors from body A's centre of mass.
 fn to_world(local: &LocalManifold, rotation: Rot, to_shape: Vector, margin: f32) -> Manifold {
     let mut m =
-        Manifold { normal: rotation.rotate(local.normal), count: local.count as u32, ..Manifold::default() };
+        Manifold { normal: rotation.rotate(local.normal), count: local.count as u16, ..Manifold::default() };
     for (out, p) in m.points.iter_mut().zip(local.points()) {
         let separation = p.separation - margin;
         *out = ManifoldPoint {
@@ -106,9 +106,9 @@ fn vary_first(m: &mut Manifold, [a, b]: [u32; 2]) {
         return;
     }
     let spread = a.wrapping_mul(R2[0]).wrapping_add(b.wrapping_mul(R2[1])) >> 30;
-    let flip = (spread & (m.count - 1)) as usize;
+    let flip = (spread & (u32::from(m.count) - 1)) as usize;
     let old = m.points;
-    for i in 0..m.count as usize {
+    for i in 0..usize::from(m.count) {
         m.points[i] = old[i ^ flip];
     }
 }
@@ -125,7 +125,7 @@ fn inherit<'a>(m: &mut Manifold, old: impl Iterator<Item = &'a Manifold>) {
     }
     let Some((old, _)) = best else { return };
     let mut any = false;
-    for p in &mut m.points[..m.count as usize] {
+    for p in &mut m.points[..usize::from(m.count)] {
         if let Some(o) = old.points().iter().find(|o| o.feature == p.feature) {
             p.impulse = o.impulse;
             any = true;

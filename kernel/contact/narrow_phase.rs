@@ -83,6 +83,7 @@ impl ContactTable {
             unsafe { pass.update_block(&ids[..count], buffers.one(worker)) };
         });
         self.commit(workers, changed);
+        self.mark_internal(input, team, workers);
     }
 
     /// Finds the dynamic bodies that overlap others deeply.
@@ -175,6 +176,9 @@ impl<S: ManifoldSource> Pass<'_, S> {
             let (contact, count) = unsafe { (self.contacts.one(id as usize), self.points.one(id as usize)) };
             if recycle(self.input, &worker.batch, place, contact) {
                 worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
+                if self.input.may_be_internal(contact) {
+                    worker.sliding.push(id);
+                }
             } else {
                 self.recompute(id, contact, count, worker);
             }
@@ -206,6 +210,9 @@ impl<S: ManifoldSource> Pass<'_, S> {
             worker.pool.extend_from_slice(&worker.extra);
         }
         worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
+        if self.input.may_be_internal(contact) {
+            worker.sliding.push(id);
+        }
         // Blocks share cache lines of counts, so equal counts are not written.
         let now = PointCount::of(contact);
         if *count != now {

@@ -74,7 +74,9 @@ pub struct Manifold {
     /// The points; the first `count` are valid.
     pub points: [ManifoldPoint; MAX_POINTS],
     /// The number of points.
-    pub count: u32,
+    pub count: u16,
+    /// Whether an edge inside a surface made it: another manifold holds what it would stop, so it is not solved.
+    pub is_internal: bool,
     /// The radii of A and B around their cores (centre, axis, polygon), in metres. Anchors are of the cores: as a round shape
     /// turns, its contact keeps its place relative to the core, not on the surface.
     pub radii: [f32; 2],
@@ -88,7 +90,13 @@ impl Manifold {
     /// The valid points.
     #[inline(always)]
     pub fn points(&self) -> &[ManifoldPoint] {
-        &self.points[..self.count as usize]
+        &self.points[..usize::from(self.count)]
+    }
+
+    /// How many points the solver takes.
+    #[inline(always)]
+    pub fn solved_points(&self) -> u32 {
+        if self.is_internal { 0 } else { u32::from(self.count) }
     }
 }
 

@@ -191,9 +191,9 @@ impl RecycleBatch {
         row.turning = [reaches[0].turning, reaches[1].turning];
         // Only native pairs are recycled, and these have one manifold.
         let m = &contact.manifold;
-        row.count = m.count as f32;
+        row.count = f32::from(m.count);
         row.platform = platform(contact.flags);
-        if m.count < MAX_POINTS as u32 {
+        if usize::from(m.count) < MAX_POINTS {
             let [a, b] = [input.velocity(contact, 0), input.velocity(contact, 1)];
             row.speed = (b.linear - a.linear).length();
             row.angular = [a.angular, b.angular];
@@ -225,7 +225,8 @@ impl RecycleBatch {
                 turn(contact, self.rows[place].numbers.rotations);
             }
             let m = &mut contact.manifold;
-            for (p, separation) in m.points[..m.count as usize].iter_mut().zip(self.separations[place].0) {
+            for (p, separation) in m.points[..usize::from(m.count)].iter_mut().zip(self.separations[place].0)
+            {
                 p.separation = separation;
             }
         }
@@ -387,7 +388,7 @@ fn turn(contact: &mut Contact, rotations: [Rot; 2]) {
     let m = &mut contact.manifold;
     m.normal = turn.turn_little(m.normal);
     m.friction_impulse = turn.turn_little(m.friction_impulse);
-    for p in &mut m.points[..m.count as usize] {
+    for p in &mut m.points[..usize::from(m.count)] {
         p.anchor = turn.turn_little(p.anchor);
     }
 }

@@ -136,7 +136,7 @@ impl Meeting {
         let n = m.normal;
         let cores = [n * m.radii[0], self.offset - n * m.radii[1]];
         let along = self.shift.dot(n);
-        for p in &mut m.points[..m.count as usize] {
+        for p in &mut m.points[..usize::from(m.count)] {
             let shifts: [f32; 2] = core::array::from_fn(|side| {
                 let arm = p.anchor - cores[side];
                 self.turns[side].shift_along(arm, arm.cross(n), n)

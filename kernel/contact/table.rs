@@ -29,6 +29,8 @@ pub struct ContactTable {
     free_extra: Vec<u32>,
     /// Buffer of the narrow phase's commit; empty between updates.
     pub(super) stored: Vec<Stored>,
+    /// Contacts that may be of internal edges; empty between updates.
+    pub(super) sliding: Vec<u32>,
 }
 
 /// Manifolds after the first that a worker computed.
@@ -55,7 +57,10 @@ impl PointCount {
 
     #[inline(always)]
     pub(super) fn of(contact: &Contact) -> Self {
-        Self(if contact.extra == NONE { contact.manifold.count as u8 } else { Self::IN_RECORD })
+        match contact.extra {
+            NONE => Self(contact.manifold.solved_points() as u8),
+            _ => Self(Self::IN_RECORD),
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use super::batch::{Batch, Filling, Item, Pass, Passes, Sweep};
 use super::contact_fill::{BlockRows, PREFETCH_DISTANCE, fill_rows};
 use super::layer::{Layer, Sorter};
 use super::{BodyRow, ContactRow, InvMass, RestitutionRow, RowView, SplitImpulseRow, SubstepParams};
-use crate::contact::ManifoldsView;
+use crate::contact::{Manifold, ManifoldsView};
 use crate::data::Parts;
 use crate::math::{Entry, Job, Lane, TangentFrame, Vector};
 use core::marker::PhantomData;
@@ -74,7 +74,7 @@ pub(super) fn sort_contacts(contacts: &[u32], index: u32, sorter: &Sorter, layer
             None => {
                 let contact = table.get(id);
                 more += usize::from(u32::from(contact.extra_count) > index);
-                table.manifold(contact, index).map_or(0, |manifold| manifold.count)
+                table.manifold(contact, index).map_or(0, Manifold::solved_points)
             }
         };
         if points > 0 {
@@ -418,7 +418,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for StoreJob<'_, N, M, P> {
                 let manifold = unsafe { contacts.manifold(item.id, item.index) };
                 manifold.friction_impulse = friction.get(lane);
                 manifold.twist_impulse = row.twist.impulse(lane);
-                let count = manifold.count as usize;
+                let count = usize::from(manifold.count);
                 for (p, point) in manifold.points[..count].iter_mut().zip(&row.points) {
                     p.impulse = point.impulse.get(lane);
                 }

@@ -116,7 +116,11 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let input = from.input;
         let contact = input.contacts.get(item.id);
         let manifold = input.contacts.manifold(contact, item.index).expect("it was there to be counted");
-        debug_assert!((1..=P as u32).contains(&manifold.count), "{} points fit into {P}", manifold.count);
+        debug_assert!(
+            (1..=P).contains(&usize::from(manifold.count)),
+            "{} points fit into {P}",
+            manifold.count
+        );
         debug_assert!(
             (manifold.normal.length() - 1.0).abs() < 1.0e-3,
             "a normal of unit length: {:?}",

@@ -154,9 +154,9 @@ pub(super) fn to_world(rotation: Rot, w: Angular) -> Angular {
     rotation.rotate(w)
 }
 
-/// A body's rotation now.
+/// A body's rotation now. Of unit length: what is left of it over the steps would make a spin faster or slower.
 pub(super) fn world_rotation(delta: Rot, start: Rot) -> Rot {
-    delta.mul(start)
+    delta.mul(start).renormalized()
 }
 
 /// A turn about x… by an angle in radians.

@@ -78,3 +78,33 @@ pub fn tilts() -> Vec<Angular> {
 pub fn upright() -> Option<Angular> {
     None
 }
+
+/// Shapes that slide over floors.
+pub fn riders() -> Vec<(&'static str, Shape)> {
+    let half = Vector { x: 0.25, y: 0.25 };
+    let corners: Vec<_> = (0..6)
+        .map(|i| {
+            let angle = (i as f32 + 0.5) * core::f32::consts::TAU / 6.0;
+            Vector { x: 0.3 * angle.sin(), y: 0.3 * angle.cos() }
+        })
+        .collect();
+    let along = Vector::X * 0.3;
+    vec![
+        ("box", Shape::Cuboid(Cuboid { half })),
+        ("hull", Shape::Hull(Arc::new(Hull::convex_hull_of(&corners, 0.0).expect("a hexagon is solid")))),
+        ("ball", Shape::Ball(crate::kernel::shape::Ball { radius: 0.25 })),
+        ("capsule along", Shape::Capsule(crate::kernel::shape::Capsule { a: -along, b: along, radius: 0.2 })),
+    ]
+}
+
+/// Floors of flush pieces, with their top at y = 0, from x = -3 to 14.
+pub fn tiles() -> Vec<(&'static str, Vec<(Shape, Vector)>)> {
+    let cuboid = |half| Shape::Cuboid(Cuboid { half });
+    let row = |make: &dyn Fn(f32) -> (Shape, Vector)| (0..17).map(|i| make(i as f32 - 2.5)).collect();
+    let segment = crate::kernel::shape::Segment { a: Vector::X * 0.5, b: Vector::X * -0.5 };
+    vec![
+        ("one box", vec![(cuboid(Vector { x: 20.0, y: 0.5 }), Vector::Y * -0.5)]),
+        ("boxes", row(&|x| (cuboid(Vector { x: 0.5, y: 0.5 }), Vector { x, y: -0.5 }))),
+        ("segments", row(&|x| (Shape::Segment(segment), Vector { x, y: 0.0 }))),
+    ]
+}

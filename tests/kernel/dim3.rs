@@ -82,3 +82,56 @@ pub fn tilts() -> Vec<Angular> {
 pub fn upright() -> Option<Angular> {
     Some(Vector::Y)
 }
+
+/// Shapes that slide over floors.
+pub fn riders() -> Vec<(&'static str, Shape)> {
+    let half = Vector { x: 0.25, y: 0.25, z: 0.25 };
+    let corners: Vec<_> = (0..12)
+        .map(|i| {
+            let (angle, y) = ((i % 6) as f32 * core::f32::consts::TAU / 6.0, if i < 6 { -0.2 } else { 0.2 });
+            Vector { x: 0.3 * angle.cos(), y, z: 0.3 * angle.sin() }
+        })
+        .collect();
+    let across = Vector::Z * 0.3;
+    let along = Vector::X * 0.3;
+    vec![
+        ("box", Shape::Cuboid(Cuboid { half })),
+        ("hull", Shape::Hull(Arc::new(Hull::convex_hull_of(&corners).expect("a prism is solid")))),
+        ("ball", Shape::Ball(crate::kernel::shape::Ball { radius: 0.25 })),
+        (
+            "capsule across",
+            Shape::Capsule(crate::kernel::shape::Capsule { a: -across, b: across, radius: 0.2 }),
+        ),
+        ("capsule along", Shape::Capsule(crate::kernel::shape::Capsule { a: -along, b: along, radius: 0.2 })),
+    ]
+}
+
+/// Floors of flush pieces, with their top at y = 0, from x = -3 to 14.
+pub fn tiles() -> Vec<(&'static str, Vec<(Shape, Vector)>)> {
+    let cuboid = |half| Shape::Cuboid(Cuboid { half });
+    let grid = |size: f32, make: &dyn Fn(Vector) -> Shape| {
+        let mut pieces = Vec::new();
+        let (columns, rows) = ((17.0 / size) as i32, (4.0 / size) as i32);
+        for i in 0..columns {
+            for j in 0..rows {
+                let place =
+                    Vector { x: -3.0 + size * (i as f32 + 0.5), y: -0.5, z: size * (j as f32 + 0.5) - 2.13 };
+                pieces.push((make(Vector { x: 0.5 * size, y: 0.5, z: 0.5 * size }), place));
+            }
+        }
+        pieces
+    };
+    let hull = |half: Vector| {
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
+            Vector { x: sign(1) * half.x, y: sign(2) * half.y, z: sign(4) * half.z }
+        };
+        let corners: Vec<_> = (0..8).map(corner).collect();
+        Shape::Hull(Arc::new(Hull::convex_hull_of(&corners).expect("a box is solid")))
+    };
+    vec![
+        ("one box", vec![(cuboid(Vector { x: 20.0, y: 0.5, z: 20.0 }), Vector::Y * -0.5)]),
+        ("boxes", grid(1.0, &cuboid)),
+        ("hulls", grid(1.0, &hull)),
+    ]
+}

@@ -7,20 +7,20 @@ use std::sync::Arc;
 /// Of each scene the hash with world positions in `f32`, and in `f64`.
 pub const GOLDEN: [(&str, u64, u64); 15] = [
     ("pyramid", 0x50ba4e573fc131ae, 0x28da225a0e1b1bfd),
-    ("towers", 0x8ec04c698a654bb1, 0xcfa4d7fbdd4423b6),
-    ("pairs", 0xcb0cfcc5eb378f86, 0x1cdc42b7739ac736),
-    ("heap", 0x80c9c8ba6fb61db6, 0xf0410b503950ec98),
-    ("terrain", 0x283eb4fca8e9f19a, 0x9809d8036dd5f36f),
-    ("slopes", 0x6884222ab6b25f8e, 0x5d6b1565638d27bd),
-    ("bounces", 0x09b2caa1be04ffd0, 0xcf782f46b1603101),
-    ("crowd", 0xb9ab3ad795e2bc15, 0x157b480784b58bd2),
+    ("towers", 0x3a9ff86f9ee73c38, 0xe867d70b3fec41d6),
+    ("pairs", 0x6fcc085a2548ac79, 0x8dde9dc3510b7a9d),
+    ("heap", 0xc31beea11bed0ccc, 0x98f85926156d4de8),
+    ("terrain", 0x773a436487e961e7, 0xfff447b604932685),
+    ("slopes", 0xb2b7e1a2a9c2c8e7, 0xb33344901f916a39),
+    ("bounces", 0x12771e180e55180b, 0x8e931a8bfd1adcc0),
+    ("crowd", 0x759e70a52046e7b7, 0x5b9b20e7dcd798dd),
     ("sleepers", 0x4af136ad24ebf72d, 0xefc862f8254dc6e6),
-    ("held", 0xf956567cb87754be, 0xaa07a84e4b955704),
-    ("dominance", 0x5135e6aaf4c702c1, 0xc0fa914f0079c240),
-    ("spin", 0x2959c99dded6954c, 0xdc29a4db5d482a52),
-    ("mixer", 0xc996f2902a858124, 0x844617b48a54f6df),
-    ("changes", 0xee4a972b92870024, 0x084ea961a7cb81f4),
-    ("wall", 0x0bc3640ef4ddac7e, 0x45666fdbd4d3d554),
+    ("held", 0xdb6ba6d18773966f, 0x6f5f56a7f315cdb3),
+    ("dominance", 0x3c1ecc1c2896b55b, 0x41eee5015924c929),
+    ("spin", 0x9f770b1b6b01d17c, 0x8921691fadc56c20),
+    ("mixer", 0xfc6fefd43a8bbc07, 0xe527530990172e06),
+    ("changes", 0x01c6cb4e272ed17f, 0x7f08e7ae83c9d2dd),
+    ("wall", 0x4158449ef80a4a27, 0x45666fdbd4d3d554),
 ];
 
 /// Every native shape with bounds, each about a metre across.

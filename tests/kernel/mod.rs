@@ -7,6 +7,7 @@ mod crowds;
 mod dim;
 mod distance;
 mod extreme;
+mod ghosts;
 mod golden;
 #[cfg_attr(feature = "2d", path = "golden2.rs")]
 #[cfg_attr(feature = "3d", path = "golden3.rs")]

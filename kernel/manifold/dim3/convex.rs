@@ -94,8 +94,12 @@ pub(super) fn collide(
         return;
     }
     let exact = pair.build(axis, out);
-    if !exact && separation > gjk::resolution(pair.larger, pair.smaller) {
-        pair.build_apart(separation, out);
+    if separation > gjk::resolution(pair.larger, pair.smaller) {
+        if !exact {
+            pair.build_apart(separation, out);
+        }
+    } else if out.count == 0 {
+        pair.push_deepest(axis, out);
     }
 }
 
@@ -257,10 +261,6 @@ impl<'a> Pair<'a> {
         for k in &kept[..count] {
             out.push(list[*k].point, list[*k].separation, list[*k].feature);
         }
-        if out.count == 0 && separation <= gjk::resolution(self.larger, self.smaller) {
-            // Overlap beside the face: the deepest vertex alone.
-            self.push_deepest(axis, of_b, out);
-        }
         least <= separation + EXACT * self.smaller
     }
 
@@ -273,8 +273,14 @@ impl<'a> Pair<'a> {
         if of_b { self.b_in_a.point(point) } else { point }
     }
 
-    /// Adds the deepest vertex under a face alone.
-    fn push_deepest(&self, axis: &FaceAxis, of_b: bool, out: &mut LocalManifold) {
+    /// Adds the deepest vertex under a face alone, where the shapes overlap beside the face. Only for the best of all
+    /// axes: under the cached face of an earlier step there may be nothing left.
+    fn push_deepest(&self, axis: Axis, out: &mut LocalManifold) {
+        let (axis, of_b) = match axis {
+            Axis::FaceA(face) => (face, false),
+            Axis::FaceB(face) => (face, true),
+            Axis::Edges(_) => return,
+        };
         let (reference, incident, frame) =
             if of_b { (self.b, self.a, &self.a_in_b) } else { (self.a, self.b, &self.b_in_a) };
         let corner = frame.point(incident.vertices[axis.lowest]);

@@ -27,7 +27,6 @@ struct Pair {
     offset: [Vector; 2],
     prediction: f32,
     smaller: f32,
-    larger: f32,
 }
 
 /// The contact of two boxes with the given half extents; see the module.
@@ -43,7 +42,7 @@ pub(super) fn collide(
     let (size_a, size_b) = (half_a.max_element(), half_b.max_element());
     let (larger, smaller) = (max(size_a, size_b), min(size_a, size_b));
     let offset = [frame.position, frame.direction_in(frame.position)];
-    let pair = Pair { half_a, half_b, frame, offset, prediction, smaller, larger };
+    let pair = Pair { half_a, half_b, frame, offset, prediction, smaller };
     let exact = match pair.cached(cache) {
         Some(separation) if separation > prediction => {
             out.gap = separation;
@@ -66,8 +65,12 @@ pub(super) fn collide(
         return;
     }
     let exact = pair.build(cache.kind, cache.a, cache.b, separation, out);
-    if !exact && separation > gjk::resolution(larger, smaller) {
-        pair.build_apart(pose, separation, out);
+    if separation > gjk::resolution(larger, smaller) {
+        if !exact {
+            pair.build_apart(pose, separation, out);
+        }
+    } else if out.count == 0 && cache.kind != EDGES {
+        pair.emit_deepest(cache, separation, out);
     }
 }
 
@@ -259,18 +262,17 @@ impl Pair {
             let point = origin + up * (half[i0] + 0.5 * height) + right * x + ahead * y;
             out.push(point, height, base | clipped.name(*k));
         }
-        if out.count == 0 && separation <= gjk::resolution(self.larger, self.smaller) {
-            self.emit_deepest(face << 8, separation, out);
-        }
         clipped.least <= separation + EXACT * self.smaller
     }
 
-    /// Overlap beside the reference face: the deepest corner alone.
+    /// Overlap beside the reference face: the deepest corner alone. Only for the best of all axes: under the face of an
+    /// earlier step there may be nothing, because the other box has moved beside it.
     #[cold]
-    fn emit_deepest(&self, base: u32, separation: f32, out: &mut LocalManifold) {
+    fn emit_deepest(&self, face: &FeatureCache, separation: f32, out: &mut LocalManifold) {
         let n = out.normal;
         let sign = |v: f32| if v < 0.0 { -1.0 } else { 1.0 };
-        let of_b = base & 4 << 9 != 0;
+        let of_b = face.kind == FACE_B;
+        let axis = u32::from(if of_b { face.b } else { face.a });
         let point = if of_b {
             Vector { x: sign(n.x), y: sign(n.y), z: sign(n.z) }.scale(self.half_a) + n * (0.5 * separation)
         } else {
@@ -278,7 +280,7 @@ impl Pair {
             let corner = Vector { x: sign(d.x), y: sign(d.y), z: sign(d.z) }.scale(self.half_b);
             self.frame.point(corner) - n * (0.5 * separation)
         };
-        out.push(point, separation, base | 0xff);
+        out.push(point, separation, (axis | u32::from(of_b) << 2) << 9 | 0xff);
     }
 
     /// See [`convex::collide_apart`].
