@@ -1,9 +1,21 @@
 //! The simulation kernel: a library of parts for rigid-body physics, in one dimension per package.
 //!
-//! Everything here is plain data and total functions: no ECS, no globals, no entity, and no clock but for the
-//! patience of idle threads. Each part (shapes, bounding-volume trees, manifolds, contact table, colouring,
-//! islands, solver, the team that runs it) can be used, tested and measured alone. The same source builds
-//! `avian_kernel2d` and `avian_kernel3d`.
+//! Everything here is plain data and total functions: no ECS, no globals, no entity, and no clock except the spin time of
+//! idle threads. Each part can be used, tested and measured alone. The same source builds `avian_kernel2d` and
+//! `avian_kernel3d`.
+//!
+//! | part | content |
+//! |---|---|
+//! | [`math`], [`data`] | vectors, rotations, SIMD lanes; bit sets, id pools, sets of pairs |
+//! | [`shape`], [`manifold`] | shapes with boxes and masses; contact points of two shapes |
+//! | [`bvh`] | bounding volume trees, pairs of boxes |
+//! | [`table`] | bodies and colliders by id |
+//! | [`contact`] | contacts by id, the narrow phase, and `Link`, which changes contacts, colours and islands |
+//! | [`graph`] | colours and islands of constraints |
+//! | [`solver`] | rows, substeps, poses |
+//! | [`team`] | the threads |
+//!
+//! `cargo run -p avian_kernel3d --example falling_box` is a whole step in 40 lines.
 //!
 //! Lengths are metres, times seconds, masses kilograms, angles radians. The same input gives the same
 //! bits on every machine, for every lane width and number of threads: no fused multiply-add, no approximate reciprocal, no

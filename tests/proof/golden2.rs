@@ -10,15 +10,15 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("dominoes", 0x7d8a9b7741a2e923),
     ("card_house", 0x452e86ea9cf7f716),
     ("towers", 0x41e006eb86452b02),
-    ("smash", 0xba9c1a4e4fc745da),
+    ("smash", 0x9374de5208f92c8b),
     ("crowd", 0x97af27847daa3ae7),
-    ("sleepers", 0xf00c401d7cc8af5d),
+    ("sleepers", 0x9fe5f4247476bce3),
     ("bounces", 0x1211ff4950806e37),
-    ("settings", 0xd356963ecfc9b879),
+    ("settings", 0xa4f3b7838968b85d),
 ];
 
 /// The same for scenes with shapes of parry's.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x514e34ed84e24e59), ("slopes", 0x71b94385298d2184)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xe7cf932b4f32d0f4), ("slopes", 0x71b94385298d2184)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 20;

@@ -6,19 +6,19 @@ use avian::prelude::*;
 pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0xd9cea250dfd32ffd),
     ("pyramids", 0x7029bf7b80ae7227),
-    ("tumbler", 0x707d6493c37f26e9),
-    ("dominoes", 0xfc7d9b2f1da5e5b4),
-    ("card_house", 0x9493cc329b9e35b2),
+    ("tumbler", 0xd886e890208fbe92),
+    ("dominoes", 0xff468b865f6a968e),
+    ("card_house", 0xf6ee1a29a9454c89),
     ("towers", 0x731bb49d21a6ade1),
-    ("smash", 0x295fe2b091d792cd),
+    ("smash", 0x1233a251bc463aa9),
     ("crowd", 0xb426d1d6efcb702d),
-    ("sleepers", 0x420de4f6f14d4a56),
+    ("sleepers", 0x3af54b51ee6e874f),
     ("bounces", 0x18da6393fc8a039a),
-    ("settings", 0x52473f9774201a3d),
+    ("settings", 0x836c0d1792f635ab),
 ];
 
 /// The same for scenes with shapes of parry's.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x9d28443301e18bfc), ("slopes", 0x063d153ea24b9ba8)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x7edbf9fc8f657745), ("slopes", 0x68fde958728f18fb)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 7;

@@ -8,6 +8,8 @@ mod crowds;
 mod determinism;
 #[path = "../../../tests/proof/dim3.rs"]
 mod dim;
+#[path = "../../../tests/proof/ghosts3.rs"]
+mod ghosts;
 #[path = "../../../tests/proof/golden.rs"]
 mod golden;
 #[path = "../../../tests/proof/golden3.rs"]
