@@ -12,6 +12,9 @@ use crate::graph::{COLOR_COUNT, ColorGraph, ConstraintKind, OVERFLOW};
 pub(super) fn check(input: &RowInput, graph: &ColorGraph, first_dynamic: u32) {
     let mut rows = BitSet::new();
     let mut seen: [BitSet; ConstraintKind::COUNT] = Default::default();
+    // Allocated at once: that steps do not allocate with their contacts is tested in debug builds.
+    rows.grow(input.bodies.rows.len() + 1);
+    seen.iter_mut().for_each(|seen| seen.grow(input.contacts.capacity()));
     for color in 0..COLOR_COUNT as u8 {
         rows.clear();
         for kind in ConstraintKind::ALL {
