@@ -38,6 +38,7 @@ pub struct Solver {
     pub distances: DistanceTable,
     rows: AllRows,
     layers: Layers,
+    seen: exclusive::Seen,
     plan: Plan,
     shares: Shares,
     deep: DeepCounts,
@@ -76,11 +77,11 @@ impl Solver {
     /// # Panics
     /// If a contact or body of the graph is not in the input, or a row of the input not among the [`bodies`](Self::bodies).
     pub unsafe fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
-        let Self { bodies, team, distances, rows, layers, plan, shares, deep, first_dynamic } = self;
+        let Self { bodies, team, distances, rows, layers, plan, shares, deep, first_dynamic, seen } = self;
         debug_assert!(params.is_valid(), "{params:?}");
         debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
         if cfg!(debug_assertions) {
-            exclusive::check(input, colors, bodies.first_dynamic);
+            exclusive::check(seen, input, colors, bodies.first_dynamic);
         }
         *first_dynamic = bodies.first_dynamic;
         deep.count(input, bodies);

@@ -146,8 +146,13 @@ pub(crate) fn prepare_rows(
     let input = RowInput { contacts: &contacts.table, bodies: &bodies.table };
     let StepSolver { kernel, params, .. } = &mut *solver;
     kernel.set_narrow(*width == RowWidth::Four);
-    let none = ColorGraph::new();
-    let colors = if response.is_none_or(|r| r.0) { &contacts.colors } else { &none };
+    let none;
+    let colors = if response.is_none_or(|r| r.0) {
+        &contacts.colors
+    } else {
+        none = ColorGraph::new();
+        &none
+    };
     // SAFETY: the engine has one table of contacts, one graph and one table of bodies, which apps cannot reach, and changes
     // contacts, colours and the kinds of bodies through `Link` alone. An empty graph has no contact twice.
     unsafe { kernel.build_rows(&input, colors, params) };
