@@ -52,7 +52,7 @@
 //! | draw it smoothly between steps | [`TransformInterpolation`](prelude::TransformInterpolation), [`TransformExtrapolation`](prelude::TransformExtrapolation) |
 //! | pause, slow down or step by hand | [`Time<Physics>`](schedule::Physics), [`PhysicsSchedule`](prelude::PhysicsSchedule) |
 //! | run a system within the step | [`PhysicsStepSystems`](schedule::PhysicsStepSystems), [`SubstepSchedule`](prelude::SubstepSchedule) |
-//! | make it more accurate | [`SubstepCount`](prelude::SubstepCount), [`SolverConfig`](prelude::SolverConfig), [`SpeculativeMargin`](prelude::SpeculativeMargin) |
+//! | make it more accurate | [`SubstepCount`](prelude::SubstepCount), [`SolverConfig`](dynamics::solver::SolverConfig), [`SpeculativeMargin`](prelude::SpeculativeMargin) |
 //! | see where time goes | [`StepTimes`](schedule::StepTimes) |
 //!
 //! # When it runs

@@ -365,7 +365,6 @@ impl Link<'_> {
             let tie = self.tie(ConstraintId { kind, id });
             (tie.slot.expect("a coloured constraint knows its slot"), self.movable(tie.bodies))
         });
-        let mut constraints = Vec::new();
         for (id, contact) in self.contacts.iter() {
             assert_eq!(contact.surface, self.mixed(contact.colliders), "contact {id} knows its surfaces");
             let awake = contact.bodies.iter().any(|b| self.is_awake(*b));
@@ -374,14 +373,14 @@ impl Link<'_> {
                 awake,
                 "contact {id} is active exactly if a body is awake"
             );
-            constraints.push(ConstraintId::contact(id));
         }
-        for kind in ConstraintKind::ALL {
-            self.bodies.constraints(kind).validate();
-            constraints.extend(self.bodies.constraints(kind).iter().map(|(id, _)| ConstraintId { kind, id }));
-        }
+        let others = ConstraintKind::ALL.into_iter().flat_map(|kind| {
+            let constraints = self.bodies.constraints(kind);
+            constraints.validate();
+            constraints.iter().map(move |(id, _)| ConstraintId { kind, id })
+        });
         let (mut colored, mut carrying) = (0, 0);
-        for constraint in constraints {
+        for constraint in self.contacts.iter().map(|(id, _)| ConstraintId::contact(id)).chain(others) {
             let [has_color, is_carried] = self.validate_tie(constraint);
             colored += usize::from(has_color);
             carrying += u32::from(is_carried);

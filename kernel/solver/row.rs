@@ -9,7 +9,7 @@ use crate::math::{Angular, Ids, InvInertia, Lane, Tangent, TangentFrame, Tangent
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct PointRow<N> {
-    /// From body A's centre of mass to A's core (see [`Shape::rounding`](crate::shape::Shape::rounding)) when
+    /// From body A's centre of mass to A's core (see [`Shape::radius`](crate::shape::Shape::radius)) when
     /// the step begins; from body B's to B's core it is this less the row's offset.
     pub anchor: Vector<N>,
     /// The separation when the step begins, in metres.
