@@ -195,10 +195,10 @@ main() {
             kernel_tests --features f64
             golden_hashes
             lints
+            documentation
             readme_tests
             f64_tests
             feature_sets
-            documentation
             ;;
     esac
     echo "== all passed in $((SECONDS / 60)) min $((SECONDS % 60)) s"
