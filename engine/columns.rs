@@ -1,4 +1,4 @@
-//! Components written by whole tables, in pieces that a team's members take.
+//! Components written by whole tables, in pieces that workers take.
 
 use bevy_ecs::change_detection::{ContiguousComponentTicksMut, ContiguousMut, MaybeLocation, Mut, Tick};
 use bevy_ecs::prelude::DetectChangesMut;

@@ -32,8 +32,8 @@ use crate::{
             scatter::{finish_bodies, keep_moved_within, note_moved_late, note_moved_within, scatter_bodies},
             schedule::{SolverSystems, SubstepSolverSystems, start_substep_clock},
             substeps::{
-                StepSolver, apply_restitution, call_team, prepare_params, prepare_rows, run_substeps,
-                store_impulses,
+                StepSolver, apply_restitution, prepare_params, prepare_rows, run_substeps, store_impulses,
+                wake_workers,
             },
             workers::{RowWidth, WorkerCount},
         },
@@ -112,7 +112,7 @@ stages! {
     }
     /// Counters and timers start anew, and workers wake.
     ResetDiagnostics.in_set(PhysicsStepSystems::First) => {
-        Step: call_team,
+        Step: wake_workers,
         Trees: reset_trees,
         NarrowPhase: reset_collision,
         Solver: reset_solver,

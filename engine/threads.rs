@@ -1,29 +1,30 @@
-//! The threads that share the work of a step.
+//! The thread pool of a step.
 
 use bevy_ecs::prelude::*;
-use kernel::team::Team;
+use kernel::thread_pool::ThreadPool;
 
-/// Waking a helper takes as long as some hundred contacts.
+/// Minimum number of active contacts for which threads are woken before a step: waking one takes as long as some hundred
+/// contacts.
 const MANY_CONTACTS: usize = 1024;
 
-/// The team of the engine's steps, and the setting it was made for.
+/// The thread pool, and the [`WorkerCount`](crate::dynamics::solver::workers::WorkerCount) it was made for.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Threads {
-    pub(crate) team: Team,
+    pub(crate) pool: ThreadPool,
     setting: Option<usize>,
 }
 
 impl Threads {
-    /// Wakes the helpers where there are many contacts. `members` is asked for how many members `setting` stands for only
-    /// when that changed: to ask the system takes long.
-    pub(crate) fn call(&mut self, contacts: usize, setting: usize, members: impl FnOnce() -> usize) {
+    /// Wakes the threads if there are many contacts. `workers` returns the number of workers that `setting` stands for. It
+    /// is called only when the setting changed, since it asks the operating system.
+    pub(crate) fn wake(&mut self, contacts: usize, setting: usize, workers: impl FnOnce() -> usize) {
         let many = contacts >= MANY_CONTACTS;
-        // Until there are many for the first time there is no team.
+        // There is no pool before there are many contacts for the first time.
         if self.setting != Some(setting) && (many || self.setting.is_some()) {
-            *self = Self { team: Team::new(members()), setting: Some(setting) };
+            *self = Self { pool: ThreadPool::new(workers()), setting: Some(setting) };
         }
         if many {
-            self.team.wake();
+            self.pool.wake();
         }
     }
 }

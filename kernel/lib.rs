@@ -13,7 +13,7 @@
 //! | [`contact`] | contacts by id, the narrow phase, and `Link`, which changes contacts, colours and islands |
 //! | [`graph`] | colours and islands of constraints |
 //! | [`solver`] | rows, substeps, poses |
-//! | [`team`] | the threads |
+//! | [`thread_pool`] | the threads |
 //!
 //! `cargo run -p avian_kernel3d --example falling_box` is a whole step in 40 lines.
 //!
@@ -33,4 +33,4 @@ pub mod math;
 pub mod shape;
 pub mod solver;
 pub mod table;
-pub mod team;
+pub mod thread_pool;

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # What CI does not look at: whether threads can meet in a way that tests do not. Takes some minutes, most of them to compile.
 #
-#   tools/model-check.sh loom     the team of threads in every interleaving up to a few preemptions (kernel/team/model.rs)
-#   tools/model-check.sh threads  the tests of the team and of shared solving under ThreadSanitizer; needs a toolchain with
+#   tools/model-check.sh loom     the thread pool in every interleaving up to a few preemptions (kernel/thread_pool/model.rs)
+#   tools/model-check.sh threads  the tests of the thread pool and of shared solving under ThreadSanitizer; needs a toolchain with
 #                                 the standard library's source, named by SANITIZER_TOOLCHAIN (nightly if not told)
 #   tools/model-check.sh          loom, and threads where that toolchain is to be had
 #
@@ -16,7 +16,7 @@ host="$(rustc -vV | sed -n 's/^host: //p')"
 
 loom() {
     RUSTFLAGS="--cfg loom" CARGO_TARGET_DIR="$target/loom" \
-        cargo test --package avian_kernel3d --lib team::model -- --test-threads 1
+        cargo test --package avian_kernel3d --lib thread_pool::model -- --test-threads 1
 }
 
 has_source() {
@@ -28,7 +28,7 @@ threads() {
     for dimension in 2d 3d; do
         # The standard library is compiled with the sanitizer too: else what its locks order would be told as races.
         RUSTFLAGS="-Zsanitizer=thread" CARGO_TARGET_DIR="$target/sanitizer" \
-            cargo "+$toolchain" test -Zbuild-std --target "$host" --package "avian_kernel$dimension" --lib team::tests
+            cargo "+$toolchain" test -Zbuild-std --target "$host" --package "avian_kernel$dimension" --lib thread_pool::tests
         RUSTFLAGS="-Zsanitizer=thread" CARGO_TARGET_DIR="$target/sanitizer" \
             cargo "+$toolchain" test -Zbuild-std --target "$host" --package "avian_kernel$dimension" --test it sound
     done

@@ -7,7 +7,7 @@ use kernel::{
     bvh::{Mover, Movers, PairMask, ProxyId, TreeKind, Trees},
     data::BitSet,
     shape::Aabb,
-    team::Team,
+    thread_pool::ThreadPool,
 };
 
 /// The trees and each collider's leaf.
@@ -93,7 +93,7 @@ impl ProxyTable {
         moved: &BitSet,
         fat: &[Aabb],
         mode: TreeOptimizationMode,
-        team: &Team,
+        pool: &ThreadPool,
     ) -> Duration {
         let mut fresh: [Vec<(u32, Aabb)>; 4] = Default::default();
         let mut grown = [0; 4];
@@ -121,7 +121,7 @@ impl ProxyTable {
         for kind in TreeKind::ALL {
             let i = kind as usize;
             if most[i] {
-                self.trees[kind].fit(&|id| fat[id as usize], team);
+                self.trees[kind].fit(&|id| fat[id as usize], pool);
             } else if many[i] {
                 self.trees[kind].refit();
             }
@@ -218,9 +218,9 @@ mod tests {
             (first..100).for_each(|id| _ = ids.insert(id));
             ids
         };
-        proxies.update(&from(0), &fat, mode, &Team::default());
+        proxies.update(&from(0), &fat, mode, &ThreadPool::default());
         (100 - moved..100).for_each(|id| fat[id as usize] = at(20));
-        proxies.update(&from(100 - moved), &fat, mode, &Team::default());
+        proxies.update(&from(100 - moved), &fat, mode, &ThreadPool::default());
         proxies.trees[KIND].validate();
         proxies.trees[KIND].bounds().max.x - (100 - moved) as f32
     }

@@ -99,8 +99,8 @@ pub(crate) fn update_contacts(
     };
     let contacts = &mut *tables.contacts;
     contacts.changed.clear();
-    threads.call(contacts.table.active_len(), workers.0, || workers.resolve());
-    contacts.table.update(&input, &threads.team, &mut buffers.0, &mut contacts.changed);
+    threads.wake(contacts.table.active_len(), workers.0, || workers.resolve());
+    contacts.table.update(&input, &threads.pool, &mut buffers.0, &mut contacts.changed);
     diagnostics.contact_count = contacts.table.len() as u32;
     diagnostics.narrow_phase += start.elapsed();
 }

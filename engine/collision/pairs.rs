@@ -74,8 +74,8 @@ pub(crate) fn update_stale_boxes(
         }
     }
     stale.clear();
-    let (mode, team) = (optimization.optimization_mode, &threads.team);
-    diagnostics.optimize += trees.update(&changed, &table.fat, mode, team);
+    let (mode, pool) = (optimization.optimization_mode, &threads.pool);
+    diagnostics.optimize += trees.update(&changed, &table.fat, mode, pool);
     moved.union_with(&changed);
     diagnostics.update += start.elapsed();
 }
@@ -101,9 +101,9 @@ pub(crate) fn refit_awake(
     mut changed: Local<BitSet>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let team = &threads.team;
+    let pool = &threads.pool;
     let Colliders { table, trees, moved, entities, .. } = &mut *colliders;
-    table.refresh_listed(&bodies.listed, &bodies.table, fat_boxes.fattening(), team, &mut changed);
+    table.refresh_listed(&bodies.listed, &bodies.table, fat_boxes.fattening(), pool, &mut changed);
 
     let shown = Shown { bodies: &bodies.table, colliders: table };
     if is_minority(bodies.listed.len(), [boxes.iter().size_hint()]) || is_change_tracked() {
@@ -121,14 +121,14 @@ pub(crate) fn refit_awake(
                 let ids = ids.split_off(..PIECE.min(ids.len())).filter(|ids| !ids.is_empty())?;
                 Some((ids, tight.cut(), fat.cut()))
             });
-            team.each(pieces, |(ids, tight, fat)| {
+            pool.each(pieces, |(ids, tight, fat)| {
                 for ((id, tight), fat) in ids.iter().zip(tight.slots()).zip(fat.slots()) {
                     shown.put(*id, tight, fat);
                 }
             });
         }
     }
-    diagnostics.optimize += trees.update(&changed, &table.fat, optimization.optimization_mode, team);
+    diagnostics.optimize += trees.update(&changed, &table.fat, optimization.optimization_mode, pool);
     moved.union_with(&changed);
     changed.clear();
     diagnostics.update += start.elapsed();
@@ -157,7 +157,7 @@ fn to_public(aabb: &kernel::shape::Aabb) -> ColliderAabb {
     ColliderAabb { min: vector_from_kernel(aabb.min), max: vector_from_kernel(aabb.max) }
 }
 
-/// From so many movers on the team's helpers are woken.
+/// Minimum number of movers for which waking threads pays.
 const MANY_MOVERS: usize = 256;
 
 /// Pairs found in a step, kept for their memory.
@@ -211,11 +211,11 @@ pub(crate) fn find_new_pairs(
         trees.movers(moved, &table.fat, movers);
         moved.clear();
         let known = Contacted { colliders: table, pairs: tables.contacts.table.pairs() };
-        let team = &threads.team;
+        let pool = &threads.pool;
         if movers.list().len() >= MANY_MOVERS {
-            team.wake();
+            pool.wake();
         }
-        found.find(&trees.trees, movers, &known, team);
+        found.find(&trees.trees, movers, &known, pool);
     }
     let mut sleepers = Vec::new();
     for &(a, b) in found.pairs() {

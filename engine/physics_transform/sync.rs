@@ -402,7 +402,7 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
         let mut changed = None;
         let mut column = Column::new(transforms, &mut changed);
         let pieces = pieces(entities.len()).map(|rows| (rows, column.cut()));
-        threads.team.each_into(&mut found, pieces, |late, (rows, mut column)| {
+        threads.pool.each_into(&mut found, pieces, |late, (rows, mut column)| {
             let start = rows.start;
             since.rows([&at[rows.clone()], &turned[rows]], |i| {
                 let row = start + i;

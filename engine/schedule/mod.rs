@@ -97,8 +97,8 @@ impl Plugin for PhysicsSchedulePlugin {
 /// The last part of a step ends. What follows may want the cores of the helpers.
 fn end_writeback(mut times: ResMut<StepTimes>, threads: Res<Threads>, _: OnThisThread) {
     times.end("Writeback");
-    times.note_shared(&threads.team);
-    threads.team.rest();
+    times.note_shared(&threads.pool);
+    threads.pool.rest();
 }
 
 /// A parameter that keeps a system of the hosting schedule on the thread that runs the schedule. Most have so little

@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_platform::time::Instant;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use core::time::Duration;
-use kernel::team::Team;
+use kernel::thread_pool::ThreadPool;
 use std::sync::OnceLock;
 
 /// How long each part of the last step took, in the order in which they ran: from `Prepare`, where transforms are
@@ -56,11 +56,11 @@ impl StepTimes {
         self.shared[0]
     }
 
-    /// Notes for how long a team has shared work.
-    pub(crate) fn note_shared(&mut self, team: &Team) {
+    /// Records for how long jobs were shared with threads.
+    pub(crate) fn note_shared(&mut self, pool: &ThreadPool) {
         if self.counts_shared {
-            team.count_shared_time(nanoseconds);
-            let sum = Duration::from_nanos(team.shared_time());
+            pool.count_shared_time(nanoseconds);
+            let sum = Duration::from_nanos(pool.shared_time());
             self.shared = [sum.saturating_sub(self.shared[1]), sum];
         }
     }

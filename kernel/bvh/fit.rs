@@ -4,7 +4,7 @@
 use super::tree::{Branch, LEAF, Leaf, NONE, Tree, admitted};
 use crate::data::Parts;
 use crate::shape::Aabb;
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 
 /// The approximate number of subtrees that workers fit. Fewer balance worse; more take longer to find.
 const SUBTREES: usize = 64;
@@ -18,7 +18,7 @@ struct Source<'a, F> {
 impl Tree {
     /// Sets the box of every leaf by its id, and recomputes the boxes above. The cost depends on the size of the tree: use it
     /// where a large share of the leaves moved. [`Tree`] compares it with other changes.
-    pub fn fit(&mut self, boxes: &(impl Fn(u32) -> Aabb + Sync), team: &Team) {
+    pub fn fit(&mut self, boxes: &(impl Fn(u32) -> Aabb + Sync), pool: &ThreadPool) {
         if self.root == NONE {
             return;
         }
@@ -38,7 +38,7 @@ impl Tree {
             let (above, below) = list.split_at(above);
             let shared = Parts::of(branches);
             // SAFETY: the subtrees are disjoint.
-            team.run(below.len(), |i, _| _ = unsafe { source.fit_below(&shared, below[i]) });
+            pool.run(below.len(), |i, _| _ = unsafe { source.fit_below(&shared, below[i]) });
             for &branch in above.iter().rev() {
                 let fitted = branches[branch as usize].children.map(|child| source.fitted(branches, child));
                 put(&mut branches[branch as usize], fitted);

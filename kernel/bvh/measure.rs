@@ -5,7 +5,7 @@ use super::*;
 use crate::data::PairSet;
 use crate::math::{DIM, Vector};
 use crate::shape::Aabb;
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 use std::time::Instant;
 
 /// Prints the fastest of many short rounds per item, some of which run undisturbed on a busy machine.
@@ -130,7 +130,7 @@ fn measure_steps(leaves: &[(u32, Aabb)], side: f32, noise: &mut Noise) {
             let enlarged = Instant::now();
             items += trees[KIND].rebuild_partial();
             let rebuilt = Instant::now();
-            search.find(&trees, &movers, &known, &Team::default());
+            search.find(&trees, &movers, &known, &ThreadPool::default());
             let pairs = search.pairs();
             let ends = [start, enlarged, rebuilt, Instant::now()];
             if step > 0 {

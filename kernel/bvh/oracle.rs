@@ -4,7 +4,7 @@ use super::query::Sweep;
 use super::*;
 use crate::math::{DIM, Vector};
 use crate::shape::Aabb;
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 use proptest::prelude::*;
 
 /// Pseudo-random numbers by splitmix64.
@@ -134,7 +134,7 @@ impl Twin {
                 }
                 if all_at_once {
                     let of_id = |id| self.list.iter().find(|e| e.1 == id).unwrap().2;
-                    self.tree.fit(&of_id, &Team::default());
+                    self.tree.fit(&of_id, &ThreadPool::default());
                 } else {
                     self.tree.refit();
                 }
@@ -381,9 +381,9 @@ proptest! {
             }
         }
         let mut found = FoundPairs::default();
-        for team in [Team::default(), Team::new(3)] {
-            team.wake();
-            found.find(&trees, &movers, &Where(is_known), &team);
+        for pool in [ThreadPool::default(), ThreadPool::new(3)] {
+            pool.wake();
+            found.find(&trees, &movers, &Where(is_known), &pool);
             prop_assert_eq!(found.pairs(), &expected);
         }
         movers.clear();
@@ -392,21 +392,21 @@ proptest! {
 }
 
 #[test]
-fn a_team_fits_a_tree_as_one_does() {
+fn a_tree_fitted_by_workers_is_the_same_to_the_bit() {
     let mut noise = Noise(5);
     let mut boxes: Vec<_> = (0..3_000).map(|id| (id, noise.aabb())).collect();
     let mut tree = Tree::new();
     tree.build(&boxes);
     boxes.iter_mut().for_each(|b| b.1 = noise.aabb());
-    let fitted = |team: &Team| {
-        team.wake();
+    let fitted = |pool: &ThreadPool| {
+        pool.wake();
         let mut tree = tree.clone();
-        tree.fit(&|id| boxes[id as usize].1, team);
+        tree.fit(&|id| boxes[id as usize].1, pool);
         tree.validate();
         (0..3_000).for_each(|i| assert_eq!(tree.aabb(ProxyId(i)), tree::admitted(boxes[i as usize].1)));
         (tree.bounds(), tree.cost().to_bits())
     };
-    assert_eq!(fitted(&Team::new(3)), fitted(&Team::default()));
+    assert_eq!(fitted(&ThreadPool::new(3)), fitted(&ThreadPool::default()));
 }
 
 #[test]
@@ -418,7 +418,7 @@ fn empty_and_single_trees_answer() {
     tree.cast_ray(Vector::ZERO, Vector::X, f32::INFINITY, |_, _| panic!("nothing is there"));
     assert_eq!(tree.rebuild_partial(), 0);
     tree.rebuild_full();
-    tree.fit(&|_| panic!("nothing is there"), &Team::default());
+    tree.fit(&|_| panic!("nothing is there"), &ThreadPool::default());
     tree.build(&[]);
     tree.validate();
 
@@ -428,7 +428,7 @@ fn empty_and_single_trees_answer() {
     assert!(!tree.query(&unit, |id| id != 5), "stopped by the callback");
     tree.enlarge(proxy, unit.grown(1.0));
     assert_eq!(tree.aabb(proxy), unit.grown(1.0));
-    tree.fit(&|_| unit.grown(2.0), &Team::default());
+    tree.fit(&|_| unit.grown(2.0), &ThreadPool::default());
     assert_eq!(tree.aabb(proxy), unit.grown(2.0));
     tree.set(proxy, unit);
     tree.rebuild_full();

@@ -5,7 +5,7 @@ use super::meet::{Slots, Walk};
 use super::tree::Tree;
 use crate::data::{BitSet, PairSet};
 use crate::shape::Aabb;
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 use std::sync::{Mutex, PoisonError};
 
 /// The movers of one block. Smaller blocks cost more to hand out, larger ones balance worse.
@@ -257,12 +257,12 @@ impl Plan {
 /// The pairs that a worker found, and its buffers. In cache lines of its own, since walks write it all the time.
 #[derive(Debug, Default)]
 #[repr(align(128))]
-struct Member {
+struct Worker {
     found: Vec<(u32, u32)>,
     walk: Walk,
 }
 
-impl Member {
+impl Worker {
     /// Adds the pairs `(lower id, higher id)` that one mover reports: colliders whose boxes it touches in the trees of its
     /// `kinds`, except itself, pairs that the other mover reports, and [plain](Known::is_plain) ones. In the order of the
     /// trees.
@@ -320,34 +320,34 @@ fn drop_known(found: &mut Vec<(u32, u32)>, start: usize, known: &impl Known) {
 pub struct FoundPairs {
     sorted: Vec<(u32, u32)>,
     plan: Plan,
-    members: Vec<Mutex<Member>>,
+    workers: Vec<Mutex<Worker>>,
 }
 
 impl FoundPairs {
     /// Finds the pairs of all movers, sorted, each once. Every id must be in one tree only, once.
-    pub fn find(&mut self, trees: &Trees, movers: &Movers, known: &impl Known, team: &Team) {
-        if self.members.len() < team.members() {
-            self.members.resize_with(team.members(), Mutex::default);
+    pub fn find(&mut self, trees: &Trees, movers: &Movers, known: &impl Known, pool: &ThreadPool) {
+        if self.workers.len() < pool.workers() {
+            self.workers.resize_with(pool.workers(), Mutex::default);
         }
-        let Self { sorted, plan, members } = self;
+        let Self { sorted, plan, workers } = self;
         plan.make(trees, movers);
         let (plan, list, parts) = (&*plan, movers.list(), plan.parts.len());
-        team.run(parts + plan.query_blocks(movers), |block, member| {
-            let mut member = members[member].lock().unwrap_or_else(PoisonError::into_inner);
+        pool.run(parts + plan.query_blocks(movers), |block, worker| {
+            let mut worker = workers[worker].lock().unwrap_or_else(PoisonError::into_inner);
             let Some(block) = block.checked_sub(parts) else {
-                return member.walk(plan.parts[block], trees, movers, known);
+                return worker.walk(plan.parts[block], trees, movers, known);
             };
-            let start = member.found.len();
+            let start = worker.found.len();
             for mover in &list[block * BLOCK..list.len().min((block + 1) * BLOCK)] {
-                member.query(mover, plan.queried[mover.kind as usize], trees, movers, known);
+                worker.query(mover, plan.queried[mover.kind as usize], trees, movers, known);
             }
             // All are prefetched before any is read, so that loads overlap.
-            member.found[start..].iter().for_each(|(a, b)| known.prefetch(*a, *b));
-            drop_known(&mut member.found, start, known);
+            worker.found[start..].iter().for_each(|(a, b)| known.prefetch(*a, *b));
+            drop_known(&mut worker.found, start, known);
         });
         sorted.clear();
-        for member in members {
-            sorted.append(&mut member.get_mut().unwrap_or_else(PoisonError::into_inner).found);
+        for worker in workers {
+            sorted.append(&mut worker.get_mut().unwrap_or_else(PoisonError::into_inner).found);
         }
         sorted.sort_unstable();
     }

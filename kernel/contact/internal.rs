@@ -14,7 +14,7 @@ use super::record::{Contact, ContactFlags, Manifold};
 use super::table::{ContactTable, PointCount};
 use crate::math::{Vector, max, min};
 use crate::table::{BodyKind, NONE};
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 
 /// How far above a plane a point may lie that counts as on it, in metres. More would hide kerbs; less is below the rounding of
 /// positions some kilometres from the origin.
@@ -141,13 +141,13 @@ impl ContactTable {
     pub(super) fn mark_internal<S: ManifoldSource>(
         &mut self,
         input: &NarrowPhaseInput<S>,
-        team: &Team,
+        pool: &ThreadPool,
         workers: &mut Vec<WorkerBuffers<S::Workspace>>,
     ) {
         let mut sliding = core::mem::take(&mut self.sliding);
         workers.iter().for_each(|worker| sliding.extend_from_slice(&worker.sliding));
         let this = &*self;
-        team.each_into(workers, sliding.chunks(BLOCK), |worker, ids| {
+        pool.each_into(workers, sliding.chunks(BLOCK), |worker, ids| {
             ids.iter().for_each(|id| this.find_internal(input, *id, &mut worker.internal));
         });
         sliding.clear();

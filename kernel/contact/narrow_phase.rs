@@ -17,7 +17,7 @@ use crate::data::{BitSet, Parts};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::max;
 use crate::table::{BodyKind, BodyPose, BodyTable, NONE};
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 
 /// The size of a block of contacts, in words of 64 ids. Recycling a block takes some microseconds. Smaller blocks cost more
 /// to hand out; larger ones balance worse.
@@ -53,13 +53,13 @@ impl ContactTable {
     pub fn update<S: ManifoldSource>(
         &mut self,
         input: &NarrowPhaseInput<S>,
-        team: &Team,
+        pool: &ThreadPool,
         workers: &mut Vec<WorkerBuffers<S::Workspace>>,
         changed: &mut BitSet,
     ) {
         workers.iter_mut().for_each(WorkerBuffers::clear);
-        if workers.len() < team.members() {
-            workers.resize_with(team.members(), WorkerBuffers::default);
+        if workers.len() < pool.workers() {
+            workers.resize_with(pool.workers(), WorkerBuffers::default);
         }
         self.find_crowded(input.bodies);
         let Self { contacts, points, active, extra, .. } = self;
@@ -72,7 +72,7 @@ impl ContactTable {
             crowded,
         };
         let buffers = Parts::of(workers);
-        team.run(active.blocks(BLOCK), |block, worker| {
+        pool.run(active.blocks(BLOCK), |block, worker| {
             let mut ids = [0; 64 * BLOCK];
             let mut count = 0;
             for id in active.iter_block(BLOCK, block) {
@@ -83,7 +83,7 @@ impl ContactTable {
             unsafe { pass.update_block(&ids[..count], buffers.one(worker)) };
         });
         self.commit(workers, changed);
-        self.mark_internal(input, team, workers);
+        self.mark_internal(input, pool, workers);
     }
 
     /// Finds the dynamic bodies that overlap others deeply.

@@ -10,7 +10,7 @@ use crate::shape::{Aabb, Ball, Foreign, Shape};
 use crate::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Fattening, Layers, Material,
 };
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 use proptest::prelude::*;
 
 /// The tables, without anything that moves.
@@ -264,7 +264,7 @@ impl ManifoldSource for Rounds {
 
 /// The place of further manifolds in the side pool depended on the worker that found them.
 #[test]
-fn the_table_is_the_same_to_the_byte_whatever_team_updated_it() {
+fn the_table_is_the_same_to_the_byte_whatever_pool_updated_it() {
     let aabb = Aabb { min: -Vector::ONE, max: Vector::ONE };
     let after = |workers: usize| {
         let count = 1_200;
@@ -275,10 +275,10 @@ fn the_table_is_the_same_to_the_byte_whatever_team_updated_it() {
                 world.link().create(id - 1, id);
             }
         }
-        let team = Team::new(workers);
+        let pool = ThreadPool::new(workers);
         let mut buffers = Vec::new();
         for round in 0..4 {
-            team.wake();
+            pool.wake();
             let input = NarrowPhaseInput {
                 bodies: &world.bodies,
                 colliders: &world.colliders,
@@ -291,7 +291,7 @@ fn the_table_is_the_same_to_the_byte_whatever_team_updated_it() {
                 narrow: false,
             };
             let mut changed = BitSet::new();
-            world.contacts.update(&input, &team, &mut buffers, &mut changed);
+            world.contacts.update(&input, &pool, &mut buffers, &mut changed);
             world.link().apply(&changed, |_, _, _| {});
             world.link().validate();
             // Freed places are used again.

@@ -11,7 +11,7 @@ use crate::graph::{COLOR_COUNT, ColorGraph, OVERFLOW};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
 use crate::math::{Entry, F32x4, Lane, Width};
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 
 /// The rows of every width; of the wide ones only one is in use.
 #[derive(Clone, Debug, Default)]
@@ -50,11 +50,11 @@ impl Layers {
     }
 
     /// Sorts the constraints of all colours, one colour by one worker.
-    pub(super) fn sort(&mut self, colors: &ColorGraph, sorter: &Sorter, team: &Team) {
+    pub(super) fn sort(&mut self, colors: &ColorGraph, sorter: &Sorter, pool: &ThreadPool) {
         self.colors.resize_with(COLOR_COUNT, Vec::new);
         self.used.resize(COLOR_COUNT, 0);
         let layers = self.colors.iter_mut().zip(&mut self.used).zip(0..);
-        team.each(layers, |((layers, used), color)| {
+        pool.each(layers, |((layers, used), color)| {
             *used = if color == OVERFLOW {
                 sort_overflow(colors, sorter, layers)
             } else {

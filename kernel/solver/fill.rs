@@ -113,7 +113,7 @@ impl BodyRows {
 mod tests {
     use super::*;
     use crate::math::{Angular, Vector};
-    use crate::team::Team;
+    use crate::thread_pool::ThreadPool;
 
     fn body(speed: f32) -> FilledBody {
         FilledBody { row: BodyRow::new(Vector::X * speed, Angular::ZERO), ..FilledBody::still() }
@@ -126,9 +126,9 @@ mod tests {
         rows.reset(3, 997);
         let filler = rows.filler();
         let fills = core::sync::atomic::AtomicUsize::new(0);
-        let team = Team::new(4);
-        team.wake();
-        team.run(64, |block, _| {
+        let pool = ThreadPool::new(4);
+        pool.wake();
+        pool.run(64, |block, _| {
             for row in (0..1100).filter(|row| row % 7 != 3) {
                 let filled = filler.fill(row, &body((block + 1) as f32));
                 fills.fetch_add(usize::from(filled), Ordering::Relaxed);

@@ -4,20 +4,21 @@
 use super::body::OnceEach;
 use super::{BodyRow, BodyRows, RowView, gyro::*};
 use crate::math::{Angular, F32x4, Lane, Rot};
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 
-/// How many bodies a member of the team moves at a stretch: a multiple of the lanes.
+/// Number of bodies in a block of the job, a multiple of the widest lanes. More leaves workers idle at the end, fewer cost
+/// more claims.
 const BLOCK: usize = 256;
 
 /// Changes the rows of some bodies, and what is listed of them.
 fn each_of<T: Send>(
     listed: &mut OnceEach<T>,
     rows: &mut [BodyRow],
-    team: &Team,
+    pool: &ThreadPool,
     change: impl Fn(&mut T, &mut BodyRow) + Sync,
 ) {
     let (count, items, view) = (listed.list().len(), listed.parts(), RowView::over(rows, 0));
-    team.run(count.div_ceil(BLOCK), |block, _| {
+    pool.run(count.div_ceil(BLOCK), |block, _| {
         // SAFETY: an item is in one block.
         let items = unsafe { items.take(block * BLOCK..count.min((block + 1) * BLOCK)) };
         for (row, item) in items {
@@ -35,13 +36,13 @@ fn limit_factor(speed: f32, max: f32) -> f32 {
 impl BodyRows {
     /// v ← v / (1 + c h) + h a for every dynamic body; the damping acts on the old velocity, so that
     /// without forces v falls by exactly 1 / (1 + c h). In 3D then one step of the gyroscopic torque.
-    pub(super) fn integrate_velocities(&mut self, h: f32, team: &Team) {
+    pub(super) fn integrate_velocities(&mut self, h: f32, pool: &ThreadPool) {
         let Self { rows, motions, first_dynamic, .. } = self;
         debug_assert_eq!(rows.len(), motions.len(), "each row has its motion");
         debug_assert!(*first_dynamic as usize <= rows.len(), "dynamic rows begin within the rows");
         let (first, count) = (*first_dynamic as usize, rows.len());
         let view = RowView::over(rows, 0);
-        team.run((count - first).div_ceil(BLOCK), |block, _| {
+        pool.run((count - first).div_ceil(BLOCK), |block, _| {
             let start = first + block * BLOCK;
             for id in start..count.min(start + BLOCK) {
                 let motion = &motions[id];
@@ -56,7 +57,7 @@ impl BodyRows {
                 unsafe { view.put(id as u32, change) };
             }
         });
-        self.hold_back(team);
+        self.hold_back(pool);
     }
 
     /// Δx ← Δx + h v and Δθ ← Δθ turned by h ω, for every body.
@@ -64,13 +65,13 @@ impl BodyRows {
     /// A body that its own spin turns takes the ω of the middle of its free spin. Contacts see the ω before it, which
     /// belongs to the rotation that their arms are from: with a step of the gyroscopic torque between them, the axis of a
     /// fast spinner moved aside of where its contacts let it, and they threw it back.
-    pub(super) fn integrate_positions(&mut self, h: f32, team: &Team) {
-        self.hold_back(team);
-        each_of(&mut self.spins, &mut self.rows, team, |spin, row| spin.begin_turn(row, h));
-        self.hold_back(team);
+    pub(super) fn integrate_positions(&mut self, h: f32, pool: &ThreadPool) {
+        self.hold_back(pool);
+        each_of(&mut self.spins, &mut self.rows, pool, |spin, row| spin.begin_turn(row, h));
+        self.hold_back(pool);
         let count = self.rows.len();
         let view = self.view_all();
-        team.run(count.div_ceil(BLOCK), |block, _| {
+        pool.run(count.div_ceil(BLOCK), |block, _| {
             let (mut id, end) = (block * BLOCK, count.min((block + 1) * BLOCK));
             while id + F32x4::WIDTH <= end {
                 let ids = core::array::from_fn(|k| (id + k) as u32);
@@ -83,13 +84,13 @@ impl BodyRows {
                 unsafe { move_bodies::<f32>(&view, &[id as u32], h) };
             }
         });
-        each_of(&mut self.spins, &mut self.rows, team, |spin, row| spin.end_turn(row));
-        self.hold_back(team);
+        each_of(&mut self.spins, &mut self.rows, pool, |spin, row| spin.end_turn(row));
+        self.hold_back(pool);
     }
 
     /// Keeps velocities within their limits.
-    fn hold_back(&mut self, team: &Team) {
-        each_of(&mut self.limits, &mut self.rows, team, |limits, row| {
+    fn hold_back(&mut self, pool: &ThreadPool) {
+        each_of(&mut self.limits, &mut self.rows, pool, |limits, row| {
             let (v, w) = row.velocity();
             let v = v.scale(limits.locks.translation_factors());
             let w = scale_angular(w, limits.locks.rotation_factors());
@@ -167,8 +168,8 @@ mod tests {
         let mut bodies = one_body(Motion { acceleration: g, ..Motion::FREE }, Vector::X * 3.0);
         let (h, n) = (1.0 / 256.0, 512);
         for _ in 0..n {
-            bodies.integrate_velocities(h, &Team::default());
-            bodies.integrate_positions(h, &Team::default());
+            bodies.integrate_velocities(h, &ThreadPool::default());
+            bodies.integrate_positions(h, &ThreadPool::default());
         }
         let t = h * n as f32;
         let (v, p) = (bodies.rows[1].velocity().0, bodies.rows[1].delta().0);
@@ -182,7 +183,7 @@ mod tests {
         let mut bodies = one_body(Motion { linear_damping: 0.7, ..Motion::FREE }, Vector::X * 5.0);
         let h = 1.0 / 60.0;
         for _ in 0..100 {
-            bodies.integrate_velocities(h, &Team::default());
+            bodies.integrate_velocities(h, &ThreadPool::default());
         }
         let want = 5.0 / (1.0f64 + 0.7 / 60.0).powi(100);
         assert!((f64::from(bodies.rows[1].velocity().0.x) - want).abs() < 1e-4 * want);
@@ -223,8 +224,8 @@ mod tests {
         let locks = crate::math::AxisLocks(0b100_000);
         bodies.limit(1, Limits { locks, max_speed: 0.25, ..Limits::NONE });
         for _ in 0..60 {
-            bodies.integrate_velocities(1.0 / 60.0, &Team::default());
-            bodies.integrate_positions(1.0 / 60.0, &Team::default());
+            bodies.integrate_velocities(1.0 / 60.0, &ThreadPool::default());
+            bodies.integrate_positions(1.0 / 60.0, &ThreadPool::default());
         }
         let (v, _) = bodies.rows[1].velocity();
         assert_eq!(v.x, 0.0);

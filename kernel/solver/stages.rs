@@ -15,7 +15,7 @@ use crate::contact::ContactTable;
 use crate::data::Parts;
 use crate::graph::ColorGraph;
 use crate::math::Width;
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 /// The most rows of a block where several workers share them: some microseconds of work.
@@ -33,7 +33,7 @@ pub struct Solver {
     /// The bodies; the embedder fills them and reads them back.
     pub bodies: BodyRows,
     /// The thread pool that solves. The result does not depend on its size.
-    pub team: Team,
+    pub pool: ThreadPool,
     /// Distances between bodies.
     pub distances: DistanceTable,
     rows: AllRows,
@@ -77,7 +77,7 @@ impl Solver {
     /// # Panics
     /// If a contact or body of the graph is not in the input, or a row of the input not among the [`bodies`](Self::bodies).
     pub unsafe fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
-        let Self { bodies, team, distances, rows, layers, plan, shares, deep, first_dynamic, seen } = self;
+        let Self { bodies, pool, distances, rows, layers, plan, shares, deep, first_dynamic, seen } = self;
         debug_assert!(params.is_valid(), "{params:?}");
         debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
         if cfg!(debug_assertions) {
@@ -86,16 +86,16 @@ impl Solver {
         *first_dynamic = bodies.first_dynamic;
         deep.count(input, bodies);
         bodies.blunt(params.h);
-        let workers = team.members();
+        let workers = pool.workers();
         shares.divide(workers, *first_dynamic, input, colors);
         let BodyRows { rows: body_rows, masses, motions, locks, .. } = bodies;
         let sorter = &Sorter { input, locks, shares };
-        layers.sort(colors, sorter, team);
+        layers.sort(colors, sorter, pool);
         plan.begin(if workers > 1 { BLOCK_ROWS } else { u32::MAX }, workers, AllRows::BATCHES);
         layers.plan(rows.width, sorter, plan);
         rows.make_room(plan.rows(), deep.any());
         if plan.rows().iter().sum::<u32>() >= WORTH_WAKING {
-            team.wake();
+            pool.wake();
         }
         let filling = &Filling {
             input,
@@ -110,7 +110,7 @@ impl Solver {
         let mut blocks = core::mem::take(&mut plan.blocks);
         rows.with(distances, |batches| {
             let blocks = Parts::of(&mut blocks);
-            team.run(blocks.len(), |block, _| {
+            pool.run(blocks.len(), |block, _| {
                 // SAFETY: each block is run once, and no two have a row together; bodies and contacts are only read.
                 unsafe {
                     let block = blocks.one(block);
@@ -135,7 +135,7 @@ impl Solver {
     /// Accelerations, damping, gyroscopic torque, speed limits.
     pub fn integrate_velocities(&mut self, params: &SubstepParams) {
         debug_assert!(params.is_valid(), "{params:?}");
-        self.bodies.integrate_velocities(params.h, &self.team);
+        self.bodies.integrate_velocities(params.h, &self.pool);
     }
 
     /// Lets what closes fast in this substep bounce, then applies the accumulated impulses.
@@ -159,7 +159,7 @@ impl Solver {
     /// Moves the bodies.
     pub fn integrate_positions(&mut self, params: &SubstepParams) {
         debug_assert!(params.is_valid(), "{params:?}");
-        self.bodies.integrate_positions(params.h, &self.team);
+        self.bodies.integrate_positions(params.h, &self.pool);
     }
 
     /// Takes out the velocity that the bias added, and applies friction. Split impulses, which push deep overlap out, are
@@ -191,7 +191,7 @@ impl Solver {
             self.manifold_count() == 0 || !contacts.is_empty(),
             "the rows came from these contacts"
         );
-        let Self { distances, rows, plan, layers, team, .. } = self;
+        let Self { distances, rows, plan, layers, pool, .. } = self;
         let manifolds = &contacts.manifolds_view();
         rows.with(distances, |batches| {
             for Stage { blocks, parts } in plan.stages() {
@@ -203,8 +203,8 @@ impl Solver {
                     batches[usize::from(block.batch)].store(block.rows(), items, manifolds);
                 };
                 match parts {
-                    Some(parts) => team.run_parts(parts, store),
-                    None => team.run(blocks.len(), store),
+                    Some(parts) => pool.run_parts(parts, store),
+                    None => pool.run(blocks.len(), store),
                 }
             }
         });
@@ -214,7 +214,7 @@ impl Solver {
     /// Runs all blocks that need a pass, stage by stage. Returns whether any of them found an impact.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams) -> bool {
         debug_assert!(params.is_valid(), "{params:?}");
-        let Self { bodies, distances, rows, plan, team, first_dynamic, .. } = self;
+        let Self { bodies, distances, rows, plan, pool, first_dynamic, .. } = self;
         debug_assert!(
             plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),
             "bodies have the rows that rows of constraints were built for"
@@ -236,7 +236,7 @@ impl Solver {
                     }
                 };
                 match parts {
-                    Some(parts) => team.run_parts(parts, solve),
+                    Some(parts) => pool.run_parts(parts, solve),
                     None => (0..blocks.len()).for_each(|block| solve(block, 0)),
                 }
             }

@@ -257,7 +257,7 @@ impl BodyTable {
         self.rows[id as usize]
     }
 
-    /// What a team changes of bodies at once, each of its own.
+    /// Columns that several threads change at once, each body by one thread.
     pub(crate) fn parts(&mut self) -> BodyParts<'_> {
         BodyParts {
             bodies: Parts::of(&mut self.bodies),

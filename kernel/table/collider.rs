@@ -5,11 +5,11 @@ use super::{BodyKind, BodyTable, NONE};
 use crate::data::{BitSet, IdPool, Parts, prefetch};
 use crate::math::{DIM, Pose, Rot, Vector, WorldPose, min};
 use crate::shape::{Aabb, Shape};
-use crate::team::Team;
+use crate::thread_pool::ThreadPool;
 use core::ops::{Index, IndexMut};
 use std::sync::{Mutex, PoisonError};
 
-/// Of how many bodies a member of a team refreshes the colliders at a stretch.
+/// Number of bodies in a block of the job that refreshes their colliders.
 const BLOCK: usize = 128;
 
 /// So many bodies ahead colliders are brought near.
@@ -330,13 +330,13 @@ impl ColliderTable {
         listed: &[u32],
         bodies: &BodyTable,
         fattening: Fattening,
-        team: &Team,
+        pool: &ThreadPool,
         outgrown: &mut BitSet,
     ) {
         let Self { colliders, poses, tight, fat, reaches, .. } = self;
         let (poses, tight, fat) = (Parts::of(poses), Parts::of(tight), Parts::of(fat));
         let outgrown = Mutex::new(outgrown);
-        team.each(listed.chunks(BLOCK).enumerate(), |(block, ids)| {
+        pool.each(listed.chunks(BLOCK).enumerate(), |(block, ids)| {
             // To lock for each would have the members wait for each other.
             let mut found = [NONE; BLOCK];
             let mut count = 0;

@@ -388,11 +388,11 @@ fn hash(sim: &Sim) -> u64 {
     hash
 }
 
-/// The hash of a scene by a team of so many, with all lanes that the CPU has or four.
-fn hash_of(run: fn(&mut Sim), members: usize, narrow: bool) -> u64 {
+/// The hash of a scene with a number of workers, and four lanes or all that the CPU has.
+fn hash_of(run: fn(&mut Sim), workers: usize, narrow: bool) -> u64 {
     let mut sim = Sim::new();
     sim.checked = false;
-    sim.set_workers(members);
+    sim.set_workers(workers);
     if narrow {
         sim.set_narrow();
     }
@@ -420,10 +420,10 @@ fn scenes_have_their_golden_hashes() {
 fn hashes_do_not_depend_on_workers_or_lanes() {
     for ((name, run), (_, single, double)) in SCENES.into_iter().zip(GOLDEN) {
         let golden = if IS_DOUBLE { double } else { single };
-        for (members, narrow) in [(1, true), (2, false), (4, true), (8, false)] {
+        for (workers, narrow) in [(1, true), (2, false), (4, true), (8, false)] {
             let lanes = if narrow { "four lanes" } else { "all lanes" };
-            let same = hash_of(run, members, narrow) == golden;
-            assert!(same, "{name}: {members} workers with {lanes} do not come to the golden hash");
+            let same = hash_of(run, workers, narrow) == golden;
+            assert!(same, "{name}: {workers} workers with {lanes} do not come to the golden hash");
         }
     }
 }

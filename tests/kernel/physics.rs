@@ -356,9 +356,9 @@ fn the_same_bits_with_four_lanes_and_with_as_many_as_there_are() {
 
 #[test]
 fn the_same_bits_with_any_number_of_workers() {
-    let run = |members: usize| {
+    let run = |workers: usize| {
         let mut sim = Sim::new();
-        sim.set_workers(members);
+        sim.set_workers(workers);
         sim.floor();
         pyramid(&mut sim, 40, 0.0);
         for i in 0..40 {
@@ -368,13 +368,13 @@ fn the_same_bits_with_any_number_of_workers() {
             sim.locks[id as usize] = kernel::math::AxisLocks(if i % 5 == 0 { 0b100_000 } else { 0 });
         }
         sim.steps(200);
-        assert_eq!(sim.shared > 4, members > 1, "{members} members share {} stages", sim.shared);
+        assert_eq!(sim.shared > 4, workers > 1, "{workers} workers share {} stages", sim.shared);
         let velocities = sim.bodies.velocities.iter().map(|v| format!("{v:?}"));
         sim.bodies.poses.iter().map(|p| format!("{p:?}")).chain(velocities).collect::<Vec<_>>()
     };
     let alone = run(1);
-    for members in [2, 4, 8] {
-        assert!(run(members) == alone, "{members} members");
+    for workers in [2, 4, 8] {
+        assert!(run(workers) == alone, "{workers} workers");
     }
 }
 

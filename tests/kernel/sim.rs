@@ -20,7 +20,7 @@ use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
     RestSpeed, Surface,
 };
-use kernel::team::Team;
+use kernel::thread_pool::ThreadPool;
 
 fn phase<'a>(
     bodies: &'a BodyTable,
@@ -68,7 +68,7 @@ pub struct Sim {
     /// Whether contacts are solved.
     pub builds_rows: bool,
     pub locks: Vec<AxisLocks>,
-    /// How many stages of the last step were shared by members of the team.
+    /// Number of stages that several workers shared in the last step.
     pub shared: usize,
     trees: Trees,
     proxies: Vec<(TreeKind, ProxyId)>,
@@ -86,7 +86,7 @@ pub struct Sim {
 
 impl Sim {
     pub fn new() -> Self {
-        // Members share also where there is too little to do for it to pay: that they do not matter is tested.
+        // Colours are shared from the first constraint on, although that does not pay: the tests compare numbers of workers.
         let mut solver = Solver::default();
         solver.share_from(1);
         Self {
@@ -125,9 +125,9 @@ impl Sim {
         self.solver.set_narrow(true);
     }
 
-    /// Has a team of so many update and solve contacts.
-    pub fn set_workers(&mut self, members: usize) {
-        self.solver.team = Team::new(members);
+    /// Sets the number of workers, the caller among them.
+    pub fn set_workers(&mut self, workers: usize) {
+        self.solver.pool = ThreadPool::new(workers);
     }
 
     pub fn link(&mut self) -> Link<'_> {
@@ -305,13 +305,13 @@ impl Sim {
     pub fn step(&mut self) {
         self.recycle_ids();
         self.gather();
-        // Helpers come also where it does not pay.
-        self.solver.team.wake();
+        // Threads are woken although that does not pay here.
+        self.solver.pool.wake();
         let fattening = self.fattening();
         self.colliders.refresh_pushed(&mut self.bodies, fattening, &mut self.outgrown);
         self.move_outgrown();
         let mut found = FoundPairs::default();
-        found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.solver.team);
+        found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.solver.pool);
         self.movers.clear();
         for &(a, b) in found.pairs() {
             self.link().create(a, b);
@@ -319,7 +319,7 @@ impl Sim {
         self.narrow();
         let params = self.params();
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies };
-        self.solver.team.wake();
+        self.solver.pool.wake();
         if self.builds_rows {
             // SAFETY: contacts, colours and kinds of bodies are changed through one link.
             unsafe { self.solver.build_rows(&input, &self.colors, &params) };
@@ -372,8 +372,8 @@ impl Sim {
     fn narrow(&mut self) {
         let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle, self.is_narrow);
         self.changed.clear();
-        self.solver.team.wake();
-        self.contacts.update(&phase, &self.solver.team, &mut self.scratch, &mut self.changed);
+        self.solver.pool.wake();
+        self.contacts.update(&phase, &self.solver.pool, &mut self.scratch, &mut self.changed);
         let changed = core::mem::take(&mut self.changed);
         self.link().apply(&changed, |_, _, _| {});
         self.changed = changed;
@@ -384,7 +384,7 @@ impl Sim {
         assert_eq!(lost, [], "nothing is lost");
         let fattening = self.fattening();
         let Self { colliders, listed, bodies, solver, outgrown, .. } = self;
-        colliders.refresh_listed(listed, bodies, fattening, &solver.team, outgrown);
+        colliders.refresh_listed(listed, bodies, fattening, &solver.pool, outgrown);
         self.move_outgrown();
     }
 

@@ -9,14 +9,14 @@ use kernel::math::{Pose, Vector, WorldPose};
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Fattening, Layers, Material,
 };
-use kernel::team::Team;
+use kernel::thread_pool::ThreadPool;
 
 /// Bodies in pairs, and what updates their contacts.
 pub struct Contacts {
     pub bodies: BodyTable,
     pub colliders: ColliderTable,
     pub contacts: ContactTable,
-    team: Team,
+    pool: ThreadPool,
     buffers: Vec<WorkerBuffers>,
     changed: BitSet,
 }
@@ -56,8 +56,8 @@ impl Contacts {
             };
             link.create(2 * i as u32, 2 * i as u32 + 1);
         }
-        let (team, buffers) = (Team::default(), Vec::new());
-        Self { bodies, colliders, contacts, team, buffers, changed: BitSet::default() }
+        let (pool, buffers) = (ThreadPool::default(), Vec::new());
+        Self { bodies, colliders, contacts, pool, buffers, changed: BitSet::default() }
     }
 
     /// Moves every second body a little.
@@ -82,6 +82,6 @@ impl Contacts {
             narrow: false,
         };
         self.changed.clear();
-        self.contacts.update(&input, &self.team, &mut self.buffers, &mut self.changed);
+        self.contacts.update(&input, &self.pool, &mut self.buffers, &mut self.changed);
     }
 }

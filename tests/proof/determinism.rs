@@ -134,7 +134,7 @@ fn the_number_of_workers_does_not_matter() {
     };
     let alone = run(1);
     for workers in [0, 2, 3, 8] {
-        assert_same_bits(&alone, &run(workers), "by a team");
+        assert_same_bits(&alone, &run(workers), "by a pool");
     }
 }
 
@@ -184,6 +184,6 @@ fn the_number_of_workers_does_not_matter_to_what_the_app_changes() {
     };
     let alone = run(1);
     for workers in [2, 4] {
-        assert_same_bits(&alone, &run(workers), "by a team");
+        assert_same_bits(&alone, &run(workers), "by a pool");
     }
 }

@@ -95,7 +95,7 @@ fn main() {
             narrow: false,
         };
         changed.clear();
-        link.contacts.update(&input, &solver.team, &mut workers, &mut changed);
+        link.contacts.update(&input, &solver.pool, &mut workers, &mut changed);
         link.apply(&changed, |_, _, _| {});
         // SAFETY: contacts, colours and bodies belong together: `link` has kept them.
         unsafe { solver.build_rows(&RowInput { contacts: &contacts, bodies: &bodies }, &colors, &params) };
@@ -104,7 +104,7 @@ fn main() {
         solver.store_impulses(&mut contacts);
         let lost = solver.finish(&mut bodies, &listed, &mut frames, DT);
         assert!(lost.is_empty(), "all results are finite");
-        colliders.refresh_listed(&listed, &bodies, FATTENING, &solver.team, &mut outgrown);
+        colliders.refresh_listed(&listed, &bodies, FATTENING, &solver.pool, &mut outgrown);
         if step % 10 == 0 {
             println!(
                 "{:.2} s: {:.3} m",

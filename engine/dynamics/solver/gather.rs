@@ -316,8 +316,8 @@ type RestInput = (Option<&'static SleepThreshold>, Has<SleepingDisabled>, Option
 
 /// Reads pose and velocity of every awake body, before anything is computed from them, and what counts as at rest.
 ///
-/// The team looks for bodies of which components and table differ; it only reads. The bodies it finds are then read in
-/// the order of ids.
+/// The thread pool finds the bodies whose components differ from the table, without writing. Those bodies are then read
+/// in the order of ids.
 pub(crate) fn read_awake(
     query: Query<(StateInput, RestInput)>,
     (unit, threads): (Res<PhysicsLengthUnit>, Res<Threads>),
@@ -336,7 +336,7 @@ pub(crate) fn read_awake(
     } else {
         let differs = Differs { bodies: &tables.bodies, unit, since };
         for (bodies, rest) in query.contiguous_iter().expect(IN_TABLES) {
-            threads.team.each_into(&mut found, pieces(bodies.id.len()), |found, rows| {
+            threads.pool.each_into(&mut found, pieces(bodies.id.len()), |found, rows| {
                 differs.among(&bodies, &rest, rows, found);
             });
         }
@@ -417,8 +417,8 @@ fn rest_speed(threshold: Option<&SleepThreshold>, sleepless: bool, unit: f32) ->
 
 /// Gives every awake body its row and fills it.
 ///
-/// The team walks tables where most bodies are awake; where most sleep, the caller looks entities up. Rows are written by
-/// id either way, so the order of entities does not matter.
+/// The thread pool walks whole tables of components where most bodies are awake. Where most sleep, the caller looks up
+/// entities. Rows are written by id either way, so the order of entities does not matter.
 pub(crate) fn gather_bodies(
     query: Query<(BodyInput, MotionInput)>,
     (gravity, threads): (Res<Gravity>, Res<Threads>),
@@ -433,7 +433,7 @@ pub(crate) fn gather_bodies(
     let kinematic = table.assign_rows(listed);
     let count = listed.len();
     let kernel = &mut solver.kernel;
-    kernel.team = threads.team.clone();
+    kernel.pool = threads.pool.clone();
     kernel.begin_step(kinematic, count - kinematic);
     let first_dynamic = kernel.bodies.first_dynamic() as usize;
     let filler = kernel.bodies.filler();
@@ -448,7 +448,7 @@ pub(crate) fn gather_bodies(
     } else {
         for (bodies, options) in query.contiguous_iter().expect(IN_TABLES) {
             let is_plain = options.is_none();
-            threads.team.each_into(&mut gathered, pieces(bodies.id.len()), |gathered, rows| {
+            threads.pool.each_into(&mut gathered, pieces(bodies.id.len()), |gathered, rows| {
                 for i in rows {
                     let options = if is_plain { MotionInputItem::NONE } else { options.row(i) };
                     gather.body(&bodies.row(i), &options, gathered);
@@ -477,7 +477,7 @@ pub(crate) fn gather_bodies(
     diagnostics.prepare_constraints += start.elapsed();
 }
 
-/// What a member of the team gathered beside the rows it filled.
+/// What one worker gathered beside the rows it filled.
 #[derive(Default)]
 pub(crate) struct Gathered {
     /// How many rows.

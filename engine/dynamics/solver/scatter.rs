@@ -195,7 +195,7 @@ fn keep_in_place(id: u32, solver: &mut Solver, bodies: &Bodies, dt: f32) -> Opti
     Some((id, if rests { body.sleep_timer + dt } else { 0.0 }))
 }
 
-/// Writes the bodies of one table of components, by the team.
+/// Writes the bodies of one table of components, by all workers.
 #[expect(clippy::type_complexity, reason = "an item of a query")]
 fn put_table(
     (mut ids, position, rotation, linear, angular, timer): (
@@ -220,7 +220,7 @@ fn put_table(
         let timer = timer.as_mut().map(Column::cut);
         Some((ids, position.cut(), rotation.cut(), linear.cut(), angular.cut(), timer))
     });
-    solver.team.each(pieces, |(ids, position, rotation, linear, angular, timer)| {
+    solver.pool.each(pieces, |(ids, position, rotation, linear, angular, timer)| {
         let poses = position.slots().zip(rotation.slots());
         let velocities = linear.slots().zip(angular.slots());
         let mut timers = timer.map(Column::slots);

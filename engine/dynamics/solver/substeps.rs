@@ -33,9 +33,9 @@ pub(crate) struct StepSolver {
     pub(crate) substeps: u32,
 }
 
-/// Wakes helpers before there is work for them, if there was much in the last step: to wake takes a processor long.
-pub(crate) fn call_team(mut threads: ResMut<Threads>, contacts: Res<Contacts>, workers: Res<WorkerCount>) {
-    threads.call(contacts.table.active_len(), workers.0, || workers.resolve());
+/// Wakes the threads at the start of a step if the last one had many contacts: waking takes longer than most stages.
+pub(crate) fn wake_workers(mut threads: ResMut<Threads>, contacts: Res<Contacts>, workers: Res<WorkerCount>) {
+    threads.wake(contacts.table.active_len(), workers.0, || workers.resolve());
 }
 
 impl Default for StepSolver {

@@ -21,10 +21,10 @@ pub(super) enum Idle {
 #[cfg(not(all(loom, test)))]
 mod real {
     use super::Idle;
-    pub(in crate::team) use core::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
+    pub(in crate::thread_pool) use core::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
     use std::cell::UnsafeCell;
-    pub(in crate::team) use std::sync::{Mutex, MutexGuard};
-    pub(in crate::team) use std::thread::{Builder, JoinHandle, park};
+    pub(in crate::thread_pool) use std::sync::{Mutex, MutexGuard};
+    pub(in crate::thread_pool) use std::thread::{Builder, JoinHandle, park};
     use std::time::{Duration, Instant};
 
     /// An idle thread spins for this time before it starts to yield its core. Longer takes cores from other programs, shorter
@@ -37,13 +37,13 @@ mod real {
 
     /// A value that several threads read and write.
     #[derive(Debug, Default)]
-    pub(in crate::team) struct SharedCell<T>(UnsafeCell<T>);
+    pub(in crate::thread_pool) struct SharedCell<T>(UnsafeCell<T>);
 
     impl<T: Copy> SharedCell<T> {
         /// # Safety
         /// No other thread writes it meanwhile.
         #[inline]
-        pub(in crate::team) unsafe fn read(&self) -> T {
+        pub(in crate::thread_pool) unsafe fn read(&self) -> T {
             // SAFETY: by the contract.
             unsafe { *self.0.get() }
         }
@@ -51,7 +51,7 @@ mod real {
         /// # Safety
         /// No other thread reads or writes it meanwhile.
         #[inline]
-        pub(in crate::team) unsafe fn write(&self, value: T) {
+        pub(in crate::thread_pool) unsafe fn write(&self, value: T) {
             // SAFETY: by the contract.
             unsafe { *self.0.get() = value };
         }
@@ -59,14 +59,14 @@ mod real {
 
     /// Waits for a moment in a loop; `rounds` counts its rounds.
     #[inline]
-    pub(in crate::team) fn pause(rounds: u32) {
+    pub(in crate::thread_pool) fn pause(rounds: u32) {
         // The thread that runs the last block may have lost its core.
         if rounds.is_multiple_of(1 << 10) { std::thread::yield_now() } else { core::hint::spin_loop() }
     }
 
     /// Measures for how long a thread has had no block.
     #[derive(Default)]
-    pub(in crate::team) struct IdleTimer {
+    pub(in crate::thread_pool) struct IdleTimer {
         since: Option<Instant>,
         rounds: u32,
     }
@@ -74,13 +74,13 @@ mod real {
     impl IdleTimer {
         /// The thread had a block.
         #[inline]
-        pub(in crate::team) fn reset(&mut self) {
+        pub(in crate::thread_pool) fn reset(&mut self) {
             self.since = None;
         }
 
         /// The thread found no block.
         #[inline]
-        pub(in crate::team) fn tick(&mut self) -> Idle {
+        pub(in crate::thread_pool) fn tick(&mut self) -> Idle {
             self.rounds = self.rounds.wrapping_add(1);
             core::hint::spin_loop();
             if !self.rounds.is_multiple_of(64) {
@@ -102,44 +102,44 @@ mod real {
 #[cfg(all(loom, test))]
 mod modelled {
     use super::Idle;
-    pub(in crate::team) use loom::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
-    pub(in crate::team) use loom::sync::{Mutex, MutexGuard};
-    pub(in crate::team) use loom::thread::{Builder, JoinHandle, park};
+    pub(in crate::thread_pool) use loom::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
+    pub(in crate::thread_pool) use loom::sync::{Mutex, MutexGuard};
+    pub(in crate::thread_pool) use loom::thread::{Builder, JoinHandle, park};
 
     /// A value that several threads read and write. Loom panics if two conflicting accesses are not ordered.
     #[derive(Debug, Default)]
-    pub(in crate::team) struct SharedCell<T>(loom::cell::UnsafeCell<T>);
+    pub(in crate::thread_pool) struct SharedCell<T>(loom::cell::UnsafeCell<T>);
 
     impl<T: Copy> SharedCell<T> {
         /// # Safety
         /// No other thread writes it meanwhile.
-        pub(in crate::team) unsafe fn read(&self) -> T {
+        pub(in crate::thread_pool) unsafe fn read(&self) -> T {
             // SAFETY: by the contract.
             self.0.with(|value| unsafe { *value })
         }
 
         /// # Safety
         /// No other thread reads or writes it meanwhile.
-        pub(in crate::team) unsafe fn write(&self, new: T) {
+        pub(in crate::thread_pool) unsafe fn write(&self, new: T) {
             // SAFETY: by the contract.
             self.0.with_mut(|value| unsafe { *value = new });
         }
     }
 
-    pub(in crate::team) fn pause(_: u32) {
+    pub(in crate::thread_pool) fn pause(_: u32) {
         loom::thread::yield_now();
     }
 
     /// A thread parks after three rounds without a block: time is not modelled.
     #[derive(Default)]
-    pub(in crate::team) struct IdleTimer(u32);
+    pub(in crate::thread_pool) struct IdleTimer(u32);
 
     impl IdleTimer {
-        pub(in crate::team) fn reset(&mut self) {
+        pub(in crate::thread_pool) fn reset(&mut self) {
             self.0 = 0;
         }
 
-        pub(in crate::team) fn tick(&mut self) -> Idle {
+        pub(in crate::thread_pool) fn tick(&mut self) -> Idle {
             self.0 += 1;
             loom::thread::yield_now();
             match self.0 {

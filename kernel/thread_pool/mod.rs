@@ -75,7 +75,7 @@ use sync::{Builder, JoinHandle, Mutex};
 ///
 /// Clones share the threads. While one clone runs a job, another runs its blocks alone. The threads end with the last clone.
 #[derive(Clone, Debug, Default)]
-pub struct Team(Option<Arc<Threads>>);
+pub struct ThreadPool(Option<Arc<Threads>>);
 
 /// Returns the time in nanoseconds since a fixed moment. The kernel has no clock of its own.
 pub type Clock = fn() -> u64;
@@ -90,7 +90,7 @@ struct Threads {
     shared: AtomicU64,
 }
 
-impl Team {
+impl ThreadPool {
     /// A pool of `workers`, the caller among them: with 1 or 0 there are no threads. If the system refuses a thread, the pool
     /// is smaller.
     pub fn new(workers: usize) -> Self {
@@ -110,7 +110,7 @@ impl Team {
     }
 
     /// The number of workers, the caller among them.
-    pub fn members(&self) -> usize {
+    pub fn workers(&self) -> usize {
         1 + self.0.as_ref().map_or(0, |threads| threads.handles.len())
     }
 
@@ -153,7 +153,7 @@ impl Team {
     /// If a block does.
     pub fn run(&self, blocks: usize, job: impl Fn(usize, usize) + Sync) {
         let count = u32::try_from(blocks).expect("a block is many bytes of memory");
-        let workers = self.members() as u64;
+        let workers = self.workers() as u64;
         self.run_shares(count, (1..=workers).map(|k| (u64::from(count) * k / workers) as u32), job);
     }
 
@@ -166,7 +166,7 @@ impl Team {
     pub fn run_parts(&self, ends: &[u32], job: impl Fn(usize, usize) + Sync) {
         let blocks = ends.last().copied().unwrap_or(0);
         debug_assert!(ends.is_sorted(), "parts follow one another: {ends:?}");
-        if ends.len() != self.members() {
+        if ends.len() != self.workers() {
             return self.run(blocks as usize, job);
         }
         self.run_shares(blocks, ends.iter().copied(), job);
@@ -190,13 +190,13 @@ impl Team {
     }
 }
 
-impl Team {
+impl ThreadPool {
     /// Runs `job` for each of some items. The worker of each item is not determined.
     ///
     /// # Panics
     /// If a job or the iterator does.
     pub fn each<I: Iterator + Send>(&self, items: I, job: impl Fn(I::Item) + Sync) {
-        self.each_into(&mut vec![(); self.members()], items, |(), item| job(item));
+        self.each_into(&mut vec![(); self.workers()], items, |(), item| job(item));
     }
 
     /// As [`each`](Self::each), where each worker adds to a result of its own. `results` is extended to the number of workers;
@@ -210,9 +210,9 @@ impl Team {
         items: I,
         job: impl Fn(&mut R, I::Item) + Sync,
     ) {
-        results.resize_with(results.len().max(self.members()), R::default);
+        results.resize_with(results.len().max(self.workers()), R::default);
         let (items, results) = (Mutex::new(items), Mutex::new(results.iter_mut()));
-        self.run(self.members(), |_, _| {
+        self.run(self.workers(), |_, _| {
             let Some(result) = locked(&results).next() else { return };
             loop {
                 let item = locked(&items).next();

@@ -3,7 +3,7 @@
 
 #![expect(unsafe_code, reason = "cells whose use loom checks")]
 
-use super::Team;
+use super::ThreadPool;
 use super::sync::SharedCell;
 use loom::{cell::UnsafeCell, model::Builder};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -43,11 +43,11 @@ impl Cells {
 #[test]
 fn blocks_run_once_and_are_seen() {
     model(3, || {
-        let team = Team::new(2);
-        team.wake();
+        let pool = ThreadPool::new(2);
+        pool.wake();
         for blocks in [3, 2] {
             let cells = Cells::default();
-            team.run(blocks, |block, _| cells.add(block));
+            pool.run(blocks, |block, _| cells.add(block));
             cells.are(&[1, 1, u32::from(blocks == 3)]);
         }
     });
@@ -57,11 +57,11 @@ fn blocks_run_once_and_are_seen() {
 #[test]
 fn threads_claim_from_each_other() {
     model(2, || {
-        let team = Team::new(3);
-        team.wake();
+        let pool = ThreadPool::new(3);
+        pool.wake();
         let cells = Cells::default();
         // All blocks begin in the queue of the first thread.
-        team.run_parts(&[0, 3, 3], |block, _| cells.add(block));
+        pool.run_parts(&[0, 3, 3], |block, _| cells.add(block));
         cells.are(&[1, 1, 1]);
     });
 }
@@ -71,10 +71,10 @@ fn threads_claim_from_each_other() {
 #[test]
 fn no_wake_up_is_lost() {
     model(3, || {
-        let team = Team::new(2);
+        let pool = ThreadPool::new(2);
         for _ in 0..2 {
-            team.wake();
-            let state = &team.0.as_ref().expect("it has a thread").state;
+            pool.wake();
+            let state = &pool.0.as_ref().expect("it has a thread").state;
             while state.is_any_awake() {
                 loom::thread::yield_now();
             }
@@ -87,10 +87,10 @@ fn no_wake_up_is_lost() {
 fn threads_end_with_the_pool() {
     for calls in 0..3 {
         model(3, move || {
-            let team = Team::new(2);
-            (0..calls).for_each(|_| team.wake());
+            let pool = ThreadPool::new(2);
+            (0..calls).for_each(|_| pool.wake());
             if calls == 2 {
-                team.rest();
+                pool.rest();
             }
         });
     }
@@ -100,11 +100,11 @@ fn threads_end_with_the_pool() {
 #[test]
 fn a_panic_reaches_the_caller() {
     model(2, || {
-        let team = Team::new(2);
-        team.wake();
+        let pool = ThreadPool::new(2);
+        pool.wake();
         let cells = Cells::default();
         let result = catch_unwind(AssertUnwindSafe(|| {
-            team.run(2, |block, _| {
+            pool.run(2, |block, _| {
                 cells.add(block);
                 if block == 1 {
                     resume_unwind(Box::new("on purpose"));
@@ -114,7 +114,7 @@ fn a_panic_reaches_the_caller() {
         assert_eq!(result.unwrap_err().downcast_ref::<&str>(), Some(&"on purpose"));
         cells.are(&[1, 1]);
         let cells = Cells::default();
-        team.run(2, |block, _| cells.add(block));
+        pool.run(2, |block, _| cells.add(block));
         cells.are(&[1, 1]);
     });
 }
@@ -123,16 +123,16 @@ fn a_panic_reaches_the_caller() {
 #[test]
 fn clones_do_not_mix() {
     model(2, || {
-        let team = Team::new(2);
-        team.wake();
-        let clone = team.clone();
-        let run = |team: &Team| {
+        let pool = ThreadPool::new(2);
+        pool.wake();
+        let clone = pool.clone();
+        let run = |pool: &ThreadPool| {
             let cells = Cells::default();
-            team.run(2, |block, _| cells.add(block));
+            pool.run(2, |block, _| cells.add(block));
             cells.are(&[1, 1]);
         };
         let other = loom::thread::spawn(move || run(&clone));
-        run(&team);
+        run(&pool);
         other.join().expect("it did not panic");
     });
 }
