@@ -5,6 +5,7 @@ use super::{BodyRow, RowView, Solver};
 use crate::data::Parts;
 use crate::math::{F32x4, Ids, Lane, Rot, Vector, WorldPose};
 use crate::table::{BodyParts, BodyTable, Velocity};
+use crate::thread_pool::ThreadPool;
 use std::sync::{Mutex, PoisonError};
 
 /// Number of bodies in a block of the job, a multiple of the widest lanes. More leaves workers idle at the end, fewer cost
@@ -24,6 +25,7 @@ impl Solver {
         listed: &[u32],
         frames: &mut [WorldPose],
         dt: f32,
+        pool: &ThreadPool,
     ) -> Vec<u32> {
         debug_assert!(dt.is_finite() && dt >= 0.0, "a step of {dt} s");
         let is_known = |id: &u32| (*id as usize) < frames.len() && bodies.ids.is_live(*id);
@@ -37,7 +39,7 @@ impl Solver {
             dt,
             lost: Mutex::new(Vec::new()),
         };
-        self.pool.each(listed.chunks(BLOCK).enumerate(), |(block, ids)| {
+        pool.each(listed.chunks(BLOCK).enumerate(), |(block, ids)| {
             let first = (1 + block * BLOCK) as u32;
             let (fours, rest) = ids.as_chunks();
             for (i, ids) in fours.iter().enumerate() {

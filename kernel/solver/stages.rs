@@ -26,14 +26,14 @@ const WORTH_WAKING: u32 = 256;
 
 /// The bodies and rows of one step.
 ///
+/// The stages run in the thread pool that they are given. The result does not depend on the number of its workers.
+///
 /// The order within every sweep: overflow contacts one by one, then the colours from low to high, so
 /// that contacts with static and kinematic partners come last and win.
 #[derive(Clone, Debug, Default)]
 pub struct Solver {
     /// The bodies; the embedder fills them and reads them back.
     pub bodies: BodyRows,
-    /// The thread pool that solves. The result does not depend on its size.
-    pub pool: ThreadPool,
     /// Distances between bodies.
     pub distances: DistanceTable,
     rows: AllRows,
@@ -76,8 +76,14 @@ impl Solver {
     ///
     /// # Panics
     /// If a contact or body of the graph is not in the input, or a row of the input not among the [`bodies`](Self::bodies).
-    pub unsafe fn build_rows(&mut self, input: &RowInput, colors: &ColorGraph, params: &SubstepParams) {
-        let Self { bodies, pool, distances, rows, layers, plan, shares, deep, first_dynamic, seen } = self;
+    pub unsafe fn build_rows(
+        &mut self,
+        input: &RowInput,
+        colors: &ColorGraph,
+        params: &SubstepParams,
+        pool: &ThreadPool,
+    ) {
+        let Self { bodies, distances, rows, layers, plan, shares, deep, first_dynamic, seen } = self;
         debug_assert!(params.is_valid(), "{params:?}");
         debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
         if cfg!(debug_assertions) {
@@ -133,65 +139,65 @@ impl Solver {
     }
 
     /// Accelerations, damping, gyroscopic torque, speed limits.
-    pub fn integrate_velocities(&mut self, params: &SubstepParams) {
+    pub fn integrate_velocities(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
-        self.bodies.integrate_velocities(params.h, &self.pool);
+        self.bodies.integrate_velocities(params.h, pool);
     }
 
     /// Lets what closes fast in this substep bounce, then applies the accumulated impulses.
     ///
     /// An impact runs on through a row of bodies, as in Newton's cradle: two bodies further with each sweep.
-    pub fn warm_start(&mut self, params: &SubstepParams) {
+    pub fn warm_start(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         if self.plan.blocks.iter().any(|block| block.passes.has(Pass::Impact)) {
             let mut sweeps = 0;
-            while sweeps < IMPACT_SWEEPS && self.sweep(Pass::Impact, params) {
+            while sweeps < IMPACT_SWEEPS && self.sweep(Pass::Impact, params, pool) {
                 sweeps += 1;
             }
         }
-        self.sweep(Pass::WarmStart, params);
+        self.sweep(Pass::WarmStart, params, pool);
     }
 
     /// Non-penetration with soft bias.
-    pub fn solve(&mut self, params: &SubstepParams) {
-        self.sweep(Pass::Solve, params);
+    pub fn solve(&mut self, params: &SubstepParams, pool: &ThreadPool) {
+        self.sweep(Pass::Solve, params, pool);
     }
 
     /// Moves the bodies.
-    pub fn integrate_positions(&mut self, params: &SubstepParams) {
+    pub fn integrate_positions(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
-        self.bodies.integrate_positions(params.h, &self.pool);
+        self.bodies.integrate_positions(params.h, pool);
     }
 
     /// Takes out the velocity that the bias added, and applies friction. Split impulses, which push deep overlap out, are
     /// taken out of the velocities first.
-    pub fn relax(&mut self, params: &SubstepParams) {
+    pub fn relax(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         if self.plan.blocks.iter().any(|block| block.passes.has(Pass::UndoSplit)) {
-            self.sweep(Pass::UndoSplit, params);
+            self.sweep(Pass::UndoSplit, params, pool);
         }
-        self.sweep(Pass::Relax, params);
+        self.sweep(Pass::Relax, params, pool);
     }
 
     /// One whole substep.
-    pub fn substep(&mut self, params: &SubstepParams) {
-        self.integrate_velocities(params);
-        self.warm_start(params);
-        self.solve(params);
-        self.integrate_positions(params);
-        self.relax(params);
+    pub fn substep(&mut self, params: &SubstepParams, pool: &ThreadPool) {
+        self.integrate_velocities(params, pool);
+        self.warm_start(params, pool);
+        self.solve(params, pool);
+        self.integrate_positions(params, pool);
+        self.relax(params, pool);
     }
 
     /// Makes what hit fast enough bounce; once, after the last substep.
-    pub fn restitute(&mut self, params: &SubstepParams) {
-        self.sweep(Pass::Restitute, params);
+    pub fn restitute(&mut self, params: &SubstepParams, pool: &ThreadPool) {
+        self.sweep(Pass::Restitute, params, pool);
     }
 
     /// Puts the impulses back into manifolds and distances, for the next step to start from.
-    pub fn store_impulses(&mut self, contacts: &mut ContactTable) {
+    pub fn store_impulses(&mut self, contacts: &mut ContactTable, pool: &ThreadPool) {
         debug_assert!(
             self.manifold_count() == 0 || !contacts.is_empty(),
             "the rows came from these contacts"
         );
-        let Self { distances, rows, plan, layers, pool, .. } = self;
+        let Self { distances, rows, plan, layers, .. } = self;
         let manifolds = &contacts.manifolds_view();
         rows.with(distances, |batches| {
             for Stage { blocks, parts } in plan.stages() {
@@ -212,9 +218,9 @@ impl Solver {
     }
 
     /// Runs all blocks that need a pass, stage by stage. Returns whether any of them found an impact.
-    fn sweep(&mut self, pass: Pass, params: &SubstepParams) -> bool {
+    fn sweep(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) -> bool {
         debug_assert!(params.is_valid(), "{params:?}");
-        let Self { bodies, distances, rows, plan, pool, first_dynamic, .. } = self;
+        let Self { bodies, distances, rows, plan, first_dynamic, .. } = self;
         debug_assert!(
             plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),
             "bodies have the rows that rows of constraints were built for"

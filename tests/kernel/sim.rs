@@ -75,6 +75,7 @@ pub struct Sim {
     masses: Vec<(f32, InvInertia)>,
     movers: Movers,
     solver: Solver,
+    pool: ThreadPool,
     scratch: Vec<WorkerBuffers>,
     is_narrow: bool,
     scan: SleepScan,
@@ -109,6 +110,7 @@ impl Sim {
             masses: Vec::new(),
             movers: Movers::default(),
             solver,
+            pool: ThreadPool::default(),
             scratch: Vec::new(),
             is_narrow: false,
             scan: SleepScan::new(),
@@ -127,7 +129,7 @@ impl Sim {
 
     /// Sets the number of workers, the caller among them.
     pub fn set_workers(&mut self, workers: usize) {
-        self.solver.pool = ThreadPool::new(workers);
+        self.pool = ThreadPool::new(workers);
     }
 
     pub fn link(&mut self) -> Link<'_> {
@@ -286,7 +288,7 @@ impl Sim {
         let params = self.params();
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies };
         // SAFETY: debug builds refuse colours that do not fit.
-        unsafe { self.solver.build_rows(&input, &other.colors, &params) };
+        unsafe { self.solver.build_rows(&input, &other.colors, &params, &self.pool) };
         self.solver.shared_stages()
     }
 
@@ -306,12 +308,12 @@ impl Sim {
         self.recycle_ids();
         self.gather();
         // Threads are woken although that does not pay here.
-        self.solver.pool.wake();
+        self.pool.wake();
         let fattening = self.fattening();
         self.colliders.refresh_pushed(&mut self.bodies, fattening, &mut self.outgrown);
         self.move_outgrown();
         let mut found = FoundPairs::default();
-        found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.solver.pool);
+        found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.pool);
         self.movers.clear();
         for &(a, b) in found.pairs() {
             self.link().create(a, b);
@@ -319,17 +321,17 @@ impl Sim {
         self.narrow();
         let params = self.params();
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies };
-        self.solver.pool.wake();
+        self.pool.wake();
         if self.builds_rows {
             // SAFETY: contacts, colours and kinds of bodies are changed through one link.
-            unsafe { self.solver.build_rows(&input, &self.colors, &params) };
+            unsafe { self.solver.build_rows(&input, &self.colors, &params, &self.pool) };
             self.shared = self.solver.shared_stages();
         }
         for _ in 0..self.substeps {
-            self.solver.substep(&params);
+            self.solver.substep(&params, &self.pool);
         }
-        self.solver.restitute(&params);
-        self.solver.store_impulses(&mut self.contacts);
+        self.solver.restitute(&params, &self.pool);
+        self.solver.store_impulses(&mut self.contacts, &self.pool);
         self.scatter();
         if self.sleeping {
             self.sleep();
@@ -372,19 +374,19 @@ impl Sim {
     fn narrow(&mut self) {
         let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle, self.is_narrow);
         self.changed.clear();
-        self.solver.pool.wake();
-        self.contacts.update(&phase, &self.solver.pool, &mut self.scratch, &mut self.changed);
+        self.pool.wake();
+        self.contacts.update(&phase, &self.pool, &mut self.scratch, &mut self.changed);
         let changed = core::mem::take(&mut self.changed);
         self.link().apply(&changed, |_, _, _| {});
         self.changed = changed;
     }
 
     fn scatter(&mut self) {
-        let lost = self.solver.finish(&mut self.bodies, &self.listed, &mut self.frames, self.dt);
+        let lost = self.solver.finish(&mut self.bodies, &self.listed, &mut self.frames, self.dt, &self.pool);
         assert_eq!(lost, [], "nothing is lost");
         let fattening = self.fattening();
-        let Self { colliders, listed, bodies, solver, outgrown, .. } = self;
-        colliders.refresh_listed(listed, bodies, fattening, &solver.pool, outgrown);
+        let Self { colliders, listed, bodies, pool, outgrown, .. } = self;
+        colliders.refresh_listed(listed, bodies, fattening, pool, outgrown);
         self.move_outgrown();
     }
 

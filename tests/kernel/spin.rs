@@ -5,6 +5,7 @@ use crate::kernel;
 use kernel::math::{Angular, InvInertia, Rot, Vector};
 use kernel::shape::{Cuboid, Hull, Shape};
 use kernel::solver::{BodyRow, MassRow, Motion, Softness, Solver, SubstepParams};
+use kernel::thread_pool::ThreadPool;
 use kernel::table::BodyKind;
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -60,7 +61,7 @@ impl Spinner {
         rows.motions[1] = Motion { angular_acceleration, ..Motion::FREE };
         rows.spin(1, local, self.rotation);
         for _ in 0..substeps {
-            self.solver.substep(&params);
+            self.solver.substep(&params, &ThreadPool::default());
         }
         let row = &self.solver.bodies.rows[1];
         self.w = row.velocity().1;

@@ -16,6 +16,7 @@ use avian_kernel3d::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
     Surface,
 };
+use avian_kernel3d::thread_pool::ThreadPool;
 
 const DT: f32 = 1.0 / 60.0;
 const SUBSTEPS: u32 = 4;
@@ -45,6 +46,7 @@ fn main() {
     let (mut bodies, mut colliders) = (BodyTable::default(), ColliderTable::default());
     let (mut contacts, mut colors, mut solver) =
         (ContactTable::default(), ColorGraph::new(), Solver::default());
+    let pool = ThreadPool::new(2);
     let floor = add(&mut bodies, &mut colliders, BodyKind::Static, Vector { x: 10.0, y: 0.5, z: 10.0 }, -0.5);
     let half = Vector::ONE * 0.5;
     let falling = add(&mut bodies, &mut colliders, BodyKind::Dynamic, half, 3.0);
@@ -95,16 +97,16 @@ fn main() {
             narrow: false,
         };
         changed.clear();
-        link.contacts.update(&input, &solver.pool, &mut workers, &mut changed);
+        link.contacts.update(&input, &pool, &mut workers, &mut changed);
         link.apply(&changed, |_, _, _| {});
         // SAFETY: contacts, colours and bodies belong together: `link` has kept them.
-        unsafe { solver.build_rows(&RowInput { contacts: &contacts, bodies: &bodies }, &colors, &params) };
-        (0..SUBSTEPS).for_each(|_| solver.substep(&params));
-        solver.restitute(&params);
-        solver.store_impulses(&mut contacts);
-        let lost = solver.finish(&mut bodies, &listed, &mut frames, DT);
+        unsafe { solver.build_rows(&RowInput { contacts: &contacts, bodies: &bodies }, &colors, &params, &pool) };
+        (0..SUBSTEPS).for_each(|_| solver.substep(&params, &pool));
+        solver.restitute(&params, &pool);
+        solver.store_impulses(&mut contacts, &pool);
+        let lost = solver.finish(&mut bodies, &listed, &mut frames, DT, &pool);
         assert!(lost.is_empty(), "all results are finite");
-        colliders.refresh_listed(&listed, &bodies, FATTENING, &solver.pool, &mut outgrown);
+        colliders.refresh_listed(&listed, &bodies, FATTENING, &pool, &mut outgrown);
         if step % 10 == 0 {
             println!(
                 "{:.2} s: {:.3} m",

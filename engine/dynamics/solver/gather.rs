@@ -433,7 +433,6 @@ pub(crate) fn gather_bodies(
     let kinematic = table.assign_rows(listed);
     let count = listed.len();
     let kernel = &mut solver.kernel;
-    kernel.pool = threads.pool.clone();
     kernel.begin_step(kinematic, count - kinematic);
     let first_dynamic = kernel.bodies.first_dynamic() as usize;
     let filler = kernel.bodies.filler();

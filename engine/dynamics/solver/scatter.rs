@@ -10,6 +10,7 @@ use kernel::{
     math::WorldPose,
     solver::{BodyRows, Solver},
     table::{BodyPose, NONE},
+    thread_pool::ThreadPool,
 };
 
 use crate::{
@@ -26,6 +27,7 @@ use crate::{
     physics_transform::{Position, Rotation, pose_from_kernel, said_pose, world_pose},
     scan::{IN_TABLES, Since},
     schedule::Physics,
+    threads::Threads,
 };
 
 /// What a body's motion is written to.
@@ -125,7 +127,7 @@ pub(crate) fn keep_moved_within(
 /// must not spread.
 pub(crate) fn finish_bodies(
     own: Query<&BodyId, (With<CustomPositionIntegration>, Without<RigidBodyDisabled>)>,
-    mut solver: ResMut<StepSolver>,
+    (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
     time: Res<Time<Physics>>,
     mut bodies: ResMut<Bodies>,
     mut diagnostics: ResMut<SolverDiagnostics>,
@@ -136,7 +138,7 @@ pub(crate) fn finish_bodies(
     let kept = own.iter().filter_map(|id| keep_in_place(id.0, &mut solver.kernel, &bodies, dt));
     let kept: Vec<_> = kept.collect();
     let Bodies { table, seen, listed, entities, .. } = &mut *bodies;
-    let mut lost = solver.kernel.finish(table, listed, seen, dt);
+    let mut lost = solver.kernel.finish(table, listed, seen, dt, &threads.pool);
     for (id, timer) in kept {
         table[id].sleep_timer = timer;
     }
@@ -152,7 +154,7 @@ pub(crate) fn finish_bodies(
 /// Writes pose and velocity of each awake body where they changed.
 pub(crate) fn scatter_bodies(
     mut outputs: Query<Output, Without<RigidBodyDisabled>>,
-    solver: Res<StepSolver>,
+    (solver, threads): (Res<StepSolver>, Res<Threads>),
     mut bodies: ResMut<Bodies>,
     system: SystemChangeTick,
     mut diagnostics: ResMut<SolverDiagnostics>,
@@ -174,7 +176,7 @@ pub(crate) fn scatter_bodies(
         }
     } else {
         for table in outputs.contiguous_iter_mut().expect(IN_TABLES) {
-            put_table(table, &results, &solver.kernel);
+            put_table(table, &results, &threads.pool);
         }
     }
     bodies.some = some;
@@ -207,7 +209,7 @@ fn put_table(
         Option<ContiguousMut<SleepTimer>>,
     ),
     results: &Results,
-    solver: &Solver,
+    pool: &ThreadPool,
 ) {
     let mut ticks = (None, None, None, None, None);
     let mut position = Column::new(position, &mut ticks.0);
@@ -220,7 +222,7 @@ fn put_table(
         let timer = timer.as_mut().map(Column::cut);
         Some((ids, position.cut(), rotation.cut(), linear.cut(), angular.cut(), timer))
     });
-    solver.pool.each(pieces, |(ids, position, rotation, linear, angular, timer)| {
+    pool.each(pieces, |(ids, position, rotation, linear, angular, timer)| {
         let poses = position.slots().zip(rotation.slots());
         let velocities = linear.slots().zip(angular.slots());
         let mut timers = timer.map(Column::slots);

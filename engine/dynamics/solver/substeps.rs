@@ -139,7 +139,7 @@ pub(crate) fn prepare_rows(
     bodies: Res<Bodies>,
     contacts: Res<Contacts>,
     (response, width): (Option<Res<ContactResponse>>, Res<RowWidth>),
-    mut solver: ResMut<StepSolver>,
+    (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
     mut diagnostics: ResMut<SolverDiagnostics>,
 ) {
     let start = bevy_platform::time::Instant::now();
@@ -155,7 +155,7 @@ pub(crate) fn prepare_rows(
     };
     // SAFETY: the engine has one table of contacts, one graph and one table of bodies, which apps cannot reach, and changes
     // contacts, colours and the kinds of bodies through `Link` alone. An empty graph has no contact twice.
-    unsafe { kernel.build_rows(&input, colors, params) };
+    unsafe { kernel.build_rows(&input, colors, params, &threads.pool) };
     diagnostics.contact_constraint_count = kernel.manifold_count() as u32;
     diagnostics.prepare_constraints += start.elapsed();
 }
@@ -176,19 +176,21 @@ pub(crate) fn run_substeps(world: &mut World) {
         return run_schedule(world, substeps, next);
     }
     let start = bevy_platform::time::Instant::now();
+    // A clone shares the threads.
+    let pool = &world.resource::<Threads>().pool.clone();
     let mut solver = world.resource_mut::<StepSolver>();
     let StepSolver { kernel, params, .. } = &mut *solver;
     for _ in 0..substeps {
         match (integrates, solves) {
-            (true, true) => kernel.substep(params),
+            (true, true) => kernel.substep(params, pool),
             (true, false) => {
-                kernel.integrate_velocities(params);
-                kernel.integrate_positions(params);
+                kernel.integrate_velocities(params, pool);
+                kernel.integrate_positions(params, pool);
             }
             (false, true) => {
-                kernel.warm_start(params);
-                kernel.solve(params);
-                kernel.relax(params);
+                kernel.warm_start(params, pool);
+                kernel.solve(params, pool);
+                kernel.relax(params, pool);
             }
             (false, false) => {}
         }
@@ -213,10 +215,14 @@ fn run_schedule(world: &mut World, substeps: u32, mut next: impl FnMut(&mut Worl
 macro_rules! stage {
     ($(#[$doc:meta])* $system:ident => $stage:ident, $timer:ident) => {
         $(#[$doc])*
-        pub(crate) fn $system(mut solver: ResMut<StepSolver>, mut diagnostics: ResMut<SolverDiagnostics>) {
+        pub(crate) fn $system(
+            mut solver: ResMut<StepSolver>,
+            threads: Res<Threads>,
+            mut diagnostics: ResMut<SolverDiagnostics>,
+        ) {
             let start = bevy_platform::time::Instant::now();
             let StepSolver { kernel, params, .. } = &mut *solver;
-            kernel.$stage(params);
+            kernel.$stage(params, &threads.pool);
             diagnostics.$timer += start.elapsed();
         }
     };
@@ -245,25 +251,25 @@ stage! {
 
 /// Makes what hit fast enough bounce.
 pub(crate) fn apply_restitution(
-    mut solver: ResMut<StepSolver>,
+    (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
     config: Res<SolverConfig>,
     mut diagnostics: ResMut<SolverDiagnostics>,
 ) {
     let start = bevy_platform::time::Instant::now();
     let StepSolver { kernel, params, .. } = &mut *solver;
     for _ in 0..config.restitution_iterations {
-        kernel.restitute(params);
+        kernel.restitute(params, &threads.pool);
     }
     diagnostics.apply_restitution += start.elapsed();
 }
 
 /// Keeps the impulses for the next step to start from.
 pub(crate) fn store_impulses(
-    mut solver: ResMut<StepSolver>,
+    (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
     mut contacts: ResMut<Contacts>,
     mut diagnostics: ResMut<SolverDiagnostics>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    solver.kernel.store_impulses(&mut contacts.table);
+    solver.kernel.store_impulses(&mut contacts.table, &threads.pool);
     diagnostics.store_impulses += start.elapsed();
 }
