@@ -1,7 +1,8 @@
 //! The step: every system of the engine in [`PhysicsSchedule`], in the order it runs.
 //!
 //! One list names each stage, its public set, its systems, and the plugin that adds each system. Order and registration
-//! both come from it. Disabling a plugin takes its systems out.
+//! both come from it. A second list names the systems of a substep ([`add_substep_systems_of`]). Disabling a plugin takes
+//! its systems out.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel, system::ScheduleSystem};
@@ -27,13 +28,14 @@ use crate::{
         sleep::{follow_requests, mirror_sleeping, sleep_islands},
         solver::{
             config::update_contact_softness,
-            diagnostics::reset_solver,
+            diagnostics::{SolverDiagnostics, reset_solver},
             gather::{gather_bodies, read_awake, rest_kinematic, wake_changed},
             scatter::{finish_bodies, keep_moved_within, note_moved_late, note_moved_within, scatter_bodies},
-            schedule::{SolverSystems, SubstepSolverSystems, start_substep_clock},
+            schedule::{SolverSystems, SubstepSchedule, SubstepSolverSystems, start_substep_clock},
             substeps::{
-                StepSolver, apply_restitution, prepare_params, prepare_rows, run_substeps, store_impulses,
-                wake_workers,
+                OwnSubstepSystems, StepSolver, apply_restitution, integrate_positions, integrate_velocities,
+                prepare_params, prepare_rows, relax_contacts, run_substeps, solve_contacts, store_impulses,
+                wake_workers, warm_start,
             },
             workers::{RowWidth, WorkerCount},
         },
@@ -97,6 +99,8 @@ pub(crate) enum Owner {
     SolverSchedule,
     /// `SolverBodyPlugin`.
     SolverBodies,
+    /// `IntegratorPlugin`.
+    Integrator,
     /// `SolverPlugin`.
     Solver,
     /// `IslandSleepingPlugin`.
@@ -232,52 +236,42 @@ pub(crate) fn add_once<P: Plugin>(app: &mut App, shared: P) {
     }
 }
 
-/// The engine's own systems of a substep, in the public sets of [`SubstepSchedule`].
+/// Adds the substep systems of an owner to [`SubstepSchedule`] or one that takes its place, each in its public set.
 ///
 /// [`SubstepSchedule`]: crate::dynamics::solver::schedule::SubstepSchedule
-pub(crate) mod substep {
-    use super::{IntegrationSystems, SubstepSolverSystems};
-    use crate::dynamics::solver::{SolverDiagnostics, schedule::SubstepSchedule, substeps::*};
-    use bevy_app::App;
-    use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel};
+pub(crate) fn add_substep_systems_of(owner: Owner, app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
+    use IntegrationSystems::{Position, Velocity};
+    use Owner::{Integrator, Solver};
+    use SubstepSolverSystems::{Relax, SolveConstraints, WarmStart};
+    app.init_resource::<OwnSubstepSystems>().init_resource::<SolverDiagnostics>();
+    let mut substep = Substep { owner, app, schedule };
+    substep.add(Integrator, Velocity, integrate_velocities);
+    substep.add(Solver, WarmStart, warm_start);
+    substep.add(Solver, SolveConstraints, solve_contacts);
+    substep.add(Integrator, Position, integrate_positions);
+    substep.add(Solver, Relax, relax_contacts);
+}
 
-    /// Velocities and positions, in the schedule of the substeps or one that the app runs itself.
-    pub(crate) fn add_integration(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
-        app.init_resource::<OwnSubstepSystems>();
-        if schedule == SubstepSchedule.intern() {
-            let mut own = app.world_mut().resource_mut::<OwnSubstepSystems>();
-            own.integrates = true;
-            own.note(integrate_velocities);
-            own.note(integrate_positions);
+/// Where the substep systems of one owner are added.
+struct Substep<'a> {
+    owner: Owner,
+    app: &'a mut App,
+    schedule: Interned<dyn ScheduleLabel>,
+}
+
+impl Substep<'_> {
+    /// Adds a system in a public set, if its owner is the one whose systems are added.
+    fn add<M>(&mut self, owner: Owner, set: impl SystemSet, system: impl IntoSystem<(), (), M> + Copy) {
+        if self.owner != owner {
+            return;
         }
-        app.init_resource::<SolverDiagnostics>();
-        super::add_systems(
-            app,
-            schedule,
-            (
-                integrate_velocities.in_set(IntegrationSystems::Velocity),
-                integrate_positions.in_set(IntegrationSystems::Position),
-            ),
-        );
-    }
-
-    /// Contacts.
-    pub(crate) fn add_contacts(app: &mut App) {
-        app.init_resource::<OwnSubstepSystems>();
-        let mut own = app.world_mut().resource_mut::<OwnSubstepSystems>();
-        own.solves = true;
-        own.note(warm_start);
-        own.note(solve_contacts);
-        own.note(relax_contacts);
-        super::add_systems(
-            app,
-            SubstepSchedule,
-            (
-                warm_start.in_set(SubstepSolverSystems::WarmStart),
-                solve_contacts.in_set(SubstepSolverSystems::SolveConstraints),
-                relax_contacts.in_set(SubstepSolverSystems::Relax),
-            ),
-        );
+        if self.schedule == SubstepSchedule.intern() {
+            let mut own = self.app.world_mut().resource_mut::<OwnSubstepSystems>();
+            own.integrates |= owner == Owner::Integrator;
+            own.solves |= owner == Owner::Solver;
+            own.note(system);
+        }
+        add_systems(self.app, self.schedule, system.in_set(set));
     }
 }
 
@@ -289,7 +283,7 @@ struct Strict;
 #[cfg(all(test, feature = "default-collider"))]
 mod tests {
     use super::*;
-    use crate::{PhysicsPlugins, dynamics::solver::schedule::SubstepSchedule};
+    use crate::PhysicsPlugins;
     use bevy_app::{TaskPoolPlugin, Update};
     use bevy_ecs::schedule::{ApplyDeferred, InternedSystemSet};
     use core::any::TypeId;

@@ -5,8 +5,8 @@ use crate::kernel;
 use kernel::math::{Angular, InvInertia, Rot, Vector};
 use kernel::shape::{Cuboid, Hull, Shape};
 use kernel::solver::{BodyRow, MassRow, Motion, Softness, Solver, SubstepParams};
-use kernel::thread_pool::ThreadPool;
 use kernel::table::BodyKind;
+use kernel::thread_pool::ThreadPool;
 use proptest::prelude::*;
 use std::sync::Arc;
 

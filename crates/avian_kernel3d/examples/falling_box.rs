@@ -100,7 +100,9 @@ fn main() {
         link.contacts.update(&input, &pool, &mut workers, &mut changed);
         link.apply(&changed, |_, _, _| {});
         // SAFETY: contacts, colours and bodies belong together: `link` has kept them.
-        unsafe { solver.build_rows(&RowInput { contacts: &contacts, bodies: &bodies }, &colors, &params, &pool) };
+        unsafe {
+            solver.build_rows(&RowInput { contacts: &contacts, bodies: &bodies }, &colors, &params, &pool)
+        };
         (0..SUBSTEPS).for_each(|_| solver.substep(&params, &pool));
         solver.restitute(&params, &pool);
         solver.store_impulses(&mut contacts, &pool);

@@ -7,7 +7,7 @@ use super::{Gravity, IntegrationSystems};
 use crate::{
     dynamics::solver::schedule::{SolverSystems, SubstepSchedule},
     schedule::PhysicsSchedule,
-    step,
+    step::{self, Owner},
 };
 
 /// Integrates velocities and positions, by semi-implicit Euler: velocities first, then positions with the new velocities.
@@ -33,7 +33,7 @@ impl Plugin for IntegratorPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Gravity>();
         step::install(app);
-        step::substep::add_integration(app, self.schedule);
+        step::add_substep_systems_of(Owner::Integrator, app, self.schedule);
 
         app.configure_sets(
             self.schedule,

@@ -7,7 +7,7 @@ use super::{
     config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig},
     diagnostics::SolverDiagnostics,
     islands::{IslandPlugin, IslandSleepingPlugin},
-    schedule::SolverSchedulePlugin,
+    schedule::{SolverSchedulePlugin, SubstepSchedule},
     solver_body::SolverBodyPlugin,
 };
 use crate::{
@@ -75,7 +75,7 @@ impl Plugin for SolverPlugin {
 
         app.init_resource::<SolverDiagnostics>();
         step::install(app);
-        step::substep::add_contacts(app);
+        step::add_substep_systems_of(Owner::Solver, app, SubstepSchedule.intern());
         step::add_systems_of(Owner::Solver, app, PhysicsSchedule.intern());
     }
 }

@@ -57,23 +57,24 @@ impl Default for StepSolver {
     }
 }
 
-/// Which of the engine's own systems stand in [`SubstepSchedule`]: while they stand there alone and always
-/// run, one fused call of the kernel replaces them.
+/// The engine's own systems in [`SubstepSchedule`]. While the schedule holds no others and has no run conditions, one call
+/// of the kernel per substep replaces it.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct OwnSubstepSystems {
+    /// Whether bodies are integrated in this schedule, and whether contacts are solved.
     pub(crate) integrates: bool,
     pub(crate) solves: bool,
     systems: Vec<TypeId>,
 }
 
 impl OwnSubstepSystems {
-    /// Notes a system that is added.
+    /// Records a system that is added.
     pub(crate) fn note<M>(&mut self, system: impl IntoSystem<(), (), M>) {
         self.systems.push(system.system_type_id());
     }
 
-    /// Whether a schedule holds exactly these systems, on no conditions. Of one that somebody has built that
-    /// cannot be seen any more: then it is run as it is, which gives the same bits.
+    /// Whether a schedule holds exactly these systems, without run conditions. False for a schedule that was built already,
+    /// since its conditions cannot be read: running the schedule gives the same bits.
     fn are_all_of(&self, schedule: &Schedule) -> bool {
         if schedule.systems().is_ok() {
             return false;
