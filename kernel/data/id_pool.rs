@@ -7,8 +7,8 @@ use super::BitSet;
 /// The next id depends only on the ids in use, not on the order in which others were allocated and freed. The order of ids
 /// is the order of work, so a level that is loaded again gives the same bits.
 ///
-/// Between being freed and being recycled an id is neither live nor allocated again. An id that is still held from this step
-/// is then not live, rather than that of something else.
+/// A freed id is neither live nor allocated again before it is recycled. An id that is still held from this step is
+/// then not live, instead of naming another object.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdPool {
     live: BitSet,

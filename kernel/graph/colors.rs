@@ -1,30 +1,30 @@
-//! Graph colouring of constraints: no two of one colour share a dynamic body, so that all constraints
-//! of a colour can be solved at once, in lanes and on threads.
+//! Graph colouring of constraints. No two constraints of a colour share a dynamic body, so that a colour is solved in
+//! lanes and by several threads.
 
 use super::kind::ConstraintKind;
 
 /// The number of colours, the overflow included.
 pub const COLOR_COUNT: usize = 24;
-/// The last colour: contacts that found no free one. They may share bodies and are solved one by one,
-/// before all other colours.
+/// The last colour: constraints for which no colour was free. They may share bodies and are solved one by one, before
+/// all other colours.
 pub const OVERFLOW: u8 = COLOR_COUNT as u8 - 1;
 
-/// Where contacts between two dynamic bodies may go, as a bit mask: 0..=19. The colours above are left
-/// to static partners, so that these are solved last in every sweep and win over the rest.
+/// Colours of constraints between two dynamic bodies, as a bit mask: 0..=19. The higher ones are left to static
+/// partners, so that these are solved last in every sweep and win.
 const DYNAMIC_COLORS: u32 = (1 << 20) - 1;
-/// Where contacts with one dynamic body may go: 1..=22, from the top.
+/// Colours of constraints with one dynamic body: 1..=22, taken from the top.
 const STATIC_COLORS: u32 = ((1 << OVERFLOW) - 1) & !1;
 
-/// Where a constraint lies among those of its kind and colour; another one may move here when one before it leaves.
+/// Place of a constraint among those of its kind and colour. Another one moves into the slot of one that is released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColorSlot {
-    /// The colour, below [`COLOR_COUNT`].
+    /// Colour, below [`COLOR_COUNT`].
     pub color: u8,
-    /// The place in the list of that colour.
+    /// Index in the list of that colour.
     pub index: u32,
 }
 
-/// The constraints of one colour, by kind. All kinds take the same bits of the bodies, so that a joint and a contact of one
+/// The constraints of one colour, by kind. All kinds share the masks of bodies, so that a joint and a contact of one
 /// pair never share a colour.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Color {
@@ -39,16 +39,16 @@ impl Color {
 
 /// An incremental greedy edge colouring.
 ///
-/// A contact takes a colour when it begins to touch and gives it back when it stops; nothing is
-/// recoloured. First fit from below for two dynamic bodies, from above for one: after the constraint
-/// graph of Box2D v3 (Catto, "SIMD Matters", 2024).
+/// A contact is assigned a colour when it begins to touch, and releases it when it stops. Nothing is recoloured.
+/// Colours are chosen by first fit, from below for two dynamic bodies, from above for one, as in the constraint graph
+/// of Box2D v3 (Catto, "SIMD Matters", 2024).
 ///
-/// Decision: which colours touch a body is one 32-bit mask per body, not one bit set over bodies per
-/// colour. It is the same table transposed; but first fit becomes one `or` and one count of zeroes
-/// instead of up to 20 probes in 20 arrays, and there is a single array to grow.
+/// Decision: the colours of a body are one 32-bit mask per body, not one bit set over bodies per colour. The table is
+/// the same, transposed. First fit is then one `or` and one count of zeroes, not up to 20 probes of 20 arrays, and only
+/// one array grows.
 ///
-/// The order inside a colour follows from the sequence of calls (append, swap-remove): the same calls
-/// give the same order.
+/// The order within a colour follows from the sequence of calls (append, swap-remove): the same calls give the same
+/// order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ColorGraph {
     colors: [Color; COLOR_COUNT],
@@ -57,7 +57,7 @@ pub struct ColorGraph {
 }
 
 impl ColorGraph {
-    /// How many bytes are kept of each body that has contacts here, and how many of each contact.
+    /// Bytes of memory per body with contacts, and per contact.
     pub const BYTES: [usize; 2] = [size_of::<u32>(); 2];
 
     /// A graph without contacts.
@@ -65,11 +65,11 @@ impl ColorGraph {
         Self::default()
     }
 
-    /// Gives a constraint a colour. `bodies` are the ids of its dynamic bodies, `None` for a static or
-    /// kinematic one.
+    /// Assigns a colour to a constraint. `bodies` are the ids of its dynamic bodies, `None` for a static or kinematic
+    /// one.
     ///
-    /// Two distinct dynamic bodies are expected. A body with itself goes to the overflow; a constraint
-    /// without a dynamic body can share a colour with anything and takes the highest.
+    /// The two dynamic bodies should differ: a constraint of a body with itself goes to the overflow. A constraint
+    /// without a dynamic body conflicts with none and takes the highest colour.
     pub(crate) fn assign(&mut self, kind: ConstraintKind, id: u32, bodies: [Option<u32>; 2]) -> ColorSlot {
         let color = self.take_color(bodies);
         let list = &mut self.colors[usize::from(color)].lists[kind as usize];
@@ -77,10 +77,10 @@ impl ColorGraph {
         ColorSlot { color, index: list.len() as u32 - 1 }
     }
 
-    /// Takes a constraint out of the graph, with the same `bodies` as it was assigned with.
+    /// Releases the colour of a constraint. `bodies` must be those it was assigned with.
     ///
-    /// Returns the constraint of the same kind that was moved into its slot, if any: the caller must store `slot` as that
-    /// one's new slot.
+    /// Returns the constraint of the same kind that moved into the slot, if any: the caller must store `slot` as its
+    /// new slot.
     pub(crate) fn release(
         &mut self,
         kind: ConstraintKind,
@@ -98,23 +98,23 @@ impl ColorGraph {
         moved
     }
 
-    /// The contacts of a colour; none for a colour that does not exist.
+    /// The contacts of a colour. Empty for a colour that does not exist.
     pub fn contacts(&self, color: u8) -> &[u32] {
         self.constraints(ConstraintKind::Contact, color)
     }
 
-    /// The constraints of a kind and colour; none for a colour that does not exist.
+    /// The constraints of a kind and colour. Empty for a colour that does not exist.
     pub fn constraints(&self, kind: ConstraintKind, color: u8) -> &[u32] {
         self.colors.get(usize::from(color)).map_or(&[], |color| &color.lists[kind as usize])
     }
 
-    /// The contacts that share bodies with others and must be solved one by one, first.
+    /// The contacts of the overflow, which are solved first, one by one.
     pub fn overflow(&self) -> &[u32] {
         self.contacts(OVERFLOW)
     }
 
-    /// The colours that have contacts, in the order they are solved in without the overflow: ascending,
-    /// contacts with static partners last.
+    /// The colours with contacts, without the overflow, in the order they are solved: ascending, contacts with static
+    /// partners last.
     pub fn colors(&self) -> impl Iterator<Item = (u8, &[u32])> {
         (0..OVERFLOW).map(|color| (color, self.contacts(color))).filter(|(_, contacts)| !contacts.is_empty())
     }
@@ -129,12 +129,12 @@ impl ColorGraph {
         self.len() == 0
     }
 
-    /// The colours a body has constraints of, as a bit mask without the overflow.
+    /// The colours of a body's constraints, as a bit mask without the overflow.
     pub fn colors_of(&self, body: u32) -> u32 {
         self.used.get(body as usize).copied().unwrap_or(0)
     }
 
-    /// Chooses the colour for whatever connects these bodies, and marks it used.
+    /// Chooses a colour for a constraint between these bodies, and marks it used.
     fn take_color(&mut self, bodies: [Option<u32>; 2]) -> u8 {
         let color = match bodies {
             [Some(a), Some(b)] if a == b => {
@@ -155,7 +155,7 @@ impl ColorGraph {
         color
     }
 
-    /// The inverse of `take_color`.
+    /// Marks a colour of these bodies free again.
     fn give_back_color(&mut self, color: u8, bodies: [Option<u32>; 2]) {
         if color == OVERFLOW {
             return;
@@ -171,8 +171,8 @@ impl ColorGraph {
         }
     }
 
-    /// Checks everything against the caller's records, by constraint: its slot and the bodies it was
-    /// assigned with. Panics with the broken invariant. O(constraints + bodies).
+    /// Checks the graph against the caller's records: slot and bodies of each constraint. Panics with the broken
+    /// invariant. O(constraints + bodies).
     pub fn validate(&self, record: impl Fn(ConstraintKind, u32) -> (ColorSlot, [Option<u32>; 2])) {
         let mut used = vec![0u32; self.used.len()];
         let of_kind = |kind| (0..COLOR_COUNT as u8).map(move |color| (kind, color));
@@ -215,7 +215,7 @@ mod tests {
 
     type Bodies = [Option<u32>; 2];
 
-    /// The graph beside the records a caller keeps.
+    /// The graph beside the caller's records.
     #[derive(Clone, Default, PartialEq, Debug)]
     struct World {
         graph: ColorGraph,
@@ -237,7 +237,7 @@ mod tests {
             }
         }
 
-        /// The colour the rules give, by looking at every contact there is.
+        /// The colour by the rules, found by a search of all contacts.
         fn expected(&self, bodies: Bodies) -> u8 {
             let dynamic: BTreeSet<u32> = bodies.into_iter().flatten().collect();
             let free = |color: &u8| {
@@ -282,7 +282,7 @@ mod tests {
         assert_eq!(world.assign(50, [Some(0), None]), 22, "the static colours are still free");
     }
 
-    /// A tower on the ground needs two colours inside and one for the ground, whatever its height.
+    /// A tower on the ground needs two colours inside and one for the ground, at any height.
     #[test]
     fn a_tower_needs_three_colors() {
         let mut world = World::default();
@@ -309,7 +309,7 @@ mod tests {
         world.check();
     }
 
-    /// Operations: what to do, and two numbers to choose bodies or a contact by.
+    /// Operations: a code, and two numbers that select bodies or a contact.
     fn operations() -> impl Strategy<Value = Vec<(u8, u32, u32)>> {
         prop::collection::vec((0u8..100, any::<u32>(), any::<u32>()), 20_000..20_100)
     }
@@ -358,8 +358,8 @@ mod tests {
             prop_assert!((0..bodies).all(|body| world.graph.colors_of(body) == 0));
         }
 
-        /// An edge sees at most 2 (Δ − 1) others, so first fit needs at most 2 Δ − 1 colours for degree Δ:
-        /// bodies with at most ten dynamic contacts never overflow, in whatever order contacts come and go.
+        /// A constraint has at most 2 (Δ − 1) neighbours, so first fit needs at most 2 Δ − 1 colours for degree Δ:
+        /// bodies with at most ten dynamic contacts never overflow, in any order of operations.
         #[test]
         fn ten_contacts_per_body_never_overflow(operations in operations()) {
             const BODIES: u32 = 30;

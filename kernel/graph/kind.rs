@@ -1,6 +1,6 @@
 //! The kinds of constraints between two bodies.
 
-/// What kind a constraint is of.
+/// Kind of a constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ConstraintKind {
     /// A touching contact.
@@ -12,7 +12,7 @@ pub enum ConstraintKind {
 impl ConstraintKind {
     /// All kinds, in the order of their numbers.
     pub const ALL: [Self; 2] = [Self::Contact, Self::Distance];
-    /// How many kinds there are.
+    /// The number of kinds.
     pub const COUNT: usize = Self::ALL.len();
 }
 
@@ -21,12 +21,12 @@ impl ConstraintKind {
 pub struct ConstraintId {
     /// The kind.
     pub kind: ConstraintKind,
-    /// The id among those of the kind.
+    /// The id within the kind.
     pub id: u32,
 }
 
 impl ConstraintId {
-    /// A contact.
+    /// A contact by its id.
     pub fn contact(id: u32) -> Self {
         Self { kind: ConstraintKind::Contact, id }
     }

@@ -1,7 +1,7 @@
-//! What touches or holds what: colouring for parallel solving, and islands for sleeping. Indices only.
+//! The constraint graph: colours for parallel solving, and islands for sleeping.
 //!
-//! Bodies, contacts and links are `u32` ids of the caller; nothing here knows a position or a shape.
-//! Both structures persist and are updated when a contact begins or stops touching, never rebuilt.
+//! Bodies, contacts and links are `u32` ids of the caller. Positions and shapes are unknown here. Both structures
+//! persist and are updated when a contact begins or stops touching. They are never rebuilt.
 
 mod colors;
 mod islands;
@@ -12,6 +12,6 @@ mod union_find;
 pub use colors::{COLOR_COUNT, ColorGraph, ColorSlot, OVERFLOW};
 #[cfg(test)]
 pub(crate) use islands::VISITS;
-pub use islands::{IslandId, Islands, Link, LinkId};
+pub use islands::{IslandId, IslandLink, Islands, LinkId};
 pub use kind::{ConstraintId, ConstraintKind};
 pub use sleep::SleepScan;

@@ -1,26 +1,25 @@
-//! Which islands may fall asleep, and which ones should be checked for having fallen apart.
+//! The search for islands that may fall asleep, and for islands that may have split.
 
 use super::{IslandId, Islands};
 
-/// How many bodies and links the islands may have together that are split in one step besides the first. It bounds what
-/// a step pays for splitting small islands: united in 0.05 ms. With fewer, hundreds of islands that fall apart at once
-/// wait for longer.
+/// Number of bodies and links of all islands that are split in one step besides the first. It bounds the time of
+/// splitting small islands to about 0.05 ms a step. With a smaller budget, hundreds of islands that fall apart at once
+/// stay awake longer.
 const SPLIT_BUDGET: usize = 4096;
 
 /// The outcome of one scan over the awake islands; keeps its memory between scans.
 ///
-/// An island falls asleep as a whole, once every body of it has been at rest long enough. One that lost links since it
-/// was last known to be connected may hold bodies that no longer touch: it must be [split](Islands::split) before it may
-/// sleep (Catto, "Simulation Islands", 2023).
+/// An island falls asleep as a whole, once every body has been at rest long enough. An island that lost links may have
+/// fallen apart: it must be [split](Islands::split) before it may sleep (Catto, "Simulation Islands", 2023).
 ///
-/// Decision: splitting visits the whole island, and a large heap may lose a link in every step. So islands of which a
-/// body is ready to sleep take turns by id: the first is split whatever its size, others as long as they are small. The
-/// first island that is passed over has its turn next. Box2D splits the island with the body that has rested longest;
-/// then a heap that keeps losing links keeps all other islands awake.
+/// Decision: a split visits the whole island, and a large heap may lose a link in every step. So islands with a body
+/// that is ready to sleep take turns by id: the first is split at any size, others only within a budget. The first
+/// island that is skipped has the next turn. Box2D splits the island whose body has rested longest; there a heap that
+/// keeps losing links keeps all other islands awake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SleepScan {
     sleepers: Vec<IslandId>,
-    /// Islands that may be split, from the one on whose turn it is.
+    /// Islands that may be split, starting with the one whose turn it is.
     candidates: Vec<IslandId>,
     splits: Vec<IslandId>,
     budget: usize,
@@ -33,16 +32,16 @@ impl Default for SleepScan {
 }
 
 impl SleepScan {
-    /// A scan that has seen nothing.
+    /// An empty scan.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Looks at all awake islands. `rested` tells for how many seconds a body has been at rest, `None` if
-    /// it must not sleep; a body is ready to sleep from `time_to_sleep` seconds on. A NaN keeps awake. Islands that are
-    /// [woken](Islands::is_woken) are left alone, whatever their bodies say.
+    /// Scans all awake islands. `rested` returns the seconds for which a body has been at rest, `None` if it must not
+    /// sleep. A body is ready to sleep after `time_to_sleep` seconds; NaN keeps it awake. [Woken](Islands::is_woken)
+    /// islands are skipped.
     ///
-    /// The outcome depends on the islands only, which also keep whose turn it is.
+    /// The outcome depends on the islands only, which also store whose turn it is.
     pub fn scan(&mut self, islands: &mut Islands, time_to_sleep: f32, rested: impl Fn(u32) -> Option<f32>) {
         let ready = |body: &u32| rested(*body).is_some_and(|time| time >= time_to_sleep);
         self.sleepers.clear();
@@ -88,7 +87,7 @@ impl SleepScan {
         }
     }
 
-    /// The islands that may be put to sleep, by ascending id. They are known to be connected.
+    /// The islands to put to sleep, by ascending id. Each is connected.
     pub fn sleepers(&self) -> &[IslandId] {
         &self.sleepers
     }
@@ -112,7 +111,7 @@ mod tests {
         islands
     }
 
-    /// A link has the number of the second body.
+    /// Adds a chain of bodies. A link has the number of its second body.
     fn add_chain(islands: &mut Islands, bodies: core::ops::Range<u32>) {
         for body in bodies.clone() {
             islands.add_body(body);
@@ -122,7 +121,7 @@ mod tests {
         }
     }
 
-    /// One step of somebody without contacts: splits, and puts to sleep.
+    /// One step without contacts: split, then sleep.
     fn step(scan: &mut SleepScan, islands: &mut Islands, rested: impl Fn(u32) -> Option<f32>) {
         scan.scan(islands, 0.5, rested);
         for island in scan.splits() {
@@ -168,7 +167,7 @@ mod tests {
         assert_eq!((scan.sleepers(), scan.splits()), (&[islands.island_of(3).unwrap()][..], &[][..]));
     }
 
-    /// The heap was the one that rested longest, so it was split in every step, and nothing else ever.
+    /// The heap has rested longest. Chosen by rest time it would be split in every step, and no other island ever.
     #[test]
     fn parted_pairs_sleep_beside_a_heap_that_loses_a_link_in_every_step() {
         let mut islands = Islands::new();
@@ -190,7 +189,7 @@ mod tests {
         };
         let mut scan = SleepScan::new();
         for i in 0..3u32 {
-            // Two neighbours more hang together, and one link fewer is left between them.
+            // Two more neighbours are linked, and one link fewer is left between them.
             islands.link(LinkId(10_000 + i), i, i + 1);
             islands.unlink(LinkId(10_000 + i));
             step(&mut scan, &mut islands, rested);
@@ -213,7 +212,7 @@ mod tests {
                 islands.link(LinkId(10_000), heap.start, heap.start + 1);
                 islands.unlink(LinkId(10_000));
             }
-            // One body of each has rested.
+            // One body of each island has rested.
             step(&mut scan, &mut islands, |body| Some(if body % 3_000 == 0 { 1.0 } else { 0.0 }));
             assert_eq!(scan.splits(), [ids[i % 3]]);
         }
@@ -222,8 +221,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
 
-        /// What rests and touches nothing that moves sleeps after at most one step for each body, however what moves
-        /// is linked and parted meanwhile, and with however little to spend on splitting.
+        /// A body that rests and is linked to no moving body sleeps after at most one step per body, for any history of
+        /// links and any split budget.
         #[test]
         fn all_that_could_sleep_does_so_in_bounded_time(
             count in 2u32..80,
@@ -243,7 +242,7 @@ mod tests {
                 islands.unlink(LinkId(key as u32));
                 left.remove(key);
             }
-            // Who moves, or hangs together with somebody who does.
+            // Moving bodies, and those connected with one.
             let mut restless: Vec<bool> = moving[..count as usize].to_vec();
             for _ in 0..count {
                 for &(a, b) in &left {
@@ -255,7 +254,7 @@ mod tests {
             let movers: Vec<u32> = (0..count).filter(|body| restless[*body as usize]).collect();
             let mut scan = SleepScan { budget, ..SleepScan::new() };
             for i in 0..=count as usize {
-                // All that moves has a neighbour that rests, as far as anybody knows.
+                // Each moving body is next to a resting one, before islands are split.
                 step(&mut scan, &mut islands, |body| Some(if moving[body as usize] { 0.0 } else { 1.0 }));
                 if let [.., _] = movers[..] {
                     let (a, b) = later[i % later.len()];
@@ -270,7 +269,7 @@ mod tests {
             islands.validate();
         }
 
-        /// Against the definition, over all bodies; and independent of the order of the awake list.
+        /// The scan against its definition, over all bodies, for any order of the awake list.
         #[test]
         fn the_scan_matches_its_definition(
             links in prop::collection::vec((0u32..40, 0u32..40), 0..40),
@@ -309,7 +308,7 @@ mod tests {
             }
             let expected: Vec<_> = may_sleep.into_iter().filter(|(_, may)| *may).map(|(id, _)| id).collect();
             prop_assert_eq!(scan.sleepers(), &expected[..]);
-            // All of them are small.
+            // All of the islands are small.
             prop_assert!(scan.splits().iter().eq(&candidates));
 
             for body in shuffle {

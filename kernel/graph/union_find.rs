@@ -1,17 +1,17 @@
-//! Disjoint sets over `0..n`: which elements hang together through the pairs united so far.
+//! Disjoint sets over `0..n`.
 
-/// Union-find with union by rank and path halving (Tarjan and van Leeuwen, "Worst-case analysis of set
-/// union algorithms", 1984): practically constant time per call, no recursion, buffers are reused.
+/// Union-find with union by rank and path halving (Tarjan and van Leeuwen, "Worst-case analysis of set union
+/// algorithms", 1984): almost constant time per call, no recursion. Buffers are reused.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct DisjointSets {
     parent: Vec<u32>,
-    /// An upper bound of the height of the tree below a root.
+    /// Upper bound of the height of the tree below a root.
     rank: Vec<u8>,
     count: usize,
 }
 
 impl DisjointSets {
-    /// Starts over with `n` sets of one element each.
+    /// Resets to `n` sets of one element each.
     pub(super) fn reset(&mut self, n: usize) {
         self.parent.clear();
         self.parent.extend(0..n as u32);
@@ -25,7 +25,7 @@ impl DisjointSets {
         self.count
     }
 
-    /// The representative of the set that `element` is in.
+    /// The representative of an element's set.
     pub(super) fn find(&mut self, element: u32) -> u32 {
         let mut at = element;
         loop {
@@ -39,7 +39,7 @@ impl DisjointSets {
         }
     }
 
-    /// Makes one set of the two that `a` and `b` are in.
+    /// Merges the sets of `a` and `b`.
     pub(super) fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
         if a == b {

@@ -131,7 +131,7 @@ impl Vector {
     /// Whether no component is infinite or NaN.
     #[inline]
     pub fn is_finite(self) -> bool {
-        // Infinities and NaN times 0 are NaN: no branches.
+        // `x * 0.0` is 0 unless x is infinite or NaN. The sum needs no branch.
         self.x * 0.0 + self.y * 0.0 + self.z * 0.0 == 0.0
     }
 }
@@ -152,7 +152,7 @@ impl Vector<Scalar> {
     /// Whether no component of a world position is infinite or NaN.
     #[inline]
     pub fn is_finite_world(self) -> bool {
-        // Infinities and NaN times 0 are NaN: no branches.
+        // `x * 0.0` is 0 unless x is infinite or NaN. The sum needs no branch.
         self.x * 0.0 + self.y * 0.0 + self.z * 0.0 == 0.0
     }
 }

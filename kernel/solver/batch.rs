@@ -1,4 +1,4 @@
-//! The interface of what is solved: a batch of rows of one kind, filled, swept and stored block by block.
+//! The interface of constraints: a batch of rows of one kind is filled, swept and stored block by block.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
 use super::input::RowInput;
@@ -11,54 +11,54 @@ use core::ops::Range;
 /// What a sweep does with each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pass {
-    /// Lets what closes fast bounce.
+    /// Restitution of points that close fast within the substep.
     Impact,
-    /// Applies the impulses of the last substep.
+    /// Apply the impulses of the last substep.
     WarmStart,
-    /// Solves with soft bias.
+    /// Solve with soft bias.
     Solve,
-    /// Takes split impulses out of the velocities.
+    /// Remove split impulses from the velocities.
     UndoSplit,
-    /// Solves without bias.
+    /// Solve without bias.
     Relax,
     /// Restitution after the last substep.
     Restitute,
 }
 
-/// The passes that a block takes part in.
+/// A set of passes, as bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Passes(u8);
 
 impl Passes {
-    /// What every constraint needs: warm start, solve, relax.
+    /// The passes of every constraint: warm start, solve, relax.
     pub(super) const BASIC: Self = Self::of(Pass::WarmStart).with(Pass::Solve).with(Pass::Relax);
 
     const fn of(pass: Pass) -> Self {
         Self(1 << pass as u8)
     }
 
-    /// These and one more.
+    /// This set and one more pass.
     pub(super) const fn with(self, pass: Pass) -> Self {
         Self(self.0 | Self::of(pass).0)
     }
 
-    /// Whether a pass is among them.
+    /// Whether a pass is in the set.
     #[inline(always)]
     pub(super) fn has(self, pass: Pass) -> bool {
         self.0 & Self::of(pass).0 != 0
     }
 }
 
-/// What one lane of a row is made from.
+/// The source of one lane of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Item {
-    /// The constraint.
+    /// The id of the constraint.
     pub(super) id: u32,
-    /// Which of its rows; for contacts the number of the manifold.
+    /// Number of the row among those of the constraint; for contacts the number of the manifold.
     pub(super) index: u32,
 }
 
-/// What rows are filled from.
+/// Inputs for filling rows.
 #[derive(Clone, Copy)]
 pub(super) struct Filling<'a> {
     pub(super) input: &'a RowInput<'a>,
@@ -68,7 +68,7 @@ pub(super) struct Filling<'a> {
     pub(super) first_dynamic: u32,
     pub(super) params: &'a SubstepParams,
     pub(super) deep: &'a DeepCounts,
-    /// Which axes are held, by body row; empty where no body is held along any.
+    /// Locked axes by body row. Empty if no body has locked axes.
     pub(super) locks: &'a [AxisLocks],
 }
 
@@ -79,24 +79,24 @@ pub(super) struct Sweep<'a> {
     pub(super) params: &'a SubstepParams,
 }
 
-/// Rows of one kind and shape. It is chosen once for each block, so a call through a pointer costs nothing.
+/// Rows of one kind and shape. A batch is chosen once per block, so that the indirect call costs nothing.
 pub(super) trait Batch: Sync {
-    /// Fills rows from their items: one for each lane, fewer in the last row. Returns the passes that the rows need.
+    /// Fills rows from items: one item per lane, fewer in the last row. Returns the passes that the rows need.
     ///
     /// # Safety
-    /// Meanwhile no other thread uses these rows, nor writes a body or contact that they have.
+    /// Until it returns, no other thread uses these rows, or writes a body or contact of theirs.
     unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes;
 
-    /// Runs a pass over rows that need `passes`. Returns whether it found an impact.
+    /// Runs a pass over rows that need `passes`. Returns whether an impact was found.
     ///
     /// # Safety
-    /// Meanwhile no other thread uses these rows, nor touches a dynamic body that they have, nor writes another that they
-    /// have.
+    /// Until it returns, no other thread uses these rows, or reads or writes a dynamic body of theirs, or writes any
+    /// other body of theirs.
     unsafe fn run(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) -> bool;
 
-    /// Puts the impulses of rows back to where their items came from.
+    /// Stores the impulses of rows in the constraints of their items.
     ///
     /// # Safety
-    /// Meanwhile no other thread uses these rows, nor touches a constraint that they have.
+    /// Until it returns, no other thread uses these rows, or reads or writes a constraint of theirs.
     unsafe fn store(&self, rows: Range<usize>, items: &[Item], contacts: &ManifoldsView);
 }

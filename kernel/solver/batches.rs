@@ -1,4 +1,4 @@
-//! All rows of a step: a list of what kinds there are, and how their constraints are sorted into batches.
+//! All rows of a step: the list of kinds, and how constraints are sorted into batches.
 
 use super::batch::Batch;
 use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, sort_contacts};
@@ -13,7 +13,7 @@ use crate::math::F32x8;
 use crate::math::{Entry, F32x4, Lane, Width};
 use crate::thread_pool::ThreadPool;
 
-/// The rows of every width; of the wide ones only one is in use.
+/// Rows of every lane width. Of the wide ones only one width is in use.
 #[derive(Clone, Debug, Default)]
 pub(super) struct AllRows {
     pub(super) width: Width,
@@ -30,26 +30,26 @@ struct KindRows<N: Lane> {
     distances: DistanceRows<N>,
 }
 
-/// How many batches there are of one width.
+/// Number of batches of one width.
 const BATCHES: usize = DISTANCE + DISTANCE_BATCHES;
-/// The batch of distances: the first ones are those of contacts.
+/// The batch of distances. Those before are of contacts.
 const DISTANCE: usize = CONTACT_BATCHES;
 
-/// The layers of each colour, sorted; memory is kept between steps.
+/// The layers of each colour. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Layers {
     colors: Vec<Vec<Layer>>,
-    /// How many layers of each colour are in use.
+    /// Number of layers in use, by colour.
     used: Vec<usize>,
 }
 
 impl Layers {
-    /// The layers of each colour; there may be more than are in use.
+    /// The layers of each colour. The last ones may be unused.
     pub(super) fn colors(&self) -> &[Vec<Layer>] {
         &self.colors
     }
 
-    /// Sorts the constraints of all colours, one colour by one worker.
+    /// Sorts the constraints of all colours. Each colour is sorted by one worker.
     pub(super) fn sort(&mut self, colors: &ColorGraph, sorter: &Sorter, pool: &ThreadPool) {
         self.colors.resize_with(COLOR_COUNT, Vec::new);
         self.used.resize(COLOR_COUNT, 0);
@@ -63,7 +63,7 @@ impl Layers {
         });
     }
 
-    /// Plans the stages of all colours: the overflow first, then from low to high.
+    /// Plans the stages of all colours: the overflow first, then in ascending order.
     pub(super) fn plan(&self, width: Width, sorter: &Sorter, plan: &mut Plan) {
         let lanes = match width {
             Width::Eight(_) => 8,
@@ -82,7 +82,7 @@ impl Layers {
     }
 }
 
-/// The layer of a number, which is at most the next one.
+/// The layer with a number, which is created if it is the next one.
 fn layer(layers: &mut Vec<Layer>, number: usize) -> &mut Layer {
     if number == layers.len() {
         layers.push(Layer::default());
@@ -90,7 +90,7 @@ fn layer(layers: &mut Vec<Layer>, number: usize) -> &mut Layer {
     &mut layers[number]
 }
 
-/// Sorts the constraints of a colour. Returns how many layers they have.
+/// Sorts the constraints of a colour into layers. Returns the number of layers.
 fn sort_color(colors: &ColorGraph, color: u8, sorter: &Sorter, layers: &mut Vec<Layer>) -> usize {
     let (contacts, distances) = (colors.contacts(color), distances(colors, color));
     let (mut left, mut number) = (contacts.len() + distances.len(), 0);
@@ -106,8 +106,7 @@ fn sort_color(colors: &ColorGraph, color: u8, sorter: &Sorter, layers: &mut Vec<
     number
 }
 
-/// Puts the constraints of the overflow into one layer, in the order in which they are solved. Returns how many layers
-/// there are.
+/// Sorts the constraints of the overflow into one layer, in the order they are solved. Returns the number of layers.
 fn sort_overflow(colors: &ColorGraph, sorter: &Sorter, layers: &mut Vec<Layer>) -> usize {
     let distances = distances(colors, OVERFLOW);
     if colors.overflow().is_empty() && distances.is_empty() {
@@ -126,10 +125,10 @@ fn sort_overflow(colors: &ColorGraph, sorter: &Sorter, layers: &mut Vec<Layer>) 
 }
 
 impl AllRows {
-    /// How many batches there are: those of the overflow, then those of the wide rows.
+    /// Number of batches: those of the overflow, then those of the wide rows.
     pub(super) const BATCHES: usize = 2 * BATCHES;
 
-    /// Makes room for the rows of each batch. What they hold is old.
+    /// Resizes the rows of each batch. Their content is stale.
     pub(super) fn make_room(&mut self, rows: &[u32], any_deep: bool) {
         let (overflow, wide) = rows.split_at(BATCHES);
         self.overflow.make_room(overflow, any_deep);
@@ -140,13 +139,13 @@ impl AllRows {
         }
     }
 
-    /// How many of the items of each batch are manifolds.
+    /// Number of items that are manifolds, given the number of items of each batch.
     pub(super) fn count_manifolds(items: &[u32]) -> usize {
         let of_contacts = items.chunks(BATCHES).flat_map(|batches| &batches[..CONTACT_BATCHES]);
         of_contacts.sum::<u32>() as usize
     }
 
-    /// Calls a function with all batches in the order of their numbers.
+    /// Calls a function with all batches, by number.
     pub(super) fn with<R>(&mut self, distances: &mut DistanceTable, f: impl FnOnce(&[&dyn Batch]) -> R) -> R {
         let records = &distances.records();
         let overflow = self.overflow.view((), records);
@@ -170,7 +169,7 @@ impl<N: Entry> KindRows<N> {
     }
 }
 
-/// [`KindRows`], changed block by block.
+/// A view of [`KindRows`] whose blocks are changed by several threads.
 struct KindViews<'a, N: Entry> {
     contacts: ContactView<'a, N>,
     distances: DistanceView<'a, N>,
@@ -182,7 +181,7 @@ impl<N: Entry> KindViews<'_, N> {
         [a, b, c, d, e, f, &self.distances]
     }
 
-    /// Calls a function with these batches and those of another width.
+    /// Calls a function with these batches, then those of another width.
     fn and<W: Entry, R>(&self, wide: &KindViews<W>, f: impl FnOnce(&[&dyn Batch]) -> R) -> R {
         let [narrow, wide] = [self.batches(), wide.batches()];
         let all: [&dyn Batch; 2 * BATCHES] =

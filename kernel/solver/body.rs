@@ -1,20 +1,20 @@
-//! The dense bodies of one step: rows that contact rows refer to by index.
+//! The dense body rows of one step, which constraint rows refer to by index.
 
 use super::{BodyRow, MassRow, RowView, gyro::*};
 use crate::data::{BitSet, Parts};
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
 use core::sync::atomic::AtomicBool;
 
-/// How a body's velocity changes by itself. Constant over a step.
+/// Acceleration and damping of a body. Constant over a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
-    /// m/s², gravity included.
+    /// Acceleration including gravity, m/s².
     pub acceleration: Vector,
-    /// rad/s².
+    /// Angular acceleration, rad/s².
     pub angular_acceleration: Angular,
-    /// 1/s.
+    /// Linear damping, 1/s.
     pub linear_damping: f32,
-    /// 1/s.
+    /// Angular damping, 1/s.
     pub angular_damping: f32,
 }
 
@@ -28,14 +28,14 @@ impl Motion {
     };
 }
 
-/// What few bodies have: something that limits their velocity. Constant over a step.
+/// Limits on a body's velocity, which few bodies have. Constant over a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Axes along or about which the body does not move.
+    /// Locked axes.
     pub locks: AxisLocks,
-    /// m/s; infinity for no limit.
+    /// Maximum speed, m/s. Infinity for no limit.
     pub max_speed: f32,
-    /// rad/s; infinity for no limit.
+    /// Maximum angular speed, rad/s. Infinity for no limit.
     pub max_angular_speed: f32,
 }
 
@@ -49,14 +49,14 @@ impl Limits {
     }
 }
 
-/// A body that its own spin turns.
+/// A body with free spin: the gyroscopic torque turns its spin axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spin {
     pub(super) row: u32,
     pub(super) gyro: Gyro,
-    /// When the step begins.
+    /// Rotation at the start of the step.
     pub(super) rotation: Rot,
-    /// The angular velocity after the last substep, in the body's frame and in world axes.
+    /// Angular velocity after the last substep, in the body's frame and in world axes.
     after: [Angular; 2],
 }
 
@@ -65,18 +65,18 @@ impl Spin {
         Self { row, gyro, rotation, after: [Angular::ZERO; 2] }
     }
 
-    /// Gives the body the angular velocity at which it turns in the middle of the substep.
+    /// Sets the angular velocity to that in the middle of the substep, by which the body is turned.
     pub(super) fn begin_turn(&mut self, row: &mut BodyRow, h: f32) {
         let (v, w) = row.velocity();
         let rotation = world_rotation(row.delta().1, self.rotation);
-        // Only what has changed since the last substep is turned into the body's frame: in free spin nothing is rounded.
+        // Only the change since the last substep is rotated into the body's frame, so that free spin is not rounded.
         let local = self.after[0] + to_body(rotation, w - self.after[1]);
         let (middle, after) = self.gyro.spun(local, h);
         self.after[0] = after;
         row.set_velocity(v, to_world(rotation, middle));
     }
 
-    /// Gives the turned body the angular velocity that it has at the end of the substep.
+    /// Sets the angular velocity of the turned body to that at the end of the substep.
     pub(super) fn end_turn(&mut self, row: &mut BodyRow) {
         let (v, _) = row.velocity();
         self.after[1] = to_world(world_rotation(row.delta().1, self.rotation), self.after[0]);
@@ -84,7 +84,7 @@ impl Spin {
     }
 }
 
-/// What some body rows have, each once: their threads write these rows.
+/// Items of some body rows, at most one per row, so that threads write different rows.
 #[derive(Clone, Debug)]
 pub(super) struct OnceEach<T> {
     list: Vec<(u32, T)>,
@@ -103,7 +103,7 @@ impl<T> OnceEach<T> {
         self.rows.clear();
     }
 
-    /// Adds what a row has, unless it has something already. Returns whether it had nothing.
+    /// Adds an item, unless the row has one. Returns whether it was added.
     #[inline]
     fn push(&mut self, row: usize, item: T) -> bool {
         let row = u32::try_from(row).expect("a row is many bytes of memory");
@@ -114,23 +114,23 @@ impl<T> OnceEach<T> {
         is_first
     }
 
-    /// Rows and what they have: no row twice.
+    /// Rows with their items. No row is listed twice.
     pub(super) fn list(&self) -> &[(u32, T)] {
         &self.list
     }
 
-    /// As [`list`](Self::list), each row's to be changed by one thread.
+    /// As [`list`](Self::list), to be changed by several threads.
     pub(super) fn parts(&mut self) -> Parts<'_, (u32, T)> {
         Parts::of(&mut self.list)
     }
 }
 
-/// Which rows are filled; row 0, the dummy, always is.
+/// Flags of rows that are filled. Row 0, the dummy, always is.
 #[derive(Debug, Default)]
 pub(super) struct Claims(pub(super) Vec<AtomicBool>);
 
 impl Clone for Claims {
-    /// A copy is for steps of its own.
+    /// A copy starts with no rows: flags are of one step.
     fn clone(&self) -> Self {
         Self::default()
     }
@@ -146,31 +146,31 @@ impl Claims {
     }
 }
 
-/// The bodies of one step. Row 0 is the immovable dummy that static partners and padding refer to; then
-/// come the kinematic bodies, then the dynamic ones from [`first_dynamic`](Self::first_dynamic). Only
-/// dynamic rows are ever written by contact rows.
+/// The bodies of one step. Row 0 is the immovable dummy that static partners and padding refer to. Then come the
+/// kinematic bodies, then the dynamic ones from [`first_dynamic`](Self::first_dynamic) on. Constraint rows write
+/// dynamic rows only.
 #[derive(Clone, Debug, Default)]
 pub struct BodyRows {
-    /// Velocity and motion.
+    /// Velocity and displacement.
     pub rows: Vec<BodyRow>,
     /// Inverse masses.
     pub masses: Vec<MassRow>,
-    /// What changes velocities.
+    /// Acceleration and damping.
     pub motions: Vec<Motion>,
-    /// What limits the few that are limited.
+    /// Limits of the bodies that have any.
     pub(super) limits: OnceEach<Limits>,
-    /// Those that their own spin turns: none in 2D.
+    /// Bodies with free spin. None in 2D.
     pub(super) spins: OnceEach<Spin>,
-    /// Which axes are held, by row; empty if no body is held along any.
+    /// Locked axes by row. Empty if no body has locked axes of translation.
     pub(super) locks: Vec<AxisLocks>,
     pub(super) claims: Claims,
-    /// The first row of a dynamic body.
+    /// Row of the first dynamic body.
     pub(super) first_dynamic: u32,
 }
 
 impl BodyRows {
-    /// Makes room for `kinematic` and `dynamic` bodies after the dummy. Rows hold what they held before: every
-    /// one of them is to be filled. Nobody is limited.
+    /// Resizes to `kinematic` and `dynamic` bodies after the dummy, without limits and spins. Every row must be filled:
+    /// its content is stale.
     pub(super) fn reset(&mut self, kinematic: usize, dynamic: usize) {
         let count = 1 + kinematic + dynamic;
         debug_assert!(u32::try_from(count).is_ok(), "{count} rows have ids of 32 bits");
@@ -181,15 +181,15 @@ impl BodyRows {
         self.spins.clear();
         self.locks.clear();
         self.first_dynamic = 1 + kinematic as u32;
-        self.still(0);
+        self.set_at_rest(0);
     }
 
-    /// The first row of a dynamic body.
+    /// Row of the first dynamic body.
     pub fn first_dynamic(&self) -> u32 {
         self.first_dynamic
     }
 
-    /// Limits a body's velocity: at most once a step. What comes after the first time counts for nothing.
+    /// Limits a body's velocity, at most once a step. Later calls for the same row are ignored.
     pub fn limit(&mut self, row: usize, limits: Limits) {
         debug_assert!((1..self.rows.len()).contains(&row), "row {row} is a body's");
         let [speed, turn] = [limits.max_speed, limits.max_angular_speed];
@@ -205,8 +205,9 @@ impl BodyRows {
         }
     }
 
-    /// Has a dynamic body turn by its own spin, if its inverse inertia, in its own frame, makes it: at most once a
-    /// step. `rotation` is the body's when the step begins. What comes after the first time counts for nothing.
+    /// Lets the gyroscopic torque turn the spin axis of a dynamic body, if its inverse inertia, in its own frame, is
+    /// not that of a ball. `rotation` is the rotation at the start of the step. At most once a step: later calls for
+    /// the same row are ignored.
     #[inline]
     pub fn spin(&mut self, row: usize, inv_inertia: InvInertia, rotation: Rot) {
         let spin = Gyro::of(inv_inertia).map(|gyro| Spin::new(row as u32, gyro, rotation));
@@ -226,8 +227,9 @@ impl BodyRows {
         debug_assert!(is_first, "body row {} spins twice", spin.row);
     }
 
-    /// Has the contacts of the step see what inertia they may of bodies that swing fast; `h` is the length of a substep.
-    pub(super) fn blunt(&mut self, h: f32) {
+    /// Raises the inertia of fast-swinging thin bodies, as contacts see it, so that they gain no energy (see
+    /// `Gyro::in_step`). `h` is the length of a substep.
+    pub(super) fn limit_inertia_ratios(&mut self, h: f32) {
         for (_, spin) in self.spins.list() {
             let (mass, w) = (self.masses[spin.row as usize], self.rows[spin.row as usize].velocity().1);
             if let Some(inertia) = spin.gyro.in_step(mass.inv_inertia(), w, spin.rotation, h) {
@@ -236,12 +238,12 @@ impl BodyRows {
         }
     }
 
-    /// Forgets how far a body has moved and turned in this step.
-    pub fn put_back(&mut self, row: u32) {
+    /// Resets the displacement and rotation of a body in this step.
+    pub fn reset_delta(&mut self, row: u32) {
         self.rows[row as usize].set_delta(Vector::ZERO, Rot::IDENTITY);
     }
 
-    /// Whether all that contact rows are built from is finite.
+    /// Whether velocities and masses are finite.
     pub(super) fn are_finite(&self) -> bool {
         let velocity = |row: &BodyRow| {
             let (v, w) = row.velocity();
@@ -251,19 +253,19 @@ impl BodyRows {
         self.rows.iter().all(velocity) && self.masses.iter().all(mass)
     }
 
-    /// Fills a row with a body at rest that nothing moves.
-    pub fn still(&mut self, row: usize) {
+    /// Fills a row with an immovable body at rest.
+    pub fn set_at_rest(&mut self, row: usize) {
         self.rows[row] = BodyRow::REST;
         self.masses[row] = MassRow::default();
         self.motions[row] = Motion::FREE;
     }
 
-    /// A view through which rows of disjoint bodies can be read and written, the latter from `first_dynamic` on.
+    /// A view that reads all rows and writes those from `first_dynamic` on.
     pub(super) fn view(&mut self, first_dynamic: u32) -> RowView<'_, BodyRow> {
         RowView::over(&mut self.rows, first_dynamic)
     }
 
-    /// A view that writes kinematic bodies too, for integrating positions.
+    /// A view that writes kinematic rows as well, for integrating positions.
     pub(super) fn view_all(&mut self) -> RowView<'_, BodyRow> {
         RowView::over(&mut self.rows, 1)
     }

@@ -1,4 +1,4 @@
-//! Contacts as batches of rows: one for each lane width, number of points and kind of inverse mass.
+//! Contacts as batches of rows: one batch for each lane width, number of points and kind of inverse mass.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
 use super::batch::{Batch, Filling, Item, Pass, Passes, Sweep};
@@ -18,7 +18,7 @@ pub(super) struct ContactRows<N: Lane> {
     free: ByPoints<N, N>,
 }
 
-/// The rows of one kind of inverse mass, by how many points they have room for.
+/// The rows with one kind of inverse mass, by their capacity of points.
 #[derive(Clone, Debug)]
 struct ByPoints<N: Lane, M> {
     four: Rows<N, M, 4>,
@@ -26,14 +26,14 @@ struct ByPoints<N: Lane, M> {
     one: Rows<N, M, 1>,
 }
 
-/// The rows of one batch: there may be more than are in use.
+/// The rows of one batch. The last ones may be unused.
 #[derive(Clone, Debug)]
 struct Rows<N: Lane, M, const P: usize> {
-    /// What every pass sweeps.
+    /// Data of every pass.
     rows: Vec<ContactRow<N, M, P>>,
-    /// What bouncing needs besides.
+    /// Data of restitution.
     bounces: Vec<RestitutionRow<N, P>>,
-    /// What deep overlap needs besides.
+    /// Data of split impulses.
     splits: Vec<SplitImpulseRow<N, P>>,
 }
 
@@ -49,10 +49,10 @@ impl<N: Lane, M, const P: usize> Default for Rows<N, M, P> {
     }
 }
 
-/// How many batches contacts have in one width.
+/// Number of batches of contacts in one width.
 pub(super) const CONTACT_BATCHES: usize = 6;
 
-/// The batch of a manifold: first those of bodies held along some axes; of either the one with the most points is first.
+/// The batch of a manifold. Those of bodies with locked axes come first. Within either group, more points come first.
 #[inline(always)]
 fn batch_of(is_held: bool, points: u32) -> usize {
     let by_points = match points {
@@ -63,7 +63,8 @@ fn batch_of(is_held: bool, points: u32) -> usize {
     if is_held { by_points } else { 3 + by_points }
 }
 
-/// Sorts those manifolds of some contacts that have a number. Returns how many contacts have one of the next number too.
+/// Sorts the manifolds with number `index` of some contacts into a layer. Returns how many contacts have a next
+/// manifold.
 pub(super) fn sort_contacts(contacts: &[u32], index: u32, sorter: &Sorter, layer: &mut Layer) -> usize {
     let table = sorter.input.contacts;
     let (parts, mut more) = (layer.parts(), 0);
@@ -87,7 +88,7 @@ pub(super) fn sort_contacts(contacts: &[u32], index: u32, sorter: &Sorter, layer
 }
 
 impl<N: Entry> ContactRows<N> {
-    /// Makes room for the rows of each batch. What they hold is old.
+    /// Resizes the rows of each batch. Their content is stale.
     pub(super) fn make_room(&mut self, rows: &[u32], any_deep: bool) {
         let Self { held, free } = self;
         let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(|batch| rows[batch] as usize);
@@ -133,7 +134,7 @@ impl<N: Entry, M: InvMass<N>, const P: usize> Rows<N, M, P> {
     }
 }
 
-/// [`ContactRows`], changed block by block.
+/// A view of [`ContactRows`] whose blocks are changed by several threads.
 pub(super) struct ContactView<'a, N: Entry> {
     held: ByPointsView<'a, N, Vector<N>>,
     free: ByPointsView<'a, N, N>,
@@ -146,16 +147,16 @@ struct ByPointsView<'a, N: Entry, M> {
 }
 
 impl<N: Entry> ContactView<'_, N> {
-    /// All batches, in the order in which they are numbered.
+    /// All batches, by number.
     pub(super) fn batches(&self) -> [&dyn Batch; CONTACT_BATCHES] {
         let Self { held, free } = self;
         [&held.four, &held.two, &held.one, &free.four, &free.two, &free.one]
     }
 }
 
-/// The rows of one batch, changed block by block.
+/// A view of the rows of one batch whose blocks are changed by several threads.
 struct RowsView<'a, N: Entry, M, const P: usize> {
-    /// That the CPU has the features of the lanes.
+    /// Proof that the CPU has the features of the lanes.
     proof: N::Proof,
     rows: Parts<'a, ContactRow<N, M, P>>,
     bounces: Parts<'a, RestitutionRow<N, P>>,
@@ -179,7 +180,7 @@ impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
         }
     }
 
-    /// Runs a pass over rows in an entry point of its own.
+    /// Runs a pass over rows in its own entry point.
     ///
     /// # Safety
     /// As [`Batch::run`].
@@ -235,10 +236,10 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for FillJob<'_, N, M, P> {
     }
 }
 
-/// What a pass works on.
+/// The operands of a pass.
 ///
-/// Views and numbers are copies: the compiler then knows that no row which is written is part of them, and keeps them in
-/// registers (the sweeps in 2D take 8 % less time (m)).
+/// Views and parameters are copies. The compiler then knows that no written row aliases them, and keeps them in
+/// registers (8 % less time for sweeps in 2D (m)).
 struct Swept<'a, N: Lane, M, const P: usize> {
     block: BlockRows<'a, N, M, P>,
     passes: Passes,
@@ -261,7 +262,7 @@ impl<S: ContactPass, N: Lane, M: InvMass<N>, const P: usize> Job for RunJob<'_, 
     }
 }
 
-/// Whether a block with these passes has rows that can bounce.
+/// Whether a block with these passes has rows with restitution.
 #[inline(always)]
 fn can_bounce(passes: Passes) -> bool {
     passes.has(Pass::Impact)
@@ -275,7 +276,8 @@ fn has_split(passes: Passes) -> bool {
 
 /// A pass over the rows of a block.
 ///
-/// Plain loops, not iterator adaptors: what is to be compiled for the caller's CPU feature must be inlined into it.
+/// The loops are plain, without iterator adaptors: code for a CPU feature must be inlined into the function that
+/// enables it.
 trait ContactPass {
     /// Returns whether it found an impact.
     ///
@@ -365,7 +367,7 @@ impl ContactPass for Relax {
     }
 }
 
-/// [`Relax`] for rows of which some can bounce.
+/// [`Relax`] for rows with restitution.
 struct RelaxBouncing;
 
 impl ContactPass for RelaxBouncing {
@@ -414,7 +416,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for StoreJob<'_, N, M, P> {
             }
             let friction = TangentFrame::new(row.normal).expand(row.tangent_impulse);
             for (lane, item) in lanes.iter().enumerate() {
-                // SAFETY: by the contract; the one before is in use no more.
+                // SAFETY: by the contract; the manifold of the previous item is not used any more.
                 let manifold = unsafe { contacts.manifold(item.id, item.index) };
                 manifold.friction_impulse = friction.get(lane);
                 manifold.twist_impulse = row.twist.impulse(lane);

@@ -1,4 +1,4 @@
-//! Rows of contacts are filled: lane by lane from manifolds, then the effective masses for all lanes of a row at once.
+//! Filling contact rows: lane by lane from manifolds, then the effective masses for all lanes of a row at once.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::batch::{Filling, Item, Pass, Passes};
@@ -8,7 +8,7 @@ use crate::contact::{Contact, Manifold};
 use crate::math::{Ids, Lane, TangentFrame, Vector};
 use crate::table::{BodyTable, NONE};
 
-/// How many rows ahead contacts are prefetched: those of a colour stand anywhere in the table.
+/// Prefetch distance, in rows: the contacts of a colour are scattered over the table.
 pub(super) const PREFETCH_DISTANCE: usize = 1;
 
 /// The rows of one block.
@@ -19,7 +19,7 @@ pub(super) struct BlockRows<'a, N: Lane, M, const P: usize> {
     pub(super) splits: &'a mut [SplitImpulseRow<N, P>],
 }
 
-/// Fills the rows of a block. Returns the passes that they need.
+/// Fills the rows of a block. Returns the passes that the rows need.
 #[inline(always)]
 pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
     block: BlockRows<N, M, P>,
@@ -58,7 +58,7 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
 }
 
 impl<N: Lane, const P: usize> SplitImpulseRow<N, P> {
-    /// Marks the lanes of bodies that overlap something deeply. Returns whether there are any.
+    /// Marks the lanes of contacts with a deeply overlapping body. Returns whether there are any.
     #[inline(always)]
     fn mark(&mut self, counts: &DeepCounts, ids: &[N::Ids; 2], first_dynamic: u32) -> bool {
         let mut any = false;
@@ -74,19 +74,19 @@ impl<N: Lane, const P: usize> SplitImpulseRow<N, P> {
     }
 }
 
-/// A point whose K is a smaller share of what it were if no body was held along an axis cannot be pushed along
-/// the normal: what is left is rounding.
-const HELD: f32 = 1.0e-6;
+/// Minimum share of K that locked axes must leave for a point to be pushed along the normal. Below it, K is rounding
+/// error.
+const MIN_FREE_SHARE: f32 = 1.0e-6;
 
-/// It is not taken for a smaller share than this. A normal nearly along the axis on which a body is held would
-/// else throw it out sideways.
-const HARDLY: f32 = 0.1;
+/// Minimum share of K that is used where locked axes leave less. With less, a normal almost along a locked axis would
+/// push the body out sideways.
+const MIN_USED_SHARE: f32 = 0.1;
 
-/// What is needed of a row only while it is prepared.
+/// Values that are needed only while a row is filled.
 struct Fill<N, const P: usize> {
     friction_impulse: Vector<N>,
     weights: [N; P],
-    rounding: [N; 2],
+    radii: [N; 2],
     free: [Vector<N>; 2],
     dominated: [N; 2],
 }
@@ -97,7 +97,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         Self {
             friction_impulse: Vector::ZERO,
             weights: [N::ZERO; P],
-            rounding: [N::ZERO; 2],
+            radii: [N::ZERO; 2],
             free: [Vector::splat(Vector::ONE); 2],
             dominated: [N::ZERO; 2],
         }
@@ -153,7 +153,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         self.copy(manifold, contact.frozen.offset, from.params, lane, row);
     }
 
-    /// Marks the side that cannot be moved by the other because it dominates it.
+    /// Makes the side with higher dominance immovable for this contact.
     #[inline(always)]
     fn dominate(&mut self, bodies: &BodyTable, contact: &Contact, lane: usize) {
         let [a, b] = contact.bodies;
@@ -179,7 +179,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         row.normal.set(lane, manifold.normal);
         row.offset.set(lane, offset);
         self.friction_impulse.set(lane, manifold.friction_impulse * params.warm_start);
-        for (to, from) in self.rounding.iter_mut().zip(manifold.radii) {
+        for (to, from) in self.radii.iter_mut().zip(manifold.radii) {
             to.set(lane, from);
         }
         row.twist.set_impulse(lane, manifold.twist_impulse * params.warm_start);
@@ -188,17 +188,16 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             point.anchor.set(lane, p.anchor);
             point.separation.set(lane, p.separation);
             point.impulse.set(lane, p.impulse * params.warm_start);
-            // 1 marks the point as present until its mass is known.
+            // 1 marks the point as present until its mass is computed.
             point.mass.set(lane, 1.0);
-            // A point that is still apart counts less the farther it is, so that the friction centre
-            // does not jump when a point comes or goes.
+            // A separated point weighs less with distance, so that the friction centre does not jump when a point
+            // appears or disappears.
             let weight = 2.0 - p.separation / params.friction_fade;
             self.weights[i].set(lane, crate::math::clamp(weight, 1.0e-10, 1.0));
         }
     }
 
-    /// Computes what follows from the lanes, for all at once: effective masses, friction centre,
-    /// approach speeds.
+    /// Computes effective masses, friction centre and approach speeds, for all lanes at once.
     #[inline(always)]
     fn finish<M: InvMass<N>>(
         &self,
@@ -222,16 +221,16 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let n = row.normal;
         let linear = n.dot(row.inv_mass[0].apply(n)) + n.dot(row.inv_mass[1].apply(n));
         let (mut total, mut center) = (N::ZERO, Vector::ZERO);
-        let to_surface = n * self.rounding[0];
-        row.rounding = self.rounding[0] + self.rounding[1];
-        row.offset -= n * row.rounding;
+        let to_surface = n * self.radii[0];
+        row.radius = self.radii[0] + self.radii[1];
+        row.offset -= n * row.radius;
         for i in 0..P {
             let point = &mut row.points[i];
             point.anchor -= to_surface;
             let (ma, mb) = (point.anchor.cross(n), (point.anchor - row.offset).cross(n));
             let k = linear + ma.dot(row.inv_inertia[0].apply(ma)) + mb.dot(row.inv_inertia[1].apply(mb));
-            let present = N::and((unheld * N::splat(HELD)).lt(k), N::ZERO.lt(point.mass));
-            point.mass = N::select(present, N::ONE / k.max(unheld * N::splat(HARDLY)), N::ZERO);
+            let present = N::and((unheld * N::splat(MIN_FREE_SHARE)).lt(k), N::ZERO.lt(point.mass));
+            point.mass = N::select(present, N::ONE / k.max(unheld * N::splat(MIN_USED_SHARE)), N::ZERO);
             bounce.approach[i] = (vb - va).dot(n) + wb.dot(mb) - wa.dot(ma);
             total += self.weights[i];
             center += point.anchor * self.weights[i];
@@ -247,7 +246,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         row.tangent_impulse = frame.project(self.friction_impulse);
         let mut anchors = [core; P];
         for i in 0..P {
-            // A point that is not there must not add a lever.
+            // Absent points must not add a lever.
             let there = N::select(N::ZERO.lt(self.weights[i]), N::ONE, N::ZERO);
             anchors[i] += (row.points[i].anchor - core) * there;
         }

@@ -1,11 +1,11 @@
-//! What differs between the dimensions in the rows: how a body lies in memory, and twist friction.
-//! `dim3.rs` exports the same names.
+//! Parts of rows that depend on the dimension: memory layout of bodies, and twist friction. `dim3.rs` exports the same
+//! names.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::RowView;
 use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Vector};
 
-/// A body while the solver runs: velocity, and how far it has moved in this step. 32 bytes.
+/// A body while the solver runs: velocity, and displacement in this step. 32 bytes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct BodyRow {
@@ -15,7 +15,7 @@ pub struct BodyRow {
     delta: Quad,
 }
 
-/// A body's inverse masses, in world axes.
+/// Inverse mass and inverse inertia of a body, in world axes.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(16))]
 pub struct MassRow {
@@ -24,10 +24,10 @@ pub struct MassRow {
 }
 
 impl BodyRow {
-    /// At rest and not moved.
+    /// At rest, without displacement.
     pub const REST: Self = Self { velocity: Quad([0.0; 4]), delta: Quad([0.0, 0.0, 1.0, 0.0]) };
 
-    /// A body not yet moved.
+    /// A body with a velocity, without displacement.
     pub fn new(linear: Vector, angular: Angular) -> Self {
         let mut row = Self::REST;
         row.set_velocity(linear, angular);
@@ -44,18 +44,18 @@ impl BodyRow {
     pub fn set_velocity(&mut self, linear: Vector, angular: Angular) {
         self.velocity.0 = [linear.x, linear.y, angular.z, 0.0];
     }
-    /// How far the body has moved and turned since the step began.
+    /// Displacement and rotation since the start of the step.
     #[inline]
     pub fn delta(&self) -> (Vector, Rot) {
         let [x, y, cos, sin] = self.delta.0;
         (Vector { x, y }, Rot { cos, sin })
     }
-    /// Whether the body has moved or turned since the step began.
+    /// Whether the body was displaced or rotated since the start of the step.
     #[inline]
     pub fn is_moved(&self) -> bool {
         self.delta() != (Vector::ZERO, Rot::IDENTITY)
     }
-    /// Sets how far the body has moved and turned since the step began.
+    /// Sets displacement and rotation since the start of the step.
     #[inline]
     pub fn set_delta(&mut self, position: Vector, rotation: Rot) {
         self.delta.0 = [position.x, position.y, rotation.cos, rotation.sin];
@@ -64,7 +64,7 @@ impl BodyRow {
     /// Loads the velocities of one body for each lane.
     ///
     /// # Safety
-    /// No other thread writes these rows meanwhile.
+    /// Until it returns, no other thread writes these rows.
     #[inline(always)]
     pub(super) unsafe fn gather_velocity<N: Lane>(
         rows: &RowView<Self>,
@@ -74,10 +74,10 @@ impl BodyRow {
         let [x, y, z, _] = N::gather(ids, |id| unsafe { &rows.get(id).velocity });
         (Vector { x, y }, Angular { z })
     }
-    /// Loads the motion in this step of one body for each lane.
+    /// Loads displacement and rotation in this step, of one body for each lane.
     ///
     /// # Safety
-    /// No other thread writes these rows meanwhile.
+    /// Until it returns, no other thread writes these rows.
     #[inline(always)]
     pub(super) unsafe fn gather_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Rot<N>) {
         // SAFETY: by the contract; the reference does not outlive the load.
@@ -87,7 +87,7 @@ impl BodyRow {
     /// Stores the velocities of one body for each lane, where the body may be written.
     ///
     /// # Safety
-    /// No other thread reads or writes those of these rows that may be written.
+    /// Until it returns, no other thread reads or writes those of these rows that may be written.
     #[inline(always)]
     pub(super) unsafe fn scatter_velocity<N: Lane>(
         rows: &RowView<Self>,
@@ -100,10 +100,10 @@ impl BodyRow {
             rows.put(id, |row| row.velocity = quad);
         });
     }
-    /// Stores the motion in this step of one body for each lane, where the body may be written.
+    /// Stores displacement and rotation in this step, of one body for each lane, where the body may be written.
     ///
     /// # Safety
-    /// No other thread reads or writes those of these rows that may be written.
+    /// Until it returns, no other thread reads or writes those of these rows that may be written.
     #[inline(always)]
     pub(super) unsafe fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
         // SAFETY: by the contract.
@@ -112,7 +112,7 @@ impl BodyRow {
 }
 
 impl MassRow {
-    /// Inverse mass in 1/kg and inverse inertia in world axes; zeros do not move.
+    /// Inverse mass in 1/kg and inverse inertia in world axes. Zeros make the body immovable.
     pub fn new(inv_mass: f32, inv_inertia: InvInertia) -> Self {
         Self { quad: Quad([inv_mass, inv_inertia.zz, 0.0, 0.0]) }
     }
@@ -132,12 +132,12 @@ impl MassRow {
     }
 }
 
-/// Friction against turning about the contact normal: nothing in 2D, and no bytes.
+/// Torsional friction about the contact normal: nothing in 2D, and no bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Twist<N, const P: usize>(core::marker::PhantomData<N>);
 
 impl<N: Lane, const P: usize> Twist<N, P> {
-    /// Prepares the row: nothing to do in 2D.
+    /// Computes the effective mass: nothing in 2D.
     #[inline(always)]
     pub(super) fn prepare(
         &mut self,

@@ -1,12 +1,12 @@
-//! What differs between the dimensions in the rows: how a body lies in memory, and twist friction.
-//! `dim2.rs` exports the same names.
+//! Parts of rows that depend on the dimension: memory layout of bodies, and twist friction. `dim2.rs` exports the same
+//! names.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::RowView;
 use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Vector};
 
-/// A body while the solver runs: velocity, and how far it has moved in this step. 64 bytes, one cache
-/// line; the padding buys loads of whole quads.
+/// A body while the solver runs: velocity, and displacement in this step. 64 bytes, one cache line. Padding makes each
+/// part one load of four floats.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct BodyRow {
@@ -16,11 +16,11 @@ pub struct BodyRow {
     angular: Quad,
     /// Δx, unused.
     position: Quad,
-    /// The quaternion of the turn in this step.
+    /// Rotation in this step, as a quaternion.
     rotation: Quad,
 }
 
-/// A body's inverse masses, in world axes.
+/// Inverse mass and inverse inertia of a body, in world axes.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub struct MassRow {
@@ -31,7 +31,7 @@ pub struct MassRow {
 }
 
 impl BodyRow {
-    /// At rest and not moved.
+    /// At rest, without displacement.
     pub const REST: Self = Self {
         linear: Quad([0.0; 4]),
         angular: Quad([0.0; 4]),
@@ -39,7 +39,7 @@ impl BodyRow {
         rotation: Quad([0.0, 0.0, 0.0, 1.0]),
     };
 
-    /// A body not yet moved.
+    /// A body with a velocity, without displacement.
     pub fn new(linear: Vector, angular: Angular) -> Self {
         let mut row = Self::REST;
         row.set_velocity(linear, angular);
@@ -57,18 +57,18 @@ impl BodyRow {
         self.linear.0 = [linear.x, linear.y, linear.z, 0.0];
         self.angular.0 = [angular.x, angular.y, angular.z, 0.0];
     }
-    /// How far the body has moved and turned since the step began.
+    /// Displacement and rotation since the start of the step.
     #[inline]
     pub fn delta(&self) -> (Vector, Rot) {
         let ([x, y, z, _], [a, b, c, w]) = (self.position.0, self.rotation.0);
         (Vector { x, y, z }, Rot { x: a, y: b, z: c, w })
     }
-    /// Whether the body has moved or turned since the step began.
+    /// Whether the body was displaced or rotated since the start of the step.
     #[inline]
     pub fn is_moved(&self) -> bool {
         self.delta() != (Vector::ZERO, Rot::IDENTITY)
     }
-    /// Sets how far the body has moved and turned since the step began.
+    /// Sets displacement and rotation since the start of the step.
     #[inline]
     pub fn set_delta(&mut self, position: Vector, rotation: Rot) {
         self.position.0 = [position.x, position.y, position.z, 0.0];
@@ -78,7 +78,7 @@ impl BodyRow {
     /// Loads the velocities of one body for each lane.
     ///
     /// # Safety
-    /// No other thread writes these rows meanwhile.
+    /// Until it returns, no other thread writes these rows.
     #[inline(always)]
     pub(super) unsafe fn gather_velocity<N: Lane>(
         rows: &RowView<Self>,
@@ -90,10 +90,10 @@ impl BodyRow {
         let [a, b, c, _] = N::gather(ids, |id| unsafe { &rows.get(id).angular });
         (Vector { x, y, z }, Vector { x: a, y: b, z: c })
     }
-    /// Loads the motion in this step of one body for each lane.
+    /// Loads displacement and rotation in this step, of one body for each lane.
     ///
     /// # Safety
-    /// No other thread writes these rows meanwhile.
+    /// Until it returns, no other thread writes these rows.
     #[inline(always)]
     pub(super) unsafe fn gather_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Rot<N>) {
         // SAFETY: by the contract; the reference does not outlive the load.
@@ -105,7 +105,7 @@ impl BodyRow {
     /// Stores the velocities of one body for each lane, where the body may be written.
     ///
     /// # Safety
-    /// No other thread reads or writes those of these rows that may be written.
+    /// Until it returns, no other thread reads or writes those of these rows that may be written.
     #[inline(always)]
     pub(super) unsafe fn scatter_velocity<N: Lane>(
         rows: &RowView<Self>,
@@ -122,10 +122,10 @@ impl BodyRow {
             rows.put(id, |row| row.angular = quad);
         });
     }
-    /// Stores the motion in this step of one body for each lane, where the body may be written.
+    /// Stores displacement and rotation in this step, of one body for each lane, where the body may be written.
     ///
     /// # Safety
-    /// No other thread reads or writes those of these rows that may be written.
+    /// Until it returns, no other thread reads or writes those of these rows that may be written.
     #[inline(always)]
     pub(super) unsafe fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
         // SAFETY: by the contract.
@@ -138,7 +138,7 @@ impl BodyRow {
 }
 
 impl MassRow {
-    /// Inverse mass in 1/kg and inverse inertia in world axes; zeros do not move.
+    /// Inverse mass in 1/kg and inverse inertia in world axes. Zeros make the body immovable.
     pub fn new(inv_mass: f32, i: InvInertia) -> Self {
         Self { diagonal: Quad([inv_mass, i.xx, i.yy, i.zz]), rest: Quad([i.xy, i.xz, i.yz, 0.0]) }
     }
@@ -160,10 +160,10 @@ impl MassRow {
     }
 }
 
-/// Friction against turning about the contact normal (torsional friction).
+/// Torsional friction about the contact normal.
 ///
-/// The angular row K = nᵀ (I_A⁻¹ + I_B⁻¹) n, limited by μ Σ lᵢ λᵢ: each point can resist with its normal
-/// impulse λᵢ at its distance lᵢ from the friction centre.
+/// The angular row K = nᵀ (I_A⁻¹ + I_B⁻¹) n, limited by μ Σ lᵢ λᵢ: each point resists with its normal impulse λᵢ at its
+/// distance lᵢ from the friction centre.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Twist<N, const P: usize> {

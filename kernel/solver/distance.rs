@@ -1,13 +1,13 @@
-//! Distances: constraints that keep two points of two bodies at a distance, rigid or as a spring.
+//! Distance constraints: two points of two bodies are kept at a distance, rigidly or by a spring.
 //!
 //! With the vector d from A's point to B's, n = d / |d| and C = |d| − L, the velocity along n is to be −β C: one row,
 //! λ' = λ − m k_m (n·v + β C) − k_i λ, with the coefficients of [`Softness`]. n and the arms follow the exact motion of
 //! the bodies, so that long swings keep their length.
 //!
-//! A rod has the stiff softness of contacts. What β C adds is a split impulse: it moves the bodies, is taken out of the
-//! velocities before the relax pass, and is not warm started. In the slow modes of a chain one relax pass would leave most
-//! of it, and a chain of 20 links swung along itself with growing speed. A spring keeps all of its impulse and is left alone
-//! by the relax pass: its implicit step is complete.
+//! A rod has the stiff softness of contacts. The part β C is a split impulse: it moves the bodies, is removed from the
+//! velocities before the relax pass, and is not warm started. If it stayed, one relax pass would leave most of it in
+//! the slow modes of a chain: a chain of 20 links swung along itself with growing speed. A spring keeps its whole
+//! impulse and has no relax pass: its implicit step is complete.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
 use super::batch::{Batch, Filling, Item, Pass, Passes, Sweep};
@@ -21,25 +21,25 @@ use crate::math::{Angular, Entry, Ids, InvInertia, Job, Lane, Vector};
 use core::fmt;
 use core::ops::Range;
 
-/// How a spring gives way.
+/// Stiffness and damping of a distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
-    /// Of the undamped oscillation, in Hz; positive.
+    /// Frequency of the undamped oscillation, in Hz. Positive.
     pub frequency: f32,
-    /// 0 for no damping, 1 for critical damping.
+    /// Damping ratio: 0 for none, 1 for critical damping.
     pub damping_ratio: f32,
 }
 
-/// What keeps two points at a distance.
+/// Definition of a distance constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
-    /// The bodies: two different ones. Of those that are dynamic each gives way as its mass and inertia let it.
+    /// Two different bodies.
     pub bodies: [u32; 2],
-    /// The point of each, in its body's frame, in metres.
+    /// The point on each body, in its frame, in metres.
     pub anchors: [Vector; 2],
-    /// The distance, in metres; positive.
+    /// The distance, in metres. Positive.
     pub length: f32,
-    /// `None` for a rigid rod.
+    /// The spring, or `None` for a rigid rod.
     pub spring: Option<Spring>,
 }
 
@@ -48,9 +48,9 @@ pub struct Distance {
 pub enum DistanceError {
     /// Both ends are on one body.
     SameBody(u32),
-    /// There is no body of this id.
+    /// There is no body with this id.
     NoBody(u32),
-    /// There is no distance of this id.
+    /// There is no distance with this id.
     NoDistance(u32),
     /// The length is not finite, or not positive.
     Length(f32),
@@ -75,27 +75,27 @@ impl fmt::Display for DistanceError {
 
 impl core::error::Error for DistanceError {}
 
-/// What is kept of a distance between steps.
+/// State of a distance between steps.
 #[derive(Clone, Copy, Debug)]
 struct Record {
     anchors: [Vector; 2],
     length: f32,
     spring: Option<Spring>,
-    /// Along the vector from A's point to B's, N·s; the next step starts from it.
+    /// Impulse along the vector from A's point to B's, N·s, for the warm start of the next step.
     impulse: f32,
 }
 
-/// All distances by id. Which bodies they are between is in [`BodyTable::constraints`](crate::table::BodyTable::constraints).
+/// All distances by id. Their bodies are in [`BodyTable::constraints`](crate::table::BodyTable::constraints).
 #[derive(Clone, Debug, Default)]
 pub struct DistanceTable {
-    /// Records of ids that are not in use are old.
+    /// Records by id. Those of free ids are stale.
     records: Vec<Record>,
 }
 
 const KIND: ConstraintKind = ConstraintKind::Distance;
 
 impl DistanceTable {
-    /// Adds a distance. Its bodies wake, and are in one island if both are dynamic.
+    /// Adds a distance and wakes its bodies. They are in one island if both are dynamic.
     pub fn add(&mut self, link: &mut Link, def: Distance) -> Result<u32, DistanceError> {
         let Distance { bodies: [a, b], anchors, length, spring } = def;
         if let Some(dead) = [a, b].into_iter().find(|body| !link.bodies.ids.is_live(*body)) {
@@ -126,7 +126,7 @@ impl DistanceTable {
         Ok(id)
     }
 
-    /// Removes a distance. The bodies that it held wake.
+    /// Removes a distance and wakes its bodies.
     pub fn remove(&mut self, link: &mut Link, id: u32) -> Result<(), DistanceError> {
         if !link.bodies.constraints(KIND).is_live(id) {
             return Err(DistanceError::NoDistance(id));
@@ -135,7 +135,7 @@ impl DistanceTable {
         Ok(())
     }
 
-    /// The impulse of the last substep, N·s: positive where it pushes the points apart. 0 for an id never in use.
+    /// The impulse of the last substep, N·s. Positive if it pushes the points apart. 0 for an unknown id.
     pub fn impulse(&self, id: u32) -> f32 {
         self.records.get(id as usize).map_or(0.0, |record| record.impulse)
     }
@@ -146,12 +146,12 @@ impl DistanceTable {
 #[repr(C)]
 struct Row<N: Lane> {
     ids: [N::Ids; 2],
-    /// Along each axis, 1/kg: bodies may be held along some.
+    /// Inverse mass along each world axis, 1/kg. 0 along locked axes.
     inv_mass: [Vector<N>; 2],
     inv_inertia: [InvInertia<N>; 2],
-    /// From the centres of mass to the points when the step begins.
+    /// From the centres of mass to the points, at the start of the step.
     arms: [Vector<N>; 2],
-    /// From A's centre of mass to B's when the step begins.
+    /// From A's centre of mass to B's, at the start of the step.
     offset: Vector<N>,
     length: N,
     bias_rate: N,
@@ -160,7 +160,7 @@ struct Row<N: Lane> {
     /// 1 for a spring, else 0.
     is_spring: N,
     impulse: N,
-    /// What corrects the length in this substep.
+    /// Split impulse that corrects the length in this substep.
     split_impulse: N,
 }
 
@@ -183,20 +183,20 @@ impl<N: Lane> Default for Row<N> {
     }
 }
 
-/// How the row acts where the bodies are now.
+/// The axis of a row at the current poses.
 struct Axis<N> {
     normal: Vector<N>,
     moments: [Angular<N>; 2],
-    /// The distance.
+    /// Current distance of the points.
     distance: N,
 }
 
-/// Points nearer than this have no direction of their own, in metres.
+/// Minimum distance of two points, in metres, for which the vector between them has a direction.
 const COINCIDENT: f32 = 1.0e-6;
 
 impl<N: Lane> Row<N> {
     /// # Safety
-    /// No other thread writes the row's bodies meanwhile.
+    /// Until it returns, no other thread writes the bodies of the row.
     #[inline(always)]
     unsafe fn axis(&self, bodies: &RowView<BodyRow>) -> Axis<N> {
         // SAFETY: by the contract.
@@ -225,7 +225,7 @@ impl<N: Lane> Row<N> {
         pair.w[1] += self.inv_inertia[1].apply(axis.moments[1] * impulse);
     }
 
-    /// The effective mass along the axis, kg; 0 where nothing gives way.
+    /// The effective mass along the axis, kg. 0 if both bodies are immovable along it.
     #[inline(always)]
     fn mass(&self, axis: &Axis<N>) -> N {
         let (n, [ma, mb]) = (axis.normal, axis.moments);
@@ -237,7 +237,7 @@ impl<N: Lane> Row<N> {
     }
 
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     unsafe fn warm_start(&self, bodies: &RowView<BodyRow>) {
         // SAFETY: by the contract.
@@ -250,7 +250,7 @@ impl<N: Lane> Row<N> {
     }
 
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     unsafe fn solve(&mut self, bodies: &RowView<BodyRow>) {
         // SAFETY: by the contract.
@@ -267,10 +267,10 @@ impl<N: Lane> Row<N> {
         unsafe { pair.store(bodies, &self.ids) };
     }
 
-    /// Takes the split impulse out of the velocities, once it has moved the bodies.
+    /// Removes the split impulse from the velocities, after it has moved the bodies.
     ///
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     unsafe fn undo_split(&mut self, bodies: &RowView<BodyRow>) {
         // SAFETY: by the contract.
@@ -283,7 +283,7 @@ impl<N: Lane> Row<N> {
     }
 
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     unsafe fn relax(&mut self, bodies: &RowView<BodyRow>) {
         // SAFETY: by the contract.
@@ -307,7 +307,7 @@ impl<N: Lane> Row<N> {
             let arm = record.anchors[side] - table[bodies[side]].local_center;
             self.arms[side].set(lane, poses[side].rotation.rotate(arm));
             let locks = from.locks.get(row as usize).filter(|locks| locks.is_translation_held());
-            // Until the mass is known: 1 along axes that are free.
+            // 1 along free axes, until the mass is known.
             self.inv_mass[side].set(lane, locks.map_or(Vector::ONE, |locks| locks.translation_factors()));
         }
         self.offset.set(lane, (poses[1].center - poses[0].center).to_local());
@@ -321,7 +321,7 @@ impl<N: Lane> Row<N> {
         self.impulse.set(lane, record.impulse * warm_start);
     }
 
-    /// Computes what follows from the lanes, for all at once.
+    /// Computes derived values, for all lanes at once.
     #[inline(always)]
     fn finish(&mut self, masses: &[MassRow]) {
         for side in 0..2 {
@@ -332,11 +332,11 @@ impl<N: Lane> Row<N> {
     }
 }
 
-/// The rows of one width: there may be more than are in use.
+/// The rows of one width. The last ones may be unused.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DistanceRows<N: Lane>(Vec<Row<N>>);
 
-/// How many batches distances have in one width.
+/// Number of batches of distances in one width.
 pub(super) const DISTANCE_BATCHES: usize = 1;
 
 /// The distances of a colour.
@@ -354,7 +354,7 @@ pub(super) fn sort_distances(distances: &[u32], batch: usize, sorter: &Sorter, l
 }
 
 impl<N: Entry> DistanceRows<N> {
-    /// Makes room for some rows. What they hold is old.
+    /// Resizes the rows. Their content is stale.
     pub(super) fn make_room(&mut self, rows: u32) {
         if self.0.len() < rows as usize {
             self.0.resize(rows as usize, Row::default());
@@ -366,7 +366,7 @@ impl<N: Entry> DistanceRows<N> {
     }
 }
 
-/// The records of all distances, changed by several threads at once.
+/// The records of all distances, changed by several threads.
 pub(super) struct Records<'a>(Parts<'a, Record>);
 
 impl DistanceTable {
@@ -375,7 +375,7 @@ impl DistanceTable {
     }
 }
 
-/// The rows of one width, changed block by block.
+/// A view of the rows of one width whose blocks are changed by several threads.
 pub(super) struct DistanceView<'a, N: Entry> {
     proof: N::Proof,
     rows: Parts<'a, Row<N>>,
@@ -395,7 +395,7 @@ impl<N: Entry> Batch for DistanceView<'_, N> {
                 row.set(lane, record, constraints.get(item.id).bodies, from);
             }
         }
-        // SAFETY: it has no further contract.
+        // SAFETY: the job has no further condition.
         unsafe { N::enter(self.proof, FinishJob { rows, masses: from.masses }) };
         Passes::BASIC.with(Pass::UndoSplit)
     }

@@ -1,4 +1,4 @@
-//! The condition on which the rows of a colour may be solved by several threads at once, checked in debug builds.
+//! The condition for solving the rows of a colour in parallel, checked in debug builds.
 
 use super::input::RowInput;
 use crate::data::BitSet;
@@ -11,11 +11,11 @@ pub(super) struct Seen {
     constraints: [BitSet; ConstraintKind::COUNT],
 }
 
-/// Checks that no dynamic body is twice in a colour but the overflow, and no constraint twice in all colours. Body rows
-/// from `first_dynamic` on are those that constraints write.
+/// Checks that no dynamic body is twice in a colour other than the overflow, and no constraint twice in the graph.
+/// `first_dynamic` is the first row that constraints write.
 ///
 /// # Panics
-/// If one is.
+/// If a body or constraint is there twice.
 pub(super) fn check(seen: &mut Seen, input: &RowInput, graph: &ColorGraph, first_dynamic: u32) {
     let Seen { rows, constraints } = seen;
     constraints.iter_mut().for_each(BitSet::clear);

@@ -1,4 +1,4 @@
-//! Rows of bodies, filled by several threads at once.
+//! Filling body rows by several threads.
 #![expect(unsafe_code, reason = "rows are written through a shared view, each by the thread that claimed it")]
 
 use super::{BodyRow, BodyRows, Limits, MassRow, Motion, body::Spin, gyro::Gyro};
@@ -6,32 +6,32 @@ use crate::data::Parts;
 use crate::math::{InvInertia, Rot};
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// All that a row of a body holds.
+/// The content of a body row.
 #[derive(Clone, Copy, Debug)]
 pub struct FilledBody {
     /// Velocity.
     pub row: BodyRow,
     /// Inverse mass.
     pub mass: MassRow,
-    /// What changes the velocity.
+    /// Acceleration and damping.
     pub motion: Motion,
 }
 
 impl FilledBody {
-    /// A body at rest that nothing moves.
-    pub fn still() -> Self {
+    /// An immovable body at rest.
+    pub fn at_rest() -> Self {
         Self { row: BodyRow::REST, mass: MassRow::default(), motion: Motion::FREE }
     }
 }
 
-/// What some of the bodies have that one thread filled; added to the others by [`BodyRows::add_few`].
+/// Limits and spins of the bodies that one thread filled. [`BodyRows::add_special`] adds them.
 #[derive(Clone, Debug, Default)]
-pub struct FewBodies {
+pub struct SpecialBodies {
     limits: Vec<(usize, Limits)>,
     spins: Vec<(usize, Gyro, Rot)>,
 }
 
-impl FewBodies {
+impl SpecialBodies {
     /// Limits a body's velocity.
     #[inline]
     pub fn limit(&mut self, row: usize, limits: Limits) {
@@ -40,8 +40,7 @@ impl FewBodies {
         }
     }
 
-    /// Has a dynamic body turn by its own spin, if its inverse inertia, in its own frame, makes it. `rotation` is the
-    /// body's when the step begins.
+    /// As [`BodyRows::spin`].
     #[inline]
     pub fn spin(&mut self, row: usize, inv_inertia: InvInertia, rotation: Rot) {
         if let Some(gyro) = Gyro::of(inv_inertia) {
@@ -50,7 +49,7 @@ impl FewBodies {
     }
 }
 
-/// Rows that several threads fill at once. The thread that claims a row first fills it.
+/// Body rows that several threads fill. The first thread that claims a row fills it.
 pub struct BodyFiller<'a> {
     claims: &'a [AtomicBool],
     rows: Parts<'a, BodyRow>,
@@ -59,7 +58,7 @@ pub struct BodyFiller<'a> {
 }
 
 impl BodyFiller<'_> {
-    /// Fills a row. Returns false, and does nothing, if it is the dummy's, filled already, or beyond the last.
+    /// Fills a row. Returns false and does nothing for the dummy, a row that is filled, or a row beyond the last.
     #[inline(always)]
     pub fn fill(&self, row: usize, body: &FilledBody) -> bool {
         if self.claims.get(row).is_none_or(|claim| claim.swap(true, Ordering::Relaxed)) {
@@ -77,7 +76,7 @@ impl BodyFiller<'_> {
 }
 
 impl BodyRows {
-    /// Has several threads fill all rows but the dummy's, of which none counts as filled.
+    /// Prepares all rows but the dummy to be filled by several threads.
     pub fn filler(&mut self) -> BodyFiller<'_> {
         let Self { rows, masses, motions, claims, .. } = self;
         claims.reset(rows.len());
@@ -89,21 +88,22 @@ impl BodyRows {
         }
     }
 
-    /// Fills the rows that no thread filled with bodies at rest that nothing moves.
-    pub fn still_unfilled(&mut self) {
+    /// Fills the rows that no thread filled, with immovable bodies at rest.
+    pub fn fill_rest(&mut self) {
         for row in 0..self.rows.len() {
             if self.claims.0.get_mut(row).is_none_or(|claim| !*claim.get_mut()) {
-                self.still(row);
+                self.set_at_rest(row);
             }
         }
     }
 
-    /// Adds what a thread noted of the bodies it filled, and leaves it empty. The order makes no difference.
-    pub fn add_few(&mut self, few: &mut FewBodies) {
-        for (row, limits) in few.limits.drain(..) {
+    /// Adds the limits and spins that a thread recorded, and empties its list. The order makes no difference.
+    pub fn add_special(&mut self, special: &mut SpecialBodies) {
+        for (row, limits) in special.limits.drain(..) {
             self.limit(row, limits);
         }
-        for spin in few.spins.drain(..).map(|(row, gyro, rotation)| Spin::new(row as u32, gyro, rotation)) {
+        for spin in special.spins.drain(..).map(|(row, gyro, rotation)| Spin::new(row as u32, gyro, rotation))
+        {
             self.add_spin(spin);
         }
     }
@@ -116,10 +116,10 @@ mod tests {
     use crate::thread_pool::ThreadPool;
 
     fn body(speed: f32) -> FilledBody {
-        FilledBody { row: BodyRow::new(Vector::X * speed, Angular::ZERO), ..FilledBody::still() }
+        FilledBody { row: BodyRow::new(Vector::X * speed, Angular::ZERO), ..FilledBody::at_rest() }
     }
 
-    /// The contract of the view: a row has one writer, whoever asks for it, and the dummy none.
+    /// The contract of the view: each row has one writer, and the dummy none.
     #[test]
     fn each_row_is_filled_once() {
         let mut rows = BodyRows::default();
@@ -134,7 +134,7 @@ mod tests {
                 fills.fetch_add(usize::from(filled), Ordering::Relaxed);
             }
         });
-        rows.still_unfilled();
+        rows.fill_rest();
         let speed = |row: usize| rows.rows[row].velocity().0.x;
         assert_eq!(fills.into_inner(), (1..1001).filter(|row| row % 7 != 3).count());
         assert_eq!(speed(0), 0.0);

@@ -1,4 +1,4 @@
-//! After the last substep: from rows back to the tables.
+//! After the last substep: from rows to the tables.
 #![expect(unsafe_code, reason = "bodies are changed by several threads, each its own")]
 
 use super::{BodyRow, RowView, Solver};
@@ -13,12 +13,12 @@ use std::sync::{Mutex, PoisonError};
 const BLOCK: usize = 256;
 
 impl Solver {
-    /// Folds the motion of each body into its pose, notes its velocity if it is dynamic, and counts the time for
-    /// which it has been at rest. `listed` are the bodies in the order of their rows, from row 1; `frames` receives
-    /// the frame of each that [moved](BodyRow::is_moved), by its id.
+    /// Adds the displacement of each body to its pose, stores the velocity of dynamic bodies, and updates sleep timers.
+    /// `listed` are the bodies in the order of rows, from row 1. `frames` receives the frame of each body that
+    /// [moved](BodyRow::is_moved), by id.
     ///
-    /// Returns the rows whose result is not finite, in no order: these bodies keep pose and velocity. Left out are
-    /// bodies whose row has become another's.
+    /// Returns the rows whose result is not finite, in no order: these bodies keep pose and velocity. Bodies whose row
+    /// now belongs to another body are skipped.
     pub fn finish(
         &mut self,
         bodies: &mut BodyTable,
@@ -53,7 +53,7 @@ impl Solver {
     }
 }
 
-/// Where bodies are read from and written to.
+/// The tables that are read and written.
 struct Finish<'a> {
     rows: RowView<'a, BodyRow>,
     first_dynamic: u32,
@@ -64,7 +64,7 @@ struct Finish<'a> {
 }
 
 impl Finish<'_> {
-    /// Finishes a body for each lane, with rows from `first` on. Each row is finished once.
+    /// Finishes one body per lane, with rows from `first` on. Each row is finished once.
     #[inline(always)]
     fn bodies<N: Lane>(&self, first: u32, ids: &N::Ids) {
         let &Self { ref rows, ref bodies, dt, .. } = self;
@@ -79,24 +79,25 @@ impl Finish<'_> {
         let mut before = Rot::<N>::default();
         for (i, id) in ids.iter().enumerate() {
             lanes.set(i, first + i as u32);
-            // SAFETY: no two bodies have one row, so this one is nobody else's.
+            // SAFETY: no two bodies share a row, so no other thread has this one.
             before.set(i, unsafe { bodies.poses.one(*id as usize) }.rotation);
         }
-        // SAFETY: nothing is written through this view.
-        let ((v, _), (way, turn)) = unsafe {
+        // SAFETY: no row is written through this view.
+        let ((v, _), (displacement, turn)) = unsafe {
             (BodyRow::gather_velocity::<N>(rows, &lanes), BodyRow::gather_delta::<N>(rows, &lanes))
         };
         let rotation = turn.mul(before).renormalized();
-        let (speed, way_squared) = (v.length(), way.length_squared());
+        let (speed, displacement_squared) = (v.length(), displacement.length_squared());
         let angle_squared = turn.small_turn().length_squared();
         for (i, id) in ids.iter().enumerate() {
             let (row, id) = (first + i as u32, *id as usize);
             // SAFETY: as above.
             let (body, pose) = unsafe { (bodies.bodies.one(id), bodies.poses.one(id)) };
-            // SAFETY: nothing is written through this view.
+            // SAFETY: no row is written through this view.
             let motion = unsafe { rows.get(row) };
             let (linear, angular) = motion.velocity();
-            let (center, rotation) = (pose.center + Vector::get(&way, i).to_world(), Rot::get(&rotation, i));
+            let (center, rotation) =
+                (pose.center + Vector::get(&displacement, i).to_world(), Rot::get(&rotation, i));
             let placed = center.is_finite_world() & rotation.is_finite();
             if !(placed & linear.is_finite() & angular.is_finite()) {
                 self.lost.lock().unwrap_or_else(PoisonError::into_inner).push(row);
@@ -112,7 +113,7 @@ impl Finish<'_> {
                 // SAFETY: as above.
                 *unsafe { self.frames.one(id) } = pose.frame(body.local_center);
             }
-            let rests = body.rest_speed.admits(way_squared.get(i), angle_squared.get(i), dt);
+            let rests = body.rest_speed.admits(displacement_squared.get(i), angle_squared.get(i), dt);
             body.sleep_timer = if rests { body.sleep_timer + dt } else { 0.0 };
         }
     }

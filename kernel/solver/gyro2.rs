@@ -2,17 +2,17 @@
 
 use crate::math::{Angular, InvInertia, Rot};
 
-/// The inertia of a body whose spin axis turns by itself: no body in 2D.
+/// Free spin of a body: never used in 2D.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Gyro {}
 
 impl Gyro {
-    /// `None`: in 2D turning does not change the spin axis.
+    /// `None`: in 2D the spin axis is constant.
     pub(super) fn of(_inv_inertia: InvInertia) -> Option<Self> {
         None
     }
 
-    /// The inverse inertia that the contacts of a step see, if it is not the body's.
+    /// The inverse inertia for the contacts of a step, if it differs from the body's.
     pub(super) fn in_step(
         &self,
         _world: InvInertia,
@@ -49,7 +49,7 @@ pub(super) fn world_rotation(delta: Rot, start: Rot) -> Rot {
     delta.mul(start)
 }
 
-/// A turn by an angle in radians.
+/// The rotation by an angle in radians, as a vector.
 #[cfg(test)]
 pub(super) fn spin(angle: f32) -> Angular {
     Angular { z: angle }

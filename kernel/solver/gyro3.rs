@@ -1,44 +1,45 @@
-//! Gyroscopic torque: what keeps the angular momentum of a spinning body that is not a ball.
-//! `gyro2.rs` exports the same names.
+//! Gyroscopic torque, which conserves the angular momentum of spinning bodies other than balls. `gyro2.rs` exports the
+//! same names.
 
 use crate::math::{Angular, InvInertia, MAX_RATIO, Rot, Vector, max};
 
-/// The turn within a substep, in rad, up to which precession is integrated in full. A body that turns further
-/// precesses as if it turned by this much: three Newton steps of [`Gyro::spun`] converge up to here for any inertia.
+/// Maximum turn within a substep, in rad, for which precession is integrated. Bodies that turn further precess as if
+/// they turned by this: three Newton steps of [`Gyro::spun`] converge up to here for any inertia.
 const MAX_TURN: f32 = 1.0;
 
-/// The turn within a substep, in rad, up to which one Newton step is enough: it leaves an energy error below
-/// 1e-8 a substep, at 0.5 rad it would leave 1e-7, at 0.75 rad 1e-5.
+/// Maximum turn within a substep, in rad, for which one Newton step is used. It leaves an energy error below 1e-8 per
+/// substep; at 0.5 rad that would be 1e-7, at 0.75 rad 1e-5.
 const SMALL_TURN: f32 = 0.25;
 
-/// The turn within a substep, in rad, below which the spin axis is left as it is, so that resting bodies do not pay.
+/// Minimum turn within a substep, in rad, for which the spin axis moves. Resting bodies stay below it and cost nothing.
 const MIN_TURN: f32 = 1.0e-5;
 
-/// The largest relative change of energy that a substep of free spin may make. The midpoint rule makes none, so
-/// more of it means that Newton's method has not converged; the substep then leaves the spin as it is.
+/// Maximum relative change of energy in a substep of free spin. The midpoint rule changes none, so more means that
+/// Newton's method has not converged. The spin is then left as it is.
 const MAX_ENERGY_ERROR: f32 = 1.0e-4;
 
-/// The inertia of a body whose spin axis turns by itself, in the body's frame.
+/// Inertia of a body in its own frame, for free spin.
 ///
-/// Scaled so that the largest moment is about 1: free spin does not depend on the scale, and determinants of the
-/// tensors of tiny bodies would underflow.
+/// Scaled so that the largest moment is about 1. Free spin does not depend on the scale, and determinants of tiny
+/// bodies' tensors would underflow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gyro {
     inertia: InvInertia,
     inv_inertia: InvInertia,
 }
 
-/// How many substeps a step is taken to have where the turn within it matters.
+/// Number of substeps per step that [`Gyro::in_step`] assumes.
 const STEP_SUBSTEPS: f32 = 4.0;
 
-/// The largest product of the ratio of a rod's moments and the square of the angle by which it swings in a step.
+/// Maximum product r θ² of a rod's ratio of moments r and the squared angle θ that it swings in a step. Larger values
+/// let fast rods gain energy in contacts.
 const MAX_LEAK: f32 = 25.0;
 
-/// The ratio of moments that no swing reduces further: that of a box 4 times as long as thick.
+/// Minimum ratio of moments to which a swing may reduce r: that of a box 4 times as long as thick.
 const MIN_RATIO: f32 = 10.0;
 
 impl Gyro {
-    /// `None` if the three moments are equal (within 1 ‰) and the tensor diagonal, so that ω × I ω vanishes, or if
+    /// `None` if the three moments are equal (within 1 ‰) and the tensor is diagonal, so that ω × I ω vanishes, or if
     /// the body cannot turn about some axis.
     pub(super) fn of(inv_inertia: InvInertia) -> Option<Self> {
         let i = inv_inertia;
@@ -56,13 +57,13 @@ impl Gyro {
         Some(Self { inertia: inertia.scaled(1.0 / size), inv_inertia: i.scaled(size) })
     }
 
-    /// The inverse inertia, in world axes, that the contacts of a step see, if it is not the body's. `w` is the velocity
-    /// when the step begins, `h` the length of a substep.
+    /// The inverse inertia, in world axes, for the contacts of a step, if it differs from the body's. `w` is the
+    /// angular velocity at the start of the step, `h` the length of a substep.
     ///
-    /// It is the same in all substeps, while the thin axis of a rod that swings by the angle θ ends up elsewhere. An
-    /// impulse that turns the rod easily about where the axis was then turns it about an axis whose moment is r times
-    /// larger, and gives up to 1 + r θ² times the energy. A larger moment about the thin axis keeps r θ² below
-    /// [`MAX_LEAK`]. Bodies that spin about their thin axis are not concerned.
+    /// The inertia in contact rows is constant over the step, but the thin axis of a rod that swings by the angle θ
+    /// moves. An impulse that turns the rod easily about the old axis then turns it about an axis whose moment is r
+    /// times larger, and gives up to 1 + r θ² times the energy. A larger moment about the thin axis keeps r θ² below
+    /// [`MAX_LEAK`]. Bodies that spin about their thin axis keep their inertia.
     pub(super) fn in_step(&self, world: InvInertia, w: Angular, rotation: Rot, h: f32) -> Option<InvInertia> {
         let angle = STEP_SUBSTEPS * h;
         let allowed = |w: Angular| max(MAX_LEAK / (w.length_squared() * angle * angle), MIN_RATIO);
@@ -86,9 +87,9 @@ impl Gyro {
     /// Numerical Integration", IV.2.1: quadratic invariants). Implicit Euler (Catto, "Numerical Methods", GDC 2015) loses
     /// both at the rate h |ω|². A body that turns by h m keeps the direction of the momentum to third order in h.
     ///
-    /// In m it reads I (m − ω) + ½ h m × I m = 0. It is solved by Newton's method from the explicit guess
-    /// m = ω − ½ h I⁻¹ (ω × I ω), whose Jacobian is I + ½ h ([m]× I − [I m]×). The difference between |I ω'| and
-    /// |I ω| that is left is scaled away.
+    /// In m it reads I (m − ω) + ½ h m × I m = 0. Newton's method solves it from the explicit guess m = ω − ½ h I⁻¹ (ω
+    /// × I ω), with the Jacobian I + ½ h ([m]× I − [I m]×). The remaining difference between |I ω'| and |I ω| is scaled
+    /// away.
     pub(super) fn spun(&self, w: Angular, h: f32) -> (Angular, Angular) {
         let turn = w.length() * h;
         if turn < MIN_TURN {
@@ -105,7 +106,7 @@ impl Gyro {
         (w + change * 0.5, w + change)
     }
 
-    /// One Newton step for the middle `m`.
+    /// One Newton step for the midpoint velocity `m`.
     fn newton(&self, local: Vector, m: Vector, k: f32) -> Vector {
         let momentum = self.inertia.apply(m);
         let residual = self.inertia.apply(m - local) + m.cross(momentum) * k;
@@ -121,15 +122,15 @@ impl Gyro {
         m - change * (1.0 / determinant)
     }
 
-    /// The change of a velocity, scaled so that the momentum keeps its length; none if the energy does not stay, or if a
-    /// singular Jacobian left no number.
+    /// The change of a velocity, scaled so that the momentum keeps its length. Zero if the energy is not conserved, or
+    /// if a singular Jacobian gave no number.
     fn kept(&self, local: Vector, momentum: Vector, change: Vector) -> Vector {
         let gained = self.inertia.apply(change);
         let after = momentum + gained;
         let square = after.length_squared();
         // |M|² − |M'|², without the cancellation of two squares.
         let excess = gained.dot(momentum + after);
-        // s − 1 = |M| / |M'| − 1 by (1 + e)^½, of which e is the smaller the better Newton's step was.
+        // s − 1 = |M| / |M'| − 1 by (1 + e)^½. A better Newton step leaves a smaller e.
         let e = -excess / square;
         let s = e * (0.5 - 0.125 * e);
         let change = change + (local + change) * s;
@@ -154,12 +155,12 @@ pub(super) fn to_world(rotation: Rot, w: Angular) -> Angular {
     rotation.rotate(w)
 }
 
-/// A body's rotation now. Of unit length: what is left of it over the steps would make a spin faster or slower.
+/// The current rotation of a body, of unit length: a deviation, kept over the steps, would change the spin.
 pub(super) fn world_rotation(delta: Rot, start: Rot) -> Rot {
     delta.mul(start).renormalized()
 }
 
-/// A turn about x… by an angle in radians.
+/// The rotation about x by an angle in radians, as a vector.
 #[cfg(test)]
 pub(super) fn spin(angle: f32) -> Angular {
     Vector::Z * angle

@@ -1,14 +1,14 @@
-//! What rows are made from.
+//! Inputs for building rows.
 
 use crate::contact::ContactTable;
 use crate::graph::ConstraintKind;
 use crate::table::{BodyTable, NONE};
 
-/// What rows are made from.
+/// Inputs for building rows.
 pub struct RowInput<'a> {
     /// The contacts, with their manifolds.
     pub contacts: &'a ContactTable,
-    /// Which row each body has.
+    /// The bodies, with their rows.
     pub bodies: &'a BodyTable,
 }
 
@@ -21,7 +21,7 @@ impl RowInput<'_> {
         }
     }
 
-    /// A body's row in this step; the dummy for none.
+    /// Row of a body in this step; the dummy's row for none.
     #[inline(always)]
     pub(super) fn row_of(&self, body: u32) -> u32 {
         if body == NONE { 0 } else { self.bodies.rows[body as usize] }

@@ -10,7 +10,7 @@ use crate::thread_pool::ThreadPool;
 /// more claims.
 const BLOCK: usize = 256;
 
-/// Changes the rows of some bodies, and what is listed of them.
+/// Changes rows of bodies that have an item in a list.
 fn each_of<T: Send>(
     listed: &mut OnceEach<T>,
     rows: &mut [BodyRow],
@@ -34,8 +34,8 @@ fn limit_factor(speed: f32, max: f32) -> f32 {
 }
 
 impl BodyRows {
-    /// v ← v / (1 + c h) + h a for every dynamic body; the damping acts on the old velocity, so that
-    /// without forces v falls by exactly 1 / (1 + c h). In 3D then one step of the gyroscopic torque.
+    /// v ← v / (1 + c h) + h a for every dynamic body. Damping acts on the old velocity, so that without forces v falls
+    /// by exactly 1 / (1 + c h).
     pub(super) fn integrate_velocities(&mut self, h: f32, pool: &ThreadPool) {
         let Self { rows, motions, first_dynamic, .. } = self;
         debug_assert_eq!(rows.len(), motions.len(), "each row has its motion");
@@ -62,9 +62,9 @@ impl BodyRows {
 
     /// Δx ← Δx + h v and Δθ ← Δθ turned by h ω, for every body.
     ///
-    /// A body that its own spin turns takes the ω of the middle of its free spin. Contacts see the ω before it, which
-    /// belongs to the rotation that their arms are from: with a step of the gyroscopic torque between them, the axis of a
-    /// fast spinner moved aside of where its contacts let it, and they threw it back.
+    /// A body with free spin turns by the ω in the middle of it. Contacts use the ω before it, which belongs to the
+    /// same rotation as their arms. If contacts came after a step of the gyroscopic torque, the axis of a fast spinner
+    /// would have moved, and contacts would throw it back.
     pub(super) fn integrate_positions(&mut self, h: f32, pool: &ThreadPool) {
         self.hold_back(pool);
         each_of(&mut self.spins, &mut self.rows, pool, |spin, row| spin.begin_turn(row, h));
@@ -88,7 +88,7 @@ impl BodyRows {
         self.hold_back(pool);
     }
 
-    /// Keeps velocities within their limits.
+    /// Clamps velocities to their limits.
     fn hold_back(&mut self, pool: &ThreadPool) {
         each_of(&mut self.limits, &mut self.rows, pool, |limits, row| {
             let (v, w) = row.velocity();
@@ -103,7 +103,7 @@ impl BodyRows {
 }
 
 /// # Safety
-/// No other thread reads or writes these rows meanwhile.
+/// Until it returns, no other thread reads or writes these rows.
 #[inline(always)]
 unsafe fn move_bodies<N: Lane>(view: &super::RowView<BodyRow>, ids: &N::Ids, h: f32) {
     // SAFETY: by the contract.
@@ -114,10 +114,10 @@ unsafe fn move_bodies<N: Lane>(view: &super::RowView<BodyRow>, ids: &N::Ids, h: 
     unsafe { BodyRow::scatter_delta::<N>(view, ids, p + v * h, turned(q, w * h)) };
 }
 
-/// The largest x of [`exact_turn`], at 0.5 rad (in 2D: 0.25 rad): its series is exact to rounding up to here.
+/// Maximum x of [`exact_turn`], at 0.5 rad (in 2D: 0.25 rad). Up to here its series is exact to rounding.
 const SMALL: f32 = 0.0625;
 
-/// A rotation after the turn `delta`, of any angle.
+/// The rotation after turning by `delta`, of any size.
 #[inline(always)]
 fn turned<N: Lane>(q: Rot<N>, delta: Angular<N>) -> Rot<N> {
     let near = q.integrated(exact_turn(delta));
@@ -125,11 +125,11 @@ fn turned<N: Lane>(q: Rot<N>, delta: Angular<N>) -> Rot<N> {
     if N::any(far) { Rot::select(far, large_turn(q, delta), near) } else { near }
 }
 
-/// What x of [`exact_turn`] is over δ².
+/// The ratio of x of [`exact_turn`] to δ².
 const SERIES: f32 = if crate::math::DIM == 2 { 1.0 } else { 0.25 };
 
-/// The normalised Euler step turns by 2 atan(δ/2) (in 2D: atan δ) instead of δ. Terms of the
-/// tangent's series beforehand make up for it: δ (1 + x/3 + 2x²/15 + 17x³/315 + 62x⁴/2835), x = (δ/2)² (in 2D: δ²).
+/// The normalised Euler step turns by 2 atan(δ/2) (in 2D: atan δ) instead of δ. Terms of the tangent's series
+/// compensate: δ (1 + x/3 + 2x²/15 + 17x³/315 + 62x⁴/2835), x = (δ/2)² (in 2D: δ²).
 #[inline(always)]
 fn exact_turn<N: Lane>(turn: Angular<N>) -> Angular<N> {
     let x = turn.length_squared() * N::splat(SERIES);
@@ -137,8 +137,8 @@ fn exact_turn<N: Lane>(turn: Angular<N>) -> Angular<N> {
     turn * (N::ONE + x * (N::splat(1.0 / 3.0) + x * series))
 }
 
-/// The turn by a large angle, lane by lane by sine and cosine. The tangent of [`exact_turn`] is infinite at half a
-/// turn. Not inlined: few bodies turn so fast.
+/// The rotation by a large angle, lane by lane with sine and cosine: the tangent of [`exact_turn`] is infinite at half
+/// a turn. Not inlined, since few bodies turn so fast.
 #[inline(never)]
 fn large_turn<N: Lane>(q: Rot<N>, delta: Angular<N>) -> Rot<N> {
     let mut turned = q;
@@ -189,7 +189,7 @@ mod tests {
         assert!((f64::from(bodies.rows[1].velocity().0.x) - want).abs() < 1e-4 * want);
     }
 
-    /// How a rotation turns two axes, beside what the angle's sine and cosine say.
+    /// Error of a rotation, compared with sine and cosine of the angle on two axes.
     fn turn_error(angle: f32) -> f64 {
         let [x, y] = [Rot::IDENTITY.axes()[0], Rot::IDENTITY.axes()[1]];
         let turned = turned::<f32>(Rot::IDENTITY, spin(angle)).rotate(x);

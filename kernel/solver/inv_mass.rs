@@ -1,19 +1,19 @@
-//! The inverse mass of a row's body: one number, or one for each axis.
+//! The inverse mass of a row's body: one number, or one per axis.
 
 use crate::math::{Lane, Num, Vector};
 
-/// How an impulse changes a velocity. A body held along some axes has another inverse mass
-/// along each, so its rows carry a vector; all other rows carry a number.
+/// How an impulse changes a velocity. Rows of bodies with locked axes have an inverse mass per world axis, all others
+/// have one number.
 pub trait InvMass<N: Lane>: Copy + Send + Sync {
     /// Immovable.
     const ZERO: Self;
-    /// The change of velocity that an impulse makes.
+    /// The change of velocity by an impulse.
     fn apply(self, impulse: Vector<N>) -> Vector<N>;
-    /// For each axis of the world.
+    /// The inverse mass along each world axis.
     fn diagonal(self) -> Vector<N>;
     /// Whether no impulse moves the body.
     fn is_zero(self) -> N::Mask;
-    /// From the inverse mass and 1 along free, 0 along held axes.
+    /// From the inverse mass, and 1 along free, 0 along locked axes.
     fn new(inv_mass: N, free: Vector<N>) -> Self;
 }
 

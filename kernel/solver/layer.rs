@@ -1,26 +1,25 @@
-//! The constraints of one colour, sorted into lists: what a stage is planned from.
+//! The constraints of one colour, sorted into lists from which stages are planned.
 
 use super::batch::Item;
 use super::input::RowInput;
 use super::shares::Shares;
 use crate::math::AxisLocks;
 
-/// Items whose dynamic bodies are all different, in a list for each part of the stage and each batch.
+/// Items without a common dynamic body, in a list for each part of the stage and each batch.
 ///
-/// A contact with several manifolds has them solved one after the other, in one layer each: so a stage holds no body
-/// twice.
+/// The manifolds of a contact are solved one after the other, in one layer each, so that no stage has a body twice.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Layer {
-    /// There may be more lists than are in use.
+    /// The lists. The last ones may be unused.
     lists: Vec<Vec<Item>>,
     batches: usize,
     parts: usize,
-    /// The batch of each item in the order in which they were added, where that is kept.
+    /// The batch of each item in the order of adding, if that is kept.
     order: Option<Vec<u16>>,
 }
 
 impl Layer {
-    /// Forgets all items. From now on there is a list for each batch of each part.
+    /// Clears the layer, and prepares a list for each batch of each part.
     pub(super) fn begin(&mut self, batches: usize, parts: usize) {
         (self.batches, self.parts) = (batches, parts);
         let count = batches * parts;
@@ -31,7 +30,7 @@ impl Layer {
         }
     }
 
-    /// As [`begin`](Self::begin) with one part, whose items keep the order in which they are added over all batches.
+    /// As [`begin`](Self::begin) with one part, and records the order of items over all batches.
     pub(super) fn begin_ordered(&mut self, batches: usize) {
         self.order.get_or_insert_default();
         self.begin(batches, 1);
@@ -53,32 +52,32 @@ impl Layer {
         &self.lists[part * self.batches + batch]
     }
 
-    /// How many batches there are lists for.
+    /// The number of batches.
     pub(super) fn batches(&self) -> usize {
         self.batches
     }
 
-    /// How many parts there are lists for.
+    /// The number of parts.
     pub(super) fn parts(&self) -> usize {
         self.parts
     }
 
-    /// The batch of each item, in the order in which they were added.
+    /// The batch of each item, in the order of adding.
     pub(super) fn order(&self) -> &[u16] {
         self.order.as_deref().unwrap_or_default()
     }
 }
 
-/// What constraints are sorted by.
+/// Inputs for sorting constraints.
 pub(super) struct Sorter<'a> {
     pub(super) input: &'a RowInput<'a>,
-    /// Which axes are held, by body row; empty where no body is held along any.
+    /// Locked axes by body row. Empty if no body has locked axes.
     pub(super) locks: &'a [AxisLocks],
     pub(super) shares: &'a Shares,
 }
 
 impl Sorter<'_> {
-    /// Whether one of two bodies is held along some axes.
+    /// Whether one of two bodies has locked axes.
     #[inline(always)]
     pub(super) fn is_held(&self, bodies: [u32; 2]) -> bool {
         let held = |body: u32| self.locks[self.input.row_of(body) as usize].is_translation_held();

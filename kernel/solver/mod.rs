@@ -1,17 +1,17 @@
 //! The TGS-Soft contact solver: dense body rows, wide contact rows, and the stages of a substep.
 //!
-//! One step is: fill [`Solver::bodies`], find the special ones among them, build the rows from touching
-//! manifolds, then per substep integrate velocities → impacts → warm start → solve with soft bias → integrate
-//! positions → relax; after the last one restitution, and the impulses go back into the manifolds.
+//! One step: fill [`Solver::bodies`], build the rows of the constraints, run the substeps (integrate velocities →
+//! impacts → warm start → solve with soft bias → integrate positions → relax), then restitution, and store the
+//! impulses.
 //!
-//! The method is Erin Catto's (Solver2D, Box2D v3, Box3D): soft constraints, relaxation, positions kept
-//! as deltas over the step. Rows here differ in that both dimensions have one central friction row per
-//! manifold (in 2D the two points of an edge have the same tangent Jacobian up to the edge's slope),
-//! in that the second anchor is the first less one offset per manifold, and in that deep overlap is pushed
-//! out by split impulses, which leave the velocities alone ([`SplitImpulseRow`]).
+//! The method is Erin Catto's (Solver2D, Box2D v3, Box3D): soft constraints, relaxation, positions as displacements
+//! over the step. Rows differ in three ways. Both dimensions have one central friction row per manifold (in 2D the two
+//! points of an edge have the same tangent Jacobian up to the edge's slope). The second anchor is the first less one
+//! offset per manifold. Deep overlap is pushed out by split impulses, which do not change velocities
+//! ([`SplitImpulseRow`]).
 //!
-//! A kind of constraint is a file that implements `Batch` (`batch.rs`) and a line for it in `batches.rs`. The plan and its
-//! stages know of rows only their batch and number.
+//! A kind of constraint is a file that implements `Batch` (`batch.rs`), and is listed in `batches.rs`. The plan and its
+//! stages know only the batch and number of a row.
 
 mod batch;
 mod batches;
@@ -44,7 +44,7 @@ mod view;
 pub use body::{BodyRows, Limits, Motion};
 pub use dim::{BodyRow, MassRow, Twist};
 pub use distance::{Distance, DistanceError, DistanceTable, Spring};
-pub use fill::{BodyFiller, FewBodies, FilledBody};
+pub use fill::{BodyFiller, FilledBody, SpecialBodies};
 pub use input::RowInput;
 pub use inv_mass::InvMass;
 pub use row::{ContactRow, PointRow, RestitutionRow, SplitImpulseRow};

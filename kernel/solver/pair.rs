@@ -1,4 +1,4 @@
-//! What rows of two bodies compute with: their velocities, and softness lane by lane.
+//! Operands of rows between two bodies: velocities, and softness per lane.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::{BodyRow, RowView, Softness};
@@ -13,7 +13,7 @@ pub(super) struct Pair<N> {
 
 impl<N: Lane> Pair<N> {
     /// # Safety
-    /// No other thread writes these rows meanwhile.
+    /// Until it returns, no other thread writes these rows.
     #[inline(always)]
     pub(super) unsafe fn load(rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) -> Self {
         // SAFETY: by the contract.
@@ -23,7 +23,7 @@ impl<N: Lane> Pair<N> {
         Self { v: [va, vb], w: [wa, wb] }
     }
 
-    /// This where the mask is set, else `other`.
+    /// This pair where the mask is set, else `other`.
     #[inline(always)]
     pub(super) fn or_where_not(self, mask: N::Mask, other: Self) -> Self {
         Self {
@@ -32,14 +32,14 @@ impl<N: Lane> Pair<N> {
         }
     }
 
-    /// How fast B leaves A along `n`, at the point whose moments with it are given.
+    /// Velocity of B relative to A along `n`, at the point whose moments with `n` are given.
     #[inline(always)]
     pub(super) fn along(&self, n: Vector<N>, [ma, mb]: [Angular<N>; 2]) -> N {
         (self.v[1] - self.v[0]).dot(n) + self.w[1].dot(mb) - self.w[0].dot(ma)
     }
 
     /// # Safety
-    /// No other thread reads or writes those of these rows that may be written.
+    /// Until it returns, no other thread reads or writes those of these rows that may be written.
     #[inline(always)]
     pub(super) unsafe fn store(&self, rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) {
         // SAFETY: by the contract.
@@ -50,7 +50,7 @@ impl<N: Lane> Pair<N> {
     }
 }
 
-/// [`Softness`], chosen lane by lane.
+/// [`Softness`] per lane.
 #[derive(Clone, Copy)]
 pub(super) struct SoftLanes<N> {
     pub(super) bias_rate: N,

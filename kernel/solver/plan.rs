@@ -1,33 +1,33 @@
-//! When which rows are solved: stages, cut into blocks that the workers share.
+//! The order of solving: stages, cut into blocks that workers share.
 
 use super::batch::{Item, Passes};
 use super::layer::Layer;
 use super::shares::Shares;
 
-/// Consecutive rows of one batch. The dynamic bodies of all blocks of a stage are different, so that they may be solved
-/// in any order or at once.
+/// Consecutive rows of one batch. No two blocks of a stage have a dynamic body in common, so they may be solved in any
+/// order or at once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
     pub(super) batch: u16,
-    /// The passes that its rows need.
+    /// The passes that the rows need.
     pub(super) passes: Passes,
     start: u32,
     len: u32,
-    /// Where its items are: a list of the plan, and the first of the list's items.
+    /// The place of the block's items: a list of the plan, and the first of its items.
     list: u32,
     first_item: u32,
     items: u32,
 }
 
 impl Block {
-    /// Its rows in the batch.
+    /// The rows in the batch.
     #[inline(always)]
     pub(super) fn rows(&self) -> core::ops::Range<usize> {
         self.start as usize..(self.start + self.len) as usize
     }
 }
 
-/// Where a list of items is.
+/// The place of a list of items.
 #[derive(Clone, Copy, Debug)]
 struct ListPlace {
     color: u8,
@@ -40,19 +40,19 @@ struct ListPlace {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Plan {
     pub(super) blocks: Vec<Block>,
-    /// The end of each stage among the blocks, and whether workers share it.
+    /// The end of each stage among the blocks, and whether workers share the stage.
     ends: Vec<(u32, bool)>,
-    /// For each stage and worker, the end of the worker's part within the stage.
+    /// For each stage and worker, the end of the worker's blocks within the stage.
     parts: Vec<u32>,
     lists: Vec<ListPlace>,
-    /// How many rows each batch has.
+    /// Number of rows of each batch.
     rows: Vec<u32>,
     workers: usize,
-    /// The most rows of a block.
+    /// Maximum number of rows of a block.
     block_rows: u32,
     /// The next item of each batch, while items are added singly.
     next: Vec<u32>,
-    /// How many items of each batch have a place in a row.
+    /// Number of items of each batch that have a place in a row.
     items: Vec<u32>,
 }
 
@@ -60,23 +60,24 @@ pub(super) struct Plan {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stage<'a> {
     pub(super) blocks: &'a [Block],
-    /// The end of each worker's part of them; `None` if there are too few to share.
+    /// The end of each worker's blocks; `None` if there are too few to share.
     pub(super) parts: Option<&'a [u32]>,
 }
 
-/// The layer of a colour that is planned, and which batches its lists belong to.
+/// The layer that is being planned, and the batches of its lists.
 pub(super) struct Planned<'a> {
     pub(super) color: u8,
     pub(super) number: u32,
     pub(super) layer: &'a Layer,
     /// The batch of the layer's first list.
     pub(super) first_batch: usize,
-    /// How many items a row has room for.
+    /// Number of lanes of a row.
     pub(super) width: u32,
 }
 
 impl Plan {
-    /// Forgets everything. From now on blocks have at most `block_rows` rows, and stages a part for each worker.
+    /// Clears the plan. Blocks then have at most `block_rows` rows, and shared stages have a range of blocks for each
+    /// worker.
     pub(super) fn begin(&mut self, block_rows: u32, workers: usize, batches: usize) {
         self.blocks.clear();
         self.ends.clear();
@@ -90,7 +91,7 @@ impl Plan {
         self.items.resize(batches, 0);
     }
 
-    /// Plans a stage of a layer.
+    /// Plans one stage from a layer.
     pub(super) fn add(&mut self, planned: &Planned, shares: &Shares) {
         let parts = planned.layer.parts();
         debug_assert!((1..=shares.workers()).contains(&parts), "{parts} parts");
@@ -105,7 +106,7 @@ impl Plan {
         self.end_stage(parts > 1);
     }
 
-    /// Plans a stage for each item of a layer, in the order in which they were added.
+    /// Plans a stage for each item of a layer, in the order of adding.
     pub(super) fn add_singly(&mut self, planned: &Planned) {
         let layer = planned.layer;
         let mut next = core::mem::take(&mut self.next);
@@ -126,7 +127,7 @@ impl Plan {
         self.next = next;
     }
 
-    /// Cuts the rows of a list into blocks of the stage that is being planned.
+    /// Cuts the rows of a list into blocks of the current stage.
     fn add_list(&mut self, planned: &Planned, part: usize, batch: usize) {
         debug_assert!(self.block_rows > 0, "a plan is begun before it is added to");
         let all = planned.layer.list(part, batch).len() as u32;
@@ -153,12 +154,12 @@ impl Plan {
         self.items[usize::from(batch)] += items;
     }
 
-    /// Ends a worker's part of the stage that is being planned.
+    /// Ends a worker's range of blocks in the current stage.
     fn end_part(&mut self) {
         self.parts.push(self.blocks.len() as u32 - self.start());
     }
 
-    /// Ends a stage, which is shared or not: what is added from now on waits for what was added before.
+    /// Ends the current stage. Later stages wait for it.
     fn end_stage(&mut self, is_shared: bool) {
         let end = self.blocks.len() as u32;
         debug_assert_eq!(self.parts.len(), (self.ends.len() + 1) * self.workers, "each worker has a part");
@@ -168,17 +169,17 @@ impl Plan {
         self.parts.truncate(self.ends.len() * self.workers);
     }
 
-    /// Where the stage that is being planned begins.
+    /// The first block of the current stage.
     fn start(&self) -> u32 {
         self.ends.last().map_or(0, |(end, _)| *end)
     }
 
-    /// How many rows each batch has.
+    /// Number of rows of each batch.
     pub(super) fn rows(&self) -> &[u32] {
         &self.rows
     }
 
-    /// How many items each batch has.
+    /// Number of items of each batch.
     pub(super) fn item_counts(&self) -> &[u32] {
         &self.items
     }

@@ -9,10 +9,10 @@ use crate::math::{Angular, Ids, InvInertia, Lane, Tangent, TangentFrame, Tangent
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct PointRow<N> {
-    /// From body A's centre of mass to A's core (see [`Shape::radius`](crate::shape::Shape::radius)) when
-    /// the step begins; from body B's to B's core it is this less the row's offset.
+    /// From A's centre of mass to A's core (see [`Shape::radius`](crate::shape::Shape::radius)), at the start of the
+    /// step. From B's centre of mass to B's core it is this less the row's offset.
     pub anchor: Vector<N>,
-    /// The separation when the step begins, in metres.
+    /// Separation at the start of the step, in metres.
     pub separation: N,
     /// The effective mass along the normal, kg.
     pub mass: N,
@@ -20,30 +20,30 @@ pub struct PointRow<N> {
     pub impulse: N,
 }
 
-/// The manifolds of `N::WIDTH` contacts with at most `P` points each.
+/// Manifolds of `N::WIDTH` contacts with at most `P` points each.
 ///
-/// Anchors and normals are fixed over the step; separations follow the bodies' exact motion. Points that
-/// a lane does not have carry zero mass.
+/// Anchors and normals are constant over the step. Separations follow the bodies' exact motion. Absent points have zero
+/// mass.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct ContactRow<N: Lane, M, const P: usize> {
     /// Body rows A and B.
     pub ids: [N::Ids; 2],
-    /// 1/kg: one number, or one for each axis where a body is held along some.
+    /// Inverse mass, 1/kg: one number, or one per axis for bodies with locked axes.
     pub inv_mass: [M; 2],
-    /// In world axes.
+    /// Inverse inertia in world axes.
     pub inv_inertia: [InvInertia<N>; 2],
-    /// From A to B.
+    /// Normal from A to B.
     pub normal: Vector<N>,
-    /// Takes a point's anchor from A's centre of mass to one from B's.
+    /// Difference between the anchors from A's and from B's centre of mass.
     pub offset: Vector<N>,
-    /// How far A's surface is from A's core, plus B's from B's, in metres.
-    pub rounding: N,
+    /// Sum of both bodies' radii: the distances of their surfaces from their cores, in metres.
+    pub radius: N,
     /// The mixed friction coefficient.
     pub friction: N,
-    /// The fastest that overlap is pushed out, m/s.
+    /// Maximum speed at which overlap is pushed out, m/s.
     pub push_speed: N,
-    /// The velocity that friction drives B's surface to, relative to A's, in the tangent space.
+    /// Target of B's surface velocity relative to A's, in the tangent space, m/s.
     pub surface_velocity: Tangent<N>,
     /// The friction row's anchor from A.
     pub center: Vector<N>,
@@ -51,41 +51,41 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
     pub tangent_mass: TangentMass<N>,
     /// The accumulated friction impulse, N·s.
     pub tangent_impulse: Tangent<N>,
-    /// Friction against turning about the normal.
+    /// Torsional friction about the normal.
     pub twist: Twist<N, P>,
     /// The points.
     pub points: [PointRow<N>; P],
 }
 
-/// What only bouncing needs, apart from the rows that every pass sweeps.
+/// Data of restitution, apart from the rows that every pass reads.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct RestitutionRow<N: Lane, const P: usize> {
     /// The mixed coefficient of restitution.
     pub restitution: N,
-    /// The approach speed that accelerations add in a substep, m/s.
+    /// Approach speed that accelerations add in a substep, m/s.
     pub gained: N,
-    /// The normal velocity of each point when the step began, m/s; 0 once it has bounced.
+    /// Normal velocity of each point at the start of the step, m/s. 0 once it has bounced.
     pub approach: [N; P],
-    /// The largest impulse of each point so far in the step, N·s.
+    /// Maximum impulse of each point so far in the step, N·s.
     pub max_impulse: [N; P],
 }
 
-/// What only a step with deep overlap needs of a row.
+/// Data of split impulses, apart from the rows that every pass reads.
 ///
-/// Decision: the push that takes out deep overlap only moves the bodies; what it does to their velocities
-/// is taken back before the relax pass, impulse by impulse, which conserves momentum. That pass alone would
-/// not do so: it lowers an impulse only where bodies come apart, so that inside a crowd, where the pushes
-/// from all sides balance, they add up over the substeps as in a compressed spring, and whatever is at the
-/// edge is flung off. The pass without bias stops what approaches, as ever.
+/// Decision: the impulses that push deep overlap out only move the bodies. Before the relax pass they are removed from
+/// the velocities, impulse by impulse, which conserves momentum. The relax pass does not remove them by itself: it
+/// lowers an impulse only where bodies separate. Inside a crowd, where the pushes from all sides balance, they would
+/// add up over the substeps as in a compressed spring, and bodies at the edge would be flung off. The part of the solve
+/// pass without bias stops approaching bodies as usual.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct SplitImpulseRow<N: Lane, const P: usize> {
-    /// 1 where a body of the contact overlaps something deeply, else 0.
+    /// 1 if a body of the contact overlaps another deeply, else 0.
     pub deep: N,
-    /// The share of the impulses that a substep starts from.
+    /// Share of the impulses for the warm start.
     pub warm: N,
-    /// The impulse of each point before overlap is pushed out, N·s.
+    /// Impulse of each point before the solve pass, N·s.
     pub before: [N; P],
 }
 
@@ -104,7 +104,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Default for ContactRow<N, M, P> {
             inv_inertia: [InvInertia::ZERO; 2],
             normal: Vector::ZERO,
             offset: Vector::ZERO,
-            rounding: N::ZERO,
+            radius: N::ZERO,
             friction: N::ZERO,
             push_speed: N::ZERO,
             surface_velocity: Tangent::ZERO,
@@ -142,12 +142,12 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// Applies the accumulated impulses.
     ///
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     pub(super) unsafe fn warm_start(&self, rows: &RowView<BodyRow>) {
         // SAFETY: by the contract.
         let mut pair = unsafe { Pair::load(rows, &self.ids) };
-        // All impulses of the manifold as one impulse and one moment for each body.
+        // All impulses of the manifold, as one impulse and one moment per body.
         let mut impulse = TangentFrame::new(self.normal).expand(self.tangent_impulse);
         let [ra, rb] = self.surface_arms();
         let mut moments = [ra.cross(impulse), rb.cross(impulse)];
@@ -163,10 +163,10 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         unsafe { pair.store(rows, &self.ids) };
     }
 
-    /// The soft-bias pass: non-penetration with position error fed back.
+    /// The solve pass: non-penetration with soft bias.
     ///
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     pub(super) unsafe fn solve(&mut self, rows: &RowView<BodyRow>, params: &SubstepParams) {
         // SAFETY: by the contract.
@@ -181,16 +181,16 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
 
     /// The relax pass: friction, then non-penetration without bias.
     ///
-    /// Friction stands between two sweeps over the normal rows, that of the solve pass and this one. With
-    /// friction last a wall of boxes shook itself ever faster, and crept by shaking: one sweep a substep, warm
-    /// started, does not reach the solution but swings about it, and some orders feed the swing (measured: a
-    /// pyramid of base 16 at rest reached 0.2 m/s in 50 s; now it comes to rest).
+    /// Friction is solved between two sweeps over the normal rows: those of the solve pass and of this one. One
+    /// warm-started sweep per substep does not reach the solution but oscillates about it, and some orders amplify the
+    /// oscillation. With friction last, a pyramid of base 16 at rest reached 0.2 m/s in 50 s; with this order it comes
+    /// to rest.
     ///
-    /// Where `restitution` is given and not 0, what closes fast is not slowed down before it meets: the impact
-    /// pass will see to it.
+    /// Where `restitution` is given and not 0, points that close fast are not slowed down before they touch: they are
+    /// left to the impact pass.
     ///
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     pub(super) unsafe fn relax(
         &mut self,
@@ -207,7 +207,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         unsafe { pair.store(rows, &self.ids) };
     }
 
-    /// Lets the substep start from the row's share of the impulses.
+    /// Scales the impulses to the row's share for the warm start.
     #[inline(always)]
     pub(super) fn scale_impulses(&mut self, split: &SplitImpulseRow<N, P>) {
         for point in &mut self.points {
@@ -215,7 +215,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
     }
 
-    /// Notes the impulses that [`undo_split`](Self::undo_split) returns to.
+    /// Saves the impulses that [`undo_split`](Self::undo_split) returns to.
     #[inline(always)]
     pub(super) fn save_impulses(&self, split: &mut SplitImpulseRow<N, P>) {
         for (before, point) in split.before.iter_mut().zip(&self.points) {
@@ -223,10 +223,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
     }
 
-    /// Takes back the impulses of the soft-bias pass where overlap is deep, once they have moved the bodies.
+    /// Removes the impulses of the solve pass from the velocities of deeply overlapping bodies, after they have moved
+    /// the bodies.
     ///
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     pub(super) unsafe fn undo_split(&mut self, rows: &RowView<BodyRow>, split: &SplitImpulseRow<N, P>) {
         // SAFETY: by the contract.
@@ -244,7 +245,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         unsafe { pair.or_where_not(N::ZERO.lt(split.deep), before).store(rows, &self.ids) };
     }
 
-    /// Notes the impulses that the restitution pass looks back on.
+    /// Updates the maximum impulses, for the restitution pass.
     #[inline(always)]
     pub(super) fn note_largest_impulses(&self, bounce: &mut RestitutionRow<N, P>) {
         for (max, point) in bounce.max_impulse.iter_mut().zip(&self.points) {
@@ -252,12 +253,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
     }
 
-    /// One normal row a point: λ' = max(λ − m (k_m (v_n + b)) − k_i λ, 0), where b is s/h while the
-    /// point is apart (it may close exactly that far), the soft bias where it overlaps and `soft` is
-    /// given, else 0.
+    /// One normal row per point: λ' = max(λ − m (k_m (v_n + b)) − k_i λ, 0). b is s/h for a separated point (it may
+    /// close exactly that far), the soft bias for an overlapping point if `soft` is given, else 0.
     ///
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     unsafe fn solve_normals(
         &mut self,
@@ -275,9 +275,9 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let (inv_h, slowest) = (N::splat(params.inv_h), -self.push_speed);
         let shift = (pb - pa).dot(n);
         for k in 0..P {
-            // The relax pass begins with the other half of four points: over both passes neither half comes
-            // first, and a box that lands flat is hardly tilted. Which point is the first of all differs from
-            // contact to contact (see the narrow phase).
+            // The relax pass begins with the other half of four points, so that over both passes neither half comes
+            // first, and a box that lands flat is hardly tilted. The first point differs from contact to contact (see
+            // the narrow phase).
             let i = if soft.is_some() || P < 4 { k } else { k ^ 2 };
             let point = self.points[i];
             let (ra, rb) = (point.anchor, point.anchor - self.offset);
@@ -307,13 +307,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
     }
 
-    /// The friction centre from either body's centre of mass.
+    /// The vectors from both centres of mass to the friction centre.
     #[inline(always)]
     pub(super) fn surface_arms(&self) -> [Vector<N>; 2] {
-        [self.center, self.center - self.offset - self.normal * self.rounding]
+        [self.center, self.center - self.offset - self.normal * self.radius]
     }
 
-    /// How fast B's surface slides over A's at the friction centre, less the velocity it is driven to.
+    /// Sliding velocity of B's surface over A's at the friction centre, less the target velocity.
     #[inline(always)]
     fn slip(&self, pair: &Pair<N>, frame: &TangentFrame<N>) -> Tangent<N> {
         let [ra, rb] = self.surface_arms();
@@ -321,11 +321,10 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         frame.project(relative) - self.surface_velocity
     }
 
-    /// One friction row at the friction centre, limited by μ times the sum of the normal impulses, and
-    /// the twist row.
+    /// Central friction, limited by μ times the sum of normal impulses, and torsional friction.
     ///
-    /// The impulses of the solve pass are too large by what pushed overlap out. So much of each is left out as
-    /// would undo the velocity at which its point parts, which is about what the relax pass is going to do.
+    /// The impulses of the solve pass contain the push-out of overlap. The part of each that would undo the separating
+    /// velocity of its point is left out of the limit. The relax pass removes about the same part.
     #[inline(always)]
     fn solve_friction(&mut self, pair: &mut Pair<N>) {
         let n = self.normal;
@@ -348,12 +347,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         self.push(pair, impulse, [ra.cross(impulse), rb.cross(impulse)]);
     }
 
-    /// The impact pass: points that close within this substep, and faster than the threshold, part again
-    /// before any other pass sees them, as if they had met at the right time within it. Returns whether any
-    /// did.
+    /// The impact pass: points that close within this substep, and faster than the threshold, rebound before any other
+    /// pass sees them, as if they had touched at the right time within the substep. Returns whether any rebounded.
     ///
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     pub(super) unsafe fn impact(
         &mut self,
@@ -424,8 +422,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         N::any(hit)
     }
 
-    /// Gives each point its target velocity along the normal, where that is not 0, by an impulse that pushes
-    /// only, and then the friction that goes with it.
+    /// Gives each point its target normal velocity, where that is not 0, by an impulse that only pushes, and then
+    /// friction.
     #[inline(always)]
     fn collide(
         &mut self,
@@ -436,7 +434,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     ) {
         let n = self.normal;
         let mut impulses = [N::ZERO; P];
-        // Points of one manifold share the impact: from a few sweeps, to and fro, none comes first.
+        // A few sweeps in alternating order: points of one manifold share the impact, and none comes first.
         for sweep in 0..if P == 1 { 1 } else { 4 } {
             for k in 0..P {
                 let i = if sweep % 2 == 0 { k } else { P - 1 - k };
@@ -459,11 +457,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         self.push(pair, rubbed, [ra.cross(rubbed), rb.cross(rubbed)]);
     }
 
-    /// The restitution pass: points that approached faster than the threshold and pushed leave with e
-    /// times the approach speed. What the impact pass has seen is done with.
+    /// The restitution pass: points that approached faster than the threshold and had an impulse leave with e times the
+    /// approach speed. Points that the impact pass has handled are skipped.
     ///
     /// # Safety
-    /// No other thread reads or writes the row's bodies that may be written, nor writes the others.
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
     pub(super) unsafe fn restitute(
         &mut self,
@@ -496,13 +494,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
 }
 
 impl<N: Lane, const P: usize> RestitutionRow<N, P> {
-    /// What becomes of a point that meets within a substep: the speed at which it parts, and by how much
-    /// closer it is at the substep's end than that speed would take it, because it meets only after
-    /// `gap` / `speed`. `approach` is the speed before the substep's accelerations, `speed` the one after.
+    /// The rebound of a point that touches within a substep: the speed at which it leaves, and its displacement at the
+    /// end of the substep that this speed does not account for, because the point touches only after `gap` / `speed`.
+    /// `approach` is the speed before the substep's accelerations, `speed` the one after.
     ///
-    /// Symplectic Euler keeps E = ½ v² + g y − ½ g h v of a free fall exactly (v upward). The speed w is the
-    /// one that makes E after the substep, at y = w (h − t), e² times what it was before: the rebound is e²
-    /// of the height at any step length, and nothing is gained.
+    /// Symplectic Euler conserves E = ½ v² + g y − ½ g h v of a free fall exactly (v upward). The speed w makes E after
+    /// the substep, at y = w (h − t), e² times the E before. The rebound height is e² of the fall height at any step
+    /// length, and no energy is gained.
     #[inline(always)]
     fn rebound(&self, gap: N, approach: N, speed: N, inv_h: N) -> (N, N) {
         let half = N::splat(0.5);

@@ -1,23 +1,24 @@
-//! Which worker solves which constraints.
+//! The division of constraints among workers.
 
 use super::input::RowInput;
 use crate::graph::ColorGraph;
 
-/// The fewest constraints a worker for which a stage is shared; fewer are solved before another core has begun.
+/// Minimum number of constraints per worker for which a stage is shared. With fewer the stage is over before another
+/// core begins.
 const WORTH_SHARING: usize = 256;
 
-/// Every how many bodies one is asked for its constraints when rows are divided.
+/// Every how many bodies one is sampled for the work estimate.
 const SAMPLE: usize = 16;
 
-/// Of a shared stage a worker solves the constraints of bodies whose rows lie in its part of all.
+/// In a shared stage, a worker solves the constraints of bodies whose rows are in its range.
 ///
-/// A body then mostly stays with one worker, and in the cache of its core, through all sweeps of a step. Otherwise every
-/// second time another core would have written it last, and to fetch it from there takes longer than to solve the
-/// constraint. The results never depend on how rows are divided.
+/// A body then mostly stays with one worker, and in its core's cache, through all sweeps of a step. Otherwise another
+/// core would often have written it last, and loading it takes longer than solving the constraint. Results do not
+/// depend on the division.
 #[derive(Clone, Debug)]
 pub(super) struct Shares {
     workers: usize,
-    /// The fewest constraints a worker for which a stage is shared.
+    /// Minimum number of constraints per worker for which a stage is shared.
     pub(super) worth: usize,
     first_dynamic: u32,
     /// The first row of each worker but worker 0, ascending.
@@ -31,7 +32,7 @@ impl Default for Shares {
 }
 
 impl Shares {
-    /// Divides the rows of dynamic bodies so that about as many constraints fall to each worker.
+    /// Divides the rows of dynamic bodies so that workers get about as many constraints each.
     pub(super) fn divide(
         &mut self,
         workers: usize,
@@ -45,7 +46,7 @@ impl Shares {
         if workers == 1 {
             return;
         }
-        // Each body has moving to do as well.
+        // Each body also costs an integration.
         let work = |id: u32| u64::from(1 + colors.colors_of(id).count_ones());
         let sample = || input.bodies.awake_dynamic().step_by(SAMPLE);
         let all = sample().map(work).sum::<u64>();
@@ -59,12 +60,12 @@ impl Shares {
         }
     }
 
-    /// The number of parts that a stage is cut into.
+    /// The number of parts of a stage.
     pub(super) fn parts(&self, constraints: usize) -> usize {
         (constraints / self.worth.max(1)).clamp(1, self.workers)
     }
 
-    /// The part that a constraint between two body rows belongs to. Between the rows of two workers its id decides.
+    /// The part of a constraint between two body rows. Between the rows of two workers, the id decides.
     #[inline(always)]
     pub(super) fn part(&self, [a, b]: [u32; 2], id: u32, parts: usize) -> usize {
         debug_assert!(parts <= self.workers, "{parts} parts for {} workers", self.workers);
@@ -78,15 +79,15 @@ impl Shares {
         worker * parts / self.workers
     }
 
-    /// The part that a worker begins with, if there is one: where there are fewer parts than workers, neighbours have one
-    /// together.
+    /// The part whose first block a worker begins with; `None` for the second worker of a part, if there are fewer
+    /// parts than workers.
     pub(super) fn of_worker(&self, worker: usize, parts: usize) -> Option<usize> {
         debug_assert!(worker < self.workers, "worker {worker} of {}", self.workers);
         let part = worker * parts / self.workers;
         (worker == 0 || part > (worker - 1) * parts / self.workers).then_some(part)
     }
 
-    /// How many workers there are.
+    /// The number of workers.
     pub(super) fn workers(&self) -> usize {
         self.workers
     }

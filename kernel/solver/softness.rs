@@ -1,6 +1,6 @@
-//! Soft-constraint coefficients and the numbers all rows of a substep share.
+//! Soft-constraint coefficients, and parameters of a substep.
 
-/// A soft constraint's coefficients over one substep.
+/// Coefficients of a soft constraint for one substep.
 ///
 /// A damped harmonic oscillator of angular frequency ω and damping ratio ζ, integrated implicitly with
 /// time step h: with a₁ = 2ζ + hω, a₂ = hω a₁, a₃ = 1 / (1 + a₂) the constraint is solved with the bias
@@ -8,26 +8,26 @@
 /// (Catto, "Soft Constraints", GDC 2011; Solver2D).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Softness {
-    /// Bias velocity for each metre of error, 1/s.
+    /// Bias velocity per metre of error, 1/s.
     pub bias_rate: f32,
     /// Factor on the effective mass.
     pub mass_scale: f32,
-    /// Share of the accumulated impulse that is taken back.
+    /// Share of the accumulated impulse that is subtracted.
     pub impulse_scale: f32,
 }
 
 impl Softness {
-    /// No softness: the velocity error vanishes, position error is left alone.
+    /// No softness: velocity error is removed, position error is ignored.
     pub const RIGID: Self = Self { bias_rate: 0.0, mass_scale: 1.0, impulse_scale: 0.0 };
 
-    /// Whether a row may be solved with it.
+    /// Whether a row may be solved with these coefficients.
     fn is_valid(&self) -> bool {
         let share = 0.0..=1.0;
         self.bias_rate.is_finite() && share.contains(&self.mass_scale) && share.contains(&self.impulse_scale)
     }
 
-    /// The coefficients for a frequency in Hz, a damping ratio and a time step in seconds. Rigid where
-    /// the frequency or the time step is not positive.
+    /// Coefficients for a frequency in Hz, a damping ratio and a time step in seconds. Rigid if the frequency or the
+    /// time step is not positive.
     pub fn new(frequency: f32, damping_ratio: f32, h: f32) -> Self {
         let omega = core::f32::consts::TAU * frequency;
         if !(omega > 0.0 && h > 0.0) {
@@ -40,29 +40,29 @@ impl Softness {
     }
 }
 
-/// What all rows of a substep share.
+/// Parameters of all rows in a substep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SubstepParams {
-    /// The substep's length, in seconds; positive.
+    /// Length of the substep, in seconds. Positive.
     pub h: f32,
-    /// Its inverse, 1/s.
+    /// Inverse of `h`, 1/s.
     pub inv_h: f32,
-    /// Between two bodies that both give way.
+    /// Softness of contacts between two dynamic bodies.
     pub soft: Softness,
-    /// Against something immovable.
+    /// Softness of contacts with an immovable body.
     pub stiff: Softness,
-    /// The fastest that overlapping bodies are pushed apart, m/s.
+    /// Maximum speed at which overlap is pushed out, m/s.
     pub max_push_speed: f32,
-    /// The share of the last impulses that rows start from, 0 … 1.
+    /// Share of the last impulses for the warm start, 0 to 1.
     pub warm_start: f32,
-    /// Approach speeds below this do not bounce, m/s.
+    /// Minimum approach speed for restitution, m/s.
     pub restitution_threshold: f32,
-    /// The separation over which a point's weight in the friction centre fades, in metres.
+    /// Separation over which the weight of a point in the friction centre fades, in metres.
     pub friction_fade: f32,
 }
 
 impl SubstepParams {
-    /// Whether a substep may be taken with them.
+    /// Whether a substep may be run with these parameters.
     pub(super) fn is_valid(&self) -> bool {
         let [h, inv_h] = [self.h, self.inv_h];
         let is_step = h.is_finite() && h >= 0.0 && inv_h.is_finite() && inv_h >= 0.0;

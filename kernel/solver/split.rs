@@ -1,17 +1,19 @@
-//! Split impulses: which bodies overlap others deeply, so that what pushes them apart gives them no speed.
+//! Split impulses: which bodies overlap others deeply. The push-out of deep overlap moves them without changing
+//! velocities.
 
 use super::BodyRows;
 use super::input::RowInput;
 use crate::contact::ContactFlags;
 
-/// How many deeply overlapping contacts each dynamic body's row has; empty in steps without any.
+/// Number of deeply overlapping contacts of each dynamic body's row. Empty in steps without any.
 ///
-/// Where a body overlaps many others deeply, as when a crowd is spawned in one place, contacts work against
-/// one another; so those of a crowd push less and start from less of their last impulses.
+/// Where a body overlaps many others deeply, as when a crowd is spawned in one place, contacts work against each other.
+/// Contacts in a crowd therefore push less, and start from a share of their last impulses.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DeepCounts(Vec<u32>);
 
-/// The most deep contacts of a body that starts from all their impulses: about as many as touch it in a full container.
+/// Number of deep contacts up to which a body starts from all its impulses: about as many as touch it in a full
+/// container.
 const WARM_CONTACTS: f32 = 8.0;
 
 impl DeepCounts {
@@ -37,17 +39,16 @@ impl DeepCounts {
         !self.0.is_empty()
     }
 
-    /// How crowded it is around a contact between two body rows, at least 1: the least crowded movable side
-    /// decides.
+    /// Number of deep contacts around a contact between two body rows, at least 1, by its less crowded movable side.
     #[inline(always)]
     fn crowd(&self, rows: [u32; 2], first_dynamic: u32) -> f32 {
         let count = rows.into_iter().filter(|r| *r >= first_dynamic).map(|r| self.0[r as usize]).min();
         count.unwrap_or(1).max(1) as f32
     }
 
-    /// The share of the push-out speed of a contact between two body rows that are in n others deeply: n^(−3/4).
-    /// With 1/n, which no sum exceeds, a hundred bodies in one place hardly move in five seconds, since
-    /// most pushes cancel; with 1/√n, as random pushes add up, an overfull container does not calm down.
+    /// Share of the push-out speed of a contact between two body rows with n deep contacts: n^(−3/4). With 1/n, a bound
+    /// for any sum, a hundred bodies in one place hardly move in five seconds, since most pushes cancel. With 1/√n, as
+    /// random pushes add up, an overfull container does not calm down.
     #[inline(always)]
     pub(super) fn share(&self, rows: [u32; 2], first_dynamic: u32) -> f32 {
         if !self.any() {
@@ -57,15 +58,14 @@ impl DeepCounts {
         1.0 / (root * root.sqrt())
     }
 
-    /// The share of its last impulses that a contact between two body rows starts from. One sweep does not
-    /// settle a body with dozens of contacts; started from all their impulses again and again, the error
-    /// grows from substep to substep.
+    /// Share of the last impulses that a contact between two body rows starts from. One sweep does not converge for a
+    /// body with dozens of contacts: if it started from all impulses, the error would grow from substep to substep.
     #[inline(always)]
     pub(super) fn warm_share(&self, rows: [u32; 2], first_dynamic: u32) -> f32 {
         crate::math::min(1.0, WARM_CONTACTS / self.crowd(rows, first_dynamic))
     }
 
-    /// Whether a body of these rows overlaps something deeply.
+    /// Whether a body of these rows overlaps another deeply.
     #[inline(always)]
     pub(super) fn concern(&self, rows: [u32; 2]) -> bool {
         rows.iter().any(|row| self.0[*row as usize] > 0)

@@ -18,7 +18,8 @@ use crate::math::Width;
 use crate::thread_pool::ThreadPool;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// The most rows of a block where several workers share them: some microseconds of work.
+/// Maximum number of rows of a block if several workers share them: some microseconds of work. More leaves workers idle
+/// at the end of a stage, fewer cost more claims.
 const BLOCK_ROWS: u32 = 32;
 
 /// Minimum number of rows for which waking workers pays.
@@ -28,13 +29,13 @@ const WORTH_WAKING: u32 = 256;
 ///
 /// The stages run in the thread pool that they are given. The result does not depend on the number of its workers.
 ///
-/// The order within every sweep: overflow contacts one by one, then the colours from low to high, so
-/// that contacts with static and kinematic partners come last and win.
+/// The order within every sweep: overflow constraints one by one, then the colours in ascending order, so that contacts
+/// with static and kinematic partners come last and win.
 #[derive(Clone, Debug, Default)]
 pub struct Solver {
-    /// The bodies; the embedder fills them and reads them back.
+    /// The bodies. The embedder fills them and reads the results.
     pub bodies: BodyRows,
-    /// Distances between bodies.
+    /// Distance constraints.
     pub distances: DistanceTable,
     rows: AllRows,
     layers: Layers,
@@ -42,25 +43,25 @@ pub struct Solver {
     plan: Plan,
     shares: Shares,
     deep: DeepCounts,
-    /// The first body row that rows of constraints may write, whatever becomes of the bodies after rows are built.
+    /// The first body row that constraint rows may write, kept from when they were built.
     first_dynamic: u32,
 }
 
 impl Solver {
-    /// Whether to solve with four lanes where the CPU has eight, from the next [`build_rows`](Self::build_rows) on: for
+    /// Whether to solve with four lanes where the CPU has eight, from the next [`build_rows`](Self::build_rows) on. For
     /// comparison.
     pub fn set_narrow(&mut self, narrow: bool) {
         self.rows.width = Width::of(narrow);
     }
 
-    /// Sets the fewest constraints a worker for which a colour is shared, from the next [`build_rows`](Self::build_rows) on:
-    /// so that tests need not have as many as it takes to pay.
+    /// Sets the minimum number of constraints per worker for which a colour is shared, from the next
+    /// [`build_rows`](Self::build_rows) on. Tests share small colours with it.
     pub fn share_from(&mut self, constraints: usize) {
         self.shares.worth = constraints;
     }
 
-    /// Forgets the rows of the last step, and makes room for so many [`bodies`](Self::bodies): every one of their rows is
-    /// to be filled, whether or not there are contacts.
+    /// Clears the rows of the last step, and resizes [`bodies`](Self::bodies). Every body row must be filled, with or
+    /// without contacts.
     pub fn begin_step(&mut self, kinematic: usize, dynamic: usize) {
         self.plan.begin(0, 1, 0);
         self.bodies.reset(kinematic, dynamic);
@@ -69,13 +70,14 @@ impl Solver {
     /// Builds the rows of all constraints in the colours: touching contacts, and [`distances`](Self::distances).
     ///
     /// # Safety
-    /// No two constraints of a colour but the overflow have a body together whose row is a dynamic body's, and none is in
-    /// the graph twice: with several workers two threads would write one body. It holds where contacts, bodies and
-    /// colours belong together: since they were empty, contacts, colours and the kinds of bodies were changed through one
-    /// [`Link`](crate::contact::Link) to all three alone. Debug builds check it.
+    /// No two constraints of a colour other than the overflow share a body whose row is dynamic, and no constraint is
+    /// in the graph twice: with several workers two threads would write one body. This holds if contacts, colours and
+    /// the kinds of bodies were, since they were empty, changed only through one [`Link`](crate::contact::Link) to all
+    /// three. Debug builds check it.
     ///
     /// # Panics
-    /// If a contact or body of the graph is not in the input, or a row of the input not among the [`bodies`](Self::bodies).
+    /// If a contact or body of the graph is not in the input, or a row of the input is not among the
+    /// [`bodies`](Self::bodies).
     pub unsafe fn build_rows(
         &mut self,
         input: &RowInput,
@@ -91,7 +93,7 @@ impl Solver {
         }
         *first_dynamic = bodies.first_dynamic;
         deep.count(input, bodies);
-        bodies.blunt(params.h);
+        bodies.limit_inertia_ratios(params.h);
         let workers = pool.workers();
         shares.divide(workers, *first_dynamic, input, colors);
         let BodyRows { rows: body_rows, masses, motions, locks, .. } = bodies;
@@ -117,7 +119,7 @@ impl Solver {
         rows.with(distances, |batches| {
             let blocks = Parts::of(&mut blocks);
             pool.run(blocks.len(), |block, _| {
-                // SAFETY: each block is run once, and no two have a row together; bodies and contacts are only read.
+                // SAFETY: each block is run once, and no two share a row. Bodies and contacts are only read.
                 unsafe {
                     let block = blocks.one(block);
                     let items = plan.items(block, layers.colors());
@@ -128,25 +130,25 @@ impl Solver {
         plan.blocks = blocks;
     }
 
-    /// How many stages of each sweep are shared by several workers.
+    /// Number of stages per sweep that several workers share.
     pub fn shared_stages(&self) -> usize {
         self.plan.stages().filter(|stage| stage.parts.is_some()).count()
     }
 
-    /// How many manifolds are solved in the step.
+    /// Number of manifolds that are solved in the step.
     pub fn manifold_count(&self) -> usize {
         AllRows::count_manifolds(self.plan.item_counts())
     }
 
-    /// Accelerations, damping, gyroscopic torque, speed limits.
+    /// Integrates accelerations and damping, and applies speed limits.
     pub fn integrate_velocities(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
         self.bodies.integrate_velocities(params.h, pool);
     }
 
-    /// Lets what closes fast in this substep bounce, then applies the accumulated impulses.
+    /// Applies restitution to points that close fast in this substep, then the accumulated impulses.
     ///
-    /// An impact runs on through a row of bodies, as in Newton's cradle: two bodies further with each sweep.
+    /// An impact runs on through a row of bodies, as in Newton's cradle: two bodies further per sweep.
     pub fn warm_start(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         if self.plan.blocks.iter().any(|block| block.passes.has(Pass::Impact)) {
             let mut sweeps = 0;
@@ -157,19 +159,18 @@ impl Solver {
         self.sweep(Pass::WarmStart, params, pool);
     }
 
-    /// Non-penetration with soft bias.
+    /// Solves constraints with soft bias.
     pub fn solve(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         self.sweep(Pass::Solve, params, pool);
     }
 
-    /// Moves the bodies.
+    /// Integrates positions.
     pub fn integrate_positions(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
         self.bodies.integrate_positions(params.h, pool);
     }
 
-    /// Takes out the velocity that the bias added, and applies friction. Split impulses, which push deep overlap out, are
-    /// taken out of the velocities first.
+    /// Removes split impulses from the velocities, then solves constraints without bias, and applies friction.
     pub fn relax(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         if self.plan.blocks.iter().any(|block| block.passes.has(Pass::UndoSplit)) {
             self.sweep(Pass::UndoSplit, params, pool);
@@ -177,7 +178,7 @@ impl Solver {
         self.sweep(Pass::Relax, params, pool);
     }
 
-    /// One whole substep.
+    /// Runs one substep.
     pub fn substep(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         self.integrate_velocities(params, pool);
         self.warm_start(params, pool);
@@ -186,12 +187,12 @@ impl Solver {
         self.relax(params, pool);
     }
 
-    /// Makes what hit fast enough bounce; once, after the last substep.
+    /// Applies restitution, once after the last substep.
     pub fn restitute(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         self.sweep(Pass::Restitute, params, pool);
     }
 
-    /// Puts the impulses back into manifolds and distances, for the next step to start from.
+    /// Stores the impulses in manifolds and distances, for the warm start of the next step.
     pub fn store_impulses(&mut self, contacts: &mut ContactTable, pool: &ThreadPool) {
         debug_assert!(
             self.manifold_count() == 0 || !contacts.is_empty(),
@@ -201,8 +202,8 @@ impl Solver {
         let manifolds = &contacts.manifolds_view();
         rows.with(distances, |batches| {
             for Stage { blocks, parts } in plan.stages() {
-                // SAFETY: each block is run once, no two have a row together, and by the contract of `build_rows` no contact is
-                // there twice.
+                // SAFETY: each block is run once, no two share a row, and by the contract of `build_rows` no constraint
+                // is there twice.
                 let store = |block: usize, _| unsafe {
                     let block = &blocks[block];
                     let items = plan.items(block, layers.colors());
@@ -217,7 +218,7 @@ impl Solver {
         self.plan.begin(0, 1, 0);
     }
 
-    /// Runs all blocks that need a pass, stage by stage. Returns whether any of them found an impact.
+    /// Runs a pass over all blocks that need it, stage by stage. Returns whether an impact was found.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) -> bool {
         debug_assert!(params.is_valid(), "{params:?}");
         let Self { bodies, distances, rows, plan, first_dynamic, .. } = self;
@@ -235,8 +236,8 @@ impl Solver {
                         return;
                     }
                     let batch = batches[usize::from(block.batch)];
-                    // SAFETY: each block is run once, no two have a row together, and by the contract of `build_rows` no two of a
-                    // shared stage have a dynamic body together. Of the bodies only the dynamic ones are written.
+                    // SAFETY: each block is run once, no two share a row, and by the contract of `build_rows` no two of
+                    // a shared stage share a dynamic body. Of the bodies only dynamic ones are written.
                     if unsafe { batch.run(block.rows(), block.passes, sweep) } {
                         hit.store(true, Ordering::Relaxed);
                     }
@@ -251,5 +252,6 @@ impl Solver {
     }
 }
 
-/// How often a substep looks for impacts that follow from impacts.
+/// Maximum number of sweeps per substep for impacts that follow from impacts. Fewer stop a chain of impacts sooner:
+/// each sweep reaches two bodies further.
 const IMPACT_SWEEPS: usize = 8;

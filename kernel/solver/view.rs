@@ -1,13 +1,13 @@
-//! Rows of bodies, shared by contact rows that touch different ones.
+//! Body rows, shared by constraint rows of different bodies.
 #![expect(unsafe_code, reason = "rows of disjoint bodies are written through shared views")]
 
 use core::cell::UnsafeCell;
 
-/// Rows shared between batches of one colour.
+/// Body rows, shared by the batches of one colour.
 ///
-/// A colour holds no dynamic body twice, so no two contact rows of a colour write the same row; what is
-/// not dynamic is read by many and written by none. That is what makes the shared writes sound. The type cannot
-/// know it, so reading and writing are unsafe: [`Solver::build_rows`](super::Solver::build_rows) has the condition.
+/// No two constraints of a colour share a dynamic body, so no two write the same row. Other rows are read by many and
+/// written by none. This makes the shared writes sound. The type cannot check it, so reading and writing are unsafe:
+/// [`Solver::build_rows`](super::Solver::build_rows) has the condition.
 pub(super) struct RowView<'a, T> {
     cells: &'a [UnsafeCell<T>],
     first_writable: u32,
@@ -34,7 +34,7 @@ impl<'a, T> RowView<'a, T> {
     /// Reads a row.
     ///
     /// # Safety
-    /// While the reference lives no thread writes this row.
+    /// While the reference is in use, no thread writes this row.
     #[inline(always)]
     pub(super) unsafe fn get(&self, id: u32) -> &T {
         // SAFETY: by the contract.
@@ -44,7 +44,8 @@ impl<'a, T> RowView<'a, T> {
     /// Changes a row, if it may be written.
     ///
     /// # Safety
-    /// If the row may be written, no other thread reads or writes it meanwhile, and no reference to it lives.
+    /// If the row may be written, no other thread reads or writes it until it returns, and no reference to it is in
+    /// use.
     #[inline(always)]
     pub(super) unsafe fn put(&self, id: u32, change: impl FnOnce(&mut T)) {
         if id >= self.first_writable {

@@ -1,4 +1,4 @@
-//! Bodies by id: what kind, where, how fast, and which row they have in this step.
+//! Bodies by id: kind, pose, velocity, and solver row of this step.
 
 use super::{ConstraintTable, NONE};
 use crate::data::{BitSet, IdPool, Parts};
@@ -10,77 +10,76 @@ use crate::math::{Angular, Rot, Vector, WorldPose, WorldVector};
 pub enum BodyKind {
     /// Nothing.
     Static,
-    /// Its velocity, which nothing in the simulation changes.
+    /// Its velocity, which neither contacts nor gravity change.
     Kinematic,
     /// Forces, contacts and joints.
     #[default]
     Dynamic,
 }
 
-/// How slow a body must be to count as at rest: over a whole step, by how far it got, not by its velocity, so that
-/// what jitters in place rests. Negative values and NaN never count as at rest.
+/// The speed below which a body counts as at rest. It is measured by displacement and angle over a whole step, not by
+/// velocity, so that a body that jitters in place rests. With a negative value or NaN the body never rests.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RestSpeed {
-    /// Of the centre of mass, m/s.
+    /// Speed of the centre of mass, m/s.
     pub linear: f32,
-    /// rad/s.
+    /// Angular speed, rad/s.
     pub angular: f32,
 }
 
 impl RestSpeed {
-    /// Never at rest.
+    /// A body that never rests.
     pub const NEVER: Self = Self { linear: -1.0, angular: -1.0 };
 
-    /// Whether a body rests that in `dt` seconds got as far as the root of `way_squared`, and turned by that of
-    /// `angle_squared`.
+    /// Whether a body rests that moved and turned this far in `dt` seconds, given as squares of metres and radians.
     #[inline(always)]
-    pub fn admits(self, way_squared: f32, angle_squared: f32, dt: f32) -> bool {
+    pub fn admits(self, displacement_squared: f32, angle_squared: f32, dt: f32) -> bool {
         let (far, wide) = (self.linear * dt, self.angular * dt);
-        far >= 0.0 && wide >= 0.0 && way_squared <= far * far && angle_squared <= wide * wide
+        far >= 0.0 && wide >= 0.0 && displacement_squared <= far * far && angle_squared <= wide * wide
     }
 }
 
-/// What is rarely needed of a body.
+/// Properties of a body that few stages read.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// What moves it.
+    /// How the body moves.
     pub kind: BodyKind,
-    /// Whether it takes part in steps. Static bodies are never awake.
+    /// Whether the body takes part in steps. Static bodies are never awake.
     pub awake: bool,
-    /// Among dynamic bodies, higher dominance acts on lower as if it could not be moved.
+    /// Of two dynamic bodies in contact, the one with lower dominance does not push the other.
     pub dominance: i8,
     /// The centre of mass in the body's frame, in metres.
     pub local_center: Vector,
-    /// The first of its colliders, or [`NONE`].
+    /// The first collider of the body, or [`NONE`].
     pub first_collider: u32,
-    /// What counts as at rest.
+    /// The speed below which the body counts as at rest.
     pub rest_speed: RestSpeed,
-    /// Seconds for which it has been at rest; 0 while it is not.
+    /// Seconds for which the body has been at rest; 0 while it moves.
     pub sleep_timer: f32,
 }
 
 impl Body {
-    /// Static and kinematic bodies dominate whatever number a dynamic one has.
+    /// The dominance, with static and kinematic bodies above all dynamic ones.
     pub fn effective_dominance(&self) -> i16 {
         if self.kind == BodyKind::Dynamic { i16::from(self.dominance) } else { i16::from(i8::MAX) + 1 }
     }
 }
 
-/// Where a body is, and what else the narrow phase asks of a body for every contact: one cache line.
+/// Pose of a body, and what else the narrow phase reads of a body for every contact. One cache line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyPose {
-    /// The centre of mass in the world.
+    /// Centre of mass in world space.
     pub center: WorldVector,
     /// The rotation.
     pub rotation: Rot,
-    /// How fast the centre of mass moves, m/s.
+    /// Speed of the centre of mass, m/s.
     pub speed: f32,
-    /// Counts changes that make cached contacts wrong: kind, centre of mass, teleports.
+    /// Counter of changes that invalidate cached contacts: kind, centre of mass, teleports.
     pub revision: u32,
 }
 
 impl BodyPose {
-    /// The frame of a body whose centre of mass is at `local_center` in it.
+    /// The frame of the body; `local_center` is the centre of mass in it.
     #[inline(always)]
     pub fn frame(&self, local_center: Vector) -> WorldPose {
         let center = self.rotation.rotate(local_center);
@@ -88,42 +87,43 @@ impl BodyPose {
     }
 }
 
-/// How fast a body moves.
+/// Velocity of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Velocity {
-    /// Of the centre of mass, m/s.
+    /// Velocity of the centre of mass, m/s.
     pub linear: Vector,
-    /// rad/s.
+    /// Angular velocity, rad/s.
     pub angular: Angular,
 }
 
-/// All bodies that take part in the simulation, asleep ones included.
+/// All bodies of the simulation, sleeping ones included.
 #[derive(Clone, Debug, Default)]
 pub struct BodyTable {
-    /// Which ids are in use.
+    /// The ids in use.
     pub ids: IdPool,
     bodies: Vec<Body>,
     /// Poses by id.
     pub poses: Vec<BodyPose>,
     /// Velocities by id; written through [`set_velocity`](Self::set_velocity).
     pub velocities: Vec<Velocity>,
-    /// The solver row of each body in this step; 0, the immovable dummy, if it has none.
+    /// Solver row of each body in this step. Bodies without a row have 0, the row of the immovable dummy.
     pub(crate) rows: Vec<u32>,
-    /// Bodies that were given a velocity by hand since the embedder last emptied this: their boxes are to be swept
-    /// before pairs are found.
+    /// Bodies whose velocity was set by hand since the embedder last emptied this set. Their boxes must be swept before
+    /// pairs are found.
     pub pushed: BitSet,
-    /// Bodies that woke or fell asleep since the embedder last emptied this; some may be back.
+    /// Bodies that woke or fell asleep since the embedder last emptied this list. A body may be back in its first
+    /// state.
     pub flipped: Vec<u32>,
-    /// Whether any body's dominance is not 0: what rows need not ask otherwise. Set by whoever sets it.
+    /// Whether any body has a dominance other than 0. Rows skip dominance otherwise. Set it with [`Body::dominance`].
     pub any_dominance: bool,
     awake_kinematic: BitSet,
     awake_dynamic: BitSet,
-    /// By kind; contacts are elsewhere.
+    /// Constraints by kind. Contacts have a table of their own.
     constraints: [ConstraintTable; ConstraintKind::COUNT],
 }
 
 impl BodyTable {
-    /// How many bytes are kept of each body here, but for one bit in each of four sets.
+    /// Bytes of memory per body, besides one bit in each of four sets.
     pub const BYTES_PER_BODY: usize =
         size_of::<Body>() + size_of::<BodyPose>() + size_of::<Velocity>() + size_of::<u32>();
 
@@ -152,7 +152,7 @@ impl BodyTable {
             self.velocities.push(Velocity::default());
             self.rows.push(0);
         } else {
-            // The revision goes on counting, so that nothing cached for the id's last owner fits.
+            // The revision keeps counting, so that caches of the id's last owner do not match.
             placed.revision = self.poses[i].revision.wrapping_add(1);
             self.bodies[i] = body;
             self.poses[i] = placed;
@@ -163,7 +163,7 @@ impl BodyTable {
         id
     }
 
-    /// The constraints of a kind between bodies; none for contacts, which have a table of their own.
+    /// The constraints of a kind. Empty for contacts, which have a table of their own.
     pub fn constraints(&self, kind: ConstraintKind) -> &ConstraintTable {
         &self.constraints[kind as usize]
     }
@@ -172,7 +172,7 @@ impl BodyTable {
         &mut self.constraints[kind as usize]
     }
 
-    /// Frees a body's id. Its colliders, contacts and other constraints must be gone.
+    /// Frees the id of a body. Its colliders, contacts and other constraints must be removed before.
     pub fn remove(&mut self, id: u32) {
         debug_assert!(self[id].first_collider == NONE, "a removed body has no colliders");
         self.set_awake(id, false);
@@ -180,7 +180,7 @@ impl BodyTable {
         self.ids.free(id);
     }
 
-    /// Changes what moves a body, and keeps the awake lists true.
+    /// Changes the kind of a body, and updates the sets of awake bodies.
     pub fn set_kind(&mut self, id: u32, kind: BodyKind) {
         let awake = self[id].awake;
         self.set_awake(id, false);
@@ -189,7 +189,7 @@ impl BodyTable {
         self.set_awake(id, awake || kind != BodyKind::Static);
     }
 
-    /// Wakes a body or puts it to sleep; static bodies stay as they are.
+    /// Wakes a body or puts it to sleep. Static bodies are never awake.
     pub fn set_awake(&mut self, id: u32, awake: bool) {
         let body = &mut self[id];
         let kind = body.kind;
@@ -228,14 +228,14 @@ impl BodyTable {
         set
     }
 
-    /// How many bodies are awake.
+    /// The number of awake bodies.
     pub fn awake_count(&self) -> usize {
         self.awake_kinematic.count() + self.awake_dynamic.count()
     }
 
-    /// Gives every awake body its row for this step, kinematic ones first, each kind in the order of
-    /// ids, and all others row 0. `listed` receives the bodies in the order of their rows, from row 1.
-    /// Returns the number of kinematic bodies.
+    /// Gives every awake body a row for this step: kinematic ones first, each kind in the order of ids. All other
+    /// bodies get row 0. `listed` receives the bodies in the order of their rows, from row 1. Returns the number of
+    /// kinematic bodies.
     pub fn assign_rows(&mut self, listed: &mut Vec<u32>) -> usize {
         for id in listed.drain(..) {
             if let Some(row) = self.rows.get_mut(id as usize) {
@@ -267,12 +267,12 @@ impl BodyTable {
         }
     }
 
-    /// The body's frame in the world: its pose less its centre of mass.
+    /// The frame of a body in world space.
     pub fn frame(&self, id: u32) -> WorldPose {
         self.poses[id as usize].frame(self[id].local_center)
     }
 
-    /// Moves a body by hand. Cached contacts are invalidated.
+    /// Moves a body by hand, and invalidates its cached contacts.
     pub fn teleport(&mut self, id: u32, frame: WorldPose) {
         let center = frame.transform(self[id].local_center);
         let pose = &mut self.poses[id as usize];
@@ -281,8 +281,9 @@ impl BodyTable {
         self.revise(id);
     }
 
-    /// Sets how fast a body moves, by hand. [`ColliderTable::refresh_pushed`](super::ColliderTable::refresh_pushed) then
-    /// has to be called before pairs are found, or it may pass through something in the next step.
+    /// Sets the velocity of a body by hand. Call
+    /// [`ColliderTable::refresh_pushed`](super::ColliderTable::refresh_pushed) before pairs are found, or the body may
+    /// tunnel in the next step.
     #[inline]
     pub fn set_velocity(&mut self, id: u32, velocity: Velocity) {
         if velocity != self.velocities[id as usize] && velocity != Velocity::default() {
@@ -298,12 +299,12 @@ impl BodyTable {
     }
 }
 
-/// Bodies by id, changed by several threads at once.
+/// Columns of [`BodyTable`] that several threads change at once.
 pub(crate) struct BodyParts<'a> {
     pub(crate) bodies: Parts<'a, Body>,
     pub(crate) poses: Parts<'a, BodyPose>,
     pub(crate) velocities: Parts<'a, Velocity>,
-    /// The row of each in this step; no two have the same but 0.
+    /// Row of each body in this step. No two bodies share a row other than 0.
     pub(crate) rows: &'a [u32],
 }
 

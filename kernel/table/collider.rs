@@ -1,4 +1,4 @@
-//! Colliders by id: native shape, world pose, boxes, surface, layers and revision.
+//! Colliders by id: shape, world pose, boxes, surface, layers and revision.
 #![expect(unsafe_code, reason = "colliders are changed by several threads, each its own")]
 
 use super::{BodyKind, BodyTable, NONE};
@@ -12,10 +12,11 @@ use std::sync::{Mutex, PoisonError};
 /// Number of bodies in a block of the job that refreshes their colliders.
 const BLOCK: usize = 128;
 
-/// So many bodies ahead colliders are brought near.
-const AHEAD: usize = 8;
+/// Prefetch distance, in bodies. The collider of a body this far ahead is prefetched, and its hull half as far ahead.
+/// Less hides too little latency, more evicts lines before their use.
+const PREFETCH_DISTANCE: usize = 8;
 
-/// How two surfaces' coefficients make one. Of two different rules the greater wins.
+/// How two coefficients combine. Of two different rules the greater is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Combine {
@@ -24,25 +25,25 @@ pub enum Combine {
     Average = 1,
     /// √(a b).
     GeometricMean = 2,
-    /// The smaller.
+    /// The smaller one.
     Min = 3,
     /// a b.
     Multiply = 4,
-    /// The larger.
+    /// The larger one.
     Max = 5,
 }
 
 /// A coefficient and how it is combined with another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// ≥ 0.
+    /// The coefficient, at least 0.
     pub coefficient: f32,
-    /// The rule.
+    /// The combine rule.
     pub rule: Combine,
 }
 
 impl Surface {
-    /// The coefficient of two surfaces in contact.
+    /// The combined coefficient of two surfaces.
     #[inline]
     pub fn mix(self, other: Self) -> f32 {
         let (a, b) = (self.coefficient, other.coefficient);
@@ -56,62 +57,62 @@ impl Surface {
     }
 }
 
-/// A collider's surface.
+/// Surface of a collider.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Material {
-    /// Of sliding.
+    /// Coefficient of friction.
     pub friction: Surface,
-    /// Of bouncing, 0 … 1.
+    /// Coefficient of restitution, 0 to 1.
     pub restitution: Surface,
 }
 
-/// What a collider is and what it collides with, as bit masks.
+/// Collision layers as bit masks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layers {
-    /// What it is.
+    /// The layers that the collider is in.
     pub memberships: u32,
-    /// What it collides with.
+    /// The layers that the collider interacts with.
     pub filters: u32,
 }
 
 impl Layers {
-    /// Whether each is in the other's filter.
+    /// Whether each is in a layer that the other interacts with.
     #[inline(always)]
     pub fn interacts_with(self, other: Self) -> bool {
         self.memberships & other.filters != 0 && other.memberships & self.filters != 0
     }
 }
 
-/// Bits of a collider.
+/// Flags of a collider.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ColliderFlags {
-    /// Detects, but is not pushed and does not push.
+    /// The collider detects contacts without response.
     pub sensor: bool,
 }
 
-/// What the embedder says of a collider.
+/// Definition of a collider, by the embedder.
 #[derive(Clone, Debug)]
 pub struct ColliderDef {
     /// The shape, scaled.
     pub shape: Shape,
-    /// The body, or [`NONE`].
+    /// The body, or [`NONE`] for a collider without one.
     pub body: u32,
-    /// The shape's frame in the body's; without a body unused.
+    /// Frame of the shape in the body's frame. Unused without a body.
     pub local: Pose,
-    /// The surface.
+    /// Friction and restitution.
     pub material: Material,
-    /// The layers.
+    /// Collision layers.
     pub layers: Layers,
-    /// Bits.
+    /// Flags.
     pub flags: ColliderFlags,
-    /// How far from the shape others are kept, in metres.
+    /// Distance from the shape at which others are kept, in metres.
     pub margin: f32,
-    /// The greatest distance at which contacts are predicted, in metres; may be infinite.
+    /// Maximum distance at which contacts are predicted, in metres. May be infinite.
     pub speculative: f32,
 }
 
 impl ColliderDef {
-    /// Whether another definition says the same. Hulls are the same only if they are shared.
+    /// Whether two definitions are equal. Hulls are equal only if they are the same allocation.
     pub fn is_same(&self, other: &Self) -> bool {
         self.body == other.body
             && self.local == other.local
@@ -124,93 +125,92 @@ impl ColliderDef {
     }
 }
 
-/// What is kept of a collider.
+/// A collider and its place in lists.
 #[derive(Clone, Debug)]
 pub struct Collider {
-    /// What the embedder said.
+    /// The definition.
     pub def: ColliderDef,
-    /// The first of its contacts, as `contact << 1 | side`, or [`NONE`].
+    /// First contact of the collider, as `contact << 1 | side`, or [`NONE`].
     pub first_contact: u32,
-    /// Its leaf in its tree, or [`NONE`].
+    /// Leaf in the tree, or [`NONE`].
     pub proxy: u32,
-    /// The neighbours in its body's list.
+    /// Neighbours in the list of the body's colliders.
     next: u32,
     previous: u32,
 }
 
-/// What the narrow phase asks of a collider for every contact.
+/// Properties of a collider that the narrow phase reads for every contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reach {
     /// The distance from the body's centre of mass to the farthest point of the shape, in metres.
     pub extent: f32,
-    /// The same, but 0 on a static body: how far the surface moves for each radian the body may turn.
+    /// As `extent`, but 0 on a static body: displacement of the surface per radian of turning, at most.
     pub turning: f32,
-    /// The greatest distance at which contacts are predicted, in metres.
+    /// Maximum distance at which contacts are predicted, in metres.
     pub speculative: f32,
-    /// How far from the shape others are kept, in metres.
+    /// Distance from the shape at which others are kept, in metres.
     pub margin: f32,
-    /// Counts changes that make cached contacts wrong: shape, place on the body, margins.
+    /// Counter of changes that invalidate cached contacts: shape, pose on the body, margins.
     pub revision: u32,
 }
 
-/// Bodies that turn further in a step are looked at as if they turned by this, in radians.
+/// Maximum turn per step that prediction assumes, in radians. Bodies that turn further are treated as if they turned by
+/// this.
 pub(crate) const MOST_TURN: f32 = 1.5;
 
-/// How far a body that turns at `spin` rad/s turns in `dt` seconds, as far as it is looked at, in radians.
+/// Turn in `dt` seconds at an angular speed of `spin` rad/s, clamped to [`MOST_TURN`], in radians.
 #[inline(always)]
 pub(crate) fn turn(spin: f32, dt: f32) -> f32 {
     min(spin * dt, MOST_TURN)
 }
 
-/// Whether a turn may take the surface farther than `small`, or far for its size.
+/// Whether a turn may displace the surface by more than `small`, or by much for the size of the shape.
 #[inline(always)]
 pub(crate) fn is_swinging(reach: &Reach, turn: f32, small: f32) -> bool {
     reach.extent * turn > min(small, FAT_SHARE * reach.extent)
 }
 
-/// All colliders that take part in the simulation.
+/// All colliders of the simulation.
 #[derive(Clone, Debug, Default)]
 pub struct ColliderTable {
-    /// Which ids are in use.
+    /// The ids in use.
     pub ids: IdPool,
     colliders: Vec<Collider>,
-    /// Bodies by id: what else would have to be looked up in the colliders, a line of memory each.
+    /// Bodies by collider id. A look-up in `colliders` would load a cache line each.
     owners: Vec<u32>,
     /// World poses by id.
     pub poses: Vec<WorldPose>,
-    /// The smallest boxes around the colliders as they stood when last refreshed, by id.
+    /// Tight boxes by id, as of the last refresh.
     pub tight: Vec<Aabb>,
-    /// Fat boxes by id: what the trees hold.
+    /// Fat boxes by id. The trees hold these.
     pub fat: Vec<Aabb>,
     /// Reaches by id.
     pub reaches: Vec<Reach>,
 }
 
-/// How a box is made fat, constant over a step.
+/// How boxes are fattened, constant over a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Fattening {
-    /// Added on every side when a box is enlarged, in metres; less on what is small.
+    /// Growth of a box on every side when it is enlarged, in metres. Small shapes get less.
     pub margin: f32,
     /// The time for which boxes are swept along their body's velocity, in seconds.
     pub dt: f32,
 }
 
-/// A fat box is larger by no more than this share of how far its shape reaches, and how far that turns in a step.
-/// Fatter boxes change less often but meet more that never touch, the more of it the more directions there are: with
-/// twice the share in space, a step of a pile of boxes takes a quarter longer.
+/// Maximum growth of a fat box, as a share of the shape's extent and its displacement by turning. A larger share
+/// enlarges boxes less often but finds more pairs that never touch: with twice the share in 3D, a step of a pile of
+/// boxes takes a quarter longer.
 const FAT_SHARE: f32 = 0.5 / (1 << DIM) as f32;
 
 impl ColliderTable {
-    /// How many bytes are kept of each collider here, but for one bit, and for the geometry of a hull, which
-    /// colliders share.
+    /// Bytes of memory per collider, besides one bit, and besides the geometry of hulls, which colliders share.
     pub const BYTES_PER_COLLIDER: usize = size_of::<Collider>()
         + size_of::<u32>()
         + size_of::<WorldPose>()
         + 2 * size_of::<Aabb>()
         + size_of::<Reach>();
 
-    /// Adds a collider at a pose and links it to its body. Its fat box is empty until
-    /// [`refresh`](Self::refresh).
+    /// Adds a collider at a pose and attaches it to its body. Its fat box is empty until [`refresh`](Self::refresh).
     pub fn add(&mut self, def: ColliderDef, pose: WorldPose, bodies: &mut BodyTable) -> u32 {
         let id = self.ids.allocate();
         let collider = Collider { def, first_contact: NONE, proxy: NONE, next: NONE, previous: NONE };
@@ -229,21 +229,20 @@ impl ColliderTable {
             self.fat[i] = Aabb::EMPTY;
         }
         self.attach(id, bodies);
-        // The revision goes on counting, so that nothing cached for the id's last owner fits.
+        // The revision keeps counting, so that caches of the id's last owner do not match.
         self.update_reach(id, bodies);
         id
     }
 
-    /// Takes a collider from its body and frees its id. Its contacts and its leaf must be gone.
+    /// Detaches a collider from its body and frees its id. Its contacts and its leaf must be removed before.
     pub fn remove(&mut self, id: u32, bodies: &mut BodyTable) {
         debug_assert!(self[id].first_contact == NONE, "a removed collider has no contacts");
         self.detach(id, bodies);
         self.ids.free(id);
     }
 
-    /// Changes shape, place, margin or body; cached contacts are invalidated. The contacts of a
-    /// collider that changes its body must be gone; others are to be told of the rest
-    /// (`Link::reflag_of_collider`).
+    /// Changes the definition of a collider, and invalidates its cached contacts. If the body changes, the contacts
+    /// must be removed before. Otherwise call `Link::reflag_of_collider` after it.
     pub fn redefine(&mut self, id: u32, def: ColliderDef, bodies: &mut BodyTable) {
         debug_assert!(
             self[id].def.body == def.body || self[id].first_contact == NONE,
@@ -255,9 +254,8 @@ impl ColliderTable {
         self.update_reach(id, bodies);
     }
 
-    /// Recomputes how far the shape reaches from the body's centre of mass; cached contacts are
-    /// invalidated. To be called after changes of the shape, the margins, or the body's kind or centre of
-    /// mass.
+    /// Recomputes the reach of a collider, and invalidates its cached contacts. Call it after the shape, the margins,
+    /// or the body's kind or centre of mass changed.
     pub fn update_reach(&mut self, id: u32, bodies: &BodyTable) {
         let def = &self.colliders[id as usize].def;
         let center = if def.body == NONE {
@@ -292,22 +290,21 @@ impl ColliderTable {
         self.owners[id as usize]
     }
 
-    /// The collider after `id` in its body's list, or [`NONE`].
+    /// The next collider of the same body, or [`NONE`].
     pub fn next_of_body(&self, id: u32) -> u32 {
         self[id].next
     }
 
-    /// Puts a collider where its body is, and enlarges its fat box if it no longer holds the shape, its
-    /// margin, and its motion of one step. Returns whether it did. Colliders without a body keep their
-    /// pose.
+    /// Moves a collider to its body's pose, and enlarges its fat box if that no longer contains the shape, the margin
+    /// and the motion of one step. Returns whether the fat box was enlarged. A collider without a body keeps its pose.
     pub fn refresh(&mut self, id: u32, bodies: &BodyTable, fattening: Fattening) -> bool {
         let i = id as usize;
         let places = (&mut self.poses[i], &mut self.tight[i], &mut self.fat[i]);
         self.colliders[i].fit(bodies, fattening, &self.reaches[i], places)
     }
 
-    /// Refreshes the colliders of the bodies that were given a velocity by hand, and forgets that they were.
-    /// `outgrown` receives those whose fat box was enlarged.
+    /// Refreshes the colliders of bodies whose velocity was set by hand, and empties the set of those bodies.
+    /// `outgrown` receives the colliders whose fat box was enlarged.
     pub fn refresh_pushed(&mut self, bodies: &mut BodyTable, fattening: Fattening, outgrown: &mut BitSet) {
         let mut pushed = core::mem::take(&mut bodies.pushed);
         for body in pushed.iter() {
@@ -323,8 +320,8 @@ impl ColliderTable {
         bodies.pushed = pushed;
     }
 
-    /// Refreshes the colliders of the bodies that have a row in this step, `listed` in the order of their rows from
-    /// row 1. `outgrown` receives those whose fat box was enlarged.
+    /// Refreshes the colliders of the bodies with a row in this step. `listed` holds these bodies in the order of rows,
+    /// from row 1. `outgrown` receives the colliders whose fat box was enlarged.
     pub fn refresh_listed(
         &mut self,
         listed: &[u32],
@@ -337,7 +334,7 @@ impl ColliderTable {
         let (poses, tight, fat) = (Parts::of(poses), Parts::of(tight), Parts::of(fat));
         let outgrown = Mutex::new(outgrown);
         pool.each(listed.chunks(BLOCK).enumerate(), |(block, ids)| {
-            // To lock for each would have the members wait for each other.
+            // The lock is taken once per batch of ids: for each id, workers would wait for each other.
             let mut found = [NONE; BLOCK];
             let mut count = 0;
             let note = |found: &[u32]| {
@@ -345,10 +342,10 @@ impl ColliderTable {
                 found.iter().for_each(|id| _ = outgrown.insert(*id));
             };
             for (i, &body) in ids.iter().enumerate() {
-                if let Some(&next) = ids.get(i + AHEAD) {
+                if let Some(&next) = ids.get(i + PREFETCH_DISTANCE) {
                     prefetch(colliders, bodies[next].first_collider);
                 }
-                if let Some(&next) = ids.get(i + AHEAD / 2)
+                if let Some(&next) = ids.get(i + PREFETCH_DISTANCE / 2)
                     && let Some(collider) = colliders.get(bodies[next].first_collider as usize)
                 {
                     collider.def.shape.prefetch();
@@ -364,7 +361,7 @@ impl ColliderTable {
                     }
                     prefetch(colliders, collider.next);
                     let i = id as usize;
-                    // SAFETY: a collider is of one body, and no two bodies have one row.
+                    // SAFETY: a collider has one body, and no two bodies share a row.
                     let places = unsafe { (poses.one(i), tight.one(i), fat.one(i)) };
                     if collider.fit(bodies, fattening, &reaches[i], places) {
                         found[count] = id;
@@ -414,8 +411,8 @@ impl ColliderTable {
 }
 
 impl Collider {
-    /// How far normals of the surface pass from the body's centre of mass at most, in metres: how fast the surface moves
-    /// along its normals for each radian a second.
+    /// Maximum distance between the surface normals' lines and the body's centre of mass, in metres: speed of the
+    /// surface along its normals per rad/s.
     pub(crate) fn arm(&self, bodies: &BodyTable) -> f32 {
         let def = &self.def;
         if def.body == NONE {
@@ -424,7 +421,7 @@ impl Collider {
         def.shape.arm(def.local.inverse_transform(bodies[def.body].local_center))
     }
 
-    /// The box of all places that the shape, whose box is `tight` now, takes in a step while its body turns.
+    /// The box swept by the shape in a step while its body turns. `tight` is the box now.
     #[inline(never)]
     fn swung(&self, bodies: &BodyTable, fattening: Fattening, reach: &Reach, tight: &Aabb) -> Aabb {
         let def = &self.def;
@@ -433,7 +430,7 @@ impl Collider {
             return *tight;
         }
         let mut body = bodies.poses[def.body as usize];
-        // Turning takes nothing farther out than the farthest point is.
+        // No point of the shape leaves the sphere of its extent around the centre of mass.
         let round = Aabb::new(Vector::ZERO, Vector::ZERO).at(body.center).grown(reach.extent);
         let velocity = bodies.velocities[def.body as usize].angular;
         let spin = velocity.length();
@@ -444,11 +441,12 @@ impl Collider {
         }
         body.rotation = rotation;
         let after = def.shape.aabb(&body.frame(bodies[def.body].local_center).then(&def.local));
-        // A point goes along an arc. Off the line between its ends that is by r (1 - cos φ/2) < r φ²/8 at most.
+        // A point moves along an arc, which deviates from its chord by r (1 - cos φ/2) < r φ²/8 at most.
         tight.union(&after).grown(0.125 * reach.extent * turn * turn).intersection(&round)
     }
 
-    /// Finds pose and box of a collider as it stands, and enlarges the fat box if it must. Returns whether it did.
+    /// Recomputes pose and tight box of a collider, and enlarges the fat box if needed. Returns whether it was
+    /// enlarged.
     #[inline]
     fn fit(
         &self,

@@ -1,15 +1,15 @@
-//! Constraints that are not contacts, by id: between which bodies, and which a body has.
+//! Constraints other than contacts, by id: the bodies of each, and the constraints of each body.
 
 use super::NONE;
 use crate::data::IdPool;
 use crate::graph::ColorSlot;
 
-/// What constraints of all kinds have in common. What is special to a kind is in a table of its own, by the same id.
+/// Data common to constraints of all kinds. Data of one kind is in a table of its own, by the same id.
 #[derive(Clone, Copy, Debug)]
 pub struct Constraint {
     /// The bodies.
     pub bodies: [u32; 2],
-    /// The place among its colour's constraints; `None` unless it can push a body that is awake.
+    /// Place in the colour graph; `None` if all bodies of the constraint sleep or are immovable.
     pub slot: Option<ColorSlot>,
     /// Next and previous constraint of the same body, for each side, as `constraint << 1 | side`.
     next: [u32; 2],
@@ -18,18 +18,19 @@ pub struct Constraint {
 
 /// All constraints of one kind.
 ///
-/// Decision: a body's constraints are lists of their own for each kind, beside the bodies. A body without constraints,
-/// which most are, pays nothing.
+/// Decision: each kind has its own lists of a body's constraints, outside of the body. Most bodies have no constraint
+/// and pay nothing.
 #[derive(Clone, Debug, Default)]
 pub struct ConstraintTable {
     ids: IdPool,
     constraints: Vec<Constraint>,
-    /// The first constraint of each body, as in [`Constraint`]; shorter where the last bodies have none.
+    /// First constraint of each body, as in [`Constraint`]. Shorter than the number of bodies if the last ones have
+    /// none.
     first: Vec<u32>,
 }
 
 impl ConstraintTable {
-    /// How many constraints there are.
+    /// The number of constraints.
     pub fn len(&self) -> usize {
         self.ids.len()
     }
@@ -73,7 +74,7 @@ impl ConstraintTable {
         self.constraints[id as usize].slot = slot;
     }
 
-    /// Adds a constraint between two different bodies. The lowest free id is its own.
+    /// Adds a constraint between two different bodies. It gets the lowest free id.
     pub(crate) fn add(&mut self, bodies: [u32; 2]) -> u32 {
         debug_assert!(bodies[0] != bodies[1], "a constraint has two bodies");
         self.ids.recycle();
@@ -97,7 +98,7 @@ impl ConstraintTable {
         id
     }
 
-    /// Takes a constraint out of its bodies' lists, and frees its id.
+    /// Removes a constraint from the lists of its bodies, and frees its id.
     pub(crate) fn remove(&mut self, id: u32) {
         let Constraint { bodies, next, previous, slot } = *self.get(id);
         debug_assert!(slot.is_none(), "a constraint gives back its colour before it is removed");
@@ -114,10 +115,10 @@ impl ConstraintTable {
         self.ids.free(id);
     }
 
-    /// Checks that bodies list their constraints.
+    /// Checks the lists of bodies.
     ///
     /// # Panics
-    /// With the invariant that does not hold.
+    /// If an invariant does not hold; the message names it.
     pub fn validate(&self) {
         let mut listed = 0;
         for body in 0..self.first.len() as u32 {

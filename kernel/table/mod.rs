@@ -1,5 +1,4 @@
-//! The dense tables of bodies, colliders and constraints by id: what the stages look up, and nothing that the
-//! embedder's own records already say.
+//! Dense tables of bodies, colliders and constraints by id, for all stages of a step.
 
 mod body;
 mod collider;
@@ -13,5 +12,5 @@ pub use collider::{
 pub(crate) use collider::{MOST_TURN, is_swinging, turn};
 pub use constraint::{Constraint, ConstraintTable};
 
-/// No body, collider, contact or row.
+/// The absent id: no body, collider, contact or row.
 pub const NONE: u32 = u32::MAX;

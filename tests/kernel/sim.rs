@@ -347,7 +347,7 @@ impl Sim {
         let rows = &mut self.solver.bodies;
         for (i, &id) in self.listed.iter().enumerate() {
             let row = i + 1;
-            rows.still(row);
+            rows.set_at_rest(row);
             let velocity = self.bodies.velocities[id as usize];
             self.bodies.set_velocity(id, velocity);
             rows.rows[row] = BodyRow::new(velocity.linear, velocity.angular);

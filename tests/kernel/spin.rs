@@ -55,7 +55,7 @@ impl Spinner {
         let local = self.inv_inertia();
         self.solver.begin_step(0, 1);
         let rows = &mut self.solver.bodies;
-        rows.still(1);
+        rows.set_at_rest(1);
         rows.rows[1] = BodyRow::new(Vector::ZERO, self.w);
         rows.masses[1] = MassRow::new(1.0, local.rotated(self.rotation));
         rows.motions[1] = Motion { angular_acceleration, ..Motion::FREE };

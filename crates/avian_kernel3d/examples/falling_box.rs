@@ -69,7 +69,7 @@ fn main() {
         let kinematic = bodies.assign_rows(&mut listed);
         solver.begin_step(kinematic, listed.len() - kinematic);
         let velocity = bodies.velocities[falling as usize];
-        solver.bodies.still(1);
+        solver.bodies.set_at_rest(1);
         solver.bodies.rows[1] = BodyRow::new(velocity.linear, velocity.angular);
         solver.bodies.masses[1] = MassRow::new(1.0 / mass.mass, mass.inertia.inverse());
         solver.bodies.motions[1] = Motion { acceleration: Vector::Y * -9.81, ..Motion::FREE };
@@ -99,10 +99,9 @@ fn main() {
         changed.clear();
         link.contacts.update(&input, &pool, &mut workers, &mut changed);
         link.apply(&changed, |_, _, _| {});
-        // SAFETY: contacts, colours and bodies belong together: `link` has kept them.
-        unsafe {
-            solver.build_rows(&RowInput { contacts: &contacts, bodies: &bodies }, &colors, &params, &pool)
-        };
+        let input = RowInput { contacts: &contacts, bodies: &bodies };
+        // SAFETY: contacts, colours and bodies belong together: only `link` has changed them.
+        unsafe { solver.build_rows(&input, &colors, &params, &pool) };
         (0..SUBSTEPS).for_each(|_| solver.substep(&params, &pool));
         solver.restitute(&params, &pool);
         solver.store_impulses(&mut contacts, &pool);

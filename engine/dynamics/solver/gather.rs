@@ -5,7 +5,7 @@ use bevy_log::warn_once;
 use core::ops::Range;
 use kernel::{
     math::{AxisLocks, Vector as KernelVector, WorldPose, max},
-    solver::{BodyFiller, BodyRow, FewBodies, FilledBody, Limits, MassRow, Motion},
+    solver::{BodyFiller, BodyRow, FilledBody, Limits, MassRow, Motion, SpecialBodies},
     table::{BodyKind, BodyTable, NONE, RestSpeed, Velocity},
 };
 
@@ -457,12 +457,12 @@ pub(crate) fn gather_bodies(
     }
     // Some body may have lost a component within the step.
     if gathered.iter().map(|some| some.filled).sum::<usize>() < count {
-        kernel.bodies.still_unfilled();
+        kernel.bodies.fill_rest();
     }
     let mut refused = Vec::new();
-    for Gathered { filled, few, dominances, refused: some } in gathered.iter_mut() {
+    for Gathered { filled, special, dominances, refused: some } in gathered.iter_mut() {
         *filled = 0;
-        kernel.bodies.add_few(few);
+        kernel.bodies.add_special(special);
         for (id, dominance) in dominances.drain(..) {
             table[id].dominance = dominance;
             table.any_dominance = true;
@@ -481,7 +481,7 @@ pub(crate) fn gather_bodies(
 pub(crate) struct Gathered {
     /// How many rows.
     filled: usize,
-    few: FewBodies,
+    special: SpecialBodies,
     /// Bodies whose dominance is not what the table says.
     dominances: Vec<(u32, i8)>,
     /// Bodies whose velocity is not finite.
@@ -514,10 +514,10 @@ impl Gather<'_> {
         }
         // What was put under quarantine in this step stays put until it leaves.
         if !finite || options.disabled {
-            gathered.filled += usize::from(self.filler.fill(row, &FilledBody::still()));
+            gathered.filled += usize::from(self.filler.fill(row, &FilledBody::at_rest()));
             return;
         }
-        let mut filled = FilledBody { row: BodyRow::new(linear, angular), ..FilledBody::still() };
+        let mut filled = FilledBody { row: BodyRow::new(linear, angular), ..FilledBody::at_rest() };
         let locks = options.locks.map_or(AxisLocks::NONE, |l| l.to_kernel());
         let mut limits = Limits { locks, ..Limits::NONE };
         let dominance = options.dominance.map_or(0, |d| d.0);
@@ -534,10 +534,10 @@ impl Gather<'_> {
             if !options.own_velocity {
                 limits.max_speed = limit(options.max_speed.map(|m| m.0));
                 limits.max_angular_speed = limit(options.max_angular_speed.map(|m| m.0));
-                gathered.few.spin(row, local, rotation);
+                gathered.special.spin(row, local, rotation);
             }
         }
-        gathered.few.limit(row, limits);
+        gathered.special.limit(row, limits);
         gathered.filled += usize::from(self.filler.fill(row, &filled));
     }
 

@@ -145,7 +145,7 @@ pub(crate) fn finish_bodies(
     lost.sort_unstable();
     for row in lost {
         let id = listed[row as usize - 1];
-        solver.kernel.bodies.still(row as usize);
+        solver.kernel.bodies.set_at_rest(row as usize);
         quarantine(entities[id as usize], Some(table.frame(id)), &mut commands);
     }
     diagnostics.finalize += start.elapsed();
@@ -191,7 +191,7 @@ fn keep_in_place(id: u32, solver: &mut Solver, bodies: &Bodies, dt: f32) -> Opti
         return None;
     }
     let (v, w) = solver.bodies.rows[row as usize].velocity();
-    solver.bodies.put_back(row);
+    solver.bodies.reset_delta(row);
     let body = &bodies.table[id];
     let rests = body.rest_speed.admits(v.length_squared() * dt * dt, w.length_squared() * dt * dt, dt);
     Some((id, if rests { body.sleep_timer + dt } else { 0.0 }))

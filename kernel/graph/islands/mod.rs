@@ -1,5 +1,5 @@
-//! Persistent islands: the groups of dynamic bodies that hang together through links and therefore
-//! sleep and wake together.
+//! Persistent islands: groups of dynamic bodies that are connected by links. The bodies of an island sleep and wake
+//! together.
 
 mod split;
 mod validate;
@@ -8,27 +8,27 @@ use super::kind::{ConstraintId, ConstraintKind};
 use super::union_find::DisjointSets;
 use crate::data::IdPool;
 
-/// The name of an island, valid until it is merged away or loses its last body; reused after that.
+/// Id of an island, valid until it is merged into another or loses its last body. Ids are reused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct IslandId(pub u32);
 
-/// The caller's name of a link: a contact or other constraint between two dynamic bodies.
+/// The caller's id of a link: a contact or other constraint between two dynamic bodies.
 ///
-/// A table is indexed by it, so keep ids small.
+/// It indexes a table, so keep ids small.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkId(pub u32);
 
 impl LinkId {
-    /// The name of a constraint. The kind is in the low digit: so the table is as long as the kind with the most asks for.
+    /// The link of a constraint. The kind is the low digit, so that the table is as long as the largest kind needs.
     pub fn of(ConstraintId { kind, id }: ConstraintId) -> Self {
         Self(id * ConstraintKind::COUNT as u32 + kind as u32)
     }
 }
 
-/// A link with the two bodies it holds together.
+/// A link between two bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Link {
-    /// The caller's name for it.
+pub struct IslandLink {
+    /// The caller's id.
     pub key: LinkId,
     /// One body.
     pub a: u32,
@@ -36,21 +36,21 @@ pub struct Link {
     pub b: u32,
 }
 
-impl Link {
+impl IslandLink {
     fn is_to_carrier(&self) -> bool {
         self.b == NONE
     }
 
-    /// The bodies in islands that it holds.
+    /// The bodies of the link that are in islands.
     fn ends(&self) -> impl Iterator<Item = u32> {
         [self.a, self.b].into_iter().filter(|body| *body != NONE)
     }
 }
 
-/// Stands for "in no island", "not in the awake list" and "no body".
+/// Absent: no island, no index in the awake list, no body.
 const NONE: u32 = u32::MAX;
 
-/// Where a body or link lies: an island and the index in its list.
+/// Place of a body or link: an island and the index in its list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place {
     island: u32,
@@ -59,11 +59,11 @@ struct Place {
 
 const NOWHERE: Place = Place { island: NONE, index: NONE };
 
-/// What is kept of a body.
+/// Record of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Member {
     place: Place,
-    /// How many links it has.
+    /// The number of its links.
     links: u32,
 }
 
@@ -71,18 +71,18 @@ impl Member {
     const NOBODY: Self = Self { place: NOWHERE, links: 0 };
 }
 
-/// A slot for an island; a free one has no bodies.
+/// Slot of an island. A free slot has no bodies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Island {
     bodies: Vec<u32>,
-    links: Vec<Link>,
-    /// Links lost since the island was last known to be connected.
+    links: Vec<IslandLink>,
+    /// Number of links removed since the island was last known to be connected.
     removed: u32,
     /// Index in the awake list, `NONE` if asleep.
     awake: u32,
-    /// How many of its links are to carriers.
+    /// Number of links to carriers.
     carriers: u32,
-    /// Whether its bodies are to rest anew.
+    /// Whether sleep timers of the bodies are to be reset.
     is_woken: bool,
 }
 
@@ -91,7 +91,7 @@ impl Island {
         Self { bodies: Vec::new(), links: Vec::new(), removed: 0, awake: NONE, carriers: 0, is_woken: false };
 }
 
-/// One of the connected parts an island fell into.
+/// One connected part of an island that fell apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Piece {
     lowest_body: u32,
@@ -99,61 +99,59 @@ struct Piece {
     island: u32,
 }
 
-/// Memory of [`Islands::split`], empty between calls except for `created`.
+/// Buffers of [`Islands::split`], empty between calls except for `created`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Scratch {
     sets: DisjointSets,
-    /// By index of a body in the island: the index of its piece.
+    /// Index of the piece, by index of a body in the island.
     piece_of: Vec<u32>,
     pieces: Vec<Piece>,
     order: Vec<u32>,
     created: Vec<IslandId>,
 }
 
-/// The islands of a world.
+/// All islands.
 ///
-/// Decision: islands persist (Catto, "Simulation Islands", 2023). A new link merges two islands at once,
-/// the smaller into the larger; a removed link only counts up `removed`, and whether the island fell
-/// apart is found out by [`split`](Self::split) when somebody wants to sleep. Between these times an
-/// island may be larger than what is connected, never smaller. The alternative, a search through all
-/// contacts every step, costs most when nothing changes.
+/// Decision: islands persist (Catto, "Simulation Islands", 2023). A new link merges two islands at once, the smaller
+/// into the larger. A removed link only increments `removed`; [`split`](Self::split) finds the connected parts when a
+/// body is ready to sleep. In between an island may be larger than its connected parts, never smaller. A search through
+/// all contacts in every step would cost most when nothing changes.
 ///
-/// Only dynamic bodies are in islands: what rests on the same floor or lift need not sleep together. An
-/// island is awake or asleep as a whole; to put bodies and contacts to sleep, and to wake them, is up to
-/// the caller.
+/// Only dynamic bodies are in islands: bodies on the same floor or lift need not sleep together. An island is awake or
+/// asleep as a whole. The caller puts bodies and contacts to sleep and wakes them.
 ///
-/// Everything follows from the sequence of calls. The lowest free id is reused first, so that ids follow from the
-/// islands there are; buffers are reused last in, first out: a steady state allocates nothing.
+/// The state follows from the sequence of calls. The lowest free id is reused first, so that ids depend only on the
+/// live islands. Buffers are reused last in, first out: a steady state allocates nothing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Islands {
     islands: Vec<Island>,
     ids: IdPool,
-    /// The emptied buffers of former islands.
-    spare: Vec<(Vec<u32>, Vec<Link>)>,
+    /// Emptied buffers of former islands.
+    spare: Vec<(Vec<u32>, Vec<IslandLink>)>,
     awake: Vec<IslandId>,
-    /// By body id.
+    /// Records by body id.
     members: Vec<Member>,
-    /// By link id.
+    /// Places by link id.
     link_places: Vec<Place>,
-    /// Whether an island may be marked as woken.
+    /// Whether any island may be marked as woken.
     any_woken: bool,
-    /// The id from which on islands are next split.
+    /// The first island in the order of splitting.
     split_turn: IslandId,
     scratch: Scratch,
 }
 
 impl Islands {
-    /// How many bytes are kept of each body here, besides its island's share.
+    /// Bytes of memory per body, with its entry in an island.
     pub const BYTES_PER_BODY: usize = size_of::<Member>() + size_of::<u32>();
-    /// How many bytes are kept of each link here.
-    pub const BYTES_PER_LINK: usize = size_of::<Place>() + size_of::<Link>();
+    /// Bytes of memory per link.
+    pub const BYTES_PER_LINK: usize = size_of::<Place>() + size_of::<IslandLink>();
 
-    /// No bodies, no islands.
+    /// No bodies and no islands.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Puts a body into an awake island of its own. A body that already has an island stays in it.
+    /// Adds a body in an awake island of its own. A body that has an island stays there.
     pub fn add_body(&mut self, body: u32) -> IslandId {
         if let Some(island) = self.island_of(body) {
             debug_assert!(false, "body {body} is already in {island:?}");
@@ -164,7 +162,7 @@ impl Islands {
         IslandId(island)
     }
 
-    /// Takes a body out; its links must have been unlinked before. An unknown body is ignored.
+    /// Removes a body. Its links must be removed before. An unknown body is ignored.
     pub fn remove_body(&mut self, body: u32) {
         let Some(place) = self.place(body) else { return };
         while self.members[body as usize].links > 0 {
@@ -185,12 +183,11 @@ impl Islands {
         }
     }
 
-    /// Links two bodies and merges their islands at once: the one with fewer bodies into the other, at a
-    /// tie into the one with the lower id. Returns the id of the island they are in now.
+    /// Links two bodies and merges their islands: the one with fewer bodies into the other, at a tie into the one with
+    /// the lower id. Returns the id of the merged island.
     ///
-    /// Either both islands are awake or both asleep: wake the sleeping one first, with its bodies and
-    /// contacts, for afterwards they cannot be told from the others. (If not, the result is awake.)
-    /// `None`, and nothing happens, if a body has no island or the key is in use.
+    /// Both islands must be awake or both asleep: wake a sleeping one first, with its bodies and contacts. If they
+    /// differ, the result is awake. Returns `None` and does nothing if a body has no island or the key is in use.
     pub fn link(&mut self, key: LinkId, a: u32, b: u32) -> Option<IslandId> {
         if self.is_linked(key) {
             debug_assert!(false, "{key:?} is linked twice");
@@ -201,26 +198,25 @@ impl Islands {
             return None;
         };
         let island = if island_a == island_b { island_a } else { self.merge(island_a, island_b) };
-        self.push_link(island.0, Link { key, a, b });
+        self.push_link(island.0, IslandLink { key, a, b });
         for body in [a, b] {
             self.members[body as usize].links += 1;
         }
         Some(island)
     }
 
-    /// Links a body to something that moves it without being in an island, as a lift does. Such a link holds nothing
-    /// together; it is counted, and stays with its body whatever island that comes to.
+    /// Links a body to a carrier: something that moves the body without being in an island, as a lift does. The link
+    /// connects nothing. It is counted, and stays with its body when islands merge or split.
     pub fn link_carrier(&mut self, key: LinkId, body: u32) {
         if self.is_linked(key) {
             debug_assert!(false, "{key:?} is linked twice");
         } else if let Some(island) = self.island_of(body) {
-            self.push_link(island.0, Link { key, a: body, b: NONE });
+            self.push_link(island.0, IslandLink { key, a: body, b: NONE });
             self.members[body as usize].links += 1;
         }
     }
 
-    /// Removes a link. An island that it held together stays whole until it is [split](Self::split). Returns whether the key
-    /// was linked.
+    /// Removes a link. The island stays whole until it is [split](Self::split). Returns whether the key was linked.
     pub fn unlink(&mut self, key: LinkId) -> bool {
         let place = place_in(&self.link_places, key.0);
         let Some(island) = self.islands.get_mut(place.island as usize) else { return false };
@@ -232,12 +228,12 @@ impl Islands {
         true
     }
 
-    /// Whether a link of this name exists.
+    /// Whether a link with this id exists.
     pub fn is_linked(&self, key: LinkId) -> bool {
         place_in(&self.link_places, key.0) != NOWHERE
     }
 
-    /// The island of a body, `None` if the body was not added.
+    /// The island of a body; `None` if the body was not added.
     pub fn island_of(&self, body: u32) -> Option<IslandId> {
         self.place(body).map(|place| IslandId(place.island))
     }
@@ -246,19 +242,19 @@ impl Islands {
         self.members.get(body as usize).map(|member| member.place).filter(|place| *place != NOWHERE)
     }
 
-    /// The bodies of an island in an order that follows from the calls; none if there is no such island.
+    /// The bodies of an island, in an order that follows from the calls. Empty if there is no such island.
     pub fn bodies(&self, island: IslandId) -> &[u32] {
         let bodies: &[u32] = self.get(island).map_or(&[], |island| &island.bodies);
         count_visits(bodies.len());
         bodies
     }
 
-    /// The links between the bodies of an island.
-    pub fn links(&self, island: IslandId) -> &[Link] {
+    /// The links of an island.
+    pub fn links(&self, island: IslandId) -> &[IslandLink] {
         self.get(island).map_or(&[], |island| &island.links)
     }
 
-    /// How many links the island lost since it was last known to be connected. At 0 it is connected.
+    /// The number of links that the island lost since it was last known to be connected. With 0 it is connected.
     pub fn removed(&self, island: IslandId) -> u32 {
         self.get(island).map_or(0, |island| island.removed)
     }
@@ -276,9 +272,9 @@ impl Islands {
         if asleep { self.drop_from_awake(island.0) } else { self.add_to_awake(island.0) }
     }
 
-    /// Notes that the bodies of an awake island are to rest anew, all of them, whatever it costs to visit them: that is
-    /// left to [`drain_woken`](Self::drain_woken), once for all notes since. An island that merges with a woken one is
-    /// woken as well. Nothing for a sleeping island.
+    /// Marks the sleep timers of all bodies of an awake island to be reset. [`drain_woken`](Self::drain_woken) visits
+    /// the bodies, once for all marks. An island that merges with a marked one is marked as well. Does nothing for a
+    /// sleeping island.
     pub fn mark_woken(&mut self, island: IslandId) {
         if let Some(island) = self.islands.get_mut(island.0 as usize).filter(|island| island.awake != NONE) {
             island.is_woken = true;
@@ -286,12 +282,12 @@ impl Islands {
         }
     }
 
-    /// Whether the bodies of an island are still to rest anew: so it must not fall asleep.
+    /// Whether sleep timers of the island are still to be reset. Such an island must not fall asleep.
     pub fn is_woken(&self, island: IslandId) -> bool {
         self.get(island).is_some_and(|island| island.is_woken)
     }
 
-    /// Hands over the bodies of all islands that were [marked](Self::mark_woken), and takes the marks away.
+    /// Calls `rest_anew` for each body of each [marked](Self::mark_woken) island, and clears the marks.
     pub fn drain_woken(&mut self, mut rest_anew: impl FnMut(u32)) {
         if !std::mem::take(&mut self.any_woken) {
             return;
@@ -305,12 +301,12 @@ impl Islands {
         }
     }
 
-    /// How many links to [carriers](Self::link_carrier) an island has.
+    /// The number of links to [carriers](Self::link_carrier).
     pub fn carriers(&self, island: IslandId) -> u32 {
         self.get(island).map_or(0, |island| island.carriers)
     }
 
-    /// The lowest id that an island may have to be the next that is split, whatever its size.
+    /// The lowest id of the next island to be split at any size.
     pub(super) fn split_turn(&self) -> IslandId {
         self.split_turn
     }
@@ -336,7 +332,7 @@ impl Islands {
         self.ids.len()
     }
 
-    /// Whether there are no islands, hence no bodies.
+    /// Whether there are no islands, hence no bodies in any.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -353,7 +349,7 @@ impl Islands {
         if !self.is_asleep(small) {
             self.set_asleep(large, false);
         }
-        // The buffers go back, empty, to be used again.
+        // The emptied buffers are kept for reuse.
         let mut links = std::mem::take(&mut self.islands[small.0 as usize].links);
         links.drain(..).for_each(|link| self.push_link(large.0, link));
         let mut bodies = std::mem::take(&mut self.islands[small.0 as usize].bodies);
@@ -363,7 +359,7 @@ impl Islands {
         let Island { removed, is_woken, .. } = *slot;
         let sum = &mut self.islands[large.0 as usize];
         sum.removed = sum.removed.saturating_add(removed);
-        // It rests as long as its least rested body, so it makes no difference that all rest anew.
+        // An island rests as long as its least rested body, so resetting all timers changes nothing.
         sum.is_woken |= is_woken;
         self.destroy(small.0);
         large
@@ -373,7 +369,7 @@ impl Islands {
         self.islands.get(island.0 as usize).filter(|island| !island.bodies.is_empty())
     }
 
-    /// An island without bodies; the caller adds the first one.
+    /// Creates an island without bodies. The caller adds the first one.
     fn create(&mut self, awake: bool) -> u32 {
         let id = self.ids.allocate();
         let (bodies, links) = self.spare.pop().unwrap_or_default();
@@ -388,7 +384,7 @@ impl Islands {
         id
     }
 
-    /// Gives back the slot of an island that has lost all bodies and links.
+    /// Frees the slot of an island without bodies and links.
     fn destroy(&mut self, island: u32) {
         self.drop_from_awake(island);
         let slot = &mut self.islands[island as usize];
@@ -427,7 +423,7 @@ impl Islands {
         list.push(body);
     }
 
-    fn push_link(&mut self, island: u32, link: Link) {
+    fn push_link(&mut self, island: u32, link: IslandLink) {
         let list = &mut self.islands[island as usize].links;
         let key = link.key.0 as usize;
         if self.link_places.len() <= key {
@@ -443,8 +439,8 @@ fn place_in(places: &[Place], id: u32) -> Place {
     places.get(id as usize).copied().unwrap_or(NOWHERE)
 }
 
-/// Removes the link at an index and notes where the one moved into its slot now lies.
-fn remove_link(island: &mut Island, places: &mut [Place], index: u32) -> Link {
+/// Removes the link at an index, and updates the place of the link that moved into the slot.
+fn remove_link(island: &mut Island, places: &mut [Place], index: u32) -> IslandLink {
     let link = island.links.swap_remove(index as usize);
     if let Some(moved) = island.links.get(index as usize) {
         places[moved.key.0 as usize].index = index;
@@ -452,22 +448,22 @@ fn remove_link(island: &mut Island, places: &mut [Place], index: u32) -> Link {
     if link.is_to_carrier() {
         island.carriers -= 1;
     } else {
-        // Islands are not split while sleep is off: the counter must not wrap around to "connected".
+        // Islands are not split while sleeping is off: the counter must not wrap to 0, "connected".
         island.removed = island.removed.saturating_add(1);
     }
     link
 }
 
-/// What a broken invariant of the lists is called.
+/// Message of a broken invariant of the lists.
 const LISTED: &str = "a body's links are in its island";
 
 #[cfg(test)]
 std::thread_local! {
-    /// How many bodies and links were handed out or looked at, island by island.
+    /// Number of bodies and links visited by walks over islands.
     pub(crate) static VISITS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
-/// Counts what a walk over an island looks at, for tests of how the work grows.
+/// Counts the visits of a walk over an island, for tests of complexity.
 #[inline(always)]
 fn count_visits(_count: usize) {
     #[cfg(test)]

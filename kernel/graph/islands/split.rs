@@ -1,13 +1,13 @@
-//! The split of an island into its connected parts.
+//! Splitting an island into its connected parts.
 
 use super::{Island, IslandId, Islands, NONE, Piece, Scratch, count_visits};
 
 impl Islands {
-    /// Makes an island for every connected part of this one, so that each has `removed` = 0.
+    /// Splits an island into its connected parts. Each has `removed` = 0 afterwards.
     ///
-    /// The part with the most bodies (at a tie the one with the lowest body id) keeps the id, for it is
-    /// the dearest to move. The returned islands are the others, created by ascending lowest body id, as
-    /// awake as the original; none if it is connected.
+    /// The part with the most bodies (at a tie the one with the lowest body id) keeps the id, since moving it costs
+    /// most. Returns the other islands, created in the order of their lowest body id, asleep if the original is. Empty
+    /// if the island is connected.
     pub fn split(&mut self, island: IslandId) -> &[IslandId] {
         self.scratch.created.clear();
         if self.removed(island) > 0 {
@@ -24,7 +24,7 @@ impl Islands {
         &self.scratch.created
     }
 
-    /// Fills `piece_of` and `pieces`, unless the island is connected: then returns `false`.
+    /// Fills `piece_of` and `pieces`. Returns `false` if the island is connected.
     fn find_pieces(&mut self, island: u32) -> bool {
         let Self { islands, members, scratch, .. } = self;
         let island = &islands[island as usize];
@@ -44,7 +44,7 @@ impl Islands {
         scratch.piece_of.resize(island.bodies.len(), NONE);
         for (index, &body) in island.bodies.iter().enumerate() {
             let root = sets.find(index as u32) as usize;
-            // A root's entry may be set by a member before its own turn comes; it stays the same then.
+            // The entry of a root may be set by an earlier body of its set. It keeps that value.
             if scratch.piece_of[root] == NONE {
                 scratch.piece_of[root] = scratch.pieces.len() as u32;
                 scratch.pieces.push(Piece { lowest_body: body, size: 0, island: NONE });
@@ -57,7 +57,7 @@ impl Islands {
         scratch.pieces.len() > 1
     }
 
-    /// Decides which island each piece goes to.
+    /// Assigns an island to each piece.
     fn name_pieces(&mut self, island: u32) {
         let Island { awake, is_woken, .. } = self.islands[island as usize];
         let Scratch { pieces, order, .. } = &mut self.scratch;
@@ -76,7 +76,7 @@ impl Islands {
         }
     }
 
-    /// Moves links and bodies to the islands of their pieces; what stays is moved up, in the same order.
+    /// Moves links and bodies to the islands of their pieces, in the same order.
     fn move_pieces(&mut self, island: u32) {
         let mut links = std::mem::take(&mut self.islands[island as usize].links);
         let mut kept = 0;
@@ -109,7 +109,7 @@ impl Islands {
         self.islands[island as usize].bodies = bodies;
     }
 
-    /// The island that the body at an index of the split island goes to.
+    /// The target island of the body at an index.
     fn target_of(&self, index: u32) -> u32 {
         self.scratch.pieces[self.scratch.piece_of[index as usize] as usize].island
     }

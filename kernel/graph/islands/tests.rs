@@ -4,7 +4,7 @@ use super::*;
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet, btree_map::Entry};
 
-/// The islands beside what a caller knows: bodies with their sleep state, and links.
+/// The islands beside the caller's records: bodies with their sleep state, and links.
 #[derive(Clone, Default)]
 struct World {
     islands: Islands,
@@ -62,7 +62,7 @@ impl World {
         assert_eq!(self.islands.removed(island), removed + 1);
     }
 
-    /// The lowest body of the connected component of each body, by a search through all links.
+    /// The lowest body in the connected component of each body, by a search through all links.
     fn components(&self) -> BTreeMap<u32, u32> {
         let mut neighbours: BTreeMap<u32, Vec<u32>> =
             self.asleep.keys().map(|body| (*body, vec![])).collect();
@@ -102,7 +102,7 @@ impl World {
         }
     }
 
-    /// Islands hold whole components; after splitting everything they are the components.
+    /// Islands contain whole components. After splitting everything they are the components.
     fn check(&self) {
         self.islands.validate();
         for (body, asleep) in &self.asleep {
@@ -195,7 +195,7 @@ fn unknown_names_are_answered() {
     assert_eq!(islands, Islands::new());
 }
 
-/// A caller that forgets to wake is told so in debug; in release the merged island is awake.
+/// Linking without waking panics in debug builds. In release builds the merged island is awake.
 #[test]
 #[cfg_attr(debug_assertions, should_panic(expected = "must be woken"))]
 fn linking_a_sleeper_unwoken() {
@@ -208,7 +208,7 @@ fn linking_a_sleeper_unwoken() {
     islands.validate();
 }
 
-/// A caller that forgets to unlink is told so in debug; in release the links go with the body.
+/// Removing without unlinking panics in debug builds. In release builds the links are removed with the body.
 #[test]
 #[cfg_attr(debug_assertions, should_panic(expected = "must be unlinked"))]
 fn removing_a_linked_body() {
@@ -221,10 +221,10 @@ fn removing_a_linked_body() {
     }
     islands.remove_body(1);
     islands.validate();
-    assert_eq!(islands.links(islands.island_of(2).unwrap()), [Link { key: LinkId(2), a: 2, b: 3 }]);
+    assert_eq!(islands.links(islands.island_of(2).unwrap()), [IslandLink { key: LinkId(2), a: 2, b: 3 }]);
 }
 
-/// A second lap through the same states allocates nothing: no buffer grows.
+/// A second lap through the same states grows no buffer.
 #[test]
 fn a_steady_state_does_not_allocate() {
     let mut islands = Islands::new();
@@ -248,7 +248,7 @@ fn a_steady_state_does_not_allocate() {
         let lists = islands.awake.capacity() + islands.spare.capacity();
         slots.sum::<usize>() + spare.sum::<usize>() + lists + tables
     };
-    // Ids wander between laps; after some laps every slot has had its turn.
+    // Ids wander between laps. After some laps every slot was used.
     (0..200).for_each(|_| lap(&mut islands));
     let before = memory(&islands);
     (0..200).for_each(|_| lap(&mut islands));
@@ -278,7 +278,7 @@ proptest! {
         prop_assert!(world.islands.is_empty() && world.islands.awake_islands().is_empty());
     }
 
-    /// A clone taken midway and the original end in equal states, ids and orders included.
+    /// A clone taken midway and the original end in equal states, including ids and orders.
     #[test]
     fn a_clone_goes_on_like_the_original(
         operations in prop::collection::vec((0u8..100, any::<u32>(), any::<u32>()), 2_000),

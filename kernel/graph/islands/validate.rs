@@ -4,7 +4,7 @@ use super::{Island, IslandId, Islands, Member, NONE, NOWHERE, Place, place_in};
 use crate::graph::union_find::DisjointSets;
 
 impl Islands {
-    /// Checks all invariants and panics with the broken one. O(bodies + links).
+    /// Checks all invariants, and panics with the broken one. O(bodies + links).
     pub fn validate(&self) {
         let mut sets = DisjointSets::default();
         let (mut bodies, mut links) = (0, 0);
@@ -36,7 +36,7 @@ impl Islands {
         assert_eq!(self.awake.len(), awake, "the awake list holds the awake islands only");
     }
 
-    /// Bodies and links lie where their records say, and links to carriers are counted.
+    /// Bodies and links are at the place in their records, and links to carriers are counted.
     fn validate_lists(&self, id: u32, island: &Island) {
         let at = |index: usize| Place { island: id, index: index as u32 };
         for (index, &body) in island.bodies.iter().enumerate() {
@@ -50,7 +50,7 @@ impl Islands {
         assert_eq!(island.carriers as usize, carriers, "island {id} counts its carriers");
     }
 
-    /// Links are between bodies of the island, and one that lost none hangs together by them.
+    /// Links are between bodies of the island. An island without removed links is connected.
     fn validate_connection(&self, id: u32, island: &Island, sets: &mut DisjointSets) {
         sets.reset(island.bodies.len());
         for link in &island.links {
