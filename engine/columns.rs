@@ -4,16 +4,16 @@ use bevy_ecs::change_detection::{ContiguousComponentTicksMut, ContiguousMut, May
 use bevy_ecs::prelude::DetectChangesMut;
 use core::ops::Range;
 
-/// How many rows are a piece.
+/// Number of rows of a piece.
 pub(crate) const PIECE: usize = 256;
 
-/// The rows of a table, in pieces.
+/// The ranges of rows of a table, in pieces.
 pub(crate) fn pieces(rows: usize) -> impl Iterator<Item = Range<usize>> {
     (0..rows).step_by(PIECE).map(move |start| start..(start + PIECE).min(rows))
 }
 
-/// Whether Bevy notes who changed what (its feature `track_location`). Pieces of tables cannot: what is written
-/// then has to be looked up one by one.
+/// Whether Bevy records the location of changes (feature `track_location`). Pieces cannot record it, so components are
+/// then written one by one.
 pub(crate) fn is_change_tracked() -> bool {
     MaybeLocation::caller().into_option().is_some()
 }
@@ -26,7 +26,7 @@ pub(crate) struct Column<'a, T> {
 }
 
 impl<'a, T> Column<'a, T> {
-    /// The values of a table, and a place for their ticks.
+    /// The values of a table. Their change ticks are stored in `ticks`.
     pub(crate) fn new(
         column: ContiguousMut<'a, T>,
         ticks: &'a mut Option<ContiguousComponentTicksMut<'a>>,
@@ -36,20 +36,20 @@ impl<'a, T> Column<'a, T> {
         Self { values, changed: ticks.insert(all).changed_mut(), now }
     }
 
-    /// Takes the first [`PIECE`] rows, or what there is.
+    /// Splits off the first [`PIECE`] rows, or all.
     pub(crate) fn cut(&mut self) -> Self {
         let count = PIECE.min(self.values.len());
         let (values, changed) = (self.values.split_off_mut(..count), self.changed.split_off_mut(..count));
         Self { values: values.unwrap_or_default(), changed: changed.unwrap_or_default(), now: self.now }
     }
 
-    /// One row; a row beyond the last panics.
+    /// One row. Panics for a row beyond the last.
     #[inline(always)]
     pub(crate) fn slot(&mut self, row: usize) -> Slot<'_, T> {
         Slot { value: &mut self.values[row], changed: &mut self.changed[row], now: self.now }
     }
 
-    /// The rows one by one.
+    /// Iterates over the rows.
     pub(crate) fn slots(self) -> impl Iterator<Item = Slot<'a, T>> {
         let now = self.now;
         self.values.iter_mut().zip(self.changed).map(move |(value, changed)| Slot { value, changed, now })
@@ -64,13 +64,13 @@ pub(crate) struct Slot<'a, T> {
 }
 
 impl<T> Slot<'_, T> {
-    /// What stands there.
+    /// The current value.
     #[inline(always)]
     pub(crate) fn get(&self) -> &T {
         self.value
     }
 
-    /// Writes, and marks as changed.
+    /// Writes a value, and marks it as changed.
     #[inline(always)]
     pub(crate) fn set(self, value: T) {
         *self.value = value;
@@ -78,9 +78,9 @@ impl<T> Slot<'_, T> {
     }
 }
 
-/// What a component can be written to.
+/// A place that a component is written to.
 pub(crate) trait Put<T> {
-    /// Writes, and marks as changed, only what differs.
+    /// Writes a value that differs, and marks it as changed.
     fn put(self, value: T);
 }
 

@@ -1,26 +1,26 @@
-//! A queue of entities to be looked at later, each once.
+//! A queue of entities without duplicates.
 //!
-//! Observers fill such queues also while physics is paused, for as long as the app likes. A queue therefore holds
-//! one entry for each entity index: an entity that has the index of a despawned one takes that one's entry out.
-//! So a queue is never longer than the world has had entities at one time.
+//! Observers fill such queues also while physics is paused, for any time. A queue therefore holds one entry per entity
+//! index: an entity replaces the entry of a despawned one with the same index. So a queue is never longer than the
+//! largest number of entities alive at one time.
 
 use bevy_ecs::entity::Entity;
 
-/// No place.
+/// No place in the order.
 const NOWHERE: u32 = u32::MAX;
 
-/// Queues with fewer entries are not compacted.
+/// Queues with fewer entries than this are not compacted.
 const SMALL: usize = 64;
 
-/// Entities in the order in which they were first noted, with what was noted last of each.
+/// Entities in the order in which they were first queued, each with the value that was queued last.
 ///
-/// Not an `EntityIndexSet`: its hash takes the index only, and the many generations of one index that an app leaves
-/// behind while physics is paused would all collide.
+/// An `EntityIndexSet` does not serve: its hash uses the index only, so the many generations of one index in an app
+/// with paused physics would all collide.
 #[derive(Clone, Debug)]
 pub(crate) struct Noted<T = ()> {
-    /// Taken out entries are `None`.
+    /// Entries. Removed ones are `None`.
     order: Vec<Option<(Entity, T)>>,
-    /// Where in `order` the entity of each index is.
+    /// Index in `order` of each entity index.
     places: Vec<u32>,
     len: usize,
 }
@@ -32,7 +32,7 @@ impl<T> Default for Noted<T> {
 }
 
 impl<T> Noted<T> {
-    /// Notes an entity, or replaces what was noted of it. Returns the despawned entity whose entry it takes out.
+    /// Queues an entity, or replaces its value. Returns the despawned entity whose entry it replaces.
     pub(crate) fn put(&mut self, entity: Entity, value: T) -> Option<Entity> {
         let index = entity.index_u32() as usize;
         if self.places.len() <= index {
@@ -65,7 +65,7 @@ impl<T> Noted<T> {
         }
     }
 
-    /// Whether the entity is noted.
+    /// Whether the entity is queued.
     #[cfg(any(test, feature = "validate"))]
     pub(crate) fn contains(&self, entity: Entity) -> bool {
         let place = self.places.get(entity.index_u32() as usize);
@@ -73,13 +73,13 @@ impl<T> Noted<T> {
         entry.is_some_and(|(held, _)| *held == entity)
     }
 
-    /// How many entities are noted.
+    /// The number of queued entities.
     #[cfg(test)]
     pub(crate) fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether none is.
+    /// Whether the queue is empty.
     pub(crate) fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -100,17 +100,17 @@ impl<T> Noted<T> {
 }
 
 impl Noted {
-    /// Notes an entity. Returns the despawned entity whose entry it takes out.
+    /// Queues an entity. Returns the despawned entity whose entry it replaces.
     #[inline]
     pub(crate) fn note(&mut self, entity: Entity) -> Option<Entity> {
-        // The components of one entity come one after the other.
+        // Observers of one entity's components run one after the other.
         if self.order.last() == Some(&Some((entity, ()))) {
             return None;
         }
         self.put(entity, ())
     }
 
-    /// Notes entities in turn.
+    /// Queues entities in turn.
     pub(crate) fn extend(&mut self, entities: impl IntoIterator<Item = Entity>) {
         entities.into_iter().for_each(|entity| _ = self.note(entity));
     }
@@ -133,7 +133,7 @@ mod tests {
     }
 
     proptest! {
-        /// Against a plain list that is searched.
+        /// Against a list with linear search.
         #[test]
         fn each_index_is_noted_once_in_order(
             notes in prop::collection::vec((0..200u32, 0..4u32, any::<u16>(), 0..400u32), 0..3000),

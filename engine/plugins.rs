@@ -1,4 +1,4 @@
-//! [`PhysicsPlugins`]: everything that makes up the engine, in the order it is added.
+//! [`PhysicsPlugins`]: all plugins of the engine, in the order they are added.
 
 use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::{intern::Interned, schedule::ScheduleLabel};
@@ -43,7 +43,7 @@ use crate::{
 /// | [`PhysicsTransformPlugin`] | `Transform` to `Position` and `Rotation`, and back |
 /// | [`PhysicsInterpolationPlugin`] | smooth transforms between steps, for those who ask |
 ///
-/// Those about `Collider` need feature `default-collider`.
+/// Those for `Collider` need feature `default-collider`.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -62,13 +62,14 @@ pub struct PhysicsPlugins {
 }
 
 impl PhysicsPlugins {
-    /// Physics hosted in `schedule`: one step per run, as long as its `Time` advanced. The default is [`FixedPostUpdate`].
+    /// Physics hosted in `schedule`: each run takes one step, by the delta of `Time`. The default is
+    /// [`FixedPostUpdate`].
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern(), length_unit: None }
     }
 
-    /// Sets [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit): roughly how many units of the app a metre is. What is no positive length counts as
-    /// 1, with a warning.
+    /// Sets [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit): roughly the length of a metre in units
+    /// of the app. An invalid length counts as 1, with a warning.
     pub fn with_length_unit(mut self, unit: Scalar) -> Self {
         self.length_unit = Some(unit);
         self

@@ -1,17 +1,17 @@
-//! Looking for changes over every entity that has a component: whole tables at a time, ticks only.
+//! Scans for changes over all entities with a component: by tables, reading change ticks only.
 
 use bevy_ecs::{change_detection::Tick, system::SystemChangeTick};
 
-/// Why a query can be walked by tables.
+/// Why a query can iterate over tables.
 pub(crate) const IN_TABLES: &str = "components of the engine are stored in tables";
 
-/// Older changes count as this old, so that ages compare although ticks wrap around.
+/// Maximum age of a tick. Older ticks get this age, so that ages compare although ticks wrap around.
 const MAX_AGE: u32 = Tick::MAX.get();
 
-/// What counts as new: what changed after a tick.
+/// The condition for changes: after a tick.
 ///
-/// That is what is younger than an age. Both are kept with the sign bit turned over: the order of unsigned
-/// numbers is then that of signed ones, which every processor compares side by side.
+/// A change is new if its age is below a limit. Both are stored with the sign bit flipped: unsigned order then equals
+/// signed order, for which every CPU has SIMD comparisons.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Since {
     now: u32,
@@ -22,7 +22,7 @@ pub(crate) struct Since {
 const SIGN: u32 = 1 << 31;
 
 impl Since {
-    /// Since `last`, seen from a system that runs now.
+    /// Changes since `last`, for a system that runs now.
     pub(crate) fn new(last: Tick, system: SystemChangeTick) -> Self {
         Self::between(last, system.this_run())
     }
@@ -32,7 +32,7 @@ impl Since {
         Self { now: now.get() ^ SIGN, age: (age ^ SIGN) as i32 }
     }
 
-    /// Since the system last ran.
+    /// Changes since the system last ran.
     pub(crate) fn last_run(system: SystemChangeTick) -> Self {
         Self::new(system.last_run(), system)
     }
@@ -45,8 +45,7 @@ impl Since {
 
     /// Calls `found` with each row at which any of the columns is new.
     ///
-    /// Nearly always nothing is: stretches of rows are first looked at as a whole, in a loop that the compiler
-    /// makes wide.
+    /// Most rows are not new, so stretches of rows are first tested as a whole, in a loop that the compiler vectorises.
     pub(crate) fn rows<const N: usize>(self, columns: [&[Tick]; N], mut found: impl FnMut(usize)) {
         let count = columns.iter().map(|column| column.len()).min().unwrap_or(0);
         for start in (0..count).step_by(STRETCH) {
@@ -65,7 +64,7 @@ impl Since {
     }
 }
 
-/// How many rows are looked at as a whole.
+/// Number of rows that are tested as a whole.
 const STRETCH: usize = 128;
 
 #[cfg(test)]

@@ -45,8 +45,8 @@ use crate::{
     threads::Threads,
 };
 
-/// Makes the stages from the list below. A stage is `Name .place(set) => { Owner: systems, … }`: the public set that it
-/// runs in, and its systems with the plugin that adds them.
+/// Makes the stages from the list below. An entry is `Name .place(set) => { Owner: systems, … }`: a stage, its public
+/// set, and its systems by the plugin that adds them.
 macro_rules! stages {
     ($(
         $(#[$doc:meta])*
@@ -63,14 +63,14 @@ macro_rules! stages {
             const ALL: &[(Self, &str)] = &[$((Self::$stage, stringify!($stage))),+];
         }
 
-        /// Puts a stage into its public set.
+        /// Places a stage in its public set.
         fn place(app: &mut App, stage: Stage) {
             match stage {
                 $(Stage::$stage => app.configure_sets(PhysicsSchedule, stage$(.$place($set))+),)+
             };
         }
 
-        /// Adds the systems of an owner to [`PhysicsSchedule`] or one that takes its place, each in its stage.
+        /// Adds the systems of an owner to [`PhysicsSchedule`] or one that replaces it, each in its stage.
         pub(crate) fn add_systems_of(owner: Owner, app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
             $($(
                 if owner == Owner::$owner {
@@ -82,7 +82,7 @@ macro_rules! stages {
     };
 }
 
-/// The plugin that adds a system of the step; without the plugin the system does not run.
+/// The plugin that adds a system. Without the plugin the system does not run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Owner {
     /// Any plugin of the step.
@@ -108,74 +108,74 @@ pub(crate) enum Owner {
 }
 
 stages! {
-    /// The clock of the substeps starts anew.
+    /// Resets the clock of the substeps.
     StartSubstepClock.before(PhysicsStepSystems::First) => { SolverSchedule: start_substep_clock }
-    /// Masses of what came since they were last computed, where steps are taken by hand.
+    /// Recomputes masses of changed bodies, for steps taken by hand.
     UpdateMassProperties.before(PhysicsStepSystems::First) => {
         MassProperties: (recompute, warn_of_missing_mass).chain_ignore_deferred(),
     }
-    /// Counters and timers start anew, and workers wake.
+    /// Resets counters and timers, and wakes the thread pool.
     ResetDiagnostics.in_set(PhysicsStepSystems::First) => {
         Step: wake_workers,
         Trees: reset_trees,
         NarrowPhase: reset_collision,
         Solver: reset_solver,
     }
-    /// Bodies and colliders enter and leave.
+    /// Adds, changes and removes bodies and colliders in the tables.
     DrainLifecycle.in_set(PhysicsStepSystems::First) => { Step: (note_changed_colliders, drain_lifecycle).chain() }
-    /// Surfaces follow their components.
+    /// Updates friction, restitution and margins from components.
     RefreshSurfaces.in_set(PhysicsStepSystems::First) => { NarrowPhase: refresh_surfaces }
-    /// Islands fall asleep and wake as the app asked.
+    /// Puts islands to sleep and wakes them, as requested by the app.
     FollowSleep.in_set(PhysicsStepSystems::First) => { Sleeping: follow_requests }
-    /// What the app moved or pushed wakes.
+    /// Wakes bodies that the app moved or pushed.
     FollowApp.in_set(PhysicsStepSystems::First) => { SolverBodies: (wake_changed, rest_kinematic).chain() }
-    /// Poses and velocities of awake bodies are read.
+    /// Reads poses and velocities of awake bodies.
     ReadAwake.in_set(PhysicsStepSystems::First) => { SolverBodies: read_awake }
-    /// Boxes of what entered or was moved by hand.
+    /// Updates boxes of colliders that were added, or moved by the app.
     UpdateBoxes.in_set(ColliderTreeSystems::UpdateAabbs) => { Trees: update_stale_boxes }
-    /// New pairs become contacts.
+    /// Finds new pairs, and adds contacts for them.
     FindPairs.in_set(BroadPhaseSystems::CollectCollisions) => { BroadPhase: find_new_pairs }
-    /// Manifolds of awake contacts.
+    /// Updates the manifolds of awake contacts.
     UpdateContacts.in_set(NarrowPhaseSystems::Update) => { NarrowPhase: update_contacts }
-    /// Colours, islands, waking.
+    /// Applies contacts that began or ended: colours, islands, waking.
     LinkContacts.in_set(NarrowPhaseSystems::Update) => { NarrowPhase: link_contacts }
-    /// The softness of contacts follows the length of the substeps.
+    /// Computes the softness of contacts from the length of the substeps.
     UpdateSoftness.after(PhysicsStepSystems::NarrowPhase).before(PhysicsStepSystems::Solver) => {
         Solver: update_contact_softness,
     }
-    /// Awake bodies become rows.
+    /// Fills the rows of awake bodies.
     Gather.in_set(SolverSystems::PrepareSolverBodies) => { SolverBodies: gather_bodies }
-    /// The parameters of the substeps. Bodies move by them also where no contacts are solved.
+    /// Computes the parameters of the substeps, also for bodies without contacts.
     PrepareParams.in_set(SolverSystems::PrepareJoints) => { SolverSchedule: prepare_params }
-    /// Touching manifolds become rows.
+    /// Builds the rows of touching contacts.
     PrepareRows.in_set(SolverSystems::PrepareContactConstraints) => { Solver: prepare_rows }
-    /// The substeps.
+    /// Runs the substeps.
     Substeps.in_set(SolverSystems::Substep) => { SolverSchedule: run_substeps }
-    /// What hit fast bounces.
+    /// Applies restitution.
     Restitution.in_set(SolverSystems::Restitution) => { Solver: apply_restitution }
-    /// The motion in the substeps is added to the poses. One system, so that none of the app's runs within.
+    /// Adds the displacement in the substeps to the poses. One system, so that no system of the app runs within.
     FinishBodies.in_set(SolverSystems::Finalize) => { SolverBodies: note_moved_within.pipe(finish_bodies) }
-    /// Poses and velocities become components. One system, so that none of the app's runs within.
+    /// Writes poses and velocities to components. One system, so that no system of the app runs within.
     Scatter.in_set(SolverSystems::Finalize) => {
         SolverBodies: note_moved_late.pipe(scatter_bodies).pipe(keep_moved_within),
     }
-    /// Impulses go back into the manifolds.
+    /// Stores impulses in the manifolds.
     StoreImpulses.in_set(SolverSystems::StoreContactImpulses) => { Solver: store_impulses }
-    /// Islands at rest fall asleep.
+    /// Puts islands at rest to sleep.
     Sleep.in_set(PhysicsStepSystems::Sleeping) => { Sleeping: sleep_islands }
-    /// Boxes of what moved.
+    /// Updates boxes of moved colliders, and the trees.
     Refit.in_set(PhysicsStepSystems::Finalize) => { Trees: refit_awake }
-    /// What was despawned during the step leaves.
+    /// Removes bodies and colliders that were despawned during the step.
     RemoveLost.in_set(PhysicsStepSystems::Finalize) => { Step: remove_lost_late }
-    /// [`Sleeping`](crate::dynamics::rigid_body::sleeping::Sleeping) follows.
+    /// Updates [`Sleeping`](crate::dynamics::rigid_body::sleeping::Sleeping) components.
     MirrorSleep.in_set(PhysicsStepSystems::Finalize) => { Sleeping: mirror_sleeping }
 }
 
-/// Adds systems of the engine to [`PhysicsSchedule`] or one that takes its place.
+/// Adds systems of the engine to [`PhysicsSchedule`] or one that replaces it.
 ///
-/// The stages fix their order, and systems of one stage are chained or share nothing. The order between them and the
-/// app's systems in the public sets is left open, and that is no error: such a system sees what was there before or
-/// after a stage of its set, and what it writes counts where it is read next.
+/// Stages fix the order of the engine's systems, and systems of one stage are chained or share no data. The order
+/// relative to the app's systems in the public sets is open, and that is no error: such a system reads data from before
+/// or after a stage of its set, and its writes take effect where they are read next.
 pub(crate) fn add_systems<M>(
     app: &mut App,
     schedule: impl ScheduleLabel,
@@ -189,8 +189,8 @@ pub(crate) fn add_systems<M>(
     app.add_systems(schedule, systems.ambiguous_with_all());
 }
 
-/// Puts the stages in order and makes the tables. Every plugin that adds to the step calls it; the first call
-/// counts.
+/// Orders the stages and adds the tables. Every plugin that adds systems to the step calls it; only the first call has
+/// an effect.
 pub(crate) fn install(app: &mut App) {
     if app.world().contains_resource::<Bodies>() {
         return;
@@ -203,7 +203,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<RowWidth>()
         .init_resource::<StepTimes>()
         .init_resource::<Threads>()
-        // Colliders have a surface whether or not the narrow phase is there to use it.
+        // Colliders have a surface with or without the narrow phase.
         .init_resource::<DefaultFriction>()
         .init_resource::<DefaultRestitution>()
         .init_resource::<NarrowPhaseConfig>();
@@ -225,18 +225,18 @@ pub(crate) fn install(app: &mut App) {
     crate::dynamics::validate::install(app);
 }
 
-/// The systems that note the time after each stage.
+/// The systems that record the time after each stage.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Timers;
 
-/// Adds what all instances of a generic plugin share: with the first of them.
+/// Adds a plugin that all instances of a generic plugin share, with the first of them.
 pub(crate) fn add_once<P: Plugin>(app: &mut App, shared: P) {
     if !app.is_plugin_added::<P>() {
         app.add_plugins(shared);
     }
 }
 
-/// Adds the substep systems of an owner to [`SubstepSchedule`] or one that takes its place, each in its public set.
+/// Adds the substep systems of an owner to [`SubstepSchedule`] or one that replaces it, each in its public set.
 ///
 /// [`SubstepSchedule`]: crate::dynamics::solver::schedule::SubstepSchedule
 pub(crate) fn add_substep_systems_of(owner: Owner, app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
@@ -252,7 +252,7 @@ pub(crate) fn add_substep_systems_of(owner: Owner, app: &mut App, schedule: Inte
     substep.add(Solver, Relax, relax_contacts);
 }
 
-/// Where the substep systems of one owner are added.
+/// The schedule to which the substep systems of one owner are added.
 struct Substep<'a> {
     owner: Owner,
     app: &'a mut App,
@@ -260,7 +260,7 @@ struct Substep<'a> {
 }
 
 impl Substep<'_> {
-    /// Adds a system in a public set, if its owner is the one whose systems are added.
+    /// Adds a system in a public set, if it belongs to the owner.
     fn add<M>(&mut self, owner: Owner, set: impl SystemSet, system: impl IntoSystem<(), (), M> + Copy) {
         if self.owner != owner {
             return;
@@ -276,7 +276,7 @@ impl Substep<'_> {
 }
 
 #[cfg(test)]
-/// Has ambiguities with the engine's systems checked in spite of [`add_systems`].
+/// Enables checks for ambiguities with the engine's systems, in spite of [`add_systems`].
 #[derive(Resource)]
 struct Strict;
 
@@ -312,7 +312,7 @@ mod tests {
                 }
                 ran.extend(stages);
             }
-            // What records the length of the step follows everything.
+            // The system that records the length of the step is last.
             let count = schedule.systems_len();
             assert!(others.len() == 1 && others[0].0 == count - 1, "in no stage: {others:?} of {count}");
             ran.dedup();

@@ -2,9 +2,10 @@
 
 use bevy_app::{App, Plugin};
 
-/// Registers the engine's components, resources and their parts for reflection, whether or not the app registers types automatically.
+/// Registers the engine's components, resources and nested types for reflection, whether or not the app registers types
+/// automatically.
 ///
-/// Without it scenes, inspectors and remote tools do not know them; the simulation does not need it.
+/// Scenes, inspectors and remote tools need it; the simulation does not.
 pub struct PhysicsTypeRegistrationPlugin;
 
 /// `app.register_type` for each of a list of types.
@@ -111,7 +112,7 @@ fn register_collision(app: &mut App) {
     );
 }
 
-/// The parts of shapes' descriptions; shapes themselves do not reflect yet.
+/// The settings of colliders. Shapes themselves are not reflected yet.
 #[cfg(feature = "default-collider")]
 fn register_collider_settings(app: &mut App) {
     use crate::collision::collider::{FillMode, TrimeshFlags, VhacdParameters};

@@ -1,4 +1,4 @@
-//! How long the trees took.
+//! Timers of the collider trees.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -8,9 +8,9 @@ use core::time::Duration;
 #[derive(Resource, Debug, Default, Reflect)]
 #[reflect(Resource, Debug, Default)]
 pub struct ColliderTreeDiagnostics {
-    /// Keeping the trees good to search.
+    /// Time for optimizing the trees.
     pub optimize: Duration,
-    /// Moving boxes in the trees, [`optimize`](Self::optimize) included.
+    /// Time for updating boxes in the trees, including [`optimize`](Self::optimize).
     pub update: Duration,
 }
 

@@ -11,7 +11,7 @@ pub use plugin::ColliderTreePlugin;
 
 use bevy_ecs::prelude::*;
 
-/// The stages in which the trees are kept up to date, in this order, in [`PhysicsSchedule`](crate::schedule::PhysicsSchedule).
+/// System sets that update the trees, in this order, in [`PhysicsSchedule`](crate::schedule::PhysicsSchedule).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ColliderTreeSystems {
     /// Boxes follow their colliders, before pairs are searched.

@@ -1,4 +1,4 @@
-//! How trees are kept good to search while their colliders move.
+//! Settings for optimizing the collider trees.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -13,11 +13,11 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Debug, Default, PartialEq)]
 pub struct ColliderTreeOptimization {
-    /// What is done; [`TreeOptimizationMode::Adaptive`] by default.
+    /// The mode. [`TreeOptimizationMode::Adaptive`] by default.
     pub optimization_mode: TreeOptimizationMode,
-    /// Whether trees are optimized where they are; true by default. When false a copy is to be, and swapped in when done: *not yet*.
+    /// Whether trees are optimized in place. True by default. False is to optimize a copy and swap it in: *not yet*.
     pub optimize_in_place: bool,
-    /// Whether optimization may run beside the rest of the step where there are threads for it; true by default. *Not yet*.
+    /// Whether optimization may run in parallel with the rest of the step. True by default. *Not yet*.
     pub use_async_tasks: bool,
 }
 
@@ -31,25 +31,26 @@ impl Default for ColliderTreeOptimization {
     }
 }
 
-/// What is done to a tree to keep it good to search, from the cheapest to the most thorough.
+/// How a tree is optimized, from the cheapest mode to the most thorough one.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Clone, Debug, Default, PartialEq)]
 pub enum TreeOptimizationMode {
-    /// Leaves that moved are taken out and inserted where they fit best.
+    /// Moved leaves are removed and inserted again at the best place.
     Reinsert,
-    /// Leaves that moved grow in place; when one in 16 has, the parts of the tree above them are rebuilt.
+    /// Moved leaves grow in place. When one in 16 has, the subtrees above them are rebuilt.
     PartialRebuild,
-    /// Leaves that moved grow in place; when one in 16 has, the tree is rebuilt.
+    /// Moved leaves grow in place. When one in 16 has, the tree is rebuilt.
     FullRebuild,
-    /// Leaves that moved grow in place; when one in 16 has, the boxes above them are fitted to what is below. Only when
-    /// all boxes together have grown by a quarter the tree is rebuilt, in part or in full by the share of leaves that
-    /// moved. Where that says to reinsert, this engine rebuilds in part too, which costs as much as what moved.
+    /// Moved leaves grow in place. When one in 16 has, the boxes above them are refitted. When the sum of all boxes has
+    /// grown by a quarter, the tree is rebuilt, in part or in full by the share of moved leaves. Where that share calls
+    /// for reinsertion, this engine rebuilds in part: it costs about the same.
     Adaptive {
-        /// Up to this share leaves are [reinserted](Self::Reinsert); 0.15 by default.
+        /// Up to this share of moved leaves they are [reinserted](Self::Reinsert). 0.15 by default.
         reinsert_threshold: f32,
-        /// Up to this share the tree is [rebuilt in part](Self::PartialRebuild), above it [in full](Self::FullRebuild); 0.45 by default.
+        /// Up to this share of moved leaves the tree is [rebuilt in part](Self::PartialRebuild), above it [in
+        /// full](Self::FullRebuild). 0.45 by default.
         partial_rebuild_threshold: f32,
     },
 }
@@ -61,7 +62,8 @@ impl Default for TreeOptimizationMode {
 }
 
 impl TreeOptimizationMode {
-    /// The mode for a tree of which `moved_ratio` (0 to 1) of the leaves moved: never [`Adaptive`](Self::Adaptive).
+    /// The mode for a tree in which the share `moved_ratio` (0 to 1) of leaves moved. Never
+    /// [`Adaptive`](Self::Adaptive).
     pub fn resolve(&self, moved_ratio: f32) -> TreeOptimizationMode {
         match *self {
             Self::Adaptive { reinsert_threshold, .. } if moved_ratio <= reinsert_threshold => Self::Reinsert,

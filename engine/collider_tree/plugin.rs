@@ -1,4 +1,4 @@
-//! The plugin that keeps the trees.
+//! The plugin of the collider trees.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
@@ -14,8 +14,7 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Keeps the trees up to date with colliders of type `C`, one instance per type. What does not depend on the
-/// type is shared by all of them.
+/// Updates the trees for colliders of type `C`. Add one instance per collider type. All instances share the trees.
 pub struct ColliderTreePlugin<C: AnyCollider>(PhantomData<fn() -> C>);
 
 impl<C: AnyCollider> Default for ColliderTreePlugin<C> {
@@ -30,7 +29,7 @@ impl<C: AnyCollider> Plugin for ColliderTreePlugin<C> {
     }
 }
 
-/// The trees and their stages.
+/// Adds the trees and their system sets, once for all collider types.
 struct SharedTreePlugin;
 
 impl Plugin for SharedTreePlugin {

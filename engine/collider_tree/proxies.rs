@@ -1,4 +1,4 @@
-//! Where each collider's box stands: the trees by what moves a collider, and its leaf in one of them.
+//! The collider trees, by what moves a collider, and the leaf of each collider.
 
 use super::optimization::TreeOptimizationMode;
 use bevy_platform::time::Instant;
@@ -10,23 +10,23 @@ use kernel::{
     thread_pool::ThreadPool,
 };
 
-/// The trees and each collider's leaf.
+/// The trees, and the leaf of each collider.
 #[derive(Clone, Default)]
 pub(crate) struct ProxyTable {
     pub(crate) trees: Trees,
     places: Vec<Option<Place>>,
-    /// How good each tree is.
+    /// State of each tree.
     states: [TreeState; 4],
 }
 
-/// What happened to a tree since it was last put in order.
+/// Changes of a tree since it was last optimized.
 #[derive(Clone, Copy, Default)]
 struct TreeState {
-    /// How many leaves grew in place since the boxes above them were last fitted.
+    /// Number of leaves that grew in place since the boxes above them were last fitted.
     grown: usize,
-    /// How many leaves moved since the tree's cost was last looked at.
+    /// Number of leaves that moved since the tree's cost was last computed.
     moved: usize,
-    /// The cost after the last rebuild.
+    /// Cost after the last rebuild.
     rebuilt: f32,
 }
 
@@ -36,23 +36,24 @@ struct Place {
     leaf: Option<ProxyId>,
 }
 
-/// New leaves from this many on are entered at once.
+/// Minimum number of new leaves that are inserted in one build. Fewer are inserted one by one.
 const BULK: usize = 256;
 
-/// A tree is put in order when one of so many leaves has grown.
+/// A tree is optimized when one in this many leaves has grown. A larger number refits more often, a smaller one leaves
+/// loose boxes that find more pairs.
 const GROWN: usize = 16;
 
-/// Of a tree of which one of so many leaves has grown, all boxes are fitted at once.
+/// The whole tree is refitted when one in this many leaves has grown; with fewer only the boxes above grown leaves.
 const MOST: usize = 3;
 
-/// A tree's cost is looked at when one of so many leaves has moved.
+/// The cost of a tree is computed when one in this many leaves has moved.
 const MOVED: usize = 4;
 
-/// A tree is rebuilt when its cost has grown by this factor.
+/// A tree is rebuilt when its cost has grown by this factor. Less rebuilds more often, more makes searches slower.
 const WORSE: f32 = 1.25;
 
 impl ProxyTable {
-    /// Says in which tree a collider belongs; its leaf leaves any other.
+    /// Assigns a collider to a tree, and removes its leaf from any other.
     pub(crate) fn place(&mut self, id: u32, kind: TreeKind) {
         if self.kind(id) == Some(kind) {
             return;
@@ -64,7 +65,7 @@ impl ProxyTable {
         self.places[id as usize] = Some(Place { kind, leaf: None });
     }
 
-    /// Takes a collider out.
+    /// Removes a collider.
     pub(crate) fn remove(&mut self, id: u32) {
         if let Some(Place { kind, leaf: Some(leaf) }) =
             self.places.get_mut(id as usize).and_then(Option::take)
@@ -73,7 +74,7 @@ impl ProxyTable {
         }
     }
 
-    /// The tree a collider belongs in.
+    /// The tree that a collider is assigned to.
     pub(crate) fn kind(&self, id: u32) -> Option<TreeKind> {
         self.places.get(id as usize).copied().flatten().map(|p| p.kind)
     }
@@ -83,11 +84,11 @@ impl ProxyTable {
         self.places.get(id as usize).copied().flatten().is_some_and(|p| p.leaf.is_none())
     }
 
-    /// Gives the leaves of the colliders in `moved` their fat boxes, and keeps the trees good to search. Of all others
-    /// the boxes in `fat` must be those they have.
+    /// Moves the leaves of the colliders in `moved` to their fat boxes, and optimizes the trees. The boxes in `fat` of
+    /// all other colliders must be unchanged.
     ///
-    /// Unless the app wants every leaf reinserted, leaves grow in place until one in [`GROWN`] has: fitting the
-    /// boxes above them, or rebuilding, then costs as much as what grew. Returns how long that took.
+    /// Unless the mode is to reinsert, leaves grow in place until one in [`GROWN`] has: the work of refitting or
+    /// rebuilding is then in proportion to what grew. Returns the time for optimizing.
     pub(crate) fn update(
         &mut self,
         moved: &BitSet,
@@ -136,7 +137,7 @@ impl ProxyTable {
         optimizing
     }
 
-    /// Optimizes a tree if it is time; `fitted` says whether its boxes have just been fitted.
+    /// Optimizes a tree if it is due. `fitted` says whether its boxes were just refitted.
     fn put_in_order(&mut self, kind: TreeKind, mode: TreeOptimizationMode, fitted: bool) {
         let (tree, state) = (&mut self.trees[kind], &mut self.states[kind as usize]);
         if state.grown * GROWN <= tree.len() {
@@ -175,8 +176,8 @@ impl ProxyTable {
         }
     }
 
-    /// What a collider that moved may have come to touch. Pairs in which neither side can be pushed are of
-    /// use to sensors only, and sorted out later.
+    /// The query for new pairs of a collider that moved. Pairs in which neither side can be pushed matter to sensors
+    /// only, and are filtered later.
     pub(crate) fn mover(&self, id: u32, aabb: Aabb) -> Option<Mover> {
         let kind = self.kind(id)?;
         let dynamic = PairMask::only(TreeKind::Dynamic);
@@ -189,7 +190,7 @@ impl ProxyTable {
         Some(Mover { id, kind, mask, aabb })
     }
 
-    /// The movers of a set of colliders.
+    /// The queries of a set of colliders.
     pub(crate) fn movers(&self, moved: &BitSet, fat: &[Aabb], out: &mut Movers) {
         out.clear();
         for id in moved.iter() {
@@ -207,7 +208,8 @@ mod tests {
 
     const KIND: TreeKind = TreeKind::Dynamic;
 
-    /// How much too far the tree reaches after the last `moved` of a row of a hundred boxes went into its middle.
+    /// How far the tree reaches beyond its leaves after the last `moved` of a row of a hundred boxes moved to its
+    /// middle.
     fn slack(moved: u32, mode: TreeOptimizationMode) -> f32 {
         let at = |x: u32| Aabb::new(Vector::X * x as f32, Vector::X * x as f32 + Vector::ONE);
         let mut fat: Vec<_> = (0..100).map(at).collect();

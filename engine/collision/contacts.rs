@@ -1,4 +1,4 @@
-//! The narrow phase's systems: manifolds of awake contacts, and what follows from those that changed.
+//! The narrow phase's systems: manifolds of awake contacts, then the effects of contacts that began or ended.
 
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
@@ -26,18 +26,18 @@ use crate::{
     threads::Threads,
 };
 
-/// The prediction distance of contacts at rest, times the length unit. Less makes stacks lose points; more computes contacts
-/// that never touch.
+/// Prediction distance of contacts at rest, times the length unit. With less, stacks lose contact points. With more,
+/// contacts that never touch are computed.
 const SPECULATIVE: f32 = (4.0 * LINEAR_SLOP) as f32;
-/// A manifold is recycled up to this motion of one surface against the other, times the length unit. More makes contacts lag
-/// behind rolling bodies; less makes stacks jitter and costs time.
+/// Maximum relative motion of two surfaces for which a manifold is recycled, times the length unit. With more, contacts
+/// lag behind rolling bodies. With less, stacks jitter and steps take longer.
 const RECYCLE: f32 = (10.0 * LINEAR_SLOP) as f32;
 
 /// Buffers of the narrow phase.
 #[derive(Resource, Default)]
 pub(crate) struct NarrowPhaseBuffers(Vec<WorkerBuffers<Workspace>>);
 
-/// Manifolds of pairs that the kernel does not know, by parry.
+/// Manifolds of shapes that the kernel does not have, by parry.
 struct Foreign<'a, 'w, 's, 'c> {
     colliders: &'a Query<'w, 's, &'c Collider>,
     entities: &'a [Entity],
@@ -63,7 +63,7 @@ impl ManifoldSource for Foreign<'_, '_, '_, '_> {
     }
 }
 
-/// What the app sets for the narrow phase.
+/// Settings of the narrow phase.
 #[derive(SystemParam)]
 pub(crate) struct Settings<'w> {
     config: Res<'w, NarrowPhaseConfig>,
@@ -73,7 +73,7 @@ pub(crate) struct Settings<'w> {
     width: Res<'w, RowWidth>,
 }
 
-/// Brings the manifolds of all awake contacts up to date.
+/// Updates the manifolds of all awake contacts.
 pub(crate) fn update_contacts(
     shapes: Query<&Collider>,
     Settings { config, unit, time, workers, width }: Settings,
@@ -105,7 +105,7 @@ pub(crate) fn update_contacts(
     diagnostics.narrow_phase += start.elapsed();
 }
 
-/// Lets contacts that began or ended take effect: colours, islands, waking.
+/// Applies the effects of contacts that began or ended: colours, islands, waking.
 pub(crate) fn link_contacts(mut tables: Tables) {
     let changed = core::mem::take(&mut tables.contacts.changed);
     tables.link().apply(&changed, |_, _, _| {});

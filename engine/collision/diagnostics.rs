@@ -1,4 +1,4 @@
-//! How long collision detection took, and how much it found.
+//! Timers and counters of collision detection.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -10,9 +10,9 @@ use core::time::Duration;
 pub struct CollisionDiagnostics {
     /// Finding pairs.
     pub broad_phase: Duration,
-    /// Computing contacts, and letting them take effect.
+    /// Computing contacts and applying their effects.
     pub narrow_phase: Duration,
-    /// Contacts between awake and sleeping bodies alike, touching or near.
+    /// Number of contacts, touching or near, of awake and sleeping bodies.
     pub contact_count: u32,
 }
 

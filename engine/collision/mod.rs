@@ -1,5 +1,5 @@
-//! What touches what: [colliders](collider), the [broad phase](broad_phase) that finds pairs which might touch, and the
-//! [narrow phase](narrow_phase) that computes their contacts.
+//! Collision detection: [colliders](collider), the [broad phase](broad_phase) that finds pairs of overlapping boxes,
+//! and the [narrow phase](narrow_phase) that computes contacts.
 
 pub mod broad_phase;
 pub mod collider;

@@ -1,4 +1,4 @@
-//! The broad phase's systems: boxes that outgrew their fat box, and the pairs they came into.
+//! The broad phase's systems: updating fat boxes, and finding new pairs.
 
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
@@ -26,10 +26,11 @@ use crate::{
     threads::Threads,
 };
 
-/// What is added to a box on every side when it is made fat, times the length unit, if its shape is not small.
+/// Growth of a fat box on every side, times the length unit. Small shapes get less. More finds more pairs that never
+/// touch, less updates the trees more often.
 const FAT_MARGIN: f32 = 0.05;
 
-/// What the size of fat boxes follows from.
+/// Settings of fat boxes.
 #[derive(SystemParam)]
 pub(crate) struct FatBoxes<'w> {
     unit: Res<'w, PhysicsLengthUnit>,
@@ -42,11 +43,11 @@ impl FatBoxes<'_> {
     }
 }
 
-/// The boxes that the app sees.
+/// The components with a collider's boxes.
 type Boxes = (&'static ColliderId, &'static mut ColliderAabb, &'static mut EnlargedAabb);
 
-/// Puts what entered or was changed by hand where it is, and in its tree. The boxes of bodies that the app gave a
-/// velocity are swept along it: they may pass through something in this very step.
+/// Moves colliders that were added or changed by the app, and their leaves. Boxes of bodies whose velocity the app set
+/// are swept along it, since they may hit something in this step.
 pub(crate) fn update_stale_boxes(
     (fat_boxes, threads): (FatBoxes, Res<Threads>),
     mut bodies: ResMut<Bodies>,
@@ -80,7 +81,7 @@ pub(crate) fn update_stale_boxes(
     diagnostics.update += start.elapsed();
 }
 
-/// Marks the colliders of bodies that were given a velocity by hand as stale.
+/// Marks colliders of bodies as stale whose velocity was set by hand.
 fn mark_pushed(bodies: &mut BodyTable, colliders: &mut Colliders) {
     for body in bodies.pushed.iter() {
         for id in colliders.table.of_body(body, bodies) {
@@ -90,7 +91,7 @@ fn mark_pushed(bodies: &mut BodyTable, colliders: &mut Colliders) {
     bodies.pushed.clear();
 }
 
-/// After the solver: boxes of bodies that moved, in the trees and in the components.
+/// After the solver: updates the boxes of moved bodies in trees and components.
 pub(crate) fn refit_awake(
     (fat_boxes, threads): (FatBoxes, Res<Threads>),
     bodies: Res<Bodies>,
@@ -134,14 +135,14 @@ pub(crate) fn refit_awake(
     diagnostics.update += start.elapsed();
 }
 
-/// The boxes as they are.
+/// The boxes to be written.
 struct Shown<'a> {
     bodies: &'a BodyTable,
     colliders: &'a ColliderTable,
 }
 
 impl Shown<'_> {
-    /// Shows the boxes of one collider, if its body took part in the step.
+    /// Writes the boxes of one collider, if its body took part in the step.
     #[inline(always)]
     fn put(&self, id: ColliderId, tight: impl Put<ColliderAabb>, fat: impl Put<EnlargedAabb>) {
         let id = id.0;
@@ -160,21 +161,21 @@ fn to_public(aabb: &kernel::shape::Aabb) -> ColliderAabb {
 /// Minimum number of movers for which waking threads pays.
 const MANY_MOVERS: usize = 256;
 
-/// Pairs found in a step, kept for their memory.
+/// Pairs found in a step. Kept for its buffers.
 #[derive(Resource, Default)]
 pub(crate) struct PairSearch {
     found: FoundPairs,
     movers: Movers,
 }
 
-/// The pairs that are no news: of one body, or with a contact already.
+/// Pairs to be skipped: of one body, or with a contact.
 struct Contacted<'a> {
     colliders: &'a ColliderTable,
     pairs: &'a PairSet,
 }
 
 impl Known for Contacted<'_> {
-    /// Colliders of one body may overlap by the thousand: they are not even listed.
+    /// Colliders of one body may overlap in thousands of pairs. They are not even listed.
     #[inline]
     fn is_plain(&self, a: u32, b: u32) -> bool {
         let body = self.colliders.body(a);
@@ -192,8 +193,7 @@ impl Known for Contacted<'_> {
     }
 }
 
-/// Finds the pairs that moved boxes came into, and makes contacts of those that may collide, in the order
-/// of ids.
+/// Finds pairs of moved boxes, and adds contacts for those that may collide, in the order of ids.
 pub(crate) fn find_new_pairs(
     mut search: ResMut<PairSearch>,
     threads: Res<Threads>,
@@ -229,8 +229,8 @@ pub(crate) fn find_new_pairs(
     diagnostics.broad_phase = start.elapsed();
 }
 
-/// Wakes those who slept when something static, or kinematic at rest, was put beside them. Not those who were
-/// put to sleep in this very step: a level may be spawned asleep.
+/// Wakes sleeping bodies beside which something static, or kinematic at rest, appeared. Bodies that were put to sleep
+/// in this step stay asleep: a level may be spawned asleep.
 fn wake_beset(sleepers: &[u32], tables: &mut Tables) {
     if sleepers.is_empty() {
         return;
@@ -241,8 +241,8 @@ fn wake_beset(sleepers: &[u32], tables: &mut Tables) {
     }
 }
 
-/// Whether two colliders of different bodies may form a contact: with layers that see each other, and one of
-/// them can be pushed or detects.
+/// Whether two colliders of different bodies may form a contact: their layers interact, and one of them can be pushed
+/// or is a sensor.
 fn may_collide(a: u32, b: u32, tables: &Tables) -> bool {
     use kernel::table::BodyKind;
     let [da, db] = [a, b].map(|c| &tables.colliders.table[c].def);

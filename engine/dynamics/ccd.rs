@@ -1,4 +1,4 @@
-//! Continuous collision: how far ahead of a moving collider its contacts are computed.
+//! Continuous collision detection: how far ahead contacts of a collider are predicted.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -7,11 +7,12 @@ use derive_more::From;
 
 use crate::math::Scalar;
 
-/// How far ahead contacts of a body or collider are computed, so that it is stopped at a surface before it has passed it, in metres.
+/// Maximum distance at which contacts of a body or collider are predicted, in metres, so that the body stops at a
+/// surface before passing it.
 ///
-/// A *speculative* contact exists while the shapes are still apart; the solver lets them close the gap within the step and no
-/// further. The margin never reaches farther than the two move in one step, so a large one costs little; but a body that is
-/// caught by a surface it would have slid past feels a *ghost collision*, which a smaller margin avoids.
+/// A *speculative* contact exists while the shapes are still separated. The solver lets them close the gap within the
+/// step and no further. The margin never exceeds the motion of both in one step, so a large one costs little. But a
+/// body may be stopped by a surface that it would have slid past: a *ghost collision*, which a smaller margin avoids.
 ///
 /// Read from the collider, else from its body, else
 /// [`NarrowPhaseConfig::default_speculative_margin`](crate::collision::narrow_phase::NarrowPhaseConfig::default_speculative_margin).
@@ -34,7 +35,7 @@ impl SpeculativeMargin {
     /// No contact before the shapes touch.
     pub const ZERO: Self = Self(0.0);
 
-    /// As far ahead as the shapes can come in a step.
+    /// The full motion of the shapes in a step.
     pub const MAX: Self = Self(Scalar::MAX);
 }
 

@@ -1,4 +1,4 @@
-//! Brings the tables in line with what bodies and colliders are now. See [`lifecycle`](super::lifecycle).
+//! Updates the tables from the components of bodies and colliders. See [`lifecycle`](super::lifecycle).
 
 use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
 use bevy_log::warn;
@@ -27,7 +27,7 @@ use crate::{
     physics_transform::{Position, Rotation, said_pose, unit_rotation, world_pose},
 };
 
-/// What a body's place in the tables follows from.
+/// Components that define a body's record.
 type BodyState = (
     &'static RigidBody,
     Has<RigidBodyDisabled>,
@@ -38,7 +38,7 @@ type BodyState = (
     Option<&'static Dominance>,
 );
 
-/// What a collider's place in the tables follows from.
+/// Components that define a collider's record.
 type ColliderState = (
     &'static Collider,
     Option<&'static ColliderOf>,
@@ -50,7 +50,7 @@ type ColliderState = (
     Has<Disabled>,
 );
 
-/// What the drain reads and writes of the world.
+/// Queries of the drain.
 #[derive(SystemParam)]
 pub(crate) struct Census<'w, 's> {
     bodies: Query<'w, 's, BodyState, (With<BodyId>, IsComplete, Allow<Disabled>)>,
@@ -61,13 +61,14 @@ pub(crate) struct Census<'w, 's> {
     commands: Commands<'w, 's>,
 }
 
-/// Drains the queue: lost ids leave, then noted bodies enter, leave or are retyped, then noted colliders. Ids follow
-/// the order in which entities were first noted, never that of entities.
+/// Drains the queue: lost ids are removed, then queued bodies are added, removed or retyped, then queued colliders. Ids
+/// follow the order in which entities were queued, not the order of entities.
 pub(crate) fn drain_lifecycle(mut queue: ResMut<LifecycleQueue>, mut tables: Tables, mut census: Census) {
-    // Whoever mirrors sleep has done so at the end of the last step.
+    // Systems that mirror sleep have run at the end of the last step.
     tables.bodies.table.flipped.clear();
     remove_lost(&mut queue, &mut tables, &mut census);
-    // Of what was despawned since the last step as well: a level that is replaced at once gets the same ids.
+    // Includes ids of entities that were despawned since the last step, so that a level that is replaced at once gets
+    // the same ids.
     tables.bodies.table.ids.recycle();
     tables.colliders.table.ids.recycle();
     tables.contacts.table.recycle_ids();
@@ -85,7 +86,7 @@ pub(crate) fn drain_lifecycle(mut queue: ResMut<LifecycleQueue>, mut tables: Tab
     queue.colliders = colliders;
 }
 
-/// Once more at the end of the step: what was despawned during it leaves before anybody is told of it.
+/// Removes entities that were despawned during the step, before observers and events of its end.
 pub(crate) fn remove_lost_late(mut queue: ResMut<LifecycleQueue>, mut tables: Tables, mut census: Census) {
     remove_lost(&mut queue, &mut tables, &mut census);
 }
@@ -103,7 +104,7 @@ fn remove_lost(queue: &mut LifecycleQueue, tables: &mut Tables, census: &mut Cen
     }
 }
 
-/// Where a collider is on its body.
+/// The pose of a collider on its body.
 fn local_pose(transform: &ColliderTransform) -> Pose {
     Pose::new(vector_to_kernel(transform.translation), unit_rotation(&transform.rotation))
 }
@@ -131,7 +132,7 @@ fn layers_of(layers: CollisionLayers) -> Layers {
     Layers { memberships: layers.memberships.0, filters: layers.filters.0 }
 }
 
-/// Writes `value` at `index` of a list that grows as ids do.
+/// Writes `value` at `index` of a list, which grows if needed.
 fn put<T: Clone>(list: &mut Vec<T>, index: u32, value: T, filler: T) {
     let index = index as usize;
     if list.len() <= index {
@@ -163,7 +164,7 @@ impl Census<'_, '_> {
                 let id = tables.bodies.table.add(kind, center, world_pose(position, rotation));
                 let dominance = dominance.map_or(0, |d| d.0);
                 tables.bodies.table[id].dominance = dominance;
-                // Once set it stays: a static body's dominance is not read again.
+                // The flag stays set: dominance of static bodies is not read again.
                 tables.bodies.table.any_dominance |= dominance != 0;
                 put(&mut tables.bodies.entities, id, entity, Entity::PLACEHOLDER);
                 if let Some(kept) = tables.bodies.kept.get_mut(id as usize) {
@@ -186,7 +187,7 @@ impl Census<'_, '_> {
         }
     }
 
-    /// The colliders of a body that entered are its own from now on.
+    /// Queues the colliders of a body that was added, which belong to it from now on.
     fn note_colliders(&self, body: Entity, queue: &mut LifecycleQueue) {
         queue.colliders.extend(self.colliders_of(body));
     }
@@ -201,7 +202,7 @@ impl Census<'_, '_> {
             if first == NONE {
                 break;
             }
-            // The collider may live on without the body; it is looked at again.
+            // The collider may outlive the body, so it is queued again.
             let entity = tables.colliders.entities[first as usize];
             remove_collider(first, tables);
             if let Ok(mut component) = self.collider_ids.get_mut(entity) {
@@ -259,13 +260,13 @@ impl Census<'_, '_> {
         };
         if !is_finite(&world) {
             queue.refused.insert(entity);
-            // Where its body is out as well, that was told.
+            // If the body is not finite either, it has been reported.
             if !was_refused && (body != NONE || body_entity.is_none()) {
                 warn!("the place of the collider {entity} is not finite; it takes no part until it is");
             }
             return self.dismiss_collider(entity, id, tables);
         }
-        // A contact knows its bodies: under another body the collider is a new one.
+        // A contact stores its bodies, so a collider with another body gets a new id.
         if id != NONE && tables.colliders.table[id].def.body != body {
             remove_collider(id, tables);
         }
@@ -276,7 +277,7 @@ impl Census<'_, '_> {
             let Tables { bodies, colliders, .. } = &mut *tables;
             let id = colliders.table.add(def, world, &mut bodies.table);
             put(&mut colliders.entities, id, entity, Entity::PLACEHOLDER);
-            // What it lies in is not looked at while its body sleeps.
+            // Contacts of a sleeping body are not computed, so the body wakes.
             tables.link().wake_body(body);
             id
         };
@@ -296,7 +297,8 @@ impl Census<'_, '_> {
     }
 }
 
-/// Changes a collider in place, if anything is other than before. Whatever it touched is woken; pairs that its new layers forbid end.
+/// Changes a collider in place, if its definition differs. Bodies that touch it wake, and pairs that its new layers
+/// forbid are removed.
 fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
     let body = def.body;
     let old = &tables.colliders.table[id].def;
@@ -304,7 +306,7 @@ fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
         return;
     }
     let filtered = old.layers != def.layers;
-    // A new sensor is of interest to what it was not solved against.
+    // A collider that becomes or ceases to be a sensor needs other pairs.
     let repaired = filtered || old.flags != def.flags;
     let mut link = tables.link();
     if body != NONE {

@@ -1,18 +1,18 @@
-//! The components that say which body or collider of the tables an entity is.
+//! Components with the id of a body or collider in the tables.
 //!
-//! Only the drain gives ids out, by writing to a component that is there. They mean nothing outside of the world
-//! and the tables they belong to, so they do not reflect, are not cloned, and one that is inserted, by whatever
-//! way, counts for nothing: the entity gets its own in the next step.
+//! Only the drain assigns ids, by writing to an existing component. Ids are valid only in their world, so the
+//! components have no reflection and are not cloned. An inserted id is ignored: the entity gets its own in the next
+//! step.
 
 use bevy_ecs::{lifecycle::HookContext, prelude::*, world::DeferredWorld};
 use kernel::table::NONE;
 
-/// A body's number in the tables; `u32::MAX` while it takes no part in the simulation.
+/// Id of a body in the tables; `u32::MAX` while it is not in the simulation.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 #[component(clone_behavior = Ignore, on_insert = forget_body)]
 pub struct BodyId(pub(crate) u32);
 
-/// A collider's number in the tables; `u32::MAX` while it takes no part in the simulation.
+/// Id of a collider in the tables; `u32::MAX` while it is not in the simulation.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 #[component(clone_behavior = Ignore, on_insert = forget_collider)]
 pub struct ColliderId(pub(crate) u32);

@@ -1,8 +1,8 @@
-//! The one door through which bodies and colliders enter and leave the simulation.
+//! The life cycle: the only way in which bodies and colliders enter and leave the simulation.
 //!
-//! Observers only note *which* entities may have changed, and which ids lost their component. Once per
-//! step the queue is drained: for each noted entity what it is now is compared with what the tables hold,
-//! and the difference applied. That makes the order of changes irrelevant, and changes that cancel out free.
+//! Observers only record *which* entities may have changed, and which ids lost their component. Once per step the queue
+//! is drained: the components of each queued entity are compared with the tables, and differences applied. So the order
+//! of changes does not matter, and changes that cancel each other cost nothing.
 //!
 //! ```text
 //!   body       absent ──enters──▶ awake ⇄ asleep ──leaves──▶ absent        (static: neither awake nor asleep)
@@ -34,20 +34,20 @@ use crate::{
     scan::{IN_TABLES, Since},
 };
 
-/// What may have changed since the last step.
+/// Entities that may have changed since the last step.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct LifecycleQueue {
-    /// Entities whose body may enter, leave, be retyped.
+    /// Entities whose body may enter, leave or be retyped.
     pub(crate) bodies: Noted,
-    /// Entities whose collider may enter, leave, be redefined.
+    /// Entities whose collider may enter, leave or be redefined.
     pub(crate) colliders: Noted,
-    /// Ids whose component went with its entity.
+    /// Body ids whose component was removed or whose entity was despawned.
     pub(crate) lost_bodies: Vec<u32>,
-    /// Ids whose component went with its entity.
+    /// Collider ids whose component was removed or whose entity was despawned.
     pub(crate) lost_colliders: Vec<u32>,
-    /// Colliders kept out because their place is not finite, of which the app was told.
+    /// Colliders that were refused because their pose is not finite, and reported.
     pub(crate) refused: EntityIndexSet,
-    /// Colliders that name a body which takes no part: no body takes them along, so their own pose counts.
+    /// Colliders of bodies that are not in the simulation. They use their own pose.
     pub(crate) detached: EntityIndexSet,
 }
 
@@ -64,7 +64,7 @@ impl LifecycleQueue {
     }
 }
 
-/// Without any of these a body cannot be simulated. They come with it, but may be taken away.
+/// Components that a body needs. They are required components, but may be removed.
 pub(crate) type BodyEssentials = (
     Position,
     Rotation,
@@ -75,7 +75,7 @@ pub(crate) type BodyEssentials = (
     ComputedCenterOfMass,
 );
 
-/// The filter for bodies that have them.
+/// The filter for bodies that have all of them.
 pub(crate) type IsComplete = (
     With<Position>,
     With<Rotation>,
@@ -86,7 +86,7 @@ pub(crate) type IsComplete = (
     With<ComputedCenterOfMass>,
 );
 
-/// Registers the observers, and notes what was spawned before them.
+/// Adds the observers, and queues entities that were spawned before.
 pub(crate) fn watch(app: &mut App) {
     if app.world().contains_resource::<LifecycleQueue>() {
         return;
@@ -133,7 +133,7 @@ fn note_collider<C: Component>(app: &mut App) {
         });
 }
 
-/// Notes colliders that were changed in place, and moved ones that no body takes along.
+/// Queues colliders that were mutated, and moved ones without a body in the simulation.
 pub(crate) fn note_changed_colliders(
     shapes: Query<(Entity, Ref<Collider>), With<ColliderId>>,
     places: Query<(Entity, Ref<ColliderTransform>), With<ColliderId>>,
@@ -144,7 +144,7 @@ pub(crate) fn note_changed_colliders(
 ) {
     let since = Since::last_run(system);
     let LifecycleQueue { colliders: noted, refused, detached, .. } = &mut *queue;
-    // What was refused is let in as soon as it has a place; by the order in which it was refused, not by tables.
+    // Refused colliders enter as soon as their pose is finite, in the order in which they were refused.
     let has_moved = |entity: &Entity| {
         poses.get(*entity).is_ok_and(|(position, rotation)| position.is_changed() || rotation.is_changed())
     };
@@ -162,7 +162,7 @@ pub(crate) fn note_changed_colliders(
     }
 }
 
-/// An id that is taken away or overwritten leaves; an entity that is still a body enters anew.
+/// Removes the id of a body whose component was removed or overwritten. An entity that is still a body enters again.
 fn lose_body(
     on: On<Discard, BodyId>,
     ids: Query<&BodyId, Allow<Disabled>>,
@@ -176,7 +176,8 @@ fn lose_body(
     }
 }
 
-/// An id that is taken away or overwritten leaves; an entity that is still a collider enters anew.
+/// Removes the id of a collider whose component was removed or overwritten. An entity that is still a collider enters
+/// again.
 fn lose_collider(
     on: On<Discard, ColliderId>,
     ids: Query<&ColliderId, Allow<Disabled>>,
@@ -212,7 +213,7 @@ mod tests {
         [entity.get::<BodyId>().map(|id| id.0), entity.get::<ColliderId>().map(|id| id.0)]
     }
 
-    /// As from a saved scene: ids of another world, or of another entity, are not this entity's.
+    /// Ids from a saved scene belong to another world and are ignored.
     #[test]
     fn ids_from_elsewhere_are_none() {
         let mut app = App::new();
@@ -228,7 +229,7 @@ mod tests {
         app.world_mut().run_schedule(crate::schedule::PhysicsSchedule);
         assert_eq!([ids(&app, first), ids(&app, second)], [[Some(0); 2], [Some(1); 2]]);
 
-        // Over one's own id: the old place is given up, and another taken.
+        // Inserted over an existing id: the old id is removed, and a new one assigned.
         app.world_mut().entity_mut(first).insert((BodyId(1), ColliderId(1)));
         app.world_mut().run_schedule(crate::schedule::PhysicsSchedule);
         app.world_mut().run_schedule(crate::schedule::PhysicsSchedule);
@@ -250,9 +251,9 @@ mod tests {
         ]
     }
 
-    /// A hundred bodies that live for one frame each, with a child collider, in 300 frames without a step. No
-    /// queue grows beyond a few entries for each entity that there was at one time, whether the schedule that
-    /// hosts physics runs or not, and nothing is left afterwards.
+    /// A hundred bodies that live for one frame each, with a child collider, for 300 frames without a step. Queues hold
+    /// only a few entries for each entity alive at one time, with or without the schedule that hosts physics, and end
+    /// up empty.
     #[test]
     fn issue_queues_grew_with_all_that_lived_while_physics_was_paused() {
         for hosted in [false, true] {
@@ -286,7 +287,7 @@ mod tests {
         }
     }
 
-    /// A redefined collider's manifolds are computed anew, which costs what keeping them saves.
+    /// Redefining a collider would recompute its manifolds instead of recycling them.
     #[test]
     fn issue_writing_what_a_collider_is_already_dropped_its_kept_contacts() {
         use crate::dynamics::tables::Contacts;

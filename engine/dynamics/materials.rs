@@ -1,4 +1,4 @@
-//! Which friction, restitution and margins a collider has: its own, else its body's, else the default.
+//! Friction, restitution and margins of a collider: its own, else its body's, else the default.
 
 use bevy_app::App;
 use bevy_ecs::{
@@ -28,7 +28,7 @@ use crate::{
     scan::{IN_TABLES, Since},
 };
 
-/// The surface of a collider and how far it reaches.
+/// Surface and margins of a collider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Surfaces {
     pub(crate) material: Material,
@@ -43,7 +43,7 @@ type SurfaceComponents = (
     Option<&'static SpeculativeMargin>,
 );
 
-/// Everything a collider's surface follows from.
+/// Queries for the surface of a collider.
 #[derive(SystemParam)]
 pub(crate) struct SurfaceQuery<'w, 's> {
     surfaces: Query<'w, 's, SurfaceComponents, Allow<Disabled>>,
@@ -78,10 +78,11 @@ impl SurfaceQuery<'_, '_> {
     }
 }
 
-/// Nothing slides at this friction. Larger ones, mixed or multiplied by an impulse of 0, could overflow to NaN.
+/// Maximum friction coefficient, which stops any sliding. Larger ones could overflow to NaN when combined, or
+/// multiplied by an impulse of 0.
 const MAX_FRICTION: f32 = 1.0e9;
 
-/// A coefficient, held to what it can physically be.
+/// A surface with its coefficient clamped to the valid range.
 fn surface(coefficient: Scalar, rule: CoefficientCombine, max: f32) -> Surface {
     let rule = match rule {
         CoefficientCombine::Average => Combine::Average,
@@ -95,13 +96,13 @@ fn surface(coefficient: Scalar, rule: CoefficientCombine, max: f32) -> Surface {
     Surface { coefficient, rule }
 }
 
-/// A margin: negative and NaN are none.
+/// A margin. Negative values and NaN become 0.
 fn length(value: Scalar) -> f32 {
     let value = to_f32(value);
     if value > 0.0 { value.min(f32::MAX) } else { 0.0 }
 }
 
-/// What a surface is made of.
+/// Components of a surface.
 type SurfaceParts = (
     Entity,
     Option<Ref<'static, Friction>>,
@@ -110,12 +111,11 @@ type SurfaceParts = (
     Option<Ref<'static, SpeculativeMargin>>,
 );
 
-/// Whoever has some of it.
+/// The filter for entities with one of them.
 type HasSurface = Or<(With<Friction>, With<Restitution>, With<CollisionMargin>, With<SpeculativeMargin>)>;
 
-/// Colliders in the tables, and bodies of such, that lost a part of their surface since the last step, in the
-/// order in which they did. Bevy's own record of removals lasts for two frames, which may be fewer than pass
-/// between two steps.
+/// Colliders in the tables, and their bodies, that lost a component of their surface since the last step, in the order
+/// of removal. Bevy's own record of removals lasts for two frames, and steps may be further apart.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct LostSurfaces(EntityIndexSet);
 
@@ -124,7 +124,7 @@ pub(crate) fn watch_surfaces(app: &mut App) {
     app.init_resource::<LostSurfaces>().add_observer(note_lost_surface);
 }
 
-/// Notes only what the tables know: what enters later is read then.
+/// Records only entities in the tables. Others are read when they enter.
 fn note_lost_surface(
     lost: On<Remove, (Friction, Restitution, CollisionMargin, SpeculativeMargin)>,
     ids: Query<&ColliderId, Allow<Disabled>>,
@@ -138,8 +138,7 @@ fn note_lost_surface(
     }
 }
 
-/// Brings the table in line with changed surfaces, on colliders and on bodies whose colliders have none of
-/// their own.
+/// Updates surfaces in the table, of changed colliders, and of colliders that inherit from changed bodies.
 pub(crate) fn refresh_surfaces(
     surfaces: Query<SurfaceParts, HasSurface>,
     mut lost: ResMut<LostSurfaces>,
@@ -158,7 +157,7 @@ pub(crate) fn refresh_surfaces(
             margin.as_ref().map(ContiguousRef::changed_ticks_slice),
             speculative.as_ref().map(ContiguousRef::changed_ticks_slice),
         ];
-        // A part that is not there stands for one that is.
+        // One component of the entity is enough to identify it.
         if let Some(any) = parts.into_iter().flatten().next() {
             since.rows(parts.map(|part| part.unwrap_or(any)), |row| entities.push(all[row]));
         }

@@ -1,5 +1,5 @@
-//! What moves and how: [rigid bodies](rigid_body), [gravity and integration](integrator), [continuous collision](ccd) and the
-//! [solver] of contacts.
+//! Dynamics: [rigid bodies](rigid_body), [gravity and integration](integrator), [continuous collision detection](ccd)
+//! and the contact [solver].
 
 pub mod ccd;
 pub(crate) mod drain;

@@ -1,5 +1,5 @@
-//! What becomes of a body whose pose or velocity is not a number: it is put back where it last was, stopped and
-//! disabled, with one warning, before anything else can catch it.
+//! Quarantine of bodies whose pose or velocity is not finite: the body is reset to its last pose, stopped and disabled,
+//! with one warning, before NaN spreads.
 
 use bevy_ecs::prelude::*;
 use bevy_log::warn;
@@ -10,12 +10,12 @@ use crate::{
     physics_transform::pose_from_kernel,
 };
 
-/// Whether a pose consists of numbers.
+/// Whether a pose is finite.
 pub(crate) fn is_finite(pose: &WorldPose) -> bool {
     pose.position.is_finite_world() && pose.rotation.is_finite()
 }
 
-/// Stops and disables a body. `last` is its last good pose; without one it keeps what it was given.
+/// Stops and disables a body. `last` is its last finite pose. Without it the body keeps its pose.
 pub(crate) fn quarantine(entity: Entity, last: Option<WorldPose>, commands: &mut Commands) {
     warn!("the position or velocity of {entity} is not finite; it is put back, stopped and disabled");
     let mut body = commands.entity(entity);

@@ -1,4 +1,4 @@
-//! Which islands fall asleep, and the [`Sleeping`] component as their mirror.
+//! Systems that put islands to sleep, and update [`Sleeping`] components.
 
 use bevy_app::App;
 use bevy_ecs::{entity_disabling::Disabled, error::Result, prelude::*, system::Command};
@@ -21,12 +21,12 @@ use crate::{
     schedule::Physics,
 };
 
-/// For how many steps a body must have rested in any case. Whatever turns in its flight, or has just been let
-/// go, is slow for a moment: with thresholds of 0.15 m/s for two steps of 1/60 s.
+/// Minimum number of steps at rest before a body sleeps. A body at the top of its flight, or one that was just
+/// released, is slow for a moment: with a threshold of 0.15 m/s for two steps of 1/60 s.
 const STEPS_OF_REST: f32 = 4.0;
 
-/// Bodies whose [`Sleeping`] component was added or removed since the last step, by the app or as a mirror,
-/// and those that were forbidden to sleep.
+/// Bodies whose [`Sleeping`] component was added or removed since the last step, by the app or the engine, and bodies
+/// that got [`SleepingDisabled`].
 #[derive(Resource, Default)]
 pub(crate) struct SleepRequests {
     sleep: Noted,
@@ -35,7 +35,7 @@ pub(crate) struct SleepRequests {
 
 #[cfg(test)]
 impl SleepRequests {
-    /// How many bodies are noted.
+    /// The number of recorded bodies.
     pub(crate) fn len(&self) -> usize {
         self.sleep.len() + self.wake.len()
     }
@@ -43,14 +43,13 @@ impl SleepRequests {
 
 #[cfg(feature = "validate")]
 impl SleepRequests {
-    /// Whether something is still to be done about a body.
+    /// Whether a request for a body is pending.
     pub(crate) fn concern(&self, entity: Entity) -> bool {
         self.sleep.contains(entity) || self.wake.contains(entity)
     }
 }
 
-/// Puts a body to sleep, and with it the island it is in, at the start of the next step. An error if the entity
-/// is no body.
+/// Puts a body and its island to sleep at the start of the next step. An error if the entity is not a body.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -70,8 +69,8 @@ impl Command for SleepBody {
     }
 }
 
-/// Wakes a body, and with it the island it is in, at the start of the next step; one that is awake is so for
-/// another [`TimeToSleep`]. An error if the entity is no body.
+/// Wakes a body and its island at the start of the next step. If it is awake, it stays awake for another
+/// [`TimeToSleep`]. An error if the entity is not a body.
 pub struct WakeBody(pub Entity);
 
 impl Command for WakeBody {
@@ -79,7 +78,7 @@ impl Command for WakeBody {
 
     fn apply(self, world: &mut World) -> Result {
         body_mut(world, self.0)?.remove::<Sleeping>();
-        // Nobody sleeps without the plugin that makes it.
+        // Without the sleeping plugin no body sleeps.
         if let Some(mut requests) = world.get_resource_mut::<SleepRequests>() {
             requests.wake.note(self.0);
         }
@@ -99,7 +98,7 @@ fn body_mut(world: &mut World, entity: Entity) -> Result<EntityWorldMut<'_>> {
 #[derive(Resource, Default)]
 pub(crate) struct SleepBuffers(SleepScan);
 
-/// Registers the observers of [`Sleeping`].
+/// Adds the observers of [`Sleeping`].
 pub(crate) fn watch_sleeping(app: &mut App) {
     app.init_resource::<SleepRequests>()
         .init_resource::<SleepBuffers>()
@@ -112,8 +111,8 @@ pub(crate) fn watch_sleeping(app: &mut App) {
         });
 }
 
-/// Notes bodies that the app puts to sleep. Not those that sleep already: the component only follows, and
-/// what wakes them until the next step must not be undone.
+/// Records bodies that the app puts to sleep. Bodies that sleep already are skipped: the engine inserted the component,
+/// and they may wake before the next step.
 fn ask_to_sleep(
     on: On<Add, Sleeping>,
     ids: Query<&BodyId, Allow<Disabled>>,
@@ -129,8 +128,7 @@ fn ask_to_sleep(
     }
 }
 
-/// Does what the app asked for by adding or removing [`Sleeping`]: with a body sleeps or wakes its island. Who
-/// must not sleep wakes.
+/// Applies the requests of the app: puts the islands of bodies to sleep or wakes them. Bodies that must not sleep wake.
 pub(crate) fn follow_requests(
     mut requests: ResMut<SleepRequests>,
     ids: Query<(&BodyId, Has<Sleeping>, Has<SleepingDisabled>)>,
@@ -138,7 +136,7 @@ pub(crate) fn follow_requests(
 ) {
     let SleepRequests { sleep, wake } = &mut *requests;
     for (entity, ()) in sleep.drain() {
-        // Added and removed again: the state now is what counts.
+        // The component may have been added and removed again. Its state now counts.
         if let Ok((id, true, _)) = ids.get(entity)
             && id.0 != NONE
             && let Some(island) = tables.link().island_of(id.0)
@@ -165,7 +163,7 @@ pub(crate) fn follow_requests(
     }
 }
 
-/// Splits islands that lost contacts, a few in each step, and puts to sleep those whose bodies have all rested.
+/// Splits some of the islands that lost contacts, and puts islands to sleep whose bodies have all rested.
 pub(crate) fn sleep_islands(
     mut scan: ResMut<SleepBuffers>,
     time_to_sleep: Res<TimeToSleep>,
@@ -176,7 +174,7 @@ pub(crate) fn sleep_islands(
     let Some(islands) = islands else { return };
     let rested = |body: u32| Some(bodies.table[body].sleep_timer).filter(|t| *t > 0.0);
     let least = STEPS_OF_REST * time.delta_secs();
-    // A NaN stays one: nobody sleeps.
+    // NaN stays NaN, and then no body sleeps.
     let time_to_sleep = if time_to_sleep.0 < least { least } else { time_to_sleep.0 };
     scan.0.scan(&mut islands.0, time_to_sleep, rested);
     for island in scan.0.splits() {
@@ -189,8 +187,8 @@ pub(crate) fn sleep_islands(
     }
 }
 
-/// Adds and removes [`Sleeping`] where a body fell asleep or woke. Observers of one body's `Sleeping` may despawn
-/// the next before it gets its own.
+/// Adds and removes [`Sleeping`] where a body fell asleep or woke. Observers of one body's `Sleeping` may despawn the
+/// next body before its turn.
 pub(crate) fn mirror_sleeping(mut tables: Tables, sleeping: Query<Has<Sleeping>>, mut commands: Commands) {
     let bodies = &mut *tables.bodies;
     for id in core::mem::take(&mut bodies.table.flipped) {

@@ -1,5 +1,5 @@
-//! What persists between steps and has no component: the kernel's tables, as resources that can be cloned
-//! for a snapshot.
+//! State that persists between steps and is no component: the kernel's tables, as resources. Clones of them are a
+//! snapshot.
 
 use bevy_ecs::{change_detection::Tick, prelude::*, system::SystemParam};
 use kernel::{
@@ -22,29 +22,29 @@ pub(crate) struct Bodies {
     pub(crate) table: BodyTable,
     /// The entity of each id.
     pub(crate) entities: Vec<Entity>,
-    /// The pose that the components of each id last said, read or written: what differs, the app changed. The
-    /// table's own, from the centre of mass, would differ in the last bit.
+    /// The last pose of each id's components, as read or written by the engine. A different pose is a change by the
+    /// app. (The table's pose, of the centre of mass, would differ in the last bit.)
     pub(crate) seen: Vec<WorldPose>,
-    /// The velocity of each body that fell asleep in motion, by id as far as one did. Components keep it, and the
-    /// body wakes with it: a stack goes on as if it had not slept. To the kernel a sleeping body stands still, or
-    /// its velocity would widen boxes and bring contacts that wake it.
+    /// Velocities of bodies that fell asleep in motion, by id, as long as needed. Components keep them, and a body
+    /// wakes with its velocity, so that a stack continues as if it had not slept. In the kernel a sleeping body has no
+    /// velocity, since that would sweep its box and find contacts that wake it.
     pub(crate) kept: Vec<Velocity>,
-    /// When the engine last wrote poses and velocities: what bears this tick the app did not change.
+    /// Tick of the engine's last write of poses and velocities. Components with this tick were not changed by the app.
     pub(crate) written: Tick,
-    /// When poses were last read in this step: what is newer the app changed within it.
+    /// Tick of the last read of poses in this step. Newer changes were made by the app within the step.
     pub(crate) read: Tick,
-    /// The bodies that are moving and that the app put elsewhere within this step, and where.
+    /// Awake bodies that the app moved within this step, with their poses.
     pub(crate) moved_within: Vec<(u32, Position, Rotation)>,
-    /// The bodies with a solver row in this step, in the order of their rows from row 1.
+    /// Bodies with a solver row in this step, in the order of rows, from row 1.
     pub(crate) listed: Vec<u32>,
-    /// The entities of a few bodies that are looked up one by one, kept for its memory.
+    /// Entities that are looked up one by one. Kept for its buffer.
     pub(crate) some: Vec<Entity>,
-    /// The ids of a few bodies, kept for its memory.
+    /// Body ids. Kept for its buffer.
     pub(crate) ids: Vec<u32>,
 }
 
 impl Bodies {
-    /// Stops a body that fell asleep, and keeps its velocity.
+    /// Stops a body that fell asleep, and stores its velocity.
     pub(crate) fn still(&mut self, id: u32) {
         let velocity = self.table.velocities[id as usize];
         if velocity == Velocity::default() {
@@ -57,39 +57,39 @@ impl Bodies {
         self.table.set_velocity(id, Velocity::default());
     }
 
-    /// Whether the app, not the engine, changed what bears a tick.
+    /// Whether a change tick is from the app, not from the engine.
     pub(crate) fn is_set_by_app(&self, changed: Tick, since: Since) -> bool {
         since.is_new(changed) && changed != self.written
     }
 }
 
-/// All colliders in the simulation, and the trees they are in.
+/// All colliders in the simulation, and their trees.
 #[derive(Resource, Clone, Default)]
 pub(crate) struct Colliders {
     pub(crate) table: ColliderTable,
     /// The entity of each id.
     pub(crate) entities: Vec<Entity>,
     pub(crate) trees: ProxyTable,
-    /// Colliders whose fat box changed since pairs were last looked for.
+    /// Colliders whose fat box changed since the last search for pairs.
     pub(crate) moved: BitSet,
-    /// Colliders to be put where their bodies are before the next pairs.
+    /// Colliders whose pose must be updated before the next search for pairs.
     pub(crate) stale: BitSet,
 }
 
-/// All contacts, and the colours they are solved in.
+/// All contacts, and their colours.
 #[derive(Resource, Clone, Default)]
 pub(crate) struct Contacts {
     pub(crate) table: ContactTable,
     pub(crate) colors: ColorGraph,
-    /// Contacts that began or ended to touch in this step's narrow phase.
+    /// Contacts that began or ceased to touch in this step's narrow phase.
     pub(crate) changed: BitSet,
 }
 
-/// Which bodies touch each other and sleep together. Absent without the island plugin: then nobody sleeps.
+/// The islands. Absent without the island plugin: then no body sleeps.
 #[derive(Resource, Clone, Default)]
 pub(crate) struct PhysicsIslands(pub(crate) Islands);
 
-/// All tables that a change of contacts touches.
+/// All tables that a change of contacts may affect.
 #[derive(SystemParam)]
 pub(crate) struct Tables<'w> {
     pub(crate) bodies: ResMut<'w, Bodies>,
@@ -99,7 +99,7 @@ pub(crate) struct Tables<'w> {
 }
 
 impl Tables<'_> {
-    /// The kernel's door for changes of contacts.
+    /// The kernel's interface for changes of contacts.
     pub(crate) fn link(&mut self) -> Link<'_> {
         let Contacts { table, colors, .. } = &mut *self.contacts;
         Link {
@@ -112,8 +112,8 @@ impl Tables<'_> {
     }
 }
 
-/// Whether so few of the entities that some queries hold are wanted that looking them up is cheaper than walking
-/// through all of them. `all` are the size hints of the queries.
+/// Whether so few of the entities of some queries are needed that looking them up is cheaper than iterating. `all` are
+/// the size hints of the queries.
 pub(crate) fn is_minority<const N: usize>(wanted: usize, all: [(usize, Option<usize>); N]) -> bool {
     4 * wanted < all.iter().map(|hint| hint.1.unwrap_or(0)).sum()
 }

@@ -1,5 +1,4 @@
-//! Checks at the end of every step that the tables say what the components say. Only with the feature
-//! `validate`: it looks at everything.
+//! Checks at the end of every step that tables and components agree, with the feature `validate`. They scan everything.
 
 use bevy_app::App;
 use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
@@ -42,7 +41,7 @@ type ColliderWorld<'a> = (
     Option<(&'a Position, &'a Rotation)>,
 );
 
-/// What the checks read.
+/// Queries of the checks.
 #[derive(SystemParam)]
 struct Audit<'w, 's> {
     bodies: Query<'w, 's, BodyWorld<'static>, Allow<Disabled>>,
@@ -66,8 +65,8 @@ fn validate(mut audit: Audit) {
 }
 
 impl Audit<'_, '_> {
-    /// Every id is where its entity says, every body that should be in the simulation is, as what it is.
-    /// What changed since the queue was drained is left out: it is seen to in the next step.
+    /// Every id belongs to its entity, and every body that should be in the simulation is there with its type. Entities
+    /// that changed since the queue was drained are skipped: the next step handles them.
     fn check_bodies(&self) {
         let bodies = &*self.tables.bodies;
         let mut found = 0;

@@ -7,12 +7,12 @@ use crate::{
     math::AsF32,
 };
 
-/// In the plane of X and Y.
+/// The velocity in the XY plane.
 pub(super) fn linear_vec3(velocity: LinearVelocity) -> Vec3 {
     velocity.0.f32().extend(0.0)
 }
 
-/// About Z.
+/// The angular velocity about Z.
 pub(super) fn angular_vec3(velocity: AngularVelocity) -> Vec3 {
     Vec3::Z * crate::math::to_f32(velocity.0)
 }

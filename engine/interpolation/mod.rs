@@ -1,4 +1,4 @@
-//! Smooth motion between steps: transforms are eased from one step to the next, or ahead of the last, by `bevy_transform_interpolation`.
+//! Smooth motion between steps, by `bevy_transform_interpolation`.
 
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -33,12 +33,14 @@ use bevy_transform_interpolation::{
 
 use crate::dynamics::rigid_body::{AngularVelocity, LinearVelocity, RigidBody};
 
-/// Eases the transforms of rigid bodies between steps, where physics runs in a fixed schedule and frames are drawn more often.
+/// Eases the transforms of rigid bodies between steps, if physics runs in a fixed schedule and frames are drawn more
+/// often.
 ///
-/// *Interpolation* draws bodies on their way from the step before to the last: smooth and correct, one step late. *Extrapolation* draws them
-/// on their way beyond the last, by their velocity: no delay, but they jump where they hit something. Both are off unless an entity has
-/// [`TransformInterpolation`] or [`TransformExtrapolation`], or a constructor of this plugin switches them on for all bodies;
-/// [`NoTransformEasing`] and its kin then except an entity. [`TransformHermiteEasing`] follows the velocity as well as the positions.
+/// *Interpolation* draws bodies between the poses of the last two steps: smooth and correct, but one step late.
+/// *Extrapolation* draws them ahead of the last step, by their velocity: without delay, but they jump at collisions.
+/// Both are off unless an entity has [`TransformInterpolation`] or [`TransformExtrapolation`], or a constructor of this
+/// plugin enables them for all bodies. [`NoTransformEasing`] and its siblings exclude an entity.
+/// [`TransformHermiteEasing`] uses velocities as well as positions.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -58,7 +60,7 @@ pub struct PhysicsInterpolationPlugin {
 }
 
 impl PhysicsInterpolationPlugin {
-    /// Nothing eased but what asks for it; `Default`, as a constant to build on.
+    /// Easing only for entities with a component for it. The default, as a constant.
     const NONE: Self = Self {
         interpolate_translation: false,
         interpolate_rotation: false,
@@ -99,7 +101,7 @@ impl PhysicsInterpolationPlugin {
 
 impl Plugin for PhysicsInterpolationPlugin {
     fn build(&self, app: &mut App) {
-        // Easing reads how far the frame is past the last fixed tick; apps without `TimePlugin` have no such clock.
+        // Easing reads the time since the last fixed tick. Apps without `TimePlugin` have no such clock.
         app.init_resource::<Time<Fixed>>();
         skip_while_nothing_eases(app, |app| {
             app.add_plugins((
@@ -110,7 +112,7 @@ impl Plugin for PhysicsInterpolationPlugin {
             .add_systems(FixedFirst, store_previous_velocities.in_set(TransformEasingSystems::UpdateStart));
         });
 
-        // Registering a requirement twice is the one error, and then there is nothing left to do.
+        // Registration fails only if the requirement exists already.
         if self.interpolate_translation {
             let _ = app.try_register_required_components::<RigidBody, TranslationInterpolation>();
         }
@@ -128,7 +130,7 @@ impl Plugin for PhysicsInterpolationPlugin {
     }
 
     fn finish(&self, app: &mut App) {
-        // The plugins above would add it next, without the condition.
+        // The plugins above would add it next, without the run condition.
         if !app.is_plugin_added::<TransformEasingPlugin>() {
             skip_while_nothing_eases(app, |app| {
                 app.add_plugins(TransformEasingPlugin);
@@ -137,8 +139,8 @@ impl Plugin for PhysicsInterpolationPlugin {
     }
 }
 
-/// Adds systems that are left out of a frame as long as no entity is eased: handing two dozen of them from thread to
-/// thread would be most of what physics costs an empty world.
+/// Adds systems that are skipped while no entity is eased. Scheduling two dozen systems would be most of the cost of an
+/// empty world.
 fn skip_while_nothing_eases(app: &mut App, add_systems: impl FnOnce(&mut App)) {
     let eased = [FixedFirst.intern(), FixedLast.intern(), RunFixedMainLoop.intern()];
     let keys = |app: &App| {
@@ -166,11 +168,11 @@ fn anything_eases(
     !eased.is_empty()
 }
 
-/// The linear velocity at the start of the fixed tick, where Hermite easing starts from.
+/// Linear velocity at the start of the fixed tick, for Hermite easing.
 #[derive(Component, Default)]
 struct PreviousLinearVelocity(LinearVelocity);
 
-/// The angular velocity at the start of the fixed tick, where Hermite easing starts from.
+/// Angular velocity at the start of the fixed tick, for Hermite easing.
 #[derive(Component, Default)]
 struct PreviousAngularVelocity(AngularVelocity);
 
@@ -186,7 +188,7 @@ fn store_previous_velocities(
     }
 }
 
-/// Where easing finds linear velocities, in the three dimensions of `Transform`.
+/// Linear velocities for easing, in the three dimensions of `Transform`.
 #[derive(QueryData)]
 struct LinVelSource;
 
@@ -203,7 +205,7 @@ impl VelocitySource for LinVelSource {
     }
 }
 
-/// Where easing finds angular velocities, in the three dimensions of `Transform`.
+/// Angular velocities for easing, in the three dimensions of `Transform`.
 #[derive(QueryData)]
 struct AngVelSource;
 

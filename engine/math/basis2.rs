@@ -1,21 +1,18 @@
-//! Orientations of the plane from the axes they turn to. `basis3.rs` is the twin.
+//! 2D rotations from basis vectors. `basis3.rs` has those of 3D.
 
 use super::{DIM, Vector};
 use crate::physics_transform::Rotation;
 
-/// An orientation as joints and rays take it.
-pub(crate) type Rot = Rotation;
-
-/// The rotation that takes the x axis to `axis`, which need not have unit length; none for a zero vector.
-pub fn orthonormal_basis_from_vec(axis: Vector) -> Rot {
+/// The rotation that maps the x axis to `axis`, which may have any length. The identity for a zero vector.
+pub fn orthonormal_basis_from_vec(axis: Vector) -> Rotation {
     match axis.try_normalize() {
         Some(axis) => Rotation { cos: axis.x, sin: axis.y },
         None => Rotation::IDENTITY,
     }
 }
 
-/// The rotation that takes the coordinate axes to `axes`, which must be orthonormal and right-handed.
-pub fn orthonormal_basis(axes: [Vector; DIM]) -> Rot {
+/// The rotation that maps the coordinate axes to `axes`, which must be orthonormal and right-handed.
+pub fn orthonormal_basis(axes: [Vector; DIM]) -> Rotation {
     orthonormal_basis_from_vec(axes[0])
 }
 

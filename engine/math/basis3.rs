@@ -1,13 +1,10 @@
-//! Orientations of space from the axes they turn to. `basis2.rs` is the twin.
+//! 3D rotations from basis vectors. `basis2.rs` has those of 2D.
 
 use super::{DIM, Matrix3, Quaternion, Vector};
 
-/// An orientation as joints and rays take it.
-pub(crate) type Rot = Quaternion;
-
-/// A rotation that takes the x axis to `axis`, which need not have unit length; none for a zero vector. How it
-/// turns about that axis is unspecified, but a function of `axis` alone.
-pub fn orthonormal_basis_from_vec(axis: Vector) -> Rot {
+/// A rotation that maps the x axis to `axis`, which may have any length. The identity for a zero vector. The rotation
+/// about `axis` is unspecified, but depends on `axis` only.
+pub fn orthonormal_basis_from_vec(axis: Vector) -> Quaternion {
     match axis.try_normalize() {
         Some(x) => {
             let (y, _) = x.any_orthonormal_pair();
@@ -17,8 +14,8 @@ pub fn orthonormal_basis_from_vec(axis: Vector) -> Rot {
     }
 }
 
-/// The rotation that takes the coordinate axes to `axes`, which must be orthonormal and right-handed.
-pub fn orthonormal_basis(axes: [Vector; DIM]) -> Rot {
+/// The rotation that maps the coordinate axes to `axes`, which must be orthonormal and right-handed.
+pub fn orthonormal_basis(axes: [Vector; DIM]) -> Quaternion {
     Quaternion::from_mat3(&Matrix3::from_cols(axes[0], axes[1], axes[2]))
 }
 

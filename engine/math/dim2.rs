@@ -1,4 +1,4 @@
-//! The plane: what the aliases mean in 2D, and the way to and from the kernel's types. `dim3.rs` is the twin.
+//! Type aliases of 2D, and conversions to and from the kernel's types. `dim3.rs` exports the same names.
 
 use bevy_math::{Dir2, Vec2};
 use kernel::math as k;
@@ -38,13 +38,13 @@ pub(crate) fn world_from_kernel(v: k::WorldVector) -> Vector {
     Vector { x: v.x, y: v.y }
 }
 
-/// A velocity, offset or other vector that is no position, narrowed for the kernel.
+/// A velocity or other vector that is not a position, narrowed for the kernel.
 #[inline]
 pub(crate) fn vector_to_kernel(v: Vector) -> k::Vector {
     world_to_kernel(v).to_local()
 }
 
-/// A velocity, offset or other vector that is no position, widened to the public precision.
+/// A velocity or other vector that is not a position, widened to the public precision.
 #[inline]
 pub(crate) fn vector_from_kernel(v: k::Vector) -> Vector {
     world_from_kernel(v.to_world())

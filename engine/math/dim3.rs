@@ -1,4 +1,4 @@
-//! Space: what the aliases mean in 3D, and the way to and from the kernel's types. `dim2.rs` is the twin.
+//! Type aliases of 3D, and conversions to and from the kernel's types. `dim2.rs` exports the same names.
 
 use bevy_math::{Dir3, Vec3};
 use kernel::math as k;
@@ -48,13 +48,13 @@ pub(crate) fn world_from_kernel(v: k::WorldVector) -> Vector {
     Vector { x: v.x, y: v.y, z: v.z }
 }
 
-/// A velocity, offset or other vector that is no position, narrowed for the kernel.
+/// A velocity or other vector that is not a position, narrowed for the kernel.
 #[inline]
 pub(crate) fn vector_to_kernel(v: Vector) -> k::Vector {
     world_to_kernel(v).to_local()
 }
 
-/// A velocity, offset or other vector that is no position, widened to the public precision.
+/// A velocity or other vector that is not a position, widened to the public precision.
 #[inline]
 pub(crate) fn vector_from_kernel(v: k::Vector) -> Vector {
     world_from_kernel(v.to_world())
@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(vector_from_kernel(vector_to_kernel(v)), v);
         assert_eq!(angular_from_kernel(angular_to_kernel(v)), v);
         let m = SymmetricTensor::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
-        // The kernel applies it as the matrix does.
+        // The kernel's product is that of the matrix.
         let applied = inv_inertia_to_kernel(m).apply(vector_to_kernel(v));
         assert_eq!(vector_from_kernel(applied), m * v);
     }

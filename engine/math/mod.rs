@@ -1,5 +1,5 @@
-//! The numbers of the public API: precision and dimension by alias, conversions between precisions and to the
-//! kernel's types, and the few matrix operations that glam lacks.
+//! Numeric types of the public API: precision and dimension by alias, conversions between precisions and to the
+//! kernel's types, and a few matrix operations that glam lacks.
 //!
 //! ```
 //! # use avian::math::*;
@@ -36,7 +36,7 @@ pub(crate) fn to_f32(value: Scalar) -> f32 {
     value as f32
 }
 
-/// Takes a value of either precision to [`Scalar`] precision.
+/// Converts a value of either precision to [`Scalar`] precision.
 pub trait AdjustPrecision {
     /// The same kind of value in [`Scalar`] precision.
     type Adjusted;
@@ -44,7 +44,7 @@ pub trait AdjustPrecision {
     fn adjust_precision(&self) -> Self::Adjusted;
 }
 
-/// Takes a value of either precision to `f32`, as rendering and Bevy's transforms want it.
+/// Converts a value of either precision to `f32`, for rendering and Bevy's transforms.
 pub trait AsF32 {
     /// The same kind of value in `f32`.
     type F32;
@@ -52,7 +52,7 @@ pub trait AsF32 {
     fn f32(&self) -> Self::F32;
 }
 
-/// Implements [`AsF32`] for a type and its `f64` twin.
+/// Implements [`AsF32`] for a type and its `f64` counterpart.
 macro_rules! as_f32 {
     ($($single:ty, $double:ty, $narrow:ident;)+) => {$(
         impl AsF32 for $single {
@@ -90,10 +90,10 @@ impl AsF32 for Vec4 {
     }
 }
 
-/// The reciprocal of quantities for which infinity is written as zero, such as the inverse of a mass.
+/// The reciprocal of quantities whose infinity is stored as zero, such as an inverse mass.
 pub trait RecipOrZero {
-    /// `1 / self`, or zero where that is not finite: for zero, infinity, NaN, and numbers too small to invert.
-    /// Vectors go component by component.
+    /// `1 / self`, or zero if that is not finite: for zero, infinity, NaN, and numbers too small to invert. By
+    /// component for vectors.
     #[must_use]
     fn recip_or_zero(self) -> Self;
 }
@@ -119,16 +119,16 @@ macro_rules! recip_or_zero {
 
 recip_or_zero! { f32, f64; Vec2 { x, y }, DVec2 { x, y }, Vec3 { x, y, z }, DVec3 { x, y, z } }
 
-/// What inertia tensors need of a square matrix.
+/// Operations of square matrices for inertia tensors.
 pub trait MatExt {
     /// The type of the entries.
     type Scalar;
-    /// The inverse, or the zero matrix where there is none: for a singular matrix, and for one with entries
-    /// that are infinite or NaN.
+    /// The inverse, or the zero matrix if there is none: for a singular matrix, or one with entries that are infinite
+    /// or NaN.
     #[must_use]
     fn inverse_or_zero(self) -> Self;
-    /// Whether the matrix is a multiple of the identity: off the diagonal all entries, and on it all
-    /// differences, are at most `epsilon`.
+    /// Whether the matrix is a multiple of the identity: all entries off the diagonal, and all differences on it, are
+    /// at most `epsilon`.
     fn is_isotropic(&self, epsilon: Self::Scalar) -> bool;
 }
 

@@ -1,4 +1,4 @@
-//! Rotations of the plane, and what else the sync does differently there. `dim3.rs` is the twin.
+//! 2D rotations, and 2D parts of the transform sync. `dim3.rs` exports the same names.
 
 use bevy_ecs::{component::Component, reflect::ReflectComponent};
 use bevy_math::{DQuat, Quat, Rot2};
@@ -8,7 +8,7 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use super::{
     Position,
-    turn::{Turn, narrow, wide},
+    rotation64::{Rotation64, narrow, wide},
 };
 use crate::math::{FRAC_1_SQRT_2, Matrix, Quaternion, Scalar, Vector, Vector3};
 
@@ -21,7 +21,7 @@ use crate::math::{FRAC_1_SQRT_2, Matrix, Quaternion, Scalar, Vector, Vector3};
 /// assert_eq!(rotation * rotation * Vector::X, Vector::Y);
 /// ```
 ///
-/// Multiplication renormalises, so that chains of rotations stay rotations.
+/// Multiplication renormalises, so that products of many rotations stay rotations.
 #[derive(Reflect, Clone, Copy, Component, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -42,7 +42,7 @@ impl Default for Rotation {
 }
 
 impl Rotation {
-    /// Stands for "take it from the `Transform`"; replaced when the entity gets its body or collider.
+    /// Placeholder for the rotation of the `Transform`. It is replaced when the entity gets its body or collider.
     pub const PLACEHOLDER: Self = Self { cos: Scalar::MAX, sin: Scalar::MAX };
     /// No rotation.
     pub const IDENTITY: Self = Self { cos: 1.0, sin: 0.0 };
@@ -70,7 +70,7 @@ impl Rotation {
     ///
     /// Multiples of 45° are exact: zeros and ones are 0 and 1, and at 45° the cosine equals the sine.
     pub fn degrees(degrees: Scalar) -> Self {
-        // The remainder is exact, and so is taking away the nearest quarter (Sterbenz's lemma).
+        // The remainder is exact, and so is subtracting the nearest quarter (Sterbenz's lemma).
         let turn = wide(degrees) % 360.0;
         let quarters = (turn / 90.0).round();
         let rest = turn - 90.0 * quarters;
@@ -79,7 +79,7 @@ impl Rotation {
         } else {
             kernel::math::sin_cos(rest * (core::f64::consts::PI / 180.0))
         };
-        // Adding zero keeps −0 out.
+        // Adding zero turns −0 into 0.
         let (sin, cos) = match (quarters as i64).rem_euclid(4) {
             0 => (sin, cos),
             1 => (cos, -sin),
@@ -121,7 +121,7 @@ impl Rotation {
         (self.sin, self.cos)
     }
 
-    /// Turns a vector.
+    /// Rotates a vector.
     #[deprecated(note = "use the `Mul` implementation")]
     pub fn rotate(&self, vec: Vector) -> Vector {
         self * vec
@@ -142,18 +142,18 @@ impl Rotation {
         1.0 / self.length()
     }
 
-    /// Scaled to length 1; `None` where the length is zero or not finite.
+    /// Normalised to length 1; `None` if the length is zero or not finite.
     pub fn try_normalize(self) -> Option<Self> {
         let length = self.length();
         (length.is_finite() && length > 0.0).then(|| Self { cos: self.cos / length, sin: self.sin / length })
     }
 
-    /// Scaled to length 1; unchanged where the length is zero or not finite.
+    /// Normalised to length 1; unchanged if the length is zero or not finite.
     pub fn normalize(self) -> Self {
         self.try_normalize().unwrap_or(self)
     }
 
-    /// Brought closer to length 1 without a root: one Newton step, for pairs that are nearly unit.
+    /// One Newton step towards length 1, without a square root. For pairs that are nearly unit.
     pub fn fast_renormalize(self) -> Self {
         let factor = 0.5 * (3.0 - self.length_squared());
         Self { cos: self.cos * factor, sin: self.sin * factor }
@@ -179,47 +179,47 @@ impl Rotation {
         self.cos > 0.0 && self.sin.abs() < 5e-5
     }
 
-    /// The angle in radians by which to turn `self` to get `other`, in −π … π.
+    /// The angle in radians from `self` to `other`, in −π … π.
     pub fn angle_between(self, other: Self) -> Scalar {
         let (c, s) = (wide(self.cos), wide(self.sin));
         let (oc, os) = (wide(other.cos), wide(other.sin));
         narrow(kernel::math::atan2(c * os - s * oc, c * oc + s * os))
     }
 
-    /// The rotation the other way.
+    /// The inverse rotation.
     pub fn inverse(self) -> Self {
         Self { cos: self.cos, sin: -self.sin }
     }
 
-    /// Turned further by a small angle in radians: a first-order step, renormalised.
+    /// Rotated by a small angle in radians: a first-order step, renormalised.
     pub fn add_angle_fast(&self, radians: Scalar) -> Self {
         Self { cos: self.cos - radians * self.sin, sin: self.sin + radians * self.cos }.normalize()
     }
 
-    /// Between `self` (`s` = 0) and `end` (`s` = 1) along the chord, renormalised. Of two opposite
-    /// rotations, the start.
+    /// Interpolates from `self` (`s` = 0) to `end` (`s` = 1) along the chord, and renormalises. For opposite rotations,
+    /// the start.
     pub fn nlerp(self, end: Self, s: Scalar) -> Self {
         let mix = Self { cos: self.cos + (end.cos - self.cos) * s, sin: self.sin + (end.sin - self.sin) * s };
         mix.try_normalize().unwrap_or(self)
     }
 
-    /// Between `self` (`s` = 0) and `end` (`s` = 1) at constant angular speed, the shorter way.
+    /// Interpolates from `self` (`s` = 0) to `end` (`s` = 1) at constant angular speed along the shorter arc.
     pub fn slerp(self, end: Self, s: Scalar) -> Self {
         self * Self::radians(self.angle_between(end) * s)
     }
 
-    /// Turns a vector.
+    /// Rotates a vector.
     #[inline]
     pub(super) fn rotate_vector(self, v: Vector) -> Vector {
         Vector::new(self.cos * v.x - self.sin * v.y, self.sin * v.x + self.cos * v.y)
     }
 
-    /// Turns a vector about the z axis.
+    /// Rotates a vector about the z axis.
     fn rotate_vector3(self, v: Vector3) -> Vector3 {
         Vector3::new(self.cos * v.x - self.sin * v.y, self.sin * v.x + self.cos * v.y, v.z)
     }
 
-    /// `other` first, then `self`; renormalised.
+    /// The product: `other` first, then `self`. Renormalised.
     #[inline]
     pub(super) fn then_of(self, other: Self) -> Self {
         Self {
@@ -239,9 +239,9 @@ impl Rotation {
         Self { cos: Scalar::from(rotation.cos), sin: Scalar::from(rotation.sin) }
     }
 
-    /// The turn about the z axis, by half angles: `w = √((1 + cos) / 2)`, `z = sin / 2w`, from the side
-    /// where nothing cancels.
-    pub(super) fn to_turn(self) -> Turn {
+    /// As a rotation about the z axis, by half angles: `w = √((1 + cos) / 2)`, `z = sin / 2w`. The form without
+    /// cancellation is used.
+    pub(super) fn to_f64(self) -> Rotation64 {
         let (c, s) = (wide(self.cos), wide(self.sin));
         let (z, w) = if c >= 0.0 {
             let w = (0.5 * (1.0 + c)).sqrt();
@@ -250,11 +250,11 @@ impl Rotation {
             let z = (0.5 * (1.0 - c)).sqrt().copysign(s);
             (z, s / (2.0 * z))
         };
-        Turn { x: 0.0, y: 0.0, z, w }
+        Rotation64 { x: 0.0, y: 0.0, z, w }
     }
 
-    /// The z rotation of a turn; `None` where it has no finite direction.
-    pub(super) fn from_turn(turn: Turn) -> Option<Self> {
+    /// The rotation about z of a 3D rotation; `None` if it has no finite angle.
+    pub(super) fn from_f64(turn: Rotation64) -> Option<Self> {
         let (z, w) = twist(turn);
         let length = z * z + w * w;
         if !(length > 0.0 && length.is_finite()) {
@@ -264,36 +264,36 @@ impl Rotation {
     }
 }
 
-/// The part of a turn that is about z, as (z, w), not normalised. A turn nearer to "flipped" than to
-/// "upright" (a sprite turned half about y or x, showing its back) is measured against the half turn
-/// about y, so that a flip alone is no rotation: `(w + z k) j = w j − z i`.
-fn twist(turn: Turn) -> (f64, f64) {
+/// The part of a 3D rotation about z, as (z, w), not normalised. A rotation closer to "flipped" than to "upright" (a
+/// sprite rotated half a turn about y or x, showing its back) is measured relative to the half turn about y, so that a
+/// flip alone counts as no rotation: `(w + z k) j = w j − z i`.
+fn twist(turn: Rotation64) -> (f64, f64) {
     let upright = turn.z * turn.z + turn.w * turn.w;
     let flipped = turn.x * turn.x + turn.y * turn.y;
     if upright >= flipped { (turn.z, turn.w) } else { (-turn.x, turn.y) }
 }
 
-/// The world turn of something that should have the rotation `rotation` and now has the turn `current`:
-/// only the part about z is replaced, a tilt stays.
+/// The world rotation of an entity that should have the rotation `rotation` and now has `current`: only the part about
+/// z is replaced, a tilt is kept.
 #[inline]
-pub(super) fn world_turn(rotation: Rotation, current: Turn) -> Turn {
-    let wanted = rotation.to_turn();
+pub(super) fn world_rotation(rotation: Rotation, current: Rotation64) -> Rotation64 {
+    let wanted = rotation.to_f64();
     if current.x == 0.0 && current.y == 0.0 {
         return wanted;
     }
     let (z, w) = twist(current);
-    let old = Turn { x: 0.0, y: 0.0, z, w }.normalized();
+    let old = Rotation64 { x: 0.0, y: 0.0, z, w }.normalized();
     wanted.mul(old.inverse().mul(current)).normalized()
 }
 
-/// Whether `read`, taken from the tilted turn `current`, differs from `held` by rounding only. Without a
-/// tilt, bits are compared instead.
-pub(super) fn is_rounding(read: Rotation, held: Rotation, current: Turn) -> bool {
+/// Whether `read`, extracted from the tilted rotation `current`, differs from `held` by rounding only. Without a tilt,
+/// bits are compared instead.
+pub(super) fn is_rounding(read: Rotation, held: Rotation, current: Rotation64) -> bool {
     let tilted = current.x != 0.0 || current.y != 0.0;
     tilted && (read.cos - held.cos).abs() < 1e-6 && (read.sin - held.sin).abs() < 1e-6
 }
 
-/// The point with the spatial part `v`; where the plane has no say, as `rest` has it.
+/// The point with the spatial part `v`, and z from `rest`.
 pub(super) fn xyz_with(v: Vector, rest: [f64; 3]) -> [f64; 3] {
     [wide(v.x), wide(v.y), rest[2]]
 }
@@ -326,7 +326,7 @@ impl From<Rotation> for Matrix {
 }
 
 impl From<Matrix> for Rotation {
-    /// Where the matrix takes the x axis.
+    /// The rotation that maps the x axis as the matrix does.
     fn from(matrix: Matrix) -> Self {
         Self { cos: matrix.x_axis.x, sin: matrix.x_axis.y }.normalize()
     }
@@ -346,23 +346,23 @@ impl From<Rotation> for Rot2 {
 
 impl From<Rotation> for Quaternion {
     fn from(rotation: Rotation) -> Self {
-        let turn = rotation.to_turn();
+        let turn = rotation.to_f64();
         Quaternion::from_xyzw(0.0, 0.0, narrow(turn.z), narrow(turn.w))
     }
 }
 
 impl From<Quat> for Rotation {
-    /// The rotation about z that is in the quaternion.
+    /// The rotation about z in the quaternion.
     fn from(rotation: Quat) -> Self {
-        Self::from_turn(Turn::from_quat(rotation)).unwrap_or(Self::IDENTITY)
+        Self::from_f64(Rotation64::from_quat(rotation)).unwrap_or(Self::IDENTITY)
     }
 }
 
 impl From<DQuat> for Rotation {
-    /// The rotation about z that is in the quaternion.
+    /// The rotation about z in the quaternion.
     fn from(rotation: DQuat) -> Self {
         let [x, y, z, w] = rotation.to_array();
-        Self::from_turn(Turn { x, y, z, w }).unwrap_or(Self::IDENTITY)
+        Self::from_f64(Rotation64 { x, y, z, w }).unwrap_or(Self::IDENTITY)
     }
 }
 
@@ -433,17 +433,17 @@ mod tests {
 
     #[test]
     fn a_tilt_stays_and_a_flip_is_no_rotation() {
-        let flip = Turn { x: 0.0, y: 1.0, z: 0.0, w: 0.0 };
-        assert_eq!(Rotation::from_turn(flip), Some(Rotation::IDENTITY));
-        let tilt = Turn { x: 0.3, y: -0.2, z: 0.1, w: 1.0 }.normalized();
+        let flip = Rotation64 { x: 0.0, y: 1.0, z: 0.0, w: 0.0 };
+        assert_eq!(Rotation::from_f64(flip), Some(Rotation::IDENTITY));
+        let tilt = Rotation64 { x: 0.3, y: -0.2, z: 0.1, w: 1.0 }.normalized();
         for current in [flip, tilt] {
             for degrees in [0.0, 10.0, 170.0, -90.0] {
                 let rotation = Rotation::degrees(degrees);
-                let written = world_turn(rotation, current);
-                let read = Rotation::from_turn(written).expect("a unit turn");
+                let written = world_rotation(rotation, current);
+                let read = Rotation::from_f64(written).expect("a unit turn");
                 assert!(read.angle_between(rotation).abs() < 1e-6);
                 assert!(is_rounding(read, rotation, written));
-                let again = world_turn(rotation, written);
+                let again = world_rotation(rotation, written);
                 assert!((again.dot(written) - 1.0).abs() < 1e-9, "written twice, turned twice");
             }
         }

@@ -1,4 +1,4 @@
-//! Rotations of space, and what else the sync does differently there. `dim2.rs` is the twin.
+//! 3D rotations, and 3D parts of the transform sync. `dim2.rs` exports the same names.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::{component::Component, reflect::ReflectComponent};
@@ -10,14 +10,14 @@ use core::ops::Mul;
 
 use super::{
     Position,
-    turn::{Turn, narrow, wide},
+    rotation64::{Rotation64, narrow, wide},
 };
 use crate::math::{Quaternion, Scalar, Vector};
 
 /// The world rotation of a rigid body or collider, a unit quaternion.
 ///
-/// Multiplication renormalises, so that chains of rotations stay rotations. The products are written
-/// out in scalars: their bits do not depend on the machine's vector instructions.
+/// Multiplication renormalises, so that products of many rotations stay rotations. Products are computed in scalars, so
+/// that their bits do not depend on vector instructions.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -27,7 +27,7 @@ pub struct Rotation(pub Quaternion);
 crate::type_path::type_path!(Rotation, "physics_transform::transform");
 
 impl Rotation {
-    /// Stands for "take it from the `Transform`"; replaced when the entity gets its body or collider.
+    /// Placeholder for the rotation of the `Transform`. It is replaced when the entity gets its body or collider.
     pub const PLACEHOLDER: Self =
         Self(Quaternion::from_xyzw(Scalar::MAX, Scalar::MAX, Scalar::MAX, Scalar::MAX));
     /// No rotation.
@@ -35,27 +35,27 @@ impl Rotation {
 
     /// The angle in radians between two rotations, in 0 … π.
     pub fn angle_between(self, other: Self) -> Scalar {
-        narrow(self.to_turn().inverse().mul(other.to_turn()).angle())
+        narrow(self.to_f64().inverse().mul(other.to_f64()).angle())
     }
 
-    /// The rotation the other way.
+    /// The inverse rotation.
     pub fn inverse(&self) -> Self {
         Self(Quaternion::from_xyzw(-self.0.x, -self.0.y, -self.0.z, self.0.w))
     }
 
-    /// Between `self` (`t` = 0) and `end` (`t` = 1) along the chord, the shorter way, renormalised.
+    /// Interpolates from `self` (`t` = 0) to `end` (`t` = 1) along the chord, the shorter way, and renormalises.
     pub fn nlerp(self, end: Self, t: Scalar) -> Self {
-        let (a, b) = (self.to_turn(), end.to_turn());
+        let (a, b) = (self.to_f64(), end.to_f64());
         let b = if a.dot(b) < 0.0 { b.negated() } else { b };
-        Self::from_turn(a.mix(1.0 - wide(t), b, wide(t)).normalized()).unwrap_or(self)
+        Self::from_f64(a.mix(1.0 - wide(t), b, wide(t)).normalized()).unwrap_or(self)
     }
 
-    /// Between `self` (`t` = 0) and `end` (`t` = 1) at constant angular speed, the shorter way.
+    /// Interpolates from `self` (`t` = 0) to `end` (`t` = 1) at constant angular speed along the shorter arc.
     ///
     /// `(sin((1 − t) θ) a + sin(t θ) b) / sin θ` with `cos θ = a · b` (Shoemake, "Animating Rotation
     /// with Quaternion Curves", 1985); where θ vanishes, along the chord.
     pub fn slerp(self, end: Self, t: Scalar) -> Self {
-        let (a, b) = (self.to_turn(), end.to_turn());
+        let (a, b) = (self.to_f64(), end.to_f64());
         let b = if a.dot(b) < 0.0 { b.negated() } else { b };
         let angle = 0.5 * a.inverse().mul(b).angle();
         if angle < 1e-6 {
@@ -63,10 +63,10 @@ impl Rotation {
         }
         let t = wide(t);
         let mix = a.mix(kernel::math::sin((1.0 - t) * angle), b, kernel::math::sin(t * angle));
-        Self::from_turn(mix.normalized()).unwrap_or(self)
+        Self::from_f64(mix.normalized()).unwrap_or(self)
     }
 
-    /// Brought closer to length 1 without a root: one Newton step, for quaternions that are nearly unit.
+    /// One Newton step towards length 1, without a square root. For quaternions that are nearly unit.
     pub fn fast_renormalize(self) -> Self {
         let q = self.0;
         let square = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
@@ -74,7 +74,7 @@ impl Rotation {
         Self(Quaternion::from_xyzw(q.x * factor, q.y * factor, q.z * factor, q.w * factor))
     }
 
-    /// Turns a vector: `v + w t + u × t` with `t = 2 u × v`, for q = (u, w).
+    /// Rotates a vector: `v + w t + u × t` with `t = 2 u × v`, for q = (u, w).
     #[inline]
     pub(super) fn rotate_vector(self, v: Vector) -> Vector {
         let q = self.0;
@@ -88,7 +88,7 @@ impl Rotation {
         )
     }
 
-    /// `other` first, then `self`; renormalised unless that would not be finite.
+    /// The product: `other` first, then `self`. Renormalised unless that is not finite.
     #[inline]
     pub(super) fn then_of(self, other: Self) -> Self {
         let (a, b) = (self.0, other.0);
@@ -115,14 +115,14 @@ impl Rotation {
         Self(Quaternion::from_xyzw(Scalar::from(x), Scalar::from(y), Scalar::from(z), Scalar::from(w)))
     }
 
-    pub(super) fn to_turn(self) -> Turn {
+    pub(super) fn to_f64(self) -> Rotation64 {
         let [x, y, z, w] = self.0.to_array();
-        Turn { x: wide(x), y: wide(y), z: wide(z), w: wide(w) }
+        Rotation64 { x: wide(x), y: wide(y), z: wide(z), w: wide(w) }
     }
 
-    /// The rotation of a turn, renormalised only if it is more than rounding away from a unit
-    /// quaternion; `None` where it has no finite direction.
-    pub(super) fn from_turn(turn: Turn) -> Option<Self> {
+    /// From an `f64` rotation, renormalised if it deviates from unit length by more than rounding. `None` if it cannot
+    /// be normalised.
+    pub(super) fn from_f64(turn: Rotation64) -> Option<Self> {
         let square = turn.dot(turn);
         if !(square > 0.0 && square.is_finite()) {
             return None;
@@ -132,13 +132,13 @@ impl Rotation {
     }
 }
 
-/// The world turn of something that should have the rotation `rotation`.
-pub(super) fn world_turn(rotation: Rotation, _current: Turn) -> Turn {
-    rotation.to_turn()
+/// The world rotation of an entity that should have the rotation `rotation`.
+pub(super) fn world_rotation(rotation: Rotation, _current: Rotation64) -> Rotation64 {
+    rotation.to_f64()
 }
 
-/// Whether `read` differs from `held` by rounding only; in space bits are compared instead.
-pub(super) fn is_rounding(_read: Rotation, _held: Rotation, _current: Turn) -> bool {
+/// Whether `read` differs from `held` by rounding only. Never in 3D, where bits are compared instead.
+pub(super) fn is_rounding(_read: Rotation, _held: Rotation, _current: Rotation64) -> bool {
     false
 }
 
@@ -197,8 +197,8 @@ impl From<DQuat> for Rotation {
     }
 }
 
-/// Only what rotations of space need.
-impl Turn {
+/// Operations that only 3D needs.
+impl Rotation64 {
     pub(crate) fn negated(self) -> Self {
         Self { x: -self.x, y: -self.y, z: -self.z, w: -self.w }
     }
@@ -213,7 +213,7 @@ impl Turn {
         }
     }
 
-    /// The angle turned by, in 0 … π.
+    /// The angle of the rotation, in 0 … π.
     pub(crate) fn angle(self) -> f64 {
         let sine = (self.x * self.x + self.y * self.y + self.z * self.z).sqrt();
         2.0 * kernel::math::atan2(sine, self.w.abs())
@@ -227,19 +227,20 @@ mod tests {
 
     fn sample(i: u16) -> Rotation {
         let t = Scalar::from(i);
-        let turn = Turn {
+        let turn = Rotation64 {
             x: wide(t * 0.37) % 2.0 - 1.0,
             y: wide(t * 0.71) % 2.0 - 1.0,
             z: wide(t * 0.13) % 2.0 - 1.0,
             w: wide(t * 0.57) % 2.0 - 1.0,
         };
-        Rotation::from_turn(turn.normalized()).expect("a unit turn")
+        Rotation::from_f64(turn.normalized()).expect("a unit turn")
     }
 
     #[test]
     fn quarters_are_exact() {
         let half = core::f64::consts::FRAC_1_SQRT_2;
-        let quarter = Rotation::from_turn(Turn { x: 0.0, y: 0.0, z: half, w: half }).expect("a unit turn");
+        let quarter =
+            Rotation::from_f64(Rotation64 { x: 0.0, y: 0.0, z: half, w: half }).expect("a unit turn");
         assert_eq!(quarter * quarter * Vector::X, -Vector::X);
         assert_eq!(quarter * quarter * (quarter * quarter) * Vector::X, Vector::X);
     }
@@ -274,7 +275,7 @@ mod tests {
             }
             assert!(a.slerp(a, 0.5).0.dot(a.0) > 1.0 - 1e-6);
         }
-        assert!(Rotation::from_turn(Turn { x: 0.0, y: 0.0, z: 0.0, w: 0.0 }).is_none());
+        assert!(Rotation::from_f64(Rotation64 { x: 0.0, y: 0.0, z: 0.0, w: 0.0 }).is_none());
     }
 
     #[test]
@@ -285,7 +286,7 @@ mod tests {
         let scales = [Vec3::ONE, Vec3::new(1.0, 2.0, 0.5), Vec3::new(-1.0, 1.5, 1.0), Vec3::splat(-2.0)];
         for i in 0..400 {
             let link = |k: u16| {
-                let [x, y, z, w] = sample(k).to_turn().to_quat().to_array();
+                let [x, y, z, w] = sample(k).to_f64().to_quat().to_array();
                 Transform::from_xyz(x * 9.0, y * 9.0, z * 9.0)
                     .with_rotation(Quat::from_xyzw(x, y, z, w))
                     .with_scale(scales[usize::from(k) % 4])

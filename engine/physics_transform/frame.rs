@@ -1,17 +1,15 @@
-//! Coordinate frames of the transform hierarchy, in `f64` scalars: from a parent's space to the world
-//! and back.
+//! Coordinate frames of the transform hierarchy, in `f64` scalars, and conversions of poses between them.
 //!
-//! Why not `GlobalTransform`: it is an `Affine3A`, whose sums run in another order on another
-//! instruction set, and inside a fixed step it is a frame old. The inputs are `f32`, so `f64` leaves one
-//! rounding at the end, and what was written to a nested body's `Transform` reads back as its position
-//! to the last bit but for rare ties.
+//! `GlobalTransform` does not serve: it is an `Affine3A`, whose sums run in another order on another instruction set,
+//! and inside a fixed step it is a frame old. The inputs are `f32`, so `f64` leaves one rounding at the end. A pose
+//! that is written to a nested body's `Transform` is read back with the same bits, but for rare ties.
 
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
 
 use super::{
     Rotation, dim,
-    turn::{Columns, Turn, cross},
+    rotation64::{Columns, Rotation64, cross},
 };
 use crate::math::{DIM, Vector, vector_from_xyz};
 
@@ -27,7 +25,7 @@ fn determinant(m: &Columns) -> f64 {
     dot(cross(m[0], m[1]), m[2])
 }
 
-/// The inverse by cofactors; `None` for a matrix that flattens space.
+/// The inverse by cofactors; `None` for a singular matrix.
 fn inverse(m: &Columns) -> Option<Columns> {
     let d = determinant(m);
     if d == 0.0 || !d.is_finite() {
@@ -37,9 +35,9 @@ fn inverse(m: &Columns) -> Option<Columns> {
     Some([0, 1, 2].map(|column| [0, 1, 2].map(|row| rows[row][column] / d)))
 }
 
-/// The rotation nearest the first, then the second column (Gram–Schmidt); `None` where they are parallel
-/// or vanish.
-fn orthonormal(first: [f64; 3], second: [f64; 3]) -> Option<Turn> {
+/// The rotation whose axes are the first and second column, orthonormalised (Gram–Schmidt). `None` if they are parallel
+/// or zero.
+fn orthonormal(first: [f64; 3], second: [f64; 3]) -> Option<Rotation64> {
     let unit = |v: [f64; 3]| {
         let length = dot(v, v).sqrt();
         (length > 0.0 && length.is_finite()).then(|| v.map(|c| c / length))
@@ -47,41 +45,40 @@ fn orthonormal(first: [f64; 3], second: [f64; 3]) -> Option<Turn> {
     let x = unit(first)?;
     let along = dot(x, second);
     let y = unit([0, 1, 2].map(|i| second[i] - along * x[i]))?;
-    Some(Turn::from_columns([x, y, cross(x, y)]))
+    Some(Rotation64::from_columns([x, y, cross(x, y)]))
 }
 
-/// What a frame does to directions.
+/// The linear part of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Linear {
-    /// Scaled along its axes, then turned.
+    /// Scaled along its axes, then rotated.
     Scaled([f64; 3]),
-    /// Anything else: a turn below a scale that differs by axis.
+    /// Any other: a rotation below an uneven scale.
     Sheared(Columns),
 }
 
-/// From a local space to the world (or to a body's space).
+/// The frame of an entity in the world, or in a body's space.
 ///
-/// Turns and scales are kept apart as long as they commute, which is always but for a turn below a scale
-/// that differs by axis or mirrors. There the frame is a matrix M, and its rotation is defined by the QR
-/// factors of M: the x axis goes where M takes it (against it, where M mirrors, as Bevy reads it), the xy
-/// plane where M takes that. This is the definition whose inverse is exact: a rotation written into a
-/// sheared parent reads back as itself.
+/// Rotation and scale are stored separately if they commute, which is so except for a rotation below an uneven or
+/// mirroring scale. Otherwise the frame is a matrix M, and its rotation is defined by the QR factors of M: its x axis
+/// is the image of the x axis (negated if M mirrors, as in Bevy), and its xy plane the image of the xy plane. This
+/// definition has an exact inverse: a rotation written below a sheared parent is read back unchanged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Frame {
     translation: [f64; 3],
-    rotation: Turn,
+    rotation: Rotation64,
     linear: Linear,
 }
 
 impl Frame {
-    /// The world.
+    /// The world frame.
     pub(crate) const IDENTITY: Self =
-        Self { translation: [0.0; 3], rotation: Turn::IDENTITY, linear: Linear::Scaled([1.0; 3]) };
+        Self { translation: [0.0; 3], rotation: Rotation64::IDENTITY, linear: Linear::Scaled([1.0; 3]) };
 
     /// The frame of a child with the transform `t`.
     pub(crate) fn child(&self, t: &Transform) -> Self {
         let translation = self.point(xyz(t.translation));
-        let (turn, scale) = (Turn::from_quat(t.rotation).normalized(), xyz(t.scale));
+        let (turn, scale) = (Rotation64::from_quat(t.rotation).normalized(), xyz(t.scale));
         if let Linear::Scaled(s) = self.linear
             && commute(s, turn)
         {
@@ -101,13 +98,13 @@ impl Frame {
         Self { translation, rotation, linear }
     }
 
-    /// The same frame seen from its own origin and rotation: only its scale is left.
+    /// The frame without translation and rotation: its scale only.
     pub(crate) fn unposed(&self) -> Self {
         let linear = match self.linear {
             Linear::Scaled(_) => self.linear,
             Linear::Sheared(m) => Linear::Sheared(m.map(|column| self.rotation.inverse().rotate(column))),
         };
-        Self { translation: [0.0; 3], rotation: Turn::IDENTITY, linear }
+        Self { translation: [0.0; 3], rotation: Rotation64::IDENTITY, linear }
     }
 
     /// The origin.
@@ -116,7 +113,7 @@ impl Frame {
     }
 
     /// The rotation.
-    pub(crate) fn rotation(&self) -> Turn {
+    pub(crate) fn rotation(&self) -> Rotation64 {
         self.rotation
     }
 
@@ -141,7 +138,7 @@ impl Frame {
         }
     }
 
-    /// Takes a point from this frame to the outer space.
+    /// Transforms a point from this frame to the outer space.
     fn point(&self, v: [f64; 3]) -> [f64; 3] {
         let turned = match self.linear {
             Linear::Scaled(scale) => self.rotation.rotate([0, 1, 2].map(|i| v[i] * scale[i])),
@@ -150,7 +147,7 @@ impl Frame {
         [0, 1, 2].map(|i| turned[i] + self.translation[i])
     }
 
-    /// Takes a point from the outer space to this frame; `None` where the frame is flat.
+    /// Transforms a point from the outer space to this frame; `None` if the frame is singular.
     fn local_point(&self, v: [f64; 3]) -> Option<[f64; 3]> {
         let offset = [0, 1, 2].map(|i| v[i] - self.translation[i]);
         match self.linear {
@@ -163,8 +160,8 @@ impl Frame {
         }
     }
 
-    /// The local turn of a child that has the turn `world` in the outer space.
-    fn local_turn(&self, world: Turn) -> Turn {
+    /// The local rotation of a child with the rotation `world` in the outer space.
+    fn local_rotation(&self, world: Rotation64) -> Rotation64 {
         let plain = self.rotation.inverse().mul(world).normalized();
         if let Linear::Scaled(scale) = self.linear
             && commute(scale, plain)
@@ -182,7 +179,7 @@ impl Frame {
 
 /// Whether turning and scaling may be swapped: no turn, one positive factor, or about z with one factor in
 /// the plane. A mirrored frame never passes, so that its rotation has one definition.
-fn commute(scale: [f64; 3], turn: Turn) -> bool {
+fn commute(scale: [f64; 3], turn: Rotation64) -> bool {
     let [x, y, z] = scale;
     let positive = x > 0.0 && y > 0.0 && z > 0.0;
     let planar = turn.x == 0.0 && turn.y == 0.0;
@@ -197,11 +194,11 @@ fn xyz(v: Vec3) -> [f64; 3] {
 /// the quaternion has no direction.
 pub(crate) fn read_pose(parent: Option<&Frame>, t: &Transform) -> (Vector, Option<Rotation>) {
     match parent {
-        None => (vector_from_xyz(xyz(t.translation)), Rotation::from_turn(Turn::from_quat(t.rotation))),
+        None => (vector_from_xyz(xyz(t.translation)), Rotation::from_f64(Rotation64::from_quat(t.rotation))),
         Some(frame) => {
             let world = frame.child(t);
-            let is_turn = Turn::from_quat(t.rotation).dot(Turn::from_quat(t.rotation));
-            let rotation = (is_turn > 0.0).then(|| Rotation::from_turn(world.rotation)).flatten();
+            let is_turn = Rotation64::from_quat(t.rotation).dot(Rotation64::from_quat(t.rotation));
+            let rotation = (is_turn > 0.0).then(|| Rotation::from_f64(world.rotation)).flatten();
             (vector_from_xyz(world.translation), rotation)
         }
     }
@@ -220,7 +217,7 @@ pub(crate) fn write_pose(
     let Some(frame) = parent else {
         let at = dim::xyz_with(position, xyz(t.translation));
         written.translation = Vec3::from_array(at.map(|c| c as f32));
-        written.rotation = dim::world_turn(rotation, Turn::from_quat(t.rotation)).to_quat();
+        written.rotation = dim::world_rotation(rotation, Rotation64::from_quat(t.rotation)).to_quat();
         return written;
     };
     let now = frame.child(t);
@@ -228,7 +225,7 @@ pub(crate) fn write_pose(
     let kept = xyz(t.translation);
     written.translation =
         Vec3::from_array([0, 1, 2].map(|i| if i < DIM { local[i] } else { kept[i] } as f32));
-    written.rotation = frame.local_turn(dim::world_turn(rotation, now.rotation)).to_quat();
+    written.rotation = frame.local_rotation(dim::world_rotation(rotation, now.rotation)).to_quat();
     written
 }
 

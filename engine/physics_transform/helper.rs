@@ -1,4 +1,4 @@
-//! A system parameter that brings the pose of one entity up to date with its `Transform` at once.
+//! A system parameter that updates the pose of one entity from its `Transform` at once.
 
 use bevy_ecs::{
     entity::EntityNotSpawnedError,
@@ -16,8 +16,8 @@ use thiserror::Error;
 
 use super::{Position, Rotation, frame::read_pose, sync::parent_frame, tree::Parents};
 
-/// Computes present global transforms, and writes them to [`Position`] and [`Rotation`] without waiting
-/// for the next step. Useful after teleports, before spatial queries.
+/// Computes current global transforms, and writes them to [`Position`] and [`Rotation`] without waiting for the next
+/// step. Useful after teleports, before spatial queries.
 #[derive(SystemParam)]
 pub struct PhysicsTransformHelper<'w, 's> {
     /// Computes global transforms through the hierarchy.
@@ -42,7 +42,7 @@ impl PhysicsTransformHelper<'_, '_> {
         &mut self,
         entity: Entity,
     ) -> Result<(Mut<'_, Position>, Mut<'_, Rotation>), UpdatePhysicsTransformError> {
-        // Bevy's helper decides whether the line of ancestors is whole.
+        // Bevy's helper checks that all ancestors exist.
         self.transform_helper.compute_global_transform(entity)?;
         let missing = UpdatePhysicsTransformError::MissingTransform(entity);
         let Ok(transform) = self.transforms.get(entity) else { return Err(missing) };
@@ -57,10 +57,10 @@ impl PhysicsTransformHelper<'_, '_> {
     }
 }
 
-/// Why a pose could not be set from transforms.
+/// Why a pose could not be updated.
 #[derive(Debug, Error)]
 pub enum UpdatePhysicsTransformError {
-    /// Something on the way is missing.
+    /// A component is missing.
     #[error(
         "The entity {0:?} or one of its ancestors is missing either the `Transform`, `Position`, or `Rotation` component"
     )]

@@ -1,11 +1,10 @@
-//! Positions and rotations of bodies and colliders, and how they are kept in step with `Transform`.
+//! Positions and rotations of bodies and colliders, and their synchronisation with `Transform`.
 //!
-//! - Before a step, transforms that the user changed are read into [`Position`] and [`Rotation`].
+//! - Before a step, transforms that the app changed are read into [`Position`] and [`Rotation`].
 //! - After it, the poses of bodies that moved are written back, relative to the parent if there is one.
-//! - If both were set since the last step, the pose wins over the transform, each of position and rotation
-//!   for itself.
-//! - Bodies move independently of their parents in the simulation. What is set on a parent's `Transform`
-//!   moves the bodies below along.
+//! - If both were set since the last step, the pose wins over the transform, separately for position and rotation.
+//! - Bodies move independently of their parents in the simulation. A change to a parent's `Transform` by the app moves
+//! the bodies below it.
 
 /// `$left * $right` for every mix of values, references and mutable references.
 macro_rules! by_reference {
@@ -39,12 +38,12 @@ mod helper;
 mod kernel_pose;
 pub(crate) mod plugin;
 mod position;
+mod rotation64;
 mod rotation_ops;
 pub(crate) mod sync;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tree;
-mod turn;
 
 pub use dim::Rotation;
 pub use helper::PhysicsTransformHelper;
@@ -58,20 +57,20 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
-/// What the sync between transforms and poses does. Everything is on by default.
+/// Settings of the synchronisation between transforms and poses. Everything is on by default.
 #[derive(Resource, Reflect, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Default, Debug, PartialEq)]
 pub struct PhysicsTransformConfig {
     /// Whether a change to an ancestor's `Transform` moves the bodies and colliders below, and whether their
-    /// `GlobalTransform` is brought up to date before each step.
+    /// `GlobalTransform` is updated before each step.
     pub propagate_before_physics: bool,
-    /// Whether changed transforms are read before a step. New bodies are initialised from theirs anyway.
+    /// Whether changed transforms are read before a step. New bodies are always initialised from theirs.
     pub transform_to_position: bool,
     /// Whether poses are written to transforms after a step.
     pub position_to_transform: bool,
-    /// Whether the scale of a `Transform` scales the collider. *Not yet*: it does not, either way.
+    /// Whether the scale of a `Transform` scales the collider. *Not yet*: it has no effect.
     pub transform_to_collider_scale: bool,
 }
 
@@ -86,16 +85,15 @@ impl Default for PhysicsTransformConfig {
     }
 }
 
-/// When the sync runs.
+/// System sets of the synchronisation.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PhysicsTransformSystems {
-    /// Finds what changed in the hierarchy and its transforms. First in
+    /// Find changes of the hierarchy and its transforms. First in
     /// [`PhysicsSystems::Prepare`](crate::schedule::PhysicsSystems::Prepare).
     Propagate,
-    /// Reads changed transforms into poses. In
-    /// [`PhysicsSystems::Prepare`](crate::schedule::PhysicsSystems::Prepare).
+    /// Read changed transforms into poses. In [`PhysicsSystems::Prepare`](crate::schedule::PhysicsSystems::Prepare).
     TransformToPosition,
-    /// Writes poses that moved to transforms. In
+    /// Write poses that changed to transforms. In
     /// [`PhysicsSystems::Writeback`](crate::schedule::PhysicsSystems::Writeback).
     PositionToTransform,
 }
@@ -104,11 +102,11 @@ pub enum PhysicsTransformSystems {
 #[deprecated(note = "renamed to `PhysicsTransformSystems`")]
 pub type PhysicsTransformSet = PhysicsTransformSystems;
 
-/// The rotation of a frame; none where it has no direction.
-pub(crate) fn turn_to_rotation(turn: turn::Turn) -> Rotation {
-    Rotation::from_turn(turn).unwrap_or(Rotation::IDENTITY)
+/// The rotation of an `f64` rotation; the identity if it cannot be normalised.
+pub(crate) fn rotation_from_f64(turn: rotation64::Rotation64) -> Rotation {
+    Rotation::from_f64(turn).unwrap_or(Rotation::IDENTITY)
 }
 
-/// Makes the pose of an entity without a rigid body be written to its `Transform` after a step.
+/// Lets the pose of an entity without a rigid body be written to its `Transform` after a step.
 #[derive(Component, Default)]
 pub struct ApplyPosToTransform;

@@ -1,4 +1,4 @@
-//! The plugins that keep the tree, and poses and transforms in step.
+//! The plugins of the hierarchy's tree, and of the synchronisation between poses and transforms.
 
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::{change_detection::CheckChangeTicks, intern::Interned, prelude::*, schedule::ScheduleLabel};
@@ -14,13 +14,13 @@ use super::{
 };
 use crate::{dynamics::rigid_body::RigidBody, schedule::PhysicsSystems, threads::Threads};
 
-/// Keeps [`Position`] and [`Rotation`] in step with `Transform`; see [`PhysicsTransformConfig`].
+/// Synchronises [`Position`] and [`Rotation`] with `Transform`; see [`PhysicsTransformConfig`].
 pub struct PhysicsTransformPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
 impl PhysicsTransformPlugin {
-    /// Runs the sync in `schedule`, where [`PhysicsSystems`](crate::schedule::PhysicsSystems) run.
+    /// Runs in `schedule`, which must have the sets of [`PhysicsSystems`](crate::schedule::PhysicsSystems).
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern() }
     }
@@ -35,7 +35,7 @@ impl Default for PhysicsTransformPlugin {
 impl Plugin for PhysicsTransformPlugin {
     fn build(&self, app: &mut App) {
         TransformTreePlugin::ensure(app, self.schedule);
-        // Each fails only where the requirement is there already.
+        // Registration fails only if the requirement exists already.
         let _ = app.try_register_required_components_with::<RigidBody, Position>(|| Position::PLACEHOLDER);
         let _ = app.try_register_required_components_with::<RigidBody, Rotation>(|| Rotation::PLACEHOLDER);
         let _ = app.try_register_required_components::<Position, Transform>();
@@ -68,11 +68,11 @@ impl Plugin for PhysicsTransformPlugin {
     }
 }
 
-/// Owns the tree and the one scan over `Transform`. Added by whichever plugin needs it first.
+/// Adds the tree and the scan of `Transform`. The first plugin that needs it adds it.
 pub(crate) struct TransformTreePlugin(pub(crate) Interned<dyn ScheduleLabel>);
 
 impl TransformTreePlugin {
-    /// Adds the plugin unless it is there.
+    /// Adds the plugin unless it was added.
     pub(crate) fn ensure(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
         if !app.is_plugin_added::<Self>() {
             app.add_plugins(Self(schedule));

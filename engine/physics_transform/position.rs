@@ -13,13 +13,13 @@ use crate::math::{Scalar, Vector, vector_from_xyz};
 
 /// The world position of a rigid body or collider, in metres.
 ///
-/// This, with [`Rotation`](super::Rotation), is what the simulation reads and writes; `Transform` is
-/// kept in step with it. To place something, set either; if both were set since the last step, the
-/// position wins. The position of a collider that is a child of a body follows from the body and the
-/// collider's [`ColliderTransform`](crate::collision::collider::collider_transform::ColliderTransform).
+/// The simulation reads and writes this and [`Rotation`](super::Rotation); `Transform` is synchronised with them. To
+/// place an entity, set either; if both were set since the last step, the position wins. The position of a collider
+/// that is a child of a body follows from the body and the collider's
+/// [`ColliderTransform`](crate::collision::collider::collider_transform::ColliderTransform).
 ///
-/// A nested body (a body that is a child of another) moves on its own: its position is not changed by
-/// the simulated motion of its parent.
+/// A nested body (a body that is a child of another) moves on its own: the simulated motion of its parent does not
+/// change its position.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -42,7 +42,7 @@ pub struct Position(pub Vector);
 crate::type_path::type_path!(Position, "physics_transform::transform");
 
 impl Position {
-    /// Stands for "take it from the `Transform`"; replaced when the entity gets its body or collider.
+    /// Placeholder for the position of the `Transform`. It is replaced when the entity gets its body or collider.
     pub const PLACEHOLDER: Self = Self(Vector::MAX);
 
     /// The position at a point, in metres.

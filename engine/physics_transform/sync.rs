@@ -1,10 +1,9 @@
-//! Keeps `Transform` and the pair [`Position`], [`Rotation`] in step: transforms that the user changed are
-//! read before a step, poses that moved are written after it.
+//! Synchronises `Transform` with [`Position`] and [`Rotation`]: transforms that the app changed are read before a step,
+//! poses that changed are written after it.
 //!
-//! What counts as a user's change of a `Transform` is decided by bits, not by tolerance: its value differs
-//! from what the write-back would put there for the present pose. So an untouched body's pose is never
-//! perturbed, and nothing about the sync needs to be stored or rolled back. Change ticks only narrow down
-//! where to look.
+//! A `Transform` counts as changed by the app if its bits differ from what the write-back would store for the current
+//! pose. So rounding never perturbs the pose of an untouched body, and the sync has no state to be stored or rolled
+//! back. Change ticks only narrow the search.
 
 use bevy_ecs::{
     change_detection::{CheckChangeTicks, ContiguousRef, Tick},
@@ -19,8 +18,8 @@ use bevy_transform::components::{GlobalTransform, Transform};
 use super::{
     ApplyPosToTransform, PhysicsTransformConfig, Position, Rotation, dim,
     frame::{Frame, read_pose, same_pose, same_rotation, same_translation, write_pose},
+    rotation64::Rotation64,
     tree::{FollowsBody, HierarchyQueue, Parents, Physical, TransformTree, TreeChanges},
-    turn::Turn,
 };
 use crate::{
     columns::{Column, is_change_tracked, pieces},
@@ -32,18 +31,18 @@ use crate::{
     threads::Threads,
 };
 
-/// When the sync last looked and wrote.
+/// Ticks of the last reads and writes.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct SyncTicks {
-    /// The last scan over `Transform`.
+    /// The last scan of `Transform`.
     scan: Tick,
-    /// The last write-back; its own writes to `Transform` bear this tick.
+    /// The last write-back. Transforms that it wrote have this tick.
     writeback: Tick,
-    /// The last initialisation and the last reading; what they wrote to poses bears these ticks and came
-    /// from transforms, so that it need not go back there.
+    /// The last initialisation and the last read. Poses that they wrote have these ticks. They came from transforms, so
+    /// they need not be written back.
     read: [Tick; 2],
-    /// Entities whose transform is not finite, of which the app was told.
-    told: EntityHashSet,
+    /// Entities whose transform is not finite and was reported.
+    reported: EntityHashSet,
 }
 
 impl SyncTicks {
@@ -57,26 +56,26 @@ impl SyncTicks {
 /// An entity that got its [`Position`] since the last step.
 #[derive(Clone, Debug)]
 pub(crate) struct Spawned {
-    /// Whether the user gave the position and the rotation.
+    /// Whether the app gave the position and the rotation.
     given: [bool; 2],
-    /// What the first initialisation made of the pose.
+    /// The pose after the first initialisation.
     first: (Position, Option<Rotation>),
 }
 
-/// Entities to initialise, in order of their making, and those that got a [`Rotation`].
+/// Entities to be initialised, in order of spawning, and those that got a [`Rotation`].
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct SpawnQueue(Noted<Spawned>, Noted);
 
 #[cfg(test)]
 impl SpawnQueue {
-    /// How many entities are noted.
+    /// The number of queued entities.
     pub(crate) fn len(&self) -> usize {
         self.0.len() + self.1.len()
     }
 }
 
-/// The frame an entity's `Transform` is relative to, through all ancestors; `None` for a root. An ancestor
-/// without a transform counts as unmoved.
+/// The frame of an entity's parent in the world, through all ancestors; `None` for a root. An ancestor without a
+/// transform counts as the identity.
 pub(crate) fn parent_frame(
     entity: Entity,
     parents: &Parents,
@@ -95,8 +94,8 @@ pub(crate) fn parent_frame(
     Some(chain.fold(Frame::IDENTITY, |frame, t| frame.child(&t)))
 }
 
-/// Finds the transforms that changed since the last scan other than by the write-back: the one scan over
-/// all entities with a `Transform`.
+/// Finds transforms that changed since the last scan, except by the write-back. This is the only scan over all entities
+/// with a `Transform`.
 pub(crate) fn find_changed_transforms(
     transforms: Query<(Entity, Ref<Transform>, Option<Ref<GlobalTransform>>, Has<Position>, Has<Children>)>,
     tree: Res<TransformTree>,
@@ -135,9 +134,9 @@ pub(crate) fn find_changed_transforms(
     ticks.scan = system.this_run();
 }
 
-/// Brings the `GlobalTransform` of physics up to date: of bodies, colliders and their ancestors whose own transform,
-/// or one above, changed since the last step or was written after it. Bevy does so once a frame, for all entities,
-/// after any number of steps; what has no physics in it or below is left to it.
+/// Updates the `GlobalTransform` of bodies, colliders and their ancestors, if their own transform or one above changed
+/// since the last step or was written after it. Bevy propagates once a frame, after any number of steps, and handles
+/// all other entities.
 pub(crate) fn propagate_global_transforms(
     changes: Res<TreeChanges>,
     mut tree: ResMut<TransformTree>,
@@ -166,18 +165,18 @@ pub(crate) fn propagate_global_transforms(
     }
 }
 
-/// Warns, once until it is mended, of a transform that is no place; the entity stays where it was.
-fn tell_nonsense(entity: Entity, transform: &Transform, read: &Vector, told: &mut EntityHashSet) {
+/// Warns of a transform that is not finite, once until it is finite again. The entity keeps its pose.
+fn warn_non_finite(entity: Entity, transform: &Transform, read: &Vector, reported: &mut EntityHashSet) {
     if read.is_finite() && transform.rotation.is_finite() {
-        if !told.is_empty() {
-            told.remove(&entity);
+        if !reported.is_empty() {
+            reported.remove(&entity);
         }
-    } else if told.insert(entity) {
+    } else if reported.insert(entity) {
         warn!("the transform of {entity}, or of an ancestor, is not finite; its pose does not follow it");
     }
 }
 
-/// Poses, transforms and the hierarchy, as initialising needs them.
+/// Queries for initialising poses.
 #[derive(SystemParam)]
 pub(crate) struct Initialiser<'w, 's> {
     poses: Query<
@@ -196,16 +195,16 @@ impl Initialiser<'_, '_> {
         core::iter::successors(Some(entity), |&at| self.parents.get(at).ok().map(ChildOf::parent)).count()
     }
 
-    /// Warns of a transform from which a pose was to be taken and cannot.
-    fn tell_nonsense(&self, entity: Entity, given: [bool; 2], told: &mut EntityHashSet) {
+    /// Warns of a transform that is not finite, if a pose was to be initialised from it.
+    fn warn_non_finite(&self, entity: Entity, given: [bool; 2], reported: &mut EntityHashSet) {
         let Ok(transform) = self.transforms.get(entity) else { return };
         if given != [true; 2] {
             let parent = parent_frame(entity, &self.parents, |e| self.transforms.get(e).ok().copied());
-            tell_nonsense(entity, transform, &read_pose(parent.as_ref(), transform).0, told);
+            warn_non_finite(entity, transform, &read_pose(parent.as_ref(), transform).0, reported);
         }
     }
 
-    /// What the user gave goes to the `Transform`, what the user did not give comes from there.
+    /// Writes what the app gave to the `Transform`, and takes the rest from the `Transform`.
     fn initialise(&mut self, entity: Entity, given: [bool; 2]) {
         let Ok((mut position, mut rotation, ..)) = self.poses.get_mut(entity) else { return };
         let transform = self.transforms.get(entity).copied().unwrap_or_default();
@@ -235,8 +234,8 @@ impl Initialiser<'_, '_> {
     }
 }
 
-/// Gives a new [`Position`] its value at once, so that nobody reads a placeholder; ancestors may still be
-/// missing or without their final transforms, so [`initialise_poses`] looks again before the step.
+/// Initialises a new [`Position`] at once, so that no system reads a placeholder. Ancestors may still be missing or
+/// change, so [`initialise_poses`] checks again before the step.
 pub(crate) fn initialise_added(
     added: On<Add, Position>,
     mut initialiser: Initialiser,
@@ -250,7 +249,7 @@ pub(crate) fn initialise_added(
     queue.0.put(entity, Spawned { given, first: (*position, rotation.copied()) });
 }
 
-/// Notes new rotations: an entity that had its position before does not get another chance.
+/// Records new rotations of entities that had a position before.
 pub(crate) fn note_rotation(added: On<Add, Rotation>, mut queue: ResMut<SpawnQueue>) {
     queue.1.note(added.event_target());
 }
@@ -269,10 +268,10 @@ pub(crate) fn initialise_poses(
     spawned.sort_by_key(|&(depth, ..)| depth);
     for (_, entity, Spawned { given, first }) in spawned {
         let Ok((position, rotation, _, false)) = initialiser.poses.get(entity) else { continue };
-        // A pose set after spawning is as good as one given with it.
+        // A pose set after spawning counts as given.
         let given = [given[0] || *position != first.0, given[1] || rotation.copied() != first.1];
         initialiser.initialise(entity, given);
-        initialiser.tell_nonsense(entity, given, &mut ticks.told);
+        initialiser.warn_non_finite(entity, given, &mut ticks.reported);
     }
     for (entity, ()) in queue.1.drain() {
         let Ok((_, Some(rotation), ..)) = initialiser.poses.get(entity) else { continue };
@@ -282,7 +281,7 @@ pub(crate) fn initialise_poses(
     }
 }
 
-/// What reading transforms needs.
+/// Queries for reading transforms.
 #[derive(SystemParam)]
 pub struct TransformReader<'w, 's> {
     tree: ResMut<'w, TransformTree>,
@@ -294,27 +293,28 @@ pub struct TransformReader<'w, 's> {
     poses: Query<'w, 's, (&'static mut Position, Option<&'static mut Rotation>), Without<FollowsBody>>,
 }
 
-/// Reads the transforms that users changed since the last step, their own or an ancestor's, into
-/// [`Position`] and [`Rotation`]. A position or rotation that was itself set since then is left alone.
+/// Reads transforms that the app changed since the last step, or whose ancestors' transforms it changed, into
+/// [`Position`] and [`Rotation`]. A position or rotation that was itself set since then is kept.
 pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick, _: OnThisThread) {
     let TransformReader { mut tree, changes, mut ticks, config, transforms, parents, mut poses } = reader;
     ticks.read[1] = system.this_run();
     let last = ticks.writeback;
-    let told = &mut ticks.told;
-    told.retain(|entity| transforms.contains(*entity));
+    let reported = &mut ticks.reported;
+    reported.retain(|entity| transforms.contains(*entity));
     let mut visit = |entity: Entity, parent: Option<&Frame>, transform: &Transform| {
         let Ok((mut position, rotation)) = poses.get_mut(entity) else { return };
         let held = rotation.as_ref().map_or(Rotation::IDENTITY, |rotation| **rotation);
         let expected = write_pose(parent, transform, position.0, held);
         let is_free = |changed: Tick| !changed.is_newer_than(last, system.this_run());
         let (read, turned) = read_pose(parent, transform);
-        tell_nonsense(entity, transform, &read, told);
+        warn_non_finite(entity, transform, &read, reported);
         let moved = !same_translation(&expected, transform) && read.is_finite();
         if moved && is_free(position.last_changed()) && position.0 != read {
             position.0 = read;
         }
         let (Some(mut rotation), Some(turned)) = (rotation, turned) else { return };
-        let current = parent.map_or(Turn::from_quat(transform.rotation), |f| f.child(transform).rotation());
+        let current =
+            parent.map_or(Rotation64::from_quat(transform.rotation), |f| f.child(transform).rotation());
         let rotated = !same_rotation(&expected, transform) && !dim::is_rounding(turned, held, current);
         if rotated && is_free(rotation.last_changed()) && *rotation != turned {
             *rotation = turned;
@@ -337,13 +337,13 @@ pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick, 
     }
 }
 
-/// Whose poses are written to transforms.
+/// Entities whose poses are written to transforms.
 type Written = Or<(With<RigidBody>, With<ApplyPosToTransform>)>;
 
-/// A pose, and what says when it changed.
+/// A pose, with its change ticks.
 type Pose = (Entity, Ref<'static, Position>, Ref<'static, Rotation>);
 
-/// What writing transforms needs.
+/// Queries for writing transforms.
 #[derive(SystemParam)]
 pub struct TransformWriter<'w, 's> {
     tree: ResMut<'w, TransformTree>,
@@ -363,13 +363,13 @@ pub struct TransformWriter<'w, 's> {
     changes: ResMut<'w, TreeChanges>,
     physical: Physical<'w, 's>,
     threads: Res<'w, Threads>,
-    /// What each thread found that has to be written one by one.
+    /// Entities that each thread found and that are written one by one.
     found: Local<'s, Vec<Vec<Entity>>>,
 }
 
-/// Writes the poses that moved since the last write-back into `Transform`: of bodies, and of entities with
-/// [`ApplyPosToTransform`]. Bodies below a moved one keep their pose in the world, so theirs are written
-/// too. Scale is kept; in 2D also the depth and any tilt.
+/// Writes poses that changed since the last write-back to `Transform`: of bodies, and of entities with
+/// [`ApplyPosToTransform`]. Bodies below a moved one keep their world pose, so their transforms are written, too. Scale
+/// is kept; in 2D also depth and tilt.
 pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTick, _: OnThisThread) {
     let TransformWriter {
         mut tree,
@@ -388,9 +388,9 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
     if !config.position_to_transform {
         return;
     }
-    // Not what was read from transforms just now.
+    // Excludes poses that were read from transforms in this step.
     let is_own = |tick: Tick| since.is_new(tick) && !read.contains(&tick);
-    // What the app did to the hierarchy during the step.
+    // Changes of the hierarchy by the app during the step.
     if !writer.hierarchy.is_empty() {
         let noted = writer.hierarchy.entities();
         tree.follow(&noted, &parents, &writer.physical, &mut writer.changes.early);
@@ -421,7 +421,7 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
             });
         });
     }
-    // What hangs in a hierarchy, and all where tables cannot be written in whole.
+    // Entities in a hierarchy. All entities if tables cannot be written as a whole.
     let mut late: Vec<Entity> = Vec::new();
     found.iter_mut().for_each(|found| late.append(found));
     if late.is_empty() {

@@ -1,33 +1,32 @@
-//! The part of Bevy's hierarchy that has physics in it: entities with a [`Position`] and their ancestors,
-//! with links down to those only.
+//! The part of Bevy's hierarchy with physics in it: entities with a [`Position`] and their ancestors, with links down
+//! to those only.
 //!
-//! A level may hang a hundred thousand pictures and one body under one root. Walking `Children` from the
-//! root would visit them all, with markers or without; this shadow of the hierarchy visits the body. Roots
-//! without anything below need no node. Observers append to one queue; [`TransformTree::follow`] alone changes
-//! links, before a step and once more before transforms are written, by looking at the hierarchy as it is
-//! then, so that the order in which things were spawned, reparented and despawned before does not matter.
+//! A level may have a hundred thousand pictures and one body under one root. Walking `Children` from the root would
+//! visit all of them; this copy of the hierarchy visits the body only. Roots without physics below need no node.
+//! Observers append to one queue. [`TransformTree::follow`] alone changes links, before a step and again before
+//! transforms are written, by the hierarchy as it is then, so that the order of changes does not matter.
 //!
-//! Each node counts the poses below it that are written to transforms: a body with nothing but its colliders
-//! below is written like one that stands alone.
+//! Each node counts the poses below it that are written to transforms: a body with only its colliders below is written
+//! like one without children.
 
 use bevy_ecs::{entity::EntityHashMap, entity_disabling::Disabled, prelude::*, query::Allow};
 
 use super::{ApplyPosToTransform, Position};
 use crate::{dynamics::rigid_body::RigidBody, noted::Noted, schedule::OnThisThread};
 
-/// On an entity whose pose follows from its body: a collider that is not on the body itself.
+/// On a collider on another entity than its body: its pose follows from the body.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(crate) struct FollowsBody {
-    /// The body, where the hierarchy names it. None where the app inserted the link.
+    /// The nearest body above, as the hierarchy gives it. `None` if the app inserted the link.
     pub(crate) above: Option<Entity>,
 }
 
-/// Entities whose parent, body or collider came, went or changed since the last step.
+/// Entities whose parent, body or collider was added, removed or changed since the last step.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct HierarchyQueue {
-    /// Those that may be there.
+    /// Entities that may be alive.
     noted: Noted,
-    /// Those that are gone, but not from the tree.
+    /// Despawned entities that are still in the tree.
     gone: Vec<Entity>,
 }
 
@@ -41,64 +40,64 @@ impl HierarchyQueue {
         self.noted.is_empty() && self.gone.is_empty()
     }
 
-    /// The entities to be looked at.
+    /// The queued entities.
     pub(crate) fn entities(&self) -> Vec<Entity> {
         self.gone.iter().copied().chain(self.noted.entities()).collect()
     }
 
-    /// How many they are.
+    /// The number of queued entities.
     #[cfg(test)]
     pub(crate) fn len(&self) -> usize {
         self.gone.len() + self.noted.len()
     }
 }
 
-/// What [`update_tree`] found, for the systems after it in this step.
+/// Changes found by [`update_tree`], for later systems of this step.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct TreeChanges {
     /// The queue of this step, each entity once, in order.
     pub(crate) queued: Vec<Entity>,
-    /// Entities with another parent than before.
+    /// Entities whose parent changed.
     pub(crate) reparented: Vec<Entity>,
-    /// Those that the write-back of the last step saw already; they are still in the queue.
+    /// Entities that the last step's write-back has handled. They are still in the queue.
     pub(crate) early: Vec<Entity>,
-    /// Entities whose `Transform` may differ from what physics knows, the topmost sufficing: changed,
-    /// reparented or enabled again.
+    /// Entities whose `Transform` may differ from the pose, because it changed, or the entity was reparented or
+    /// enabled. Descendants may be missing.
     pub(crate) transforms: Vec<Entity>,
-    /// Entities whose `Transform` was written after a step, and whose `GlobalTransform` has not followed since.
+    /// Entities whose `Transform` was written after a step, and whose `GlobalTransform` was not updated since.
     pub(crate) written: Vec<Entity>,
 }
 
 #[derive(Clone, Debug, Default)]
 struct Node {
     parent: Option<Entity>,
-    /// Where the parent lists this node.
+    /// Index of this node among the parent's children.
     slot: usize,
     children: Vec<Entity>,
-    /// Whether its pose is written to its transform. Only kept where there is a parent.
+    /// Whether its pose is written to its transform. Only valid with a parent.
     is_written: bool,
-    /// For how many below that is so.
+    /// Number of nodes below whose pose is written.
     written_below: usize,
     visit: u64,
 }
 
 impl Node {
-    /// How many poses are written here and below.
+    /// Number of poses that are written here and below.
     fn written(&self) -> usize {
         usize::from(self.is_written) + self.written_below
     }
 }
 
-/// The nodes; see the module.
+/// The nodes. See the module.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct TransformTree {
     nodes: EntityHashMap<Node>,
     walk: u64,
-    /// How many entities walks have visited so far.
+    /// Number of entities that walks have visited.
     pub(crate) visited: u64,
 }
 
-/// The hierarchy as it is now.
+/// The current hierarchy.
 pub(crate) type Parents<'w, 's> = Query<'w, 's, &'static ChildOf, Allow<Disabled>>;
 pub(crate) type Physical<'w, 's> =
     Query<'w, 's, (Has<RigidBody>, Has<ApplyPosToTransform>), (With<Position>, Allow<Disabled>)>;
@@ -124,19 +123,19 @@ impl TransformTree {
         self.nodes.get(&entity).is_some_and(|node| node.parent.is_some() || node.written_below > 0)
     }
 
-    /// The tracked children: those that have physics, or have some below.
+    /// The tracked children: those with physics, or with physics below.
     pub(crate) fn children(&self, entity: Entity) -> &[Entity] {
         self.nodes.get(&entity).map_or(&[], |node| &node.children)
     }
 
-    /// Begins a set of walks that visit no entity twice.
+    /// Begins a series of walks that visit no entity twice.
     pub(crate) fn begin_walk(&mut self) {
         self.walk += 1;
     }
 
-    /// Visits `root` and what is tracked below, parents first; `visit` gets what it returned for the parent
-    /// and returns `None` to go no deeper. Entities visited since [`begin_walk`](Self::begin_walk) are
-    /// skipped with all below.
+    /// Visits `root` and the tracked entities below it, parents first. `visit` gets its own result for the parent, and
+    /// returns `None` to skip descendants. Entities that were visited since [`begin_walk`](Self::begin_walk) are
+    /// skipped with all descendants.
     pub(crate) fn descend<C: Clone>(
         &mut self,
         root: Entity,
@@ -158,9 +157,9 @@ impl TransformTree {
         }
     }
 
-    /// Brings the links of entities up to date. `moved` receives those with another parent than before.
+    /// Updates the links of entities. `moved` receives those whose parent changed.
     ///
-    /// Links that are gone go first: beside new ones they could close a circle.
+    /// Removed links are processed first: together with new ones they could form a cycle.
     pub(crate) fn follow(
         &mut self,
         entities: &[Entity],
@@ -185,13 +184,13 @@ impl TransformTree {
         }
     }
 
-    /// The parent of an entity that has physics in it or below.
+    /// The parent of an entity, if it has physics in it or below.
     fn wanted_parent(&self, entity: Entity, parents: &Parents, physical: &Physical) -> Option<Entity> {
         let tracked = physical.contains(entity) || !self.children(entity).is_empty();
         if tracked { parents.get(entity).ok().map(ChildOf::parent) } else { None }
     }
 
-    /// Links `entity` below `parent`, and the ancestors that were not tracked yet.
+    /// Links `entity` below `parent`, and adds ancestors that are not tracked yet.
     fn link(&mut self, entity: Entity, parent: Entity, parents: &Parents, physical: &Physical) {
         let (mut entity, mut parent) = (entity, parent);
         loop {
@@ -226,7 +225,7 @@ impl TransformTree {
         self.prune(parent, physical);
     }
 
-    /// Changes the count of poses written below `at` and its ancestors.
+    /// Changes the number of poses written below `at` and its ancestors.
     fn count(&mut self, at: Entity, change: impl Fn(usize) -> usize) {
         let mut next = Some(at);
         while let Some(node) = next.and_then(|at| self.nodes.get_mut(&at)) {
@@ -235,7 +234,7 @@ impl TransformTree {
         }
     }
 
-    /// Notes whether the pose of an entity that has a parent is written.
+    /// Records whether the pose of an entity with a parent is written.
     fn recount(&mut self, entity: Entity, is_written: bool) {
         let Some(node) = self.nodes.get_mut(&entity) else { return };
         let Some(parent) = node.parent else { return };
@@ -245,7 +244,7 @@ impl TransformTree {
         }
     }
 
-    /// Forgets the entity if it has nothing below and either no parent or no physics.
+    /// Removes a node without children that has no parent or no physics.
     fn prune(&mut self, entity: Entity, physical: &Physical) {
         let Some(node) = self.nodes.get(&entity) else { return };
         if !node.children.is_empty() || (node.parent.is_some() && physical.contains(entity)) {
@@ -255,13 +254,13 @@ impl TransformTree {
         self.nodes.remove(&entity);
     }
 
-    /// How many entities are tracked.
+    /// The number of tracked entities.
     #[cfg(test)]
     pub(crate) fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Panics where a link is not mutual, or, with nothing queued, differs from the hierarchy.
+    /// Panics if a link is not mutual or, with an empty queue, differs from the hierarchy.
     #[cfg(test)]
     pub(crate) fn check(&self, world: &World) {
         if !world.resource::<HierarchyQueue>().is_empty() {
@@ -289,7 +288,7 @@ impl TransformTree {
     }
 }
 
-/// Drains the queue into the tree.
+/// Applies the queue to the tree.
 pub(crate) fn update_tree(
     mut queue: ResMut<HierarchyQueue>,
     mut tree: ResMut<TransformTree>,
@@ -321,7 +320,7 @@ pub(crate) fn enqueue<E: EntityEvent, B: Bundle>(
     queue.note(event.event_target(), &tree);
 }
 
-/// Appends an entity with another parent, if there is physics in it or below.
+/// Appends an entity whose parent changed, if there is physics in it or below.
 pub(super) fn enqueue_parented<E: EntityEvent>(
     event: On<E, ChildOf>,
     mut queue: ResMut<HierarchyQueue>,

@@ -1,5 +1,5 @@
-//! When physics runs: [`PhysicsSchedule`] is one step, [`PhysicsSystems`] are its place in the schedule that hosts it,
-//! [`PhysicsStepSystems`] are its stages, and the [clocks](Physics) say how long a step is.
+//! Schedules of physics: [`PhysicsSchedule`] is one step, [`PhysicsSystems`] are its sets in the hosting schedule,
+//! [`PhysicsStepSystems`] are the sets of a step, and the [clocks](Physics) define its length.
 
 mod step_times;
 mod time;
@@ -22,7 +22,8 @@ use core::time::Duration;
 
 use crate::threads::Threads;
 
-/// Adds [`PhysicsSchedule`], the clocks, the system sets and the system that takes a step whenever the hosting schedule runs.
+/// Adds [`PhysicsSchedule`], the clocks, the system sets, and the system that takes a step in each run of the hosting
+/// schedule.
 ///
 /// Without it there are no clocks and no step is taken.
 pub struct PhysicsSchedulePlugin {
@@ -44,7 +45,7 @@ impl Default for PhysicsSchedulePlugin {
 
 impl Plugin for PhysicsSchedulePlugin {
     fn build(&self, app: &mut App) {
-        // The generic clock is the app's; it is only made sure of here for apps without `TimePlugin`.
+        // The generic clock belongs to the app. It is added here for apps without `TimePlugin`.
         app.init_resource::<Time>()
             .init_resource::<Time<Physics>>()
             .init_resource::<Time<Substeps>>()
@@ -94,20 +95,20 @@ impl Plugin for PhysicsSchedulePlugin {
     }
 }
 
-/// The last part of a step ends. What follows may want the cores of the helpers.
+/// Ends the last part of a step, and parks the threads: later systems may need the cores.
 fn end_writeback(mut times: ResMut<StepTimes>, threads: Res<Threads>, _: OnThisThread) {
     times.end("Writeback");
     times.note_shared(&threads.pool);
     threads.pool.rest();
 }
 
-/// A parameter that keeps a system of the hosting schedule on the thread that runs the schedule. Most have so little
-/// to do that handing them over to another thread, and waiting for it, would take a hundred times as long.
+/// A parameter that keeps a system of the hosting schedule on the thread that runs the schedule. Most of these systems
+/// do so little that handing them to another thread would take a hundred times as long.
 pub(crate) use bevy_ecs::system::NonSendMarker as OnThisThread;
 
-/// Makes a schedule run its systems one after the other, and fail to build if their order is not determined.
+/// Lets a schedule run its systems one after the other, and makes an ambiguous order an error.
 ///
-/// A step is parallel inside its systems; a task per system would cost more than it wins, twelve times a tick.
+/// A step is parallel inside of its systems. A task per system would cost more than it saves.
 pub(crate) fn make_deterministic(schedule: &mut Schedule) {
     schedule.set_executor(SingleThreadedExecutor::new()).set_build_settings(ScheduleBuildSettings {
         ambiguity_detection: LogLevel::Error,
@@ -115,26 +116,27 @@ pub(crate) fn make_deterministic(schedule: &mut Schedule) {
     });
 }
 
-/// One step of the simulation, in the stages of [`PhysicsStepSystems`].
+/// One step of the simulation. Its sets are [`PhysicsStepSystems`].
 ///
-/// Systems run one after the other, and an ambiguous order is an error: say `.before` or `.after` where two of your systems share data.
-/// The order with the engine's own systems of the same set may be left open: data shared with them is seen as it was before or after them.
-/// [Run by hand](Physics#stepping-by-hand), a step is as long as the delta of [`Time<Physics>`](Physics), whatever the generic [`Time`] shows.
+/// Systems run one after the other, and an ambiguous order is an error: use `.before` or `.after` where two of your
+/// systems share data. The order relative to the engine's own systems in the same set may be left open: shared data is
+/// then read either before or after them. [Run by hand](Physics#stepping-by-hand), a step is as long as the delta of
+/// [`Time<Physics>`](Physics), independent of the generic [`Time`].
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub struct PhysicsSchedule;
 
-/// The stages of physics in the schedule that hosts it, in this order and before [`TransformSystems::Propagate`].
+/// System sets of physics in the hosting schedule, in this order, before [`TransformSystems::Propagate`].
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PhysicsSystems {
-    /// Before anything of physics.
+    /// Before physics.
     First,
-    /// What the app changed is read in: transforms, hierarchies, colliders, mass properties.
+    /// Read changes of the app: transforms, hierarchies, colliders, mass properties.
     Prepare,
-    /// The clock advances and, unless it stands still, [`PhysicsSchedule`] runs.
+    /// Advance the clock and, unless it is paused, run [`PhysicsSchedule`].
     StepSimulation,
-    /// Results are written to where the app reads them: positions and rotations to transforms.
+    /// Write results to components of the app: positions and rotations to transforms.
     Writeback,
-    /// After everything of physics.
+    /// After physics.
     Last,
 }
 
@@ -142,7 +144,7 @@ pub enum PhysicsSystems {
 #[deprecated(since = "0.4.0", note = "renamed to `PhysicsSystems`")]
 pub type PhysicsSet = PhysicsSystems;
 
-/// The stages of a step, in this order, in [`PhysicsSchedule`].
+/// System sets of a step, in this order, in [`PhysicsSchedule`].
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -160,19 +162,19 @@ pub type PhysicsSet = PhysicsSystems;
 /// ```
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PhysicsStepSystems {
-    /// Before anything of the step.
+    /// Before the step.
     First,
-    /// Pairs of colliders whose boxes overlap are found.
+    /// Find pairs of colliders whose boxes overlap.
     BroadPhase,
-    /// Contacts of those pairs are computed.
+    /// Compute the contacts of those pairs.
     NarrowPhase,
-    /// Velocities and positions are integrated, contacts and joints solved, substep by substep.
+    /// Integrate velocities and positions, and solve contacts and joints, in substeps.
     Solver,
-    /// Islands at rest are put to sleep.
+    /// Put islands at rest to sleep.
     Sleeping,
-    /// Collision events are sent, diagnostics written.
+    /// Send collision events, and write diagnostics.
     Finalize,
-    /// After everything of the step.
+    /// After the step.
     Last,
 }
 
@@ -182,15 +184,15 @@ pub type PhysicsStepSet = PhysicsStepSystems;
 
 /// The change tick at the end of the last step.
 ///
-/// What changed after it was changed by the app, or by the write-back of that step, not by the step itself. A run of the hosting schedule that took no step does not move it:
-/// what the app changes while physics is paused is still news to the first step after it.
+/// Newer changes were made by the app, or by the write-back of that step, not by the step itself. A run of the hosting
+/// schedule without a step does not change it: what the app changes while physics is paused is new for the next step.
 #[derive(Resource, Reflect, Default)]
 #[reflect(Resource, Default)]
 pub struct LastPhysicsTick(pub Tick);
 
-/// How far [`Time<Physics>`](Physics) had come at the end of the last step, however that was started.
+/// Elapsed [`Time<Physics>`](Physics) at the end of the last step.
 ///
-/// A paused clock that is further than this was advanced by hand, and the step for it was not run yet.
+/// A paused clock that is ahead of it was advanced by hand, and the step for it was not run yet.
 #[derive(Resource, Default)]
 struct SimulatedTime(Duration);
 
@@ -204,9 +206,9 @@ fn record_step(
     simulated.0 = clock.elapsed();
 }
 
-/// Advances [`Time<Physics>`](Physics) and takes one step of that length, if it has one.
+/// Advances [`Time<Physics>`](Physics), and takes one step of that length unless it is zero.
 ///
-/// The first run is a run like any other: if the host's clock has not started, there is nothing to simulate.
+/// The first run is no exception: if the host's clock has not started, there is no time to simulate.
 fn run_physics_schedule(world: &mut World) {
     let host_delta = world.resource::<Time>().delta();
     let simulated = world.resource::<SimulatedTime>().0;

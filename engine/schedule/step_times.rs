@@ -1,4 +1,4 @@
-//! How long each part of a step took.
+//! Timers of the parts of a step.
 
 use bevy_ecs::prelude::*;
 use bevy_platform::time::Instant;
@@ -7,12 +7,12 @@ use core::time::Duration;
 use kernel::thread_pool::ThreadPool;
 use std::sync::OnceLock;
 
-/// How long each part of the last step took, in the order in which they ran: from `Prepare`, where transforms are
-/// read, through the stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
+/// Time of each part of the last step, in the order they ran: from `Prepare`, where transforms are read, through the
+/// stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
 ///
-/// What the app's own systems do between two parts counts for the later one. The parts that only stand between the
-/// ECS and the engine's own tables are `DrainLifecycle`, `ReadAwake`, `Gather`, `Scatter` and `MirrorSleep`, besides
-/// `Prepare` and `Writeback`; `FinishBodies`, before `Scatter`, is the kernel's. The names are for people to read: they may change.
+/// The time of the app's systems between two parts is included in the later one. `DrainLifecycle`, `ReadAwake`,
+/// `Gather`, `Scatter` and `MirrorSleep`, besides `Prepare` and `Writeback`, only copy between components and the
+/// engine's tables. The names are for display, and may change.
 ///
 /// ```
 /// # use avian::schedule::StepTimes;
@@ -30,7 +30,7 @@ pub struct StepTimes {
     #[reflect(ignore)]
     last: Option<Instant>,
     counts_shared: bool,
-    /// Of the last step, and the sum of all before.
+    /// In the last step, and in all before.
     shared: [Duration; 2],
 }
 
@@ -45,13 +45,13 @@ impl StepTimes {
         self.parts.iter().map(|(_, time)| *time).sum()
     }
 
-    /// Has [`shared`](Self::shared) counted from the next step on.
+    /// Measures [`shared`](Self::shared) from the next step on.
     pub fn count_shared(&mut self) {
         self.counts_shared = true;
     }
 
-    /// For how long the last step was worked on by several threads. The rest of it one thread did alone: it takes as long
-    /// on any number of cores. Zero unless [counted](Self::count_shared), which costs a little.
+    /// Time of the last step in which several threads worked. The rest is the work of one thread, and takes as long on
+    /// any number of cores. Zero unless [measured](Self::count_shared), which costs a little.
     pub fn shared(&self) -> Duration {
         self.shared[0]
     }
@@ -65,12 +65,12 @@ impl StepTimes {
         }
     }
 
-    /// The next part begins now.
+    /// Begins the next part.
     pub(crate) fn begin(&mut self) {
         self.last = Some(Instant::now());
     }
 
-    /// What happened since the last part ended was this one.
+    /// Ends a part: the time since the last one ended is its time.
     pub(crate) fn end(&mut self, part: &'static str) {
         let now = Instant::now();
         let Some(last) = self.last.replace(now) else { return };
@@ -81,7 +81,7 @@ impl StepTimes {
     }
 }
 
-/// Since it was first asked.
+/// Nanoseconds since the first call.
 fn nanoseconds() -> u64 {
     static START: OnceLock<Instant> = OnceLock::new();
     START.get_or_init(Instant::now).elapsed().as_nanos() as u64

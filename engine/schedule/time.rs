@@ -1,5 +1,5 @@
-//! The clocks of a step: [`Time<Physics>`](Physics), advanced once per step, [`Time<Substeps>`](Substeps), advanced once per
-//! substep, and how the generic [`Time`] is lent to one of them while a schedule runs.
+//! Clocks of a step: [`Time<Physics>`](Physics), advanced once per step, and [`Time<Substeps>`](Substeps), advanced
+//! once per substep. The generic [`Time`] is set to one of them while a schedule runs.
 
 use bevy_ecs::world::World;
 use bevy_log::warn_once;
@@ -13,9 +13,9 @@ use crate::math::Scalar;
 
 /// The clock of the simulation, a context of [`Time`].
 ///
-/// `Time<Physics>` advances once per step by the delta of the schedule that physics runs in, times the
-/// [relative speed](PhysicsTime::relative_speed), or not at all while [paused](PhysicsTime::pause). Within
-/// [`PhysicsSchedule`](super::PhysicsSchedule) the generic `Time` shows it too.
+/// `Time<Physics>` advances once per step by the delta of the schedule that physics runs in, times the [relative
+/// speed](PhysicsTime::relative_speed), or not at all while [paused](PhysicsTime::pause). Within
+/// [`PhysicsSchedule`](super::PhysicsSchedule) the generic `Time` has the same values.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -48,8 +48,8 @@ use crate::math::Scalar;
 /// }
 /// ```
 ///
-/// or only advance the clock: the next run of the schedule that hosts physics then takes that one step, with all that belongs to it
-/// (transforms are read before and written after).
+/// or only advance the clock: the next run of the schedule that hosts physics then takes that step, including reading
+/// and writing transforms.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -60,7 +60,7 @@ pub struct Physics {
     relative_speed: f64,
 }
 
-/// A speed that was stored, if it is one that can be [set](PhysicsTime::set_relative_speed).
+/// A stored speed, if it can be [set](PhysicsTime::set_relative_speed).
 #[cfg(feature = "serialize")]
 fn deserialize_speed<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let speed: f64 = serde::Deserialize::deserialize(deserializer)?;
@@ -79,7 +79,7 @@ impl Default for Physics {
 
 /// Pausing and speed of [`Time<Physics>`](Physics).
 ///
-/// A relative speed must be finite and not negative. Anything else is ignored, with one warning: the clock keeps the speed it had.
+/// A relative speed must be finite and not negative. Any other is ignored, with one warning.
 pub trait PhysicsTime {
     /// Simulated seconds per second of the hosting schedule; 1 by default.
     fn relative_speed(&self) -> f32;
@@ -93,8 +93,9 @@ pub trait PhysicsTime {
     /// The clock with this [relative speed](Self::set_relative_speed), in double precision.
     fn with_relative_speed_f64(self, ratio: f64) -> Self;
 
-    /// Sets how many seconds are simulated per second of the hosting schedule: 0.5 is slow motion, 0 stands still. The *length* of each step
-    /// scales, not their number, so large values cost accuracy. Negative, infinite and NaN ratios are ignored with a warning.
+    /// Sets the number of simulated seconds per second of the hosting schedule: 0.5 is slow motion, 0 stops. It scales
+    /// the *length* of each step, not their number, so large values cost accuracy. Negative, infinite and NaN ratios
+    /// are ignored with a warning.
     fn set_relative_speed(&mut self, ratio: f32);
 
     /// [`set_relative_speed`](Self::set_relative_speed) in double precision.
@@ -103,10 +104,10 @@ pub trait PhysicsTime {
     /// Whether the clock is paused.
     fn is_paused(&self) -> bool;
 
-    /// Stops the clock: no steps but those [taken by hand](Physics#stepping-by-hand).
+    /// Pauses the clock. Only steps [by hand](Physics#stepping-by-hand) are taken.
     fn pause(&mut self);
 
-    /// Lets the clock go on, at the speed it had.
+    /// Resumes the clock at its previous speed.
     fn unpause(&mut self);
 }
 
@@ -159,10 +160,11 @@ impl PhysicsTime for Time<Physics> {
 /// The clock of the substeps, a context of [`Time`]: its delta is that of [`Time<Physics>`](Physics) divided by the
 /// [`SubstepCount`](crate::dynamics::solver::schedule::SubstepCount).
 ///
-/// It advances by that once per substep, to its end: from the start of a step it shows the end of the first substep, after the step
-/// that of the last.
+/// It advances once per substep. From the start of a step it shows the end of the first substep, after the step the end
+/// of the last.
 ///
-/// Within [`SubstepSchedule`](crate::dynamics::solver::schedule::SubstepSchedule) the generic `Time` shows it too.
+/// Within [`SubstepSchedule`](crate::dynamics::solver::schedule::SubstepSchedule) the generic `Time` has the same
+/// values.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -181,12 +183,12 @@ impl<T: Default> TimePrecisionAdjusted for Time<T> {
     }
 }
 
-/// How far a running physics clock advances when its host advances by `host_delta`.
+/// By how much a running physics clock advances when its host advances by `host_delta`.
 ///
-/// Total: a product or an end that a [`Duration`] cannot hold saturates at the end of time instead of panicking.
+/// A result beyond the range of [`Duration`] saturates instead of panicking.
 pub(super) fn scaled_delta(clock: &Time<Physics>, host_delta: Duration) -> Duration {
     let speed = clock.relative_speed_f64();
-    // Exactly the host's delta at normal speed: no rounding through seconds.
+    // At normal speed it is exactly the host's delta, without rounding.
     let delta = if speed == 1.0 {
         host_delta
     } else {
@@ -195,7 +197,7 @@ pub(super) fn scaled_delta(clock: &Time<Physics>, host_delta: Duration) -> Durat
     delta.min(Duration::MAX - clock.elapsed())
 }
 
-/// Runs `body` while the generic [`Time`] shows `clock`, and gives the generic clock back its own time afterwards.
+/// Runs `body` with the generic [`Time`] set to `clock`, and restores it afterwards.
 pub(crate) fn with_generic_time<R>(world: &mut World, clock: Time, body: impl FnOnce(&mut World) -> R) -> R {
     let host = core::mem::replace(&mut *world.resource_mut::<Time>(), clock);
     let result = body(world);

@@ -1,6 +1,6 @@
 //! A step made of the kernel's parts, in the order in which the engine runs them: what an embedder without
 //! an ECS would write.
-#![expect(unsafe_code, reason = "who has rows built answers for colours and contacts belonging together")]
+#![expect(unsafe_code, reason = "the caller of `build_rows` answers for contacts and colours")]
 
 use super::dim::inverse_inertia;
 use crate::kernel;

@@ -11,7 +11,7 @@ use crate::{
     step::{self, Owner},
 };
 
-/// The stages that every broad phase shares.
+/// The system sets that every broad phase shares.
 ///
 /// To use your own, disable [`BvhBroadPhasePlugin`] and add contacts in [`BroadPhaseSystems::CollectCollisions`].
 pub struct BroadPhaseCorePlugin;
@@ -29,7 +29,7 @@ impl Plugin for BroadPhaseCorePlugin {
 
 /// Finds pairs with the bounding volume hierarchies of [`ColliderTreePlugin`](crate::collider_tree::ColliderTreePlugin).
 ///
-/// `H` will be the app's collision hooks; until then it says nothing.
+/// `H` is reserved for the app's collision hooks. It has no effect yet.
 pub struct BvhBroadPhasePlugin<H = ()>(PhantomData<fn() -> H>);
 
 impl<H> Default for BvhBroadPhasePlugin<H> {
@@ -44,7 +44,7 @@ impl<H: 'static> Plugin for BvhBroadPhasePlugin<H> {
     }
 }
 
-/// The search for pairs.
+/// Adds the search for pairs, once for all hooks.
 struct SharedBroadPhasePlugin;
 
 impl Plugin for SharedBroadPhasePlugin {

@@ -1,4 +1,4 @@
-//! The boxes of a collider in the world: the tight one of this step, and the enlarged one in the trees.
+//! Boxes of a collider in the world: the tight one of this step, and the fat one in the trees.
 
 use crate::math::{Scalar, Vector};
 use bevy_derive::Deref;
@@ -32,7 +32,7 @@ impl Default for ColliderAabb {
 }
 
 impl ColliderAabb {
-    /// The box that contains nothing: merged with any other it gives that other.
+    /// The empty box: merged with another box it gives that box.
     pub const INVALID: Self = Self { min: Vector::INFINITY, max: Vector::NEG_INFINITY };
 
     /// The box around `center` that reaches `half_size` to each side.
@@ -97,8 +97,8 @@ impl ColliderAabb {
     }
 }
 
-/// The box of a collider in the trees, larger than its [`ColliderAabb`]: the tree is touched only when
-/// the tight box leaves it.
+/// The box of a collider in the trees, larger than its [`ColliderAabb`]. The tree changes only when the tight box
+/// leaves it.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

@@ -1,5 +1,5 @@
-//! What stands where the default collider would, without feature `default-collider`: a type that has no value,
-//! so that no entity ever has one and nothing that asks for it finds any.
+//! Stands in for the default collider without feature `default-collider`: a type without values, so that no entity has
+//! one and queries for it are empty.
 
 use bevy_ecs::prelude::Component;
 use kernel::{manifold::LocalManifold, math::Pose, shape::Shape};
@@ -9,16 +9,16 @@ use kernel::{manifold::LocalManifold, math::Pose, shape::Shape};
 pub(crate) enum Collider {}
 
 impl Collider {
-    /// The shape as the kernel has it.
+    /// The shape in the kernel's format.
     pub(crate) fn native(&self) -> &Shape {
         match *self {}
     }
 }
 
-/// Buffers of nothing.
+/// Unused buffers.
 pub(crate) type Workspace = ();
 
-/// The contact manifolds of two colliders of which the kernel does not know one.
+/// Contact manifolds of two colliders, one of which the kernel has no shape for.
 pub(crate) fn foreign_manifolds(
     a: &Collider,
     _: &Collider,

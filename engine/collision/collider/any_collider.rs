@@ -1,4 +1,4 @@
-//! What a collider type must be able to do: the traits behind custom collider backends.
+//! The traits of collider types, for custom collider backends.
 
 use super::ColliderAabb;
 use crate::math::{ComputeMassProperties, Vector};
@@ -8,14 +8,14 @@ use bevy_ecs::component::Mutable;
 use bevy_ecs::prelude::{Component, Entity};
 use bevy_ecs::system::{ReadOnlySystemParam, SystemParam};
 
-/// A thing that can be made a collider of type `C`, such as one of Bevy's geometric primitives.
+/// A type that can be made a collider of type `C`, such as a geometric primitive of Bevy.
 pub trait IntoCollider<C: AnyCollider> {
     /// Makes the collider.
     fn collider(&self) -> C;
 }
 
-/// What [`AnyCollider::aabb_with_context`] gets beside the collider: whose it is, and the system
-/// parameter that the collider type asks for.
+/// The arguments of [`AnyCollider::aabb_with_context`] besides the collider: its entity, and the system parameter of
+/// the collider type.
 #[derive(Deref)]
 pub struct AabbContext<'a, 'w, 's, T: ReadOnlySystemParam> {
     /// The collider's entity.
@@ -38,7 +38,7 @@ impl<'a, 'w, 's, T: ReadOnlySystemParam> AabbContext<'a, 'w, 's, T> {
 }
 
 impl AabbContext<'_, '_, '_, ()> {
-    /// The context of a collider that needs none.
+    /// The context of a collider type that needs none.
     fn fake() -> Self {
         Self { entity: Entity::PLACEHOLDER, item: &() }
     }
@@ -46,13 +46,13 @@ impl AabbContext<'_, '_, '_, ()> {
 
 /// A component that the engine can use as a collider.
 ///
-/// Colliders that need nothing but themselves set `Context = ()` and get [`SimpleCollider`]. Others name
-/// a read-only system parameter, for instance a query for what their shape depends on.
+/// Collider types that need no other data set `Context = ()` and get [`SimpleCollider`]. Others name a read-only system
+/// parameter, for instance a query for components that their shape depends on.
 pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
-    /// The system parameter that the methods need beside the collider.
+    /// The system parameter that the methods need.
     type Context: for<'w, 's> ReadOnlySystemParam<Item<'w, 's>: Send + Sync>;
 
-    /// The box around the collider at a position and rotation in the world.
+    /// The box around the collider at a pose in the world.
     fn aabb_with_context(
         &self,
         position: Vector,
@@ -60,8 +60,7 @@ pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
         context: AabbContext<Self::Context>,
     ) -> ColliderAabb;
 
-    /// The box around the collider on its way from one pose to another. The way between is taken to lie
-    /// within the union of the boxes at its ends.
+    /// The box around the collider on its way from one pose to another. By default the union of the boxes at both ends.
     fn swept_aabb_with_context(
         &self,
         start_position: Vector,
@@ -77,7 +76,7 @@ pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
 
 /// The methods of [`AnyCollider`] for colliders that need no context.
 pub trait SimpleCollider: AnyCollider<Context = ()> {
-    /// The box around the collider at a position and rotation in the world.
+    /// The box around the collider at a pose in the world.
     fn aabb(&self, position: Vector, rotation: impl Into<Rotation>) -> ColliderAabb {
         self.aabb_with_context(position, rotation, AabbContext::fake())
     }

@@ -24,18 +24,17 @@ use bevy_ecs::schedule::ScheduleLabel;
 use bevy_ecs::system::{SystemChangeTick, SystemParam};
 use core::marker::PhantomData;
 
-/// Makes components of type `C` colliders: gives them the components every collider has, and keeps
-/// their mass properties.
+/// Makes components of type `C` colliders: adds the components that every collider has, and updates mass properties.
 ///
-/// The plugin for [`Collider`](super::Collider) is part of `PhysicsPlugins`. Add one for each collider
-/// type of your own.
+/// The plugin for [`Collider`](super::Collider) is part of `PhysicsPlugins`. Add one for each collider type of your
+/// own.
 pub struct ColliderBackendPlugin<C: ScalableCollider> {
     schedule: Interned<dyn ScheduleLabel>,
     _collider: PhantomData<C>,
 }
 
 impl<C: ScalableCollider> ColliderBackendPlugin<C> {
-    /// Runs the systems in the given schedule: the one that the physics runs in.
+    /// Runs the systems in a schedule: the one in which physics runs.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern(), _collider: PhantomData }
     }
@@ -50,7 +49,7 @@ impl<C: ScalableCollider> Default for ColliderBackendPlugin<C> {
 
 impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
     fn build(&self, app: &mut App) {
-        // What `C` already requires by itself stays as it is: the error says only that.
+        // It fails only if `C` requires the component already, and then that requirement stays.
         let _ = app.try_register_required_components::<C, ColliderMarker>();
         let _ = app.try_register_required_components::<C, ColliderAabb>();
         let _ = app.try_register_required_components::<C, CollisionLayers>();
@@ -71,7 +70,7 @@ impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
     }
 }
 
-/// Computes mass properties of colliders, and has their bodies weighed.
+/// Computes mass properties of colliders, and queues their bodies to be recomputed.
 #[derive(SystemParam)]
 pub struct ColliderScales<'w, 's, C: AnyCollider> {
     colliders: Query<
@@ -84,23 +83,24 @@ pub struct ColliderScales<'w, 's, C: AnyCollider> {
 }
 
 impl<C: AnyCollider> ColliderScales<'_, '_, C> {
-    /// Weighs a collider, and its body when the command is done.
+    /// Recomputes the mass of a collider, and that of its body when the command ends.
     fn weigh(&mut self, entity: Entity) {
         if self.update(entity) {
             self.queue.push(entity);
         }
     }
 
-    /// Weighs a collider. Returns whether it weighs something else than before.
+    /// Recomputes the mass of a collider. Returns whether it changed.
     fn update(&mut self, entity: Entity) -> bool {
         let Ok((collider, density, mut properties)) = self.colliders.get_mut(entity) else { return false };
-        // Masses of NaN or below zero would reach the solver through sums: no mass is the safe reading.
+        // A density that is NaN or negative counts as 0: it would reach the solver through sums.
         let density = if density.0.is_finite() && density.0 > 0.0 { density.0 } else { 0.0 };
         properties.set_if_neq(ColliderMassProperties::from_shape(collider, density))
     }
 }
 
-/// Weighs a new collider before its body is: insertions are told of after all additions.
+/// Computes the mass of a new collider before that of its body: observers of insertion run after all observers of
+/// addition.
 fn weigh_added<C: AnyCollider>(
     added: On<Add, C>,
     sensors: Query<(), With<Sensor>>,
@@ -111,7 +111,7 @@ fn weigh_added<C: AnyCollider>(
     }
 }
 
-/// Weighs a collider whose shape or density is replaced, when it has been.
+/// Recomputes the mass of a collider after its shape or density was replaced.
 fn weigh_replaced<C: AnyCollider>(replaced: On<Discard, (C, ColliderDensity)>, mut commands: Commands) {
     let entity = replaced.entity;
     commands.queue(move |world: &mut World| {
@@ -126,8 +126,8 @@ fn weigh_replaced<C: AnyCollider>(replaced: On<Discard, (C, ColliderDensity)>, m
     });
 }
 
-/// Takes what the engine added to a collider away with it, and then has the body weighed: commands of parameters are
-/// done in their order.
+/// Removes the components that the engine added to a collider, and then recomputes the body's mass: commands run in the
+/// order of parameters.
 fn strip<C: AnyCollider>(removed: On<Remove, C>, mut commands: Commands, mut queue: MassPropertyQueue) {
     let former = removed.entity;
     queue.push(former);
@@ -142,13 +142,12 @@ fn strip<C: AnyCollider>(removed: On<Remove, C>, mut commands: Commands, mut que
     });
 }
 
-/// What ceases to be a sensor weighs something.
+/// Computes the mass of a collider that is no longer a sensor.
 fn weigh_former_sensor<C: AnyCollider>(former: On<Remove, Sensor>, mut scales: ColliderScales<C>) {
     scales.weigh(former.entity);
 }
 
-/// Recomputes [`ColliderMassProperties`] where the collider or its density changed in place. Those of sensors are
-/// left as they are.
+/// Recomputes [`ColliderMassProperties`] where the collider or its density was mutated. Sensors keep theirs.
 pub fn update_collider_mass_properties<C: AnyCollider>(
     all: Query<(Entity, Ref<C>, Ref<ColliderDensity>), Without<Sensor>>,
     mut scales: ColliderScales<C>,
@@ -163,7 +162,7 @@ pub fn update_collider_mass_properties<C: AnyCollider>(
             since.rows(columns, |row| changed.push(entities[row]));
         }
     } else {
-        // `C` is not stored in tables.
+        // `C` has sparse-set storage.
         let is_new = |(_, shape, density): &(Entity, Ref<C>, Ref<ColliderDensity>)| {
             shape.is_changed() || density.is_changed()
         };

@@ -112,7 +112,7 @@ impl<L: Into<LayerMask> + Copy> PartialEq<L> for LayerMask {
     }
 }
 
-/// The operators between a mask and whatever becomes one.
+/// Implements the operators between a mask and types that convert to one.
 macro_rules! mask_operators {
     ($($op:ident $method:ident $assign:ident $assign_method:ident $symbol:tt)+) => {$(
         impl<L: Into<LayerMask>> $op<L> for LayerMask {
@@ -150,9 +150,9 @@ impl Not for LayerMask {
 
 /// The layers that a collider is in, and those it interacts with.
 ///
-/// Two colliders interact if each one's filters have a layer that the other is a member of. By default
-/// a collider is in layer 0 and interacts with all. Immutable: insert the component anew to change it,
-/// and existing contacts are filtered again.
+/// Two colliders interact if each is in a layer that the other's filters contain. By default a collider is in layer 0
+/// and interacts with all layers. The component is immutable: insert it again to change it, and existing contacts are
+/// filtered again.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -177,7 +177,7 @@ impl Not for LayerMask {
 pub struct CollisionLayers {
     /// The layers that the collider is in.
     pub memberships: LayerMask,
-    /// The layers that it interacts with.
+    /// The layers that the collider interacts with.
     pub filters: LayerMask,
 }
 
@@ -203,7 +203,7 @@ impl CollisionLayers {
         Self { memberships: LayerMask(memberships), filters: LayerMask(filters) }
     }
 
-    /// Whether two colliders with these layers interact: both must want it.
+    /// Whether two colliders with these layers interact. Both filters must allow it.
     #[inline]
     pub fn interacts_with(self, other: Self) -> bool {
         self.memberships & other.filters != LayerMask::NONE

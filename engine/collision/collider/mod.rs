@@ -41,15 +41,14 @@ pub struct ColliderMarker;
 
 crate::type_path::type_path!(ColliderMarker, "collision::collider::backend");
 
-/// Takes a collider out of the simulation: no contacts, no queries, no mass.
+/// Takes a collider out of the simulation: no contacts, no query results, no mass.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default)]
 pub struct ColliderDisabled;
 
-/// Makes a collider a sensor: it reports what it touches, but nothing collides with it, and it adds no
-/// mass.
+/// Makes a collider a sensor: it detects contacts, but does not collide and has no mass.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -66,11 +65,10 @@ pub struct ColliderDisabled;
 #[doc(alias = "Trigger")]
 pub struct Sensor;
 
-/// An empty shell around a collider, in metres: other colliders are kept at this distance from its
-/// surface.
+/// Distance from the surface at which other colliders are kept, in metres.
 ///
-/// A little margin makes thin and jagged shapes more robust, at the price of a gap. Without the component
-/// a collider has that of its body, or none.
+/// A small margin makes thin and jagged shapes more robust, at the cost of a visible gap. A collider without the
+/// component has the margin of its body, or none.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

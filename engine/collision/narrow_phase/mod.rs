@@ -1,4 +1,4 @@
-//! The narrow phase: where the boxes of two colliders overlap, their shapes are compared and contact points computed.
+//! The narrow phase: contact points of pairs whose boxes overlap.
 
 mod plugin;
 
@@ -11,15 +11,16 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::{dynamics::solver::config::LINEAR_SLOP, math::Scalar};
 
-/// Whether contacts push: false leaves detection and events, without a response.
+/// Whether contacts are solved. False leaves detection without response.
 #[derive(Resource, Clone, Copy, Debug)]
 pub(crate) struct ContactResponse(pub(crate) bool);
 
-/// Where collision events are sent, in [`PhysicsStepSystems::Finalize`](crate::schedule::PhysicsStepSystems::Finalize).
+/// System set for sending collision events, in
+/// [`PhysicsStepSystems::Finalize`](crate::schedule::PhysicsStepSystems::Finalize).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CollisionEventSystems;
 
-/// How contacts are computed.
+/// Settings of the narrow phase.
 #[derive(Resource, Reflect, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -27,10 +28,12 @@ pub struct CollisionEventSystems;
 pub struct NarrowPhaseConfig {
     /// The [`SpeculativeMargin`](crate::dynamics::ccd::SpeculativeMargin) of colliders and bodies without one, in metres. Unbounded by default.
     pub default_speculative_margin: Scalar,
-    /// How far apart two shapes at rest may be and still be in contact, times
-    /// [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit); 0.005 by default. At 0 resting contacts flicker.
+    /// Maximum distance of two shapes at rest that are in contact, times
+    /// [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit). 0.005 by default. With 0 resting contacts
+    /// flicker.
     pub contact_tolerance: Scalar,
-    /// Whether contact points take over the impulses of the points they were in the last step; true by default. Without, stacks sag.
+    /// Whether contact points keep the impulses of the same points in the last step. True by default. Without it stacks
+    /// sag.
     pub match_contacts: bool,
 }
 
@@ -44,14 +47,15 @@ impl Default for NarrowPhaseConfig {
     }
 }
 
-/// The stages of the narrow phase, in this order, in [`PhysicsStepSystems::NarrowPhase`](crate::schedule::PhysicsStepSystems::NarrowPhase).
+/// System sets of the narrow phase, in this order, in
+/// [`PhysicsStepSystems::NarrowPhase`](crate::schedule::PhysicsStepSystems::NarrowPhase).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum NarrowPhaseSystems {
     /// Before contacts are computed.
     First,
     /// Contacts are computed.
     Update,
-    /// After it.
+    /// After contacts were computed.
     Last,
 }
 

@@ -16,16 +16,16 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Computes the contacts between colliders of type `C`, one instance per type. What does not depend on the
-/// type is shared by all of them, with the settings of the first.
+/// Computes the contacts between colliders of type `C`. Add one instance per collider type. All instances share the
+/// settings of the first.
 ///
-/// `H` will be the app's collision hooks; until then it says nothing.
+/// `H` is reserved for the app's collision hooks. It has no effect yet.
 pub struct NarrowPhasePlugin<C: AnyCollider, H = ()> {
     shared: SharedNarrowPhasePlugin,
     backend: PhantomData<fn() -> (C, H)>,
 }
 
-/// The stages of the narrow phase, and the contacts in them.
+/// Adds the system sets and systems, once for all collider types.
 #[derive(Clone, Copy)]
 struct SharedNarrowPhasePlugin {
     schedule: Interned<dyn ScheduleLabel>,
@@ -33,7 +33,8 @@ struct SharedNarrowPhasePlugin {
 }
 
 impl<C: AnyCollider, H> NarrowPhasePlugin<C, H> {
-    /// Computes contacts in `schedule`, by default [`PhysicsSchedule`], and, unless `generate_constraints` is false, hands them to the solver.
+    /// Computes contacts in `schedule`, by default [`PhysicsSchedule`]. If `generate_constraints` is false, they are
+    /// not solved.
     pub fn new(schedule: impl ScheduleLabel, generate_constraints: bool) -> Self {
         let shared = SharedNarrowPhasePlugin { schedule: schedule.intern(), generate_constraints };
         Self { shared, backend: PhantomData }

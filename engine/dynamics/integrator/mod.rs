@@ -1,4 +1,4 @@
-//! Gravity, and the stages in which velocities and positions are integrated.
+//! Gravity, and the system sets of integration.
 
 mod plugin;
 
@@ -11,17 +11,17 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::Vector;
 
-/// The stages of integration.
+/// System sets of integration.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum IntegrationSystems {
-    /// Gravity, forces and accelerations become velocity increments per substep. Once per step, in
+    /// Gravity, forces and accelerations are converted to velocity increments per substep. Once per step, in
     /// [`SolverSystems::PreSubstep`](crate::dynamics::solver::schedule::SolverSystems::PreSubstep).
     UpdateVelocityIncrements,
-    /// Increments and damping are applied to velocities. Once per substep.
+    /// Increments and damping are applied to velocities, once per substep.
     Velocity,
-    /// Velocities move the bodies. Once per substep.
+    /// Positions are integrated, once per substep.
     Position,
-    /// The increments are zeroed. Once per step, in
+    /// The increments are reset, once per step, in
     /// [`SolverSystems::PostSubstep`](crate::dynamics::solver::schedule::SolverSystems::PostSubstep).
     ClearVelocityIncrements,
 }
@@ -30,10 +30,12 @@ pub enum IntegrationSystems {
 #[deprecated(since = "0.4.0", note = "renamed to `IntegrationSystems`")]
 pub type IntegrationSet = IntegrationSystems;
 
-/// The acceleration that every dynamic body feels, times its [`GravityScale`](crate::dynamics::rigid_body::GravityScale), in m/s².
+/// The gravitational acceleration of dynamic bodies, times their
+/// [`GravityScale`](crate::dynamics::rigid_body::GravityScale), in m/s².
 ///
-/// The default is 9.81 m/s² down the Y axis. It is *not* scaled by [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit):
-/// where a metre is 100 pixels, write `Vector::NEG_Y * 981.0`.
+/// The default is 9.81 m/s² down the Y axis. It is *not* scaled by
+/// [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit): if a metre is 100 pixels, write `Vector::NEG_Y *
+/// 981.0`.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -59,16 +61,17 @@ impl Gravity {
     pub const ZERO: Gravity = Gravity(Vector::ZERO);
 }
 
-/// Leaves the velocity of this body to the app: no gravity, forces, damping or speed limits are applied. Contacts still push it.
+/// Leaves the velocity of this body to the app: gravity, forces, damping and speed limits are not applied. Contacts
+/// still push it.
 #[derive(Component, Debug, Default, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default)]
 pub struct CustomVelocityIntegration;
 
-/// Leaves the position of this body to the app: its velocity does not move it. Contacts still see its velocity.
+/// Leaves the position of this body to the app: its velocity does not move it. Contacts still use its velocity.
 ///
-/// It rests, and may fall asleep, while the app does not move it and its velocity is within its
+/// The body counts as at rest, and may fall asleep, while the app does not move it and its velocity is within its
 /// [`SleepThreshold`](crate::dynamics::rigid_body::sleeping::SleepThreshold).
 #[derive(Component, Debug, Default, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]

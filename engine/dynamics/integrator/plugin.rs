@@ -1,4 +1,4 @@
-//! The plugin that moves bodies.
+//! The plugin that integrates bodies.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel};
@@ -16,7 +16,7 @@ pub struct IntegratorPlugin {
 }
 
 impl IntegratorPlugin {
-    /// Integrates in `schedule`; the default is [`SubstepSchedule`]. Another is for the app to run, once per
+    /// Integrates in `schedule`. The default is [`SubstepSchedule`]. The app runs any other schedule itself, once per
     /// substep: each run integrates by the length of one.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern() }

@@ -1,4 +1,4 @@
-//! The body components whose shape is that of the plane. `dim3.rs` is the twin.
+//! Body components of 2D. `dim3.rs` exports the same names.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -9,7 +9,7 @@ use derive_more::From;
 
 use crate::math::Scalar;
 
-/// How fast a body turns, in rad/s, counter-clockwise.
+/// Angular velocity of a body, in rad/s, counter-clockwise.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -22,6 +22,6 @@ pub struct AngularVelocity(pub Scalar);
 crate::type_path::type_path!(AngularVelocity, "dynamics::rigid_body");
 
 impl AngularVelocity {
-    /// Not turning.
+    /// No rotation.
     pub const ZERO: AngularVelocity = AngularVelocity(0.0);
 }

@@ -1,4 +1,4 @@
-//! The body components whose shape is that of space. `dim2.rs` is the twin.
+//! Body components of 3D. `dim2.rs` exports the same names.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -9,7 +9,7 @@ use derive_more::From;
 
 use crate::math::Vector;
 
-/// How fast a body turns, in rad/s about each of the world's axes, right-handed.
+/// Angular velocity of a body, in rad/s about each of the world's axes, right-handed.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -22,6 +22,6 @@ pub struct AngularVelocity(pub Vector);
 crate::type_path::type_path!(AngularVelocity, "dynamics::rigid_body");
 
 impl AngularVelocity {
-    /// Not turning.
+    /// No rotation.
     pub const ZERO: AngularVelocity = AngularVelocity(Vector::ZERO);
 }

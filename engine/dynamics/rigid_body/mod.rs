@@ -1,4 +1,4 @@
-//! The components a rigid body is made of: its type, velocities, limits, damping, locks and surface.
+//! Components of rigid bodies: type, velocities, limits, damping, locks and surface.
 
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -26,16 +26,15 @@ use crate::dynamics::ids::BodyId;
 use crate::math::{Scalar, Vector};
 use crate::physics_transform::{Position, Rotation};
 
-/// Makes an entity a rigid body, and says what moves it.
+/// Makes an entity a rigid body of a type.
 ///
-/// The component is immutable: to change the type, insert another `RigidBody`. That is what lets the engine
-/// hear of every change without looking at all bodies every step. Contacts, joints, velocities and everything
-/// else of the body outlive the change.
+/// The component is immutable: to change the type, insert another `RigidBody`. The engine then observes changes, and
+/// need not scan all bodies. Contacts, joints, velocities and all other state survive the change.
 ///
 /// A dynamic body needs mass: from colliders on itself or its descendants (see
 /// [`ColliderDensity`](mass_properties::components::ColliderDensity)), or from
-/// [`Mass`](mass_properties::components::Mass) and its siblings. One without mass still falls, but nothing
-/// that touches it moves it; the engine warns once.
+/// [`Mass`](mass_properties::components::Mass) and its siblings. A body without mass falls, but contacts do not move
+/// it; the engine warns once.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -70,9 +69,9 @@ pub enum RigidBody {
     /// Moved by forces, contacts and joints.
     #[default]
     Dynamic,
-    /// Does not move. It may be teleported, but pushes nothing on the way.
+    /// Does not move. It may be teleported, but pushes nothing on its way.
     Static,
-    /// Moved by its velocity alone, as if of infinite mass: it pushes dynamic bodies and is pushed by nothing.
+    /// Moved only by its velocity, as if it had infinite mass: it pushes dynamic bodies and is not pushed.
     Kinematic,
 }
 
@@ -82,19 +81,19 @@ impl RigidBody {
         *self == Self::Dynamic
     }
 
-    /// Whether the body never moves of itself.
+    /// Whether the body never moves by itself.
     pub fn is_static(&self) -> bool {
         *self == Self::Static
     }
 
-    /// Whether the body moves by its velocity and nothing else.
+    /// Whether the body is moved only by its velocity.
     pub fn is_kinematic(&self) -> bool {
         *self == Self::Kinematic
     }
 }
 
-/// Takes a body out of the simulation while present: it does not move, its contacts and joints do nothing,
-/// and what rested on it wakes. All its components keep their values.
+/// Takes a body out of the simulation: it does not move, its contacts and joints have no effect, and bodies resting on
+/// it wake. Its components keep their values.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -143,7 +142,7 @@ impl LinearVelocity {
     pub const ZERO: LinearVelocity = LinearVelocity(Vector::ZERO);
 }
 
-/// The most a body's linear speed may be, in m/s; the direction is kept. Infinite by default.
+/// Maximum linear speed of a body, in m/s. The direction is kept. Infinite by default.
 #[derive(Component, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -159,7 +158,7 @@ impl Default for MaxLinearSpeed {
     }
 }
 
-/// The most a body's angular speed may be, in rad/s; the axis is kept. Infinite by default.
+/// Maximum angular speed of a body, in rad/s. The axis is kept. Infinite by default.
 #[derive(Component, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -175,7 +174,7 @@ impl Default for MaxAngularSpeed {
     }
 }
 
-/// How strongly gravity acts on a body: 1 as on every other (the default), 0 not at all, below 0 upwards.
+/// Factor of gravity for a body: 1 by default, 0 for none, negative for upwards.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -200,7 +199,7 @@ impl Default for GravityScale {
     }
 }
 
-/// Slows a body's linear motion, as a medium would: the rate `c` in `dv/dt = −c v`, in 1/s. 0 by default.
+/// Damping of linear velocity: the rate `c` in `dv/dt = −c v`, in 1/s. 0 by default.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, PartialOrd, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -210,7 +209,7 @@ impl Default for GravityScale {
 )]
 pub struct LinearDamping(pub Scalar);
 
-/// Slows a body's turning, as a medium would: the rate `c` in `dω/dt = −c ω`, in 1/s. 0 by default.
+/// Damping of angular velocity: the rate `c` in `dω/dt = −c ω`, in 1/s. 0 by default.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, PartialOrd, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -220,9 +219,9 @@ pub struct LinearDamping(pub Scalar);
 )]
 pub struct AngularDamping(pub Scalar);
 
-/// Who yields in a contact between dynamic bodies: the one of higher dominance acts as if of infinite mass.
-/// Equal ones, and by default all are 0, push each other as their masses say. Static and kinematic bodies
-/// dominate whatever number is given.
+/// Dominance in contacts between dynamic bodies: the body with the higher value acts as if it had infinite mass. Bodies
+/// with equal dominance push each other by their masses. 0 by default. Static and kinematic bodies dominate all dynamic
+/// ones.
 #[derive(
     Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, From, PartialEq, Eq, PartialOrd, Ord,
 )]

@@ -1,4 +1,4 @@
-//! How surfaces rub and bounce: friction, restitution, and how those of two touching colliders become one.
+//! Materials of surfaces: friction, restitution, and how those of two colliders combine.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -8,9 +8,9 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::Scalar;
 
-/// How the coefficients of two touching surfaces become one.
+/// How the coefficients of two touching surfaces combine.
 ///
-/// Where the two surfaces name different rules, the one further down the list applies.
+/// If the surfaces have different rules, the one further down the list is used.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[reflect(Debug, PartialEq)]
 #[cfg_attr(
@@ -47,7 +47,7 @@ impl CoefficientCombine {
     }
 }
 
-/// The friction of colliders that have none of their own, and none on their body.
+/// The friction of colliders without their own and without one on their body.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(Resource, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -57,7 +57,7 @@ impl CoefficientCombine {
 )]
 pub struct DefaultFriction(pub Friction);
 
-/// The restitution of colliders that have none of their own.
+/// The restitution of colliders without their own and without one on their body.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(Resource, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -67,12 +67,12 @@ pub struct DefaultFriction(pub Friction);
 )]
 pub struct DefaultRestitution(pub Restitution);
 
-/// How much a surface resists sliding: the coefficients of Coulomb's law, `|tangent force| ≤ μ · normal force`.
+/// Friction of a surface: the coefficients of Coulomb's law, `|tangent force| ≤ μ · normal force`.
 ///
-/// Usual values lie between 0 (ice) and 1 (rubber); larger ones are allowed, negative ones make no sense. On a
-/// body the component holds for all its colliders that have none; [`DefaultFriction`] for the rest.
+/// Usual values are between 0 (ice) and 1 (rubber). Larger ones are allowed, negative ones count as 0. On a body it
+/// applies to all colliders of the body without their own. [`DefaultFriction`] applies to all others.
 ///
-/// The solver uses the dynamic coefficient; the static one is carried for users' own constraints.
+/// The solver uses the dynamic coefficient only.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -89,9 +89,9 @@ pub struct DefaultRestitution(pub Restitution);
     reflect(Serialize, Deserialize)
 )]
 pub struct Friction {
-    /// The coefficient while the surfaces slide; no unit. 0.5 by default.
+    /// The coefficient while the surfaces slide, without unit. 0.5 by default.
     pub dynamic_coefficient: Scalar,
-    /// The coefficient up to which they do not slide at all; no unit. 0.5 by default.
+    /// The coefficient up to which they do not slide, without unit. 0.5 by default.
     pub static_coefficient: Scalar,
     /// How this surface's coefficients are combined with another's.
     pub combine_rule: CoefficientCombine,
@@ -104,7 +104,7 @@ impl Default for Friction {
 }
 
 impl Friction {
-    /// No resistance.
+    /// No friction.
     pub const ZERO: Self =
         Self { dynamic_coefficient: 0.0, static_coefficient: 0.0, combine_rule: CoefficientCombine::Average };
 
@@ -135,7 +135,7 @@ impl Friction {
         Self { static_coefficient: coefficient, ..*self }
     }
 
-    /// The friction between two surfaces, by the later of their rules.
+    /// The friction between two surfaces, by their combine rules.
     #[must_use]
     pub fn combine(&self, other: Self) -> Self {
         let rule = self.combine_rule.max(other.combine_rule);
@@ -153,11 +153,12 @@ impl From<Scalar> for Friction {
     }
 }
 
-/// How much a surface bounces: the share of the approach speed with which things part again, 0 (the default)
-/// for not at all, 1 for all of it.
+/// Restitution of a surface: the ratio of separation speed to approach speed, from 0 (the default, no bounce) to 1
+/// (full bounce).
 ///
-/// Slow impacts do not bounce, see the solver's restitution threshold. [`DefaultRestitution`] holds for
-/// colliders without the component.
+/// Slow impacts do not bounce, see
+/// [`SolverConfig::restitution_threshold`](crate::dynamics::solver::SolverConfig::restitution_threshold).
+/// [`DefaultRestitution`] applies to colliders without the component.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -172,7 +173,7 @@ impl From<Scalar> for Friction {
     reflect(Serialize, Deserialize)
 )]
 pub struct Restitution {
-    /// The ratio of separation to approach speed; no unit.
+    /// The ratio of separation speed to approach speed, without unit.
     pub coefficient: Scalar,
     /// How this surface's coefficient is combined with another's.
     pub combine_rule: CoefficientCombine,
@@ -187,9 +188,9 @@ impl Default for Restitution {
 impl Restitution {
     /// No bounce.
     pub const ZERO: Self = Self { coefficient: 0.0, combine_rule: CoefficientCombine::Average };
-    /// No bounce: what meets stays together.
+    /// No bounce: bodies stay together.
     pub const PERFECTLY_INELASTIC: Self = Self::ZERO;
-    /// Full bounce: kinetic energy is kept.
+    /// Full bounce: kinetic energy is conserved.
     pub const PERFECTLY_ELASTIC: Self = Self { coefficient: 1.0, ..Self::ZERO };
 
     /// Restitution with this coefficient, combined by the mean.
@@ -203,7 +204,7 @@ impl Restitution {
         Self { combine_rule, ..*self }
     }
 
-    /// The restitution between two surfaces, by the later of their rules.
+    /// The restitution between two surfaces, by their combine rules.
     #[must_use]
     pub fn combine(&self, other: Self) -> Self {
         let rule = self.combine_rule.max(other.combine_rule);

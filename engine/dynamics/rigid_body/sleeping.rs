@@ -1,5 +1,5 @@
-//! The components and settings of sleep. A group of bodies that touch and have all rested for a while is put
-//! to sleep together, and costs nothing until something wakes it; the engine's sleeping systems do that.
+//! Components and settings of sleeping. An island, a group of touching bodies, falls asleep when all of them have
+//! rested for a while. It then costs nothing until something wakes it.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -8,13 +8,13 @@ use bevy_reflect::prelude::*;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use derive_more::From;
 
-/// Marks a body that sleeps. Inserting or removing it puts the body's whole island to sleep or wakes it.
+/// Marks a sleeping body. Inserting or removing it puts the body's island to sleep or wakes it.
 ///
-/// Whatever falls asleep, by itself or so, stays where it is and keeps [`LinearVelocity`](super::LinearVelocity) and
-/// [`AngularVelocity`](super::AngularVelocity): it wakes with them, so that a stack goes on as if it had not slept.
-/// Setting another velocity wakes it, unless the marker is inserted in the same step.
+/// A sleeping body keeps its pose, [`LinearVelocity`](super::LinearVelocity) and
+/// [`AngularVelocity`](super::AngularVelocity), and wakes with these velocities, so that a stack continues as if it had
+/// not slept. Setting another velocity wakes it, unless the marker is inserted in the same step.
 ///
-/// A body's table row should not move whenever it falls asleep: the marker is stored apart, as a sparse set.
+/// The marker has sparse-set storage, so that falling asleep does not move the body to another table.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -33,7 +33,7 @@ use derive_more::From;
 )]
 pub struct Sleeping;
 
-/// Keeps a body, and with it every island it is part of, from falling asleep. Inserting it wakes them.
+/// Prevents a body, and its whole island, from falling asleep. Inserting it wakes them.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default)]
 #[reflect(Component, Debug, Default)]
 #[cfg_attr(
@@ -43,7 +43,7 @@ pub struct Sleeping;
 )]
 pub struct SleepingDisabled;
 
-/// The speeds below which a body counts as resting. A negative one keeps the body awake.
+/// Speeds below which a body counts as at rest. A negative one keeps the body awake.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, PartialOrd)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -52,9 +52,9 @@ pub struct SleepingDisabled;
     reflect(Serialize, Deserialize)
 )]
 pub struct SleepThreshold {
-    /// In m/s, scaled by the [`PhysicsLengthUnit`](crate::prelude::PhysicsLengthUnit). 0.15 by default.
+    /// Linear speed in m/s, scaled by the [`PhysicsLengthUnit`](crate::prelude::PhysicsLengthUnit). 0.15 by default.
     pub linear: f32,
-    /// In rad/s. 0.15 by default.
+    /// Angular speed in rad/s. 0.15 by default.
     pub angular: f32,
 }
 
@@ -68,8 +68,8 @@ impl Default for SleepThreshold {
 #[deprecated(since = "0.4.0", note = "renamed to `SleepThreshold`")]
 pub type SleepingThreshold = SleepThreshold;
 
-/// How long a body has rested without a break, in seconds. Kept by the engine for bodies that are awake; setting it,
-/// to 0 for instance, is as if the body had rested that long.
+/// How long a body has been at rest, in seconds. The engine updates it for awake bodies. An app may set it, for
+/// instance to 0.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -83,8 +83,8 @@ pub struct SleepTimer(pub f32);
 #[deprecated(since = "0.4.0", note = "renamed to `SleepTimer`")]
 pub type TimeSleeping = SleepTimer;
 
-/// How long all bodies of an island must have rested before it falls asleep, in seconds. 0.5 by default.
-/// However short, they must have rested for four steps.
+/// How long all bodies of an island must be at rest before it falls asleep, in seconds. 0.5 by default. The minimum is
+/// four steps.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, PartialOrd, From)]
 #[reflect(Resource, Debug, Default, PartialEq)]
 #[cfg_attr(

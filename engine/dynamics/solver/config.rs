@@ -1,4 +1,5 @@
-//! How the solver is tuned: the length unit, [`SolverConfig`], and the softness of contacts derived from it every step.
+//! Settings of the solver: the length unit, [`SolverConfig`], and the softness of contacts derived from it in every
+//! step.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -17,15 +18,15 @@ use crate::{
     schedule::{Physics, TimePrecisionAdjusted},
 };
 
-/// The overlap that resting contacts are left with, times the [`PhysicsLengthUnit`]. Other tolerances of contacts are
-/// multiples of it. With less, contacts at rest begin and end in turn; with more, overlap is visible.
+/// Overlap of resting contacts, times the [`PhysicsLengthUnit`]. Other tolerances of contacts are multiples of it. With
+/// less, resting contacts flicker; with more, overlap is visible.
 pub(crate) const LINEAR_SLOP: f64 = 0.005;
 
 /// Roughly the length of a metre in the units of the app: the size of a typical object.
 ///
-/// Tolerances and thresholds that are lengths or speeds are multiplied by it, so that a 2D game with characters of 100 pixels is as
-/// stable as one with characters of 1 unit. It scales neither positions nor velocities nor [`Gravity`](crate::dynamics::integrator::Gravity).
-/// 1 by default; set it before anything moves.
+/// Tolerances and thresholds that are lengths or speeds are multiplied by it, so that a 2D game with characters of 100
+/// pixels is as stable as one with characters of 1 unit. It does not scale positions, velocities or
+/// [`Gravity`](crate::dynamics::integrator::Gravity). 1 by default. Set it before anything moves.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -48,7 +49,7 @@ impl Default for PhysicsLengthUnit {
 }
 
 impl PhysicsLengthUnit {
-    /// `unit` if it is a length, 1 with a warning if it is zero, negative, infinite or NaN.
+    /// `unit`, or 1 with a warning if it is zero, negative, infinite or NaN.
     pub(super) fn valid_or_default(unit: Scalar) -> Self {
         if unit.is_finite() && unit > 0.0 {
             Self(unit)
@@ -58,7 +59,7 @@ impl PhysicsLengthUnit {
         }
     }
 
-    /// The unit as the step uses it: 1, with one warning, where the app set what is no positive length.
+    /// The unit, or 1 with one warning if it is zero, negative, infinite or NaN.
     pub(crate) fn metres(&self) -> f32 {
         let unit = to_f32(self.0);
         if unit.is_finite() && unit > 0.0 {
@@ -69,23 +70,26 @@ impl PhysicsLengthUnit {
     }
 }
 
-/// How stiff, how fast and how bouncy contacts are. "LU" is [`PhysicsLengthUnit`].
+/// Settings of contacts: stiffness, speeds, restitution. "LU" is [`PhysicsLengthUnit`].
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Resource, Default, Debug, PartialEq)]
 pub struct SolverConfig {
-    /// The damping ratio ζ of overlap recovery; 10 by default. Above 1 overlap creeps out without bouncing; lower is springier.
+    /// The damping ratio ζ of overlap recovery. 10 by default. Above 1 overlap is removed without oscillation; lower
+    /// values are springier.
     pub contact_damping_ratio: Scalar,
-    /// The frequency of overlap recovery as a multiple of what the timestep can resolve; 1.5 by default. Higher is stiffer, and jitters.
+    /// The frequency of overlap recovery, as a multiple of the highest one that the timestep resolves. 1.5 by default.
+    /// Higher is stiffer, but jitters.
     pub contact_frequency_factor: Scalar,
-    /// The fastest that overlap is pushed out, in LU/s; 4 by default. Higher shoots overlapping spawns apart.
+    /// Maximum speed at which overlap is pushed out, in LU/s. 4 by default. Higher values shoot overlapping bodies
+    /// apart.
     pub max_overlap_solve_speed: Scalar,
-    /// The share of last step's impulses that a step starts from; 1 by default. At 0 stacks sag.
+    /// Share of the last step's impulses for the warm start. 1 by default. With 0 stacks sag.
     pub warm_start_coefficient: Scalar,
-    /// Contacts that close slower than this do not bounce, in LU/s; 1 by default. At 0 resting bodies never come to rest.
+    /// Minimum approach speed for restitution, in LU/s. 1 by default. With 0 resting bodies never come to rest.
     pub restitution_threshold: Scalar,
-    /// How often restitution is applied per step; 1 by default. More spreads a bounce farther through touching bodies.
+    /// Number of restitution passes per step. 1 by default. More passes carry a bounce further through touching bodies.
     pub restitution_iterations: usize,
 }
 
@@ -104,7 +108,7 @@ impl Default for SolverConfig {
     }
 }
 
-/// How softly contacts push, recomputed from [`SolverConfig`] and the timestep before every solve.
+/// Softness of contacts, computed from [`SolverConfig`] and the timestep in every step.
 #[derive(Resource, Clone, Copy, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -112,7 +116,7 @@ impl Default for SolverConfig {
 pub struct ContactSoftnessCoefficients {
     /// For contacts between dynamic bodies.
     pub dynamic: SoftnessCoefficients,
-    /// For contacts of a dynamic body with a static or kinematic one: twice as stiff, so that the ground wins over the pile on it.
+    /// For contacts of a dynamic body with a static or kinematic one: twice as stiff, so that the ground holds a pile.
     pub non_dynamic: SoftnessCoefficients,
 }
 
@@ -128,17 +132,17 @@ impl Default for ContactSoftnessCoefficients {
 }
 
 impl ContactSoftnessCoefficients {
-    /// The softness of contacts in a step of `delta_secs` seconds, `substeps` times solved.
+    /// The softness of contacts in a step of `delta_secs` seconds with `substeps` substeps.
     ///
-    /// A spring of frequency f is sampled once per substep h and its target once per step dt. Half the step rate, 1/(2 dt), is the
-    /// fastest oscillation that steps can represent; a quarter of the substep rate, 0.25/h, the fastest one that the solver integrates
-    /// well (E. Catto, *Solver2D*, 2024). Hence
+    /// A spring of frequency f is solved once per substep h, and its target moves once per step dt. Half the step rate,
+    /// 1/(2 dt), is the highest frequency that steps can represent. A quarter of the substep rate, 0.25/h, is the
+    /// highest that the solver integrates well (E. Catto, *Solver2D*, 2024). Hence
     ///
     /// ```text
     /// f = factor · min(1/(2 dt), 0.25/h),   h = dt / substeps
     /// ```
     ///
-    /// for dynamic bodies, and 2 f where the other body does not yield.
+    /// for dynamic bodies, and 2 f if the other body is immovable.
     pub fn for_step(config: &SolverConfig, delta_secs: Scalar, substeps: u32) -> Self {
         let substep_secs = delta_secs / substeps.max(1) as Scalar;
         let highest = Scalar::min(0.5 / delta_secs, 0.25 / substep_secs);
@@ -149,7 +153,7 @@ impl ContactSoftnessCoefficients {
     }
 }
 
-/// Derives this step's softness from the settings.
+/// Computes this step's softness from the settings.
 pub(crate) fn update_contact_softness(
     mut softness: ResMut<ContactSoftnessCoefficients>,
     config: Res<SolverConfig>,

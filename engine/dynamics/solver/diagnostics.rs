@@ -1,4 +1,4 @@
-//! How long the solver took, stage by stage.
+//! Timers and counters of the solver.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -6,21 +6,21 @@ use core::time::Duration;
 
 /// Timers and counters of the solver in the last step.
 ///
-/// While [`SubstepSchedule`](super::schedule::SubstepSchedule) holds no system but the engine's own, all
-/// substeps run as one call, and their time is in [`solve_constraints`](Self::solve_constraints).
+/// While [`SubstepSchedule`](super::schedule::SubstepSchedule) holds only the engine's own systems, all substeps run as
+/// one call, and their time is in [`solve_constraints`](Self::solve_constraints).
 #[derive(Resource, Debug, Default, Reflect)]
 #[reflect(Resource, Debug, Default)]
 pub struct SolverDiagnostics {
-    /// Gathering bodies and building the rows of contacts.
+    /// Gathering bodies and building constraint rows.
     pub prepare_constraints: Duration,
-    /// Summing up accelerations. Zero until there are forces: gravity is part of
+    /// Summing accelerations. Zero until there are forces: gravity is part of
     /// [`integrate_velocities`](Self::integrate_velocities).
     pub update_velocity_increments: Duration,
     /// Integrating velocities.
     pub integrate_velocities: Duration,
-    /// Applying the impulses of the last substep in advance.
+    /// Applying the impulses of the last substep.
     pub warm_start: Duration,
-    /// Solving contacts, or, in a fused step, all substeps.
+    /// Solving contacts, or all substeps if they run as one call.
     pub solve_constraints: Duration,
     /// Integrating positions.
     pub integrate_positions: Duration,
@@ -28,13 +28,13 @@ pub struct SolverDiagnostics {
     pub relax_velocities: Duration,
     /// Applying restitution.
     pub apply_restitution: Duration,
-    /// Finishing bodies and writing them back.
+    /// Finishing bodies and writing components.
     pub finalize: Duration,
     /// Storing impulses.
     pub store_impulses: Duration,
-    /// Swept continuous collision detection. Zero until there is such.
+    /// Swept continuous collision detection. Zero until it exists.
     pub swept_ccd: Duration,
-    /// How many rows the contacts were solved in; a row holds up to eight contacts.
+    /// Number of contact manifolds that were solved.
     pub contact_constraint_count: u32,
 }
 

@@ -1,4 +1,4 @@
-//! From components to rows: the awake bodies of this step, and what the app changed by hand.
+//! From components to body rows, and changes by the app.
 
 use bevy_ecs::{change_detection::ContiguousRef, prelude::*, query::QueryData, system::SystemChangeTick};
 use bevy_log::warn_once;
@@ -30,7 +30,7 @@ use crate::{
     threads::Threads,
 };
 
-/// Where a body is and how it moves, as the app sees it.
+/// Pose and velocity of a body, as components.
 #[derive(QueryData)]
 #[query_data(contiguous(mutable))]
 pub(crate) struct StateInput {
@@ -57,7 +57,7 @@ impl<'w, 's> StateInputContiguousItem<'w, 's> {
     }
 }
 
-/// What a body's row is made of.
+/// Components that a body's row is made of.
 #[derive(QueryData)]
 #[query_data(contiguous(mutable))]
 pub(crate) struct BodyInput {
@@ -69,7 +69,7 @@ pub(crate) struct BodyInput {
     inertia: &'static ComputedAngularInertia,
 }
 
-/// What most bodies do not have.
+/// Components that few bodies have.
 #[derive(QueryData)]
 #[query_data(contiguous(mutable))]
 pub(crate) struct MotionInput {
@@ -85,7 +85,7 @@ pub(crate) struct MotionInput {
 }
 
 impl MotionInputItem<'_, '_> {
-    /// None of it.
+    /// No such component.
     const NONE: Self = Self {
         gravity_scale: None,
         linear_damping: None,
@@ -115,7 +115,7 @@ impl<'w, 's> BodyInputContiguousItem<'w, 's> {
 }
 
 impl<'w, 's> MotionInputContiguousItem<'w, 's> {
-    /// Whether the bodies of the table have none of it: asking each would be a quarter of the work.
+    /// Whether no body of the table has such a component. Checking each body would take a quarter of the time.
     fn is_none(&self) -> bool {
         let speeds = self.max_speed.is_none() && self.max_angular_speed.is_none();
         let damping = self.linear_damping.is_none() && self.angular_damping.is_none();
@@ -139,7 +139,7 @@ impl<'w, 's> MotionInputContiguousItem<'w, 's> {
     }
 }
 
-/// A finite value that is not negative: negative and NaN count as none, infinite as the largest.
+/// A finite value, at least 0. Negative values and NaN become 0, infinity the largest number.
 fn positive(value: Option<Scalar>) -> f32 {
     match value.map(to_f32) {
         Some(v) if v > 0.0 => v.min(f32::MAX),
@@ -147,7 +147,7 @@ fn positive(value: Option<Scalar>) -> f32 {
     }
 }
 
-/// Gravity for the kernel. One that is not finite would undo every body at once: it counts as none.
+/// Gravity for the kernel. A value that is not finite would disable all bodies, so it becomes zero.
 fn finite_gravity(gravity: &Gravity) -> KernelVector {
     let vector = vector_to_kernel(gravity.0);
     if vector.is_finite() {
@@ -157,7 +157,7 @@ fn finite_gravity(gravity: &Gravity) -> KernelVector {
     KernelVector::ZERO
 }
 
-/// A limit: none, negative or NaN do not limit.
+/// A limit. A missing, negative or NaN limit becomes infinity.
 fn limit(value: Option<Scalar>) -> f32 {
     match value.map(to_f32) {
         Some(v) if v >= 0.0 => v,
@@ -169,15 +169,15 @@ fn velocity(linear: &LinearVelocity, angular: &AngularVelocity) -> Velocity {
     Velocity { linear: vector_to_kernel(linear.0), angular: angular_to_kernel(angular.0) }
 }
 
-/// What the app did to a body since the engine last wrote it.
+/// Changes of a body by the app since the engine last wrote it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Change {
     moved: bool,
     pushed: bool,
 }
 
-/// Puts what the app says of a body into the table: its pose if it is another than the engine wrote, its
-/// centre of mass, its velocity. One that is not finite is put back and disabled.
+/// Writes a body's components to the table: its pose if it differs from the one the engine wrote, centre of mass, and
+/// velocity. A body that is not finite is reset and disabled.
 #[inline]
 fn read_in(entity: Entity, body: &StateInputItem, tables: &mut Tables, commands: &mut Commands) -> Change {
     let id = body.id.0;
@@ -205,7 +205,7 @@ fn read_in(entity: Entity, body: &StateInputItem, tables: &mut Tables, commands:
     change
 }
 
-/// Puts a body where the app wants it, with all its colliders.
+/// Moves a body to a pose, with all its colliders.
 #[cold]
 fn place(id: u32, frame: WorldPose, center: Option<KernelVector>, tables: &mut Tables) {
     let Tables { bodies, colliders, .. } = tables;
@@ -222,7 +222,7 @@ fn place(id: u32, frame: WorldPose, center: Option<KernelVector>, tables: &mut T
     }
 }
 
-/// What is looked at of every body, moving or not, for changes.
+/// Components that are checked for changes on every body, moving or not.
 type Watched = (
     Entity,
     Ref<'static, Position>,
@@ -231,8 +231,8 @@ type Watched = (
     Ref<'static, AngularVelocity>,
 );
 
-/// Sees what the app did to bodies that are static or asleep: moved ones wake what they touch, and they
-/// themselves wake if they can.
+/// Applies changes of the app to static and sleeping bodies. Moved ones wake the bodies they touch, and wake themselves
+/// if they can.
 pub(crate) fn wake_changed(
     watched: Query<Watched, With<BodyId>>,
     states: Query<StateInput>,
@@ -243,8 +243,7 @@ pub(crate) fn wake_changed(
     system: SystemChangeTick,
 ) {
     let written = tables.bodies.written;
-    // What was put to sleep in this very step was so with this velocity and under this gravity: a level may be
-    // spawned asleep.
+    // Bodies put to sleep in this step fell asleep with this velocity and gravity: a level may be spawned asleep.
     let flipped = tables.bodies.table.flipped_set();
     let mut wake = |entity: Entity| {
         let Ok(body) = states.get(entity) else { return };
@@ -292,8 +291,8 @@ pub(crate) fn wake_changed(
     }
 }
 
-/// A kinematic body is awake exactly while it moves: one that was stopped rests from now on. One that was set in
-/// motion has been woken for it.
+/// A kinematic body is awake exactly while it moves. One whose velocity is zero rests; one with a velocity was woken by
+/// the change.
 pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, mut tables: Tables) {
     let at_rest = |entity: Entity| {
         let velocity = query.get(entity).map(|(v, w)| (vector_to_kernel(v.0), angular_to_kernel(w.0)));
@@ -311,10 +310,10 @@ pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
     tables.bodies.ids = ids;
 }
 
-/// What says when a body counts as at rest, and for how long it has been.
+/// Components that define when a body counts as at rest, and for how long it has rested.
 type RestInput = (Option<&'static SleepThreshold>, Has<SleepingDisabled>, Option<Ref<'static, SleepTimer>>);
 
-/// Reads pose and velocity of every awake body, before anything is computed from them, and what counts as at rest.
+/// Reads pose, velocity and rest threshold of every awake body, before the step computes anything from them.
 ///
 /// The thread pool finds the bodies whose components differ from the table, without writing. Those bodies are then read
 /// in the order of ids.
@@ -350,7 +349,7 @@ pub(crate) fn read_awake(
         if let Some(timer) = timer
             && tables.bodies.is_set_by_app(timer.last_changed(), since)
         {
-            // NaN counts as no rest.
+            // NaN becomes 0.
             tables.bodies.table[id].sleep_timer = max(timer.0, 0.0);
         }
         let change = read_in(entity, &body, &mut tables, &mut commands);
@@ -364,7 +363,7 @@ pub(crate) fn read_awake(
     tables.bodies.ids = changed;
 }
 
-/// Which awake bodies have components that say something else than the tables.
+/// Finds awake bodies whose components differ from the tables.
 struct Differs<'a> {
     bodies: &'a Bodies,
     unit: f32,
@@ -372,7 +371,7 @@ struct Differs<'a> {
 }
 
 impl Differs<'_> {
-    /// Adds the ids of those among some rows of a table of components.
+    /// Adds the ids of such bodies among some rows of a table of components.
     fn among(
         &self,
         states: &StateInputContiguousItem,
@@ -415,7 +414,7 @@ fn rest_speed(threshold: Option<&SleepThreshold>, sleepless: bool, unit: f32) ->
     RestSpeed { linear: linear * unit, angular }
 }
 
-/// Gives every awake body its row and fills it.
+/// Gives every awake body a row, and fills it.
 ///
 /// The thread pool walks whole tables of components where most bodies are awake. Where most sleep, the caller looks up
 /// entities. Rows are written by id either way, so the order of entities does not matter.
@@ -455,7 +454,7 @@ pub(crate) fn gather_bodies(
             });
         }
     }
-    // Some body may have lost a component within the step.
+    // A body may have lost a component within the step.
     if gathered.iter().map(|some| some.filled).sum::<usize>() < count {
         kernel.bodies.fill_rest();
     }
@@ -476,19 +475,19 @@ pub(crate) fn gather_bodies(
     diagnostics.prepare_constraints += start.elapsed();
 }
 
-/// What one worker gathered beside the rows it filled.
+/// Results of one worker besides the rows it filled.
 #[derive(Default)]
 pub(crate) struct Gathered {
-    /// How many rows.
+    /// Number of rows.
     filled: usize,
     special: SpecialBodies,
-    /// Bodies whose dominance is not what the table says.
+    /// Bodies whose dominance differs from the table.
     dominances: Vec<(u32, i8)>,
     /// Bodies whose velocity is not finite.
     refused: Vec<u32>,
 }
 
-/// What is the same for all bodies.
+/// Inputs that are the same for all bodies.
 struct Gather<'a> {
     gravity: KernelVector,
     table: &'a BodyTable,
@@ -505,14 +504,14 @@ impl Gather<'_> {
         if row == 0 {
             return;
         }
-        // The velocity may have been changed since it was read; the pose counts from the next step on: see
+        // The velocity may have changed since it was read. A changed pose takes effect in the next step, see
         // `note_moved_within`.
         let Velocity { linear, angular } = velocity(body.linear_velocity, body.angular_velocity);
         let finite = linear.is_finite() && angular.is_finite();
         if !finite {
             gathered.refused.push(id);
         }
-        // What was put under quarantine in this step stays put until it leaves.
+        // Bodies that were quarantined in this step do not move until they leave.
         if !finite || options.disabled {
             gathered.filled += usize::from(self.filler.fill(row, &FilledBody::at_rest()));
             return;

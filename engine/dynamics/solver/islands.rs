@@ -1,4 +1,4 @@
-//! Islands: bodies that rest on each other fall asleep and wake together.
+//! Islands: bodies that touch fall asleep and wake together.
 
 pub use crate::dynamics::sleep::{SleepBody, WakeBody};
 
@@ -18,7 +18,7 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Keeps track of which awake bodies touch or are joined: the islands.
+/// Groups awake bodies that touch into islands.
 pub struct IslandPlugin;
 
 impl Plugin for IslandPlugin {
@@ -27,7 +27,7 @@ impl Plugin for IslandPlugin {
     }
 }
 
-/// Puts islands at rest to sleep and wakes them; needs [`IslandPlugin`].
+/// Puts islands at rest to sleep and wakes them. Needs [`IslandPlugin`].
 pub struct IslandSleepingPlugin;
 
 impl Plugin for IslandSleepingPlugin {
@@ -35,7 +35,7 @@ impl Plugin for IslandSleepingPlugin {
         step::install(app);
         watch_sleeping(app);
         app.init_resource::<TimeToSleep>();
-        // Each fails only where the requirement is there already.
+        // Registration fails only if the requirement exists already.
         let _ = app.try_register_required_components::<RigidBody, SleepThreshold>();
         let _ = app.try_register_required_components::<RigidBody, SleepTimer>();
         step::add_systems_of(Owner::Sleeping, app, PhysicsSchedule.intern());

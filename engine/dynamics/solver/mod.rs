@@ -1,4 +1,4 @@
-//! The solver of contacts: its [configuration](SolverConfig), its [schedule] and the plugins that make it up.
+//! The contact solver: its [configuration](SolverConfig), its [schedule] and its plugins.
 
 pub mod islands;
 pub mod schedule;

@@ -1,4 +1,4 @@
-//! The plugin that solves contacts, and the group of all the plugins of the solver.
+//! The plugin that solves contacts, and the group of all plugins of the solver.
 
 use bevy_app::{App, Plugin, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::schedule::ScheduleLabel;

@@ -1,4 +1,4 @@
-//! From rows back to components, and which bodies have come to rest.
+//! From rows to components, and sleep timers.
 
 use bevy_ecs::{
     change_detection::ContiguousMut,
@@ -30,7 +30,7 @@ use crate::{
     threads::Threads,
 };
 
-/// What a body's motion is written to.
+/// Components that a body's motion is written to.
 type Output = (
     &'static BodyId,
     &'static mut Position,
@@ -40,10 +40,10 @@ type Output = (
     Option<&'static mut SleepTimer>,
 );
 
-/// What says whether the app put a body elsewhere.
+/// Components that show whether the app moved a body.
 type Watched = (Entity, Ref<'static, Position>, Ref<'static, Rotation>);
 
-/// What the search for poses that the app changed within the step reads.
+/// Queries for poses that the app changed within the step.
 #[derive(SystemParam)]
 pub(crate) struct MovedWithin<'w, 's> {
     watched: Query<'w, 's, Watched, With<BodyId>>,
@@ -52,8 +52,8 @@ pub(crate) struct MovedWithin<'w, 's> {
 }
 
 impl MovedWithin<'_, '_> {
-    /// Notes the bodies with a row whose pose was changed since a tick, if `differs` holds for the pose the components
-    /// had last and the one they have now.
+    /// Records the bodies with a row whose pose changed since a tick, if `differs` holds for the previous and the
+    /// current pose of the components.
     fn note(&mut self, since: Since, differs: impl Fn(&WorldPose, &WorldPose) -> bool) {
         let Bodies { table, seen, entities, listed, moved_within, .. } = &mut *self.bodies;
         let mut note = |entity: Entity, position: Position, rotation: Rotation| {
@@ -79,7 +79,7 @@ impl MovedWithin<'_, '_> {
     }
 }
 
-/// Notes the awake bodies whose pose the app changed since poses were read for this step.
+/// Records the awake bodies whose pose the app changed since poses were read for this step.
 pub(crate) fn note_moved_within(mut moved: MovedWithin, system: SystemChangeTick) {
     moved.bodies.moved_within.clear();
     let since = Since::new(moved.bodies.read, system);
@@ -87,15 +87,14 @@ pub(crate) fn note_moved_within(mut moved: MovedWithin, system: SystemChangeTick
     moved.bodies.read = system.this_run();
 }
 
-/// Notes those that it changed while bodies were finished. What they last said is not known any more.
+/// Records those that it changed while bodies were finished. Their previous pose is not known any more.
 pub(crate) fn note_moved_late(mut moved: MovedWithin, system: SystemChangeTick) {
     let since = Since::new(moved.bodies.read, system);
     moved.note(since, |_, _| true);
 }
 
-/// Puts the bodies that the app put elsewhere within the step where it did, and on from there by what they moved in
-/// the step. The tables keep what they would have come to: the difference counts from the next step on, as any other
-/// that the app makes.
+/// Keeps bodies that the app moved within the step at the app's pose, plus their displacement in the step. The tables
+/// keep the simulated pose: the next step treats the difference as any other change by the app.
 pub(crate) fn keep_moved_within(
     mut poses: Query<(&mut Position, &mut Rotation)>,
     solver: Res<StepSolver>,
@@ -112,7 +111,7 @@ pub(crate) fn keep_moved_within(
         let moved =
             BodyPose { center, rotation: turn.mul(from.rotation).renormalized(), ..Default::default() };
         let moved = moved.frame(table[id].local_center);
-        // What is not finite is left for the next step to refuse.
+        // A pose that is not finite is left for the next step to refuse.
         let (position, rotation) =
             if body.is_moved() && is_finite(&moved) { pose_from_kernel(moved) } else { (position, rotation) };
         pose.0.set_if_neq(position);
@@ -121,10 +120,10 @@ pub(crate) fn keep_moved_within(
     }
 }
 
-/// Folds each awake body's motion into its pose, and notes for how long it has been at rest.
+/// Adds the displacement of each awake body to its pose, and updates sleep timers.
 ///
-/// A body whose result is not finite keeps the pose it had, stops, and is disabled with one warning: a NaN
-/// must not spread.
+/// A body whose result is not finite keeps its pose, stops, and is disabled with one warning, so that NaN does not
+/// spread.
 pub(crate) fn finish_bodies(
     own: Query<&BodyId, (With<CustomPositionIntegration>, Without<RigidBodyDisabled>)>,
     (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
@@ -151,7 +150,7 @@ pub(crate) fn finish_bodies(
     diagnostics.finalize += start.elapsed();
 }
 
-/// Writes pose and velocity of each awake body where they changed.
+/// Writes pose and velocity of each awake body, where they changed.
 pub(crate) fn scatter_bodies(
     mut outputs: Query<Output, Without<RigidBodyDisabled>>,
     (solver, threads): (Res<StepSolver>, Res<Threads>),
@@ -183,8 +182,8 @@ pub(crate) fn scatter_bodies(
     diagnostics.finalize += start.elapsed();
 }
 
-/// Has a body that the app moves stay where it is; its velocity says how fast it means to move. Returns its id and
-/// for how long it has been at rest.
+/// Resets the displacement of a body with [`CustomPositionIntegration`]. Returns its id and sleep timer, by its
+/// velocity.
 fn keep_in_place(id: u32, solver: &mut Solver, bodies: &Bodies, dt: f32) -> Option<(u32, f32)> {
     let row = if id == NONE { 0 } else { bodies.table.row(id) };
     if row == 0 {
@@ -233,14 +232,14 @@ fn put_table(
     });
 }
 
-/// What came of the bodies' motion.
+/// Results of the bodies' motion.
 struct Results<'a> {
     bodies: &'a Bodies,
     rows: &'a BodyRows,
 }
 
 impl Results<'_> {
-    /// Writes what became of one body, if it took part.
+    /// Writes the results of a body, if it has a row.
     #[inline(always)]
     fn put(
         &self,

@@ -1,4 +1,4 @@
-//! Soft constraints: a spring given by damping ratio and frequency, and the coefficients that make a velocity constraint behave like it.
+//! Soft constraints: a spring given by damping ratio and frequency, and its coefficients for a velocity constraint.
 
 use bevy_reflect::Reflect;
 #[cfg(feature = "serialize")]
@@ -6,10 +6,10 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::{Scalar, TAU};
 
-/// What [`SoftnessParameters`] cap both of their values at: far beyond what a step can resolve, far below where squares overflow.
+/// Maximum of both values of [`SoftnessParameters`]: far above what a step resolves, far below where squares overflow.
 const LIMIT: Scalar = 1e9;
 
-/// A damped spring, given by how it swings instead of by stiffness, so that it behaves alike for every mass.
+/// A damped spring, given by frequency and damping ratio instead of stiffness, so that it behaves alike for every mass.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -21,7 +21,7 @@ pub struct SoftnessParameters {
     angular_frequency: Scalar,
 }
 
-/// Values that were stored are held to the same limits as those that are given.
+/// Clamps stored values to the same limits as others.
 #[cfg(feature = "serialize")]
 fn deserialize_sanitized<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Scalar, D::Error> {
     let value: Scalar = serde::Deserialize::deserialize(deserializer)?;
@@ -30,7 +30,8 @@ fn deserialize_sanitized<'de, D: serde::Deserializer<'de>>(deserializer: D) -> R
 }
 
 impl SoftnessParameters {
-    /// A spring of damping ratio ζ (0 swings for ever, 1 returns fastest without swinging, above 1 creeps) and undamped frequency in Hz.
+    /// A spring with damping ratio ζ (0 oscillates for ever, 1 returns fastest without oscillation, above 1 creeps) and
+    /// undamped frequency in Hz.
     ///
     /// Negative and NaN values count as 0, values above 10⁹ as 10⁹.
     pub fn new(damping_ratio: Scalar, frequency_hz: Scalar) -> Self {
@@ -61,7 +62,8 @@ impl SoftnessParameters {
     /// bias = ω / a1       mass_scale = a2 a3       impulse_scale = a3
     /// ```
     ///
-    /// It is total: a spring without frequency pushes not at all, and a step of no length, negative or NaN counts as no step.
+    /// Any input is valid: a spring without frequency has no effect, and a step that is zero, negative or NaN counts as
+    /// no step.
     pub fn compute_coefficients(self, delta_secs: Scalar) -> SoftnessCoefficients {
         let omega = self.angular_frequency;
         if omega == 0.0 {
@@ -71,7 +73,7 @@ impl SoftnessParameters {
         let a1 = 2.0 * self.damping_ratio + h * omega;
         let a2 = h * omega * a1;
         let a3 = 1.0 / (1.0 + a2);
-        // Without damping and step a1 is 0, and so is a2: nothing is pushed, whatever the bias.
+        // Without damping and step a1 and a2 are 0: there is no impulse, for any bias.
         let bias = if a1 > 0.0 { omega / a1 } else { 0.0 };
         SoftnessCoefficients { bias, mass_scale: a2 * a3, impulse_scale: a3 }
     }
@@ -82,17 +84,17 @@ fn sanitized(value: Scalar) -> Scalar {
     if value > 0.0 { value.min(LIMIT) } else { 0.0 }
 }
 
-/// What a velocity constraint needs to act as a spring: λ = −mass_scale · m · (v + bias · c) − impulse_scale · Σλ.
+/// Coefficients of a soft velocity constraint: λ = −mass_scale · m · (v + bias · c) − impulse_scale · Σλ.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Clone, PartialEq)]
 pub struct SoftnessCoefficients {
-    /// The velocity wanted per length of error, in 1/s.
+    /// Bias velocity per length of error, in 1/s.
     pub bias: Scalar,
-    /// The share of the effective mass that pushes, 0 to 1.
+    /// Share of the effective mass, 0 to 1.
     pub mass_scale: Scalar,
-    /// The share of the accumulated impulse that is taken back, 0 to 1; with `mass_scale` it sums to 1.
+    /// Share of the accumulated impulse that is subtracted, 0 to 1. The sum with `mass_scale` is 1.
     pub impulse_scale: Scalar,
 }
 
@@ -100,7 +102,7 @@ pub struct SoftnessCoefficients {
 mod tests {
     use super::*;
 
-    /// An implicit Euler step of x'' + 2ζω x' + ω² x = 0, the spring that the coefficients stand for.
+    /// An implicit Euler step of the spring x'' + 2ζω x' + ω² x = 0.
     fn spring_step(zeta: f64, omega: f64, h: f64, x: f64, v: f64) -> f64 {
         (v - h * omega * omega * x) / (1.0 + 2.0 * zeta * omega * h + h * h * omega * omega)
     }

@@ -1,4 +1,4 @@
-//! The rows of bodies that the solver works on.
+//! The plugin of the solver's body rows.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::schedule::ScheduleLabel;
@@ -10,7 +10,7 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Gathers awake bodies into the solver's rows before a solve and writes them back after it.
+/// Fills the solver's rows from awake bodies before a solve, and writes the results to components.
 pub struct SolverBodyPlugin;
 
 impl Plugin for SolverBodyPlugin {

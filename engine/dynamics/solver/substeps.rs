@@ -25,7 +25,7 @@ use crate::{
     threads::Threads,
 };
 
-/// The kernel's solver, and what its rows share in this step.
+/// The kernel's solver, and the parameters of this step.
 #[derive(Resource, Clone)]
 pub(crate) struct StepSolver {
     pub(crate) kernel: Solver,
@@ -100,13 +100,12 @@ fn softness(c: SoftnessCoefficients) -> Softness {
     }
 }
 
-/// A setting that is not negative, and small enough to be multiplied; the default instead of one that is
-/// negative or NaN.
+/// A setting that is at least 0, clamped so that it can be multiplied. A negative or NaN setting becomes the default.
 fn setting(value: Scalar, default: Scalar) -> f32 {
     to_f32(if value >= 0.0 { value.min(1.0e18) } else { default })
 }
 
-/// What all rows of this step share.
+/// Computes the parameters of all rows in this step.
 pub(crate) fn prepare_params(
     mut solver: ResMut<StepSolver>,
     config: Option<Res<SolverConfig>>,
@@ -135,7 +134,7 @@ pub(crate) fn prepare_params(
 }
 
 /// Builds the rows of all touching contacts.
-#[expect(unsafe_code, reason = "who has rows built answers for colours and contacts belonging together")]
+#[expect(unsafe_code, reason = "the caller of `build_rows` answers for contacts and colours")]
 pub(crate) fn prepare_rows(
     bodies: Res<Bodies>,
     contacts: Res<Contacts>,
@@ -154,15 +153,15 @@ pub(crate) fn prepare_rows(
         none = ColorGraph::new();
         &none
     };
-    // SAFETY: the engine has one table of contacts, one graph and one table of bodies, which apps cannot reach, and changes
-    // contacts, colours and the kinds of bodies through `Link` alone. An empty graph has no contact twice.
+    // SAFETY: the engine has one table of contacts, one graph and one table of bodies, which apps cannot reach. It
+    // changes contacts, colours and the kinds of bodies only through `Link`. An empty graph has no contact twice.
     unsafe { kernel.build_rows(&input, colors, params, &threads.pool) };
     diagnostics.contact_constraint_count = kernel.manifold_count() as u32;
     diagnostics.prepare_constraints += start.elapsed();
 }
 
-/// Runs the substeps: fused while only the engine's own systems are in the schedule, else the schedule. The
-/// clock stands at the end of the first substep already.
+/// Runs the substeps: by the kernel while only the engine's own systems are in the schedule, otherwise by the schedule.
+/// The clock is already at the end of the first substep.
 pub(crate) fn run_substeps(world: &mut World) {
     let own = world.resource::<OwnSubstepSystems>();
     let (integrates, solves) = (own.integrates, own.solves);
@@ -200,7 +199,7 @@ pub(crate) fn run_substeps(world: &mut World) {
     world.resource_mut::<SolverDiagnostics>().solve_constraints += start.elapsed();
 }
 
-/// The generic clock shows the substeps' while they run.
+/// Runs the schedule for each substep. The generic clock is the substeps' meanwhile.
 fn run_schedule(world: &mut World, substeps: u32, mut next: impl FnMut(&mut World)) {
     let outer = *world.resource::<Time>();
     for substep in 0..substeps {
@@ -230,27 +229,27 @@ macro_rules! stage {
 }
 
 stage! {
-    /// Velocities from accelerations and damping.
+    /// Integrates velocities by accelerations and damping.
     integrate_velocities => integrate_velocities, integrate_velocities
 }
 stage! {
-    /// Accumulated impulses are applied in advance.
+    /// Applies the accumulated impulses.
     warm_start => warm_start, warm_start
 }
 stage! {
-    /// Non-penetration with soft bias.
+    /// Solves contacts with soft bias.
     solve_contacts => solve, solve_constraints
 }
 stage! {
-    /// Positions from velocities.
+    /// Integrates positions.
     integrate_positions => integrate_positions, integrate_positions
 }
 stage! {
-    /// The velocity that the bias added is taken out, and friction applied.
+    /// Solves contacts without bias, and applies friction.
     relax_contacts => relax, relax_velocities
 }
 
-/// Makes what hit fast enough bounce.
+/// Applies restitution.
 pub(crate) fn apply_restitution(
     (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
     config: Res<SolverConfig>,
@@ -264,7 +263,7 @@ pub(crate) fn apply_restitution(
     diagnostics.apply_restitution += start.elapsed();
 }
 
-/// Keeps the impulses for the next step to start from.
+/// Stores the impulses for the warm start of the next step.
 pub(crate) fn store_impulses(
     (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
     mut contacts: ResMut<Contacts>,

@@ -1,4 +1,4 @@
-//! How many threads a step uses, and how many contacts each of them solves side by side.
+//! Number of threads of a step, and number of SIMD lanes.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
@@ -6,15 +6,14 @@ use bevy_reflect::prelude::*;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_tasks::ComputeTaskPool;
 
-/// How many threads a step uses, the one that runs the schedule among them. The result has the same bits with
-/// any number.
+/// Number of threads of a step, including the one that runs the schedule. Results have the same bits with any number.
 ///
-/// With 0, the default, they are as many as the machine has cores for this process, but no more than Bevy's
-/// compute task pool has threads, plus one: on two cores Bevy gives that pool one thread, so a step uses both.
-/// 1 keeps physics on the calling thread; more than 256 count as 256.
+/// With 0, the default, it is the number of cores of the machine for this process, but at most the number of threads in
+/// Bevy's compute task pool plus one: on two cores Bevy gives that pool one thread, so a step uses both. 1 keeps
+/// physics on the calling thread. More than 256 count as 256.
 ///
-/// The threads are the engine's own. They are started by the first step with more than a thousand contacts of
-/// awake bodies, work in such steps only, and sleep otherwise. Without the feature `parallel` there are none.
+/// The threads belong to the engine. The first step with more than a thousand contacts of awake bodies starts them.
+/// They work in such steps only, and are parked otherwise. Without the feature `parallel` there are none.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -22,7 +21,7 @@ use bevy_tasks::ComputeTaskPool;
 pub struct WorkerCount(pub usize);
 
 impl WorkerCount {
-    /// How many threads that is on this machine.
+    /// The number of threads on this machine.
     pub(crate) fn resolve(self) -> usize {
         if !cfg!(feature = "parallel") {
             return 1;
@@ -38,19 +37,18 @@ impl WorkerCount {
     }
 }
 
-/// How many contacts are computed side by side. The result has the same bits with any; this is for comparing and
-/// measuring.
+/// Number of contacts per SIMD row. Results have the same bits with any. For comparing and measuring.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Debug, Default, PartialEq)]
 pub enum RowWidth {
-    /// As many as the CPU can: eight with AVX2, else four.
+    /// As many as the CPU supports: eight with AVX2, else four.
     #[default]
     Widest,
-    /// Four, as on a CPU without AVX2.
+    /// Four.
     Four,
 }
 
-/// More threads than this are a slip of the keyboard.
+/// Maximum number of threads. A larger setting is a mistake.
 const MOST: usize = 256;

@@ -1,4 +1,4 @@
-//! Poses and transforms in step, in whole, in headless apps whose "solver" is the test.
+//! Synchronisation of poses and transforms in headless apps. The tests play the solver.
 
 mod tree;
 
@@ -25,7 +25,7 @@ use crate::{
     schedule::PhysicsSystems,
 };
 
-/// What the solver does in the next step.
+/// Poses for the solver to write in the next step.
 #[derive(Resource, Default)]
 struct Moves(Vec<(Entity, Vector, Option<Rotation>)>);
 
@@ -55,12 +55,12 @@ fn app() -> App {
     app
 }
 
-/// The point with x, y and, where there is depth, z.
+/// The point with x, y, and z = 0 in 3D.
 fn at(x: Scalar, y: Scalar) -> Vector {
     crate::math::vector_from_xyz([f64::from(x as f32), f64::from(y as f32), 0.0])
 }
 
-/// The turn about z by an angle in radians.
+/// The rotation about z by an angle in radians.
 fn turn(angle: f32) -> Rotation {
     Rotation::from(Quat::from_rotation_z(angle))
 }
@@ -99,7 +99,7 @@ fn bits(v: Vector) -> Vec<u64> {
 }
 
 fn turn_bits(r: Rotation) -> Vec<u64> {
-    let t = r.to_turn();
+    let t = r.to_f64();
     [t.x, t.y, t.z, t.w].iter().map(|c| c.to_bits()).collect()
 }
 
@@ -115,7 +115,7 @@ fn assert_turned(app: &App, entity: Entity, expected: f32) {
     assert!(angle.abs() < 1e-3, "{angle} away");
 }
 
-/// The global transform as Bevy has it, of an entity that is a body at `position`.
+/// The global transform of an entity at `position`, by Bevy.
 #[track_caller]
 fn assert_shown_at(app: &mut App, entity: Entity) {
     let shown = app
@@ -144,7 +144,7 @@ fn a_transform_initialises_the_pose_at_once_and_by_bits() {
         step(&mut app);
         assert_eq!((bits(position(&app, body)), turn_bits(rotation(&app, body))), (p.clone(), r.clone()));
         assert_eq!(transform(&app, body), at_spawn);
-        // A write of the same value is not a change.
+        // Writing the same value is not a change.
         let same = transform(&app, body);
         set(&mut app, body, same);
     }
@@ -160,7 +160,7 @@ fn a_given_position_beats_the_transform_and_is_written() {
     assert_turned(&app, body, 0.5);
     assert_eq!(transform(&app, body).translation, Vec3::new(1.0, 2.0, 0.0));
     assert_eq!(transform(&app, body).scale, Vec3::splat(3.0));
-    // Without a transform, one is made.
+    // An entity without a transform gets one.
     let bare = app.world_mut().spawn((RigidBody::Static, Position(at(5.0, 0.0)))).id();
     step(&mut app);
     assert_eq!(transform(&app, bare).translation, Vec3::new(5.0, 0.0, 0.0));
@@ -237,13 +237,13 @@ fn a_body_below_a_scaled_and_turned_parent() {
     step(&mut app);
     assert!(transform(&app, body).translation.distance(Vec3::X) < 1e-6);
     assert_shown_at(&mut app, body);
-    // Moving the parent moves the body along.
+    // Moving the parent moves the body.
     let parent_at = place(0.0, 0.0).with_rotation(quarter).with_scale(Vec3::splat(2.0));
     set(&mut app, parent, parent_at);
     step(&mut app);
     assert_at(&app, body, at(0.0, 2.0));
     assert_turned(&app, body, 0.2);
-    // Touching it does not.
+    // Marking it as changed does not.
     let held = (bits(position(&app, body)), turn_bits(rotation(&app, body)));
     set(&mut app, parent, parent_at);
     step(&mut app);
@@ -268,13 +268,13 @@ fn nested_bodies_move_independently_in_the_simulation_and_together_by_transform(
     }
     step(&mut app);
     assert_eq!(bits(position(&app, inner)), held, "reading back perturbs");
-    // The user moves the outer one: all follow.
+    // The app moves the outer one: all follow.
     let shifted = transform(&app, outer).with_translation(Vec3::new(6.0, 5.0, 0.0));
     set(&mut app, outer, shifted);
     step(&mut app);
     assert_at(&app, inner, at(3.0, 0.0));
     assert_at(&app, innermost, at(0.0, -1.0));
-    // The user sets the outer one's position: nobody follows.
+    // The app sets the position of the outer one: the others stay.
     set(&mut app, outer, Position(at(0.0, 0.0)));
     step(&mut app);
     assert_at(&app, inner, at(3.0, 0.0));
@@ -339,7 +339,7 @@ fn child_colliders_follow_their_body() {
     assert!(offset.translation.distance(at(5.0, 0.0)) < 1e-6);
     assert_eq!(offset.scale, Vector::splat(2.0));
     assert_at(&app, deep, at(0.0, 5.0));
-    // A teleport of the body is seen before the step.
+    // A teleport of the body is detected before the step.
     set(&mut app, body, Position(at(10.0, 0.0)));
     app.add_systems(
         Update,
@@ -403,7 +403,7 @@ fn the_helper_syncs_without_a_step() {
         .unwrap();
 }
 
-/// A chain of transforms: places, turns about z, and scales.
+/// A chain of transforms: translations, rotations about z, and scales.
 fn chains() -> impl Strategy<Value = Vec<Transform>> {
     let scale = prop_oneof![0.3f32..3.0, -3.0f32..-0.3, Just(1.0f32)];
     let link = ((-50.0f32..50.0, -50.0f32..50.0), -7.0f32..7.0, (scale.clone(), scale)).prop_map(
@@ -433,7 +433,7 @@ proptest! {
         prop_assert!(read.distance(p) < 2e-3);
         prop_assert!(turned.unwrap().angle_between(r).abs() < 2e-3);
         prop_assert_eq!(written.scale, leaf[0].scale);
-        // Writing again changes nothing, so a body that did not move is never taken for a changed one.
+        // Writing again changes nothing, so a body at rest never counts as changed.
         let again = write_pose(Some(&frame), &written, p, r);
         prop_assert!(same_translation(&again, &written) && same_rotation(&again, &written));
     }

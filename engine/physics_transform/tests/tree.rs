@@ -1,4 +1,4 @@
-//! The shadow of the hierarchy, the links of colliders to bodies, and what is walked.
+//! The tree of the hierarchy, the links of colliders to bodies, and the entities that walks visit.
 
 use super::*;
 
@@ -15,7 +15,7 @@ fn links_follow_the_hierarchy() {
     let owner = |app: &App| app.world().get::<ColliderOf>(collider).map(|of| of.body);
     assert_eq!(owner(&app), Some(body));
     assert_at(&app, collider, at(11.0, 0.0));
-    // A body in between takes over, and gives back.
+    // A body in between becomes the owner, until it is removed.
     app.world_mut().entity_mut(middle).insert(RigidBody::Kinematic);
     step(&mut app);
     assert_eq!(owner(&app), Some(middle));
@@ -23,19 +23,19 @@ fn links_follow_the_hierarchy() {
     app.world_mut().entity_mut(middle).remove::<RigidBody>();
     step(&mut app);
     assert_eq!(owner(&app), Some(body));
-    // Reparented with all between.
+    // Reparented with all entities between.
     let other = app.world_mut().spawn((RigidBody::Dynamic, place(-10.0, 0.0))).id();
     app.world_mut().entity_mut(other).add_child(middle);
     assert_eq!(owner(&app), Some(other), "linked at once");
     step(&mut app);
     assert_eq!(owner(&app), Some(other));
     assert_at(&app, collider, at(-9.0, 0.0));
-    // Without a body, it stands alone.
+    // Without a body, there is no link.
     app.world_mut().entity_mut(other).remove::<RigidBody>();
     step(&mut app);
     assert_eq!(owner(&app), None);
     assert_at(&app, collider, at(-9.0, 0.0));
-    // Without a collider, nothing is linked.
+    // Without a collider, there is no link.
     app.world_mut().entity_mut(other).insert(RigidBody::Static);
     app.world_mut().entity_mut(collider).remove::<ColliderMarker>();
     step(&mut app);
@@ -92,7 +92,7 @@ fn observers_of_one_link_may_change_the_other_bodies() {
             commands.entity(bare).remove::<ColliderMarker>();
         }
     });
-    // All at once, and linked together.
+    // Spawned and linked in one batch.
     app.world_mut().insert_batch(bodies.map(|body| (body, RigidBody::Dynamic)));
     assert_eq!(app.world().get::<ColliderOf>(child), None, "its body was none when its turn came");
     step(&mut app);
@@ -137,7 +137,7 @@ fn a_body_with_nothing_but_colliders_below_is_not_walked() {
     assert_shown_at(&mut app, body);
     assert_at(&app, collider, at(4.0, 0.0));
     assert_eq!(visited(&app), before);
-    // Until it becomes a body itself.
+    // It becomes a body itself.
     app.world_mut().entity_mut(collider).insert(RigidBody::Dynamic);
     step(&mut app);
     move_body(&mut app, body, at(5.0, 0.0), None);
@@ -225,7 +225,7 @@ proptest! {
     }
 }
 
-/// Every collider is linked to the nearest body, found by force.
+/// Every collider is linked to the nearest body, found by brute force.
 fn check_links(app: &App, all: &[Entity]) {
     let world = app.world();
     for &entity in all.iter().filter(|&&e| world.get_entity(e).is_ok()) {

@@ -1,4 +1,4 @@
-//! Which collider belongs to which body: [`ColliderOf`] and [`RigidBodyColliders`], kept from the hierarchy.
+//! Which collider belongs to which body: [`ColliderOf`] and [`RigidBodyColliders`], derived from the hierarchy.
 
 mod plugin;
 
@@ -19,15 +19,15 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use super::collider_transform::ColliderTransform;
 use crate::physics_transform::tree::FollowsBody;
 
-/// On a collider: the body it belongs to, which is the nearest of the entity itself and its ancestors that
-/// has a [`RigidBody`](crate::dynamics::rigid_body::RigidBody).
+/// On a collider: its body, the nearest of the entity itself and its ancestors with a
+/// [`RigidBody`](crate::dynamics::rigid_body::RigidBody).
 ///
-/// The engine inserts, replaces and removes it as soon as the command that changed the hierarchy is done.
-/// Colliders without a body have none.
+/// The engine inserts, replaces and removes it at the end of the command that changed the hierarchy. Colliders without
+/// a body have none.
 ///
-/// One that the app inserts, naming any body, stays until the app takes it away. Its [`ColliderTransform`] then
-/// says where the collider is on the body; if that is left at its default, the collider stays where its own
-/// `Transform` puts it in the world, or is put at the body's origin if that is left at its default too.
+/// An app may insert it with any body; the engine then keeps it until the app removes it. The collider's pose on the
+/// body is its [`ColliderTransform`]. If that has its default value, the collider stays where its own `Transform` puts
+/// it in the world. If both are default, it is at the body's origin.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -47,7 +47,7 @@ use crate::physics_transform::tree::FollowsBody;
 )]
 #[require(ColliderTransform)]
 pub struct ColliderOf {
-    /// The body; the collider's own entity if that is one.
+    /// The body; the collider's own entity if that is a body.
     #[entities]
     pub body: Entity,
 }
@@ -59,8 +59,8 @@ impl FromWorld for ColliderOf {
 }
 
 impl ColliderOf {
-    /// Whether the app, not the hierarchy, attached a collider. The link of a body to itself is always the
-    /// hierarchy's.
+    /// Whether the app, not the hierarchy, attached a collider. The link of a body to itself always belongs to the
+    /// hierarchy.
     pub(super) fn is_explicit(&self, collider: Entity, follows: Option<&FollowsBody>) -> bool {
         self.body != collider && follows.and_then(|follows| follows.above) != Some(self.body)
     }
@@ -82,9 +82,8 @@ impl Relationship for ColliderOf {
         self.body = body;
     }
 
-    /// Lists the collider on its body, as Bevy's own hook does, but without an error where an observer
-    /// despawns either of them before the list is made. A body that came with itself in its list is not
-    /// listed twice.
+    /// Adds the collider to the body's list, as Bevy's own hook does. It reports no error if an observer has despawned
+    /// one of them, and does not add a body to its own list twice.
     fn on_insert(mut world: DeferredWorld, context: HookContext) {
         if !matches!(context.relationship_hook_mode, RelationshipHookMode::Run) {
             return;
@@ -113,8 +112,7 @@ fn list_collider(world: &mut World, collider: Entity) {
     }
 }
 
-/// On a body: the colliders that belong to it, the body's own entity among them if it has a collider.
-/// Despawning the body despawns them.
+/// On a body: its colliders, including its own entity if that has a collider. Despawning the body despawns them.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -139,6 +137,6 @@ impl core::ops::Deref for RigidBodyColliders {
     }
 }
 
-/// On a body that has colliders on other entities than its own.
+/// Marks a body with colliders on other entities.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(crate) struct CompoundBody;

@@ -1,4 +1,4 @@
-//! Attaches colliders to bodies as the hierarchy says.
+//! Attaches colliders to bodies by the hierarchy.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{
@@ -20,24 +20,23 @@ use crate::{
     },
 };
 
-/// Keeps [`ColliderOf`] and [`RigidBodyColliders`] as the hierarchy says. Links are made when the command is done
-/// that changed it.
+/// Updates [`ColliderOf`] and [`RigidBodyColliders`] from the hierarchy, at the end of the command that changed it.
 pub struct ColliderHierarchyPlugin;
 
-/// Present where colliders are to be attached.
+/// Present if colliders are attached to bodies.
 #[derive(Resource)]
 pub(crate) struct AttachesColliders;
 
-/// Present where colliders are placed on their bodies; without that none is attached.
+/// Present if colliders are placed on their bodies. Without it none is attached.
 #[derive(Resource)]
 pub(crate) struct PlacesColliders;
 
-/// Entities at or below which colliders may have another body. All that came with one command, a batch for
-/// instance, are looked at together.
+/// Entities at or below which colliders may have another body. Entities that changed in one command, for instance a
+/// batch, are processed together.
 #[derive(Resource, Default)]
 pub(crate) struct AttachQueue {
     entities: Vec<Entity>,
-    /// Whether the command that empties the queue is on its way.
+    /// Whether the command that empties the queue is queued.
     is_called: bool,
 }
 
@@ -81,7 +80,7 @@ fn attach_soon<E: EntityEvent, B: Bundle>(
     queue.push(event.event_target(), &mut commands);
 }
 
-/// Only where there is physics in the entity or below it.
+/// Queues an entity, if it or a descendant has physics components.
 fn attach_reparented<E: EntityEvent>(
     event: On<E, ChildOf>,
     tree: Res<TransformTree>,
@@ -95,7 +94,7 @@ fn attach_reparented<E: EntityEvent>(
     }
 }
 
-/// A link that the app inserted is looked at, those of the hierarchy are complete.
+/// Processes a link that the app inserted. Links by the hierarchy are complete.
 fn adopt_explicit(
     inserted: On<Insert, ColliderOf>,
     links: Query<(&ColliderOf, Option<&FollowsBody>), Allow<Disabled>>,
@@ -108,7 +107,7 @@ fn adopt_explicit(
     }
 }
 
-/// A collider whose link the app removed does not follow the body any more.
+/// Stops a collider from following its body after the app removed its link.
 fn leave_body(
     removed: On<Remove, ColliderOf>,
     following: Query<(), (With<FollowsBody>, Allow<Disabled>)>,
@@ -126,8 +125,8 @@ fn leave_body(
     }
 }
 
-/// Unlinks the colliders at and below an entity that leaves its parent, up to the next body. Should the old
-/// body be despawned by the next command, they must not go with it.
+/// Unlinks the colliders at and below an entity that leaves its parent, down to the next body. If the next command
+/// despawns the old body, it must not despawn them.
 fn detach_at_once(
     left: On<Discard, ChildOf>,
     tree: Res<TransformTree>,
@@ -151,16 +150,16 @@ fn detach_at_once(
     }
 }
 
-/// What is to be done about a collider.
+/// A change to a collider's link.
 #[derive(Clone, Copy, Debug)]
 enum Step {
-    /// Links it to the body that the hierarchy names, or to none.
+    /// Link it to the body given by the hierarchy, or to none.
     Link(Option<Entity>),
-    /// Has it follow the body that the app named.
+    /// Let it follow the body given by the app.
     Adopt,
 }
 
-/// What links are found with.
+/// Queries for finding links.
 #[derive(SystemParam)]
 struct Linker<'w, 's> {
     tree: ResMut<'w, TransformTree>,
@@ -176,7 +175,7 @@ struct Linker<'w, 's> {
     >,
 }
 
-/// Kept, as making it anew takes longer than using it.
+/// Kept between calls, since building it takes longer than using it.
 #[derive(Resource)]
 struct LinkerState(Option<SystemState<Linker<'static, 'static>>>);
 
@@ -187,7 +186,7 @@ impl FromWorld for LinkerState {
 }
 
 impl Linker<'_, '_> {
-    /// What is to be done for the colliders at and below entities, in their order.
+    /// The changes for colliders at and below entities, in their order.
     fn find(&mut self, entities: &[Entity]) -> Vec<(Entity, Step)> {
         self.tree.follow(entities, &self.parents, &self.physical, &mut self.changes.early);
         let mut seen = EntityHashSet::default();
@@ -198,7 +197,7 @@ impl Linker<'_, '_> {
             let body = line.find(|&ancestor| self.bodies.contains(ancestor));
             let mut stack = vec![(entity, body)];
             while let Some((at, body)) = stack.pop() {
-                // Below another body, nothing depends on what is above.
+                // Below another body, links do not depend on ancestors of that body.
                 let is_body = self.bodies.contains(at);
                 if (is_body && at != entity) || !seen.insert(at) {
                     continue;
@@ -226,7 +225,7 @@ impl Linker<'_, '_> {
     }
 }
 
-/// Attaches the colliders at and below every entity of the queue to the nearest body.
+/// Attaches the colliders at and below every queued entity to the nearest body.
 pub(crate) fn attach_now(world: &mut World) {
     let Some(mut queue) = world.get_resource_mut::<AttachQueue>() else { return };
     queue.is_called = false;
@@ -255,8 +254,8 @@ pub(crate) fn attach_now(world: &mut World) {
     }
 }
 
-/// Makes the links of new bodies that are colliders themselves, with one move between tables for the link
-/// and the list, and takes them from `links`.
+/// Links new bodies that are their own colliders, with one archetype move for link and list, and removes them from
+/// `links`.
 fn attach_to_themselves(world: &mut World, links: &mut Vec<(Entity, Option<Entity>)>) {
     let mut own = Vec::new();
     links.retain(|&(collider, body)| {
@@ -274,11 +273,11 @@ fn attach_to_themselves(world: &mut World, links: &mut Vec<(Entity, Option<Entit
         !taken
     });
     world.insert_batch(own);
-    // What observers of these ask for is done before the other links are looked at.
+    // Commands of observers run before the other links are made.
     world.flush();
 }
 
-/// Makes or removes one link. Users' observers run in between, so everything is looked up again.
+/// Makes or removes one link. Observers of the app run in between, so everything is looked up again.
 fn attach(world: &mut World, collider: Entity, body: Option<Entity>) {
     let body = body.filter(|&body| world.get::<RigidBody>(body).is_some());
     let Ok(mut entity) = world.get_entity_mut(collider) else { return };
@@ -307,8 +306,8 @@ fn mark_compound(world: &mut World, body: Entity) {
     }
 }
 
-/// Has a collider follow the body that the app named. Where the app did not say where on the body it is, it
-/// stays where its `Transform` puts it.
+/// Lets a collider follow the body given by the app. If the app gave no pose on the body, the collider stays where its
+/// `Transform` puts it.
 fn adopt(world: &mut World, collider: Entity) {
     let Some(&ColliderOf { body }) = world.get::<ColliderOf>(collider) else { return };
     let offset = offset_from_body(world, collider, body);
@@ -323,7 +322,7 @@ fn adopt(world: &mut World, collider: Entity) {
     mark_compound(world, body);
 }
 
-/// Where a collider is on a body that it is to follow; none if the app said so, or said nothing at all.
+/// The pose of a collider on its body; `None` if the app gave one, or gave neither.
 fn offset_from_body(world: &World, collider: Entity, body: Entity) -> Option<ColliderTransform> {
     let held = world.get::<ColliderTransform>(collider)?;
     let is_placed = world.get::<Transform>(collider).is_some_and(|own| {

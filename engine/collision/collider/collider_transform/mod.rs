@@ -1,4 +1,4 @@
-//! Where a collider sits on its body: [`ColliderTransform`], kept from the transforms between them.
+//! The pose of a collider on its body: [`ColliderTransform`], derived from the transforms between them.
 
 mod plugin;
 
@@ -17,14 +17,14 @@ use crate::{
     physics_transform::{Rotation, frame::read_pose},
 };
 
-/// The pose and scale of a collider relative to its body, from the transforms between them. On the body
-/// itself, and on colliders without a body, only the scale is of interest.
+/// The pose and scale of a collider relative to its body, derived from the transforms between them. On the body itself,
+/// and on colliders without a body, only the scale is used.
 #[derive(Reflect, Clone, Copy, Component, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default, PartialEq)]
 pub struct ColliderTransform {
-    /// From the body's origin to the collider's, in the body's axes, in metres; the body's scale is in it.
+    /// From the body's origin to the collider's, in the body's axes, in metres. Includes the body's scale.
     pub translation: Vector,
     /// From the body's axes to the collider's.
     pub rotation: Rotation,
@@ -33,7 +33,7 @@ pub struct ColliderTransform {
 }
 
 impl ColliderTransform {
-    /// Takes a point from the collider's space to the body's: scaled, turned, moved.
+    /// Transforms a point from the collider's space to the body's: scale, rotate, translate.
     pub fn transform_point(&self, mut point: Vector) -> Vector {
         point *= self.scale;
         self.rotation * point + self.translation

@@ -1,4 +1,4 @@
-//! Keeps [`ColliderTransform`]s, and the world poses of colliders that are children of a body.
+//! Updates [`ColliderTransform`]s, and the world poses of colliders that are children of a body.
 
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::{
@@ -25,23 +25,23 @@ use crate::{
         PhysicsTransformSystems, Position, Rotation, filled_in,
         frame::Frame,
         plugin::TransformTreePlugin,
+        rotation_from_f64,
         sync::{
             find_changed_transforms, position_to_transform, propagate_global_transforms,
             transform_to_position,
         },
         tree::{FollowsBody, HierarchyQueue, Parents, TransformTree, TreeChanges},
-        turn_to_rotation,
     },
     schedule::OnThisThread,
 };
 
-/// Keeps [`ColliderTransform`]s, and the poses of colliders that are children of a body.
+/// Updates [`ColliderTransform`]s, and the poses of colliders that are children of a body.
 pub struct ColliderTransformPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
 impl ColliderTransformPlugin {
-    /// Runs in `schedule`, where [`PhysicsSystems`](crate::schedule::PhysicsSystems) run.
+    /// Runs in `schedule`, which must have the sets of [`PhysicsSystems`](crate::schedule::PhysicsSystems).
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern() }
     }
@@ -57,7 +57,7 @@ impl Plugin for ColliderTransformPlugin {
     fn build(&self, app: &mut App) {
         use PhysicsTransformSystems::{PositionToTransform, Propagate, TransformToPosition};
         TransformTreePlugin::ensure(app, self.schedule);
-        // Each fails only where the requirement is there already.
+        // Registration fails only if the requirement exists already.
         let _ =
             app.try_register_required_components_with::<ColliderMarker, Position>(|| Position::PLACEHOLDER);
         let _ =
@@ -87,21 +87,21 @@ impl Plugin for ColliderTransformPlugin {
     }
 }
 
-/// What is to be placed, and when that was last done.
+/// Colliders to be placed.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Placement {
-    /// Colliders that got another body since the last step.
+    /// Colliders that were attached to another body since the last step.
     attached: Noted,
-    /// Those of them that wait for the command that computes their transforms on the body.
+    /// Those that wait for the command that computes their transform on the body.
     unplaced: Vec<Entity>,
-    /// Colliders with another transform relative to their body.
+    /// Colliders whose transform relative to their body changed.
     offset: Vec<Entity>,
     last: Tick,
 }
 
 #[cfg(test)]
 impl Placement {
-    /// How many colliders are noted.
+    /// Number of recorded colliders.
     pub(crate) fn len(&self) -> usize {
         self.attached.len() + self.offset.len()
     }
@@ -114,14 +114,14 @@ fn note_attached(
 ) {
     let collider = attached.event_target();
     placement.attached.note(collider);
-    // The first that waits calls the command for all.
+    // The first one queues the command for all.
     if placement.unplaced.is_empty() {
         commands.queue(place_now);
     }
     placement.unplaced.push(collider);
 }
 
-/// What a collider's place on its body follows from.
+/// Queries for a collider's pose on its body.
 #[derive(SystemParam)]
 struct Placer<'w, 's> {
     placement: ResMut<'w, Placement>,
@@ -137,14 +137,14 @@ type Offsets<'w, 's> = Query<
     (&'static mut ColliderTransform, Option<&'static ColliderOf>, Option<&'static FollowsBody>),
 >;
 
-/// Sets a collider's transform on its body. Returns whether it was another. Where the app attached the collider,
-/// the transforms between them say nothing.
+/// Sets the transform of a collider on its body. Returns whether it changed. If the app attached the collider, the
+/// transforms between them are ignored.
 fn put_offset(colliders: &mut Offsets, entity: Entity, offset: ColliderTransform) -> bool {
     let Ok((mut held, of, follows)) = colliders.get_mut(entity) else { return false };
     !of.is_some_and(|of| of.is_explicit(entity, follows)) && held.set_if_neq(offset)
 }
 
-/// Kept, as making it anew takes longer than using it.
+/// Kept between calls, since building it takes longer than using it.
 #[derive(Resource)]
 struct PlacerState(Option<SystemState<Placer<'static, 'static>>>);
 
@@ -154,8 +154,7 @@ impl FromWorld for PlacerState {
     }
 }
 
-/// Computes the [`ColliderTransform`]s of newly attached colliders as soon as the command is done that attached
-/// them.
+/// Computes the [`ColliderTransform`]s of newly attached colliders at the end of the command that attached them.
 fn place_now(world: &mut World) {
     let Some(mut state) = world.get_resource_mut::<PlacerState>().and_then(|mut state| state.0.take()) else {
         return;
@@ -176,11 +175,11 @@ fn place_now(world: &mut World) {
     world.resource_mut::<PlacerState>().0 = Some(state);
 }
 
-/// Where a walk down the hierarchy has come to.
+/// Position of a walk down the hierarchy.
 #[derive(Clone, Copy)]
 struct Path {
     world: Frame,
-    /// The nearest body at or above, and the frame relative to it.
+    /// Nearest body at or above, and the frame relative to it.
     body: Option<Frame>,
 }
 
@@ -195,13 +194,13 @@ impl Path {
         let frame = self.body.unwrap_or_else(|| self.world.unposed());
         ColliderTransform {
             translation: vector_from_xyz(frame.translation()),
-            rotation: turn_to_rotation(frame.rotation()),
+            rotation: rotation_from_f64(frame.rotation()),
             scale: vector_from_xyz(frame.scale()),
         }
     }
 }
 
-/// Recomputes the [`ColliderTransform`]s at and below changed transforms, and of newly attached colliders.
+/// Recomputes [`ColliderTransform`]s at and below changed transforms, and of newly attached colliders.
 pub(crate) fn update_collider_transforms(
     changes: Res<TreeChanges>,
     mut tree: ResMut<TransformTree>,
@@ -235,7 +234,7 @@ fn path_above(entity: Entity, parents: &Parents, transforms: &Query<(&Transform,
     line.iter().rev().filter_map(|&e| transforms.get(e).ok()).fold(root, |path, (t, b)| path.child(b, t))
 }
 
-/// Sets the world poses of colliders that follow a body: of moved bodies, and those with a new offset.
+/// Sets the world poses of colliders that follow a body, if the body moved or the offset changed.
 pub(crate) fn place_child_colliders(
     mut placement: ResMut<Placement>,
     bodies: Query<

@@ -1,4 +1,4 @@
-//! What colliders of the plane have of their own: their constructors and their mass.
+//! The constructors and mass properties of 2D colliders.
 
 use super::Collider;
 use super::constructors::{speck, usable_vertices};
@@ -46,7 +46,7 @@ fn unit_mass_properties(collider: &Collider) -> MassProperties2d {
     }
 }
 
-/// What parry says, made usable: outlines given clockwise have a negative area there.
+/// The mass properties by parry, corrected for clockwise outlines, which have a negative area there.
 fn foreign_mass_properties(shape: &SharedShape) -> MassProperties2d {
     let properties = shape.mass_properties(1.0);
     let mass = (properties.mass() as f32).abs();
@@ -128,7 +128,7 @@ impl Collider {
         })
     }
 
-    /// A triangle whose corners are known to be in counter-clockwise order and not in a line.
+    /// A triangle whose corners must be in counter-clockwise order and not collinear.
     pub fn triangle_unchecked(a: Vector, b: Vector, c: Vector) -> Self {
         checked!("triangle_unchecked", |input| {
             let [a, b, c] = [a, b, c].map(|p| input.point(p));
@@ -146,8 +146,8 @@ impl Collider {
         })
     }
 
-    /// The polygon with the given corners; `None` if they are not the corners of a convex polygon, in
-    /// order, in either sense. Corners in a straight side are left out.
+    /// The polygon with the given corners. `None` if they are not the corners of a convex polygon in order, in either
+    /// orientation. Corners in a straight side are left out.
     pub fn convex_polyline(mut points: Vec<Vector>) -> Option<Self> {
         if !points.iter().all(|p| is_usable(*p)) {
             return None;
@@ -156,7 +156,7 @@ impl Collider {
         if area < 0.0 {
             points.reverse();
         }
-        // The turns are to the left, and make one round: a star has only left turns, too.
+        // All turns are to the left, and add up to one round. A star has only left turns, too.
         let tolerance = -1.0e-6 * area.abs();
         let convex = corners(&points).all(|[a, b, c]| (b - a).perp_dot(c - b) >= tolerance);
         let upward = |v: Vector| v.y > 0.0 || v.y == 0.0 && v.x > 0.0;
@@ -173,7 +173,7 @@ impl Collider {
         Self::convex_decomposition_with_config(vertices, indices, &VhacdParameters::default())
     }
 
-    /// Convex polygons that together approximate the inside of a closed outline, made as `params` say.
+    /// Convex polygons that together approximate the inside of a closed outline, with parameters.
     pub fn convex_decomposition_with_config(
         vertices: Vec<Vector>,
         indices: Vec<[u32; 2]>,
@@ -182,7 +182,7 @@ impl Collider {
         checked!("convex_decomposition", |input| Self::decomposition(&vertices, indices, params, &mut input))
     }
 
-    /// The squares that an outline goes through, and those inside of it as `fill_mode` says.
+    /// The squares that an outline passes through, and those inside of it by `fill_mode`.
     pub fn voxelized_polyline(
         vertices: &[Vector],
         indices: &[[u32; 2]],
@@ -194,8 +194,8 @@ impl Collider {
         })
     }
 
-    /// A landscape: heights at equal distances along the X axis, centred on the origin and `scale.x` wide
-    /// in all; heights are multiplied by `scale.y`. At least two.
+    /// A height field: heights at equal distances along the X axis, centred on the origin and `scale.x` wide in total,
+    /// times `scale.y`. At least two heights.
     pub fn heightfield(heights: Vec<Scalar>, scale: Vector) -> Self {
         checked!("heightfield", |input| {
             if heights.len() < 2 {
@@ -207,7 +207,8 @@ impl Collider {
         })
     }
 
-    /// The polygon with the given outline, cut into convex ones. One that crosses itself becomes its hull.
+    /// The polygon with an outline, decomposed into convex ones. An outline that crosses itself becomes its convex
+    /// hull.
     pub(super) fn polygon(outline: Vec<Vector>, input: &mut Input) -> Self {
         let mut outline = usable_outline(outline, input);
         let area: Scalar = corners(&outline).map(|[a, b, _]| a.perp_dot(b)).sum();
@@ -228,7 +229,7 @@ impl Collider {
     }
 }
 
-/// The usable corners of an outline, without those that repeat the one before.
+/// The usable corners of an outline, without consecutive duplicates.
 fn usable_outline(outline: Vec<Vector>, input: &mut Input) -> Vec<Vector> {
     let count = outline.len();
     let mut kept: Vec<_> = outline.into_iter().filter(|v| is_usable(*v)).collect();
@@ -240,13 +241,13 @@ fn usable_outline(outline: Vec<Vector>, input: &mut Input) -> Vec<Vector> {
     usable_vertices(kept)
 }
 
-/// Each corner of an outline with the two after it.
+/// Each corner of an outline with the next two.
 fn corners(points: &[Vector]) -> impl Iterator<Item = [Vector; 3]> + '_ {
     let n = points.len();
     (0..n).map(move |i| [points[i], points[(i + 1) % n], points[(i + 2) % n]])
 }
 
-/// Whether three points lie in a line, judged by twice their area against their distances.
+/// Whether three points are collinear, given twice their area.
 fn is_flat([a, b, c]: [Vector; 3], area: Scalar) -> bool {
     let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
     area.abs() <= MIN_LENGTH * MIN_LENGTH || area.abs() <= 8.0 * Scalar::EPSILON * longest

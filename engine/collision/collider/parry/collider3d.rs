@@ -1,4 +1,4 @@
-//! What colliders of space have of their own: their constructors and their mass.
+//! The constructors and mass properties of 3D colliders.
 
 use super::Collider;
 use super::constructors::speck;
@@ -34,7 +34,7 @@ fn unit_mass_properties(collider: &Collider) -> MassProperties3d {
     }
 }
 
-/// What the kernel says, with the inertia tensor turned to its principal axes.
+/// The mass properties by the kernel, with the inertia tensor in principal axes.
 fn native_mass_properties(shape: &NativeShape) -> MassProperties3d {
     let p = shape.mass_properties(1.0);
     let i = p.inertia;
@@ -48,7 +48,7 @@ fn native_mass_properties(shape: &NativeShape) -> MassProperties3d {
     MassProperties3d::new_with_angular_inertia_tensor(p.mass, tensor, center)
 }
 
-/// What parry says, made usable: surfaces with inward triangles have a negative volume there.
+/// The mass properties by parry, corrected for inward triangles, which have a negative volume there.
 fn foreign_mass_properties(shape: &SharedShape) -> MassProperties3d {
     let properties = shape.mass_properties(1.0);
     let mass = (properties.mass() as f32).abs();
@@ -144,7 +144,7 @@ impl Collider {
         Self::convex_decomposition_with_config(vertices, indices, VhacdParameters::default())
     }
 
-    /// Convex polyhedra that together approximate the inside of a closed surface, made as `params` say.
+    /// Convex polyhedra that together approximate the inside of a closed surface, with parameters.
     pub fn convex_decomposition_with_config(
         vertices: Vec<Vector>,
         indices: Vec<[u32; 3]>,
@@ -153,7 +153,7 @@ impl Collider {
         checked!("convex_decomposition", |input| Self::decomposition(&vertices, indices, &params, &mut input))
     }
 
-    /// The boxes that a surface goes through, and those inside of it as `fill_mode` says.
+    /// The boxes that a surface passes through, and those inside of it by `fill_mode`.
     pub fn voxelized_trimesh(
         vertices: &[Vector],
         indices: &[[u32; 3]],
@@ -165,11 +165,11 @@ impl Collider {
         })
     }
 
-    /// A landscape: heights on a grid over the XZ plane, centred on the origin, `scale.x` by `scale.z` in
-    /// all; heights are multiplied by `scale.y`.
+    /// A height field: heights on a grid over the XZ plane, centred on the origin, `scale.x` by `scale.z` in total,
+    /// times `scale.y`.
     ///
-    /// `heights[i][j]` is at the i-th place along X and the j-th along Z. At least two each way; where the
-    /// inner lists differ in length, the shortest counts.
+    /// `heights[i][j]` is at place i along X and j along Z. At least two in each direction. If the inner lists differ
+    /// in length, the shortest one counts.
     pub fn heightfield(heights: Vec<Vec<Scalar>>, scale: Vector) -> Self {
         checked!("heightfield", |input| {
             let along_z = heights.iter().map(Vec::len).min().unwrap_or(0);
@@ -181,13 +181,13 @@ impl Collider {
             let lines = heights.iter().flat_map(|line| &line[..along_z]);
             let (data, factor) = input.heights(lines.copied(), scale.y);
             let scale = Vector::new(input.length(scale.x), factor, input.length(scale.z));
-            // Parry's rows run along Z and are stored column by column: line after line of ours.
+            // Parry's rows run along Z and are stored by column: one list of ours after the other.
             SharedShape::heightfield(Array2::new(along_z, along_x, data), scale).into()
         })
     }
 }
 
-/// Whether three points lie in a line, judged by their height against their distances.
+/// Whether three points are collinear.
 fn is_flat([a, b, c]: [Vector; 3]) -> bool {
     let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
     let area = (b - a).cross(c - a).length();

@@ -1,4 +1,4 @@
-//! Shapes made from shapes: compounds are kept flat, and scaled with their parts.
+//! Composite shapes: compounds are flat lists, and are scaled part by part.
 
 use super::dim;
 use super::input::{is_usable, without_panic};
@@ -6,8 +6,8 @@ use crate::math::Vector;
 use crate::parry::math::Pose;
 use crate::parry::shape::{SharedShape, TypedShape};
 
-/// Appends the convex parts of a shape at a pose. Parry's compounds have no compounds, meshes or other
-/// composite shapes in them, so these are taken apart: into triangles, segments and boxes.
+/// Appends the convex parts of a shape at a pose. Parry's compounds cannot contain composite shapes, so these are
+/// decomposed into triangles, segments and boxes.
 pub(super) fn flatten(pose: Pose, shape: &SharedShape, out: &mut Vec<(Pose, SharedShape)>) {
     match shape.as_typed_shape() {
         TypedShape::Compound(compound) => {
@@ -33,12 +33,12 @@ pub(super) fn flatten(pose: Pose, shape: &SharedShape, out: &mut Vec<(Pose, Shar
     }
 }
 
-/// The shape scaled along its axes; `None` if it has no such shape.
+/// The shape scaled along its axes; `None` if no shape of parry is that.
 pub(super) fn scaled(shape: &SharedShape, scale: Vector, subdivisions: u32) -> Option<SharedShape> {
     if scale == Vector::ONE {
         return Some(shape.clone());
     }
-    // Curved shapes become hulls, of at least a triangle and at most what is still quick to collide.
+    // Curved shapes become hulls, from a triangle up to what still collides fast.
     let subdivisions = subdivisions.clamp(2, 100);
     let scaled = match shape.as_typed_shape() {
         TypedShape::Compound(compound) => {

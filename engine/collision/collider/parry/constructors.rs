@@ -1,4 +1,4 @@
-//! How a [`Collider`] is made, where both dimensions do it the same way.
+//! Constructors of [`Collider`] that are the same in both dimensions.
 
 use super::input::{Input, MIN_LENGTH, checked, is_element_usable, is_usable, without_panic};
 use super::{Collider, FillMode, TrimeshBuilderError, TrimeshFlags, VhacdParameters, composite, dim};
@@ -7,14 +7,14 @@ use crate::parry::math::IVector;
 use crate::parry::shape::{SharedShape, TopologyError, TriMesh};
 use crate::physics_transform::{Position, Rotation};
 
-/// The largest coordinate of a voxel: farther ones overflow parry's chunk arithmetic.
+/// Maximum coordinate of a voxel. Larger ones overflow parry's chunk arithmetic.
 pub(super) const MAX_VOXEL: i32 = 1 << 24;
 
 impl Collider {
     /// A collider made from several at poses relative to it.
     ///
-    /// Compounds in it are taken apart, and so are meshes, polylines, height fields and voxels: into
-    /// triangles, segments and boxes.
+    /// Compounds in it are flattened, and meshes, polylines, height fields and voxels are decomposed into triangles,
+    /// segments and boxes.
     pub fn compound(shapes: Vec<(impl Into<Position>, impl Into<Rotation>, impl Into<Collider>)>) -> Self {
         checked!("compound", |input| {
             let mut parts = Vec::with_capacity(shapes.len());
@@ -30,8 +30,7 @@ impl Collider {
         })
     }
 
-    /// A capsule along the Y axis: a radius around a segment of the given length, so
-    /// `length + 2 * radius` high in all.
+    /// A capsule along the Y axis: a segment of the given length with a radius. `length + 2 * radius` high in total.
     pub fn capsule(radius: Scalar, length: Scalar) -> Self {
         checked!("capsule", |input| {
             let half = input.length_or_zero(length) * 0.5;
@@ -46,8 +45,8 @@ impl Collider {
         })
     }
 
-    /// All that lies behind the plane (in 2D the line) through the origin with the given outward normal.
-    /// A normal without a direction is taken to point up.
+    /// The half-space (in 2D half-plane) behind the plane through the origin with an outward normal. A zero or invalid
+    /// normal becomes the Y axis.
     pub fn half_space(outward_normal: Vector) -> Self {
         checked!("half_space", |input| SharedShape::halfspace(input.direction(outward_normal)).into())
     }
@@ -73,22 +72,22 @@ impl Collider {
         })
     }
 
-    /// A surface of triangles. See [`try_trimesh`](Self::try_trimesh) for one that reports errors: here
-    /// triangles that cannot be used are left out.
+    /// A triangle mesh. Triangles that are invalid are left out. See [`try_trimesh`](Self::try_trimesh) for errors
+    /// instead.
     ///
-    /// A mesh has no inside but what its surface encloses; thin or fast bodies get through it more easily
-    /// than through solid shapes. For dynamic bodies prefer several convex shapes.
+    /// A mesh has no volume, so thin or fast bodies tunnel through it more easily than through solid shapes. For
+    /// dynamic bodies prefer several convex shapes.
     pub fn trimesh(vertices: Vec<Vector>, indices: Vec<[u32; 3]>) -> Self {
         Self::trimesh_with_config(vertices, indices, TrimeshFlags::empty())
     }
 
-    /// A surface of triangles, or why it cannot be one: no triangles, or one whose indices do not exist,
-    /// repeat or lead to coordinates that are not finite (`BadTriangle`).
+    /// A triangle mesh, or an error: no triangles, or one whose indices do not exist, repeat or refer to coordinates
+    /// that are not finite (`BadTriangle`).
     pub fn try_trimesh(vertices: Vec<Vector>, indices: Vec<[u32; 3]>) -> Result<Self, TrimeshBuilderError> {
         Self::try_trimesh_with_config(vertices, indices, TrimeshFlags::empty())
     }
 
-    /// A surface of triangles, prepared as `flags` say. Triangles that cannot be used are left out.
+    /// A triangle mesh, preprocessed by `flags`. Invalid triangles are left out.
     pub fn trimesh_with_config(vertices: Vec<Vector>, indices: Vec<[u32; 3]>, flags: TrimeshFlags) -> Self {
         checked!("trimesh", |input| {
             let indices = input.elements(&vertices, indices);
@@ -97,8 +96,7 @@ impl Collider {
         })
     }
 
-    /// A surface of triangles, prepared as `flags` say, or why it cannot be one; see
-    /// [`try_trimesh`](Self::try_trimesh).
+    /// A triangle mesh, preprocessed by `flags`, or an error; see [`try_trimesh`](Self::try_trimesh).
     pub fn try_trimesh_with_config(
         vertices: Vec<Vector>,
         indices: Vec<[u32; 3]>,
@@ -108,7 +106,7 @@ impl Collider {
             return Err(TrimeshBuilderError::TopologyError(TopologyError::BadTriangle(bad as u32)));
         }
         let mesh = TriMesh::with_flags(usable_vertices(vertices), indices, flags.into())?;
-        // The flags may have asked to drop every triangle.
+        // The flags may have removed every triangle.
         if mesh.indices().is_empty() {
             Err(TrimeshBuilderError::EmptyIndices)
         } else {
@@ -116,7 +114,7 @@ impl Collider {
         }
     }
 
-    /// The smallest convex shape around some points; `None` if they do not span one or are not finite.
+    /// The convex hull of some points. `None` if they do not span an area or volume, or are not finite.
     pub fn convex_hull(points: Vec<Vector>) -> Option<Self> {
         if !points.iter().all(|p| is_usable(*p)) || !spans_space(&points) {
             return None;
@@ -174,8 +172,8 @@ impl Collider {
         })
     }
 
-    /// The boxes that an outline (2D: segments) or surface (3D: triangles) goes through, and those inside
-    /// of it as `fill_mode` says.
+    /// The boxes that an outline (2D: segments) or surface (3D: triangles) passes through, and those inside of it by
+    /// `fill_mode`.
     pub(super) fn voxelized(
         vertices: &[Vector],
         indices: &[[u32; DIM]],
@@ -218,12 +216,12 @@ impl Collider {
     }
 }
 
-/// Whether points do not all lie in a line, or in 3D in a plane: parry's hulls assert that they do not.
+/// Whether points are not collinear (in 3D not coplanar): parry's hulls assert it.
 fn spans_space(points: &[Vector]) -> bool {
     let Some(&origin) = points.first() else {
         return false;
     };
-    // Gram–Schmidt with pivots: each axis is the farthest point's offset from the space of those before.
+    // Gram–Schmidt with pivots: each axis is the offset of the farthest point from the span of those before.
     let mut offsets: Vec<_> = points.iter().map(|p| *p - origin).collect();
     let size = offsets.iter().map(|v| v.length()).fold(0.0, Scalar::max);
     for _ in 0..DIM {
@@ -242,12 +240,12 @@ fn spans_space(points: &[Vector]) -> bool {
     true
 }
 
-/// The shape of what has none: a ball of the smallest size.
+/// A tiny ball, for input that makes no shape.
 pub(super) fn speck(input: &mut Input) -> SharedShape {
     input.repair(SharedShape::ball(MIN_LENGTH))
 }
 
-/// A compound of convex parts, or a speck for none.
+/// A compound of convex parts, or a tiny ball for none.
 pub(super) fn compound_or_speck(
     parts: Vec<(crate::parry::math::Pose, SharedShape)>,
     input: &mut Input,
@@ -255,12 +253,12 @@ pub(super) fn compound_or_speck(
     if parts.is_empty() { speck(input).into() } else { SharedShape::compound(parts).into() }
 }
 
-/// Voxels, or a speck for none.
+/// Voxels, or a tiny ball for none.
 fn voxels_or_speck(size: Vector, cells: &[IVector], input: &mut Input) -> Collider {
     if cells.is_empty() { speck(input) } else { SharedShape::voxels(size, cells) }.into()
 }
 
-/// Vertices that no element uses may be anything; parry looks at some of them all the same.
+/// Replaces unused vertices that are invalid: parry reads some of them.
 pub(super) fn usable_vertices(mut vertices: Vec<Vector>) -> Vec<Vector> {
     for v in &mut vertices {
         if !is_usable(*v) {
@@ -270,7 +268,7 @@ pub(super) fn usable_vertices(mut vertices: Vec<Vector>) -> Vec<Vector> {
     vertices
 }
 
-/// Parameters within the ranges that the decomposition ends for.
+/// Clamps parameters to ranges for which the decomposition ends.
 fn usable_parameters(parameters: &VhacdParameters, input: &mut Input) -> VhacdParameters {
     let mut unit = |v: Scalar, fallback: Scalar| {
         if (0.0..=1.0).contains(&v) {

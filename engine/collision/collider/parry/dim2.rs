@@ -1,4 +1,4 @@
-//! What shapes of the plane have of their own: poses, boxes, the kernel's polygons. `dim3.rs` is the twin.
+//! 2D parts of the default collider: poses, boxes, the kernel's polygons. `dim3.rs` exports the same names.
 
 use super::regular_polygon::RegularPolygonColliderShape;
 use crate::math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to_kernel};
@@ -11,15 +11,15 @@ use kernel::shape::Shape as NativeShape;
 pub(super) const VHACD_CONCAVITY: Scalar = 0.1;
 /// The default of [`VhacdParameters::resolution`](super::VhacdParameters::resolution).
 pub(super) const VHACD_RESOLUTION: u32 = 256;
-/// The most corners of a native polygon: the kernel numbers them in a byte.
+/// Maximum number of corners of a native polygon: the kernel numbers them in a byte.
 const MAX_CORNERS: usize = 255;
 
-/// A pose as parry has it.
+/// A pose in parry's type.
 pub(super) fn pose(position: Vector, rotation: Rotation) -> Pose {
     Pose::from_parts(position, Rot2::from_cos_sin_unchecked(rotation.cos, rotation.sin))
 }
 
-/// A relative pose of the kernel as parry has it.
+/// A relative pose of the kernel in parry's type.
 pub(super) fn pose_from_kernel(pose: &kernel::math::Pose) -> Pose {
     let rotation = Rot2::from_cos_sin_unchecked(
         pose.rotation.cos.adjust_precision(),
@@ -43,8 +43,8 @@ pub(super) fn height_field_elements(field: &HeightField) -> impl Iterator<Item =
     field.segments().map(SharedShape::new)
 }
 
-/// The scale along the axes of a part turned by `rotation`: exact for quarter turns, else the lengths of
-/// the scaled axes, for a sheared shape is none.
+/// The scale along the axes of a part rotated by `rotation`. Exact for quarter turns. Otherwise the lengths of the
+/// scaled axes, since no shape can be sheared.
 pub(super) fn scale_in_frame(scale: Vector, rotation: Rot2) -> Vector {
     if scale.x == scale.y {
         return scale;
@@ -59,7 +59,7 @@ pub(super) fn is_solid(shape: &SharedShape) -> bool {
     mass.is_finite() && mass > 0.0
 }
 
-/// The kernel's shape for those that only this dimension has.
+/// The kernel's shape for shapes that only 2D has.
 pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> {
     match shape {
         TypedShape::ConvexPolygon(polygon) => native_polygon(polygon.points(), 0.0),
@@ -83,7 +83,7 @@ pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> 
     }
 }
 
-/// A hull of the kernel with a radius, if it has room for the corners.
+/// A polygon of the kernel with a radius; `None` if it has too many corners.
 fn native_polygon(corners: &[Vector], radius: Scalar) -> Option<NativeShape> {
     if corners.len() > MAX_CORNERS {
         return None;

@@ -1,4 +1,4 @@
-//! What shapes of space have of their own: poses, boxes, the kernel's polyhedra. `dim2.rs` is the twin.
+//! 3D parts of the default collider: poses, boxes, the kernel's polyhedra. `dim2.rs` exports the same names.
 
 use crate::math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to_kernel};
 use crate::parry::math::{Pose, Rotation as ParryRotation};
@@ -11,12 +11,12 @@ use kernel::shape::Shape as NativeShape;
 pub(super) const VHACD_CONCAVITY: Scalar = 0.01;
 /// The default of [`VhacdParameters::resolution`](super::VhacdParameters::resolution).
 pub(super) const VHACD_RESOLUTION: u32 = 64;
-/// A pose as parry has it.
+/// A pose in parry's type.
 pub(super) fn pose(position: Vector, rotation: Rotation) -> Pose {
     Pose::from_parts(position, rotation.0)
 }
 
-/// A relative pose of the kernel as parry has it.
+/// A relative pose of the kernel in parry's type.
 pub(super) fn pose_from_kernel(pose: &kernel::math::Pose) -> Pose {
     let r = pose.rotation;
     let rotation = Quat::from_xyzw(r.x, r.y, r.z, r.w).adjust_precision();
@@ -38,8 +38,8 @@ pub(super) fn height_field_elements(field: &HeightField) -> impl Iterator<Item =
     field.triangles().map(SharedShape::new)
 }
 
-/// The scale along the axes of a part turned by `rotation`: exact for quarter turns, else the lengths of
-/// the scaled axes, for a sheared shape is none.
+/// The scale along the axes of a part rotated by `rotation`. Exact for quarter turns. Otherwise the lengths of the
+/// scaled axes, since no shape can be sheared.
 pub(super) fn scale_in_frame(scale: Vector, rotation: ParryRotation) -> Vector {
     if scale.x == scale.y && scale.y == scale.z {
         return scale;
@@ -54,7 +54,7 @@ pub(super) fn is_solid(shape: &SharedShape) -> bool {
     mass.is_finite() && mass > 0.0
 }
 
-/// The kernel's shape for those that only this dimension has.
+/// The kernel's shape for shapes that only 3D has.
 pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> {
     let TypedShape::ConvexPolyhedron(polyhedron) = shape else {
         return None;

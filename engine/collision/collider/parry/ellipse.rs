@@ -1,4 +1,4 @@
-//! The ellipse, which parry does not have: an exact support map, and closed forms for rays, boxes and mass.
+//! The ellipse as a custom shape of parry: an exact support map, and closed forms for rays, boxes and mass.
 
 use crate::math::{AdjustPrecision, Scalar, Vector};
 use crate::parry::bounding_volume::{Aabb, BoundingSphere};
@@ -34,7 +34,7 @@ impl SupportMap for EllipseColliderShape {
 }
 
 impl PolygonalFeatureMap for EllipseColliderShape {
-    /// A short piece of the tangent: parry clips edges, and a curve touches in one point.
+    /// A short piece of the tangent: parry clips edges, but a curve touches in one point.
     fn local_support_feature(&self, direction: Vector, out_feature: &mut PolygonalFeature) {
         let half = self.half();
         let point = self.local_support_point(direction);

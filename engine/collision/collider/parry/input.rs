@@ -1,18 +1,18 @@
-//! Stops NaN, infinity, and sizes that make no shape at the door of the constructors.
+//! Validates the input of constructors: no NaN, no infinity, no sizes that make no shape.
 //!
-//! Constructors without a `Result` repair their input and warn, once per constructor: a game goes on with
-//! a collider that is too small rather than not at all, and no NaN gets into the engine.
+//! Constructors without a `Result` repair their input and warn, once per constructor. A game then continues with a tiny
+//! collider, and no NaN enters the engine.
 
 use crate::math::{Scalar, Vector};
 
-/// The smallest size of a shape, in metres: what is zero or not a number becomes this.
+/// Minimum size of a shape, in metres. Smaller sizes and NaN become this.
 pub(super) const MIN_LENGTH: Scalar = 1.0e-5;
 
-/// The largest size and coordinate, in metres. Moments of inertia go with the fifth power of lengths and
-/// squares of those are formed: larger values would overflow `f32`.
+/// Maximum size and coordinate, in metres. Moments of inertia grow with the fifth power of lengths and are squared:
+/// larger values would overflow `f32`.
 pub(super) const MAX_LENGTH: Scalar = 1.0e7;
 
-/// Checks the input of one constructor, and notes whether something had to be mended.
+/// Checks the input of one constructor, and records whether a value was repaired.
 #[derive(Default)]
 pub(super) struct Input {
     /// Whether a value was changed.
@@ -20,13 +20,13 @@ pub(super) struct Input {
 }
 
 impl Input {
-    /// Notes that something was mended.
+    /// Records a repair.
     pub fn repair<T>(&mut self, value: T) -> T {
         self.repaired = true;
         value
     }
 
-    /// A size: its absolute value, within the limits; the smallest for NaN.
+    /// A size: its absolute value, within the limits. NaN becomes the minimum.
     pub fn length(&mut self, value: Scalar) -> Scalar {
         if (MIN_LENGTH..=MAX_LENGTH).contains(&value) {
             value
@@ -37,7 +37,7 @@ impl Input {
         }
     }
 
-    /// A size that may be zero: its absolute value, at most the largest; zero for NaN.
+    /// A size that may be zero: its absolute value, at most the maximum. NaN becomes zero.
     pub fn length_or_zero(&mut self, value: Scalar) -> Scalar {
         if (0.0..=MAX_LENGTH).contains(&value) {
             value
@@ -48,7 +48,7 @@ impl Input {
         }
     }
 
-    /// A point with components within the limits; zero for NaN.
+    /// A point with components within the limits. NaN becomes zero.
     pub fn point(&mut self, point: Vector) -> Vector {
         if is_usable(point) {
             return point;
@@ -58,7 +58,7 @@ impl Input {
         self.repair(finite.clamp(-limit, limit))
     }
 
-    /// Heights and their factor, which comes out positive: parry takes no other.
+    /// Heights and their factor, which becomes positive, as parry needs it.
     pub fn heights(
         &mut self,
         heights: impl Iterator<Item = Scalar>,
@@ -73,7 +73,7 @@ impl Input {
     /// Two points at least the smallest length apart.
     pub fn segment(&mut self, a: Vector, b: Vector) -> (Vector, Vector) {
         let (a, b) = (self.point(a), self.point(b));
-        // Far from the origin the smallest length may be below the resolution of the numbers.
+        // Far from the origin the minimum length may be below the resolution of coordinates.
         let step = MIN_LENGTH.max(a.abs().max_element() * 4.0 * Scalar::EPSILON);
         if a.distance_squared(b) >= MIN_LENGTH * MIN_LENGTH {
             (a, b)
@@ -84,12 +84,12 @@ impl Input {
 
     /// The unit vector of a direction; upwards if it has none.
     pub fn direction(&mut self, direction: Vector) -> Vector {
-        // The largest component first, lest the square of a long vector overflow or that of a short one vanish.
+        // Divided by the largest component first, so that squares neither overflow nor underflow.
         let scaled = direction / direction.abs().max_element();
         scaled.try_normalize().filter(|d| d.is_finite()).unwrap_or_else(|| self.repair(Vector::Y))
     }
 
-    /// The elements that index into `vertices` without repetition, at points within the limits.
+    /// The elements with different valid indices of usable points.
     pub fn elements<const N: usize>(
         &mut self,
         vertices: &[Vector],
@@ -107,13 +107,13 @@ pub(super) fn is_usable(point: Vector) -> bool {
     point.abs().cmple(Vector::splat(MAX_LENGTH)).all()
 }
 
-/// Whether the indices of a segment or triangle exist, differ, and lead to usable points.
+/// Whether the indices of a segment or triangle exist, differ, and refer to usable points.
 pub(super) fn is_element_usable<const N: usize>(vertices: &[Vector], element: &[u32; N]) -> bool {
     let distinct = (1..N).all(|i| !element[..i].contains(&element[i]));
     distinct && element.iter().all(|i| vertices.get(*i as usize).is_some_and(|v| is_usable(*v)))
 }
 
-/// Evaluates a constructor's body with an [`Input`], and warns once if it had to mend something.
+/// Evaluates the body of a constructor with an [`Input`], and warns once if it repaired a value.
 macro_rules! checked {
     ($name:literal, |$input:ident| $body:expr) => {{
         let mut $input = $crate::collision::collider::parry::input::Input::default();
@@ -130,12 +130,12 @@ macro_rules! checked {
 }
 pub(super) use checked;
 
-/// Runs a routine of parry that is known to panic on some input; `None` if it does.
+/// Runs a routine of parry that may panic. `None` if it does.
 ///
-/// The guards before it catch all that can be told from the input; what remains are assertions within its
-/// algorithms. Where panics abort, so does this.
+/// The checks before it find all invalid input that can be known. What remains are assertions within parry's
+/// algorithms. With `panic = "abort"` this aborts, too.
 pub(super) fn without_panic<T>(routine: impl FnOnce() -> T) -> Option<T> {
-    // What the closure touches is dropped or handed out whole: nothing half-changed survives a panic.
+    // The closure's values are dropped or returned as a whole, so no panic leaves one half changed.
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(routine)).ok()
 }
 

@@ -1,4 +1,4 @@
-//! How shapes touch that the kernel does not know: parry's manifolds, in the kernel's convention.
+//! Contacts of shapes that the kernel does not have: parry's manifolds, converted to the kernel's convention.
 
 use super::{Collider, dim};
 use crate::math::{Scalar, Vector, vector_to_kernel};
@@ -10,16 +10,16 @@ use crate::parry::shape::SharedShape;
 use kernel::manifold::{LocalManifold, LocalPoint};
 use kernel::math::{MAX_POINTS, Pose};
 
-/// The buffers that parry writes its manifolds to, kept to spare the allocations.
+/// Buffers for parry's manifolds, kept to save allocations.
 #[derive(Default)]
 pub(crate) struct Workspace {
     manifolds: Vec<ContactManifold<(), ()>>,
     points: Vec<LocalPoint>,
 }
 
-/// Appends the contact manifolds of two colliders of which the kernel does not know one.
+/// Appends the contact manifolds of two colliders, one of which the kernel has no shape for.
 ///
-/// `pose` is that of `b` in the frame of `a`. See [`parry_manifolds`].
+/// `pose` is the pose of `b` in the frame of `a`. See [`parry_manifolds`].
 pub(crate) fn foreign_manifolds(
     a: &Collider,
     b: &Collider,
@@ -31,15 +31,15 @@ pub(crate) fn foreign_manifolds(
     parry_manifolds(a.shape_scaled(), b.shape_scaled(), pose, prediction, workspace, out);
 }
 
-/// Appends the contact manifolds of two shapes: one for convex shapes, one per touching part for composite
-/// ones, none for what parry cannot collide.
+/// Appends the contact manifolds of two shapes: one for convex shapes, one per touching part for composite ones, none
+/// for pairs that parry does not support.
 ///
-/// `pose` is that of shape 2 in the frame of shape 1, which the manifolds are in, with normals from 1 to 2 and
-/// points midway between the surfaces, no farther apart than `prediction` metres. At most `MAX_POINTS` per
-/// manifold: the deepest and those that spread widest. Feature ids of one part pair differ from another's.
+/// `pose` is the pose of shape 2 in the frame of shape 1. Manifolds are in that frame, with normals from 1 to 2, and
+/// points midway between the surfaces, separated by at most `prediction` metres. A manifold has at most `MAX_POINTS`:
+/// the deepest, and those that spread widest. Feature ids of different part pairs differ.
 ///
-/// Parry could start from its last result for the pair. It does not get it: the result then depends on
-/// the shapes and the pose alone, as everything else in a step does.
+/// Parry could start from its last result for the pair. It does not, so that the result depends only on the shapes and
+/// the pose, as everything in a step does.
 pub(crate) fn parry_manifolds(
     shape1: &SharedShape,
     shape2: &SharedShape,
@@ -54,7 +54,7 @@ pub(crate) fn parry_manifolds(
     let pose = dim::pose_from_kernel(pose);
     let Workspace { manifolds, points } = workspace;
     manifolds.clear();
-    // Composite shapes note here which manifold belongs to which parts; it dies with the manifolds.
+    // Composite shapes store the parts of each manifold here. It is dropped with the manifolds.
     let mut parts: Option<ContactManifoldsWorkspace> = None;
     let found = DefaultQueryDispatcher.contact_manifolds(
         &pose,
@@ -67,7 +67,7 @@ pub(crate) fn parry_manifolds(
     if found.is_err() {
         return;
     }
-    // In the order of the parts, whichever way the tree was walked.
+    // In the order of parts, independent of the order in which parry's tree is walked.
     manifolds.sort_by_key(|m| (m.subshape1, m.subshape2));
     for manifold in manifolds.iter() {
         let Some(normal) = normal_in_frame_1(manifold) else {
@@ -101,7 +101,7 @@ fn normal_in_frame_1(manifold: &ContactManifold<(), ()>) -> Option<kernel::math:
     (length > 0.5 && length.is_finite()).then(|| normal * (1.0 / length))
 }
 
-/// A contact of parry, whose points lie on the surfaces in the frames of the parts.
+/// Converts a contact of parry, whose points are on the surfaces in the frames of the parts.
 fn local_point(
     manifold: &ContactManifold<(), ()>,
     pose: &crate::parry::math::Pose,
@@ -118,14 +118,14 @@ fn local_point(
     }
 }
 
-/// One round of a hash of words: features only need to be told apart, and the same in the next step.
+/// One round of a hash of words. Features must only differ, and be the same in the next step.
 fn mix(hash: u32, word: u32) -> u32 {
     (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9)
 }
 
-/// Leaves the deepest point and those that spread widest, at most `MAX_POINTS`, and no two in one place.
+/// Keeps the deepest point and those that spread widest, at most `MAX_POINTS`, and no two at one place.
 ///
-/// Parry adds the closest points to those it clips, so one in a corner comes twice.
+/// Parry adds the closest points to the clipped ones, so a corner may appear twice.
 fn reduce(points: &mut Vec<LocalPoint>) {
     let deepest =
         (0..points.len()).reduce(|a, b| if points[b].separation < points[a].separation { b } else { a });
@@ -135,7 +135,7 @@ fn reduce(points: &mut Vec<LocalPoint>) {
     points.swap(0, deepest);
     let first = points[0].point;
     let spread = points.iter().map(|p| (p.point - first).length_squared()).fold(0.0, kernel::math::max);
-    // A thousandth of the spread apart is another place.
+    // Points closer than a thousandth of the spread are at one place.
     let least = spread * 1.0e-6;
     for chosen in 1..points.len() {
         let to_chosen = |i: usize| {

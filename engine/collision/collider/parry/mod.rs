@@ -1,7 +1,7 @@
 //! [`Collider`], the default collider: a shape of parry with a scale.
 //!
-//! `constructors`, `dim2`, `dim3` and `primitives` say what a collider is made from, `native` what the kernel
-//! makes of it, `manifold` how the shapes the kernel does not know touch.
+//! `constructors`, `dim2`, `dim3` and `primitives` make colliders, `native` converts their shapes for the kernel, and
+//! `manifold` computes contacts of shapes that the kernel does not have.
 
 #[cfg(feature = "2d")]
 mod collider2d;
@@ -60,9 +60,8 @@ pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
 
 /// The shape of a body for collisions and spatial queries.
 ///
-/// On an entity with a `RigidBody` it is that body's collider; on a descendant it belongs to the nearest
-/// body above; without any it only answers queries and reports what touches it. Cheap to clone: the
-/// shape is shared.
+/// On an entity with a `RigidBody` it is that body's collider. On a descendant it belongs to the nearest body above.
+/// Without a body it only answers queries and detects contacts. Cheap to clone: the shape is shared.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -75,15 +74,15 @@ pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
 /// }
 /// ```
 ///
-/// Constructors without a `Result` or `Option` never fail: values that make no shape (NaN, negative or
-/// zero sizes, indices out of range) are mended, with one warning per constructor. Sizes become positive
-/// and at least 10 µm; if nothing is left, the collider is a ball of that size.
+/// Constructors without a `Result` or `Option` never fail: invalid values (NaN, negative or zero sizes, indices out of
+/// range) are repaired, with one warning per constructor. Sizes become positive and at least 10 µm. If nothing is left,
+/// the collider is a ball of that size.
 ///
-/// With feature `serialize` a collider is stored as what its shape is made of and its scale, and comes back with
-/// the same bits; what describes no shape is an error. Shapes of a type of the app's own cannot be stored.
+/// With feature `serialize` a collider is stored as the definition of its shape and its scale, and is read back with
+/// the same bits. A definition that makes no shape is an error. Custom shape types cannot be stored.
 ///
-/// Parry's shapes are in its own types: `Collider::from(SharedShape)` takes any of them, and
-/// [`shape_scaled`](Self::shape_scaled) gives what the engine uses.
+/// Parry's shapes are available in their own types: `Collider::from(SharedShape)` accepts any of them, and
+/// [`shape_scaled`](Self::shape_scaled) returns the one the engine uses.
 #[derive(Clone, Component, Debug)]
 #[require(
     ColliderMarker,
@@ -98,17 +97,17 @@ pub struct Collider {
     /// The shape without scale.
     shape: SharedShape,
     scale: Vector,
-    /// How finely a curved shape is resolved that is scaled unevenly.
+    /// Number of subdivisions of a curved shape that is scaled unevenly.
     detail: u32,
-    /// Empty from when `shape` was handed out to be changed until it is next asked for.
+    /// Empty after `shape` was borrowed mutably, until the scaled shape is next needed.
     scaled: OnceLock<Scaled>,
 }
 
-/// The shape the engine uses.
+/// The scaled shape.
 #[derive(Clone, Debug)]
 struct Scaled {
     shape: SharedShape,
-    /// What the kernel makes of `shape`.
+    /// The scaled shape in the kernel's format.
     native: kernel::shape::Shape,
 }
 
@@ -133,7 +132,7 @@ impl<T: IntoCollider<Collider>> From<T> for Collider {
 impl From<SharedShape> for Collider {
     fn from(shape: SharedShape) -> Self {
         let shape = usable(shape);
-        // At once, so that clones share it.
+        // Scaled at once, so that clones share the result.
         let scaled = Scaled { native: native_shape(&shape), shape: shape.clone() };
         Self { shape, scale: Vector::ONE, detail: DEFAULT_SUBDIVISIONS, scaled: OnceLock::from(scaled) }
     }
@@ -152,18 +151,18 @@ impl Collider {
         &self.shape
     }
 
-    /// The shape without scale, to change; the scale is kept.
+    /// The shape without scale, to be changed. The scale is kept.
     pub fn shape_mut(&mut self) -> &mut SharedShape {
         self.scaled.take();
         &mut self.shape
     }
 
-    /// The shape with the scale applied: the one that collides.
+    /// The shape with the scale applied, which collides.
     pub fn shape_scaled(&self) -> &SharedShape {
         &self.scaled().shape
     }
 
-    /// The scaled shape as the kernel has it.
+    /// The scaled shape in the kernel's format.
     pub(crate) fn native(&self) -> &kernel::shape::Shape {
         &self.scaled().native
     }
@@ -184,10 +183,9 @@ impl Collider {
 
     /// Sets the scale along each axis.
     ///
-    /// A ball or another curved shape that is scaled unevenly becomes a convex hull, with
-    /// `num_subdivisions` points per quarter or so. A scale that is not finite is ignored, with a
-    /// warning; an axis scaled by almost nothing keeps 1/100,000 of its length. Where a shape cannot be
-    /// scaled, a warning is given and the collider keeps its size.
+    /// A curved shape that is scaled unevenly becomes a convex hull, with about `num_subdivisions` points per quarter
+    /// turn. A scale that is not finite is ignored with a warning. An axis with a scale of almost zero keeps 1/100,000
+    /// of its length. If a shape cannot be scaled, a warning is given and the collider keeps its size.
     pub fn set_scale(&mut self, scale: Vector, num_subdivisions: u32) {
         if !scale.is_finite() {
             bevy_log::warn_once!("a collider's scale of {scale} is not finite; it keeps its scale");
@@ -206,8 +204,8 @@ impl Collider {
     }
 }
 
-/// The shape, if it has an extent; parry's own constructors take any number for a size. Else a tiny ball, with
-/// one warning.
+/// The shape, if it has a finite extent (parry's own constructors accept any number). Otherwise a tiny ball, with one
+/// warning.
 fn usable(shape: SharedShape) -> SharedShape {
     if has_extent(&shape) {
         return shape;
@@ -216,14 +214,14 @@ fn usable(shape: SharedShape) -> SharedShape {
     SharedShape::ball(input::MIN_LENGTH)
 }
 
-/// Whether the box of a shape is finite and not inside out.
+/// Whether the box of a shape is finite and not inverted.
 fn has_extent(shape: &SharedShape) -> bool {
     let aabb = shape.compute_local_aabb();
     let (low, high) = (aabb.mins, aabb.maxs);
     low.is_finite() && high.is_finite() && low.cmple(high).all()
 }
 
-/// How finely curved shapes are approximated before a scale is set.
+/// Number of subdivisions of curved shapes before a scale is set.
 const DEFAULT_SUBDIVISIONS: u32 = 10;
 
 impl AnyCollider for Collider {

@@ -1,16 +1,16 @@
-//! What the kernel makes of a parry shape: a native one where it has one, else a box with the promise
-//! that parry answers for it.
+//! Conversion of parry's shapes to the kernel's: a native shape where the kernel has one, otherwise a box whose
+//! contacts parry computes.
 
 use super::dim;
 use crate::math::{Scalar, Vector, vector_to_kernel};
 use crate::parry::shape::{SharedShape, TypedShape};
 use kernel::shape::{Aabb, Ball, Capsule, Cuboid, Foreign, HalfSpace, Segment, Shape, Triangle};
 
-/// The shape the kernel collides for a parry shape, in `f32`.
+/// The kernel's shape for a shape of parry, in `f32`.
 ///
-/// Balls, capsules, cuboids, triangles, segments and half-spaces become themselves; convex polygons with or
-/// without a radius, regular polygons, round rectangles and convex polyhedra become hulls, if the kernel has
-/// room for their features. All else, and what has a coordinate that is not finite, is foreign.
+/// Balls, capsules, cuboids, triangles, segments and half-spaces become themselves. Convex polygons with or without a
+/// radius, regular polygons, round rectangles and convex polyhedra become hulls, if the kernel has room for their
+/// features. All other shapes, and shapes with coordinates that are not finite, are foreign.
 pub(crate) fn native_shape(shape: &SharedShape) -> Shape {
     native(shape.as_typed_shape()).unwrap_or_else(|| Shape::Foreign(foreign(shape)))
 }
@@ -59,7 +59,7 @@ fn foreign(shape: &SharedShape) -> Foreign {
         kernel::math::Vector::from_array(corner.to_array().map(rounded))
     };
     let aabb = Aabb { min: outward(aabb.mins, round_down), max: outward(aabb.maxs, round_up) };
-    // A shape that a user set may have no box; what has none touches nothing.
+    // A custom shape may have an invalid box. It then touches nothing.
     Foreign { aabb: if aabb.is_valid() { aabb } else { Aabb::around([kernel::math::Vector::ZERO]) } }
 }
 

@@ -1,5 +1,5 @@
-//! Settings of mesh colliders, convex decomposition and voxelisation, in types of our own: parry's come
-//! with a dimension and a precision in their path, and are not reflected.
+//! Settings of mesh colliders, convex decomposition and voxelisation. Parry's own types have a dimension and a
+//! precision in their path, and no reflection.
 
 use crate::math::Scalar;
 use bevy_reflect::Reflect;
@@ -24,15 +24,15 @@ pub struct VhacdParameters {
     pub beta: Scalar,
     /// The number of voxels along the longest side. Default 256 in 2D, 64 in 3D.
     pub resolution: u32,
-    /// Every how many voxels a cut is tried. Default 4.
+    /// A cut is tried at every n-th voxel. Default 4.
     pub plane_downsampling: u32,
-    /// Every how many points of a part go into its hull while cuts are compared. Default 4.
+    /// Every n-th point of a part is used for its hull while cuts are compared. Default 4.
     pub convex_hull_downsampling: u32,
-    /// How the inside is told from the outside. Default flood filling without cavities.
+    /// How the inside is distinguished from the outside. Default flood filling without cavities.
     pub fill_mode: FillMode,
     /// Whether hulls are approximated while cuts are compared. Default true.
     pub convex_hull_approximation: bool,
-    /// The most parts to make. Default 1024.
+    /// Maximum number of parts. Default 1024.
     pub max_convex_hulls: u32,
 }
 
@@ -70,19 +70,19 @@ impl From<VhacdParameters> for crate::parry::transformation::vhacd::VHACDParamet
     }
 }
 
-/// How voxelisation tells the inside of a closed surface from the outside.
+/// How voxelisation distinguishes the inside of a closed surface from the outside.
 #[derive(Hash, Clone, Copy, PartialEq, Eq, Debug, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Hash, Debug, PartialEq)]
 pub enum FillMode {
-    /// Only what the surface goes through is filled.
+    /// Only voxels that the surface passes through are filled.
     SurfaceOnly,
-    /// What cannot be reached from outside is filled as well.
+    /// Voxels that cannot be reached from outside are filled as well.
     FloodFill {
         /// Whether closed surfaces inside of others are holes.
         detect_cavities: bool,
-        /// Whether outlines that cross themselves are dealt with.
+        /// Whether outlines that cross themselves are supported.
         #[cfg(feature = "2d")]
         detect_self_intersections: bool,
     },
@@ -90,7 +90,7 @@ pub enum FillMode {
 
 crate::type_path::type_path!(FillMode, "collision::collider::parry");
 
-/// How a mesh collider is prepared, as bits.
+/// Preprocessing of a mesh collider, as bits.
 #[repr(transparent)]
 #[derive(Hash, Clone, Copy, PartialEq, Eq, Debug, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -104,11 +104,11 @@ bitflags! {
     impl TrimeshFlags: u8 {
         /// Finds which triangles share an edge.
         const HALF_EDGE_TOPOLOGY = 1;
-        /// Finds the parts that hang together. Implies the topology.
+        /// Finds connected components. Implies the topology.
         const CONNECTED_COMPONENTS = 2;
         /// Drops triangles that make the topology invalid.
         const DELETE_BAD_TOPOLOGY_TRIANGLES = 4;
-        /// Takes the mesh as a closed surface with outward triangles: points inside of it are inside.
+        /// Treats the mesh as a closed surface with outward triangles: points inside of it are inside.
         const ORIENTED = 8;
         /// Joins vertices at the same place.
         const MERGE_DUPLICATE_VERTICES = 16;
@@ -116,7 +116,7 @@ bitflags! {
         const DELETE_DEGENERATE_TRIANGLES = 32;
         /// Drops triangles with the same three vertices. Joins vertices too.
         const DELETE_DUPLICATE_TRIANGLES = 64;
-        /// Keeps bodies from catching on edges between triangles that lie in one surface.
+        /// Prevents bodies from catching on edges between triangles of one surface.
         const FIX_INTERNAL_EDGES = 128 | Self::ORIENTED.bits() | Self::MERGE_DUPLICATE_VERTICES.bits();
     }
 }

@@ -1,8 +1,8 @@
-//! Bevy's primitives of the plane as colliders.
+//! Bevy's 2D primitives as colliders.
 //!
-//! Every solid or open primitive with an exact collider has one. There is none for arcs, sectors, circular
-//! segments, rings and annuli: their outlines curve, and how finely to cut them is the user's choice (a
-//! `Collider::compound` of convex parts, or a `Collider::polyline`).
+//! Every solid or open primitive with an exact collider has one. Arcs, sectors, circular segments, rings and annuli
+//! have none: their outlines are curved, and the app chooses how to approximate them (a `Collider::compound` of convex
+//! parts, or a `Collider::polyline`).
 
 use super::Collider;
 use super::input::checked;
@@ -14,7 +14,7 @@ use bevy_math::primitives::{
     RegularPolygon, Rhombus, Segment2d, Triangle2d,
 };
 
-/// The half length of the segment that stands for an endless line, in metres.
+/// Half length of the segment that replaces an infinite line, in metres.
 const LINE_HALF_LENGTH: Scalar = 10_000.0;
 
 /// The vertices in the precision of the engine.
@@ -43,7 +43,7 @@ impl IntoCollider<Collider> for Plane2d {
 }
 
 impl IntoCollider<Collider> for Line2d {
-    /// A segment of 20 km: no shape is endless both ways.
+    /// A segment of 20 km, since no shape is infinite in both directions.
     fn collider(&self) -> Collider {
         let half = self.direction.as_vec2().adjust_precision() * LINE_HALF_LENGTH;
         Collider::segment(-half, half)
@@ -87,7 +87,8 @@ impl IntoCollider<Collider> for Rhombus {
 }
 
 impl IntoCollider<Collider> for Polygon {
-    /// The inside of the outline, cut into convex polygons. An outline that crosses itself gives its hull.
+    /// The inside of the outline, decomposed into convex polygons. An outline that crosses itself gives its convex
+    /// hull.
     fn collider(&self) -> Collider {
         checked!("from(Polygon)", |input| Collider::polygon(adjusted(&self.vertices), &mut input))
     }

@@ -1,6 +1,6 @@
-//! Bevy's primitives of space as colliders.
+//! Bevy's 3D primitives as colliders.
 //!
-//! There is none for tori, which are not convex, and for extrusions: cut them as finely as the game needs
+//! Tori, which are not convex, and extrusions have none: decompose them as finely as the game needs
 //! (`Collider::compound`, `Collider::convex_decomposition_from_mesh`).
 
 use super::Collider;
@@ -14,10 +14,10 @@ use bevy_math::primitives::{
 };
 use bevy_math::{Quat, Vec3};
 
-/// The half length of the segment that stands for an endless line, in metres.
+/// Half length of the segment that replaces an infinite line, in metres.
 const LINE_HALF_LENGTH: Scalar = 10_000.0;
 
-/// How many corners stand for a circle of a conical frustum.
+/// Number of corners of a circle of a conical frustum.
 const FRUSTUM_SIDES: u32 = 32;
 
 impl IntoCollider<Collider> for Sphere {
@@ -45,7 +45,7 @@ impl IntoCollider<Collider> for Plane3d {
 }
 
 impl IntoCollider<Collider> for Line3d {
-    /// A segment of 20 km: no shape is endless both ways.
+    /// A segment of 20 km, since no shape is infinite in both directions.
     fn collider(&self) -> Collider {
         let half = self.direction.as_vec3().adjust_precision() * LINE_HALF_LENGTH;
         Collider::segment(-half, half)
@@ -72,7 +72,7 @@ impl IntoCollider<Collider> for Triangle3d {
 }
 
 impl IntoCollider<Collider> for Tetrahedron {
-    /// A flat one becomes a tiny ball, with a warning.
+    /// A flat tetrahedron becomes a tiny ball, with a warning.
     fn collider(&self) -> Collider {
         checked!("from(Tetrahedron)", |input| {
             let points = self.vertices.map(|v| input.point(v.adjust_precision()));
@@ -107,7 +107,7 @@ impl IntoCollider<Collider> for Cone {
 }
 
 impl IntoCollider<Collider> for ConicalFrustum {
-    /// The hull of two regular polygons with 32 corners on the circles: 0.6 % less than the volume.
+    /// The hull of two regular polygons with 32 corners on the circles. Its volume is 0.6 % too small.
     fn collider(&self) -> Collider {
         checked!("from(ConicalFrustum)", |input| {
             let half = 0.5 * input.length(self.height.adjust_precision());

@@ -1,4 +1,4 @@
-//! Geometric questions to one [`Collider`] at a pose: points and rays.
+//! Queries of one [`Collider`] at a pose: points and rays.
 
 use super::{Collider, dim};
 use crate::math::{Scalar, Vector};
@@ -52,7 +52,7 @@ impl Collider {
         pose.is_some_and(|pose| self.shape_scaled().contains_point(&pose, point))
     }
 
-    /// Where a ray first meets the collider: the distance along it, and the outward normal there.
+    /// The first hit of a ray: distance along the ray, and outward normal.
     ///
     /// Distances are in units of the length of `ray_direction`, so in metres for a unit vector. A ray
     /// from inside hits at distance 0 with a zero normal if `solid`, else the boundary from within.
@@ -84,8 +84,7 @@ impl Collider {
     }
 }
 
-/// The pose as parry has it; `None` if it or the point is not finite, which parry's projections do not
-/// survive.
+/// The pose in parry's type. `None` if it or the point is not finite: parry's projections panic then.
 fn usable_pose(
     translation: impl Into<Position>,
     rotation: impl Into<Rotation>,
@@ -95,7 +94,7 @@ fn usable_pose(
     (pose.is_finite() && point.is_finite()).then_some(pose)
 }
 
-/// The pose and the ray as parry has them; `None` if they are not finite or the direction is zero.
+/// Pose and ray in parry's types. `None` if they are not finite or the direction is zero.
 fn usable_ray(
     translation: impl Into<Position>,
     rotation: impl Into<Rotation>,

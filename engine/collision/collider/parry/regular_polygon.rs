@@ -1,4 +1,4 @@
-//! The regular polygon as a shape of its own: any number of sides without a list of corners.
+//! The regular polygon as a custom shape: any number of sides without a list of corners.
 
 use crate::math::{AdjustPrecision, PI, Scalar, TAU, Vector};
 use crate::parry::bounding_volume::{Aabb, BoundingSphere};
@@ -18,7 +18,7 @@ use bevy_math::primitives::RegularPolygon;
 pub struct RegularPolygonColliderShape(pub RegularPolygon);
 
 impl RegularPolygonColliderShape {
-    /// At least 3: the field is public.
+    /// Number of sides, at least 3, since the field is public.
     fn count(&self) -> u32 {
         self.sides.max(3)
     }
@@ -43,8 +43,7 @@ impl RegularPolygonColliderShape {
         (0..self.count()).map(|i| self.corner(i))
     }
 
-    /// The position of a direction on the circle in corners from the top: 1.5 is the middle of the second
-    /// side.
+    /// The place of a direction on the circle, counted in corners from the top: 1.5 is the middle of the second side.
     fn place(&self, direction: Vector) -> Scalar {
         let angle = kernel::math::atan2(f64::from(-direction.x), f64::from(direction.y)) as Scalar;
         (angle / self.step()).rem_euclid(Scalar::from(self.count() as f32))
@@ -86,7 +85,7 @@ impl Shape for RegularPolygonColliderShape {
         Box::new(*self)
     }
 
-    /// Scaled evenly it stays one; else it becomes a convex polygon, if its corners can be listed.
+    /// With an even scale it stays regular. Otherwise it becomes a convex polygon, if it has few enough corners.
     fn scale_dyn(&self, scale: Vector, _: u32) -> Option<Box<dyn Shape>> {
         if scale.x == scale.y && scale.x > 0.0 {
             let radius = (self.radius() * scale.x) as f32;
@@ -170,7 +169,7 @@ impl RayCast for RegularPolygonColliderShape {
 }
 
 impl PointQuery for RegularPolygonColliderShape {
-    /// The nearest side is the one in the point's sector: the polygon is symmetric about its bounds.
+    /// The nearest side is the one in the point's sector, by symmetry.
     fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
         let side = self.place(point).floor() as u32;
         let (a, b) = (self.corner(side), self.corner(side + 1));

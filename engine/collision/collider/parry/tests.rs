@@ -1,4 +1,4 @@
-//! What holds for colliders in both dimensions.
+//! Properties of colliders in both dimensions.
 
 use super::input::MIN_LENGTH;
 use super::*;
@@ -34,7 +34,7 @@ pub(super) fn half_size(collider: &Collider) -> Vector {
     collider.aabb(Vector::ZERO, Rotation::default()).size() * 0.5
 }
 
-/// A collider is usable if its box, mass and ray casts are numbers.
+/// Asserts that box, mass and ray casts of a collider are finite.
 #[track_caller]
 pub(super) fn assert_usable(collider: &Collider) {
     let aabb = collider.aabb(Vector::ZERO, Rotation::default());
@@ -49,7 +49,7 @@ pub(super) fn assert_usable(collider: &Collider) {
     assert!(point.is_finite());
 }
 
-/// Compares the kernel's shape with parry's: as far in every direction.
+/// Compares the support distances of the kernel's shape with parry's, in all directions.
 #[track_caller]
 pub(super) fn assert_native(collider: &Collider) {
     let shape = collider.shape_scaled();
@@ -61,13 +61,13 @@ pub(super) fn assert_native(collider: &Collider) {
             return;
         };
         let ours = crate::math::vector_from_kernel(support).dot(direction) as f32;
-        // The box of the shape turned so that the direction is an axis is as far as the shape goes.
+        // The box of the shape, rotated so that the direction is an axis, gives the support distance.
         let theirs = far_along(shape, direction) as f32;
         assert!(close(ours, theirs), "{shape:?} along {direction}: {ours} {theirs}");
     }
 }
 
-/// How far a shape reaches in a direction, by parry's projection of a point far out.
+/// Support distance of a shape in a direction, by parry's projection of a far point.
 fn far_along(shape: &SharedShape, direction: Vector) -> Scalar {
     match shape.as_support_map() {
         Some(map) => map.local_support_point(direction).dot(direction),

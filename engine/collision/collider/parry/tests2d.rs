@@ -1,4 +1,4 @@
-//! Closed forms of the plane, its primitives, and contacts of shapes that only parry knows.
+//! Closed forms of 2D shapes, primitives, and contacts of shapes that only parry has.
 
 use super::tests::{assert_native, assert_usable, close, collide, half_size};
 use super::*;
@@ -36,7 +36,7 @@ fn constructors_have_the_closed_forms() {
         [1.5, 3.0],
     );
     assert_form(&Collider::regular_polygon(2.0, 4), 8.0, 4.0 / 3.0, [2.0, 2.0]);
-    // A rectangle of 2 r by h and a disc cut in two, each half with its centre 4 r / 3π from its side.
+    // A rectangle of 2 r by h and two half discs, each with its centre 4 r / 3π from its side.
     let (r, h) = (0.5, 2.0);
     let (body, caps) = (2.0 * r * h, PI * r * r);
     let inertia =

@@ -1,4 +1,4 @@
-//! Closed forms of space, its primitives, and contacts of shapes that only parry knows.
+//! Closed forms of 3D shapes, primitives, and contacts of shapes that only parry has.
 
 use super::tests::{assert_native, assert_usable, close, collide, half_size};
 use super::*;
@@ -63,7 +63,7 @@ fn constructors_have_the_closed_forms() {
 
 #[test]
 fn heightfields_run_along_x_then_z() {
-    // Three lines along X, two places along Z each: high at the far X.
+    // Three lines along X, two places along Z each. The far X is high.
     let field = Collider::heightfield(
         vec![vec![0.0, 0.0], vec![0.0, 0.0], vec![1.0, 1.0]],
         Vector::new(4.0, 2.0, 6.0),

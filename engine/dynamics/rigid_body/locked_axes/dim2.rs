@@ -1,4 +1,4 @@
-//! The axes of the plane. `dim3.rs` is the twin.
+//! Locked axes of 2D. `dim3.rs` has those of 3D.
 
 use super::LockedAxes;
 

@@ -1,4 +1,4 @@
-//! The axes of space. `dim2.rs` is the twin.
+//! Locked axes of 3D. `dim2.rs` has those of 2D.
 
 use super::LockedAxes;
 

@@ -1,4 +1,4 @@
-//! Which of its degrees of freedom a body does not use.
+//! Locked degrees of freedom.
 
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -11,14 +11,13 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use derive_more::From;
 use kernel::math::AxisLocks;
 
-/// The world's axes along and about which a dynamic body is held.
+/// The world axes along and about which a dynamic body is locked.
 ///
-/// A held axis is an infinite mass or inertia along or about it: no force, impulse or contact changes that
-/// component of the velocity. The velocity itself is left alone, so that a body may be driven along an axis on
-/// which nothing pushes it.
+/// A locked axis acts as an infinite mass or inertia along or about it: no force, impulse or contact changes that
+/// component of the velocity. The velocity itself is kept, so an app may drive a body along a locked axis.
 ///
-/// As bits, from the highest: translation along x, y, z, then rotation about x, y, z. In 2D translation z means
-/// nothing, and rotation is about z, the lowest bit.
+/// The bits, from the highest: translation along x, y, z, then rotation about x, y, z. In 2D translation along z is
+/// ignored, and rotation is about z, the lowest bit.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -39,11 +38,11 @@ use kernel::math::AxisLocks;
 pub struct LockedAxes(u8);
 
 impl LockedAxes {
-    /// May turn, but not move.
+    /// Translation is locked, rotation is free.
     pub const TRANSLATION_LOCKED: Self = Self(0b111_000);
-    /// May move, but not turn.
+    /// Rotation is locked, translation is free.
     pub const ROTATION_LOCKED: Self = Self(0b000_111);
-    /// Neither moves nor turns.
+    /// Translation and rotation are locked.
     pub const ALL_LOCKED: Self = Self(0b111_111);
 
     /// Nothing locked.
@@ -51,7 +50,7 @@ impl LockedAxes {
         Self(0)
     }
 
-    /// Makes locks from bits; see the type for their order. The two highest bits mean nothing.
+    /// Makes locks from bits; see the type for their order. The two highest bits are ignored.
     pub const fn from_bits(bits: u8) -> Self {
         Self(bits)
     }
@@ -61,7 +60,7 @@ impl LockedAxes {
         self.0
     }
 
-    /// The locks as the solver takes them: the same bits without the two that mean nothing.
+    /// The locks in the kernel's type, without the two unused bits.
     pub(crate) const fn to_kernel(self) -> AxisLocks {
         AxisLocks(self.0 & Self::ALL_LOCKED.0)
     }

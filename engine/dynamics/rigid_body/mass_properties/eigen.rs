@@ -1,13 +1,13 @@
 //! Principal axes of a symmetric 3 × 3 matrix, by the same arithmetic on every machine.
 //!
-//! Cyclic Jacobi rotations (Golub & Van Loan, *Matrix Computations*, §8.5) in `f64`: square roots and the four
-//! operations only, where closed forms need an arc cosine; accurate for repeated eigenvalues, and for small
-//! bodies as for large ones, as nothing is compared with an absolute tolerance.
+//! Cyclic Jacobi rotations (Golub & Van Loan, *Matrix Computations*, §8.5) in `f64`. They use only square roots and the
+//! four operations, while closed forms need an arc cosine. They are accurate for repeated eigenvalues and for bodies of
+//! any size, since there are no absolute tolerances.
 
 use bevy_math::{DMat3, DVec3};
 use glam_matrix_extras::SymmetricDMat3;
 
-/// Sweeps over the three off-diagonal entries. Convergence is quadratic; five are usual.
+/// Maximum number of sweeps over the three off-diagonal entries. Convergence is quadratic; five are usual.
 const MAX_SWEEPS: usize = 16;
 
 /// The eigenvalues of a finite matrix, and the rotation whose columns are their axes. A diagonal matrix gives

@@ -1,18 +1,16 @@
-//! What bodies weigh: mass, angular inertia and centre of mass, from shapes, from the user, or both.
+//! Mass properties of bodies: mass, angular inertia and centre of mass, from shapes, from the app, or both.
 //!
-//! A body's totals are [`ComputedMass`], [`ComputedAngularInertia`] and [`ComputedCenterOfMass`]. They are the
-//! sum over
+//! A body's totals are [`ComputedMass`], [`ComputedAngularInertia`] and [`ComputedCenterOfMass`]. They are the sum over
 //!
-//! - the body itself: its collider, if it has one, with [`Mass`], [`AngularInertia`] and [`CenterOfMass`] in
-//!   place of what the collider says;
-//! - each of its colliders on other entities, where its `ColliderTransform` puts it, with the same components
-//!   in place of what the collider says;
-//! - each of its descendants that is no collider but has one of the three components, where its `Transform`
-//!   puts it. What belongs to a descendant that is a body itself does not count.
+//! - the body itself: its collider, if it has one, with values replaced by its [`Mass`], [`AngularInertia`] and
+//! [`CenterOfMass`];
+//! - each of its colliders on other entities, at its `ColliderTransform`, with values replaced by the same components;
+//! - each descendant without a collider that has one of the three components, at its `Transform`. A descendant that is
+//! a body, and everything below it, does not count.
 //!
-//! Sensors and disabled colliders weigh nothing. [`NoAutoMass`] and its siblings restrict a total to the body's
-//! own component. A mass without an inertia scales the inertia of the collider; a centre of mass moves the
-//! inertia along unchanged.
+//! Sensors and disabled colliders have no mass. [`NoAutoMass`] and its siblings restrict a total to the body's own
+//! component. A mass without an inertia scales the inertia of the collider. A centre of mass moves the inertia without
+//! changing it.
 //!
 //! ```
 //! # use avian::prelude::*;
@@ -58,7 +56,7 @@ use self::components::{
 };
 use crate::math::MassProperties;
 
-/// Makes components of `bevy_heavy`'s mass properties.
+/// Conversion of `bevy_heavy`'s mass properties to components.
 pub trait MassPropertiesExt {
     /// The same mass, inertia and centre as components to spawn.
     fn to_bundle(&self) -> MassPropertiesBundle;
@@ -74,15 +72,15 @@ impl MassPropertiesExt for MassProperties {
     }
 }
 
-/// What computes mass properties, in this order, within
+/// System sets of mass properties, in this order, within
 /// [`PhysicsSystems::Prepare`](crate::schedule::PhysicsSystems::Prepare).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MassPropertySystems {
-    /// The mass properties of new and changed colliders.
+    /// Compute the mass properties of new and changed colliders.
     UpdateColliderMassProperties,
-    /// Which bodies have to be computed again.
+    /// Mark bodies to be computed again.
     QueueRecomputation,
-    /// The totals of those bodies.
+    /// Compute the totals of marked bodies.
     UpdateComputedMassProperties,
 }
 
@@ -90,5 +88,5 @@ pub enum MassPropertySystems {
 pub type WithComputedMassProperty =
     Or<(With<ComputedMass>, With<ComputedAngularInertia>, With<ComputedCenterOfMass>)>;
 
-/// Filters for entities of which the user changed any of the mass properties.
+/// Filters for entities whose mass properties the app changed.
 pub type MassPropertyChanged = Or<(Changed<Mass>, Changed<AngularInertia>, Changed<CenterOfMass>)>;

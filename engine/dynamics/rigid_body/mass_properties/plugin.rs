@@ -1,4 +1,4 @@
-//! The plugin that keeps mass properties.
+//! The plugin of mass properties.
 
 use bevy_app::{FixedPostUpdate, prelude::*};
 use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel};
@@ -13,22 +13,22 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Keeps the computed mass properties of bodies up to date. Part of `PhysicsPlugins`.
+/// Computes mass properties of bodies. Part of `PhysicsPlugins`.
 ///
-/// A body is computed when it is spawned, and when the command is done with which a collider came, went, was replaced or
-/// became a sensor; one with hundreds of colliders only before the next step. Before a step a body is computed if it
-/// carries [`RecomputeMassProperties`](super::components::RecomputeMassProperties), never otherwise, so that resting
-/// worlds cost nothing. The marker is inserted when the body is spawned or changes
-/// type; when one of its colliders comes, goes, changes shape or density, becomes a sensor, is disabled or is
-/// moved within the body; when one of the components named in the [module](super) comes, goes or changes, on the
-/// body or on a descendant. What goes unseen is a change of place of a descendant *without collider* that comes
-/// from an entity between it and the body: insert the marker then.
+/// A body is computed when it is spawned, and at the end of each command in which a collider was added, removed,
+/// replaced or became a sensor. With hundreds of colliders it is only computed before the next step. Before a step only
+/// bodies with [`RecomputeMassProperties`](super::components::RecomputeMassProperties) are computed, so that resting
+/// worlds cost nothing. The engine inserts this marker when a body is spawned or changes type; when one of its
+/// colliders is added, removed, disabled, moved on the body, becomes a sensor, or changes shape or density; when one of
+/// the components named in the [module](super) is added, removed or changed on the body or a descendant. It does not
+/// detect that a descendant *without a collider* moves because of an entity between it and the body: insert the marker
+/// then.
 pub struct MassPropertyPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
 impl MassPropertyPlugin {
-    /// Computes in `schedule`, in which physics runs; [`FixedPostUpdate`] by default.
+    /// Computes in `schedule`, in which physics runs. [`FixedPostUpdate`] by default.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern() }
     }

@@ -1,4 +1,4 @@
-//! Which bodies have to be weighed again, and the systems that weigh them.
+//! Which bodies have their mass computed again, and the systems that do it.
 
 use bevy_ecs::{
     entity::{Entities, EntityHashSet},
@@ -21,10 +21,10 @@ use crate::{
     schedule::OnThisThread,
 };
 
-/// Entities with a mass property that the user gave.
+/// Filters for entities with a mass property set by the app.
 type WithOwnMass = Or<(With<Mass>, With<AngularInertia>, With<CenterOfMass>)>;
 
-/// Marks bodies for recomputation, given an entity that belongs to one.
+/// Marks bodies to be computed again, given an entity that belongs to one.
 #[derive(SystemParam)]
 pub struct MassPropertyQueue<'w, 's> {
     commands: Commands<'w, 's>,
@@ -34,16 +34,16 @@ pub struct MassPropertyQueue<'w, 's> {
 }
 
 impl MassPropertyQueue<'_, '_> {
-    /// Marks the body that `entity` is, or that it is a collider of, or below which it hangs; none if there is
-    /// no such body. It is weighed when the command is done, and again before the next step.
+    /// Marks the body of an entity: the entity itself, the body of a collider, or the nearest ancestor. Does nothing
+    /// without a body. The body is computed at the end of the command, and again before the next step.
     pub(crate) fn push(&mut self, entity: Entity) {
         if let Some(body) = self.mark(entity) {
-            // One for each: links are made by commands between them.
+            // One command each, since commands between them make links.
             self.commands.queue(move |world: &mut World| weigh_now(world, body));
         }
     }
 
-    /// Marks the body to be weighed before the next step.
+    /// Marks the body to be computed before the next step.
     pub(crate) fn mark(&mut self, entity: Entity) -> Option<Entity> {
         let body = self.body_of(entity)?;
         if self.bodies.get(body) == Ok(false) {
@@ -63,11 +63,11 @@ impl MassPropertyQueue<'_, '_> {
     }
 }
 
-/// How many parts a body may have to be weighed after each command. Those of larger ones may come one by one, and to
-/// add all up for each would be quadratic: such a body is weighed before the next step only.
+/// Maximum number of parts of a body that is computed after each command. If the parts of larger bodies are added one
+/// by one, summing all of them each time would be quadratic. Larger bodies are computed before the next step only.
 const MOST_PARTS_AT_ONCE: usize = 256;
 
-/// Kept, as making it anew takes longer than using it.
+/// Kept between calls, since building it takes longer than using it.
 #[derive(Resource)]
 struct Scales(Option<SystemState<MassPropertyHelper<'static, 'static>>>);
 
@@ -77,7 +77,7 @@ impl FromWorld for Scales {
     }
 }
 
-/// Weighs a body between two commands.
+/// Computes a body between two commands.
 fn weigh_now(world: &mut World, body: Entity) {
     let scales = |world: &mut World| world.get_resource_mut::<Scales>()?.0.take();
     let Some(mut scales) = scales(world) else { return };
@@ -89,9 +89,9 @@ fn weigh_now(world: &mut World, body: Entity) {
     world.resource_mut::<Scales>().0 = Some(scales);
 }
 
-/// Registers what makes bodies be weighed again without a scan.
+/// Adds the observers that mark bodies.
 pub(super) fn observe(app: &mut bevy_app::App) {
-    app.init_resource::<ToldOfNoMass>()
+    app.init_resource::<ReportedMassless>()
         .init_resource::<Scales>()
         .add_observer(weigh_new)
         .add_observer(on_event::<Remove, (Mass, AngularInertia, CenterOfMass)>)
@@ -106,14 +106,12 @@ fn on_event<E: EntityEvent, B: Bundle>(event: On<E, B>, mut queue: MassPropertyQ
     queue.push(event.event_target());
 }
 
-/// A new body has its mass at once, as far as it is its own: what hangs on it is linked to it afterwards, and weighed
-/// then.
+/// Computes the mass of a new body at once, without descendants: they are linked later, and computed then.
 fn weigh_new(inserted: On<Insert, RigidBody>, mut helper: MassPropertyHelper) {
     helper.update_mass_properties(inserted.entity);
 }
 
-/// A descendant that weighs something without being a collider leaves its parent. Where it arrives is seen by
-/// [`queue_changed`].
+/// Marks the body of a part without a collider that leaves its parent. [`queue_changed`] detects where it arrives.
 fn on_part_detached(
     event: On<Discard, ChildOf>,
     parts: Query<(), (WithOwnMass, Without<ColliderOf>, Without<RigidBody>)>,
@@ -124,8 +122,8 @@ fn on_part_detached(
     }
 }
 
-/// Marks the bodies of what changed in place. Scans few entities: those with a mass property of the user's, and
-/// colliders that have a parent.
+/// Marks the bodies of mutated components. It scans few entities: those with a mass property set by the app, and
+/// colliders with a parent.
 pub(super) fn queue_changed(
     changed: Query<
         (Entity, Option<&Mass>, Option<&AngularInertia>, Option<&CenterOfMass>, Option<&Name>),
@@ -143,7 +141,7 @@ pub(super) fn queue_changed(
     >,
     moved_colliders: Query<&ColliderOf, (With<ChildOf>, Changed<ColliderTransform>)>,
     mut queue: MassPropertyQueue,
-    mut told: Local<Told>,
+    mut reported: Local<Reported>,
     entities: &Entities,
     _: OnThisThread,
 ) {
@@ -156,7 +154,7 @@ pub(super) fn queue_changed(
             _ => None,
         };
         if let Some(wrong) = wrong
-            && told.is_new(entity, entities)
+            && reported.is_new(entity, entities)
         {
             bevy_log::warn!(
                 "the {wrong} of {}, and counts as 0; give it a valid value",
@@ -172,7 +170,7 @@ pub(super) fn queue_changed(
     }
 }
 
-/// Weighs the marked bodies and takes the marks off.
+/// Computes the marked bodies and removes the marks.
 pub(crate) fn recompute(
     marked: Query<Entity, With<RecomputeMassProperties>>,
     mut helper: MassPropertyHelper,
@@ -195,16 +193,16 @@ pub(crate) fn recompute(
     });
 }
 
-/// Entities that the app was told of, each once. Those that are gone are forgotten now and then.
+/// Entities that were reported, each once. Despawned ones are dropped from time to time.
 #[derive(Default)]
-pub(super) struct Told {
+pub(super) struct Reported {
     entities: EntityHashSet,
-    /// How many there are when those that are gone are looked for.
+    /// Number of entities at which despawned ones are dropped.
     full: usize,
 }
 
-impl Told {
-    /// Notes an entity. Returns whether it was not noted before.
+impl Reported {
+    /// Records an entity. Returns whether it is new.
     fn is_new(&mut self, entity: Entity, alive: &Entities) -> bool {
         if self.entities.len() >= self.full {
             self.entities.retain(|entity| alive.contains(*entity));
@@ -214,35 +212,35 @@ impl Told {
     }
 }
 
-/// Bodies without mass that the app was told of.
+/// Bodies without mass that were reported.
 #[derive(Resource, Default)]
-pub(crate) struct ToldOfNoMass(Told);
+pub(crate) struct ReportedMassless(Reported);
 
 #[cfg(test)]
-impl ToldOfNoMass {
-    /// How many bodies are noted.
+impl ReportedMassless {
+    /// The number of recorded bodies.
     pub fn len(&self) -> usize {
         self.0.entities.len()
     }
 }
 
-/// Names dynamic bodies that came out without mass, each once.
+/// Warns of dynamic bodies without mass, once each.
 ///
-/// Such a body falls, as gravity is an acceleration, but contacts, joints and forces do not move it: the
-/// alternative, a mass made up by the engine, would hide the mistake and be wrong by any factor.
+/// Such a body falls, since gravity is an acceleration, but contacts, joints and forces do not move it. A default mass
+/// would hide the mistake.
 pub(crate) fn warn_of_missing_mass(
     marked: Query<
         (Entity, &RigidBody, &ComputedMass, Option<&Mass>, Has<NoAutoMass>, Option<&Name>),
         With<RecomputeMassProperties>,
     >,
-    mut told: ResMut<ToldOfNoMass>,
+    mut reported: ResMut<ReportedMassless>,
     entities: &Entities,
     _: OnThisThread,
 ) {
     for (entity, body, computed, mass, no_auto, name) in &marked {
-        // Infinite mass may be wanted.
+        // Infinite mass may be intended.
         let wanted = mass.is_some_and(|mass| mass.is_infinite()) || no_auto && mass.is_none();
-        if body.is_dynamic() && computed.is_infinite() && !wanted && told.0.is_new(entity, entities) {
+        if body.is_dynamic() && computed.is_infinite() && !wanted && reported.0.is_new(entity, entities) {
             bevy_log::warn!(
                 "the dynamic body {} has no mass: it falls, but nothing that touches it moves it; \
                  insert a `Mass`, or a collider with a `ColliderDensity` above 0",

@@ -1,4 +1,4 @@
-//! Adds up what a body weighs.
+//! Computes the mass properties of bodies.
 
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_transform::prelude::Transform;
@@ -8,7 +8,7 @@ use super::{
         AngularInertia, CenterOfMass, ColliderMassProperties, ComputedAngularInertia, ComputedCenterOfMass,
         ComputedMass, Mass, NoAutoAngularInertia, NoAutoCenterOfMass, NoAutoMass,
     },
-    inertia::{Frame, Inertia, Part, computed_center},
+    inertia::{Inertia, Part, PartFrame, computed_center},
 };
 use crate::{
     collision::collider::{
@@ -20,7 +20,7 @@ use crate::{
     math::MassProperties,
 };
 
-/// Computes mass properties on demand: the totals of a body, or what parts of it contribute.
+/// Computes mass properties on demand: the totals of a body, or of parts of it.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -71,10 +71,10 @@ pub struct MassPropertyHelper<'w, 's> {
 }
 
 impl MassPropertyHelper<'_, '_> {
-    /// Computes an entity's [`ComputedMass`], [`ComputedAngularInertia`] and [`ComputedCenterOfMass`] as the
-    /// [module](super) says. Does nothing to an entity that lacks one of the three.
+    /// Computes an entity's [`ComputedMass`], [`ComputedAngularInertia`] and [`ComputedCenterOfMass`] by the rules of
+    /// the [module](super). Does nothing to an entity that lacks one of the three.
     ///
-    /// A static body is of infinite mass and inertia.
+    /// A static body gets infinite mass and inertia.
     pub fn update_mass_properties(&mut self, entity: Entity) {
         let total = self.total(entity);
         let own = self.parts.get(entity).ok().map(|(mass, inertia, center, ..)| {
@@ -87,7 +87,7 @@ impl MassPropertyHelper<'_, '_> {
         else {
             return;
         };
-        // What is restricted to the own component, and has none, stays as the user set it.
+        // A property that is restricted to the own component, without having it, is left to the app.
         let choose_center = if no_auto_center { own_center } else { Some(total.center) };
         if let Some(value) = choose_center {
             center.set_if_neq(computed_center(value));
@@ -107,14 +107,14 @@ impl MassPropertyHelper<'_, '_> {
         }
     }
 
-    /// How many colliders and children a body has.
+    /// The number of colliders and children of a body.
     pub(super) fn count_parts(&self, body: Entity) -> usize {
         let Ok((children, colliders, ..)) = self.hierarchy.get(body) else { return 0 };
         children.map_or(0, |list| list.len()) + colliders.map_or(0, |list| list.len())
     }
 
-    /// The mass properties of an entity and its descendants, in the entity's frame, as if nothing were
-    /// restricted by [`NoAutoMass`] and its siblings.
+    /// The mass properties of an entity and its descendants, in the entity's frame. [`NoAutoMass`] and its siblings are
+    /// ignored.
     pub fn total_mass_properties(&self, entity: Entity) -> MassProperties {
         self.total(entity).to_properties()
     }
@@ -126,8 +126,8 @@ impl MassPropertyHelper<'_, '_> {
         Part::sum(&parts).to_properties()
     }
 
-    /// The mass properties of an entity without its descendants: of its collider, with its own components in
-    /// place of what the collider says. `None` if it has neither.
+    /// The mass properties of an entity without its descendants: of its collider, with values replaced by its own
+    /// components. `None` if it has neither.
     pub fn local_mass_properties(&self, entity: Entity) -> Option<MassProperties> {
         self.local(entity).map(Part::to_properties)
     }
@@ -148,7 +148,7 @@ impl MassPropertyHelper<'_, '_> {
         Some(part.overridden(mass, inertia, center))
     }
 
-    /// Adds what the colliders of a body on other entities contribute, then its other descendants.
+    /// Adds the properties of a body's colliders on other entities, then those of its other descendants.
     fn collect_descendants(&self, body: Entity, parts: &mut Vec<Part>) {
         let Ok((children, colliders, transform, _)) = self.hierarchy.get(body) else {
             return;
@@ -156,20 +156,21 @@ impl MassPropertyHelper<'_, '_> {
         for collider in colliders.into_iter().flatten().filter(|collider| *collider != body) {
             if let (Some(part), Ok((.., transform, _, _))) = (self.local(collider), self.parts.get(collider))
             {
-                let frame = transform.map(Frame::of_collider);
+                let frame = transform.map(PartFrame::of_collider);
                 parts.push(frame.map_or(part, |frame| part.moved(&frame)));
             }
         }
         let Some(children) = children else {
             return;
         };
-        let frame = Frame::scaled_by(transform.unwrap_or(&Transform::IDENTITY));
-        let mut pending: Vec<(Entity, Frame)> = children.iter().rev().map(|child| (child, frame)).collect();
+        let frame = PartFrame::scaled_by(transform.unwrap_or(&Transform::IDENTITY));
+        let mut pending: Vec<(Entity, PartFrame)> =
+            children.iter().rev().map(|child| (child, frame)).collect();
         while let Some((entity, outer)) = pending.pop() {
             let Ok((children, _, transform, false)) = self.hierarchy.get(entity) else {
                 continue;
             };
-            let frame = outer.then(&Frame::of_entity(transform.unwrap_or(&Transform::IDENTITY)));
+            let frame = outer.then(&PartFrame::of_entity(transform.unwrap_or(&Transform::IDENTITY)));
             if let Ok((mass, inertia, center, _, _, false, _)) = self.parts.get(entity)
                 && (mass.is_some() || inertia.is_some() || center.is_some())
             {

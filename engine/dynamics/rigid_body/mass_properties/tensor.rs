@@ -1,15 +1,15 @@
-//! Inertia tensors in `f64`: their inverse, in other axes, about another point.
+//! Operations on inertia tensors in `f64`.
 
 use bevy_math::{DMat3, DQuat, DVec3};
 use glam_matrix_extras::SymmetricDMat3;
 
 use super::eigen::{from_principal_axes, principal_axes};
 
-/// Principal values below this share of the largest are rounding errors of a zero.
+/// Principal values below this share of the largest count as zero: they are rounding errors.
 const SINGULAR: f64 = 1e-13;
 
-/// The inverse of a positive semidefinite tensor within the axes where it is neither zero nor infinite; zero on
-/// the others.
+/// The inverse of a positive semidefinite tensor, along principal axes where it is neither zero nor infinite. Zero
+/// along the others.
 pub(super) fn invert(tensor: SymmetricDMat3) -> SymmetricDMat3 {
     if !tensor.is_finite() {
         return SymmetricDMat3::ZERO;
@@ -25,7 +25,7 @@ pub(super) fn invert(tensor: SymmetricDMat3) -> SymmetricDMat3 {
     from_principal_axes(DVec3::from_array(inverse), axes)
 }
 
-/// The rotation matrix of a quaternion of any length but zero, which gives the identity.
+/// The rotation matrix of a quaternion of any length. Zero gives the identity.
 pub(super) fn quaternion_to_matrix(q: DQuat) -> DMat3 {
     let square = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
     if !(square > 0.0 && square.is_finite()) {
@@ -50,7 +50,7 @@ pub(super) fn rotated(tensor: SymmetricDMat3, rotation: DMat3) -> SymmetricDMat3
     SymmetricDMat3::from_mat3_unchecked(rotation * tensor.to_mat3() * rotation.transpose())
 }
 
-/// About a point off the centre of mass: I + m (|d|² 1 − d dᵀ).
+/// About a point at an offset from the centre of mass: I + m (|d|² 1 − d dᵀ).
 pub(super) fn shifted(tensor: SymmetricDMat3, mass: f64, d: DVec3) -> SymmetricDMat3 {
     SymmetricDMat3::new(
         tensor.m00 + mass * (d.y * d.y + d.z * d.z),

@@ -1,4 +1,4 @@
-//! The stages of the solver in a step, and of a substep.
+//! System sets of the solver in a step and in a substep.
 
 mod plugin;
 
@@ -18,20 +18,23 @@ use crate::schedule::{Physics, Substeps};
 /// [`SolveConstraints`](SubstepSolverSystems::SolveConstraints), [`Position`](crate::dynamics::integrator::IntegrationSystems::Position),
 /// [`Relax`](SubstepSolverSystems::Relax), [`Damping`](SubstepSolverSystems::Damping).
 ///
-/// While only the engine's own systems are in it, without run conditions, they run as one, with the same result.
+/// While only the engine's own systems are in it, without run conditions, one call per substep runs instead, with the
+/// same result.
 ///
-/// Systems run one after the other, and an ambiguous order is an error. The generic [`Time`] shows [`Time<Substeps>`](Substeps) in it.
+/// Systems run one after the other, and an ambiguous order is an error. The generic [`Time`] is
+/// [`Time<Substeps>`](Substeps) in it.
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub struct SubstepSchedule;
 
-/// The stages of the solver, in this order, in [`PhysicsStepSystems::Solver`](crate::schedule::PhysicsStepSystems::Solver).
+/// System sets of the solver, in this order, in
+/// [`PhysicsStepSystems::Solver`](crate::schedule::PhysicsStepSystems::Solver).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SolverSystems {
-    /// Awake bodies are gathered into rows for the solver.
+    /// Fill the rows of awake bodies.
     PrepareSolverBodies,
     /// Joints are prepared.
     PrepareJoints,
-    /// Touching contacts are gathered into rows for the solver.
+    /// Build the rows of touching contacts.
     PrepareContactConstraints,
     /// Before the substeps.
     PreSubstep,
@@ -39,11 +42,11 @@ pub enum SolverSystems {
     Substep,
     /// After the substeps.
     PostSubstep,
-    /// Contacts that closed fast bounce.
+    /// Apply restitution.
     Restitution,
-    /// The rows of bodies are written back to components.
+    /// Write the rows of bodies to components.
     Finalize,
-    /// Contact impulses are stored, to start the next step from.
+    /// Store contact impulses, for the warm start of the next step.
     StoreContactImpulses,
 }
 
@@ -51,14 +54,14 @@ pub enum SolverSystems {
 #[deprecated(since = "0.4.0", note = "renamed to `SolverSystems`")]
 pub type SolverSet = SolverSystems;
 
-/// The solver's stages of a substep, in [`SubstepSchedule`].
+/// System sets of the solver in a substep, in [`SubstepSchedule`].
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SubstepSolverSystems {
-    /// The impulses of the last substep, or step, are applied in advance.
+    /// Apply the impulses of the last substep or step.
     WarmStart,
-    /// Velocities are solved so that overlap and joint errors shrink.
+    /// Solve velocities with soft bias, which reduces overlap and joint errors.
     SolveConstraints,
-    /// Velocities are solved once more, without the part that pushed errors out: it should move bodies, not throw them.
+    /// Solve velocities without bias, so that correcting positions adds no velocity.
     Relax,
     /// Joint damping.
     Damping,
@@ -68,10 +71,10 @@ pub enum SubstepSolverSystems {
 #[deprecated(since = "0.4.0", note = "renamed to `SubstepSolverSystems`")]
 pub type SubstepSolverSet = SubstepSolverSystems;
 
-/// How many substeps a step is solved in; 6 by default. 0 counts as 1.
+/// Number of substeps per step. 6 by default. 0 counts as 1.
 ///
-/// Contacts are computed once per step, the solver runs once per substep: more substeps make stacks and joints stiffer at the cost of
-/// solver time alone.
+/// Contacts are computed once per step, the solver runs once per substep: more substeps make stacks and joints stiffer,
+/// and cost solver time only.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -91,15 +94,15 @@ impl Default for SubstepCount {
     }
 }
 
-/// The length of each of `count` substeps of a step of length `step`.
+/// The length of each of `count` substeps in a step of length `step`.
 ///
-/// A [`Duration`] counts nanoseconds, so this is rounded down; what the solver multiplies with is the quotient of seconds.
+/// Rounded down to nanoseconds, the unit of [`Duration`]. The solver uses the quotient of seconds.
 pub(crate) fn substep_delta(step: Duration, count: SubstepCount) -> Duration {
     step / count.0.max(1)
 }
 
-/// Advances [`Time<Substeps>`](Substeps) to the end of the first substep, so that systems before the substeps know how long one is.
-/// The substeps after it advance it to theirs.
+/// Advances [`Time<Substeps>`](Substeps) to the end of the first substep, so that systems before the substeps know
+/// their length. Each later substep advances it.
 pub(crate) fn start_substep_clock(
     mut substeps: ResMut<Time<Substeps>>,
     physics: Res<Time<Physics>>,
@@ -108,7 +111,7 @@ pub(crate) fn start_substep_clock(
     advance_substep(&mut substeps, substep_delta(physics.delta(), *count));
 }
 
-/// Advances the clock of the substeps by one, or to the end of time.
+/// Advances the clock of the substeps by one, at most to the end of time.
 pub(crate) fn advance_substep(clock: &mut Time<Substeps>, delta: Duration) {
     let left = Duration::MAX - clock.elapsed();
     clock.advance_by(delta.min(left));

@@ -1,4 +1,4 @@
-//! The plugin that puts the solver's stages in order.
+//! The plugin that orders the solver's system sets.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};

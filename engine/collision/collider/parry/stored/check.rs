@@ -1,4 +1,4 @@
-//! What is checked of stored data before parry sees it.
+//! Checks of stored data before it is passed to parry.
 
 use crate::{
     collision::collider::parry::input::{MAX_LENGTH, is_usable},
@@ -6,10 +6,10 @@ use crate::{
     parry::shape::{RoundShape, SharedShape},
 };
 
-/// Why a shape cannot be stored, or stored data is no shape.
+/// Why a shape cannot be stored, or why stored data is invalid.
 pub(super) type Fault = &'static str;
 
-/// Whether elements lead to vertices, and all vertices are finite.
+/// Whether the indices of elements exist, and all vertices are finite.
 pub(super) fn check_elements<const N: usize>(
     vertices: &[Vector],
     elements: &[[u32; N]],
@@ -23,7 +23,7 @@ pub(super) fn check_elements<const N: usize>(
     check_points(vertices)
 }
 
-/// Whether all points are finite, and not farther than parry's algorithms reach.
+/// Whether all points are finite and within the range of parry's algorithms.
 pub(super) fn check_points(points: &[Vector]) -> Result<(), Fault> {
     let all = points.iter().all(|p| is_usable(*p));
     if all { Ok(()) } else { Err("a shape has a point that is not finite or too far away") }
@@ -39,7 +39,7 @@ pub(super) fn check_lengths<const N: usize>(lengths: [Scalar; N]) -> Result<(), 
     }
 }
 
-/// Whether the heights of a height field are finite and not farther than parry's algorithms reach, also times its scale.
+/// Whether the heights of a height field are finite and within the range of parry's algorithms, also times its scale.
 pub(super) fn check_heights(heights: &[Scalar], scale: Scalar) -> Result<(), Fault> {
     let usable = |v: Scalar| v.abs() <= MAX_LENGTH;
     if heights.iter().all(|h| usable(*h) && usable(*h * scale)) {
@@ -59,7 +59,7 @@ pub(super) fn round<S>(
     Ok(shared(RoundShape { inner_shape, border_radius }))
 }
 
-/// Whether all vectors have unit length, as far as rounding leaves it.
+/// Whether all vectors have unit length, within rounding.
 pub(super) fn check_normals(normals: &[Vector]) -> Result<(), Fault> {
     let is_unit = |n: &Vector| (n.length() - 1.0).abs() < 1.0e-3;
     if normals.iter().all(is_unit) { Ok(()) } else { Err("a normal is no unit vector") }

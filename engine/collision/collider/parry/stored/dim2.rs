@@ -1,4 +1,4 @@
-//! What is stored of shapes of the plane. `dim3.rs` is the twin.
+//! Stored formats of 2D shapes. `dim3.rs` exports the same names.
 
 use bevy_math::primitives::{Ellipse, RegularPolygon};
 use serde::{Deserialize, Serialize};
@@ -16,21 +16,21 @@ use crate::{
     },
 };
 
-/// Whether a shape has its faces; of the plane none lacks them.
+/// Whether a shape has its faces. 2D shapes have none to lack.
 pub(super) fn has_faces(_: &SharedShape) -> bool {
     true
 }
 
-/// A rotation as it is stored: its cosine and sine.
-pub(super) type Turn = [Scalar; 2];
+/// Stored format of a rotation: cosine and sine.
+pub(super) type StoredRotation = [Scalar; 2];
 
-/// What is stored of a rotation.
-pub(super) fn turn(rotation: Rotation) -> Turn {
+/// The stored format of a rotation.
+pub(super) fn stored_rotation(rotation: Rotation) -> StoredRotation {
     [rotation.re, rotation.im]
 }
 
-/// The rotation of what is stored.
-pub(super) fn rotation([re, im]: Turn) -> Rotation {
+/// The rotation of a stored format.
+pub(super) fn rotation([re, im]: StoredRotation) -> Rotation {
     Rotation { re, im }
 }
 
@@ -45,24 +45,24 @@ pub(super) fn polyline(vertices: Vec<Vector>, indices: Vec<[u32; 2]>, flags: u8)
     Ok(Polyline::with_flags(vertices, Some(indices), flags))
 }
 
-/// A height field as it is stored.
+/// Stored format of a height field.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "HeightField")]
 pub(super) struct StoredHeights {
     heights: Vec<Scalar>,
-    /// Whether the segment after each height is there.
+    /// Whether the segment after each height exists.
     cells: Vec<bool>,
     scale: Vector,
 }
 
 impl StoredHeights {
-    /// What describes a height field.
+    /// The stored format of a height field.
     pub fn of(field: &HeightField) -> Self {
         let cells = (0..field.num_cells()).map(|i| !field.is_segment_removed(i)).collect();
         Self { heights: field.heights().clone(), cells, scale: field.scale() }
     }
 
-    /// The height field that is described.
+    /// The height field of a stored format.
     pub fn shape(self) -> Result<SharedShape, Fault> {
         if self.heights.len() < 2 || self.cells.len() != self.heights.len() - 1 {
             return Err("a height field has no cells, or others than heights");
@@ -80,7 +80,7 @@ impl StoredHeights {
     }
 }
 
-/// Shapes that only the plane has, as they are stored.
+/// Stored formats of shapes that only 2D has.
 #[derive(Serialize, Deserialize)]
 pub(super) enum StoredSpecial {
     ConvexPolygon(StoredPolygon),
@@ -90,7 +90,7 @@ pub(super) enum StoredSpecial {
 }
 
 impl StoredSpecial {
-    /// What describes a shape.
+    /// The stored format of a shape.
     pub fn of(shape: TypedShape<'_>) -> Result<Self, Fault> {
         let custom = match shape {
             TypedShape::ConvexPolygon(polygon) => return Ok(Self::ConvexPolygon(StoredPolygon::of(polygon))),
@@ -110,7 +110,7 @@ impl StoredSpecial {
         }
     }
 
-    /// The shape that is described.
+    /// The shape of a stored format.
     pub fn shape(self) -> Result<SharedShape, Fault> {
         Ok(match self {
             Self::ConvexPolygon(polygon) => SharedShape::new(polygon.polygon()?),
@@ -133,7 +133,7 @@ impl StoredSpecial {
     }
 }
 
-/// A convex polygon as it is stored: parry's normals may be those of edges it has shortened since.
+/// Stored format of a convex polygon. Parry's normals may be those of edges that it has shortened since.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "ConvexPolygon")]
 pub(super) struct StoredPolygon {

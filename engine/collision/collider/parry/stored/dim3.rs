@@ -1,4 +1,4 @@
-//! What is stored of shapes of space. `dim2.rs` is the twin.
+//! Stored formats of 3D shapes. `dim2.rs` exports the same names.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// Whether a shape has its faces: hulls that parry makes of what is scaled to a needle have none, and panic.
+/// Whether a shape has its faces. Parry's hulls of needle-shaped point sets have none, and panic.
 pub(super) fn has_faces(shape: &SharedShape) -> bool {
     match shape.as_typed_shape() {
         TypedShape::ConvexPolyhedron(hull) => !hull.faces().is_empty(),
@@ -28,20 +28,20 @@ pub(super) fn has_faces(shape: &SharedShape) -> bool {
     }
 }
 
-/// A rotation as it is stored: x, y, z, w of the quaternion.
-pub(super) type Turn = [Scalar; 4];
+/// Stored format of a rotation: x, y, z, w of the quaternion.
+pub(super) type StoredRotation = [Scalar; 4];
 
-/// What is stored of a rotation.
-pub(super) fn turn(rotation: Rotation) -> Turn {
+/// The stored format of a rotation.
+pub(super) fn stored_rotation(rotation: Rotation) -> StoredRotation {
     rotation.to_array()
 }
 
-/// The rotation of what is stored.
-pub(super) fn rotation(turn: Turn) -> Rotation {
+/// The rotation of a stored format.
+pub(super) fn rotation(turn: StoredRotation) -> Rotation {
     Rotation::from_array(turn)
 }
 
-/// Polylines of space have no flags.
+/// 3D polylines have no flags.
 pub(super) fn polyline_flags(_: &Polyline) -> u8 {
     0
 }
@@ -51,7 +51,7 @@ pub(super) fn polyline(vertices: Vec<Vector>, indices: Vec<[u32; 2]>, flags: u8)
     if flags == 0 { Ok(Polyline::new(vertices, Some(indices))) } else { Err("a polyline has unknown flags") }
 }
 
-/// A height field as it is stored. Heights and cells lie column by column.
+/// Stored format of a height field. Heights and cells are in column order.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "HeightField")]
 pub(super) struct StoredHeights {
@@ -66,7 +66,7 @@ pub(super) struct StoredHeights {
 }
 
 impl StoredHeights {
-    /// What describes a height field.
+    /// The stored format of a height field.
     pub fn of(field: &HeightField) -> Self {
         let heights = field.heights();
         Self {
@@ -79,7 +79,7 @@ impl StoredHeights {
         }
     }
 
-    /// The height field that is described.
+    /// The height field of a stored format.
     pub fn shape(self) -> Result<SharedShape, Fault> {
         let (rows, columns) = (self.rows, self.columns);
         if rows < 2 || columns < 2 || rows.checked_mul(columns) != Some(self.heights.len()) {
@@ -103,7 +103,7 @@ impl StoredHeights {
     }
 }
 
-/// Shapes that only space has, as they are stored; the fields are parry's.
+/// Stored formats of shapes that only 3D has. The fields are parry's.
 #[derive(Serialize, Deserialize)]
 pub(super) enum StoredSpecial {
     Cylinder { half_height: Scalar, radius: Scalar },
@@ -115,7 +115,7 @@ pub(super) enum StoredSpecial {
 }
 
 impl StoredSpecial {
-    /// What describes a shape.
+    /// The stored format of a shape.
     pub fn of(shape: TypedShape<'_>) -> Result<Self, Fault> {
         Ok(match shape {
             TypedShape::Cylinder(&Cylinder { half_height, radius }) => Self::Cylinder { half_height, radius },
@@ -137,7 +137,7 @@ impl StoredSpecial {
         })
     }
 
-    /// The shape that is described.
+    /// The shape of a stored format.
     pub fn shape(self) -> Result<SharedShape, Fault> {
         Ok(match self {
             Self::Cylinder { half_height, radius } => {
@@ -223,7 +223,7 @@ struct EdgeFields {
 }
 
 impl HullFields {
-    /// Whether all indices lead somewhere and all numbers are finite: what parry takes for granted.
+    /// Whether all indices exist and all numbers are finite, which parry assumes.
     fn check(&self) -> Result<(), Fault> {
         if self.points.len() < 4 || self.faces.len() < 4 || self.vertices.len() != self.points.len() {
             return Err("a hull has too few points or faces");

@@ -1,8 +1,8 @@
-//! How a [`Collider`] is stored by serde: as what its shape is made of, its scale, and how finely that is resolved.
+//! Serialization of a [`Collider`]: the definition of its shape, its scale, and its number of subdivisions.
 //!
-//! Trees of boxes, topology and all else that follows from that is computed anew, to the same bits; only parry's tree over
-//! voxels depends on the order of a hash map, as it does without storing. Input that describes no shape is an error of the
-//! deserializer.
+//! Trees of boxes, topology and all other derived data are computed again, to the same bits. Only parry's tree over
+//! voxels depends on the order of a hash map, as it does without serialization. A definition that makes no shape is an
+//! error of the deserializer.
 
 mod check;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
@@ -33,10 +33,10 @@ use crate::{
 use check::{Fault, check_elements};
 use part::Part;
 
-/// The finest resolution of a scaled curved shape that is read: its points are up to the square of this.
+/// Maximum number of subdivisions that is read: the number of points is up to its square.
 const MAX_DETAIL: u32 = 1024;
 
-/// A collider as it is stored.
+/// Stored format of a collider.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Collider")]
 struct StoredCollider {
@@ -46,27 +46,27 @@ struct StoredCollider {
     detail: u32,
 }
 
-/// A shape as it is stored. Compounds have no compounds or meshes in them, so that there is no recursion.
+/// Stored format of a shape. Compounds contain no compounds or meshes, so there is no recursion.
 #[derive(Serialize, Deserialize)]
 enum StoredShape {
-    /// What is one shape.
+    /// One shape.
     Single(Part),
-    /// What is made of parts.
+    /// A compound of parts.
     Compound(Vec<PlacedPart>),
-    /// What is made of triangles.
+    /// A triangle mesh.
     Trimesh {
-        /// The corners of triangles.
+        /// The corners of the triangles.
         vertices: Vec<Vector>,
-        /// Three of them each.
+        /// Three indices per triangle.
         indices: Vec<[u32; 3]>,
         /// The bits of parry's `TriMeshFlags`.
         flags: u16,
     },
-    /// What is made of segments.
+    /// A polyline.
     Polyline {
-        /// The ends of segments.
+        /// The ends of the segments.
         vertices: Vec<Vector>,
-        /// Two of them each.
+        /// Two indices per segment.
         indices: Vec<[u32; 2]>,
         /// The bits of parry's `PolylineFlags`; none in 3D.
         flags: u8,
@@ -77,7 +77,7 @@ enum StoredShape {
 #[derive(Serialize, Deserialize)]
 struct PlacedPart {
     position: Vector,
-    rotation: dim::Turn,
+    rotation: dim::StoredRotation,
     shape: Part,
 }
 
@@ -91,7 +91,7 @@ impl Serialize for Collider {
 impl<'de> Deserialize<'de> for Collider {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let stored = StoredCollider::deserialize(deserializer)?;
-        // Parry's algorithms may assert what cannot be told from the input.
+        // Parry's algorithms may assert conditions that cannot be checked before.
         let collider = without_panic(|| stored.collider());
         collider.unwrap_or(Err("a collider's shape is degenerate")).map_err(de::Error::custom)
     }
@@ -125,7 +125,7 @@ impl StoredShape {
         Ok(match shape.as_typed_shape() {
             TypedShape::Compound(compound) => {
                 let placed = |(pose, part): &(Pose, SharedShape)| {
-                    let (position, rotation) = (pose.translation, dim::turn(pose.rotation));
+                    let (position, rotation) = (pose.translation, dim::stored_rotation(pose.rotation));
                     Ok(PlacedPart { position, rotation, shape: Part::of(part)? })
                 };
                 Self::Compound(compound.shapes().iter().map(placed).collect::<Result<_, Fault>>()?)
@@ -170,7 +170,7 @@ impl StoredShape {
 impl PlacedPart {
     fn pose(&self) -> Result<Pose, Fault> {
         let rotation = dim::rotation(self.rotation);
-        // As far from unit length as rounding gets it.
+        // The tolerance covers rounding.
         let is_rotation = (rotation.length() - 1.0).abs() < 1.0e-3;
         if !self.position.is_finite() || !is_rotation {
             return Err("a part of a compound has no pose");

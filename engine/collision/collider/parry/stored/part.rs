@@ -1,4 +1,4 @@
-//! Shapes that may be a part of a compound, as they are stored.
+//! Stored formats of shapes that may be part of a compound.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ use crate::{
     },
 };
 
-/// One shape as it is stored; the fields are parry's.
+/// Stored format of one shape. The fields are parry's.
 #[derive(Serialize, Deserialize)]
 pub(super) enum Part {
     Ball { radius: Scalar },
@@ -32,7 +32,7 @@ pub(super) enum Part {
 }
 
 impl Part {
-    /// What describes a shape; compounds and meshes are none here.
+    /// The stored format of a shape. Compounds and meshes are errors here.
     pub fn of(shape: &SharedShape) -> Result<Self, Fault> {
         Ok(match shape.as_typed_shape() {
             TypedShape::Ball(ball) => Self::Ball { radius: ball.radius },
@@ -60,7 +60,7 @@ impl Part {
         })
     }
 
-    /// The shape that is described.
+    /// The shape of a stored format.
     pub fn shape(self) -> Result<SharedShape, Fault> {
         Ok(match self {
             Self::Ball { radius } => {
@@ -103,10 +103,10 @@ impl Part {
     }
 }
 
-/// The filled cells in the order in which parry keeps them.
+/// The filled cells, in parry's order.
 fn filled_cells(voxels: &Voxels) -> Vec<IVector> {
     let [low, high] = voxels.domain();
-    // Parry finds the domain by rounding: one more on each side loses none.
+    // Parry computes the domain by rounding: one more cell on each side misses none.
     let mut filled: Vec<_> = voxels.voxels_in_range(low - IVector::ONE, high + IVector::ONE).collect();
     filled.retain(|voxel| !voxel.state.is_empty());
     filled.sort_unstable_by_key(|voxel| voxel.linear_id.flat_id());

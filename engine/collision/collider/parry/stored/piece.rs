@@ -1,5 +1,5 @@
-//! The only way to parry's convex hulls with all their bits: their fields are private, and their constructors
-//! compute some of them from other data. So they are deserialized from what was checked before.
+//! Values that parry's convex hulls are deserialized from. Their fields are private, and their constructors recompute
+//! some of them from other data, so deserializing checked values is the only way to restore all bits.
 
 use serde::{
     Deserialize, Deserializer,
@@ -10,14 +10,14 @@ use serde::{
 use super::check::Fault;
 use crate::math::{Scalar, Vector};
 
-/// A piece of data in memory; a structure is the list of its fields.
+/// A value in memory. A structure is the list of its fields.
 #[allow(dead_code, reason = "polygons have neither flags nor indices")]
 pub(super) enum Piece {
     /// A truth value.
     Flag(bool),
     /// An index or a count.
     Index(u32),
-    /// A number. The `f64` of an `f32` becomes it again.
+    /// A number. An `f32` is stored as an `f64` and restored exactly.
     Number(Scalar),
     /// A list or structure.
     List(Vec<Piece>),
@@ -39,7 +39,7 @@ impl Piece {
         Self::list(vector.to_array(), Self::Number)
     }
 
-    /// The value of which this is the list of fields.
+    /// Deserializes a value of which this is the list of fields.
     pub fn build<T: for<'de> Deserialize<'de>>(self) -> Result<T, Fault> {
         T::deserialize(self).map_err(|_| "parry has other fields")
     }

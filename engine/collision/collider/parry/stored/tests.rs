@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use super::tests_dim::{shapes_of_dimension, turned};
 
-/// Numbers between 0.05 and 1, from a seed.
+/// Pseudo-random numbers between 0.05 and 1.
 pub(super) struct Numbers(pub u64);
 
 impl Numbers {
@@ -40,13 +40,13 @@ impl Numbers {
 
 fn mesh(n: &mut Numbers, flags: TrimeshFlags) -> Collider {
     let mut vertices = n.points(12);
-    // Vertices to be joined.
+    // Vertices that will be merged.
     vertices.extend_from_within(..4);
     let indices = (0..20).map(|_| [(); 3].map(|()| n.index(16))).collect();
     Collider::trimesh_with_config(vertices, indices, flags)
 }
 
-/// One of each kind.
+/// One collider of each kind.
 fn shapes(n: &mut Numbers) -> Vec<Collider> {
     let mut all = vec![
         Collider::capsule(n.next(), n.next()),
@@ -104,10 +104,10 @@ fn vertices_that_no_triangle_uses_are_left_out_of_a_mended_mesh() {
     }
 }
 
-/// All data of a shape: with parry's own serialisation, which holds trees, topology and normals.
+/// All data of a shape, by parry's own serialization, which includes trees, topology and normals.
 fn exact(shape: &SharedShape) -> String {
     match shape.as_typed_shape() {
-        // Parry keeps the chunks of voxels in a hash map, and its tree has their order.
+        // Parry keeps the chunks of voxels in a hash map, and its tree has that order.
         TypedShape::Voxels(_) | TypedShape::Custom(_) => {
             serde_json::to_string(&Part::of(shape).expect("ours")).expect("a part")
         }
@@ -126,7 +126,7 @@ fn assert_same(a: &Collider, b: &Collider) {
     assert_eq!(exact(a.shape_scaled()), exact(b.shape_scaled()));
     assert_eq!(format!("{:?}", a.native()), format!("{:?}", b.native()));
     assert_eq!(text(a), text(b));
-    // Parry adds up the mass of voxels in the order of its hash map.
+    // Parry sums the mass of voxels in the order of its hash map.
     if !text(a).contains("Voxels") {
         let mass = |c: &Collider| format!("{:?}", c.mass_properties(1.5));
         assert_eq!(mass(a), mass(b));
@@ -154,7 +154,7 @@ fn a_shape_changed_below_its_scale_comes_back() {
     assert_same(&collider, &again(&collider));
 }
 
-/// Uses what a collider is used for.
+/// Calls the functions of a collider.
 fn exercise(collider: &Collider) {
     let shape = collider.shape_scaled();
     let _ = (shape.compute_local_aabb(), shape.compute_local_bounding_sphere());
@@ -171,7 +171,7 @@ fn exercise(collider: &Collider) {
     assert!(has_extent(shape));
 }
 
-/// What comes of a document in which one place after the other holds something else.
+/// Runs a function with copies of a document in which one place after the other is replaced.
 fn spoil(document: &Value, place: &mut dyn FnMut(&Value) -> Vec<Value>, run: &mut dyn FnMut(Value)) {
     let paths = paths(document);
     for path in paths {
@@ -211,7 +211,7 @@ fn no_spoiled_collider_panics() {
         _ => vec![json!(null), json!({}), json!([])],
     };
     let (mut refused, mut read) = (0, 0);
-    // Each kind once: the second half is the first with a scale.
+    // One of each kind: the second half is the first with a scale.
     let all = shapes(&mut Numbers(7));
     for collider in &all[..all.len() / 2] {
         let document = serde_json::to_value(collider).expect("can be stored");
@@ -226,7 +226,7 @@ fn no_spoiled_collider_panics() {
     assert!(refused > 1000 && read > 100, "{refused} refused, {read} read");
 }
 
-/// Documents that hold no shape.
+/// Documents that describe no shape.
 fn shapeless() -> Vec<Value> {
     let zero = json!(Vector::ZERO);
     let ones = json!(Vector::ONE);
@@ -296,7 +296,7 @@ fn parts_of_compounds_need_a_pose() {
     let doubled: Vec<_> =
         rotation.as_array().expect("a list").iter().map(|v| 2.0 * v.as_f64().unwrap_or(1.0)).collect();
     assert!(!part("rotation", json!(doubled)) && !part("position", json!(vec![Value::Null; DIM])));
-    // A compound in a compound would be recursion without end.
+    // A compound in a compound would recurse.
     assert!(!part("shape", stored["shape"].clone()));
 }
 
@@ -307,7 +307,7 @@ fn a_shape_of_the_apps_own_cannot_be_stored() {
     assert!(error.to_string().contains("app's own"), "{error}");
 }
 
-/// A ball that hides from serde.
+/// A custom ball without serialization.
 #[derive(Clone, Debug)]
 struct Own(Ball);
 

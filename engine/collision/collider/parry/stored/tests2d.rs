@@ -7,18 +7,18 @@ use crate::{
 };
 use serde_json::{Value, json};
 
-/// Any rotation.
+/// A pseudo-random rotation.
 pub(super) fn turned(n: &mut Numbers) -> Rotation {
     Rotation::radians(3.0 * n.next())
 }
 
-/// One of each kind that only the plane has.
+/// One collider of each kind that only 2D has.
 pub(super) fn shapes_of_dimension(n: &mut Numbers) -> Vec<Collider> {
     let mut holes = HeightField::new((0..6).map(|_| n.next()).collect(), n.point().abs() + 0.1);
     holes.set_segment_removed(2, true);
     let oriented = Polyline::with_flags(n.points(6), None, PolylineFlags::ORIENTED);
     let corners = n.points(14);
-    // Some of the corners lie in its sides.
+    // Some of the corners lie in sides.
     let rough: Vec<_> =
         (0..40).map(|i| Vector::from_angle(i as f32 as crate::math::Scalar * 0.157)).collect();
     let mut all = vec![
@@ -36,7 +36,7 @@ pub(super) fn shapes_of_dimension(n: &mut Numbers) -> Vec<Collider> {
     all
 }
 
-/// Documents that hold no shape.
+/// Documents that describe no shape.
 pub(super) fn shapeless() -> Vec<Value> {
     let points = json!([Vector::ZERO, Vector::X, Vector::Y]);
     let special = |value: Value| json!({ "Single": { "OfDimension": value } });

@@ -10,12 +10,12 @@ use crate::{
 };
 use serde_json::{Value, json};
 
-/// Any rotation.
+/// A pseudo-random rotation.
 pub(super) fn turned(n: &mut Numbers) -> Rotation {
     Rotation(Quaternion::from_xyzw(n.next(), -n.next(), n.next(), n.next()).normalize())
 }
 
-/// One of each kind that only space has.
+/// One collider of each kind that only 3D has.
 pub(super) fn shapes_of_dimension(n: &mut Numbers) -> Vec<Collider> {
     let heights = |n: &mut Numbers| (0..4).map(|_| (0..5).map(|_| n.next()).collect()).collect();
     let mut holes = HeightField::with_flags(
@@ -48,7 +48,7 @@ fn box_corners(half: Vector) -> Vec<Vector> {
     (0..8).map(|i| half * Vector::new(sign(i, 0), sign(i, 1), sign(i, 2))).collect()
 }
 
-/// Documents that hold no shape.
+/// Documents that describe no shape.
 pub(super) fn shapeless() -> Vec<Value> {
     let hull = Collider::convex_hull(box_corners(Vector::ONE)).expect("a box is convex");
     let stored = serde_json::to_value(&hull).expect("can be stored")["shape"].clone();

@@ -1,19 +1,19 @@
-//! Mass properties to be spawned together.
+//! A bundle of mass properties.
 
 use bevy_ecs::prelude::*;
 
 use super::{AngularInertia, CenterOfMass, Mass};
 use crate::math::ComputeMassProperties;
 
-/// The mass properties of one entity, to be spawned together.
+/// The mass properties of one entity, as a bundle.
 #[derive(Bundle, Debug, Default, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct MassPropertiesBundle {
-    /// In kg.
+    /// Mass, in kg.
     pub mass: Mass,
-    /// In kg·m², about the centre of mass.
+    /// Angular inertia about the centre of mass, in kg·m².
     pub angular_inertia: AngularInertia,
-    /// In metres, in the entity's frame.
+    /// Centre of mass in the entity's frame, in metres.
     pub center_of_mass: CenterOfMass,
 }
 

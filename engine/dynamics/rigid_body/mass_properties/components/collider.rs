@@ -1,4 +1,4 @@
-//! What colliders bring to their body's mass.
+//! Mass properties of colliders.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -9,8 +9,7 @@ use derive_more::From;
 
 use crate::math::{ComputeMassProperties, MassProperties};
 
-/// The density of a collider's material, in kg/m³ (in 2D kg/m²). 1 by default; with 0 the collider weighs
-/// nothing.
+/// The density of a collider's material, in kg/m³ (in 2D kg/m²). 1 by default. With 0 the collider has no mass.
 #[derive(Component, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, PartialOrd, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -27,14 +26,14 @@ impl Default for ColliderDensity {
 }
 
 impl ColliderDensity {
-    /// Weighs nothing.
+    /// No mass.
     pub const ZERO: Self = Self(0.0);
 }
 
-/// What a collider of its [`ColliderDensity`] weighs, in the collider's frame. Computed from the shape; writing
-/// it has no lasting effect. To give an entity another mass, insert a [`Mass`](super::Mass).
+/// The mass properties of a collider with its [`ColliderDensity`], in the collider's frame. Computed from the shape:
+/// writing it has no lasting effect. To set a mass, insert a [`Mass`](super::Mass).
 ///
-/// Of sensors and disabled colliders it is the same, but their body does not count it.
+/// Sensors and disabled colliders have it as well, but it does not count for their body.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -45,7 +44,7 @@ impl ColliderDensity {
 pub struct ColliderMassProperties(MassProperties);
 
 impl ColliderMassProperties {
-    /// Weighs nothing.
+    /// No mass.
     pub const ZERO: Self = Self(MassProperties::ZERO);
 
     /// The mass properties of a shape filled with a material of `density`, in kg/m³ (in 2D kg/m²).

@@ -1,4 +1,4 @@
-//! A body's total mass and centre of mass, as the solver uses them.
+//! The total mass and centre of mass of a body, for the solver.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -10,12 +10,10 @@ use derive_more::From;
 use super::{CenterOfMass, Mass, MassError};
 use crate::math::{AdjustPrecision, RecipOrZero, Scalar, Vector};
 
-/// The mass of a body with all that belongs to it, in kg. Stored as its inverse, so that infinite mass is a
-/// plain zero; a mass of zero means the same, as a body without mass cannot be pushed either.
+/// The total mass of a body, in kg. Stored as its inverse, so that infinite mass is 0. A mass of 0 means infinite, too.
 ///
-/// Computed from [`Mass`] and the colliders; static bodies have infinite mass, kinematic ones the mass they
-/// would have as dynamic ones, though nothing that touches them feels a difference. Writing it is of use only
-/// with [`NoAutoMass`](super::NoAutoMass).
+/// Computed from [`Mass`] and the colliders. Static bodies have infinite mass. Kinematic bodies have the mass they
+/// would have as dynamic ones, without effect on contacts. Write it only with [`NoAutoMass`](super::NoAutoMass).
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -28,10 +26,11 @@ pub struct ComputedMass {
 }
 
 impl ComputedMass {
-    /// Cannot be pushed.
+    /// Immovable.
     pub const INFINITY: Self = Self { inverse: 0.0 };
 
-    /// A mass in kg; 0 means infinite. Negative and NaN, which debug builds refuse with a panic, give infinite.
+    /// A mass in kg; 0 means infinite. Negative values and NaN panic in debug builds and give infinite mass in release
+    /// builds.
     pub fn new(mass: Scalar) -> Self {
         let result = Self::try_new(mass);
         debug_assert!(result.is_ok(), "a mass is not negative and not NaN, this is {mass}");
@@ -43,8 +42,8 @@ impl ComputedMass {
         check(mass).map(|()| Self { inverse: mass.recip_or_zero() })
     }
 
-    /// A mass from its inverse in 1/kg. Negative and NaN, which debug builds refuse with a panic, give infinite
-    /// mass.
+    /// A mass from its inverse in 1/kg. Negative values and NaN panic in debug builds and give infinite mass in release
+    /// builds.
     pub fn from_inverse(inverse_mass: Scalar) -> Self {
         let result = Self::try_from_inverse(inverse_mass);
         debug_assert!(result.is_ok(), "an inverse mass is not negative and not NaN, this is {inverse_mass}");
@@ -81,7 +80,7 @@ impl ComputedMass {
         self.value() == 0.0 && !self.is_nan()
     }
 
-    /// Whether the mass is NaN, which no constructor makes.
+    /// Whether the mass is NaN. No constructor makes such a mass.
     pub fn is_nan(self) -> bool {
         self.inverse.is_nan()
     }
@@ -115,9 +114,9 @@ impl From<ComputedMass> for Mass {
     }
 }
 
-/// The centre of mass of a body with all that belongs to it, in the body's frame, in metres.
+/// The total centre of mass of a body, in the body's frame, in metres.
 ///
-/// Computed from [`CenterOfMass`] and the colliders; writing it is of use only with
+/// Computed from [`CenterOfMass`] and the colliders. Write it only with
 /// [`NoAutoCenterOfMass`](super::NoAutoCenterOfMass).
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]

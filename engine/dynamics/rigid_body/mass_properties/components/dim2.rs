@@ -1,4 +1,4 @@
-//! Angular inertia in the plane: one number. `dim3.rs` is the twin.
+//! Angular inertia in 2D: one number. `dim3.rs` has the tensors of 3D.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -11,13 +11,13 @@ use derive_more::From;
 use super::{AngularInertiaError, CenterOfMass, ComputedCenterOfMass};
 use crate::math::{AdjustPrecision, ComputeMassProperties, MassProperties, RecipOrZero, Scalar, Vector};
 
-/// The angular inertia of one entity about its centre of mass, in kg·m²: of a body, or of a part of a body on
-/// one of its descendants.
+/// The angular inertia of one entity about its centre of mass, in kg·m²: of a body, or of a part of a body on a
+/// descendant.
 ///
-/// It replaces the inertia of the collider on the same entity. The body's total, [`ComputedAngularInertia`],
-/// is the sum over the body and its descendants, moved to the common centre of mass, unless
-/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia) says that this is all. Infinity is allowed; negative
-/// and NaN count as 0 and are warned of.
+/// It replaces the inertia of the collider on the same entity. The body's total, [`ComputedAngularInertia`], is the sum
+/// over the body and its descendants about the common centre of mass, or only this with
+/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia). Infinity is allowed. Negative values and NaN count as 0, with
+/// a warning.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -31,7 +31,7 @@ pub struct AngularInertia(pub f32);
 crate::type_path::type_path!(AngularInertia, "dynamics::rigid_body::mass_properties::components");
 
 impl AngularInertia {
-    /// None given.
+    /// No inertia.
     pub const ZERO: Self = Self(0.0);
 
     /// The inertia of a shape of `mass` kg about its centroid.
@@ -45,17 +45,17 @@ impl AngularInertia {
         self.0 + mass * offset.length_squared()
     }
 
-    /// Whether the component holds what it should: neither negative nor NaN.
+    /// Whether the value is valid: neither negative nor NaN.
     pub(in super::super) fn is_valid(self) -> bool {
         self.0 >= 0.0
     }
 }
 
-/// The angular inertia of a body with all that belongs to it, about its centre of mass, in kg·m². Stored as
-/// its inverse, so that infinite inertia is a plain zero; an inertia of zero means the same.
+/// The total angular inertia of a body about its centre of mass, in kg·m². Stored as its inverse, so that infinite
+/// inertia is 0. An inertia of 0 means infinite, too.
 ///
-/// Computed from [`AngularInertia`] and the colliders; static bodies have infinite inertia. Writing it is of
-/// use only with [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
+/// Computed from [`AngularInertia`] and the colliders. Static bodies have infinite inertia. Write it only with
+/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -80,11 +80,11 @@ impl Default for ComputedAngularInertia {
 }
 
 impl ComputedAngularInertia {
-    /// Cannot be turned.
+    /// Cannot be rotated.
     pub const INFINITY: Self = Self { inverse: 0.0 };
 
-    /// An inertia in kg·m²; 0 means infinite. Negative and NaN, which debug builds refuse with a panic, give
-    /// infinite.
+    /// An inertia in kg·m²; 0 means infinite. Negative values and NaN panic in debug builds and give infinite inertia
+    /// in release builds.
     pub fn new(angular_inertia: Scalar) -> Self {
         let result = Self::try_new(angular_inertia);
         debug_assert!(result.is_ok(), "an inertia is not negative and not NaN, this is {angular_inertia}");
@@ -96,8 +96,8 @@ impl ComputedAngularInertia {
         check(angular_inertia).map(|()| Self { inverse: angular_inertia.recip_or_zero() })
     }
 
-    /// An inertia from its inverse in 1/(kg·m²). Negative and NaN, which debug builds refuse with a panic, give
-    /// infinite inertia.
+    /// An inertia from its inverse in 1/(kg·m²). Negative values and NaN panic in debug builds and give infinite
+    /// inertia in release builds.
     pub fn from_inverse(inverse_angular_inertia: Scalar) -> Self {
         let result = Self::try_from_inverse(inverse_angular_inertia);
         debug_assert!(result.is_ok(), "an inverse inertia is not negative and not NaN");
@@ -129,7 +129,7 @@ impl ComputedAngularInertia {
         *self = angular_inertia.into();
     }
 
-    /// The inertia of a body of `mass` kg about an axis `offset` metres off its centre of mass, by the parallel
+    /// The inertia of a body of `mass` kg about an axis at `offset` metres from its centre of mass, by the parallel
     /// axis theorem: I + m d². 0, which means infinite, if the inertia is infinite.
     pub fn shifted(&self, mass: Scalar, offset: Vector) -> Scalar {
         if self.is_infinite() { 0.0 } else { self.value() + mass * offset.length_squared() }
@@ -145,12 +145,12 @@ impl ComputedAngularInertia {
         !self.is_infinite() && !self.is_nan()
     }
 
-    /// Whether nothing can turn the body.
+    /// Whether the body cannot be rotated by contacts and forces.
     pub fn is_infinite(self) -> bool {
         self.value() == 0.0 && !self.is_nan()
     }
 
-    /// Whether the inertia is NaN, which no constructor makes.
+    /// Whether the inertia is NaN. No constructor makes such an inertia.
     pub fn is_nan(self) -> bool {
         self.inverse.is_nan()
     }

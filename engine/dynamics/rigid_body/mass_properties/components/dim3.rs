@@ -1,4 +1,4 @@
-//! Angular inertia in space: a symmetric tensor, or its principal values and their axes. `dim2.rs` is the twin.
+//! Angular inertia in 3D: a symmetric tensor, or principal values with their axes. `dim2.rs` has the number of 2D.
 
 use bevy_ecs::prelude::*;
 use bevy_heavy::AngularInertiaTensor;
@@ -18,13 +18,13 @@ use crate::math::{
     SymmetricMatrix, SymmetricMatrix3, Vector,
 };
 
-/// The angular inertia of one entity about its centre of mass, in kg·m²: of a body, or of a part of a body on
-/// one of its descendants. Given by its principal values and the axes they belong to.
+/// The angular inertia of one entity about its centre of mass, in kg·m², as principal values with their axes: of a
+/// body, or of a part of a body on a descendant.
 ///
-/// It replaces the inertia of the collider on the same entity. The body's total, [`ComputedAngularInertia`],
-/// is the sum over the body and its descendants, moved to the common centre of mass, unless
-/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia) says that this is all. Infinity is allowed; negative
-/// and NaN count as 0 and are warned of.
+/// It replaces the inertia of the collider on the same entity. The body's total, [`ComputedAngularInertia`], is the sum
+/// over the body and its descendants about the common centre of mass, or only this with
+/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia). Infinity is allowed. Negative values and NaN count as 0, with
+/// a warning.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -43,11 +43,10 @@ pub struct AngularInertia {
 crate::type_path::type_path!(AngularInertia, "dynamics::rigid_body::mass_properties::components");
 
 impl AngularInertia {
-    /// None given.
+    /// No inertia.
     pub const ZERO: Self = Self { principal: Vec3::ZERO, local_frame: Quat::IDENTITY };
 
-    /// An inertia whose principal axes are the entity's own. Debug builds refuse negative values and NaN with a
-    /// panic.
+    /// An inertia whose principal axes are the entity's own. Negative values and NaN panic in debug builds.
     pub fn new(principal_angular_inertia: Vec3) -> Self {
         Self::new_with_local_frame(principal_angular_inertia, Quat::IDENTITY)
     }
@@ -57,14 +56,14 @@ impl AngularInertia {
         Self::try_new_with_local_frame(principal_angular_inertia, Quat::IDENTITY)
     }
 
-    /// An inertia with principal axes of its own. Debug builds refuse negative values and NaN with a panic.
+    /// An inertia with its own principal axes. Negative values and NaN panic in debug builds.
     pub fn new_with_local_frame(principal_angular_inertia: Vec3, local_frame: Quat) -> Self {
         let inertia = Self { principal: principal_angular_inertia, local_frame };
         debug_assert!(inertia.is_valid(), "an inertia is not negative and not NaN, this is {inertia:?}");
         inertia
     }
 
-    /// An inertia with principal axes of its own. Negative values and NaN are errors.
+    /// An inertia with its own principal axes. Negative values and NaN are errors.
     pub fn try_new_with_local_frame(
         principal_angular_inertia: Vec3,
         local_frame: Quat,
@@ -73,14 +72,12 @@ impl AngularInertia {
             .map(|()| Self { principal: principal_angular_inertia, local_frame })
     }
 
-    /// An inertia from its tensor, of which the principal axes are computed. Values that rounding leaves below
-    /// zero become zero.
+    /// An inertia from its tensor, whose principal axes are computed. Values that rounding makes negative become zero.
     pub fn from_tensor(tensor: impl Into<AngularInertiaTensor>) -> Self {
         Self::from_symmetric_mat3(tensor.into().as_symmetric_mat3())
     }
 
-    /// An inertia from its tensor, of which the principal axes are computed. Values that rounding leaves below
-    /// zero become zero.
+    /// An inertia from its tensor, whose principal axes are computed. Values that rounding makes negative become zero.
     pub fn from_symmetric_mat3(mat: SymmetricMat3) -> Self {
         let (principal, axes) = principal_axes(mat.as_symmetric_dmat3());
         Self {
@@ -94,7 +91,7 @@ impl AngularInertia {
         SymmetricMat3::try_from_mat3(mat).map(Self::from_symmetric_mat3)
     }
 
-    /// An inertia from its tensor, of which only the lower triangle is read.
+    /// An inertia from the lower triangle of its tensor.
     pub fn from_mat3_unchecked(mat: Mat3) -> Self {
         Self::from_symmetric_mat3(SymmetricMat3::from_mat3_unchecked(mat))
     }
@@ -120,7 +117,7 @@ impl AngularInertia {
         self.principal.is_nan() || self.local_frame.is_nan()
     }
 
-    /// Whether the component holds what it should: neither negative values nor NaN, and a rotation.
+    /// Whether the value is valid: no negative values, no NaN, and a unit rotation.
     pub(in super::super) fn is_valid(self) -> bool {
         check(self.principal.to_array()).is_ok() && self.local_frame.is_finite()
     }
@@ -151,12 +148,11 @@ impl From<AngularInertia> for AngularInertiaTensor {
     }
 }
 
-/// The angular inertia of a body with all that belongs to it, about its centre of mass and in its own frame, in
-/// kg·m². Stored as the inverse of the tensor, so that infinite inertia about an axis is a plain zero; an
-/// inertia of zero means the same.
+/// The total angular inertia of a body about its centre of mass, in its own frame, in kg·m². Stored as the inverse of
+/// the tensor, so that infinite inertia about an axis is 0. An inertia of 0 means infinite, too.
 ///
-/// Computed from [`AngularInertia`] and the colliders; static bodies have infinite inertia. Writing it is of
-/// use only with [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
+/// Computed from [`AngularInertia`] and the colliders. Static bodies have infinite inertia. Write it only with
+/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -181,11 +177,11 @@ impl Default for ComputedAngularInertia {
 }
 
 impl ComputedAngularInertia {
-    /// Cannot be turned.
+    /// Cannot be rotated.
     pub const INFINITY: Self = Self { inverse: SymmetricMatrix::ZERO };
 
-    /// An inertia whose principal axes are the body's own, in kg·m²; 0 about an axis means infinite. Negative
-    /// values and NaN, which debug builds refuse with a panic, give infinite inertia.
+    /// An inertia whose principal axes are the body's own, in kg·m²; 0 about an axis means infinite. Negative values
+    /// and NaN panic in debug builds and give infinite inertia in release builds.
     pub fn new(principal_angular_inertia: Vector) -> Self {
         Self::new_with_local_frame(principal_angular_inertia, Quaternion::IDENTITY)
     }
@@ -196,8 +192,8 @@ impl ComputedAngularInertia {
         Self::try_new_with_local_frame(principal_angular_inertia, Quaternion::IDENTITY)
     }
 
-    /// An inertia with principal axes `orientation`, in kg·m²; 0 about an axis means infinite. Negative values
-    /// and NaN, which debug builds refuse with a panic, give infinite inertia.
+    /// An inertia with principal axes `orientation`, in kg·m²; 0 about an axis means infinite. Negative values and NaN
+    /// panic in debug builds and give infinite inertia in release builds.
     pub fn new_with_local_frame(principal_angular_inertia: Vector, orientation: Quaternion) -> Self {
         let result = Self::try_new_with_local_frame(principal_angular_inertia, orientation);
         debug_assert!(
@@ -218,8 +214,8 @@ impl ComputedAngularInertia {
         Ok(Self { inverse }.rotated(orientation))
     }
 
-    /// An inertia from its tensor in the body's frame, in kg·m². About the axes where it is zero, the body
-    /// cannot be turned.
+    /// An inertia from its tensor in the body's frame, in kg·m². The body cannot be rotated about axes where it is
+    /// zero.
     pub fn from_tensor(tensor: SymmetricMatrix) -> Self {
         Self { inverse: invert(widen(tensor)).adjust_precision() }
     }
@@ -229,7 +225,7 @@ impl ComputedAngularInertia {
         Self { inverse: inverse_tensor }
     }
 
-    /// The tensor in the body's frame, in kg·m²; 0 about the axes about which the body cannot be turned.
+    /// The tensor in the body's frame, in kg·m²; 0 about axes about which the body cannot be rotated.
     pub fn value(self) -> SymmetricMatrix {
         invert(widen(self.inverse)).adjust_precision()
     }
@@ -239,7 +235,7 @@ impl ComputedAngularInertia {
         self.inverse
     }
 
-    /// The tensor in the body's frame, in kg·m²; 0 about the axes about which the body cannot be turned.
+    /// The tensor in the body's frame, in kg·m²; 0 about axes about which the body cannot be rotated.
     pub fn tensor(self) -> SymmetricMatrix {
         self.value()
     }
@@ -266,11 +262,11 @@ impl ComputedAngularInertia {
         (principal.adjust_precision(), bevy_math::DQuat::from_mat3(&axes).adjust_precision())
     }
 
-    /// The same inertia in the frame in which the body is turned by `rotation`: R I Rᵀ.
+    /// The inertia in a frame in which the body is rotated by `rotation`: R I Rᵀ.
     #[must_use]
     pub fn rotated(self, rotation: Quaternion) -> Self {
         let q = rotation.to_array();
-        // A unit turn leaves the bits alone.
+        // The identity leaves the bits unchanged.
         if q[0] == 0.0 && q[1] == 0.0 && q[2] == 0.0 {
             return self;
         }
@@ -279,8 +275,8 @@ impl ComputedAngularInertia {
         Self { inverse: rotated(widen(self.inverse), rotation).adjust_precision() }
     }
 
-    /// The tensor of a body of `mass` kg about a point `offset` metres off its centre of mass, by the parallel
-    /// axis theorem: I + m (|d|² 1 − d dᵀ). An inertia that is infinite counts as 0.
+    /// The tensor of a body of `mass` kg about a point at `offset` metres from its centre of mass, by the parallel axis
+    /// theorem: I + m (|d|² 1 − d dᵀ). An infinite inertia counts as 0.
     pub fn shifted_tensor(&self, mass: Scalar, offset: Vector) -> SymmetricMatrix3 {
         self.shifted(mass, offset).adjust_precision()
     }
@@ -295,12 +291,12 @@ impl ComputedAngularInertia {
         !self.is_infinite() && !self.is_nan()
     }
 
-    /// Whether nothing can turn the body, about any axis.
+    /// Whether the body cannot be rotated about any axis.
     pub fn is_infinite(self) -> bool {
         self == Self::INFINITY
     }
 
-    /// Whether a number is NaN, which no constructor makes from others.
+    /// Whether a number is NaN.
     pub fn is_nan(self) -> bool {
         self.inverse.is_nan()
     }
@@ -311,7 +307,7 @@ impl ComputedAngularInertia {
     }
 }
 
-/// Either precision of a scalar to `f64`.
+/// Converts either precision to `f64`.
 trait AdjustDouble {
     fn double(self) -> f64;
 }
@@ -458,7 +454,7 @@ mod tests {
         assert_eq!(inertia.inverse(), SymmetricMatrix::from_diagonal(Vector::new(0.0, 0.0, 0.5)));
         assert!(inertia.is_finite() && !inertia.is_infinite());
         assert_eq!(inertia.value(), SymmetricMatrix::from_diagonal(Vector::new(0.0, 0.0, 2.0)));
-        // Weights on a pole: no inertia about the pole, all the more across.
+        // Weights on a pole: no inertia about the pole, much across it.
         let pole =
             ComputedAngularInertia::from_tensor(SymmetricMatrix::from_diagonal(Vector::new(0.0, 8.0, 8.0)));
         assert_eq!(pole.inverse(), SymmetricMatrix::from_diagonal(Vector::new(0.0, 0.125, 0.125)));

@@ -1,4 +1,4 @@
-//! What a body weighs: the components users write, those colliders bring, and those the engine computes.
+//! Components of mass: those the app sets, those of colliders, and those the engine computes.
 
 mod bundle;
 mod collider;
@@ -21,34 +21,33 @@ use derive_more::From;
 
 use crate::math::{ComputeMassProperties, VectorF32};
 
-/// Why a number is no mass.
+/// Why a number is not a valid mass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MassError {
-    /// It is below zero.
+    /// The number is negative.
     #[error("a mass is not negative")]
     Negative,
-    /// It is NaN.
+    /// The number is NaN.
     #[error("a mass is not NaN")]
     NaN,
 }
 
-/// Why a number, or in 3D one of three, is no angular inertia.
+/// Why a number, or in 3D one of three, is not a valid angular inertia.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AngularInertiaError {
-    /// It is below zero.
+    /// The number is negative.
     #[error("an angular inertia is not negative")]
     Negative,
-    /// It is NaN.
+    /// The number is NaN.
     #[error("an angular inertia is not NaN")]
     NaN,
 }
 
-/// The mass of one entity, in kg: of a body, or of a part of a body on one of its descendants.
+/// The mass of one entity, in kg: of a body, or of a part of a body on a descendant.
 ///
-/// It replaces the mass of the collider on the same entity; without an [`AngularInertia`] the collider's
-/// inertia is scaled along. The body's total, [`ComputedMass`], is the sum over the body and its descendants,
-/// unless [`NoAutoMass`] says that this is all. Infinity is allowed; negative and NaN count as 0 and are
-/// warned of.
+/// It replaces the mass of the collider on the same entity. Without an [`AngularInertia`] the collider's inertia is
+/// scaled in proportion. The body's total, [`ComputedMass`], is the sum over the body and its descendants, or only this
+/// with [`NoAutoMass`]. Infinity is allowed. Negative values and NaN count as 0, with a warning.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -79,12 +78,10 @@ impl Mass {
     }
 }
 
-/// The centre of mass of one entity, in its own frame, in metres: of a body, or of a part of a body on one of
-/// its descendants.
+/// The centre of mass of one entity, in its own frame, in metres: of a body, or of a part of a body on a descendant.
 ///
-/// It replaces the centre of the collider on the same entity. The body's total, [`ComputedCenterOfMass`], is
-/// the mean over the body and its descendants, weighted by mass, unless [`NoAutoCenterOfMass`] says that this
-/// is it.
+/// It replaces the centre of the collider on the same entity. The body's total, [`ComputedCenterOfMass`], is the mean
+/// over the body and its descendants, weighted by mass, or only this with [`NoAutoCenterOfMass`].
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -104,8 +101,8 @@ impl CenterOfMass {
     }
 }
 
-/// Makes a body's mass its own [`Mass`] alone: neither colliders nor descendants add to it. Without a `Mass`
-/// the [`ComputedMass`] is left as it is, for the user to set.
+/// Makes a body's total mass its own [`Mass`] only, without colliders and descendants. Without a `Mass` the app sets
+/// [`ComputedMass`] itself.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[require(RecomputeMassProperties)]
@@ -117,8 +114,8 @@ impl CenterOfMass {
 )]
 pub struct NoAutoMass;
 
-/// Makes a body's angular inertia its own [`AngularInertia`] alone: neither colliders nor descendants add to
-/// it. Without an `AngularInertia` the [`ComputedAngularInertia`] is left as it is, for the user to set.
+/// Makes a body's total angular inertia its own [`AngularInertia`] only, without colliders and descendants. Without an
+/// `AngularInertia` the app sets [`ComputedAngularInertia`] itself.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[require(RecomputeMassProperties)]
@@ -130,8 +127,8 @@ pub struct NoAutoMass;
 )]
 pub struct NoAutoAngularInertia;
 
-/// Makes a body's centre of mass its own [`CenterOfMass`] alone: neither colliders nor descendants shift it.
-/// Without a `CenterOfMass` the [`ComputedCenterOfMass`] is left as it is, for the user to set.
+/// Makes a body's centre of mass its own [`CenterOfMass`] only, without colliders and descendants. Without a
+/// `CenterOfMass` the app sets [`ComputedCenterOfMass`] itself.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[require(RecomputeMassProperties)]
@@ -143,10 +140,10 @@ pub struct NoAutoAngularInertia;
 )]
 pub struct NoAutoCenterOfMass;
 
-/// Asks for a body's mass properties to be computed again before the next step, which removes it.
+/// Marks a body whose mass properties are computed again before the next step, which removes the marker.
 ///
-/// The engine inserts it where it sees a change. It does not see everything: see
-/// [`MassPropertyPlugin`](super::MassPropertyPlugin) for when to insert it by hand.
+/// The engine inserts it when it detects a change. See [`MassPropertyPlugin`](super::MassPropertyPlugin) for changes
+/// that it does not detect.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

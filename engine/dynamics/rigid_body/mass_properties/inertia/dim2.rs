@@ -1,9 +1,9 @@
-//! Inertia in the plane, and frames. `dim3.rs` is the twin.
+//! Inertia in 2D, and frames. `dim3.rs` exports the same names.
 
 use bevy_math::{DMat2, DVec2, Vec2};
 use bevy_transform::prelude::Transform;
 
-use super::frame::{Frame, HUGE, Matrix64, Vector64, narrow, sanitize};
+use super::frame::{HUGE, Matrix64, PartFrame, Vector64, narrow, sanitize};
 use crate::{
     collision::collider::collider_transform::ColliderTransform,
     dynamics::rigid_body::mass_properties::components::{AngularInertia, ComputedAngularInertia},
@@ -15,7 +15,7 @@ use crate::{
 pub(in super::super) struct Inertia(pub(in super::super) f64);
 
 impl Inertia {
-    /// None.
+    /// No inertia.
     pub(in super::super) const ZERO: Self = Self(0.0);
 
     pub(super) fn from_properties(properties: &MassProperties) -> Self {
@@ -30,12 +30,12 @@ impl Inertia {
         Self((self.0 * factor).min(HUGE))
     }
 
-    /// In other axes: in the plane the same.
+    /// In other axes: the same in 2D.
     pub(in super::super) fn rotated(self, _rotation: Matrix64) -> Self {
         self
     }
 
-    /// About a point off the centre of mass: I + m d².
+    /// About a point at an offset from the centre of mass: I + m d².
     pub(in super::super) fn shifted(self, mass: f64, offset: Vector64) -> Self {
         Self(self.0 + mass * offset.length_squared())
     }
@@ -44,7 +44,7 @@ impl Inertia {
         Self(self.0 + other.0)
     }
 
-    /// For the solver; infinite for none, and for what `f32` cannot hold.
+    /// For the solver. Infinite if zero or beyond the range of `f32`.
     pub(in super::super) fn computed(self) -> ComputedAngularInertia {
         if self.0 > 0.0 && self.0 < f64::from(f32::MAX) {
             ComputedAngularInertia::new(self.0 as Scalar)
@@ -66,8 +66,8 @@ pub(super) fn mass_properties(mass: f32, center: Vec2, inertia: Inertia) -> Mass
     MassProperties::new(mass, narrow(inertia.0), center)
 }
 
-impl Frame {
-    /// Where a collider lies in its body. Its scale is in its mass properties already.
+impl PartFrame {
+    /// The frame of a collider in its body's frame. Its scale is in its mass properties already.
     pub(in super::super) fn of_collider(transform: &ColliderTransform) -> Self {
         let (cos, sin) = (transform.rotation.cos as f64, transform.rotation.sin as f64);
         Self {
@@ -77,13 +77,13 @@ impl Frame {
         }
     }
 
-    /// A frame whose lengths are scaled as an entity's `transform` says.
+    /// A frame with the scale of an entity's `transform`.
     pub(in super::super) fn scaled_by(transform: &Transform) -> Self {
         let scale = transform.scale.truncate().as_dvec2();
         Self { translation: DVec2::ZERO, rotation: DMat2::IDENTITY, scale }
     }
 
-    /// Where an entity lies in its parent. Of a rotation, the part about the z axis.
+    /// The frame of an entity in its parent's frame. Only the rotation about z is used.
     pub(in super::super) fn of_entity(transform: &Transform) -> Self {
         let (z, w) = (f64::from(transform.rotation.z), f64::from(transform.rotation.w));
         let square = z * z + w * w;

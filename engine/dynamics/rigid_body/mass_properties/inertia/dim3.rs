@@ -1,10 +1,10 @@
-//! Inertia in space, and frames. `dim2.rs` is the twin.
+//! Inertia in 3D, and frames. `dim2.rs` exports the same names.
 
 use bevy_math::{DMat3, DQuat, DVec3, Quat, Vec3};
 use bevy_transform::prelude::Transform;
 use glam_matrix_extras::SymmetricDMat3;
 
-use super::frame::{Frame, HUGE, Matrix64, Vector64, sanitize};
+use super::frame::{HUGE, Matrix64, PartFrame, Vector64, sanitize};
 use crate::{
     collision::collider::collider_transform::ColliderTransform,
     dynamics::rigid_body::mass_properties::{
@@ -15,15 +15,15 @@ use crate::{
     math::{AdjustPrecision, MassProperties},
 };
 
-/// How much larger than the largest finite principal value an infinite one counts: as far as `f64` goes
-/// without losing the others when the frame is turned.
+/// Ratio of an infinite principal value, as it is represented, to the largest finite one. With more, the finite ones
+/// are lost in rounding when the frame is rotated.
 const INFINITE_RATIO: f64 = 1e9;
 /// An angular inertia tensor in kg·m².
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Inertia(pub(in super::super) SymmetricDMat3);
 
 impl Inertia {
-    /// None.
+    /// No inertia.
     pub(in super::super) const ZERO: Self = Self(SymmetricDMat3::ZERO);
 
     pub(super) fn from_properties(properties: &MassProperties) -> Self {
@@ -55,7 +55,7 @@ impl Inertia {
         Self(rotated(self.0, rotation))
     }
 
-    /// About a point off the centre of mass: I + m (|d|² 1 − d dᵀ).
+    /// About a point at an offset from the centre of mass: I + m (|d|² 1 − d dᵀ).
     pub(in super::super) fn shifted(self, mass: f64, d: Vector64) -> Self {
         Self(shifted(self.0, mass, d))
     }
@@ -64,7 +64,7 @@ impl Inertia {
         Self(self.0 + other.0)
     }
 
-    /// For the solver; infinite about the axes where it is none, or what `f32` cannot hold.
+    /// For the solver. Infinite about axes where it is zero or beyond the range of `f32`.
     pub(in super::super) fn computed(self) -> ComputedAngularInertia {
         ComputedAngularInertia::from_inverse_tensor(invert(self.0).adjust_precision())
     }
@@ -84,8 +84,8 @@ pub(super) fn mass_properties(mass: f32, center: Vec3, inertia: Inertia) -> Mass
     MassProperties::new_with_local_frame(mass, narrow_vector(principal.max(DVec3::ZERO)), frame, center)
 }
 
-impl Frame {
-    /// Where a collider lies in its body. Its scale is in its mass properties already.
+impl PartFrame {
+    /// The frame of a collider in its body's frame. Its scale is in its mass properties already.
     pub(in super::super) fn of_collider(transform: &ColliderTransform) -> Self {
         let [x, y, z, w] = transform.rotation.0.to_array().map(|component| component as f64);
         Self {
@@ -97,12 +97,12 @@ impl Frame {
         }
     }
 
-    /// A frame whose lengths are scaled as an entity's `transform` says.
+    /// A frame with the scale of an entity's `transform`.
     pub(in super::super) fn scaled_by(transform: &Transform) -> Self {
         Self { translation: DVec3::ZERO, rotation: DMat3::IDENTITY, scale: transform.scale.as_dvec3() }
     }
 
-    /// Where an entity lies in its parent.
+    /// The frame of an entity in its parent's frame.
     pub(in super::super) fn of_entity(transform: &Transform) -> Self {
         Self {
             translation: transform.translation.as_dvec3(),

@@ -1,8 +1,8 @@
-//! The arithmetic of mass: parts of a body, each with mass, centre and inertia, added up.
+//! Sums of mass properties: parts of a body, each with mass, centre and inertia.
 //!
-//! In `f64` throughout: where parts lie far off their common centre the parallel axis theorem cancels large
-//! terms, and glam's `f64` types compute alike on every machine, which its `f32` quaternions and matrices do
-//! not. (Why not `bevy_heavy`'s sum: it diagonalises, by an arc cosine and with an absolute tolerance.)
+//! Computed in `f64`: where parts are far from their common centre the parallel axis theorem cancels large terms.
+//! glam's `f64` types compute alike on every machine, its `f32` quaternions and matrices do not. (`bevy_heavy`'s sum is
+//! not used: it diagonalises by an arc cosine and with an absolute tolerance.)
 
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -10,7 +10,7 @@ mod dim;
 mod frame;
 
 pub(super) use dim::Inertia;
-pub(super) use frame::{Frame, Vector64};
+pub(super) use frame::{PartFrame, Vector64};
 
 use dim::{mass_properties, narrow_vector, widen_vector};
 use frame::{narrow, sanitize};
@@ -18,22 +18,22 @@ use frame::{narrow, sanitize};
 use super::components::{AngularInertia, CenterOfMass, ComputedMass, Mass};
 use crate::math::{AdjustPrecision, MassProperties, Scalar, VectorF32};
 
-/// A share of a body's mass.
+/// The mass properties of a part of a body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
-    /// In kg.
+    /// Mass, in kg.
     pub(super) mass: f64,
-    /// The centre of mass in metres.
+    /// Centre of mass, in metres.
     pub(super) center: Vector64,
-    /// About the centre of mass, in kg·m².
+    /// Inertia about the centre of mass, in kg·m².
     pub(super) inertia: Inertia,
 }
 
 impl Part {
-    /// Weighs nothing.
+    /// No mass.
     pub(super) const ZERO: Self = Self { mass: 0.0, center: Vector64::ZERO, inertia: Inertia::ZERO };
 
-    /// What a collider contributes.
+    /// The mass properties of a collider.
     pub(super) fn from_collider(properties: &MassProperties) -> Self {
         Self {
             mass: sanitize(properties.mass),
@@ -42,8 +42,8 @@ impl Part {
         }
     }
 
-    /// Lets an entity's own components replace what its collider contributes. A mass alone scales the
-    /// collider's inertia.
+    /// Replaces the collider's properties by the entity's own components. A mass without inertia scales the collider's
+    /// inertia.
     pub(super) fn overridden(
         mut self,
         mass: Option<&Mass>,
@@ -66,8 +66,8 @@ impl Part {
         self
     }
 
-    /// The same part seen from the frame in which its own lies at `frame`.
-    pub(super) fn moved(self, frame: &Frame) -> Self {
+    /// The part in the outer frame, if it was given in `frame`.
+    pub(super) fn moved(self, frame: &PartFrame) -> Self {
         Self {
             mass: self.mass,
             center: frame.translation + frame.rotation * self.center,
@@ -75,8 +75,8 @@ impl Part {
         }
     }
 
-    /// The total of some parts: masses added, centres averaged by mass, inertias moved to the common centre by
-    /// the parallel axis theorem. The centre of parts without mass is that of the first.
+    /// The total of some parts: the sum of masses, the mean of centres weighted by mass, and the sum of inertias about
+    /// the common centre by the parallel axis theorem. If no part has mass, the centre is that of the first.
     pub(super) fn sum(parts: &[Part]) -> Self {
         let [first, rest @ ..] = parts else {
             return Self::ZERO;
@@ -97,7 +97,7 @@ impl Part {
         Self { mass, center, inertia }
     }
 
-    /// The mass for the solver; infinite for none, and for what `f32` cannot hold.
+    /// The mass for the solver. Infinite if zero or beyond the range of `f32`.
     pub(super) fn computed_mass(&self) -> ComputedMass {
         if self.mass > 0.0 && self.mass < f64::from(f32::MAX) {
             ComputedMass::new(self.mass as Scalar)
@@ -106,7 +106,7 @@ impl Part {
         }
     }
 
-    /// As the public functions give it, in `f32`.
+    /// Converted to the public type, in `f32`.
     pub(super) fn to_properties(self) -> MassProperties {
         mass_properties(narrow(self.mass), narrow_vector(self.center), self.inertia)
     }
@@ -117,7 +117,7 @@ pub(super) fn computed_center(center: Vector64) -> super::components::ComputedCe
     super::components::ComputedCenterOfMass(center.adjust_precision())
 }
 
-/// A centre that is a place: the origin for what is none.
+/// A finite centre. NaN and infinity become the origin.
 fn sanitize_center(center: VectorF32) -> Vector64 {
     if center.is_finite() { widen_vector(center) } else { Vector64::ZERO }
 }

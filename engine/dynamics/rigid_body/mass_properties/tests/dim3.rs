@@ -1,4 +1,4 @@
-//! What the tests need of space. `dim2.rs` is the twin.
+//! Helpers of the tests in 3D. `dim2.rs` exports the same names.
 
 use super::{AngularInertia, ComputedAngularInertia, Lump, UNIT_INERTIA};
 use crate::math::{ComputeMassProperties, Scalar, VectorF32};
@@ -19,7 +19,7 @@ pub(super) fn inertia(value: f32) -> AngularInertia {
     AngularInertia::new(VectorF32::splat(value))
 }
 
-/// In kg·m², about z.
+/// Inertia about z, in kg·m².
 pub(super) fn about_z(inertia: &ComputedAngularInertia) -> Scalar {
     inertia.value().m22
 }

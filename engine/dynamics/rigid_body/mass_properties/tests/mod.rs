@@ -1,6 +1,6 @@
-//! Sums of parts against closed forms, and what makes a body be weighed again.
+//! Sums of parts against closed forms, and which changes make a body be computed again.
 //!
-//! What is checked of the inertia is the part about z, which both dimensions have.
+//! Only the inertia about z is checked, which both dimensions have.
 
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -14,7 +14,7 @@ use self::dim::{about_z, inertia};
 use super::{
     MassPropertyHelper, MassPropertyPlugin,
     components::*,
-    inertia::{Frame, Part, Vector64},
+    inertia::{Part, PartFrame, Vector64},
 };
 use crate::{
     collision::collider::{
@@ -24,12 +24,12 @@ use crate::{
     math::{Scalar, Vector, VectorF32},
 };
 
-/// A shape that is a unit of mass per unit of density, evenly heavy to turn: inertia 0.5 m about every axis.
+/// A shape with a mass of 1 kg per unit of density, and an inertia of 0.5 m about every axis.
 struct Lump {
     center: VectorF32,
 }
 
-/// In kg·m² per kg.
+/// Inertia per mass, in kg·m² per kg.
 const UNIT_INERTIA: f32 = 0.5;
 
 /// A collider of `mass` kg whose centroid is its origin.
@@ -120,7 +120,7 @@ fn own_components_replace_the_collider_on_the_same_entity() {
     scale.expect(body, (2.0, 7.0, 0.0));
     let body = scale.body((lump(2.0), CenterOfMass(VectorF32::X)));
     scale.expect(body, (2.0, 1.0, 1.0));
-    // Taken away, the collider counts again.
+    // After removal the collider counts again.
     scale.world().entity_mut(body).remove::<CenterOfMass>();
     scale.expect(body, (2.0, 1.0, 0.0));
 }
@@ -142,7 +142,7 @@ fn own_collider_and_children_add_up() {
     let child = scale.collider(body, (lump(2.0), Mass(4.0), at_x(1.0)));
     // Inertia 2 + 2 + 4 · 0.5² + 4 · 0.5².
     scale.expect(body, (8.0, 6.0, 0.5));
-    // Another mass of the child, by mutation.
+    // The child's mass is mutated.
     scale.world().get_mut::<Mass>(child).expect("spawned with it").0 = 12.0;
     // Centre 12 / 16; inertia 2 + 6 + 4 · 0.75² + 12 · 0.25².
     scale.expect(body, (16.0, 11.0, 0.75));
@@ -184,7 +184,7 @@ fn descendants_without_collider_count_where_their_transform_puts_them() {
     scale.expect(body, (4.0, 1.0 + 3.5 * 3.5 * 0.75, 2.625));
     scale.world().get_mut::<Transform>(leaf).expect("spawned with it").translation.x = -1.0;
     scale.expect(body, (4.0, 1.0 + 0.5 * 0.5 * 0.75, -0.375));
-    // Removing it from the body takes its mass along.
+    // Removing it from the body removes its mass.
     scale.world().entity_mut(leaf).remove::<ChildOf>();
     scale.expect(body, (1.0, 0.0, 0.0));
 }
@@ -264,7 +264,7 @@ fn what_is_no_mass_counts_as_zero_and_infinity_as_infinite() {
     let mut scale = Scale::new();
     let body = scale.body(Mass(f32::INFINITY));
     scale.collider(body, (lump(2.0), at_x(1.0)));
-    // The centre is where the infinite part is; about it the finite one turns: 1 + 2 · 1².
+    // The centre is at the infinite part. The inertia of the finite one about it is 1 + 2 · 1².
     scale.expect(body, (0.0, 3.0, 0.0));
 }
 
@@ -301,7 +301,8 @@ fn the_helper_tells_own_from_descendants() {
 
 #[test]
 fn a_sum_does_not_depend_on_its_order() {
-    let place = |x: f64| Frame { translation: Vector64::X * x, ..Frame::scaled_by(&Transform::IDENTITY) };
+    let place =
+        |x: f64| PartFrame { translation: Vector64::X * x, ..PartFrame::scaled_by(&Transform::IDENTITY) };
     let parts: Vec<Part> = (0..7)
         .map(|i| {
             let part = Part::from_collider(&lump(1.0 + i as f32 * 0.37));
@@ -324,6 +325,6 @@ fn issue_bodies_without_mass_were_remembered_for_ever() {
             scale.world().despawn(body);
         }
     }
-    let kept = scale.world().resource::<super::queue::ToldOfNoMass>().len();
+    let kept = scale.world().resource::<super::queue::ReportedMassless>().len();
     assert!((100..400).contains(&kept), "{kept} of 2,000");
 }

@@ -1,4 +1,4 @@
-//! Rotations of space in `f64` scalars; see [`frame`](super::frame) for why.
+//! 3D rotations in `f64` scalars; see [`frame`](super::frame) for the reason.
 
 use bevy_math::Quat;
 
@@ -11,15 +11,15 @@ pub(crate) fn wide(value: Scalar) -> f64 {
     f64::from(value)
 }
 
-/// Rounds to the scalar.
+/// Narrows to the scalar.
 #[inline(always)]
 pub(crate) fn narrow(value: f64) -> Scalar {
     value as Scalar
 }
 
-/// A quaternion in `f64`.
+/// A rotation in `f64`, as a quaternion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Turn {
+pub(crate) struct Rotation64 {
     pub(crate) x: f64,
     pub(crate) y: f64,
     pub(crate) z: f64,
@@ -29,7 +29,7 @@ pub(crate) struct Turn {
 /// A matrix by its columns.
 pub(super) type Columns = [[f64; 3]; 3];
 
-impl Turn {
+impl Rotation64 {
     pub(crate) const IDENTITY: Self = Self { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
 
     pub(crate) fn from_quat(q: Quat) -> Self {
@@ -41,7 +41,7 @@ impl Turn {
         Quat::from_xyzw(self.x as f32, self.y as f32, self.z as f32, self.w as f32)
     }
 
-    /// `other` first, then `self`. Not renormalised.
+    /// The product: `other` first, then `self`. Not renormalised.
     pub(crate) fn mul(self, o: Self) -> Self {
         Self {
             x: self.w * o.x + self.x * o.w + (self.y * o.z - self.z * o.y),
@@ -59,7 +59,7 @@ impl Turn {
         self.x * o.x + self.y * o.y + self.z * o.z + self.w * o.w
     }
 
-    /// Scaled to length 1; no turn where there is no direction.
+    /// Normalised to length 1; the identity if the length is zero or not finite.
     pub(crate) fn normalized(self) -> Self {
         let length = self.dot(self).sqrt();
         if !(length > 0.0 && length.is_finite()) {
@@ -68,7 +68,7 @@ impl Turn {
         Self { x: self.x / length, y: self.y / length, z: self.z / length, w: self.w / length }
     }
 
-    /// Turns a vector: `v + w t + u × t` with `t = 2 u × v`.
+    /// Rotates a vector: `v + w t + u × t` with `t = 2 u × v`.
     pub(crate) fn rotate(self, v: [f64; 3]) -> [f64; 3] {
         let u = [self.x, self.y, self.z];
         let t = cross(u, v).map(|c| 2.0 * c);
@@ -80,8 +80,8 @@ impl Turn {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| self.rotate(axis))
     }
 
-    /// The turn with these orthonormal columns (Shepperd, "Quaternion from Rotation Matrix", 1978): the
-    /// largest of the four numbers is found first, so that nothing cancels.
+    /// The rotation with these orthonormal columns (Shepperd, "Quaternion from Rotation Matrix", 1978). The largest of
+    /// the four numbers is computed first, which avoids cancellation.
     pub(super) fn from_columns([x, y, z]: Columns) -> Self {
         let trace = x[0] + y[1] + z[2];
         let turn = if trace > 0.0 {
