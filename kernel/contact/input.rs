@@ -2,7 +2,7 @@
 
 use super::record::Contact;
 use crate::manifold::LocalManifold;
-use crate::math::{Lane, WorldPose, max, min};
+use crate::math::{Lane, Vector, WorldPose, max, min};
 use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity, is_swinging, turn};
 
 /// Computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign).
@@ -110,31 +110,46 @@ impl<S> NarrowPhaseInput<'_, S> {
         [Self::revision(a, poses[0]), Self::revision(b, poses[1])]
     }
 
-    /// Surfaces up to this distance apart count as a contact: as far as they can close in this step if nothing turns, but
-    /// not beyond the colliders' speculative margins.
+    /// The distance up to which contacts are predicted at rest: no body's speculative margin is exceeded. What does not
+    /// move has none.
+    pub(super) fn near(&self, contact: &Contact) -> f32 {
+        let [a, b] = self.reaches(contact).map(|reach| match reach.turning {
+            0.0 => f32::MAX,
+            _ => reach.speculative,
+        });
+        max(self.tolerance, min(self.speculative, min(a, b)))
+    }
+
+    /// The velocity of a side's body, no faster than to its speculative margin in the step.
+    #[inline(always)]
+    fn predicted_velocity(&self, contact: &Contact, side: usize, margin: f32) -> Vector {
+        let velocity = self.velocity(contact, side).linear;
+        let way = velocity * self.dt;
+        let is_beyond = way.length_squared() > margin * margin;
+        if is_beyond { velocity * (margin / way.length()) } else { velocity }
+    }
+
+    /// Surfaces up to this distance apart count as a contact: as far as they can close in this step if nothing turns. The
+    /// velocity of each body is limited by its own speculative margin.
     pub(super) fn prediction(&self, contact: &Contact) -> f32 {
         let [a, b] = self.reaches(contact);
-        let limit = a.speculative + b.speculative;
-        let closing =
-            (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length() * self.dt;
-        max(self.tolerance, min(max(self.speculative, closing), limit))
+        let a = self.predicted_velocity(contact, 0, a.speculative);
+        let b = self.predicted_velocity(contact, 1, b.speculative);
+        max(self.near(contact), (b - a).length() * self.dt)
     }
 
     /// The [`prediction`](Self::prediction), and as far as turning may close as well.
     pub(super) fn farthest(&self, contact: &Contact, prediction: f32) -> f32 {
-        let reaches = self.reaches(contact);
         let mut turning = 0.0;
-        for (side, reach) in reaches.into_iter().enumerate() {
-            let turn = turn(self.velocity(contact, side).angular.length(), self.dt);
+        for (side, reach) in self.reaches(contact).into_iter().enumerate() {
+            let velocity = self.velocity(contact, side);
+            let turn = turn(velocity.angular.length(), self.dt);
             if is_swinging(reach, turn, self.speculative) {
-                turning += self.arm(contact, side) * turn;
+                let left = max(reach.speculative - velocity.linear.length() * self.dt, 0.0);
+                turning += min(self.arm(contact, side) * turn, left);
             }
         }
-        // Most bodies hardly turn.
-        if turning == 0.0 {
-            return prediction;
-        }
-        max(prediction, min(prediction + turning, reaches[0].speculative + reaches[1].speculative))
+        prediction + turning
     }
 
     /// The gap between the tight boxes of both sides, margins not subtracted.
