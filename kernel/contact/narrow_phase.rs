@@ -329,8 +329,8 @@ fn search_foreign<S: ManifoldSource>(
     Search { prediction, meeting: None }
 }
 
-/// Computes the manifold of two native shapes where they are now. If there are no points, that of when a turn brings them
-/// together within the step.
+/// Computes the manifold of two native shapes where they are now. If they do not touch, that of when the step's motion
+/// brings them together.
 #[inline(always)]
 fn search_native<S>(
     input: &NarrowPhaseInput<S>,
@@ -342,6 +342,7 @@ fn search_native<S>(
     let mut gap = input.box_gap(contact);
     let mut local = LocalManifold::default();
     let mut meeting = None;
+    let mut looked_up_to = prediction;
     let with_margin = prediction + margin;
     // Negated, so that a NaN is not taken for a gap.
     if !(gap > with_margin) || !(gap - margin > input.farthest(contact, prediction)) {
@@ -350,10 +351,18 @@ fn search_native<S>(
             // Shapes that turn are often much farther apart than their boxes.
             gap = max(gap, local.gap);
             meeting = sweep::find_meeting(input, contact, poses, gap - margin, prediction, &mut local);
+        } else if prediction > input.near(contact) && sweep::may_pass_by(input, contact, poses, &local) {
+            gap = max(gap, local.lower_bound());
+            looked_up_to = gap - margin;
+            let present = local;
+            meeting = sweep::find_meeting(input, contact, poses, gap - margin, prediction, &mut local);
+            if meeting.is_none() && !sweep::pushes(input, contact, poses, &present) {
+                local = present;
+            }
         }
     }
     if local.count == 0 {
-        return Search { prediction: max(gap - margin, prediction), meeting: None };
+        return Search { prediction: max(gap - margin, looked_up_to), meeting: None };
     }
     flags::set_platform(input, contact);
     found.push(local);

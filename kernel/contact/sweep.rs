@@ -1,8 +1,8 @@
-//! Where shapes will meet that are too far apart now, because a body turns.
+//! Where shapes will meet that do not touch now.
 //!
-//! A point far out on a turning body moves along an arc. The normal at its present place misses what the arc meets, and
-//! stops what only passes by. So the pair is followed to when it meets (conservative advancement). The solver gets the
-//! contact of that time, with separations that bring it there.
+//! The plane at the present closest points is no wall: what passes by would be stopped by it, and a point far out on a
+//! turning body moves along an arc. So the pair is followed to when it meets (conservative advancement, after B. Mirtich).
+//! The solver gets the contact of that time, with separations that bring it there. A pair that does not meet has none.
 
 use super::input::{NarrowPhaseInput, smaller};
 use super::record::{Contact, Manifold};
@@ -10,11 +10,22 @@ use crate::manifold::{self, LocalManifold};
 use crate::math::{Rot, Vector, WorldPose, max, min};
 use crate::table::{BodyPose, MOST_TURN, NONE};
 
-/// Most steps of conservative advancement. Pairs that take more are treated as not meeting.
-const MAX_ROUNDS: usize = 12;
+/// Most steps of conservative advancement. A pair that takes more meets where it then is.
+const MAX_ROUNDS: usize = 24;
 
-/// Shapes meet when they are no farther apart than this share of the smaller one's reach. Less takes more rounds.
+/// Shapes meet when they are no farther apart than the tolerance and this share of the smaller one's reach. More stops what
+/// passes by; less takes more rounds.
 const MET: f32 = 0.02;
+
+/// Shapes that move past each other meet at this share of that.
+const MET_STRAIGHT: f32 = 0.1;
+
+/// Bodies that turn by more than this in the step, in radians, are not cast past what they are near to.
+const MOST_STRAIGHT_TURN: f32 = 0.75;
+
+/// The solver lets points close no further than they may by the end of the first substep after the step. So points count
+/// as pushing that close within this many steps, the most that can be.
+const AHEAD: f32 = 2.0;
 
 /// The poses at the time within the step when the shapes meet.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +49,8 @@ struct Placed {
     shape: WorldPose,
 }
 
-/// Follows two native shapes, `gap` apart without margins, to the time when they meet because one turns. `local` then
-/// has the points up to `prediction` apart, else none.
+/// Follows two native shapes, `gap` apart without margins, to the time when they meet in this step. `local` has their
+/// present points, if there are any within `prediction`, and receives those of that time, else none.
 #[inline(never)]
 pub(super) fn find_meeting<S>(
     input: &NarrowPhaseInput<S>,
@@ -50,46 +61,43 @@ pub(super) fn find_meeting<S>(
     local: &mut LocalManifold,
 ) -> Option<Meeting> {
     let farthest = input.farthest(contact, prediction);
-    if gap > farthest || !(farthest > prediction) {
+    if gap > farthest || (local.count == 0 && !(farthest > prediction)) {
         return None;
     }
     let [a, b] = contact.colliders;
     let shapes = [&input.colliders[a].def.shape, &input.colliders[b].def.shape];
-    let reaches = input.reaches(contact);
-    let velocities = [input.velocity(contact, 0), input.velocity(contact, 1)];
-    let spins = velocities.map(|velocity| velocity.angular.length());
-    let arms = [input.arm(contact, 0), input.arm(contact, 1)];
+    let mut motion = Motion::new(input, contact);
+    if local.count > 0 {
+        motion.met *= MET_STRAIGHT;
+    }
     let margin = input.margin(contact);
-    let met = min(input.tolerance, MET * smaller([reaches[0].extent, reaches[1].extent]));
-    let speed = (velocities[1].linear - velocities[0].linear).length();
-    let end = min(input.dt, MOST_TURN / max(spins[0], spins[1]));
     let mut offset = (poses[1].center - poses[0].center).to_local();
+    let end = min(input.dt, MOST_TURN / max(motion.spins[0], motion.spins[1]));
+    let mut rotation = input.colliders.poses[a as usize].rotation;
     let mut time = 0.0;
-    for _ in 0..MAX_ROUNDS {
-        // An upper bound of the closing speed. The shapes meet no farther out than the other shape reaches.
-        let far = offset.length();
-        let arm = |side: usize| match reaches[1 - side].extent {
-            0.0 => arms[side],
-            other => min(arms[side], far + other),
+    for round in 1..=MAX_ROUNDS {
+        let rate = match local.count {
+            0 => motion.fastest(offset),
+            _ => motion.closing(rotation.rotate(local.normal), offset),
         };
-        let rate = speed + arm(0) * spins[0] + arm(1) * spins[1];
         // A smallest step, so that the advance does not slow down without end.
-        time += max(gap, 0.5 * met) / rate;
-        if !(time < end) {
+        time += max(gap, 0.5 * motion.met) / rate;
+        if !(rate > 0.0 && time < end) {
             break;
         }
         let placed: [Placed; 2] =
             core::array::from_fn(|side| place_at(input, contact, side, poses[side], time));
         offset = (placed[1].body.center - placed[0].body.center).to_local();
+        rotation = placed[0].shape.rotation;
         let relative = placed[0].shape.relative(&placed[1].shape);
-        let cache = &mut contact.cache;
-        let mut look = |up_to: f32| {
-            manifold::collide(shapes[0], shapes[1], &relative, up_to + margin, cache, local);
-            lower_bound(local) - margin
-        };
-        gap = look(farthest);
-        if gap <= met {
-            look(prediction);
+        // What is farther away than the rest of the motion does not meet.
+        let rest = max(farthest * (1.0 - time / input.dt), input.near(contact)) + margin;
+        manifold::collide(shapes[0], shapes[1], &relative, rest, &mut contact.cache, local);
+        gap = local.lower_bound() - margin;
+        if gap <= motion.met || (round == MAX_ROUNDS && local.count > 0) {
+            // Points that only turning brings together are found again when they are near.
+            let prediction = prediction + margin;
+            manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, local);
             if local.count == 0 {
                 return None;
             }
@@ -105,6 +113,93 @@ pub(super) fn find_meeting<S>(
     }
     local.count = 0;
     None
+}
+
+/// Whether two shapes that have points, and do not touch, may pass each other by in this step: their motion may cross the
+/// plane between them.
+#[inline(always)]
+pub(super) fn may_pass_by<S>(
+    input: &NarrowPhaseInput<S>,
+    contact: &Contact,
+    poses: [&BodyPose; 2],
+    local: &LocalManifold,
+) -> bool {
+    let motion = Motion::new(input, contact);
+    let gap = local.lower_bound() - input.margin(contact);
+    let normal = input.colliders.poses[contact.colliders[0] as usize].rotation.rotate(local.normal);
+    let offset = (poses[1].center - poses[0].center).to_local();
+    // The solver keeps the arms of the step's start. What turns farther gains energy if it is pushed where it comes to.
+    let turn = |side: usize| if motion.arms[side] > 0.0 { motion.spins[side] * input.dt } else { 0.0 };
+    let is_straight = max(turn(0), turn(1)) < MOST_STRAIGHT_TURN;
+    is_straight
+        && gap > MET_STRAIGHT * motion.met
+        && motion.closing(normal, offset) * (AHEAD * input.dt) > gap
+}
+
+/// Whether the solver would push at some point if the bodies kept their velocities.
+pub(super) fn pushes<S>(
+    input: &NarrowPhaseInput<S>,
+    contact: &Contact,
+    poses: [&BodyPose; 2],
+    local: &LocalManifold,
+) -> bool {
+    let frame = &input.colliders.poses[contact.colliders[0] as usize];
+    let normal = frame.rotation.rotate(local.normal);
+    let margin = input.margin(contact);
+    local.points().iter().any(|p| {
+        let place = frame.transform(p.point);
+        let [a, b] = [0, 1].map(|side| {
+            let velocity = input.velocity(contact, side);
+            velocity.linear + velocity.angular.cross((place - poses[side].center).to_local())
+        });
+        (a - b).dot(normal) * (AHEAD * input.dt) > p.separation - margin
+    })
+}
+
+/// How fast two shapes may close in this step.
+struct Motion {
+    /// The velocity of B against A.
+    linear: Vector,
+    spins: [f32; 2],
+    arms: [f32; 2],
+    extents: [f32; 2],
+    /// The distance at which they count as having met.
+    met: f32,
+}
+
+impl Motion {
+    fn new<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> Self {
+        let extents = input.reaches(contact).map(|reach| reach.extent);
+        let [a, b] = [input.velocity(contact, 0), input.velocity(contact, 1)];
+        Self {
+            linear: b.linear - a.linear,
+            spins: [a.angular.length(), b.angular.length()],
+            arms: [input.arm(contact, 0), input.arm(contact, 1)],
+            extents,
+            met: min(input.tolerance, MET * smaller(extents)),
+        }
+    }
+
+    /// An upper bound of the speed at which turning brings the shapes together. They meet no farther out than the other
+    /// shape reaches; `offset` is from A's to B's centre of mass.
+    fn turning(&self, offset: Vector) -> f32 {
+        let far = offset.length();
+        let arm = |side: usize| match self.extents[1 - side] {
+            0.0 => self.arms[side],
+            other => min(self.arms[side], far + other),
+        };
+        arm(0) * self.spins[0] + arm(1) * self.spins[1]
+    }
+
+    /// An upper bound of the speed at which the shapes close.
+    fn fastest(&self, offset: Vector) -> f32 {
+        self.linear.length() + self.turning(offset)
+    }
+
+    /// The same along a normal from A to B: the slab between the shapes is not crossed sooner.
+    fn closing(&self, normal: Vector, offset: Vector) -> f32 {
+        self.turning(offset) - self.linear.dot(normal)
+    }
 }
 
 /// One side of the contact, `time` seconds after the step's start.
@@ -145,12 +240,4 @@ impl Meeting {
             p.frozen_separation = p.separation;
         }
     }
-}
-
-/// A lower bound of the distance between the shapes, margins not subtracted.
-fn lower_bound(local: &LocalManifold) -> f32 {
-    if local.count == 0 {
-        return local.gap;
-    }
-    local.points().iter().fold(f32::INFINITY, |least, p| min(least, p.separation))
 }

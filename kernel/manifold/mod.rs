@@ -12,7 +12,7 @@ mod dim;
 pub use cache::FeatureCache;
 pub use dim::collide;
 
-use crate::math::{MAX_POINTS, Vector};
+use crate::math::{MAX_POINTS, Vector, min};
 
 /// One contact point in the frame of shape A.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,6 +42,14 @@ impl LocalManifold {
     /// The valid points.
     pub fn points(&self) -> &[LocalPoint] {
         &self.points[..self.count]
+    }
+
+    /// A lower bound of the distance between the shapes, in metres.
+    pub fn lower_bound(&self) -> f32 {
+        match self.points() {
+            [] => self.gap,
+            points => points.iter().fold(f32::INFINITY, |least, p| min(least, p.separation)),
+        }
     }
 
     /// Adds a point. Points beyond `MAX_POINTS` are dropped: functions that find more reduce first.

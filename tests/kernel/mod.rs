@@ -16,6 +16,7 @@ mod held;
 #[cfg(feature = "3d")]
 mod leaning;
 mod memory;
+mod passing;
 mod physics;
 mod pushed;
 mod recycling;
