@@ -1,4 +1,4 @@
-//! A house of cards: nothing but friction and balance holds it.
+//! A house of cards, held only by friction and balance.
 
 use avian::prelude::*;
 use bevy_ecs::prelude::*;

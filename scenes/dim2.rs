@@ -1,4 +1,4 @@
-//! What the scenes need to know about the plane, and the list of 2D scenes.
+//! 2D parts of the scenes, and the list of 2D scenes.
 
 use avian::math::Vector;
 use avian::parry::math::{Pose, Rotation as Rotation2};
@@ -122,7 +122,7 @@ pub fn spin(rate: f32) -> AngularVelocity {
     AngularVelocity(rate)
 }
 
-/// A box by its side lengths; the plane has no third one.
+/// A box by its side lengths; the depth is ignored.
 pub fn block(width: f32, height: f32, _depth: f32) -> Collider {
     Collider::rectangle(width, height)
 }
@@ -132,17 +132,17 @@ pub fn ball(radius: f32) -> Collider {
     Collider::circle(radius)
 }
 
-/// What rolls down a slope like a cylinder: a circle.
+/// The 2D version of a rolling cylinder: a circle.
 pub fn roller(radius: f32, _length: f32) -> Collider {
     Collider::circle(radius)
 }
 
-/// The turn that lays a cylinder's axis across the slope.
+/// The rotation that puts a cylinder's axis across the slope.
 pub fn roller_turn() -> Quat {
     Quat::IDENTITY
 }
 
-/// Where the ramp of a lane has its middle: two columns of ramps above each other.
+/// The middle of the ramp of a lane: two columns of ramps above each other.
 pub fn lane(index: usize) -> Vec3 {
     let (column, row) = (index % 2, index / 2);
     Vec3::new(column as f32 * 26.0 - 13.0, 15.0 - 10.0 * row as f32, 0.0)
@@ -153,7 +153,7 @@ pub fn walls_across(_distance: f32) -> [(f32, bool); 0] {
     []
 }
 
-/// Where a row of pyramids stands.
+/// The place of a row of pyramids.
 pub fn pyramid_row(row: u32, _rows: u32, _width: f32, pitch: f32) -> Vec3 {
     Vec3::new(0.0, row as f32 * pitch, 0.0)
 }
@@ -177,7 +177,7 @@ pub fn spawn_domino_floor(world: &mut World, count: u32) {
     spawn_block(world, [count as f32 * dominoes::PITCH + 4.0, 2.0, 1.0], at(0.0, -1.0, 0.0));
 }
 
-/// A further turn of a piece of the pile, out of the plane.
+/// A further rotation of a piece of the pile, out of the plane.
 pub fn piece_turn(_angle: f32) -> Quat {
     Quat::IDENTITY
 }

@@ -1,4 +1,4 @@
-//! What the scenes need to know about space, and the list of 3D scenes.
+//! 3D parts of the scenes, and the list of 3D scenes.
 
 use avian::math::Vector;
 use avian::parry::math::Pose;
@@ -13,7 +13,7 @@ use crate::{card_house, dominoes, pile, pyramid, slopes, towers, tumbler};
 
 /// Density of the bodies in kg/m³.
 pub const DENSITY: f32 = 100.0;
-/// Keeps positions as they are: space has all three coordinates.
+/// Keeps all three coordinates of positions.
 pub const PLANE: Vec3 = Vec3::ONE;
 /// Width of the large pyramid's floor in metres.
 pub const FLOOR_WIDTH: f32 = 800.0;
@@ -131,18 +131,18 @@ pub fn ball(radius: f32) -> Collider {
     Collider::sphere(radius)
 }
 
-/// What rolls down a slope: a cylinder along y, see [`roller_turn`].
+/// A rolling body: a cylinder along y, see [`roller_turn`].
 pub fn roller(radius: f32, length: f32) -> Collider {
     Collider::cylinder(radius, length)
 }
 
-/// The turn that lays a cylinder's axis across the slope.
+/// The rotation that puts a cylinder's axis across the slope.
 pub fn roller_turn() -> Quat {
     let (sin, cos) = half_turn_parts(core::f32::consts::FRAC_PI_2);
     Quat::from_xyzw(sin, 0.0, 0.0, cos)
 }
 
-/// Where the ramp of a lane has its middle: beside each other.
+/// The middle of the ramp of a lane: beside each other.
 pub fn lane(index: usize) -> Vec3 {
     Vec3::new(0.0, 0.0, (index as f32 - 3.5) * 2.5)
 }
@@ -152,7 +152,7 @@ pub fn walls_across(distance: f32) -> [(f32, bool); 2] {
     [(-distance, false), (distance, true)]
 }
 
-/// Where a row of pyramids stands.
+/// The place of a row of pyramids.
 pub fn pyramid_row(row: u32, rows: u32, width: f32, _pitch: f32) -> Vec3 {
     let reach = 0.5 * width - 1.0;
     let step = 2.0 * reach / (rows.max(2) - 1) as f32;
@@ -187,7 +187,7 @@ pub fn spawn_domino_floor(world: &mut World, _count: u32) {
     spawn_block(world, [24.0, 2.0, 24.0], at(0.0, -1.0, 0.0));
 }
 
-/// A further turn of a piece of the pile, out of the plane.
+/// A further rotation of a piece of the pile, out of the plane.
 pub fn piece_turn(angle: f32) -> Quat {
     let (sin, cos) = half_turn_parts(1.7 * angle);
     Quat::from_xyzw(sin, 0.0, 0.0, cos)

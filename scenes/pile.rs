@@ -17,10 +17,10 @@ pub fn mixed(world: &mut World, layers: u32) {
     mixed_by_chance(world, layers, 42);
 }
 
-/// [`mixed`], with other places and angles for each `seed`.
+/// [`mixed`] with other places and angles for each `seed`.
 pub fn mixed_by_chance(world: &mut World, layers: u32, seed: u64) {
     set_conditions(world);
-    // Higher than the heap: nothing is to roll off.
+    // Higher than the heap, so that no body rolls off.
     spawn_container(world, WIDTH, 12.0);
     let mut rng = Rng::new(seed);
     let (across, deep) = dim::PILE_GRID;

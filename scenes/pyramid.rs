@@ -7,8 +7,8 @@ use bevy_math::Vec3;
 use crate::dim;
 use crate::scene::{Watched, at, set_conditions, spawn_block, spawn_body};
 
-/// Stacks one pyramid of unit boxes that touch, `base` boxes wide at the bottom, its middle standing on `foot`.
-/// Sleeping is off for its bodies; the topmost one is watched. Gives back the boxes, bottom row first.
+/// Stacks one pyramid of touching unit boxes, `base` boxes wide at the bottom, its middle on `foot`. Its bodies do not
+/// sleep; the topmost one is watched. Returns the boxes, bottom row first.
 pub fn stack(world: &mut World, base: u32, foot: Vec3) -> Vec<Entity> {
     let mut boxes = Vec::new();
     for row in 0..base {

@@ -1,4 +1,4 @@
-//! What a scene is, and the few steps that all of them are built from.
+//! The definition of a scene, and helpers to build one.
 
 use avian::prelude::*;
 use bevy_ecs::prelude::*;
@@ -11,15 +11,15 @@ use crate::numbers::half_turn_parts;
 /// Downward gravity of the scenes in m/s², the value that published benchmarks use.
 pub const GRAVITY: f32 = 10.0;
 
-/// Friction of what sets none itself.
+/// Default friction.
 pub const FRICTION: f32 = 0.6;
 
-/// A world to build, how long to run it, and what to look at.
+/// A world to build, the length of a run, and what to watch.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
     /// Lower case with underscores; the same in both dimensions where the idea is the same.
     pub name: &'static str,
-    /// One line for a list.
+    /// Description of one line.
     pub about: &'static str,
     /// Steps of 1/60 s in a full run.
     pub steps: u32,
@@ -27,9 +27,9 @@ pub struct Scene {
     pub build: fn(&mut World),
     /// The part of the world to show; see also [`Watch::Inside`].
     pub bounds: Bounds,
-    /// Direction from the scene towards the viewer. 2D pictures look along −z whatever it says.
+    /// Direction from the scene towards the viewer. 2D pictures always look along −z.
     pub eye: Vec3,
-    /// What counts as drift.
+    /// The definition of drift.
     pub watch: Watch,
 }
 
@@ -48,27 +48,27 @@ impl Bounds {
         Self { min: Vec3::from_array(min), max: Vec3::from_array(max) }
     }
 
-    /// How far a point lies outside, zero inside; by the largest single coordinate, in the plane only if `flat`.
+    /// Distance of a point outside, zero inside; by the largest single coordinate, without z if `flat`.
     pub fn distance_outside(&self, point: Vec3, flat: bool) -> f32 {
         let out = (self.min - point).max(point - self.max).max(Vec3::ZERO);
         if flat { out.x.max(out.y) } else { out.max_element() }
     }
 }
 
-/// What the `drift` of a run means.
+/// The meaning of a run's `drift`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Watch {
-    /// Bodies marked [`Watched`] ought to stay where they were put: the longest way one of them has moved.
+    /// Bodies marked [`Watched`] should stay in place: the maximum displacement of one of them.
     Rest,
-    /// Bodies ought to stay within [`Scene::bounds`]: how far the centre of the outermost dynamic one is outside.
+    /// Bodies should stay within [`Scene::bounds`]: the maximum distance of a dynamic body's centre outside.
     Inside,
 }
 
-/// Marks a body that ought to stay where it was put: the position it was put at, in metres.
+/// Marks a body that should stay in place: its initial position, in metres.
 #[derive(Component, Clone, Copy, Debug)]
 pub struct Watched(pub Vec3);
 
-/// Marks a collider that pictures show as glass, because it stands in front of what there is to see.
+/// Marks a collider that pictures show as glass, because it hides the scene.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Glass;
 

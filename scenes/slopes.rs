@@ -1,4 +1,4 @@
-//! Ramps of 20 degrees, one for each body: what rolls, what slides and what sticks, by friction.
+//! Ramps of 20 degrees, one per body: rolling, sliding and sticking, by friction.
 
 use avian::prelude::*;
 use bevy_ecs::prelude::*;
@@ -16,7 +16,7 @@ pub const LENGTH: f32 = 24.0;
 /// How far above the middle of its ramp a body starts, in metres along the slope.
 const START: f32 = 10.0;
 
-/// What lies on a ramp.
+/// The body on a ramp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rider {
     /// A ball of radius 0.5.
@@ -39,8 +39,8 @@ pub const RIDERS: [(Rider, f32); 8] = [
     (Rider::Box, 0.8),
 ];
 
-/// One ramp for each of [`RIDERS`], going down to the left; the boxes that should stick are watched. Gives back the
-/// riders in that order.
+/// One ramp for each of [`RIDERS`], going down to the left. The boxes that should stick are watched. Returns the riders
+/// in that order.
 pub fn slopes(world: &mut World) -> Vec<Entity> {
     set_conditions(world);
     RIDERS
@@ -50,8 +50,8 @@ pub fn slopes(world: &mut World) -> Vec<Entity> {
         .collect()
 }
 
-/// One ramp with its middle at `middle`, rising to the right by `angle`, and one body near its upper end that has the
-/// given friction with it. Gives back the body.
+/// One ramp with its middle at `middle`, rising to the right by `angle`, and one body near its upper end with a
+/// friction. Returns the body.
 pub fn spawn_lane(world: &mut World, rider: Rider, friction: f32, angle: f32, middle: Vec3) -> Entity {
     let (sin, cos) = sin_cos(angle);
     let rotation = turned(angle);
@@ -66,7 +66,7 @@ pub fn spawn_lane(world: &mut World, rider: Rider, friction: f32, angle: f32, mi
         Rider::Box => dim::block(1.0, 1.0, 1.0),
     };
     let start = pose(START * along + 0.5 * normal);
-    // `Min` beats the ramp's `Average`, so the pair has the body's friction.
+    // `Min` has priority over the ramp's `Average`, so the pair has the body's friction.
     let own = Friction::new(friction).with_combine_rule(CoefficientCombine::Min);
     let turn = if rider == Rider::Roller { dim::roller_turn() } else { bevy_math::Quat::IDENTITY };
     let start = start.with_rotation(start.rotation * turn);

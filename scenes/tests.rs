@@ -1,4 +1,4 @@
-//! What every scene promises before its first step.
+//! Properties of every scene before its first step.
 
 use avian::parry::bounding_volume::{Aabb, BoundingVolume};
 use avian::parry::math::Pose;
@@ -11,7 +11,7 @@ use bevy_transform::components::Transform;
 
 use crate::{DT, SUBSTEPS, Scene, Watch, Watched, all, dim, headless_app, pyramid};
 
-/// A collider where its scene puts it.
+/// A collider at its initial place.
 struct Placed {
     body: Entity,
     dynamic: bool,
@@ -83,7 +83,7 @@ fn what_ought_to_rest_is_marked_and_what_ought_to_stay_is_inside() {
         match scene.watch {
             Watch::Rest => assert!(watched > 0, "{}", scene.name),
             Watch::Inside => {
-                // Poured piles start above the picture, but nothing starts beside or below it.
+                // Poured piles start above the picture, but no body starts beside or below it.
                 for part in placed(world).iter().filter(|part| part.dynamic) {
                     let middle = part.bounds.center();
                     assert!(middle.x.abs() < scene.bounds.max.x, "{}", scene.name);

@@ -1,4 +1,4 @@
-//! Straight stacks of boxes, side by side: what a solver with too few iterations lets sway and fall.
+//! Straight stacks of boxes, side by side. With too few iterations of the solver they sway and fall.
 
 use avian::prelude::*;
 use bevy_ecs::prelude::*;

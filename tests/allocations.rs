@@ -1,4 +1,4 @@
-//! What a step takes from the allocator does not grow with its contacts.
+//! The number of allocations per step does not grow with the number of contacts.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -12,7 +12,7 @@ mod counting;
 /// Allocations are counted for the whole process: one test at a time.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// The median of the allocations of 50 steps, after some, and how many contacts there are in the end.
+/// The median number of allocations of 50 steps after some others, and the final number of contacts.
 fn median_of_steps(build: impl FnOnce(&mut World), before: u32) -> (usize, u32) {
     let mut app = headless_app(DT, SUBSTEPS);
     build(app.world_mut());
@@ -33,14 +33,14 @@ fn a_step_with_many_contacts_allocates_no_more_than_one_with_few() {
     let ((few, some), (many, more)) = (pyramid(10), pyramid(40));
     assert!(more > 10 * some, "{some} and {more} contacts");
     assert!(many <= few + 8, "{few} allocations with {some} contacts, {many} with {more}");
-    // Where everything turns over, and manifolds are computed anew.
+    // All bodies tumble, and manifolds are recomputed.
     let tumbler = scenes::find("tumbler").expect("a scene of that name");
     let (tumbling, more) = median_of_steps(tumbler.build, 240);
     assert!(more > 10 * some, "{some} and {more} contacts");
     assert!(tumbling <= few + 24, "{few} allocations with {some} contacts, {tumbling} with {more}");
 }
 
-/// How often something is allocated while a thousand widgets go, one by one or with their parent.
+/// The number of allocations while a thousand widgets are despawned, one by one or with their parent.
 fn taken_by_widgets(world: &mut World) -> [usize; 2] {
     let spawn = |world: &mut World| {
         let window = world.spawn(Name::new("window")).id();
@@ -48,7 +48,7 @@ fn taken_by_widgets(world: &mut World) -> [usize; 2] {
         let widgets = (0..1000).map(|_| world.spawn((Name::new("widget"), ChildOf(row))).id());
         (window, widgets.collect::<Vec<_>>())
     };
-    // Lists and tables grow for the first.
+    // Lists and tables grow the first time.
     let (window, _) = spawn(world);
     world.despawn(window);
     let (_, widgets) = spawn(world);

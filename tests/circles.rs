@@ -1,23 +1,22 @@
-//! Which files of a crate import each other in a circle.
+//! Circles of imports between the files of a crate.
 //!
-//! An arrow goes from a file to the one that *defines* the name it uses: through re-exports, which are no
-//! arrows themselves, so that a module may present what its files make without depending on them. Of twins
-//! only that of one dimension is looked at.
+//! An arrow goes from a file to the one that *defines* a name it uses. Re-exports are followed and are no arrows
+//! themselves, so a module may re-export what its files define. Of twin files only that of one dimension is read.
 
 use super::{Source, group, is_word};
 use std::collections::{BTreeMap, BTreeSet};
 
 type Path = Vec<String>;
 
-/// A module of its own, or one written inside of a file's text.
+/// A module, in a file of its own or inside of another file's text.
 #[derive(Default)]
 struct Module {
     path: Path,
-    /// Without `use` and `mod` statements and without inner modules.
+    /// The text without `use` and `mod` statements and without inner modules.
     body: String,
-    /// What `use` statements bring in: name, whether for others as well, path from the crate's root.
+    /// Imports: name, whether it is re-exported, path from the crate's root.
     names: BTreeMap<String, (bool, Path)>,
-    /// Modules brought in as a whole.
+    /// Modules of glob imports.
     globs: Vec<(bool, Path)>,
 }
 
@@ -50,7 +49,7 @@ impl Crate {
         let source = sources.iter().find(|s| s.path == name).unwrap_or_else(|| panic!("no file {name}"));
         let (folder, file) = name.rsplit_once('/').expect("files are in folders");
         let stem = file.trim_end_matches(".rs");
-        // The modules of a file stand beside it or in its folder; a twin's stand beside it.
+        // Submodules are in files beside the file or in its folder; those of a twin are beside it.
         let is_beside = ["lib", "mod"].contains(&stem) || path.last().is_none_or(|module| module != stem);
         let own = if is_beside { folder.to_owned() } else { format!("{folder}/{stem}") };
         let mut parsed = File {
@@ -76,7 +75,7 @@ impl Crate {
         }
     }
 
-    /// The file that defines what a path from the crate's root leads to.
+    /// The file that defines the name at a path from the crate's root.
     fn resolve(&self, path: &[String], steps: usize) -> usize {
         let depth = (0..=path.len()).rev().find(|n| self.by_module.contains_key(&path[..*n])).unwrap_or(0);
         let at = self.by_module[&path[..depth]];
@@ -93,7 +92,7 @@ impl Crate {
         module.globs.iter().find_map(through).unwrap_or(at)
     }
 
-    /// Who uses whom.
+    /// Arrows: from each file to the files it uses.
     pub(super) fn arrows(&self) -> Arrows {
         let mut arrows = Arrows::new();
         for file in &self.files {
@@ -142,8 +141,8 @@ pub(super) fn circles(arrows: &Arrows) -> Vec<String> {
     found
 }
 
-/// Reads one module: its statements, and those of the modules inside of it. `found` gets the modules in files
-/// of their own, with the file of the dimension where that is given.
+/// Reads one module: its statements, and the modules inside of it. `found` receives the modules in files of their own,
+/// with the file of the dimension if one is given.
 fn parse(
     source: &Source,
     range: std::ops::Range<usize>,
@@ -161,7 +160,7 @@ fn parse(
         let is =
             |word: &str| begins && text[at..].strip_prefix(word).is_some_and(|t| t.starts_with([' ', '\n']));
         let until = |marks: &[char]| text[at..range.end].find(marks).map_or(range.end - 1, |n| at + n);
-        // From the end of the statement before: attributes and visibility.
+        // From the end of the previous statement, for attributes and visibility.
         let head = || &code[start..at];
         if is("mod") {
             let end = until(&[';', '{']);
@@ -205,13 +204,13 @@ fn parse(
     }
 }
 
-/// Whether what stands below some attributes is compiled in a dimension.
+/// Whether an item with these attributes is compiled in a dimension.
 fn is_of(attributes: &str, dimension: &str) -> bool {
     let other = if dimension == "2d" { "3d" } else { "2d" };
     !attributes.contains(&format!("cfg(feature = \"{other}\")"))
 }
 
-/// Sorts what is brought in by names and globs. Paths may begin with a name that another statement brought in.
+/// Sorts imports into names and globs. Paths may begin with a name that another statement imports.
 fn bring_in(uses: Vec<(bool, Path, String)>, file: &File, module: &mut Module) {
     let mut rest = uses;
     for _ in 0..2 {
@@ -229,7 +228,7 @@ fn bring_in(uses: Vec<(bool, Path, String)>, file: &File, module: &mut Module) {
     }
 }
 
-/// A path as seen from the crate's root; `None` if it leads out of the crate.
+/// A path from the crate's root; `None` if it leads out of the crate.
 fn absolute(file: &File, module: &Module, path: &[String]) -> Option<Path> {
     let first = path.first()?.as_str();
     let climbs = path.iter().take_while(|p| *p == "super").count();
@@ -244,7 +243,7 @@ fn absolute(file: &File, module: &Module, path: &[String]) -> Option<Path> {
     Some([base, &path[climbs..]].concat())
 }
 
-/// The paths of a tree of imports, each with the name it gets; `*` for all.
+/// The paths of a `use` tree, each with its local name; `*` for all.
 fn expand(tree: &str, before: &[String], out: &mut Vec<(Path, String)>) {
     let (head, inside) = match tree.find('{') {
         Some(open) => (&tree[..open], Some(group(&tree[open..]))),
@@ -298,7 +297,7 @@ fn definitions(body: &str) -> BTreeSet<String> {
     defined.map(|pair| pair[1].to_owned()).collect()
 }
 
-/// Whether a name stands in a text, other than as a field or method.
+/// Whether a name is in a text, other than as a field or method.
 fn uses(body: &str, name: &str) -> bool {
     body.match_indices(name).any(|(at, _)| {
         let (before, after) = (&body.as_bytes()[..at], &body[at + name.len()..]);
@@ -308,7 +307,7 @@ fn uses(body: &str, name: &str) -> bool {
     })
 }
 
-/// The paths of two names and more in a text. Those that say who may see something are none.
+/// The paths of two or more names in a text, without those of visibilities.
 fn paths_in(body: &str) -> impl Iterator<Item = Path> + '_ {
     let is_part = |c: char| is_word(c as u8) || c == ':';
     let parts = body.split(move |c: char| !is_part(c));
@@ -321,7 +320,7 @@ fn paths_in(body: &str) -> impl Iterator<Item = Path> + '_ {
     })
 }
 
-/// The rule would hold of any tree if nothing were ever found.
+/// The rule must find something, or any tree would pass.
 #[test]
 fn a_circle_is_found_through_re_exports_twins_and_inner_modules() {
     let sources: Vec<Source> = [

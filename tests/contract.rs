@@ -1,5 +1,5 @@
-//! The names, paths, signatures, derives and defaults that apps and other crates count on: those of Avian 0.7, as far
-//! as what they stand for exists. Most of it is proven by compiling.
+//! Names, paths, signatures, derives and defaults that apps and other crates rely on: those of Avian 0.7 that exist
+//! here. Most is proven by compiling.
 
 use std::{fmt::Debug, hash::Hash, ops};
 
@@ -29,7 +29,7 @@ use avian::{
     },
     schedule::LastPhysicsTick,
 };
-// By name, so that each is found missing.
+// By name, so that a missing one is reported.
 #[rustfmt::skip]
 use avian::prelude::{
     AabbContext, AngularDamping, AngularInertia, AngularInertiaTensor, AngularInertiaTensorError, AngularVelocity,
@@ -445,7 +445,7 @@ fn what_a_body_and_a_collider_require_is_there() {
 
 #[test]
 fn the_rest_can_be_named() {
-    // What is used nowhere above.
+    // Items that are not used above.
     fn named<T: ?Sized>() {}
     named::<(AngularInertiaTensor, AngularInertiaTensorError, MassProperties2d, MassProperties3d)>();
     named::<(NoRotationEasing, NoScaleEasing, NoTransformEasing, NoTranslationEasing)>();

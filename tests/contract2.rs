@@ -1,4 +1,4 @@
-//! What `contract.rs` must know of the plane. `contract3.rs` is the twin.
+//! 2D parts of `contract.rs`. `contract3.rs` has those of 3D.
 #![allow(clippy::op_ref, reason = "the operators of references are what is asked for")]
 
 use avian::{

@@ -1,4 +1,4 @@
-//! What `contract.rs` must know of space. `contract2.rs` is the twin.
+//! 3D parts of `contract.rs`. `contract2.rs` has those of 2D.
 #![allow(clippy::op_ref, reason = "the operators of references are what is asked for")]
 
 use avian::{

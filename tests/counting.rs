@@ -1,4 +1,4 @@
-//! The system's allocator, which counts: for a test that is alone in its process, as others would be counted too.
+//! The system's allocator with a counter, for a test that is alone in its process.
 #![expect(unsafe_code, reason = "an allocator is made of unsafe functions")]
 
 use std::{
@@ -17,11 +17,11 @@ thread_local! {
 
 fn count() {
     TAKEN.fetch_add(1, Relaxed);
-    // A thread that ends has none any more.
+    // The counter of a thread that ends is gone.
     let _ = TAKEN_HERE.try_with(|taken| taken.set(taken.get() + 1));
 }
 
-// SAFETY: every call is passed on to the system's allocator as it came.
+// SAFETY: every call is forwarded to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
@@ -44,7 +44,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// How often something is allocated meanwhile: on this thread, and on all.
+/// The number of allocations of a closure: on this thread, and on all.
 pub fn taken(run: impl FnOnce()) -> (usize, usize) {
     let now = || (TAKEN_HERE.get(), TAKEN.load(Relaxed));
     let before = now();

@@ -1,4 +1,4 @@
-//! With positions in double precision, a hundred kilometres from the origin is as good a place as the origin.
+//! In double precision, simulation at a hundred kilometres from the origin is as good as at the origin.
 
 use avian::{math::Vector, prelude::*};
 use bevy_app::{App, TaskPoolPlugin};
@@ -7,7 +7,7 @@ use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::TransformPlugin;
 use core::time::Duration;
 
-/// Steps of 1/60 s in 4 substeps, a floor whose top goes through `origin`.
+/// Steps of 1/60 s in 4 substeps, and a floor whose top is at `origin`.
 fn app(origin: Vector, floor: Collider) -> App {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin, PhysicsPlugins::default()));
@@ -21,7 +21,8 @@ fn app(origin: Vector, floor: Collider) -> App {
     app
 }
 
-/// Drops `bodies`, runs ten seconds, and gives where they are from `origin`, how fast, and how many sleep.
+/// Drops `bodies` and runs ten seconds. Returns positions relative to `origin`, speeds, and the number of sleeping
+/// bodies.
 fn drop_all(origin: Vector, floor: Collider, bodies: &[(Collider, Vector)]) -> (Vec<Vector>, f64, usize) {
     let mut app = app(origin, floor);
     let world = app.world_mut();
@@ -50,7 +51,7 @@ fn far() -> Vector {
     (Vector::X - Vector::Y) * 100_000.0
 }
 
-/// A tower of eight boxes stands 1, 10 and 100 km away as here.
+/// A tower of eight boxes stands at 1, 10 and 100 km as at the origin.
 pub fn a_tower_stands(floor: Collider, unit_box: Collider) {
     let tower: Vec<_> = (0..8).map(|i| (unit_box.clone(), Vector::Y * (0.5 + f64::from(i)))).collect();
     let (here, ..) = drop_all(Vector::ZERO, floor.clone(), &tower);
@@ -63,7 +64,7 @@ pub fn a_tower_stands(floor: Collider, unit_box: Collider) {
     }
 }
 
-/// A heap of boxes falls and rests there as here.
+/// A heap of boxes falls and rests as at the origin.
 pub fn a_heap_falls_and_rests(floor: Collider, unit_box: Collider) {
     let heap: Vec<_> = (0..40)
         .map(|i| {
@@ -81,7 +82,7 @@ pub fn a_heap_falls_and_rests(floor: Collider, unit_box: Collider) {
     assert!((here - there).abs() < 0.1 * here, "mean height {here} here, {there} there");
 }
 
-/// Free fall is exact there: the way is measured from where it started.
+/// Free fall is exact: displacements are relative to the start.
 pub fn free_fall_is_exact(floor: Collider, unit_box: Collider) {
     let mut app = app(far(), floor);
     let start = far() + Vector::Y * 500.0;

@@ -1,4 +1,4 @@
-//! Manifolds and contact updates take nothing from the allocator.
+//! Manifolds and contact updates do not allocate.
 
 use crate::kernel;
 use counting::taken;
@@ -10,7 +10,7 @@ mod counting;
 #[path = "measure/mod.rs"]
 mod measure;
 
-/// Of this thread alone: the harness may still be at something on its own.
+/// On this thread only: the test harness may allocate on its own.
 #[test]
 fn manifolds_and_contacts_allocate_nothing() {
     for (name, a, b) in KINDS {
@@ -25,7 +25,7 @@ fn manifolds_and_contacts_allocate_nothing() {
             }
         });
         assert_eq!(manifolds, 0, "manifolds of {name}");
-        // What is kept between steps is made in the first.
+        // Buffers that persist are created in the first step.
         let mut all = Contacts::of(&pairs);
         all.update(false);
         all.update(true);

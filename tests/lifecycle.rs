@@ -1,5 +1,5 @@
-//! Bodies and colliders come, go and change in any order, also from inside observers, and the simulation keeps
-//! up: the feature `validate`, which is on in tests, compares all tables with the world in every step.
+//! Bodies and colliders are spawned, despawned and changed in random order, also by observers. Feature `validate`,
+//! which is on in tests, compares all tables with the world in every step.
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
 use avian::{
@@ -17,7 +17,7 @@ use core::time::Duration;
 const OPERATIONS: u32 = 25_000;
 /// Changes between two steps, on average.
 const PER_STEP: u32 = 8;
-/// So few entities that changes keep meeting each other.
+/// Few enough entities that changes often affect the same one.
 const CROWD: usize = 48;
 const DT: Duration = Duration::from_millis(16);
 
@@ -46,7 +46,7 @@ impl Random {
     }
 }
 
-/// What the random changes may pick from.
+/// Entities that the random changes select from.
 #[derive(Resource, Default)]
 struct Crowd(Vec<Entity>);
 
@@ -83,7 +83,7 @@ fn block() -> Collider {
     hull(0.5)
 }
 
-/// A square or cube by half its side, as a hull.
+/// A square or cube by its half side, as a hull.
 fn hull(half: Scalar) -> Collider {
     let mut corners = vec![Vector::ZERO];
     for axis in Vector::AXES {
@@ -115,7 +115,7 @@ fn any_collider(random: &mut Random) -> Collider {
             (Vector::X * size, Rotation::IDENTITY, Collider::capsule(0.2, 0.3)),
             (Vector::NEG_X * size, Rotation::IDENTITY, block()),
         ]),
-        // A shape that the kernel does not know.
+        // A shape that the kernel does not have.
         _ => Collider::polyline(vec![Vector::NEG_X, Vector::ZERO, Vector::X + Vector::Y], None),
     }
 }
@@ -134,14 +134,14 @@ fn any_place(random: &mut Random) -> Transform {
     Transform::from_xyz(x, y, v.to_array().get(2).copied().unwrap_or(0.0))
 }
 
-/// Spawns something, and enters it in the crowd.
+/// Spawns an entity, and adds it to the crowd.
 fn spawn(world: &mut World, random: &mut Random) {
     let place = any_place(random);
     let new = match random.below(6) {
         0..=2 => world.spawn((any_body(random), any_collider(random), place)).id(),
         3 => world.spawn((any_body(random), place)).id(),
         4 => world.spawn((any_collider(random), place)).id(),
-        // Not there yet when it is spawned, as a prefab.
+        // Added after spawning, as by a prefab.
         _ => world.spawn((any_body(random), any_collider(random), place, Disabled)).id(),
     };
     let parent = world.resource::<Crowd>().pick(random);
@@ -192,7 +192,7 @@ fn change_setting(world: &mut World, entity: Entity, random: &mut Random) {
     };
 }
 
-/// One random change of something in the crowd.
+/// One random change of an entity in the crowd.
 fn change(world: &mut World, random: &mut Random) {
     let mut crowd = core::mem::take(&mut world.resource_mut::<Crowd>().0);
     crowd.retain(|e| world.get_entity(*e).is_ok());
@@ -244,7 +244,7 @@ fn change(world: &mut World, random: &mut Random) {
     }
 }
 
-/// Lets an observer meddle: sometimes something else changes at once.
+/// Lets an observer change something else, sometimes.
 fn meddle(mut commands: Commands) {
     commands.queue(|world: &mut World| {
         let mut random = core::mem::replace(&mut *world.resource_mut::<Random>(), Random(77));
@@ -262,7 +262,7 @@ fn free_bodies(app: &mut App) -> Vec<(Entity, Scalar)> {
         Without<RigidBodyDisabled>,
         Without<Sleeping>,
         Without<RigidBodyColliders>,
-        // The changes may have taken these away.
+        // The changes may have removed these components.
         With<Position>,
         With<Rotation>,
     )>();
@@ -291,7 +291,7 @@ fn check(app: &mut App, falling: &[(Entity, Scalar)], step: u32) {
     }
 }
 
-/// Worlds per run: so many combinations of components come up that a world that lives long gets slow.
+/// Worlds per run. Many combinations of components occur, so that a long-lived world gets slow.
 const WORLDS: u32 = 25;
 
 fn run(seed: u64, observers: bool) {
@@ -314,7 +314,7 @@ fn run_world(random: &mut Random, observers: bool) {
         for _ in 0..PER_STEP {
             change(app.world_mut(), random);
         }
-        // Observers may change a velocity, too, after it was integrated.
+        // An observer may change a velocity after integration.
         let falling = if observers { Vec::new() } else { free_bodies(&mut app) };
         step(&mut app);
         check(&mut app, &falling, number);
@@ -474,7 +474,7 @@ fn commands_put_to_sleep_and_wake_whole_islands() {
     step(&mut app);
     assert_eq!([low, high, aside].map(|e| is_asleep(&app, e)), [false; 3]);
 
-    // Whoever is woken while awake does not fall asleep for another half second.
+    // A body that is woken while awake stays awake for another half second.
     steps(&mut app, 20);
     WakeBody(low).apply(app.world_mut()).expect("it is a body");
     steps(&mut app, 20);

@@ -1,4 +1,5 @@
-//! What comes, goes and changes while physics is paused: the world is afterwards as if it had been made as it is.
+//! Spawning, despawning and changes while physics is paused: afterwards the world is as if it had been spawned in its
+//! final state.
 
 use avian::{
     math::{Scalar, Vector},
@@ -11,7 +12,7 @@ use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
 use proptest::prelude::*;
 
-/// One entity as it is to be.
+/// The intended state of one entity.
 #[derive(Clone, Debug, PartialEq)]
 struct Spec {
     body: Option<RigidBody>,
@@ -61,7 +62,7 @@ impl Spec {
         entity.id()
     }
 
-    /// Makes an entity that is as `old` says what this says, component by component.
+    /// Changes an entity from the state `old` to this state, component by component.
     fn change(&self, old: &Self, entity: &mut EntityWorldMut) {
         if self.body != old.body || self.velocity != old.velocity {
             match self.body {
@@ -113,10 +114,10 @@ fn spec() -> impl Strategy<Value = Spec> {
     )
 }
 
-/// What happens while physics is paused.
+/// An operation while physics is paused.
 #[derive(Clone, Debug)]
 enum Change {
-    /// Spawns into a free slot, or changes what is there.
+    /// Spawns into a free slot, or changes the entity there.
     Put(usize, Spec),
     Despawn(usize),
     Frame,
@@ -154,9 +155,9 @@ fn run(app: &mut App, entities: &[Entity]) -> Vec<String> {
     let show = |entity: &Entity| {
         let of = app.world().entity(*entity);
         let pose = (of.get::<Position>(), of.get::<Rotation>());
-        // What is no body has a velocity only if it was one.
+        // An entity that is not a body has a velocity only if it was a body.
         let moves = of.get::<RigidBody>().map(|_| (of.get::<LinearVelocity>(), of.get::<AngularVelocity>()));
-        // Floats are shown with as many digits as tell them from all others.
+        // Floats are printed with enough digits to be unique.
         format!("{pose:?} {moves:?} {}", of.contains::<Sleeping>())
     };
     entities.iter().map(show).collect()

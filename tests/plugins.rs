@@ -1,4 +1,4 @@
-//! The plugin group: it builds, configures what it says, and does without any one of its plugins.
+//! The plugin group: it builds, applies its configuration, and works without any one of its plugins.
 
 use avian::{
     PhysicsTypeRegistrationPlugin,
@@ -25,7 +25,7 @@ fn build(group: impl FnOnce(PluginGroupBuilder) -> PluginGroupBuilder) -> App {
     app
 }
 
-/// It, after ten ticks.
+/// The app after ten ticks.
 fn run(group: impl FnOnce(PluginGroupBuilder) -> PluginGroupBuilder) -> App {
     let mut app = build(group);
     app.world_mut().spawn(RigidBody::Dynamic);
@@ -63,7 +63,7 @@ fn an_eased_body_is_drawn_between_its_steps() {
             let x = app.world().get::<Transform>(body).map_or(f32::NAN, |t| t.translation.x);
             last.replace(x).map_or(0.005, |last| x - last)
         });
-        // The first ticks ease from nothing.
+        // The first ticks have no previous state to ease from.
         steps.skip(10).map(|way| (way - 0.005).abs()).fold(0.0, f32::max)
     };
     assert!(way(eased) < 1.0e-4, "{}", way(eased));
@@ -84,22 +84,22 @@ fn easing_is_left_out_while_there_is_nothing_to_ease() {
     }
 }
 
-/// What became of a few bodies in three seconds: a ball that falls on a floor from 2 m, a body held at a height, one
-/// that may fall at no more than 1 m/s, one that drifts at 1 m/s without gravity, and one with its collider a metre
-/// above it, on a child.
+/// The state of a few bodies after three seconds: a ball that falls on a floor from 2 m, a body held at a height, one
+/// with a maximum speed of 1 m/s, one that drifts at 1 m/s without gravity, and one with its collider a metre above it,
+/// on a child.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Seen {
     ball: Scalar,
     mass: Scalar,
     asleep: bool,
-    /// The top of the box around the ball, seen from the ball.
+    /// The top of the ball's box, relative to the ball.
     top: Scalar,
-    /// Where the ball's `Transform` is, seen from its `Position`.
+    /// The ball's `Transform`, relative to its `Position`.
     drawn: Scalar,
     held: Scalar,
     limited: Scalar,
     drifted: Scalar,
-    /// Where the child's collider is on its body, if it belongs to it.
+    /// The child's collider on its body, if it belongs to it.
     child: Option<Scalar>,
 }
 
@@ -108,7 +108,7 @@ fn watch(group: PluginGroupBuilder) -> Seen {
     app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, group));
     app.finish();
     app.cleanup();
-    // With all three, also who looks at some of them only knows where they are.
+    // With all three, including entities that are only read.
     let at = |x: f32, y: f32| {
         let position = Vector::X * x as Scalar + Vector::Y * y as Scalar;
         (Transform::from_xyz(x, y, 0.0), Position(position), Rotation::IDENTITY)
@@ -199,12 +199,12 @@ fn with_all_of_them_everything_happens() {
     assert!(moves(&seen) && rests(&seen) && is_attached(&seen), "{seen:?}");
 }
 
-/// Bodies drift, are held and limited, and are drawn where they are.
+/// Bodies drift, are locked and limited, and are drawn at their positions.
 fn moves(seen: &Seen) -> bool {
     go(seen) && seen.drawn.abs() < 1.0e-3
 }
 
-/// They do, but are drawn where they were.
+/// They do, but are drawn at their initial positions.
 fn moves_unseen(seen: &Seen) -> bool {
     go(seen) && (seen.drawn - 2.0).abs() < 0.02
 }
@@ -213,12 +213,12 @@ fn go(seen: &Seen) -> bool {
     (seen.drifted - 3.0).abs() < 1.0e-3 && seen.held == 2.0 && (seen.limited - 1.0).abs() < 1.0e-3
 }
 
-/// Nobody moves.
+/// No body moves.
 fn stands_still(seen: &Seen) -> bool {
     (seen.ball, seen.drifted, seen.limited) == (2.5, 0.0, 0.0)
 }
 
-/// The ball lies on the floor, in its box, and has a mass.
+/// The ball lies on the floor, inside of its box, and has mass.
 fn lies(seen: &Seen) -> bool {
     (seen.ball - 0.5).abs() < 0.02 && (seen.top - 0.5).abs() < 1.0e-3 && !is_massless(seen)
 }
@@ -244,7 +244,7 @@ fn has_no_box(seen: &Seen) -> bool {
     seen.top == Scalar::NEG_INFINITY
 }
 
-/// The child's collider belongs to nobody.
+/// The child's collider has no body.
 fn is_detached(seen: &Seen) -> bool {
     seen.child.is_none()
 }
@@ -318,7 +318,7 @@ fn the_length_unit_is_what_the_group_was_told() {
     }
 }
 
-/// A collider type of the app's own.
+/// A collider type of the app.
 #[derive(Component)]
 pub(crate) struct Marble(pub(crate) Collider);
 
@@ -345,7 +345,7 @@ impl ScalableCollider for Marble {
     }
 }
 
-/// Hooks of the app's own.
+/// Collision hooks of the app.
 struct Hooks;
 
 #[test]

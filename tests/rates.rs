@@ -1,7 +1,7 @@
-//! What the app does in `Update` counts as if it were done in the tick, at any frame rate and while time is paused.
+//! Changes in `Update` have the same effect as changes in the tick, at any frame rate and while time is paused.
 //!
-//! Every change is made once in `Update`, between two ticks, and once within the tick, before physics. All bodies
-//! must have equal bits after every step, and other bits than without the change.
+//! Every change is made once in `Update`, between two ticks, and once in the tick, before physics. All bodies must have
+//! the same bits after every step, and other bits than without the change.
 
 use avian::{
     dynamics::integrator::{CustomPositionIntegration, CustomVelocityIntegration},
@@ -19,10 +19,10 @@ use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
 use scenes::dim::{ball, block, spin};
 
-/// Steps before the change, and in all. The mover lands after about 25.
+/// Number of steps before the change, and in total. The mover lands after about 25.
 const BEFORE: usize = 12;
 const STEPS: usize = 60;
-/// Frames of a pause, before and after the change.
+/// Number of frames of a pause, before and after the change.
 const PAUSE: usize = 12;
 
 /// The entities of the scene.
@@ -32,11 +32,11 @@ struct Actors {
     mover: Entity,
     /// A child of the mover, with a collider.
     part: Entity,
-    /// A ball at rest in the mover's way.
+    /// A ball at rest in the mover's path.
     other: Entity,
-    /// A kinematic ball that comes towards the mover.
+    /// A kinematic ball that moves towards the mover.
     flyer: Entity,
-    /// A box that lies still, and falls asleep.
+    /// A box at rest that falls asleep.
     idle: Entity,
 }
 
@@ -44,15 +44,15 @@ struct Actors {
 #[derive(Resource, Default)]
 struct Trace(Vec<Vec<u64>>);
 
-/// A change to be made within a tick: after how many steps, and what.
+/// A change within a tick: after how many steps, and the change.
 #[derive(Resource)]
 struct InTick(usize, Change);
 
-/// A change to be made in `Update`.
+/// A change in `Update`.
 #[derive(Resource)]
 struct InUpdate(Change);
 
-/// After how many steps the change was made.
+/// Number of steps before the change.
 #[derive(Resource)]
 struct Made(usize);
 
@@ -60,12 +60,12 @@ type Change = fn(&mut World, Actors);
 
 fn nothing(_: &mut World, _: Actors) {}
 
-/// A change of the world, and how the world was made ready for it.
+/// A change of the world, and the preparation of the world for it.
 struct Case {
     name: &'static str,
     prepare: Change,
     change: Change,
-    /// Whether bodies without a [`SpeculativeMargin`] have one without bounds.
+    /// Whether bodies without a [`SpeculativeMargin`] have an unlimited one.
     predicts: bool,
 }
 
@@ -102,7 +102,7 @@ macro_rules! life {
     };
 }
 
-/// A marker: inserted and removed, beside what it is of interest with.
+/// A marker: inserted and removed, with the components it affects.
 macro_rules! marker {
     ($who:ident, $type:ident) => {
         marker!($who, $type, ())
@@ -201,7 +201,7 @@ fn app(frames_per_second: u32, case: &Case) -> App {
         .add_systems(Update, change_in_update);
     app.finish();
     app.cleanup();
-    // Handing systems of nearly empty schedules from thread to thread would be most of the time.
+    // Handing systems of nearly empty schedules between threads would take most of the time.
     for (_, schedule) in app.world_mut().resource_mut::<Schedules>().iter_mut() {
         schedule.set_executor(SingleThreadedExecutor::new());
     }
@@ -214,14 +214,14 @@ fn app(frames_per_second: u32, case: &Case) -> App {
     app
 }
 
-/// Runs frames until so many steps were taken.
+/// Runs frames until a number of steps was taken.
 fn run_to(app: &mut App, count: usize) {
     while app.world().resource::<Trace>().0.len() < count {
         app.update();
     }
 }
 
-/// Runs to the end, and gives what was recorded.
+/// Runs to the end. Returns the record.
 fn finish(mut app: App) -> Vec<Vec<u64>> {
     run_to(&mut app, STEPS);
     let mut trace = core::mem::take(&mut app.world_mut().resource_mut::<Trace>().0);
@@ -235,10 +235,10 @@ fn in_tick(case: &Case, after: usize) -> Vec<Vec<u64>> {
     finish(app)
 }
 
-/// How the frames lie around the change.
+/// The frames around the change.
 #[derive(Clone, Copy, Debug)]
 enum Frames {
-    /// So many a second; the change comes some frames later than it could.
+    /// Frames per second. The change is made some frames later than possible.
     Running(u32, usize),
     /// `Time<Physics>` is paused.
     PhysicsPaused,
@@ -255,7 +255,7 @@ const FRAMES: [Frames; 6] = [
     Frames::AllPaused,
 ];
 
-/// The trace with the change made in `Update`, and after how many steps that was.
+/// The trace with the change in `Update`, and the number of steps before it.
 fn in_update(case: &Case, frames: Frames) -> (usize, Vec<Vec<u64>>) {
     let rate = if let Frames::Running(rate, _) = frames { rate } else { 144 };
     let mut app = app(rate, case);
@@ -283,7 +283,7 @@ fn in_update(case: &Case, frames: Frames) -> (usize, Vec<Vec<u64>>) {
     (made, finish(app))
 }
 
-/// Which kinds of frames give another motion than the change within the tick.
+/// The kinds of frames for which the motion differs from that with the change in the tick.
 fn check(cases: &[Case]) {
     let mut wrong = Vec::new();
     for case in cases {
@@ -306,7 +306,7 @@ fn surfaces_and_margins_count_at_any_frame_rate() {
     check(&life!(mover, Friction, Friction::new(0.05), Friction::new(0.9)));
     check(&life!(mover, Restitution, Restitution::new(0.8), Restitution::new(0.3)));
     check(&life!(other, CollisionMargin, CollisionMargin(0.2), CollisionMargin(0.1)));
-    // The larger of two margins counts: without a component there is to be none.
+    // The larger of two margins counts: without the component there should be none.
     let margins = life!(mover, SpeculativeMargin, SpeculativeMargin(1.0), SpeculativeMargin(0.0));
     check(&margins.map(|case| Case { predicts: false, ..case }));
 }

@@ -1,4 +1,4 @@
-//! A level that is loaded again comes to the bits it came to first, whatever was there in between.
+//! A level that is loaded again gets the same bits as the first time, after any history.
 
 use avian::{math::Vector, parry::shape::SharedShape, prelude::*};
 use bevy_app::prelude::*;
@@ -57,18 +57,18 @@ fn state(app: &App, bodies: &[Entity]) -> Vec<String> {
     let of = |body: &Entity| {
         let body = app.world().entity(*body);
         let pose = (body.get::<Position>(), body.get::<Rotation>());
-        // Floats are shown with as many digits as tell them from all others.
+        // Floats are printed with enough digits to be unique.
         format!("{pose:?} {:?} {:?}", body.get::<LinearVelocity>(), body.get::<AngularVelocity>())
     };
     bodies.iter().map(of).collect()
 }
 
-/// What stays when a level is unloaded.
+/// Entities that stay when a level is unloaded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kept {
     Nothing,
     Floor,
-    /// Beside the floor a sensor that is no body.
+    /// Beside the floor a sensor without a body.
     FloorAndSensor,
 }
 

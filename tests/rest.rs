@@ -1,4 +1,4 @@
-//! What bodies at rest and the app tell each other.
+//! Bodies at rest, and changes by the app.
 
 use avian::{math::Vector, prelude::*};
 use bevy_app::prelude::*;
@@ -48,7 +48,7 @@ fn issue_the_sleep_timer_was_neither_there_nor_read() {
     let before = timer(&app, body);
     steps(&mut app, 1);
     assert!(before > 0.0 && (timer(&app, body) - before - DT).abs() < 1.0e-5);
-    // Held awake by the app.
+    // The app keeps it awake.
     for _ in 0..60 {
         app.world_mut().get_mut::<SleepTimer>(body).expect("every body has one").0 = 0.0;
         steps(&mut app, 1);
@@ -56,7 +56,7 @@ fn issue_the_sleep_timer_was_neither_there_nor_read() {
     }
     steps(&mut app, 40);
     assert!(is_asleep(&app, body));
-    // What moves has not rested.
+    // A moving body has not rested.
     app.world_mut().get_mut::<LinearVelocity>(body).expect("every body has one").0 = Vector::Y * 5.0;
     steps(&mut app, 2);
     assert!(!is_asleep(&app, body) && timer(&app, body) == 0.0);

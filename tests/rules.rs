@@ -1,5 +1,5 @@
-//! The rules of the source tree that no compiler checks: where code may depend on the dimension, which way
-//! imports point, and what the simulation must not call if the same input is to give the same bits.
+//! Rules of the source tree that no compiler checks: where code may depend on the dimension, the direction of imports,
+//! and functions that differ between machines.
 
 mod circles;
 
@@ -7,10 +7,10 @@ use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The most lines that may name a dimension. What differs more belongs in twin files.
+/// Maximum number of lines that name a dimension. Larger differences belong in twin files.
 const CFG_BUDGET: usize = 80;
 
-/// The kernel's folders from the ground up: each may use those before it, and none after it.
+/// The kernel's folders from the bottom up: each may use those before it only.
 const KERNEL_FLOORS: [&str; 12] = [
     "math",
     "data",
@@ -53,18 +53,18 @@ const UNSTABLE_FLOATS: [&str; 22] = [
     ".to_radians()",
 ];
 
-/// What else makes results depend on more than the input: hash order, clocks, approximations, fused products.
+/// Other sources of results that depend on more than the input: hash order, clocks, approximations, fused products.
 const UNSTABLE_REST: [&str; 7] =
     ["HashMap", "HashSet", "Instant::now", "SystemTime", "_mm_rcp", "_mm_rsqrt", "fmadd"];
 
 /// A file of the tree.
 struct Source {
-    /// From the root, with `/`.
+    /// Path from the root, with `/`.
     path: String,
     text: String,
     /// The text without comments.
     code: String,
-    /// The text without comments, literals and what is compiled for tests only.
+    /// The text without comments, literals and code that is compiled for tests only.
     shipped: String,
 }
 
@@ -129,7 +129,7 @@ fn collect(folder: &Path, name: String, out: &mut Vec<String>) {
     }
 }
 
-/// Whether a file is compiled for tests only, which its name tells.
+/// Whether a file is compiled for tests only, by its name.
 fn is_test_file(path: &str) -> bool {
     let is_test = |part: &str| {
         part.starts_with("tests") || ["oracle", "bench", "measure"].contains(&part.trim_end_matches(".rs"))
@@ -144,7 +144,7 @@ enum Token {
     Literal,
 }
 
-/// The text without comments, and the same without what stands in literals. Lines and columns stay.
+/// The text without comments, and the same without the content of literals. Lines and columns are kept.
 fn blank(text: &str) -> (String, String) {
     let bytes = text.as_bytes();
     let (mut code, mut bare) = (Vec::with_capacity(bytes.len()), Vec::with_capacity(bytes.len()));
@@ -163,7 +163,7 @@ fn blank(text: &str) -> (String, String) {
     (whole(code), whole(bare))
 }
 
-/// What begins at a byte, and its length: a comment, a literal, or one byte of code.
+/// The token at a byte, and its length: a comment, a literal, or one byte of code.
 fn next_token(bytes: &[u8], at: usize) -> (Token, usize) {
     let rest = &bytes[at..];
     let until = |from: usize, end: &[u8]| {
@@ -238,7 +238,7 @@ fn group(text: &str) -> &str {
     text
 }
 
-/// The rooms of the crate that a file names by `crate::` or by enough `super::`.
+/// The top-level folders and files of the crate that a file names by `crate::` or by enough `super::`.
 fn arrows(source: &Source) -> Vec<String> {
     let text = &source.shipped;
     let mut found = Vec::new();
@@ -283,7 +283,7 @@ fn names_after(path: &str, out: &mut Vec<String>) {
     out.retain(|n| !n.is_empty());
 }
 
-/// Every line of the shipped code that has one of `words` in it, as `path:line: word`.
+/// Every line of shipped code with one of `words`, as `path:line: word`.
 fn find_words(sources: &[Source], words: &[&str]) -> Vec<String> {
     let mut found = Vec::new();
     for source in sources {
@@ -384,7 +384,7 @@ fn the_kernel_calls_nothing_that_differs_between_machines() {
     let kernel = sources(&["kernel"]);
     let words = [&UNSTABLE_FLOATS[..], &UNSTABLE_REST[..]].concat();
     let mut found = find_words(&kernel, &words);
-    // Threads look at the clock to know when to sleep; what they compute does not depend on it.
+    // Idle threads read the clock to decide when to park; results do not depend on it.
     found.retain(|f| !(f.starts_with("kernel/thread_pool/sync.rs") && f.ends_with("Instant::now")));
     assert_none(&found, "the same input gives the same bits");
 }
@@ -450,7 +450,7 @@ fn no_circles() {
     assert_none(&found, "no file imports another in a circle: what both need goes to a file below them");
 }
 
-/// Plugins stand on top: what they add to the app does not know them.
+/// Only plugins use plugins.
 #[test]
 fn only_plugins_know_plugins() {
     let mut found = Vec::new();
@@ -492,7 +492,7 @@ fn nothing_is_left_for_later_in_the_code() {
     assert_none(&found, "what is missing is missing openly, not as a mark in the code");
 }
 
-/// What the README shows compiles: it is an example, word for word.
+/// The README's example compiles: it is an example of the package, verbatim.
 #[test]
 fn the_readme_shows_an_example() {
     let read = |path: &str| fs::read_to_string(root().join(path)).expect("the file stands in the tree");
@@ -502,7 +502,6 @@ fn the_readme_shows_an_example() {
     assert_eq!(shown, example.split_once("\n\n").map(|(_, code)| code));
 }
 
-/// The workspace of the tests in f64 builds with what is compiled for all others: Bevy is compiled once.
 /// Paths between backticks or in links, with `{a,b}` written out.
 fn paths_in(document: &str) -> Vec<String> {
     let ticks = document.split('`').skip(1).step_by(2);
@@ -549,6 +548,7 @@ fn documents_name_files_that_exist() {
     assert_none(&missing, "documents name files that exist");
 }
 
+/// The workspace of the f64 tests locks the versions of the main one, so that Bevy is compiled once.
 #[test]
 fn both_workspaces_lock_the_same_versions() {
     let locked = |path: &str| -> Vec<String> {
@@ -563,7 +563,7 @@ fn both_workspaces_lock_the_same_versions() {
     assert_none(&f64s, "what crates/far_f64/Cargo.lock has is in Cargo.lock too");
 }
 
-/// The rules would hold of any tree if nothing were ever found.
+/// The rules must find something, or any tree would pass.
 #[test]
 fn what_is_shipped_is_told_from_what_is_not() {
     let text = "use crate::{math::Vector, solver::{self, Row}};\n\

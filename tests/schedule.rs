@@ -1,4 +1,4 @@
-//! When steps are taken and what the clocks show: pausing, speed, stepping by hand, the order of stages.
+//! When steps are taken, and the clocks: pausing, speed, stepping by hand, the order of sets.
 
 use avian::{
     dynamics::{integrator::IntegrationSystems, solver::schedule::SubstepSolverSystems},
@@ -145,7 +145,7 @@ fn steps_run_by_hand_are_as_long_as_the_physics_clock_says() {
     }
     assert!(steps(&app).iter().all(|step| step.1 == Duration::from_millis(4)));
     assert_eq!(steps(&app).len(), 3);
-    // They are done: the host takes none of them a second time.
+    // They were taken: the host does not repeat them.
     tick(&mut app, 10);
     assert_eq!(steps(&app).len(), 3);
 }
@@ -172,7 +172,7 @@ fn the_substep_clock_runs_at_a_fraction_of_the_step() {
     }
 }
 
-/// The substep clock as a system in a substep saw it: delta and elapsed, in milliseconds.
+/// The substep clock in a system of a substep: delta and elapsed, in milliseconds.
 #[derive(Resource, Default)]
 struct Seen(Vec<[u128; 4]>);
 
@@ -252,7 +252,7 @@ fn the_host_may_be_any_schedule_and_is_fixed_by_default() {
     }
 }
 
-/// Makes a system of each set of a list note that set, and gives the list as it should be noted.
+/// Adds a system to each set of a list that records the set. Returns the expected record.
 fn note_sets<S: SystemSet + Clone>(
     app: &mut App,
     schedule: impl ScheduleLabel + Clone,
@@ -316,7 +316,7 @@ fn the_stages_of_a_step_are_in_order() {
             SolverSystems::PreSubstep,
         ],
     ));
-    // `SolverSystems::Substep` has all to itself: it is where the substeps run.
+    // `SolverSystems::Substep` is exclusive: the substeps run in it.
     app.insert_resource(SubstepCount(1));
     expected.extend(note_sets(&mut app, SubstepSchedule, &[SubstepSolverSystems::SolveConstraints]));
     expected.extend(note_sets(

@@ -1,4 +1,4 @@
-//! What a body or collider is as soon as it is spawned, attached or taken apart, before any system has run.
+//! The state of a body or collider right after it is spawned, attached or detached, before any system has run.
 
 use avian::{
     math::{Scalar, Vector},
@@ -22,7 +22,7 @@ fn app() -> App {
     app
 }
 
-/// Steps as the documentation of the clock shows them: the schedule that hosts physics does not run.
+/// Steps by hand, as in the documentation of the clock: the schedule that hosts physics does not run.
 fn by_hand(app: &mut App, steps: u32) {
     for _ in 0..steps {
         app.world_mut().resource_mut::<Time<Physics>>().advance_by(DT);
@@ -129,7 +129,7 @@ fn issue_a_collider_with_a_body_of_its_own_choice_lost_it() {
     by_hand(&mut app, 64);
     check(&app);
     is_near(get::<Position>(&app, body).y, 0.5);
-    // Also where the schedule around physics runs, and whatever happens to the hierarchy.
+    // Also if the schedule around physics runs, with any change of the hierarchy.
     let parent = app.world_mut().spawn((RigidBody::Static, at(50.0, 0.0))).id();
     app.world_mut().entity_mut(collider).insert(ChildOf(parent));
     app.world_mut().run_schedule(FixedPostUpdate);
@@ -176,7 +176,7 @@ fn issue_a_removed_collider_left_its_link_and_its_mass() {
     is_near(get::<Position>(&app, body).y, 0.5);
 }
 
-/// All that is computed of what a body weighs.
+/// The computed mass properties of a body.
 fn weighed(app: &App, body: Entity) -> String {
     let (mass, center) = (get::<ComputedMass>(app, body), get::<ComputedCenterOfMass>(app, body));
     format!("{mass:?} {:?} {center:?}", get::<ComputedAngularInertia>(app, body))
@@ -187,7 +187,7 @@ fn issue_colliders_below_a_body_weighed_nothing_until_the_next_step() {
     let mut app = app();
     let unit = ColliderMassProperties::from_shape(&ball(0.5), 1.0).mass;
     let part = |x: f32| (ball(0.5), at(x, 0.0));
-    // What it weighs after the command it weighs after the step.
+    // The mass after the command equals the mass after the step.
     let check = |app: &mut App, body: Entity, parts: f32, center: f32| {
         let now = weighed(app, body);
         let (mass, at) = (mass(app, body), get::<ComputedCenterOfMass>(app, body).0.x);
@@ -220,7 +220,7 @@ fn issue_colliders_below_a_body_weighed_nothing_until_the_next_step() {
     check(&mut app, other, 2.0, -1.0);
     app.world_mut().entity_mut(later).despawn();
     check(&mut app, other, 1.0, 0.0);
-    // The body's own collider, too.
+    // Includes the body's own collider.
     app.world_mut().entity_mut(other).insert(ColliderDensity(2.0));
     check(&mut app, other, 2.0, 0.0);
     app.world_mut().entity_mut(other).remove::<Collider>();

@@ -1,4 +1,5 @@
-//! Feature `serialize`: every public type comes back from a file, by serde and by reflection, and so does a world.
+//! Feature `serialize`: every public type, and a whole world, is read back from a file unchanged, by serde and by
+//! reflection.
 
 use avian::{
     PhysicsTypeRegistrationPlugin,
@@ -33,7 +34,7 @@ use core::{fmt::Debug, time::Duration};
 use scenes::dim::{ball, block, spin};
 use serde::{Serialize, de::DeserializeOwned, de::DeserializeSeed};
 
-/// Types that are not for files: what a step measured, and ticks of this very world.
+/// Types that are not stored: measurements of a step, and ticks of a world.
 const NOT_STORED: [&str; 6] = [
     "CollisionDiagnostics",
     "ColliderTreeDiagnostics",
@@ -52,7 +53,7 @@ fn to_text(value: &impl Serialize) -> String {
 fn comes_back<T: Serialize + DeserializeOwned + Debug>(value: T) {
     let text = to_text(&value);
     let again: T = ron::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"));
-    // Floats are shown with as many digits as tell them from all others.
+    // Floats are printed with enough digits to be unique.
     assert_eq!(format!("{value:?}"), format!("{again:?}"));
     assert_eq!(text, to_text(&again));
 }
@@ -202,10 +203,10 @@ fn steps(app: &mut App, count: u32) {
     }
 }
 
-/// An entity as it stands in a file: its type paths with values, and its collider.
+/// An entity in a file: its components by type path, and its collider.
 type Line = (Entity, Vec<(String, String)>, Option<String>);
 
-/// What a scene holds of some entities: components by reflection.
+/// A scene of some entities: components by reflection.
 fn save(app: &App, entities: &[Entity]) -> String {
     let registry = app.world().resource::<AppTypeRegistry>().read();
     let line = |&entity: &Entity| -> Line {
@@ -214,7 +215,7 @@ fn save(app: &App, entities: &[Entity]) -> String {
             registration.data::<ReflectSerialize>()?;
             let value = registration.data::<ReflectComponent>()?.reflect(found)?;
             let path = registration.type_info().type_path().to_owned();
-            // The hierarchy's own list follows from `ChildOf`, the engine's from `ColliderOf`.
+            // `Children` follows from `ChildOf`, and `RigidBodyColliders` from `ColliderOf`.
             let is_list = path.ends_with("::RigidBodyColliders");
             (!is_list).then(|| (path, stored_by_reflection(value.as_partial_reflect(), &registry)))
         });
@@ -225,7 +226,7 @@ fn save(app: &App, entities: &[Entity]) -> String {
     to_text(&entities.iter().map(line).collect::<Vec<_>>())
 }
 
-/// Spawns what a file holds. Entities of the file become others.
+/// Spawns the entities of a file. They get other ids.
 fn load(app: &mut App, text: &str) -> Vec<Entity> {
     let lines: Vec<Line> = ron::from_str(text).expect("was stored");
     let registry = app.world().resource::<AppTypeRegistry>().clone();
@@ -251,7 +252,7 @@ fn load(app: &mut App, text: &str) -> Vec<Entity> {
     spawned
 }
 
-/// A pile of all kinds of bodies that has fallen for a while.
+/// A pile of bodies of all kinds that has fallen for a while.
 fn pile(app: &mut App, steps_before: u32) -> Vec<Entity> {
     app.world_mut().insert_resource(Gravity(-Vector::Y * 10.0));
     let mut all = vec![app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::Y))).id()];
@@ -338,7 +339,7 @@ fn a_world_comes_back_from_a_file() {
     for _ in 0..2 {
         let mut again = app();
         again.world_mut().insert_resource(Gravity(-Vector::Y * 10.0));
-        // Entities have other numbers here.
+        // Entities have other ids here.
         (0..5).for_each(|_| _ = again.world_mut().spawn_empty());
         let loaded = load(&mut again, &text);
         assert_eq!(bits(&again, &loaded), expected);

@@ -1,11 +1,10 @@
-//! The paths of types that files name: scenes, glTF extras and exports of editors know a reflected type by the path
-//! of its module in Avian.
+//! Type paths in files: scenes, glTF extras and exports of editors name a reflected type by its module path in Avian.
 
 use super::reflection::registered;
 use std::collections::BTreeMap;
 
-/// Every type of Avian 0.7 that reflects and has no type parameter, by its path within the crate. What this engine
-/// does not have yet is listed as well, so that it gets the right path with its first day.
+/// Every reflected type of Avian 0.7 without type parameters, by its path within the crate. Types that this engine does
+/// not have yet are listed as well, so that they get the right path from the start.
 const PATHS: &str = "
 character_controller::move_and_slide::DepenetrationConfig
 character_controller::move_and_slide::MoveAndSlideConfig

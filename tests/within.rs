@@ -1,4 +1,4 @@
-//! What systems of an app see and do within a step, in each of the public sets.
+//! Systems of an app within a step, in each of the public sets.
 
 use avian::{
     dynamics::{
@@ -34,11 +34,11 @@ fn step(app: &mut App) {
     app.update();
 }
 
-/// The body that [`teleport`] moves, and whether it is to.
+/// The body that [`teleport`] moves, and whether it moves it.
 #[derive(Resource)]
 struct Traveller(Entity, bool);
 
-/// Puts the traveller 10 m higher, turned by a quarter.
+/// Moves the traveller up by 10 m, and rotates it by a quarter turn.
 fn teleport(mut traveller: ResMut<Traveller>, mut poses: Query<(&mut Position, &mut Rotation)>) {
     if core::mem::take(&mut traveller.1) {
         let (mut position, mut rotation) = poses.get_mut(traveller.0).expect("a body has a pose");
@@ -51,12 +51,12 @@ fn quarter() -> Rotation {
     Rotation::from(bevy_math::Quat::from_rotation_z(core::f32::consts::FRAC_PI_2))
 }
 
-/// A body at 2 m/s is put 10 m higher by a system in a set. It goes on from there, and what stands there feels it.
+/// A system in a set moves a body at 2 m/s up by 10 m. It continues from there, and pushes what is there.
 fn goes_on(schedule: impl ScheduleLabel, set: impl SystemSet, body: RigidBody, what: &str) {
     let mut app = app();
     let collider = Collider::capsule(0.2, 0.2);
     let body = app.world_mut().spawn((body, collider.clone(), LinearVelocity(Vector::X * 2.0))).id();
-    // In the way of where it is put, 1 m ahead.
+    // In its path after the move, 1 m ahead.
     let struck = (RigidBody::Dynamic, collider, Transform::from_xyz(1.0, 10.0, 0.0));
     let struck = app.world_mut().spawn(struck).id();
     app.insert_resource(Traveller(body, false)).add_systems(schedule, teleport.in_set(set));
@@ -254,7 +254,7 @@ fn issue_global_transforms_were_a_tick_behind_within_physics() {
             "{seen:?}"
         );
         assert!(app.world().resource::<Seen>().1.iter().all(|g| g.translation().y == 1.0));
-        // What is no physics is left to Bevy.
+        // Entities without physics are left to Bevy.
         let picture = app.world().get::<GlobalTransform>(picture).expect("it has one").translation().x;
         assert_eq!(picture, if plugged { 4.0 } else { 0.0 });
     }

@@ -11,13 +11,12 @@ const MAX_LAYERS: usize = 32;
 
 /// Implements `PhysicsLayer` for an enum without fields.
 ///
-/// The variant marked `#[default]` (the attribute of `#[derive(Default)]`, which the trait needs as
-/// well) is bit 0, wherever it stands: it is the layer of colliders that name none. The others take
-/// bits 1, 2, … in the order they are written. There may be at most 32 variants.
+/// The variant marked `#[default]` (the attribute of `#[derive(Default)]`, which the trait needs as well) is bit 0, at
+/// any place in the enum: the layer of colliders without a choice. The others are bits 1, 2, … in order. There may be
+/// at most 32 variants.
 ///
-/// The trait is taken from `avian2d` or `avian3d`, whichever the manifest depends on, under whatever
-/// name. If that is both or neither (a crate that re-exports the engine), the trait `PhysicsLayer` that
-/// is in scope is implemented.
+/// The trait is taken from `avian2d` or `avian3d`, whichever the manifest depends on, under any name. With both or
+/// neither (a crate that re-exports the engine), the trait `PhysicsLayer` in scope is implemented.
 #[proc_macro_derive(PhysicsLayer, attributes(default))]
 pub fn derive_physics_layer(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
@@ -26,8 +25,8 @@ pub fn derive_physics_layer(input: proc_macro::TokenStream) -> proc_macro::Token
 
 /// The path of the trait as the user's crate sees it.
 ///
-/// A crate may depend on both dimensions optionally, and a macro cannot see which feature is on; only
-/// the scope can say which is meant there.
+/// A crate may depend on both dimensions optionally, and a macro cannot see enabled features. Only the scope tells
+/// which one is meant.
 fn trait_path() -> TokenStream {
     let found = |name: &str| match crate_name(name) {
         // Tests in docs and in `tests/` are crates of their own; unit tests need `extern crate self as avian3d`.
@@ -44,7 +43,7 @@ fn trait_path() -> TokenStream {
     }
 }
 
-/// The implementation, or why there can be none.
+/// The implementation, or an error.
 fn expand(input: &DeriveInput, path: &TokenStream) -> syn::Result<TokenStream> {
     let Data::Enum(data) = &input.data else {
         return Err(Error::new_spanned(&input.ident, "`PhysicsLayer` can only be derived for enums"));
@@ -93,7 +92,7 @@ fn expand(input: &DeriveInput, path: &TokenStream) -> syn::Result<TokenStream> {
     })
 }
 
-/// Whether a variant bears `#[default]`.
+/// Whether a variant has `#[default]`.
 fn is_default(variant: &Variant) -> bool {
     variant.attrs.iter().any(|a| a.path().is_ident("default"))
 }

@@ -1,1 +1,1 @@
-//! Nothing but a place for the tests in `tests/`: the engine in double precision.
+//! An empty package for the tests in `tests/`: the engine in double precision.

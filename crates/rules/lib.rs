@@ -1,1 +1,1 @@
-//! Nothing but a place for `tests/rules.rs`.
+//! An empty package for `tests/rules.rs`.

@@ -14,7 +14,7 @@ pub type Dir = Dir2;
 pub(crate) type AngularVector = Scalar;
 /// An angular inertia.
 pub(crate) type SymmetricTensor = Scalar;
-/// A vector that is `f32` whatever the public precision.
+/// A vector in `f32`, with any public precision.
 pub(crate) type VectorF32 = Vec2;
 pub(crate) use bevy_heavy::{
     ComputeMassProperties2d as ComputeMassProperties, MassProperties2d as MassProperties,

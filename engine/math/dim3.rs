@@ -14,7 +14,7 @@ pub type Dir = Dir3;
 pub(crate) type AngularVector = Vector;
 /// An angular inertia.
 pub(crate) type SymmetricTensor = SymmetricMatrix3;
-/// A vector that is `f32` whatever the public precision.
+/// A vector in `f32`, with any public precision.
 pub(crate) type VectorF32 = Vec3;
 pub(crate) use bevy_heavy::{
     ComputeMassProperties3d as ComputeMassProperties, MassProperties3d as MassProperties,

@@ -119,7 +119,7 @@ impl BitSet {
 }
 
 impl PartialEq for BitSet {
-    /// Whether both have the same members, whatever their storage.
+    /// Whether both have the same members. Their storage may differ.
     fn eq(&self, other: &Self) -> bool {
         let shared = self.words.len().min(other.words.len());
         self.words[..shared] == other.words[..shared]

@@ -9,7 +9,7 @@ use super::{Avx2, F32x8};
 /// Work of an entry point.
 ///
 /// [`run`](Self::run) and all that it calls must be `#[inline(always)]`: what is not inlined is not compiled for the
-/// feature. Each type of job has an entry point of its own. Without optimisation, whatever is inlined has its own place on
+/// feature. Each type of job has an entry point of its own. Without optimisation, inlined values have places of their own on
 /// the stack: all passes over contact rows in one function took 4.6 MB of it in 3D, where threads have two.
 pub(crate) trait Job {
     /// What the work results in.

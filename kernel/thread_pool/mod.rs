@@ -141,7 +141,7 @@ impl ThreadPool {
     }
 
     /// The nanoseconds in which callers shared jobs with threads, since that is measured. All other time is of one thread,
-    /// whatever the number of workers.
+    /// with any number of workers.
     pub fn shared_time(&self) -> u64 {
         self.0.as_ref().map_or(0, |threads| threads.shared.load(Ordering::Relaxed))
     }

@@ -29,13 +29,13 @@ driver; if it ends before it has drawn, the scenes run headless. In the window:
 /// What the user asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Args {
-    /// No window, whatever there is.
+    /// Never open a window.
     pub headless: bool,
-    /// The window in this process, without looking first whether it can open.
+    /// Open the window in this process, without probing first.
     pub window: bool,
-    /// Only what matches this; see [`Args::selects`].
+    /// Run only matching scenes; see [`Args::selects`].
     pub scene: Option<String>,
-    /// Instead of each scene's own number of steps.
+    /// Number of steps, instead of each scene's own.
     pub steps: Option<u32>,
     /// Folder for pictures.
     pub out: PathBuf,
@@ -63,7 +63,7 @@ impl Default for Args {
 }
 
 impl Args {
-    /// Reads the words after the program's name. `Err` says what is wrong, for the user.
+    /// Parses the arguments after the program's name. `Err` is a message for the user.
     pub fn parse(words: impl IntoIterator<Item = String>) -> Result<Self, String> {
         let mut args = Self::default();
         let mut words = words.into_iter();
@@ -96,7 +96,7 @@ impl Args {
         Ok(args)
     }
 
-    /// Whether a scene is among those asked for.
+    /// Whether a scene is selected.
     pub fn selects(&self, dimension: u32, name: &str) -> bool {
         match self.scene.as_deref() {
             None => true,

@@ -1,16 +1,16 @@
-//! Runs the window in a process of its own, so that whoever asked lives on where it cannot come up.
+//! Runs the window in a process of its own, so that this one survives if the window cannot open.
 //!
-//! What [`crate::probe`] cannot see, such as a display that refuses this user or a driver without a device, makes the
-//! libraries below the window panic, exit or crash. The process with the window says on its standard output when it
-//! has drawn; one that ends badly without having said so has no window.
+//! Problems that [`crate::probe`] cannot detect, such as a display that refuses this user or a driver without a device,
+//! make libraries below the window panic, exit or crash. The process with the window reports on its standard output
+//! that it has drawn. If it fails without this report, there is no window.
 
 use std::io::{self, BufRead, BufReader, Write};
 use std::process::{Command, ExitCode, Stdio};
 
-/// What the process with the window says when it has drawn.
+/// The report of the process with the window.
 const DRAWN: &str = "testbed: the window has drawn";
 
-/// Starts this program once more with `--window`, and stays until that ends. `Err` says why there was no window.
+/// Starts this program again with `--window`, and waits for it. `Err` says why there was no window.
 #[cfg(feature = "window")]
 pub fn open_window() -> Result<ExitCode, String> {
     let program =
@@ -20,14 +20,14 @@ pub fn open_window() -> Result<ExitCode, String> {
     run(command)
 }
 
-/// Tells the process that waits that this one has drawn.
+/// Reports to the waiting process that this one has drawn.
 #[cfg(feature = "window")]
 pub fn say_drawn() {
-    // Where nobody listens any more, nobody is to be told.
+    // Without a reader, the report is not needed.
     let _ = writeln!(io::stdout(), "{DRAWN}");
 }
 
-/// Runs a command, and passes on what it says and the code it ends with. `Err` if it ends badly before it has drawn.
+/// Runs a command, and forwards its output and exit code. `Err` if it fails before it has drawn.
 fn run(mut command: Command) -> Result<ExitCode, String> {
     let no_window = |why: String| format!("the window did not come up ({why})");
     let mut child = command.stdout(Stdio::piped()).spawn().map_err(|error| no_window(error.to_string()))?;
@@ -39,11 +39,11 @@ fn run(mut command: Command) -> Result<ExitCode, String> {
     Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
-/// Copies all but the line that says that something was drawn; whether there was one.
+/// Copies all lines but the report. Returns whether there was a report.
 fn pass_on(mut from: impl BufRead, mut to: impl Write) -> bool {
     let mut drawn = false;
     let mut line = Vec::new();
-    // A line at a time, since who watches wants each as it comes.
+    // Line by line, for a user who watches.
     while from.read_until(b'\n', &mut line).is_ok_and(|read| read > 0) {
         if line.trim_ascii_end() == DRAWN.as_bytes() {
             drawn = true;

@@ -1,4 +1,4 @@
-//! The testbed's view of the plane: `avian2d`, its scenes, its shapes.
+//! 2D: `avian2d`, its scenes, its shapes.
 
 use avian2d as avian;
 use scenes2d as scenes;

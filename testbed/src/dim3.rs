@@ -1,4 +1,4 @@
-//! The testbed's view of space: `avian3d`, its scenes, its shapes.
+//! 3D: `avian3d`, its scenes, its shapes.
 
 use avian3d as avian;
 use scenes3d as scenes;

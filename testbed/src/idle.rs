@@ -1,4 +1,4 @@
-//! What a world costs in which nothing moves: bodies that are static or asleep, against the same `App`
+//! The cost of a world at rest: static or sleeping bodies, compared with the same `App` without physics.
 //! without physics.
 
 use std::time::Instant;
@@ -11,12 +11,12 @@ use bevy_transform::{TransformPlugin, components::Transform};
 
 use super::{avian::prelude::*, scenes};
 
-/// How many steps are timed.
+/// Number of timed steps.
 const TIMED: usize = 200;
-/// Enough for everything to fall asleep.
+/// Number of steps after which everything sleeps.
 const SETTLE: usize = 120;
 
-/// A line for each mix of static and resting boxes: milliseconds per step, and how many are awake.
+/// One line per mix of static and resting boxes: milliseconds per step, and the number of awake bodies.
 pub fn report() {
     for (fixed, resting) in [(0, 0), (20_000, 1_000), (100_000, 0), (50_000, 50_000)] {
         let mut app = scenes::headless_app(scenes::DT, scenes::SUBSTEPS);

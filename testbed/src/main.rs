@@ -1,4 +1,4 @@
-//! The scenes to look at: in a window with a scene browser, or headless with a table and pictures.
+//! Scenes: in a window with a scene browser, or headless with a table and pictures.
 #![allow(clippy::duplicate_mod, reason = "some files are compiled once for each dimension, on purpose")]
 
 mod args;

@@ -1,8 +1,8 @@
-//! Finds out whether a window can open, before anything is started that would panic if not.
+//! Checks whether a window can open, before starting anything that would panic if not.
 //!
 //! The window needs an X11 display that accepts connections, the X libraries, the Vulkan loader, and at least one
-//! Vulkan driver. Each is looked for by files, sockets and environment variables alone; what these do not tell,
-//! [`crate::child`] catches.
+//! Vulkan driver. They are checked by files, sockets and environment variables only. [`crate::child`] handles all other
+//! failures.
 
 use std::path::{Path, PathBuf};
 
@@ -48,7 +48,7 @@ fn parse_display(display: &str) -> Option<(Option<&str>, u16)> {
     Some(((!host.is_empty()).then_some(host), number))
 }
 
-/// Connects to the display's socket and leaves at once.
+/// Connects to the display's socket and disconnects at once.
 #[cfg(unix)]
 fn connect(display: &str) -> Result<(), String> {
     use std::net::{TcpStream, ToSocketAddrs};
@@ -70,7 +70,7 @@ fn connect(_display: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Where the dynamic linker looks, as far as that is known without asking it.
+/// The folders of the dynamic linker, as far as they are known without running it.
 fn library_folders() -> Vec<PathBuf> {
     let mut folders: Vec<PathBuf> = std::env::var_os("LD_LIBRARY_PATH")
         .map(|paths| std::env::split_paths(&paths).collect())
@@ -107,7 +107,7 @@ fn vulkan_drivers() -> Vec<PathBuf> {
         .collect()
 }
 
-/// Whether the library that a driver description names exists; relative names are looked up as the linker would.
+/// Whether the library of a driver description exists. Relative names are searched as the linker does.
 fn driver_library_present(description: &Path, folders: &[PathBuf]) -> bool {
     let text = std::fs::read_to_string(description).unwrap_or_default();
     let Some(library) = library_path(&text) else { return false };

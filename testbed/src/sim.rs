@@ -1,4 +1,4 @@
-//! A running scene behind one interface, whichever dimension it is of: what the headless runner and the window share.
+//! A running scene of either dimension behind one interface, for the headless runner and the window.
 
 use bevy_math::Vec3;
 
@@ -15,9 +15,9 @@ pub struct Entry {
     pub about: &'static str,
     /// Steps of a full run.
     pub steps: u32,
-    /// What to show.
+    /// The view for pictures.
     pub view: View,
-    /// What its drift is: `moved` or `outside`.
+    /// The meaning of its drift: `moved` or `outside`.
     pub drift: &'static str,
     /// Builds the scene in a world of its own.
     pub start: fn(&'static str) -> Option<Box<dyn Simulation>>,
@@ -27,39 +27,39 @@ pub struct Entry {
 pub trait Simulation {
     /// Advances by one step of physics, through the whole `App`.
     fn step(&mut self);
-    /// All colliders as they stand.
+    /// All colliders at their current poses.
     fn drawables(&mut self) -> Vec<Drawable>;
-    /// The numbers that are cheap enough for each frame.
+    /// Counts that are cheap enough for each frame.
     fn counts(&mut self) -> Counts;
-    /// The numbers for the table.
+    /// Measures for the table.
     fn measures(&mut self) -> Measures;
 }
 
-/// How much there is.
+/// Counts of a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Dynamic and kinematic bodies.
     pub bodies: usize,
-    /// Pairs of colliders in the last step that touch or are near, if the engine tells.
+    /// Number of contacts in the last step, if the engine reports it.
     pub contacts: Option<u32>,
     /// Sleeping bodies.
     pub asleep: usize,
 }
 
-/// How well it goes.
+/// Measures of quality.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Kinetic and potential energy of the dynamic bodies in joules, the latter from y = 0.
     pub energy: f64,
-    /// What the scene watches, in metres.
+    /// The drift of the scene, in metres.
     pub drift: f32,
     /// The deepest overlap of two colliders in metres, at least zero.
     pub overlap: f32,
-    /// Positions that are no numbers.
+    /// Number of positions that are not finite.
     pub broken: usize,
 }
 
-/// Every scene, those of the plane first.
+/// Every scene, 2D ones first.
 pub fn catalogue() -> Vec<Entry> {
     let mut entries = crate::dim2::entries();
     entries.extend(crate::dim3::entries());

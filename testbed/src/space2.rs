@@ -1,4 +1,4 @@
-//! What the testbed needs to know about the plane.
+//! 2D parts of the testbed.
 
 use avian2d::math::{Scalar, Vector};
 use avian2d::parry::math::{Pose, Rotation as PoseRotation};

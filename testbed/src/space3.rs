@@ -1,4 +1,4 @@
-//! What the testbed needs to know about space.
+//! 3D parts of the testbed.
 
 use avian3d::math::{Scalar, Vector};
 use avian3d::parry::math::Pose;

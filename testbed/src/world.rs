@@ -1,4 +1,4 @@
-//! A scene in an `App` of its own. Compiled once for each dimension, against the engine the parent module names.
+//! A scene in an `App` of its own. Compiled once per dimension, with the engine that the parent module names.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -37,7 +37,7 @@ struct Running {
     scene: &'static Scene,
     /// Forms by their bits, so that equal shapes share one.
     forms: HashMap<Vec<u32>, Arc<Form>>,
-    /// What has been made of each collider's shape.
+    /// The form of each collider's shape.
     known: HashMap<Entity, Arc<Form>>,
     /// Bodies in the order they were first seen in.
     numbers: HashMap<Entity, u32>,
@@ -47,7 +47,7 @@ impl Running {
     fn new(scene: &'static Scene) -> Self {
         let mut app = scenes::headless_app(scenes::DT, scenes::SUBSTEPS);
         (scene.build)(app.world_mut());
-        // Poses for a picture before the first step; no physics lives in this schedule.
+        // Transforms are propagated for a picture before the first step. This schedule has no physics.
         app.world_mut().run_schedule(PostUpdate);
         Self { app, scene, forms: HashMap::new(), known: HashMap::new(), numbers: HashMap::new() }
     }
@@ -125,7 +125,7 @@ impl Simulation for Running {
             })
             .collect();
         let mut bodies = world.query::<(&RigidBody, Has<Sleeping>)>();
-        // Tables come in no particular order, and it changes as bodies fall asleep.
+        // Tables have no special order, and it changes when bodies fall asleep.
         found.sort_by_key(|(entity, ..)| *entity);
         let states: Vec<(Role, bool)> = found
             .iter()

@@ -22,7 +22,7 @@ fn ten_thousand_colliders_on_one_body_come_and_go() {
     witness.is_undisturbed();
 }
 
-/// Pulls the rug in mid-contact in one way.
+/// Removes the support in contact, in one of several ways.
 type Change = fn(&mut EntityWorldMut);
 
 const CHANGES: [(&str, Change); 12] = [
@@ -40,7 +40,7 @@ const CHANGES: [(&str, Change); 12] = [
     ("gives it another shape", |e| _ = e.insert(Collider::capsule(0.1, 0.1))),
 ];
 
-/// What holds a sleeping ball up goes, changes or moves: the ball must fall.
+/// The support of a sleeping ball is removed, changed or moved: the ball must fall.
 #[test]
 fn whatever_happens_to_its_support_a_sleeping_body_falls() {
     for (name, change) in CHANGES {
@@ -65,7 +65,7 @@ fn whatever_happens_to_its_support_a_sleeping_body_falls() {
     assert!(position(&app, ball).y < -1.0);
 }
 
-/// The same, from inside the observers of sleep, to the very body that falls asleep or wakes.
+/// The same by observers of sleep, on the body that falls asleep or wakes.
 #[test]
 fn observers_of_sleep_may_do_anything_to_the_sleeper() {
     for (_, change) in CHANGES.into_iter().chain([("", despawn as Change)]) {

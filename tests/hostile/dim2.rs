@@ -1,8 +1,8 @@
-//! What hostile input must know of the plane. `dim3.rs` is the twin.
+//! 2D parts of the hostile input. `dim3.rs` has those of 3D.
 
 use avian::{math::Scalar, prelude::*};
 
-/// No rotation, but of this length.
+/// A pair of this length instead of a unit rotation.
 pub fn scaled(length: Scalar) -> Rotation {
     Rotation::from_sin_cos(0.0, length)
 }

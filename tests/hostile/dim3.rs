@@ -1,11 +1,11 @@
-//! What hostile input must know of space. `dim2.rs` is the twin.
+//! 3D parts of the hostile input. `dim2.rs` has those of 2D.
 
 use avian::{
     math::{Scalar, Vector},
     prelude::*,
 };
 
-/// No rotation, but of this length.
+/// A quaternion of this length instead of a unit rotation.
 pub fn scaled(length: Scalar) -> Rotation {
     Rotation(Rotation::IDENTITY.0 * length)
 }

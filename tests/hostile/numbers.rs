@@ -1,4 +1,4 @@
-//! Masses, coefficients, settings and steps that are none.
+//! Invalid masses, coefficients, settings and steps.
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
 use avian::{

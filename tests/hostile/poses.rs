@@ -1,4 +1,4 @@
-//! Places, directions and speeds that are none: they quarantine the body that has them, and no other.
+//! Invalid positions, directions and speeds: only the body with them is quarantined.
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
 use avian::{
@@ -27,7 +27,7 @@ fn a_position_that_is_not_finite_is_put_back_and_its_body_disabled() {
             assert!(is_disabled(&witness.app, ill), "{body:?} at {wrong}");
             assert!(position(&witness.app, ill).length() < 1.0);
             assert!(position(&witness.app, neighbour).is_finite());
-            // Mended, it takes part again.
+            // With a finite pose it takes part again.
             witness.app.world_mut().entity_mut(ill).remove::<RigidBodyDisabled>();
             witness.insert(ill, (Position(Vector::Y * 3.0), LinearVelocity(Vector::ZERO)));
             steps(&mut witness.app, 10);
@@ -107,7 +107,7 @@ fn a_rotation_without_direction_disables_its_body() {
 fn a_rotation_of_another_length_is_one_of_unit_length() {
     for length in [0.5, 2.0, 1.0e-9, 1.0e9] {
         let mut witness = Witness::new();
-        // Nobody but the blocks on it.
+        // Only the blocks on it wake.
         let apart = CollisionLayers::new(2, 2);
         let table = (RigidBody::Static, block(), dim::scaled(length), Position(Vector::Y * 3.0), apart);
         witness.spawn(table);
@@ -120,7 +120,7 @@ fn a_rotation_of_another_length_is_one_of_unit_length() {
             assert!(!is_disabled(&witness.app, entity));
             let off = position(&witness.app, entity).y - y;
             assert!(off.abs() < 0.02, "with a length of {length} it is off by {off}");
-            // Given once, it does not count as another in every step.
+            // The value is given once: it does not count as a change in every step.
             assert!(witness.app.world().get::<Sleeping>(entity).is_some(), "{length}");
         }
     }
@@ -135,7 +135,7 @@ fn without_the_sync_a_body_with_a_position_alone_is_not_turned() {
         app.finish();
         app.cleanup();
         app.insert_resource(Gravity::ZERO);
-        // Who would require them without the plugin?
+        // Without the plugin no component requires them.
         let pose = (Position(Vector::Y), Rotation::PLACEHOLDER);
         let block = app.world_mut().spawn((body, block(), pose, Transform::IDENTITY)).id();
         let child = app.world_mut().spawn((ball(), at(0.0, 3.0), ChildOf(block))).id();

@@ -1,4 +1,4 @@
-//! Shapes without size, extent or place: refused with an error, or colliders that can be lived with.
+//! Shapes with invalid sizes or coordinates: refused with an error, or repaired.
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
 use avian::{
@@ -13,7 +13,7 @@ use super::world::{WRONG_SIZES, Witness, at, ball, block, is_disabled, position,
 fn sizes_that_are_none_make_colliders_that_can_be_lived_with() {
     for wrong in WRONG_SIZES {
         let mut witness = Witness::new();
-        // What is infinitely large becomes very large, and would rightly push everybody.
+        // An infinite size becomes a very large one, which would push all bodies.
         let apart = CollisionLayers::new(2, 2);
         let shapes = [
             Collider::capsule(wrong, 1.0),
@@ -26,7 +26,7 @@ fn sizes_that_are_none_make_colliders_that_can_be_lived_with() {
         for (i, shape) in shapes.into_iter().enumerate() {
             witness.spawn((RigidBody::Dynamic, shape, at(4.0 * i as f32, 1.0), apart));
         }
-        // Past the constructors, straight from parry.
+        // Made by parry, without the constructors.
         witness.spawn((RigidBody::Dynamic, Collider::from(SharedShape::ball(wrong)), at(40.0, 1.0), apart));
         witness.is_undisturbed();
     }
@@ -53,7 +53,7 @@ fn a_scale_that_is_none_is_ignored_or_tiny() {
 #[test]
 fn meshes_of_nothing_can_be_lived_with() {
     let (zero, nan) = (Vector::ZERO, Vector::splat(Scalar::NAN));
-    // In a line, in one point, at no place, out of range, none at all.
+    // Collinear points, coincident points, invalid points, indices out of range, no points.
     let line: Vec<Vector> = (0..3).map(|i| Vector::X * i as Scalar).collect();
     let meshes = [
         (line, vec![[0, 1, 2]]),

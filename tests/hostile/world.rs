@@ -1,4 +1,4 @@
-//! A world with a witness that must not notice anything, and short ways to put bodies in and read them out.
+//! A world with a witness that must stay unaffected, and helpers to add bodies and read their state.
 
 use avian::{
     math::{Scalar, Vector},
@@ -12,9 +12,9 @@ use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
 
 const DT: Duration = Duration::from_nanos(1_000_000_000 / 60);
-/// What is no coordinate.
+/// Invalid coordinates.
 pub const WRONG: [Scalar; 3] = [Scalar::NAN, Scalar::INFINITY, Scalar::NEG_INFINITY];
-/// What is no length, mass or density.
+/// Invalid lengths, masses and densities.
 pub const WRONG_SIZES: [Scalar; 5] = [Scalar::NAN, Scalar::INFINITY, Scalar::NEG_INFINITY, 0.0, -1.0];
 
 pub fn app() -> App {
@@ -38,12 +38,12 @@ pub fn ball() -> Collider {
     SharedShape::ball(0.5).into()
 }
 
-/// A box whose sides can be told from its corners.
+/// A box with three different sides.
 pub fn block() -> Collider {
     Collider::convex_hull(corners(0.5)).expect("a box is convex")
 }
 
-/// The corners of a square or cube by half its side.
+/// The corners of a square or cube by its half side.
 pub fn corners(half: Scalar) -> Vec<Vector> {
     let double = |found: Vec<Vector>, axis: Vector| {
         found.iter().flat_map(|c| [*c - axis * half, *c + axis * half]).collect()
@@ -59,7 +59,7 @@ pub fn floor(app: &mut App) -> Entity {
     app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::Y))).id()
 }
 
-/// A ball that lies on the floor.
+/// A ball on the floor.
 pub fn resting(app: &mut App, x: f32) -> Entity {
     app.world_mut().spawn((RigidBody::Dynamic, ball(), at(x, 0.5))).id()
 }
@@ -72,7 +72,7 @@ pub fn is_disabled(app: &App, entity: Entity) -> bool {
     app.world().get::<RigidBodyDisabled>(entity).is_some()
 }
 
-/// A floor with a ball at rest on it, which must not notice anything.
+/// A floor with a ball at rest on it, which must stay unaffected.
 pub struct Witness {
     pub app: App,
     pub ball: Entity,
@@ -94,8 +94,7 @@ impl Witness {
         self.app.world_mut().entity_mut(entity).insert(bundle);
     }
 
-    /// Takes steps, after which the witness lies where it lay, and a body that is put there now falls and
-    /// comes to rest, as ever.
+    /// Takes steps. Then the witness is at its place, and a new body falls and comes to rest.
     pub fn is_undisturbed(&mut self) {
         steps(&mut self.app, 30);
         let late = self.spawn((RigidBody::Dynamic, ball(), at(-30.0, 0.7)));
@@ -109,7 +108,7 @@ impl Witness {
     }
 }
 
-/// Whether a body is one of those that must not notice anything.
+/// Whether a body is a witness.
 pub fn is_witness(position: &Position) -> bool {
     position.x < -10.0
 }

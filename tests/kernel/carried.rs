@@ -1,4 +1,4 @@
-//! Bodies on platforms that turn: contacts are recycled while both turn together.
+//! Bodies on rotating platforms: contacts are recycled while both rotate together.
 
 use super::dim::{sized, spin, tilts, upright};
 use super::sim::Sim;
@@ -9,7 +9,7 @@ use kernel::table::{BodyKind, Velocity};
 
 const GRAVITY: f32 = 10.0;
 
-/// A plate of 20 m with a body lying on its middle, and which is which. The body is added first if `body_first`.
+/// A plate of 20 m with a body at its centre. Returns plate and body. The body is added first if `body_first`.
 struct Plate {
     sim: Sim,
     plate: u32,
@@ -34,10 +34,10 @@ impl Plate {
         Self { sim, plate, body }
     }
 
-    /// Turns the plate about an axis through its middle at one speed for some steps, and then holds it.
+    /// Rotates the plate about an axis through its centre at constant speed for some steps, then stops it.
     fn turn(&mut self, spin: Angular, steps: usize) {
         for _ in 0..steps {
-            // The middle of the upper face stays where it is: about it the centre goes in a circle.
+            // The centre of the upper face stays in place, so the plate's centre moves on a circle.
             let linear = spin.cross(self.arm());
             self.sim.bodies.set_velocity(self.plate, Velocity { linear, angular: spin });
             self.sim.step();
@@ -49,14 +49,14 @@ impl Plate {
         self.sim.bodies.poses[self.plate as usize].rotation.rotate(Vector::Y * -0.25)
     }
 
-    /// How far the body gets along the plate in a time, from where it is.
+    /// Displacement of the body along the plate in a time.
     fn slide(&mut self, seconds: f32) -> f32 {
         let from = self.place();
         self.sim.steps((seconds * 60.0) as usize);
         (self.place() - from).length()
     }
 
-    /// Where the body is in the plate's frame.
+    /// The position of the body in the plate's frame.
     fn place(&self) -> Vector {
         let plate = self.sim.bodies.frame(self.plate);
         plate.rotation.inverse_rotate((self.sim.position(self.body) - plate.position).to_local())
@@ -99,7 +99,7 @@ fn what_lies_on_a_plate_that_is_tilted_a_little_slides_as_on_a_fixed_slope() {
 fn a_plate_tilted_slowly_is_as_a_slope_that_was_always_there() {
     for axis in tilts() {
         for body_first in [false, true] {
-            // Friction as high as it takes holds the body until the plate stands.
+            // Friction is high enough to hold the body until the plate stops.
             let mut plate = Plate::new(BodyKind::Kinematic, cube(), Rot::IDENTITY, 2.0, body_first);
             plate.turn(axis * (core::f32::consts::FRAC_PI_4 / 10.0), 600);
             assert!((plate.place() - Vector::Y * 0.75).length() < 0.01, "it was held: {:?}", plate.place());
@@ -128,7 +128,7 @@ fn friction_on_a_tilted_plate_holds_below_its_angle_and_not_above() {
             let mut plate = Plate::new(BodyKind::Kinematic, cube(), Rot::IDENTITY, 0.3, body_first);
             plate.sim.steps(30);
             plate.turn(spin(-angle / 5.0), 300);
-            // The plate stops at once, and the box some time after it.
+            // The plate stops at once, the box some time later.
             plate.sim.steps(60);
             let way = plate.slide(2.0);
             assert_eq!(way > 0.05, slides, "{way} m, {degrees}° above the angle of friction");
@@ -164,7 +164,7 @@ fn a_box_rides_a_turntable() {
             let frame = WorldPose::new(frame.position + (Vector::X * 2.0).to_world(), frame.rotation);
             plate.sim.bodies.teleport(plate.body, frame);
             plate.sim.steps(30);
-            // Six seconds a turn, after a start without slipping.
+            // Six seconds per revolution, after a start without slipping.
             let speed = core::f32::consts::TAU / 6.0;
             (0..60).for_each(|k| plate.turn(axis * (speed * k as f32 / 60.0), 1));
             plate.turn(axis * speed, 60);

@@ -1,4 +1,4 @@
-//! Bodies deep in one another: they come apart without gaining speed, and what hits them still does.
+//! Deeply overlapping bodies separate without gaining speed, and still react to impacts.
 
 use super::dim::{container, sized, turned};
 use super::sim::Sim;
@@ -19,7 +19,7 @@ fn speed(sim: &Sim, id: u32) -> f32 {
     sim.bodies.velocities[id as usize].linear.length()
 }
 
-/// The sum of the bodies' momenta; all are of density 1.
+/// The total momentum of the bodies, with density 1.
 fn momentum(sim: &Sim, ids: &[u32]) -> Vector {
     ids.iter().fold(Vector::ZERO, |sum, &id| {
         let mass = sim.colliders[id].def.shape.mass_properties(1.0).mass;
@@ -27,8 +27,8 @@ fn momentum(sim: &Sim, ids: &[u32]) -> Vector {
     })
 }
 
-/// A hundred bodies of one shape at one point, each turned further than the last. Neither their velocities
-/// nor what they move in a step may exceed the push-out speed.
+/// A hundred bodies of one shape at one point, each rotated further than the last. Neither their velocities nor their
+/// displacements per step may exceed the push-out speed.
 fn come_apart(shape: &Shape, angle: f32, substeps: u32) {
     let mut sim = Sim::new();
     sim.gravity = Vector::ZERO;
@@ -116,7 +116,7 @@ fn a_ball_deep_in_a_box_transfers_its_momentum() {
 
 #[test]
 fn a_fast_ball_transfers_its_momentum_to_a_row_of_boxes() {
-    // From just before the first box, from deep in it, and with the boxes deep in one another.
+    // From just before the first box, from deep inside of it, and with boxes that overlap deeply.
     for (start, pitch) in [(-1.5, 1.0), (-0.6, 1.0), (-0.6, 0.7)] {
         let mut sim = Sim::new();
         sim.gravity = Vector::ZERO;
@@ -154,12 +154,12 @@ fn bodies_that_grow_in_a_full_container_do_not_explode() {
         ids.iter().fold(0.0, |most: f32, id| most.max(speed(sim, *id)))
     };
     for step in 0..600 {
-        // From loose to half as much again as there is room for, in five seconds.
+        // From loose to 1.5 times the capacity, in five seconds.
         for (i, &id) in ids.iter().enumerate().filter(|_| step < 300) {
             sim.reshape(id, shape(i, 0.2 + 0.4 * step as f32 / 300.0));
         }
         sim.step();
-        // What falls from lid to floor is faster.
+        // A body that falls from lid to floor is faster.
         let speed = fastest(&sim);
         assert!(speed < (20.0 * 2.0 * half).sqrt(), "flung at {speed} m/s in step {step}");
     }
@@ -190,19 +190,19 @@ fn a_crowd_has_the_same_bits_with_four_lanes_and_with_as_many_as_there_are() {
     assert_eq!(run(true), run(false));
 }
 
-/// Bodies that fall are pressed deep into those below and have to be borne all the same: only bodies that were placed
-/// in one another are parted without force. Which boxes wedge is chance, so the bound is for the median heap.
+/// Falling bodies overlap those below deeply and must still be stopped: only bodies that were placed inside of each
+/// other are separated without force. Which boxes wedge is chance, so the bound is for the median heap.
 #[test]
 fn a_heap_of_boxes_that_fell_far_does_not_sink_into_itself() {
     let mut depths: Vec<f32> = (0..15).map(depth_of_a_heap_that_fell_far).collect();
     depths.sort_by(f32::total_cmp);
-    // Soft contacts yield two centimetres under twenty layers of three times the weight. In space the rule that parts
-    // all deep contacts without force left 15 to 27 cm; in the plane it makes no difference.
+    // Soft contacts yield two centimetres under twenty layers of three times the weight. In 3D the rule that separated
+    // all deep contacts without force left 15 to 27 cm; in 2D it makes no difference.
     let most = if kernel::math::DIM == 2 { 0.022 } else { 0.03 };
     assert!(depths[7] < most, "{depths:?} m deep when they have come to rest");
 }
 
-/// Deepest penetration in a heap at rest; `seed` turns the boxes it was made of.
+/// Deepest penetration in a heap at rest. `seed` sets the boxes' rotations.
 fn depth_of_a_heap_that_fell_far(seed: u32) -> f32 {
     let mut sim = Sim::new();
     sim.checked = false;

@@ -1,4 +1,4 @@
-//! What a test must know of the plane.
+//! 2D parts of the tests.
 
 use super::extreme::Dice;
 use crate::kernel::math::{Angular, InvInertia, Rot, Vector};
@@ -20,7 +20,7 @@ pub fn spin_of(w: Angular) -> f32 {
     w.z
 }
 
-/// A box of the given size; `depth` is for space only.
+/// A box of the given size. `depth` is used in 3D only.
 pub fn sized(x: f32, y: f32, _depth: f32) -> Vector {
     Vector { x, y }
 }
@@ -30,10 +30,10 @@ pub fn spin(z: f32) -> Angular {
     Angular { z }
 }
 
-/// The moment of inertia of a solid ball over m r².
+/// The moment of inertia of a solid ball, divided by m r².
 pub const BALL_INERTIA: f32 = 0.5;
 
-/// The kinetic energy of turning.
+/// The kinetic energy of rotation.
 pub fn spin_energy(inverse: InvInertia, _rotation: Rot, w: Angular) -> f64 {
     if inverse.zz > 0.0 { 0.5 * f64::from(w.z * w.z / inverse.zz) } else { 0.0 }
 }
@@ -47,17 +47,17 @@ pub fn container() -> (f32, Vec<(Vector, Vector)>, Vec<Vector>) {
     (4.0, walls.map(|(size, x, y)| (size, Vector { x, y })).into(), cells.collect())
 }
 
-/// A position's part across the plane of x and y.
+/// The part of a position across the xy plane.
 pub fn across(_: Vector) -> f32 {
     0.0
 }
 
-/// A rotation from dice.
+/// A random rotation.
 pub fn any_rotation(dice: &mut Dice) -> Rot {
     Rot::from_angle(4.0 * dice.signed())
 }
 
-/// An angular velocity from dice, of any length.
+/// A random angular velocity of any length.
 pub fn any_spin(dice: &mut Dice) -> Angular {
     Angular { z: dice.signed() }
 }
@@ -69,12 +69,12 @@ pub fn hull_of(half: Vector) -> Shape {
         .map_or(Shape::Cuboid(Cuboid { half }), |hull| Shape::Hull(Arc::new(hull)))
 }
 
-/// Unit axes about which a level plate can be tilted.
+/// Unit axes about which a level plate can tilt.
 pub fn tilts() -> Vec<Angular> {
     vec![spin(1.0)]
 }
 
-/// The axis upright on a level plate: none.
+/// The upright axis on a level plate: none in 2D.
 pub fn upright() -> Option<Angular> {
     None
 }

@@ -1,4 +1,4 @@
-//! What a test must know of space.
+//! 3D parts of the tests.
 
 use super::extreme::Dice;
 use crate::kernel::math::{Angular, InvInertia, Rot, Vector};
@@ -30,10 +30,10 @@ pub fn sized(x: f32, y: f32, depth: f32) -> Vector {
     Vector { x, y, z: depth }
 }
 
-/// The moment of inertia of a solid ball over m r².
+/// The moment of inertia of a solid ball, divided by m r².
 pub const BALL_INERTIA: f32 = 0.4;
 
-/// The kinetic energy of turning.
+/// The kinetic energy of rotation.
 pub fn spin_energy(inverse: InvInertia, rotation: Rot, w: Angular) -> f64 {
     let local = rotation.inverse_rotate(w);
     0.5 * f64::from(local.dot(inverse.inverse().apply(local)))
@@ -51,17 +51,17 @@ pub fn container() -> (f32, Vec<(Vector, Vector)>, Vec<Vector>) {
     (2.0, walls.collect(), cells.collect())
 }
 
-/// A position's part across the plane of x and y.
+/// The part of a position across the xy plane.
 pub fn across(p: Vector) -> f32 {
     p.z
 }
 
-/// A rotation from dice.
+/// A random rotation.
 pub fn any_rotation(dice: &mut Dice) -> Rot {
     Rot { x: dice.signed(), y: dice.signed(), z: dice.signed(), w: dice.signed() + 1.5 }.normalized()
 }
 
-/// An angular velocity from dice, of any length.
+/// A random angular velocity of any length.
 pub fn any_spin(dice: &mut Dice) -> Angular {
     Vector { x: dice.signed(), y: dice.signed(), z: dice.signed() }
 }
@@ -72,13 +72,13 @@ pub fn hull_of(half: Vector) -> Shape {
     Hull::convex_hull_of(&points).map_or(Shape::Cuboid(Cuboid { half }), |hull| Shape::Hull(Arc::new(hull)))
 }
 
-/// Unit axes about which a level plate can be tilted.
+/// Unit axes about which a level plate can tilt.
 pub fn tilts() -> Vec<Angular> {
     let skew = Vector { x: 2.0, y: 1.0, z: 2.0 } * (1.0 / 3.0);
     vec![Vector::X, Vector::Z, skew]
 }
 
-/// The axis upright on a level plate.
+/// The upright axis on a level plate.
 pub fn upright() -> Option<Angular> {
     Some(Vector::Y)
 }

@@ -12,7 +12,7 @@ fn rod(a: u32, b: u32, length: f32) -> Distance {
     Distance { bodies: [a, b], anchors: [Vector::ZERO; 2], length, spring: None }
 }
 
-/// A body of a kind with the shape of a small ball.
+/// A body with the shape of a small ball.
 fn bead(sim: &mut Sim, kind: BodyKind, position: Vector) -> u32 {
     sim.add(kind, Shape::Ball(Ball { radius: 0.1 }), position, Rot::IDENTITY)
 }
@@ -105,7 +105,7 @@ fn a_chain_of_twenty_hangs_still_and_falls_asleep() {
     let (beads, _) = chain(&mut sim, 20);
     sim.steps(600);
     for (i, bead) in beads.iter().enumerate() {
-        // Rods are soft as contacts are: under 20 beads by less than 0.4 %.
+        // Rods are as soft as contacts: under 20 beads they stretch by less than 0.4 %.
         let sag = (sim.position(*bead).to_local() + Vector::Y * (0.5 * i as f32)).length();
         assert!(sag <= 0.004 * 0.5 * i as f32, "bead {i} is off by {sag} m");
         let speed = sim.bodies.velocities[*bead as usize].linear.length();
@@ -126,7 +126,7 @@ fn a_chain_of_twenty_hangs_still_and_falls_asleep() {
     assert!(most.fold(0.0, f32::max) < 1.0e-3, "impulses were kept: it hangs on as it did");
 }
 
-/// Two beads in the air, of which one rests on nothing but the rod: they are one island, and fall as one.
+/// Two beads in the air, one of which only hangs on the rod: they are one island, and fall together.
 #[test]
 fn what_is_removed_wakes_what_it_held() {
     let mut asleep = Sim::new();
@@ -151,7 +151,7 @@ fn what_is_removed_wakes_what_it_held() {
     sim.steps(60);
     assert!(sim.position(beads[3]).to_local().y < -4.0 && sim.position(beads[1]).to_local().y > -0.6);
 
-    // The chain hangs from a bead that lets go.
+    // The chain hangs from a bead that becomes dynamic.
     let mut sim = asleep.clone();
     sim.link().retype(beads[0], BodyKind::Dynamic);
     assert_eq!(sim.bodies.awake_dynamic().count(), 7);
@@ -188,7 +188,7 @@ fn a_kinematic_body_pulls_what_hangs_on_it() {
     assert_eq!(sim.bodies.awake_dynamic().count(), 1, "a hand that wakes wakes what it holds");
 }
 
-/// Nets of rods and springs fall on boxes: rows of all kinds, some in the overflow, some of held bodies.
+/// Nets of rods and springs fall on boxes: rows of all kinds, some in the overflow, some with locked axes.
 fn net(sim: &mut Sim) {
     sim.sleeping = true;
     sim.floor();
@@ -271,7 +271,7 @@ fn hostile_input_is_told() {
     }
     assert_eq!(sim.part(0), Err(DistanceError::NoDistance(0)));
     assert_eq!(sim.distance_impulse(9), 0.0);
-    // Two points in one place have no direction, and part all the same; nothing between bodies that do not move.
+    // Two coincident points have no direction, but separate. Constraints between immovable bodies have no effect.
     sim.gravity = Vector::ZERO;
     let c = bead(&mut sim, BodyKind::Static, Vector::Y * 3.0);
     let d = bead(&mut sim, BodyKind::Static, Vector::Y * 5.0);

@@ -1,4 +1,4 @@
-//! Random extreme worlds: no body is lost, and no body becomes much faster than the fastest was.
+//! Random extreme worlds: no body is lost, and none becomes much faster than the initial maximum.
 
 use super::dim::{any_rotation, any_spin, hull_of};
 use super::sim::Sim;
@@ -7,11 +7,11 @@ use kernel::math::{DIM, Rot, Vector};
 use kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Segment, Shape, Triangle};
 use kernel::table::BodyKind;
 
-/// Numbers from a seed.
+/// A random number generator.
 pub struct Dice(u64);
 
 impl Dice {
-    /// Numbers from a seed, none of them near those of another.
+    /// A generator whose sequence is not near that of another seed.
     pub fn new(seed: u64) -> Self {
         let mut dice = Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
         for _ in 0..8 {
@@ -31,17 +31,17 @@ impl Dice {
         2.0 * self.unit() - 1.0
     }
 
-    /// A number between two others, whose logarithm is spread evenly.
+    /// A number between two others, with a uniformly distributed logarithm.
     fn between(&mut self, low: f32, high: f32) -> f32 {
         low * (high / low).powf(self.unit())
     }
 
-    /// A vector of up to a length along each axis.
+    /// A vector with components up to a limit.
     fn vector(&mut self, length: f32) -> Vector {
         Vector::from_array(core::array::from_fn(|_| length * self.signed()))
     }
 
-    /// The half extents of something of 0.01 to 100 m, with one or more sides thinner by up to 10,000.
+    /// Half extents of 0.01 to 100 m, with one or more sides thinner by up to 10,000.
     fn extents(&mut self) -> Vector {
         let size = self.between(0.005, 50.0);
         let thin = self.between(1.0e-4, 1.0);
@@ -68,7 +68,7 @@ impl Dice {
         }
     }
 
-    /// A shape of something immovable.
+    /// A shape for an immovable body.
     fn surface(&mut self) -> Shape {
         let mut point = || self.vector(100.0);
         match [point(), point(), point()] {
@@ -80,13 +80,13 @@ impl Dice {
     }
 }
 
-/// How far a shape reaches from its frame.
+/// The extent of a shape from its frame.
 fn reach(shape: &Shape) -> f32 {
     let aabb = shape.local_aabb(Rot::IDENTITY);
     aabb.min.abs().max(aabb.max.abs()).length()
 }
 
-/// A world of up to 20 bodies, and the fastest any point of one of them moves.
+/// A world of up to 20 bodies, and the maximum speed of any of their points.
 fn world(seed: u64) -> (Sim, f32) {
     let mut dice = Dice::new(seed);
     let mut sim = Sim::new();
@@ -115,9 +115,9 @@ fn world(seed: u64) -> (Sim, f32) {
     (sim, fastest)
 }
 
-/// Whether the fastest body of a world stays below three times its fastest start. A lost body makes a step panic.
+/// Whether the maximum speed in a world stays below three times its initial value. A lost body makes a step panic.
 ///
-/// The fastest that a point of a body may move at first counts as the start, and what bodies gain by falling.
+/// The initial value is the maximum speed of a point of any body, plus the speed gained by falling.
 fn is_calm(seed: u64) -> bool {
     let (mut sim, fastest) = world(seed);
     (1..=180).all(|step| {
@@ -127,7 +127,7 @@ fn is_calm(seed: u64) -> bool {
     })
 }
 
-/// Up to 1 % of the worlds throw a body. Contacts keep the arms of the step's start, so a splinter that is wedged
+/// Up to 1 % of the worlds throw a body. Contacts keep the arms of the start of the step, so a splinter that is wedged
 /// between two walls and turns by several radians in a step can gain energy.
 #[test]
 fn in_random_extreme_worlds_no_body_is_lost_and_hardly_one_is_thrown() {

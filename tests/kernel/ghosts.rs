@@ -1,4 +1,4 @@
-//! Riders that slide over floors of several pieces, as if the floor were one piece.
+//! Bodies that slide over floors of several pieces, as if the floor were one piece.
 
 use super::dim::{riders, sized, tiles, turned};
 use super::sim::Sim;
@@ -7,18 +7,18 @@ use kernel::math::{Rot, Vector};
 use kernel::shape::{Cuboid, Shape};
 use kernel::table::BodyKind;
 
-/// What a ride over a floor did to a rider.
+/// The effect of a ride over a floor on the rider.
 #[derive(Clone, Copy, Debug)]
 struct Ride {
-    /// The speed at the end over that at the start, less 1.
+    /// The ratio of final to initial speed, minus 1.
     gained: f32,
-    /// How far the rider rose above where it slid, in metres.
+    /// Maximum rise above the initial height, in metres.
     bump: f32,
-    /// How far it went aside, in metres.
+    /// Sideways displacement, in metres.
     aside: f32,
 }
 
-/// The ride of a frictionless rider over 10 m of a floor with its top at y = 0.
+/// The ride of a rider without friction over 10 m of a floor whose top is at y = 0.
 fn ride(floor: &[(Shape, Vector)], rider: &Shape, speed: f32) -> Ride {
     let mut sim = Sim::new();
     sim.checked = false;
@@ -76,7 +76,7 @@ fn steps_stop_or_lift_what_runs_against_them() {
         for (name, rider) in riders() {
             for speed in [1.0, 3.0, 10.0] {
                 let ride = ride(&step_of(height), &rider, speed);
-                // It either went up by the height of the step, or was thrown back.
+                // It either rose by the height of the step, or was thrown back.
                 let is_up = ride.bump > 0.9 * height;
                 let is_stopped = ride.gained < -0.5;
                 assert!(is_up || is_stopped, "{name} at {speed} through a step of {height}: {ride:?}");
@@ -99,7 +99,7 @@ fn a_wall_on_a_floor_of_tiles_stops_what_slides_against_it() {
     }
 }
 
-/// A frictionless body between two walls that both lean away by an angle, after three seconds.
+/// A body without friction between two walls that lean away from it by an angle, after three seconds.
 fn in_a_groove(rider: &Shape, angle: f32) -> Vector {
     let mut sim = Sim::new();
     let half = sized(2.0, 0.5, 2.0);

@@ -1,9 +1,9 @@
-//! Golden hashes: what whole scenes come to, bit by bit, with any number of workers and lanes, in any profile and on
+//! Golden hashes: final states of whole scenes, bit by bit, for any number of workers and lanes, in any profile and on
 //! any machine.
 //!
-//! A scene may use sums, products, quotients, square roots and the kernel's own functions, but nothing of libm. Its
-//! expected hash stands in `golden2.rs` or `golden3.rs`. Where a change of the simulation is meant, the table that
-//! the failing test prints replaces the old one, and the commit says why.
+//! A scene may use sums, products, quotients, square roots and the kernel's own functions, but not libm. The expected
+//! hashes are in `golden2.rs` and `golden3.rs`. If a change of the simulation is intended, the table printed by the
+//! failing test replaces the old one, and the commit says why.
 
 use super::dim::{container, sized, turned};
 use super::golden_dim::{GOLDEN, coordinates, numbers, shapes, spun, terrain, tilted, trough};
@@ -13,7 +13,7 @@ use kernel::math::{AxisLocks, DIM, Rot, Scalar, Vector, WorldPose};
 use kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Shape};
 use kernel::table::{BodyKind, Velocity};
 
-/// The name of a scene, and what builds and runs it.
+/// Name of a scene, and the function that builds and runs it.
 const SCENES: [(&str, fn(&mut Sim)); 15] = [
     ("pyramid", pyramid),
     ("towers", towers),
@@ -40,7 +40,7 @@ fn block(half: f32) -> Shape {
     Shape::Cuboid(Cuboid { half: Vector::ONE * half })
 }
 
-/// Fractions that look like chance, from 0 up to 1.
+/// Pseudo-random fractions from 0 up to 1.
 struct Chance(u32);
 
 impl Chance {
@@ -50,7 +50,7 @@ impl Chance {
     }
 }
 
-/// Adds a dynamic body. One of a shape without an inside gets the mass of a ball.
+/// Adds a dynamic body. A shape without volume gets the mass of a ball.
 fn body(sim: &mut Sim, shape: Shape, at: Vector, turn: Rot, friction: f32, restitution: f32) -> u32 {
     let hollow = shape.mass_properties(1.0).mass == 0.0;
     let id = sim.add_with(BodyKind::Dynamic, shape, at, turn, friction, restitution);
@@ -86,7 +86,7 @@ fn pyramid(sim: &mut Sim) {
     sim.steps(100);
 }
 
-/// Towers, some of them of boxes that are not straight above one another, in other steps than usual.
+/// Towers, some with displaced boxes, with an unusual time step.
 fn towers(sim: &mut Sim) {
     (sim.dt, sim.substeps) = (1.0 / 50.0, 6);
     sim.floor();
@@ -100,7 +100,7 @@ fn towers(sim: &mut Sim) {
     sim.steps(120);
 }
 
-/// Every native shape meets every other one, straight on and tilted.
+/// Every native shape collides with every other one, head-on and tilted.
 fn pairs(sim: &mut Sim) {
     sim.gravity = Vector::ZERO;
     let shapes = shapes();
@@ -122,7 +122,7 @@ fn pairs(sim: &mut Sim) {
     sim.steps(90);
 }
 
-/// Every native shape falls between half-spaces, one of which comes after the bodies.
+/// Every native shape falls between half-spaces, one of which is added after the bodies.
 fn heap(sim: &mut Sim) {
     let mut planes = trough();
     let last = planes.pop();
@@ -144,7 +144,7 @@ fn heap(sim: &mut Sim) {
     sim.steps(140);
 }
 
-/// Every native shape falls on triangles and segments, and no manifold is kept.
+/// Every native shape falls on triangles and segments, without recycling.
 fn on_terrain(sim: &mut Sim) {
     sim.recycle = false;
     for shape in terrain() {
@@ -159,7 +159,7 @@ fn on_terrain(sim: &mut Sim) {
     sim.steps(120);
 }
 
-/// What rolls, slides and sticks on slopes: boxes, a half-space, and floors that turn.
+/// Rolling, sliding and sticking on slopes: boxes, a half-space, and rotating floors.
 fn slopes(sim: &mut Sim) {
     for lane in 0..4 {
         let angle = 0.15 * lane as f32;
@@ -186,7 +186,7 @@ fn slopes(sim: &mut Sim) {
     sim.steps(120);
 }
 
-/// What bounces: on a floor, on each other, and through a row of balls.
+/// Restitution: on a floor, between bodies, and through a row of balls.
 fn bounces(sim: &mut Sim) {
     sim.dt = 1.0 / 64.0;
     let floor = Shape::Cuboid(Cuboid { half: Vector::ONE * 200.0 });
@@ -207,7 +207,7 @@ fn bounces(sim: &mut Sim) {
     sim.steps(130);
 }
 
-/// Many at one place, and some that a ball drives into one another.
+/// Many bodies at one place, and some that a ball pushes into each other.
 fn crowd(sim: &mut Sim) {
     sim.floor();
     let shapes = shapes();
@@ -224,7 +224,7 @@ fn crowd(sim: &mut Sim) {
     sim.steps(100);
 }
 
-/// Pyramids fall asleep; one is hit, and one is carried off by what it stands on.
+/// Pyramids fall asleep. One is hit, and one is carried off by its platform.
 fn sleepers(sim: &mut Sim) {
     sim.sleeping = true;
     sim.floor();
@@ -251,7 +251,7 @@ fn sleepers(sim: &mut Sim) {
     sim.steps(60);
 }
 
-/// Bodies that are held along and about axes, in a heap.
+/// Bodies with locked axes, in a heap.
 fn held(sim: &mut Sim) {
     sim.floor();
     let shapes = shapes();
@@ -284,7 +284,7 @@ fn dominance(sim: &mut Sim) {
     sim.steps(100);
 }
 
-/// Long and flat bodies that spin about all axes, first alone and then into one another.
+/// Long and flat bodies that spin about all axes, first separately, then into each other.
 fn spin(sim: &mut Sim) {
     sim.gravity = Vector::ZERO;
     let shapes = shapes();
@@ -325,7 +325,7 @@ fn mixer(sim: &mut Sim) {
     sim.steps(130);
 }
 
-/// What an app does to bodies: it moves, pushes, grows, holds and adds some.
+/// Changes by an app: bodies are moved, pushed, scaled, locked and added.
 fn changes(sim: &mut Sim) {
     sim.sleeping = true;
     sim.floor();
@@ -355,7 +355,7 @@ fn changes(sim: &mut Sim) {
     }
 }
 
-/// So much that there are many blocks: a high pyramid in a rain of balls.
+/// A scene with many blocks: a high pyramid in a rain of balls.
 fn wall(sim: &mut Sim) {
     sim.floor();
     stack(sim, 40, 0.0);

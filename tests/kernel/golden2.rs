@@ -1,10 +1,10 @@
-//! Golden hashes in the plane, and what their scenes must know of it. `golden3.rs` is the twin.
+//! Golden hashes in 2D, and 2D parts of their scenes. `golden3.rs` has those of 3D.
 
 use crate::kernel::math::{Angular, Rot, Scalar, Vector, WorldVector};
 use crate::kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Hull, Segment, Shape, Triangle};
 use std::sync::Arc;
 
-/// Of each scene the hash with world positions in `f32`, and in `f64`.
+/// For each scene the hash with world positions in `f32`, and in `f64`.
 pub const GOLDEN: [(&str, u64, u64); 15] = [
     ("pyramid", 0x4c86672e2826440f, 0xc99ae46ed6728c01),
     ("towers", 0x336a6131c7c43b87, 0x3c93bfeb35fb9f0a),
@@ -65,22 +65,22 @@ pub fn terrain() -> Vec<Shape> {
     (-8..8).map(part).collect()
 }
 
-/// A rotation unlike that of any axis.
+/// A rotation by no special angle.
 pub fn tilted(angle: f32) -> Rot {
     Rot::from_angle(angle)
 }
 
-/// An angular velocity of which the plane has the last part.
+/// An angular velocity; 2D uses the last component.
 pub fn spun(_x: f32, _y: f32, z: f32) -> Angular {
     Angular { z }
 }
 
-/// The numbers of a place in the world.
+/// The coordinates of a position.
 pub fn coordinates(p: WorldVector) -> Vec<Scalar> {
     vec![p.x, p.y]
 }
 
-/// The numbers of a rotation and an angular velocity.
+/// The components of a rotation and an angular velocity.
 pub fn numbers(rotation: Rot, angular: Angular) -> Vec<f32> {
     vec![rotation.cos, rotation.sin, angular.z]
 }

@@ -1,10 +1,10 @@
-//! Golden hashes in space, and what their scenes must know of it. `golden2.rs` is the twin.
+//! Golden hashes in 3D, and 3D parts of their scenes. `golden2.rs` has those of 2D.
 
 use crate::kernel::math::{Angular, Rot, Scalar, Vector, WorldVector};
 use crate::kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Hull, Segment, Shape, Triangle};
 use std::sync::Arc;
 
-/// Of each scene the hash with world positions in `f32`, and in `f64`.
+/// For each scene the hash with world positions in `f32`, and in `f64`.
 pub const GOLDEN: [(&str, u64, u64); 15] = [
     ("pyramid", 0xb7eb763eb6cec32c, 0xf1be7810f659f52f),
     ("towers", 0x3a9ff86f9ee73c38, 0xe867d70b3fec41d6),
@@ -80,7 +80,7 @@ pub fn terrain() -> Vec<Shape> {
     parts
 }
 
-/// A rotation unlike that of any axis.
+/// A rotation about no special axis.
 pub fn tilted(angle: f32) -> Rot {
     Rot::from_axis_angle(Vector { x: 2.0 / 3.0, y: 1.0 / 3.0, z: 2.0 / 3.0 }, angle)
 }
@@ -90,12 +90,12 @@ pub fn spun(x: f32, y: f32, z: f32) -> Angular {
     Vector { x, y, z }
 }
 
-/// The numbers of a place in the world.
+/// The coordinates of a position.
 pub fn coordinates(p: WorldVector) -> Vec<Scalar> {
     vec![p.x, p.y, p.z]
 }
 
-/// The numbers of a rotation and an angular velocity.
+/// The components of a rotation and an angular velocity.
 pub fn numbers(rotation: Rot, angular: Angular) -> Vec<f32> {
     vec![rotation.x, rotation.y, rotation.z, rotation.w, angular.x, angular.y, angular.z]
 }

@@ -1,4 +1,4 @@
-//! Bodies held along and about axes that something pushes them along and about.
+//! Bodies with locked axes that are pushed along and about them.
 
 use super::sim::Sim;
 use crate::kernel;
@@ -6,7 +6,7 @@ use kernel::math::{AxisLocks, DIM, Rot, Vector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::table::BodyKind;
 
-/// A heap of boxes and balls, 5 cm and more within each other and the floor, of which seven in ten are held.
+/// A heap of boxes and balls that overlap each other and the floor by 5 cm and more. Seven in ten have locked axes.
 fn heap(locks: AxisLocks) -> Sim {
     let mut sim = Sim::new();
     sim.floor();
@@ -29,7 +29,7 @@ fn heap(locks: AxisLocks) -> Sim {
 #[test]
 fn nothing_flies_off_whatever_is_held() {
     for bits in 0..64u8 {
-        // In 2D some of the bits mean nothing.
+        // In 2D some of the bits are ignored.
         let locks = AxisLocks(if DIM == 2 { bits & 0b110_001 } else { bits });
         if DIM == 2 && locks.0 != bits {
             continue;
@@ -60,7 +60,7 @@ fn rows_that_were_not_built_are_not_solved() {
         sim.cuboid(Vector::ONE * 0.5, Vector::X * (1.5 * i as f32 - 150.0) + Vector::Y * 0.5);
     }
     sim.steps(5);
-    // The floor rests, and its row goes to another body.
+    // The floor comes to rest, and its row is given to another body.
     sim.builds_rows = false;
     sim.link().set_kinematic_awake(floor, false);
     let before = sim.bodies.poses[1].center.y;

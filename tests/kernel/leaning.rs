@@ -29,7 +29,7 @@ fn shapes() -> [(&'static str, Shape); 5] {
     ]
 }
 
-/// How far a shape reaches in a direction.
+/// The extent of a shape in a direction.
 fn reach(shape: &Shape, rotation: Rot, direction: Vector) -> f32 {
     let aabb = shape.local_aabb(rotation);
     if direction.x + direction.y + direction.z > 0.0 {
@@ -39,7 +39,7 @@ fn reach(shape: &Shape, rotation: Rot, direction: Vector) -> f32 {
     }
 }
 
-/// The most that a body's energy rises, over its energy at first. Energies are the greatest of each quarter second.
+/// Maximum rise of a body's energy above its initial one. Energies are the maximum of each quarter second.
 fn rise(shape: &Shape, tilt: f32, friction: f32, seconds: usize) -> f64 {
     let mut sim = Sim::new();
     sim.checked = false;
@@ -81,9 +81,9 @@ fn what_leans_at_a_wall_gains_no_energy() {
 }
 
 /// A thin capsule rolls in the corner of floor and wall, ever faster: to 100 rad/s and more about its own axis, while
-/// the axis swings. Contacts keep the arms of the step's start, so friction acts aside of where the axis is by then: the
-/// capsule gains up to half of what it had before it falls. It gained six times as much with a step of the
-/// gyroscopic torque between contacts and motion.
+/// the axis swings. Contacts keep the arms of the start of the step, so friction acts beside the current axis: the
+/// capsule gains up to half of its initial energy before it falls. With a step of the gyroscopic torque between
+/// contacts and integration it gained six times as much.
 #[test]
 fn a_capsule_that_rolls_in_a_corner_gains_at_most_half_of_its_energy() {
     let end = Vector::Y * (HALF - 0.05);

@@ -1,5 +1,5 @@
-//! How much is kept of a body, a collider and a contact: printed by `cargo test -- memory --nocapture`, and written
-//! down in docs/hot-loops.md.
+//! Bytes of memory per body, collider and contact: printed by `cargo test -- memory --nocapture`, and listed in
+//! docs/hot-loops.md.
 
 use crate::kernel;
 use core::mem::size_of;
@@ -11,7 +11,7 @@ use kernel::math::{DIM, F32x4, Lane};
 use kernel::solver::{BodyRow, ContactRow, InvMass, MassRow, Motion, RestitutionRow};
 use kernel::table::{BodyTable, ColliderTable};
 
-/// The bytes of a contact's share of a wide row: what all passes sweep, and what only bouncing needs.
+/// Bytes per contact in a wide row: data of all passes, and data of restitution.
 fn row<const P: usize>() -> [usize; 2] {
     fn of<N: Lane, M: InvMass<N>, const P: usize>() -> [usize; 2] {
         [size_of::<ContactRow<N, M, P>>() / N::WIDTH, size_of::<RestitutionRow<N, P>>() / N::WIDTH]
@@ -35,7 +35,7 @@ fn memory_of_bodies_colliders_and_contacts_stays_in_its_budget() {
     let sum = |parts: &[usize]| parts.iter().sum::<usize>();
     let (body, collider, contact) = (sum(&body), sum(&collider), sum(&contact));
     println!("sum {body} + {}, {collider}, {contact} + {:?}", sum(&rows), contact_rows.map(|r| sum(&r)));
-    // World positions of twice the size, which may have to be aligned.
+    // World positions are twice as large, and may need alignment.
     let more = if size_of::<kernel::math::Scalar>() == 8 { 16 } else { 0 };
     let [of_body, of_collider, of_contact] = if DIM == 2 { [88, 248, 252] } else { [116, 300, 336] };
     let budget = [of_body + more, of_collider + more, of_contact];

@@ -119,7 +119,7 @@ fn round_shapes_do_not_sink_as_they_turn() {
     let axis = sized(0.0, 0.0, 0.6);
     let roller = Shape::Capsule(Capsule { a: axis * -1.0, b: axis, radius: 0.5 });
     for shape in [ball, roller] {
-        // Over a floor that it slides on freely, and on one that it rolls on.
+        // Over a floor without friction, and on one with friction.
         for friction in [0.0, 0.5] {
             let mut sim = Sim::new();
             let floor = Shape::Cuboid(Cuboid { half: Vector::ONE * 200.0 });
@@ -142,7 +142,7 @@ fn round_shapes_do_not_sink_as_they_turn() {
 
 #[test]
 fn a_ball_that_slides_comes_to_roll_in_time() {
-    // It slows by μ g until its surface stands still, at v₀ / (1 + k).
+    // It decelerates by μ g until its contact point is at rest, at v₀ / (1 + k).
     let (mu, v0) = (0.2f32, 7.0f32);
     let mut sim = Sim::new();
     let floor = Shape::Cuboid(Cuboid { half: Vector::ONE * 200.0 });

@@ -1,4 +1,4 @@
-//! Bodies that are given a velocity by hand meet what is in their way in the very next step.
+//! Bodies whose velocity was set by hand hit obstacles in the next step.
 
 use super::dim::{sized, spin};
 use super::sim::Sim;
@@ -13,7 +13,7 @@ fn slab(half: Vector) -> Shape {
     Shape::Cuboid(Cuboid { half })
 }
 
-/// How many of 20 balls, at rest at all distances within a step's way of a wall of 2 cm, pass it.
+/// How many of 20 balls pass a wall of 2 cm, from rest at different distances within one step's motion.
 fn pass(speed: f32) -> usize {
     (0..20)
         .filter(|k| {

@@ -1,4 +1,4 @@
-//! When a manifold is kept from step to step, and when it must not be.
+//! When a manifold is recycled in the next step, and when it must be recomputed.
 
 use super::dim::{sized, spin, turned};
 use super::sim::Sim;
@@ -18,7 +18,7 @@ fn at_rest() -> (Sim, [u32; 2]) {
     (sim, [floor, id])
 }
 
-/// Moves a body as a step does, which is not by hand.
+/// Moves a body as a step does, not by hand.
 fn shift(sim: &mut Sim, id: u32, by: Vector, turn: Rot) {
     let pose = &mut sim.bodies.poses[id as usize];
     pose.center += by.to_world();
@@ -32,7 +32,7 @@ fn redefine(sim: &mut Sim, id: u32, change: impl FnOnce(&mut ColliderDef)) {
     sim.colliders.redefine(id, def, &mut sim.bodies);
 }
 
-/// What becomes of the contact of a box at rest after a change to box and floor.
+/// The outcome for the contact of a box at rest after a change to box and floor.
 fn after(change: impl FnOnce(&mut Sim, [u32; 2])) -> Outcome {
     let (mut sim, ids) = at_rest();
     change(&mut sim, ids);
@@ -61,7 +61,7 @@ fn motion_beyond_the_limits_is_computed_anew() {
     assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::X * 0.055, Rot::IDENTITY)), Outcome::Recomputed);
     assert_eq!(after(|sim, [_, id]| shift(sim, id, Vector::ZERO, turned(0.09))), Outcome::Recomputed);
     assert_eq!(after(|sim, _| sim.recycle = false), Outcome::Recomputed);
-    // Fast enough to need a farther look than the manifold was computed with.
+    // Fast enough to need a larger prediction than the manifold was computed with.
     let fast = Velocity { linear: Vector::X * 3.0, angular: spin(0.0) };
     assert_eq!(after(|sim, [_, id]| sim.bodies.set_velocity(id, fast)), Outcome::Recomputed);
 }
@@ -133,7 +133,7 @@ fn a_new_surface_takes_effect_on_a_recycled_contact() {
     assert!((v - 2.0 / 60.0).abs() < 1e-3, "it slides: {v}");
 }
 
-/// The lowest point of a square turned in the plane.
+/// The lowest point of a square rotated in the plane.
 fn lowest(sim: &Sim, id: u32, half: f32) -> f32 {
     let frame: WorldPose = sim.bodies.frame(id);
     let corners = [(half, half), (half, -half), (-half, half), (-half, -half)];
@@ -143,7 +143,7 @@ fn lowest(sim: &Sim, id: u32, half: f32) -> f32 {
 
 #[test]
 fn what_lands_sinks_no_deeper_for_recycling() {
-    // From heights that differ by less than a step's way, and at all angles: the deepest and the mean.
+    // From heights that differ by less than one step's motion, and at all angles: the deepest and the mean penetration.
     let drops = |recycle: bool, tilted: bool| {
         let (mut deepest, mut sum) = (0.0f32, 0.0f32);
         for k in 0..100 {
@@ -173,8 +173,8 @@ fn what_lands_sinks_no_deeper_for_recycling() {
     }
 }
 
-/// What the narrow phase knows of two bodies at every step, against what it would find if it looked anew. Returns how
-/// often it did not look while it knew of no points, and how often it did.
+/// Compares the contact points of two bodies in every step with those of a recomputed manifold. Returns how often a
+/// contact without points was recycled, and how often it was recomputed.
 fn watch(mut sim: Sim, [a, b]: [u32; 2], steps: usize, what: &str) -> [usize; 2] {
     let mut counts = [0; 2];
     let mut was_left_alone = false;
@@ -201,7 +201,7 @@ fn watch(mut sim: Sim, [a, b]: [u32; 2], steps: usize, what: &str) -> [usize; 2]
     counts
 }
 
-/// A stick that comes to a box from afar, slowly or fast, turning or not; either may have the lower id.
+/// A stick approaches a box from a distance, slowly or fast, rotating or not. Either may have the lower id.
 fn approach(k: u32) -> [usize; 2] {
     let fraction = |by: u32| (k * by % 101) as f32 / 101.0;
     let mut sim = Sim::new();
@@ -235,7 +235,7 @@ fn what_is_apart_is_not_looked_at_and_yet_found_in_time() {
 
 #[test]
 fn what_turns_as_it_falls_far_from_the_middle_of_a_large_floor_is_found_in_time() {
-    // Its motion is that of a turn about the floor's centre of mass: seen from the body, the floor only turns.
+    // Its motion is a rotation about the floor's centre of mass: relative to the body, the floor only rotates.
     for below in [false, true] {
         for shape in [Shape::Cuboid(Cuboid { half: Vector::ONE * 0.5 }), Shape::Ball(Ball { radius: 0.5 })] {
             let mut sim = Sim::new();

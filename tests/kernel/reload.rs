@@ -1,4 +1,4 @@
-//! A level that is loaded again: the same bodies come to the same bits, whatever was there before.
+//! A level that is loaded again: the same bodies get the same bits after any history.
 
 use super::dim::{sized, turned};
 use super::sim::Sim;
@@ -23,14 +23,14 @@ fn pile(sim: &mut Sim, columns: usize, layers: usize) {
 
 fn clear(sim: &mut Sim, kept: u32) {
     let ids: Vec<u32> = sim.bodies.ids.iter().filter(|id| *id >= kept).collect();
-    // In no order, and not last in, first out.
+    // In no special order, and not last in, first out.
     let (even, odd): (Vec<u32>, Vec<u32>) = ids.iter().partition(|id| *id % 2 == 0);
     even.into_iter().rev().chain(odd).for_each(|id| sim.remove(id));
 }
 
 fn state(sim: &Sim) -> Vec<(u32, BodyPose, Velocity)> {
     let of = |id: u32| {
-        // Revisions go on counting, so that nothing cached fits.
+        // Revisions keep counting, so caches do not match.
         let pose = BodyPose { revision: 0, ..sim.bodies.poses[id as usize] };
         (id, pose, sim.bodies.velocities[id as usize])
     };

@@ -1,4 +1,4 @@
-//! What callers do wrong makes no thread write what another does: it is refused, in debug builds at least, or without effect.
+//! Mistakes of callers never make two threads write the same data: they panic in debug builds, or have no effect.
 
 use super::dim::inverse_inertia;
 use super::sim::Sim;
@@ -26,7 +26,7 @@ fn wall(columns: u32, rows: u32) -> Sim {
     sim
 }
 
-/// The colours of a wall of another shape name contacts that share bodies. Release builds take the caller's word.
+/// The colours of another simulation's wall have contacts that share bodies. Release builds trust the caller.
 #[test]
 #[cfg(debug_assertions)]
 fn the_graph_of_another_table_is_refused() {
@@ -38,7 +38,7 @@ fn the_graph_of_another_table_is_refused() {
     assert!(catch_unwind(AssertUnwindSafe(|| sim.solve_colors_of(&other))).is_err());
 }
 
-/// The colours do not know that a body became dynamic without them, and is in one many times.
+/// The graph was not told that a body became dynamic, so a colour has it several times.
 #[test]
 #[cfg(debug_assertions)]
 fn a_body_retyped_by_hand_is_refused() {
@@ -50,7 +50,7 @@ fn a_body_retyped_by_hand_is_refused() {
     assert!(catch_unwind(AssertUnwindSafe(|| sim.solve_colors_of(&own))).is_err());
 }
 
-/// Limits and spins are applied by threads, each its own: a row named twice has one of either.
+/// Limits and spins are applied in parallel by row: a row that is named twice gets one of each.
 #[test]
 fn a_row_named_twice_is_limited_and_spun_once() {
     let mut sim = wall(2, 1);
@@ -61,7 +61,7 @@ fn a_row_named_twice_is_limited_and_spun_once() {
         catch_unwind(AssertUnwindSafe(|| name(rows))).is_err()
     };
     let row = 1;
-    // It is a mistake of the caller, which only debug builds tell.
+    // A mistake of the caller, which only debug builds report.
     assert_eq!(twice(&|rows| rows.limit(row, limits)), cfg!(debug_assertions));
     let sides = Vector::from_array(core::array::from_fn(|axis| 1.0 + axis as f32));
     let inv_inertia = inverse_inertia(&Shape::Cuboid(Cuboid { half: sides }).mass_properties(1.0));

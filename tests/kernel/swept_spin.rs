@@ -1,4 +1,4 @@
-//! What a turning rod has in its way it hits, and what it passes by it leaves alone.
+//! A rotating rod hits bodies in its path, and does not affect bodies beside it.
 
 use super::dim::{any_rotation, any_spin, hull_of, sized, spin, turned};
 use super::extreme::Dice;
@@ -21,8 +21,8 @@ fn rods(length: f32) -> [Shape; 2] {
     ]
 }
 
-/// Lets a rod turn by half a turn at a speed, from a phase, beside a ball of the mass of one of some radius. Returns
-/// whether anything became of the ball.
+/// Rotates a rod by half a turn at a speed, from a phase, beside a ball with the mass of one of some radius. Returns
+/// whether the ball moved.
 fn moves(rod: &Shape, speed: f32, phase: f32, at: Vector, weight: f32) -> bool {
     let mut sim = Sim::new();
     sim.gravity = Vector::ZERO;
@@ -50,7 +50,7 @@ fn a_rod_hits_each_ball_in_its_way_however_fast_it_turns() {
             for weight in [0.02, BALL, 1.0] {
                 let missed = (0..20).filter(|k| {
                     let mut dice = Dice::new(*k);
-                    // From beside the middle to where the end just grazes it, up to half a turn away.
+                    // From beside the middle to where the end barely grazes it, up to half a turn away.
                     let out = 0.2 * length + dice.unit() * (0.3 * length + 0.5 * BALL);
                     let near = (2.0 * THICK + 1.1 * BALL) / out;
                     let ahead = near + dice.unit() * (2.8 - 2.0 * near);
@@ -84,7 +84,7 @@ fn a_rod_leaves_alone_what_it_passes_by() {
     }
 }
 
-/// A plate that falls over flat onto a slab as thin as itself lies on it in the end.
+/// A plate that falls over flat onto a slab of the same thickness comes to rest on it.
 #[test]
 fn a_plank_that_falls_over_does_not_pass_a_thin_floor() {
     for length in [2.0, 6.0, 20.0] {
@@ -123,7 +123,7 @@ fn a_fat_box_holds_each_place_a_shape_turns_through_in_the_step() {
         let start = any_rotation(&mut dice);
         let id = sim.add(BodyKind::Dynamic, shape.clone(), place, start);
         let angular = any_spin(&mut dice) * (80.0 * dice.unit());
-        // What turns by less is in the box of any body.
+        // The box of any body contains smaller turns.
         if shape.extent(Vector::ZERO) * angular.length() * sim.dt < 0.05 {
             continue;
         }
@@ -142,7 +142,7 @@ fn a_fat_box_holds_each_place_a_shape_turns_through_in_the_step() {
     }
 }
 
-/// A body that is set spinning in the step it is spawned in was looked up with the box it had before.
+/// A body that is set spinning in the step it is spawned in must not keep its old box.
 #[test]
 fn a_mover_inserted_twice_counts_with_its_last_box() {
     let mover = |id: u32, size: f32, mask: PairMask| {

@@ -1,4 +1,4 @@
-//! Whether what was stacked comes to rest.
+//! Whether stacks come to rest.
 
 use super::dim::{across, sized};
 use super::sim::Sim;
@@ -7,7 +7,7 @@ use kernel::math::{Rot, Vector};
 use kernel::shape::{Cuboid, Shape};
 use kernel::table::BodyKind;
 
-/// The scene `large_pyramid`: gives the top box.
+/// The scene `large_pyramid`. Returns the top box.
 fn large_pyramid(sim: &mut Sim, base: usize) -> u32 {
     let half = sized(400.0, 1.0, 400.0);
     let mut top = sim.add(BodyKind::Static, Shape::Cuboid(Cuboid { half }), Vector::Y * -1.0, Rot::IDENTITY);
@@ -68,7 +68,7 @@ fn boxes_that_land_flat_do_not_all_jump_to_one_side() {
     assert!(mean.x.abs().max(across(mean).abs()) < 0.2 * most, "on average they jumped by {mean:?}");
 }
 
-/// How far the top of a pyramid gets in the 50 s after 10 s of settling; tower and pyramid of several sizes:
+/// Displacement of the top of a pyramid in the 50 s after 10 s of settling, for a tower and pyramids of several sizes:
 /// `cargo test --release -- --ignored --nocapture unrest_of_tops`.
 #[test]
 #[ignore = "prints distances; takes minutes"]

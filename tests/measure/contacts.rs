@@ -1,4 +1,4 @@
-//! Contacts of pairs that lie each by itself.
+//! Contacts of separate pairs.
 
 use super::pairs::{PREDICTION, Pair};
 use crate::kernel;
@@ -22,7 +22,7 @@ pub struct Contacts {
 }
 
 impl Contacts {
-    /// Puts each pair where no other is.
+    /// Places each pair where no other is.
     pub fn of(pairs: &[Pair]) -> Self {
         let (mut bodies, mut colliders) = (BodyTable::default(), ColliderTable::default());
         let mut contacts = ContactTable::default();
@@ -68,7 +68,7 @@ impl Contacts {
         }
     }
 
-    /// Updates all contacts, and recycles those that may be if `recycle` says so.
+    /// Updates all contacts, with recycling if `recycle`.
     pub fn update(&mut self, recycle: bool) {
         let input = NarrowPhaseInput {
             bodies: &self.bodies,

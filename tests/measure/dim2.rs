@@ -1,4 +1,4 @@
-//! What a measurement must know of the plane.
+//! 2D parts of the measurements.
 
 use super::pairs::Dice;
 use crate::kernel;
@@ -18,7 +18,7 @@ pub fn small_turn(dice: &mut Dice, angle: f32) -> Rot {
     Rot::from_angle(dice.between(-angle, angle))
 }
 
-/// The normal of one of a shape's edges, or some direction.
+/// The normal of one of a shape's edges, or a random direction.
 pub fn normal_of(shape: &Shape, dice: &mut Dice) -> Vector {
     match shape {
         Shape::Cuboid(_) => Vector::AXES[dice.pick(2)] * if dice.pick(2) == 0 { 1.0 } else { -1.0 },
@@ -28,7 +28,7 @@ pub fn normal_of(shape: &Shape, dice: &mut Dice) -> Vector {
     }
 }
 
-/// The rotation that turns the second direction against the first. In the plane there is but one.
+/// The rotation that maps the second direction to the opposite of the first. In 2D there is only one.
 pub fn facing([a, b]: [Vector; 2], _twisted: bool, _dice: &mut Dice) -> Rot {
     let b = -b;
     Rot::from_angle(atan2(f64::from(b.perp_dot(a)), f64::from(b.dot(a))) as f32)

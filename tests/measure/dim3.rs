@@ -1,4 +1,4 @@
-//! What a measurement must know of space.
+//! 3D parts of the measurements.
 
 use super::pairs::Dice;
 use crate::kernel;
@@ -18,7 +18,7 @@ pub fn small_turn(dice: &mut Dice, angle: f32) -> Rot {
     Rot::from_axis_angle(dice.direction(), dice.between(-angle, angle))
 }
 
-/// The normal of one of a shape's faces, or some direction.
+/// The normal of one of a shape's faces, or a random direction.
 pub fn normal_of(shape: &Shape, dice: &mut Dice) -> Vector {
     match shape {
         Shape::Cuboid(_) => Vector::AXES[dice.pick(3)] * if dice.pick(2) == 0 { 1.0 } else { -1.0 },
@@ -28,10 +28,11 @@ pub fn normal_of(shape: &Shape, dice: &mut Dice) -> Vector {
     }
 }
 
-/// The rotation that turns the second direction against the first, and by any angle about it if `twisted`.
+/// The rotation that maps the second direction to the opposite of the first, with a random rotation about it if
+/// `twisted`.
 pub fn facing([a, b]: [Vector; 2], twisted: bool, dice: &mut Dice) -> Rot {
     let (a, b) = (a * (1.0 / a.length()), b * (-1.0 / b.length()));
-    // Half way is the mean of the unit quaternions of no turn and twice the wanted turn.
+    // Half of a rotation is the mean of the unit quaternions of the identity and the full rotation.
     let w = 1.0 + a.dot(b);
     let axis = b.cross(a);
     let turn = if w > 1.0e-3 {

@@ -1,4 +1,4 @@
-//! What narrow phase and records are measured with, written once for both dimensions.
+//! Measurements of the narrow phase and of contact records, for both dimensions.
 
 mod contacts;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
@@ -34,7 +34,7 @@ pub fn capsule(dice: &mut Dice) -> Shape {
     Shape::Capsule(Capsule { a: -end, b: end, radius: dice.between(0.1, 0.3) })
 }
 
-/// What is measured of each pair: its name and shapes.
+/// The measured pairs: names and shapes.
 pub const KINDS: [(&str, Make, Make); 9] = [
     ("box, box", cuboid, cuboid),
     ("regular hulls", dim::regular, dim::regular),

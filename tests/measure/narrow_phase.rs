@@ -1,9 +1,9 @@
 //! Prints nanoseconds per manifold and per contact: `cargo bench -p avian_kernel3d`, with part of a pair's name behind
 //! `--` only for such pairs.
 //!
-//! A pair is *fresh* where nothing is known of it, *cached* where it moved a little since its last manifold. Each run
-//! goes once through a thousand pairs with shapes and poses of their own, so that no branch is learnt by heart. Figures
-//! are those of the fastest of many runs: a busy machine only adds.
+//! A pair is *fresh* without state from earlier steps, *cached* if it moved slightly since its last manifold. Each run
+//! processes a thousand pairs with different shapes and poses, so that branches are not predictable. Figures are those
+//! of the fastest of many runs, since other load only adds time.
 
 #[path = "mod.rs"]
 mod measure;
@@ -18,7 +18,7 @@ use std::time::Instant;
 const RUNS: usize = 200;
 const PAIRS: usize = 1024;
 
-/// The fastest of many runs, in ns for each of so many.
+/// The fastest of many runs, in ns per item.
 fn fastest(count: usize, mut run: impl FnMut()) -> f64 {
     let times = (0..RUNS).map(|_| {
         let start = Instant::now();
@@ -41,7 +41,7 @@ fn manifolds(pairs: &[Pair], cached: bool) -> f64 {
     })
 }
 
-/// The time for bringing contacts up to date.
+/// The time for updating contacts.
 fn updates(pairs: &[Pair], recycle: bool) -> f64 {
     let mut all = Contacts::of(pairs);
     all.update(true);

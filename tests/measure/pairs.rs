@@ -1,5 +1,5 @@
-//! Pairs of shapes as a heap has them: faces on faces, straight and turned, and edges and corners at any angle, some
-//! overlapping and some a little apart.
+//! Pairs of shapes as in a heap: face on face, aligned and rotated, and edges and corners at any angle, some
+//! overlapping and some slightly apart.
 
 use super::dim;
 use crate::kernel;
@@ -7,10 +7,10 @@ use kernel::manifold::{FeatureCache, LocalManifold, collide};
 use kernel::math::{Pose, Rot, Vector};
 use kernel::shape::Shape;
 
-/// Up to so far apart contacts are looked for, in metres.
+/// Maximum distance at which contacts are predicted, in metres.
 pub const PREDICTION: f32 = 0.02;
 
-/// Numbers that look random, the same in each run (G. Marsaglia, "Xorshift RNGs", 2003).
+/// Pseudo-random numbers, the same in each run (G. Marsaglia, "Xorshift RNGs", 2003).
 pub struct Dice(u64);
 
 impl Dice {
@@ -30,12 +30,12 @@ impl Dice {
         low + (high - low) * ((self.next() >> 40) as f32 / (1u64 << 24) as f32)
     }
 
-    /// One of so many.
+    /// An index below a number.
     pub fn pick(&mut self, count: usize) -> usize {
         (self.next() >> 33) as usize % count
     }
 
-    /// A vector with components up to `range` on both sides.
+    /// A vector with components within `range`.
     pub fn vector(&mut self, range: f32) -> Vector {
         Vector::AXES.iter().fold(Vector::ZERO, |v, axis| v + *axis * self.between(-range, range))
     }
@@ -51,31 +51,32 @@ impl Dice {
     }
 }
 
-/// How two shapes lie to each other.
+/// The relative orientation of two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lie {
-    /// Face on face, with parallel sides where both are boxes.
+    /// Face on face, with parallel sides for boxes.
     Stacked,
-    /// Face on face, turned about the normal.
+    /// Face on face, rotated about the normal.
     Turned,
-    /// Any way.
+    /// Any orientation.
     Loose,
 }
 
-/// All ways of lying, loose as often as the others together.
+/// All orientations; the last is as frequent as the others together.
 pub const MIXED: [Lie; 4] = [Lie::Stacked, Lie::Loose, Lie::Turned, Lie::Loose];
 
 /// Two shapes.
 pub struct Pair {
     pub shapes: [Shape; 2],
-    /// Where the second is in the frame of the first in a step and in the next.
+    /// The pose of the second shape in the frame of the first, in a step and in the next.
     pub poses: [Pose; 2],
-    /// What the first step leaves for the next.
+    /// State from the first step for the next.
     pub cache: FeatureCache,
 }
 
 impl Pair {
-    /// Puts the second shape so that the surfaces are between 1 cm of overlap and nearly the prediction distance.
+    /// Places the second shape so that the surfaces overlap by up to 1 cm, or are apart by up to the prediction
+    /// distance.
     pub fn new(shapes: [Shape; 2], lie: Lie, dice: &mut Dice) -> Self {
         let (rotation, direction, aside) = match lie {
             Lie::Loose => (dim::rotation(dice), dice.direction(), Vector::ZERO),
@@ -110,7 +111,7 @@ fn separation(shapes: &[Shape; 2], pose: &Pose) -> f32 {
     out.points().iter().fold(100.0, |least, p| p.separation.min(least))
 }
 
-/// So many pairs of a kind, each of shapes of its own.
+/// A number of pairs of a kind, each with shapes of its own.
 pub fn pairs(count: usize, lies: &[Lie], shapes: &mut dyn FnMut(&mut Dice) -> [Shape; 2]) -> Vec<Pair> {
     let mut dice = Dice::new(7);
     (0..count)

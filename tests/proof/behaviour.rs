@@ -1,4 +1,4 @@
-//! What components make bodies do: hierarchies, layers, mass, locked axes, dominance, sensors, disabling.
+//! Effects of components: hierarchies, layers, mass, locked axes, dominance, sensors, disabling.
 
 use avian::{
     math::{Scalar, Vector},
@@ -13,7 +13,7 @@ use super::{
     world::{G, Lab, assert_close},
 };
 
-/// A bar on two feet, its body without a collider of its own; gives the body and the feet.
+/// A bar on two feet, whose body has no collider of its own. Returns body and feet.
 fn table(lab: &mut Lab, height: f32) -> (Entity, Vec<Entity>) {
     let body = lab.spawn((RigidBody::Dynamic, at(0.0, height, 0.0)));
     let parts = [([3.0, 0.2, 1.0], 0.0, 0.0), ([0.2, 1.0, 1.0], -1.3, -0.5), ([0.2, 1.0, 1.0], 1.3, -0.5)];
@@ -94,7 +94,7 @@ fn layers_decide_who_meets_and_may_change() {
     assert!(lab.at(ghost).y < -3.0, "the floor filters ghosts: {:?}", lab.at(ghost));
     assert!((lab.at(player).y - 0.5).abs() < 0.01);
 
-    // Asleep or not, who loses the floor falls; who gets it back lands.
+    // Asleep or not, a body without a floor falls, and lands when the floor is back.
     lab.seconds(2.0);
     assert!(lab.has::<Sleeping>(player));
     lab.insert(player, CollisionLayers::new(Layer::Player, LayerMask::NONE));
@@ -129,7 +129,7 @@ fn mass_follows_shape_density_and_what_the_user_says() {
 
 #[test]
 fn a_body_turns_about_its_centre_of_mass() {
-    // Without gravity, a turning body's centre of mass moves on a straight line.
+    // Without gravity, the centre of mass of a rotating body moves on a straight line.
     let mut lab = Lab::weightless();
     let body = lab.unit_box(at(0.0, 0.0, 0.0));
     lab.insert(body, (CenterOfMass(dim::sized(0.4, 0.1, 0.0)), scenes::dim::spin(3.0)));
@@ -189,7 +189,7 @@ fn the_dominant_body_is_not_pushed() {
     lab.seconds(2.0);
     assert!(lab.velocity(strong).length() < 1e-5, "pushed to {:?}", lab.velocity(strong));
     assert_close(lab.velocity(weak).x, -4.0, 0.01, "thrown back as by a wall");
-    // Among equals mass counts again.
+    // With equal dominance mass counts again.
     lab.insert(strong, Dominance(0));
     lab.insert(weak, (LinearVelocity(Vector::X * 4.0), Position(Vector::X * -3.0)));
     lab.seconds(2.0);
@@ -299,7 +299,7 @@ fn a_resting_world_changes_nothing() {
         >,
          mut count: ResMut<Changes>| count.0 += changed.iter().count(),
     );
-    // The new system sees everything as new once.
+    // A new system detects everything as changed once.
     lab.steps(1);
     lab.app.world_mut().resource_mut::<Changes>().0 = 0;
     lab.seconds(1.0);

@@ -1,4 +1,4 @@
-//! Deep overlap without explosions, and scenes in pixels: row 18 of the physics that the engine is held to.
+//! Deep overlap without explosions, and scenes in pixels: row 18 of the required physics.
 
 use avian::{
     math::{Scalar, Vector},
@@ -13,7 +13,7 @@ use super::{
     world::{G, Lab},
 };
 
-/// A closed box around the origin's upper side, `2 half` wide and high, and in it balls and boxes in turn.
+/// A closed box above the origin, `2 half` wide and high, with alternating balls and boxes inside.
 fn full_container(lab: &mut Lab) -> (Scalar, Vec<Entity>) {
     let (columns, rows) = dim::LAYER;
     let half = 0.5 * columns as f32;
@@ -51,7 +51,7 @@ fn growing(index: usize, radius: f32) -> Collider {
     }
 }
 
-/// Fails unless all bodies are within the container; gives the greatest speed.
+/// Fails unless all bodies are inside of the container. Returns the maximum speed.
 #[track_caller]
 fn greatest_speed_inside(lab: &Lab, half: Scalar, bodies: &[Entity]) -> Scalar {
     let mut fastest: Scalar = 0.0;
@@ -68,7 +68,7 @@ fn bodies_that_grow_in_a_full_container_neither_explode_nor_leave() {
     let mut lab = Lab::new();
     let (half, bodies) = full_container(&mut lab);
     let mut fastest: Scalar = 0.0;
-    // From loose to half as much again as there is room for, in five seconds.
+    // From loose to 1.5 times the capacity, in five seconds.
     for step in 0..300 {
         let radius = 0.2 + 0.4 * step as f32 / 300.0;
         for (i, &body) in bodies.iter().enumerate() {
@@ -78,7 +78,7 @@ fn bodies_that_grow_in_a_full_container_neither_explode_nor_leave() {
         fastest = fastest.max(greatest_speed_inside(&lab, half, &bodies));
     }
     println!("while growing: at most {fastest} m/s");
-    // What falls from lid to floor is faster.
+    // A body that falls from lid to floor is faster.
     assert!(fastest < (2.0 * G * 2.0 * half).sqrt(), "flung at {fastest} m/s");
     let mut later: Scalar = 0.0;
     for _ in 0..300 {
@@ -107,9 +107,9 @@ fn a_collider_grows_by_its_scale_too() {
     assert!((lab.at(body).y - 1.0).abs() < 0.02, "twice as large it rests at {:?}", lab.at(body));
 }
 
-/// Takes a step: the greatest speed of a body in it, by where it came and by what it says.
+/// Takes a step. Returns the maximum speed of a body, by its displacement and by its velocity.
 ///
-/// Deep overlap moves bodies without giving them speed, so velocities alone would not tell.
+/// Deep overlap displaces bodies without changing velocities, so velocities alone would not show it.
 fn fastest_in_step(lab: &mut Lab, bodies: &[Entity]) -> Scalar {
     let before: Vec<Vector> = bodies.iter().map(|&b| lab.at(b)).collect();
     lab.steps(1);
@@ -118,7 +118,7 @@ fn fastest_in_step(lab: &mut Lab, bodies: &[Entity]) -> Scalar {
     })
 }
 
-/// The least distance between the centres of two bodies.
+/// The minimum distance between the centres of two bodies.
 fn nearest_two(lab: &Lab, bodies: &[Entity]) -> Scalar {
     let places: Vec<Vector> = bodies.iter().map(|&b| lab.at(b)).collect();
     let pairs =
@@ -154,7 +154,7 @@ fn a_hundred_bodies_in_one_place_come_apart_gently() {
     }
 }
 
-/// Stacks of balls and of boxes, and a ball that rolls into them, all lengths times `unit`.
+/// Stacks of balls and of boxes, and a ball that rolls into them, with lengths times `unit`.
 fn stacks(unit: Scalar) -> Vec<Vector> {
     let mut lab = Lab::with_unit(unit);
     lab.gravity(Vector::Y * -10.0 * unit);
@@ -180,7 +180,7 @@ fn a_scene_in_pixels_with_its_length_unit_behaves_as_in_metres() {
             assert!((*m - p).length() < 0.01, "{m:?} m, but {p:?} times {unit} pixels");
         }
     }
-    // A power of two scales without rounding: then all bits agree, unless some tolerance is not scaled.
+    // A power of two scales without rounding: all bits agree unless a tolerance is not scaled.
     assert_eq!(metres, stacks(8.0));
 }
 
@@ -196,7 +196,7 @@ fn two_bodies_in_each_other_part_at_no_more_than_the_push_out_speed() {
         let speed = (lab.velocity(pair[1]) - lab.velocity(pair[0])).length();
         fastest = fastest.max(speed).max(way.length() / lab.dt as Scalar);
     }
-    // Ways are differences of rounded positions.
+    // Displacements are differences of rounded positions.
     assert!(fastest <= 4.0001, "apart at {fastest} m/s");
     assert!((lab.at(pair[1]) - lab.at(pair[0])).length() > 0.99, "they did not come apart");
 }

@@ -1,4 +1,4 @@
-//! The same bits, whatever else is in the app and however many threads solve: row 22.
+//! The same bits, with any other entities in the app and any number of threads: row 22 of the required physics.
 
 use avian::{
     dynamics::solver::WorkerCount,
@@ -15,7 +15,7 @@ use scenes::scene::at;
 #[derive(Component)]
 struct Paint(#[expect(dead_code, reason = "only there to make tables differ")] u64);
 
-/// A heap of every shape with compounds, poured for 200 steps, after `before` and `after` did something to the app.
+/// A heap of all shapes and compounds, poured for 200 steps. `before` and `after` change the app.
 fn run(before: impl FnOnce(&mut Lab), after: impl FnOnce(&mut Lab, &[Entity])) -> Vec<u32> {
     let mut lab = Lab::new();
     before(&mut lab);
@@ -43,7 +43,7 @@ fn plain() -> Vec<u32> {
     run(|_| {}, |_, _| {})
 }
 
-/// Not `assert_eq`: nobody wants to read ten thousand numbers.
+/// Replaces `assert_eq`, which would print ten thousand numbers.
 #[track_caller]
 fn assert_same_bits(one: &[u32], two: &[u32], what: &str) {
     let other = one.iter().zip(two).filter(|(a, b)| a != b).count();
@@ -81,7 +81,7 @@ fn what_else_a_body_has_does_not_matter() {
 
 #[test]
 fn the_numbers_of_entities_do_not_matter() {
-    // Freed entities are used again in another order than they were made in.
+    // Freed entities are reused in another order.
     let reused = run(
         |lab| {
             let mut spare: Vec<Entity> = (0..300).map(|i| lab.spawn(Paint(i))).collect();
@@ -121,7 +121,7 @@ fn the_foreign_system_does_run_in_every_substep() {
 
 #[test]
 fn the_number_of_workers_does_not_matter() {
-    // Enough contacts for all to be called: a pyramid that a ball hits.
+    // Enough contacts to wake all threads: a pyramid that a ball hits.
     let run = |workers: usize| {
         let mut lab = Lab::new();
         lab.app.insert_resource(WorkerCount(workers));
@@ -138,7 +138,7 @@ fn the_number_of_workers_does_not_matter() {
     }
 }
 
-/// What the app changes is found, and rows of bodies are filled, by several threads.
+/// Changes by the app are found, and rows of bodies are filled, by several threads.
 #[test]
 fn the_number_of_workers_does_not_matter_to_what_the_app_changes() {
     let run = |workers: usize| {

@@ -1,16 +1,16 @@
-//! What the proofs must know of the plane. `dim3.rs` is the twin.
+//! 2D parts of the proofs. `dim3.rs` has those of 3D.
 
 use avian::{math::Vector, prelude::*};
 
-/// Moment of inertia of a ball over m r²: a disc.
+/// Moment of inertia of a ball, divided by m r²: a disc.
 pub const BALL_INERTIA: f32 = 0.5;
 
-/// A box of a depth that does not count.
+/// A box; its depth is ignored.
 pub fn sized_block(x: f32, y: f32, _depth: f32) -> Collider {
     Collider::rectangle(x, y)
 }
 
-/// A vector of a depth that does not count.
+/// A vector; its depth is ignored.
 pub fn sized(x: f32, y: f32, _depth: f32) -> Vector {
     Vector::new(x, y)
 }
@@ -20,7 +20,7 @@ pub fn spin_of(velocity: AngularVelocity) -> f32 {
     velocity.0
 }
 
-/// Unit vectors along the ground in which things can slide.
+/// Unit vectors along the ground.
 pub fn directions() -> Vec<Vector> {
     vec![Vector::X, Vector::NEG_X]
 }
@@ -40,12 +40,12 @@ pub fn ball_mass(radius: f32) -> f32 {
     core::f32::consts::PI * radius * radius
 }
 
-/// Every shape that is its own constructor, each about a metre across.
+/// Every shape with its own constructor, each about a metre across.
 pub fn shapes() -> Vec<Collider> {
     (0..scenes::dim::PIECES - 1).map(|kind| scenes::dim::piece(kind).remove(0).0).collect()
 }
 
-/// Shuts the open sides of a flat container: there are none.
+/// Closes the open sides of a flat container: there are none in 2D.
 pub fn side_walls(_half_width: f32) -> Vec<(Collider, Vector)> {
     Vec::new()
 }
@@ -53,12 +53,12 @@ pub fn side_walls(_half_width: f32) -> Vec<(Collider, Vector)> {
 /// Boxes across one layer of a container: columns and rows.
 pub const LAYER: (u32, u32) = (8, 1);
 
-/// No turning at all.
+/// No rotation.
 pub fn upright() -> LockedAxes {
     LockedAxes::new().lock_rotation()
 }
 
-/// How far the top of a settled pyramid may still move, in metres: one hundredth of a box.
+/// Maximum displacement of the top of a settled pyramid, in metres: one hundredth of a box.
 pub const PYRAMID_UNREST: f32 = 0.01;
 
 /// Layers of a heap of about a hundred pieces.

@@ -1,8 +1,8 @@
-//! What the proofs must know of space. `dim2.rs` is the twin.
+//! 3D parts of the proofs. `dim2.rs` has those of 2D.
 
 use avian::{math::Vector, prelude::*};
 
-/// Moment of inertia of a ball over m r²: a solid sphere.
+/// Moment of inertia of a ball, divided by m r²: a solid sphere.
 pub const BALL_INERTIA: f32 = 0.4;
 
 /// A box.
@@ -20,7 +20,7 @@ pub fn spin_of(velocity: AngularVelocity) -> f32 {
     velocity.0.z
 }
 
-/// Unit vectors along the ground in which things can slide: twelve, 30 degrees apart, none along an axis.
+/// Unit vectors along the ground: twelve, 30 degrees apart, none along an axis.
 pub fn directions() -> Vec<Vector> {
     (0..12)
         .map(|i| {
@@ -45,12 +45,12 @@ pub fn ball_mass(radius: f32) -> f32 {
     4.0 / 3.0 * core::f32::consts::PI * radius * radius * radius
 }
 
-/// Every shape that is its own constructor, each about a metre across.
+/// Every shape with its own constructor, each about a metre across.
 pub fn shapes() -> Vec<Collider> {
     (0..scenes::dim::PIECES - 1).map(|kind| scenes::dim::piece(kind).remove(0).0).collect()
 }
 
-/// Shuts the open sides of a flat container: the walls in front and behind, with their places.
+/// Closes the open sides of a flat container: the walls in front and behind, with their positions.
 pub fn side_walls(half_width: f32) -> Vec<(Collider, Vector)> {
     let side = 2.0 * half_width + 8.0;
     [-1.0, 1.0]
@@ -61,12 +61,12 @@ pub fn side_walls(half_width: f32) -> Vec<(Collider, Vector)> {
 /// Boxes across one layer of a container: columns and rows.
 pub const LAYER: (u32, u32) = (4, 4);
 
-/// No turning at all.
+/// No rotation.
 pub fn upright() -> LockedAxes {
     LockedAxes::new().lock_rotation_x().lock_rotation_y().lock_rotation_z()
 }
 
-/// How far the top of a settled pyramid may still move, in metres: one hundredth of a box.
+/// Maximum displacement of the top of a settled pyramid, in metres: one hundredth of a box.
 pub const PYRAMID_UNREST: f32 = 0.01;
 
 /// Layers of a heap of about a hundred pieces.

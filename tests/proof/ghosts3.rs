@@ -1,4 +1,4 @@
-//! Riders over floors of many pieces within one collider or body, in space.
+//! Bodies that slide over floors of many pieces within one collider or body, in 3D.
 
 use avian::{math::Vector, prelude::*};
 use bevy_ecs::hierarchy::ChildOf;
@@ -7,7 +7,7 @@ use scenes::scene::at;
 
 use super::world::Lab;
 
-/// Places in metres over which floors reach along x and z, in pieces of a metre.
+/// Extents of floors along x and z in metres, in pieces of a metre.
 const LENGTH: i32 = 16;
 const WIDTH: i32 = 4;
 

@@ -1,9 +1,9 @@
-//! Golden hashes: what whole scenes come to, bit by bit, with any number of workers and any width of rows.
+//! Golden hashes: final states of whole scenes, bit by bit, with any number of workers and any width of rows.
 //!
-//! The expected hashes stand in `golden2.rs` and `golden3.rs`. Where a change of the simulation is meant, the table
-//! that the failing test prints replaces the old one, and the commit says why. The kernel's own golden hashes
-//! (`tests/kernel/golden.rs`) hold on every machine. So do those of native shapes here, as far as is known; what parry
-//! computes of its shapes may differ between instruction sets, so scenes with such are held apart.
+//! The expected hashes are in `golden2.rs` and `golden3.rs`. If a change of the simulation is intended, the table
+//! printed by the failing test replaces the old one, and the commit says why. The kernel's own golden hashes
+//! (`tests/kernel/golden.rs`) hold on every machine, and as far as is known those of native shapes here. Parry's
+//! results may differ between instruction sets, so scenes with its shapes are listed separately.
 
 use avian::{
     collision::CollisionDiagnostics,
@@ -25,10 +25,10 @@ use super::{
     world::Lab,
 };
 
-/// The name of a scene, and what builds and runs it.
+/// Name of a scene, and the function that builds and runs it.
 type Scene = (&'static str, fn(&mut Lab));
 
-/// Scenes of shapes that the kernel knows.
+/// Scenes of the kernel's shapes only.
 const OF_NATIVE: [Scene; 11] = [
     ("pyramid", large_pyramid),
     ("pyramids", many_pyramids),
@@ -43,10 +43,10 @@ const OF_NATIVE: [Scene; 11] = [
     ("settings", settings),
 ];
 
-/// Scenes that have other shapes too.
+/// Scenes with other shapes.
 const WITH_FOREIGN: [Scene; 2] = [("pile", mixed_pile), ("slopes", on_slopes)];
 
-/// From so many contacts on helpers are called.
+/// Minimum number of contacts for which threads are woken.
 const MANY: u32 = 1024;
 
 #[track_caller]
@@ -144,7 +144,7 @@ fn sleepers(lab: &mut Lab) {
     lab.steps(60);
 }
 
-/// What bounces, by more and less.
+/// Restitution of several values.
 fn bounces(lab: &mut Lab) {
     let floor = lab.floor();
     lab.insert(floor, Restitution::new(0.6));
@@ -157,7 +157,7 @@ fn bounces(lab: &mut Lab) {
     lab.steps(120);
 }
 
-/// Bodies of which each has other settings than the last.
+/// Bodies with different settings.
 fn settings(lab: &mut Lab) {
     lab.floor();
     let mut rng = Rng::new(5);
@@ -179,8 +179,8 @@ fn settings(lab: &mut Lab) {
     lab.steps(120);
 }
 
-/// FNV-1a of 64 bits (Fowler, Noll and Vo) over positions, rotations and velocities of all that moves, in the order in
-/// which it was spawned.
+/// FNV-1a of 64 bits (Fowler, Noll and Vo) over positions, rotations and velocities of all moving bodies, in the order
+/// of spawning.
 fn hash(lab: &mut Lab) -> u64 {
     let world = lab.app.world_mut();
     let mut query = world.query::<(Entity, &RigidBody)>();

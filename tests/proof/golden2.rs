@@ -1,8 +1,8 @@
-//! Golden hashes in the plane, and what their scenes must know of it. `golden3.rs` is the twin.
+//! Golden hashes in 2D, and 2D parts of their scenes. `golden3.rs` has those of 3D.
 
 use avian::prelude::*;
 
-/// Of each scene of native shapes the hash that it ends with.
+/// For each scene of native shapes the hash of its final state.
 pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0x6c2e4a04e7dbe439),
     ("pyramids", 0x888870d04d87832e),
@@ -17,7 +17,7 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("settings", 0xa4f3b7838968b85d),
 ];
 
-/// The same for scenes with shapes of parry's.
+/// For each scene with shapes of parry the hash of its final state.
 pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xe7cf932b4f32d0f4), ("slopes", 0x71b94385298d2184)];
 
 /// Boxes along a side of the tumbler.

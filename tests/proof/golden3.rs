@@ -1,8 +1,8 @@
-//! Golden hashes in space, and what their scenes must know of it. `golden2.rs` is the twin.
+//! Golden hashes in 3D, and 3D parts of their scenes. `golden2.rs` has those of 2D.
 
 use avian::prelude::*;
 
-/// Of each scene of native shapes the hash that it ends with.
+/// For each scene of native shapes the hash of its final state.
 pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0xd9cea250dfd32ffd),
     ("pyramids", 0x7029bf7b80ae7227),
@@ -17,7 +17,7 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("settings", 0x836c0d1792f635ab),
 ];
 
-/// The same for scenes with shapes of parry's.
+/// For each scene with shapes of parry the hash of its final state.
 pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x7edbf9fc8f657745), ("slopes", 0x68fde958728f18fb)];
 
 /// Boxes along a side of the tumbler.

@@ -1,4 +1,4 @@
-//! Bouncing and the conservation laws: rows 7 to 9 of the physics that the engine is held to.
+//! Restitution and conservation laws: rows 7 to 9 of the required physics.
 
 use avian::{
     math::{Scalar, Vector},
@@ -92,7 +92,7 @@ fn impacts_along_a_line_share_momentum_as_restitution_says() {
     }
 }
 
-/// Swings `count` of five balls against the others and asks for as many at the far end.
+/// Swings `count` of five balls against the others, and expects as many to leave at the far end.
 fn cradle(count: usize, gap: f32, dt: f64) {
     let mut lab = Lab::with_steps(dt, 4);
     lab.gravity(Vector::ZERO);
@@ -191,7 +191,7 @@ fn an_impact_changes_angular_momentum_by_no_more_than_the_step_is_coarse() {
         let bound = v * dt as Scalar / offset;
         assert!(lost <= bound, "{lost} is more than v dt / b = {bound}");
     }
-    // In proportion to the step; where within it they meet makes a factor of two.
+    // In proportion to the step. The time of impact within the step makes a factor of two.
     let [(_, coarse), _, (_, fine)] = lost;
     assert!(fine < coarse / 8.0, "{fine} with a sixteenth of the step, {coarse} with all of it");
 }

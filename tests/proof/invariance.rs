@@ -1,4 +1,4 @@
-//! The same scene elsewhere, turned, larger, in other steps: row 21 of the physics that the engine is held to.
+//! The same scene moved, rotated, scaled, and with other steps: row 21 of the required physics.
 
 use avian::{
     math::{Scalar, Vector},
@@ -14,7 +14,7 @@ use super::{
     world::{G, Lab},
 };
 
-/// Where the scene is in the world.
+/// The frame of the scene in the world.
 #[derive(Clone, Copy)]
 struct Frame {
     scale: f32,
@@ -44,7 +44,7 @@ impl Frame {
             .with_rotation(rotation)
     }
 
-    /// A place in the world as a place in the scene.
+    /// A world position in the frame of the scene.
     fn home(&self, p: Vector) -> [f32; 2] {
         let (sin, cos) = sin_cos(self.turn);
         let (x, y) = (p.x - self.origin.x, p.y - self.origin.y);
@@ -52,7 +52,7 @@ impl Frame {
     }
 }
 
-/// A tower, a box that slides, a ball that rolls into a wall and back: where all are after `seconds`.
+/// A tower, a sliding box, a ball that rolls into a wall and back: all positions after `seconds`.
 fn run(frame: Frame, seconds: f64) -> Vec<[f32; 2]> {
     let mut lab = frame.lab();
     let s = frame.scale;
@@ -114,7 +114,7 @@ fn a_scaled_scene_with_its_length_unit_is_the_same_scene() {
     }
 }
 
-/// How high the bodies of a pile lie on average when it has come to rest, and how fast they are.
+/// The mean height of a pile at rest, and its maximum speed.
 fn rest_of_pile(dt: f64, seed: u64) -> (Scalar, Scalar) {
     let mut lab = Lab::with_steps(dt, 4);
     scenes::pile::mixed_by_chance(lab.app.world_mut(), dim::PILE_LAYERS, seed);
@@ -132,7 +132,7 @@ fn rest_of_pile(dt: f64, seed: u64) -> (Scalar, Scalar) {
 
 #[test]
 fn rest_is_the_same_in_steps_of_any_length() {
-    // How a pile comes to lie is chance: the heights of two differ by some per cent, their mean less.
+    // How a pile settles is chance: the heights of two piles differ by some per cent, their mean by less.
     let rest = |dt: f64| {
         let piles: Vec<_> = (1..=4).map(|seed| rest_of_pile(dt, seed)).collect();
         let mean = |of: fn(&(Scalar, Scalar)) -> Scalar| piles.iter().map(of).sum::<Scalar>() / 4.0;

@@ -1,4 +1,4 @@
-//! The announcement's snippets, as an app would write them.
+//! Snippets of Avian's announcements, in an app.
 
 use avian::{math::Scalar, parry::shape::TypedShape, prelude::*};
 use bevy_app::{App, PluginGroup, Startup, TaskPoolPlugin};
@@ -35,7 +35,7 @@ fn an_app_with_the_default_plugins_runs_a_body_with_a_velocity() {
 fn the_length_unit_is_set_with_the_plugins() {
     let app = scenes::headless_app_with(1.0 / 60.0, 6, PhysicsPlugins::default().with_length_unit(10.0));
     assert_eq!(app.world().resource::<PhysicsLengthUnit>().0, 10.0);
-    // It is a resource of its own: what comes later wins.
+    // It is a resource of its own: the last one inserted counts.
     let group = PhysicsPlugins::default().with_length_unit(10.0).build();
     let mut app = scenes::headless_app_with(1.0 / 60.0, 6, group);
     app.insert_resource(PhysicsLengthUnit(20.0));
@@ -45,7 +45,7 @@ fn the_length_unit_is_set_with_the_plugins() {
 
 #[test]
 fn separation_follows_from_the_deltas_of_both_bodies() {
-    // The announcement's formula; its second `delta_position2` is a slip, body 1 is meant.
+    // The formula of the announcement. Its second `delta_position2` is an error, body 1 is meant.
     use avian::math::Vector;
     let (position1, position2) = (Vector::Y * 0.25, Vector::Y * 1.5);
     let (anchor1, anchor2) = (Vector::Y * 0.5, Vector::Y * -0.5);

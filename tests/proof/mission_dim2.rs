@@ -1,4 +1,4 @@
-//! The announcement's snippets that are about the plane. `mission_dim3.rs` is the twin.
+//! 2D snippets of Avian's announcements. `mission_dim3.rs` has those of 3D.
 
 use avian::{math::Vector, prelude::*};
 use bevy_math::{Vec2, primitives as shapes};
@@ -34,7 +34,7 @@ fn every_primitive_is_a_collider() {
     assert!((bounds.maxs - Vector::new(1.0, 0.5)).length() < 1e-6);
 }
 
-/// As they stand there, but that what is called from outside is public.
+/// The snippets verbatim, except that items used from outside are public.
 mod as_written {
     pub mod length_unit {
         use avian2d::prelude::*;
@@ -64,7 +64,7 @@ mod as_written {
 
 #[test]
 fn its_snippets_run_as_written() {
-    // Nobody closes an app without a window: it is to leave after its first frame.
+    // An app without a window is not closed by a user, so it exits after its first frame.
     bevy::app::TerminalCtrlCHandlerPlugin::gracefully_exit();
     as_written::length_unit::main();
     as_written::rotation::main();

@@ -1,4 +1,4 @@
-//! The announcement's snippets that are about space. `mission_dim2.rs` is the twin.
+//! 3D snippets of Avian's announcements. `mission_dim2.rs` has those of 2D.
 
 use avian::{math::Vector, parry::shape::TypedShape, prelude::*};
 use bevy_math::{Quat, Vec3, primitives as shapes};
@@ -43,7 +43,7 @@ fn every_primitive_is_a_collider() {
     assert!((bounds.maxs - Vector::splat(0.5)).length() < 1e-5, "{bounds:?}");
 }
 
-/// As they stand there, but that what is called from outside is public.
+/// The snippets verbatim, except that items used from outside are public.
 mod as_written {
     pub mod plugins {
         use avian3d::prelude::*;
@@ -76,7 +76,7 @@ mod as_written {
 
 #[test]
 fn its_snippets_run_as_written() {
-    // Nobody closes an app without a window: it is to leave after its first frame.
+    // An app without a window is not closed by a user, so it exits after its first frame.
     bevy::app::TerminalCtrlCHandlerPlugin::gracefully_exit();
     as_written::plugins::main();
 
@@ -95,7 +95,7 @@ fn its_snippets_run_as_written() {
     let mut seen: Vec<(f32, f32, f32)> =
         bodies.iter(world).map(|(_, at, v)| (at.translation.x, v.x, at.translation.y)).collect();
     seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // In each other from the start, they part; together they move as one of them was sent.
+    // They overlap from the start and separate; together they move like the one that was pushed.
     assert_eq!(seen.len(), 2);
     assert!(seen.iter().all(|s| (-5.5..-4.0).contains(&s.2)), "they fell: {seen:?}");
     assert!(seen[1].0 > 0.5, "one was sent along x: {seen:?}");

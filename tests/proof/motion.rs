@@ -1,4 +1,4 @@
-//! Closed forms of free motion, sliding and rolling: rows 1 to 5 of the physics that the engine is held to.
+//! Closed forms of free motion, sliding and rolling: rows 1 to 5 of the required physics.
 
 use avian::{
     math::{Scalar, Vector},
@@ -11,7 +11,7 @@ use super::{
     world::{G, Lab, assert_close},
 };
 
-/// Gravity as it is for somebody standing on a slope of `angle` that falls towards `along`.
+/// Gravity in the frame of a slope of `angle` that falls towards `along`.
 fn on_slope(angle: f32, along: Vector) -> Vector {
     let (sin, cos) = scenes::sin_cos(angle);
     (along * sin - Vector::Y * cos) * G
@@ -62,14 +62,14 @@ fn damping_divides_by_one_plus_c_h() {
     assert_close(lab.spin(body), 4.0 * rest(1.3), rounding, "angular");
 }
 
-/// Speed gained in two seconds, divided by them, after one second on the slope.
+/// Mean acceleration over two seconds, after one second on the slope.
 fn acceleration_on_slope(mu: Scalar, angle: f32, along: Vector) -> Scalar {
     let mut lab = Lab::new();
     lab.surfaces(mu, 0.0);
     lab.gravity(on_slope(angle, along));
     lab.floor();
     let body = lab.block([0.5, 0.25, 0.5], at(0.0, 0.125, 0.0));
-    // At first it is so slow that it would count as resting.
+    // At first it is slow enough to count as at rest.
     lab.insert(body, SleepingDisabled);
     lab.seconds(1.0);
     let before = lab.velocity(body).dot(along);
@@ -146,7 +146,7 @@ fn a_box_tips_where_its_base_is_narrower_than_the_slope_is_steep() {
         lab.seconds(5.0);
         assert_eq!(lab.uprightness(body) < 0.5, tips, "{over} degrees over: leans {}", lab.uprightness(body));
     }
-    // Less friction than base: it slides before it tips.
+    // Friction below the ratio of base to height: it slides before it tips.
     let mut lab = Lab::new();
     lab.surfaces(0.3, 0.0);
     lab.gravity(on_slope(critical + Scalar::to_radians(3.0), Vector::X));

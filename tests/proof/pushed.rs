@@ -1,4 +1,4 @@
-//! Velocities that the app sets count in the very next step: nothing is passed through.
+//! Velocities set by the app take effect in the next step, without tunnelling.
 
 use avian::{
     math::{Scalar, Vector},
@@ -14,7 +14,7 @@ use super::dim;
 
 const RADIUS: f32 = 0.1;
 
-/// What is set in which frame.
+/// The value that is set, and the frame in which it is set.
 #[derive(Resource, Clone, Copy)]
 struct Shot {
     ball: Entity,
@@ -38,7 +38,7 @@ fn app() -> App {
     app
 }
 
-/// Whether a ball at rest passes a wall of 2 cm when it is shot at it.
+/// Whether a ball passes a wall of 2 cm when it is shot at it from rest.
 fn passes(speed: f32, k: usize, asleep: bool) -> bool {
     let mut app = app();
     let world = app.world_mut();

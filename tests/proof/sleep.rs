@@ -13,7 +13,7 @@ use super::{
     world::{G, Lab},
 };
 
-/// A floor and a tower of three boxes on it that sleeps.
+/// A floor and a sleeping tower of three boxes on it.
 fn sleeping_tower() -> (Lab, Entity, [Entity; 3]) {
     let mut lab = Lab::new();
     let floor = lab.floor();
@@ -217,7 +217,7 @@ fn issue_bodies_whose_position_is_the_apps_slept_in_motion() {
     assert_eq!(asleep(&lab, &[fast, moved, still]), 3, "left alone they rest");
 }
 
-/// Thrown up, it turns at the top; let go, it starts slowly: neither is rest.
+/// A thrown body turns at the top, a released one starts slowly: neither is rest.
 #[test]
 fn issue_with_no_time_to_sleep_bodies_froze_in_flight() {
     for (time, up) in [(0.0, 3.0), (-1.0, 3.0), (0.0, 0.0)] {
@@ -251,7 +251,7 @@ fn issue_falling_asleep_zeroed_the_velocity() {
     let (velocity, place) = (boxes.map(|b| lab.velocity(b)), boxes.map(|b| lab.at(b)));
     assert!(velocity.iter().all(|v| (v.x - 0.02).abs() < 1.0e-3), "{velocity:?}");
     lab.seconds(2.0);
-    // The same again is no push.
+    // Setting the same value again is no push.
     lab.insert(boxes[1], LinearVelocity(velocity[1]));
     lab.steps(2);
     assert_eq!(asleep(&lab, &boxes), 2);
@@ -269,7 +269,7 @@ fn a_body_put_to_sleep_goes_on_when_it_wakes() {
     lab.surfaces(0.0, 0.0);
     lab.floor();
     let body = lab.unit_box(at(0.0, 0.5, 0.0));
-    // Nearer than a step's way: to contacts, what sleeps does not come closer.
+    // Closer than one step's motion. Sleeping bodies have no velocity for contacts.
     let awake = lab.unit_box(at(1.1, 0.5, 0.0));
     lab.insert(awake, SleepingDisabled);
     lab.steps(5);
@@ -283,7 +283,7 @@ fn a_body_put_to_sleep_goes_on_when_it_wakes() {
     lab.steps(10);
     assert!(lab.at(awake).x > 1.5, "it is hit: {:?}", lab.at(awake));
 
-    // Another velocity wakes, as ever.
+    // Another velocity wakes it.
     lab.insert(body, (Sleeping, LinearVelocity(-Vector::X)));
     lab.steps(3);
     assert_eq!(asleep(&lab, &[body]), 1);
@@ -306,7 +306,7 @@ fn a_tower_that_is_woken_again_and_again_stands() {
     assert!(farthest < 1.0e-3, "it moved by {farthest}");
 }
 
-/// Puts something that does not move into a sleeper, in one of some ways.
+/// Moves a static body into a sleeping one, in one of several ways.
 fn beset(lab: &mut Lab, how: usize, place: Vector) {
     let far = Vector::Y * 50.0;
     let wall = || dim::sized_block(1.0, 1.0, 1.0);
@@ -338,7 +338,7 @@ fn beset(lab: &mut Lab, how: usize, place: Vector) {
             lab.steps(1);
             lab.remove::<ColliderDisabled>(wall);
         }
-        // Little by little: it is near before it touches.
+        // In small steps: it is near before it touches.
         _ => {
             let wall = lab.spawn((RigidBody::Static, wall(), Position(place + Vector::X * 0.45)));
             for step in (0..45).rev() {
@@ -374,14 +374,14 @@ fn a_level_may_be_spawned_asleep() {
     let boxes = |lab: &mut Lab, x: f32| {
         [0.5, 1.5, 2.5].map(|y| {
             let body = lab.unit_box(at(x, y, 0.0));
-            // As it was saved.
+            // The state that was saved.
             lab.insert(body, (Sleeping, LinearVelocity(Vector::Y * 0.01)));
             body
         })
     };
     let first = boxes(&mut lab, 0.0);
     lab.steps(30);
-    // Later, beside the first and on the floor that is there.
+    // Later, beside the first and on the existing floor.
     let later = boxes(&mut lab, 1.01);
     for _ in 0..60 {
         lab.steps(1);
@@ -389,7 +389,7 @@ fn a_level_may_be_spawned_asleep() {
     }
 }
 
-/// Its position, recomputed from its centre of mass, differs from what the app gave in the last bit.
+/// Its position, recomputed from the centre of mass, differs in the last bit from the one that the app set.
 #[test]
 fn issue_a_body_off_its_centre_was_taken_for_moved_by_the_app_in_every_step() {
     for i in 0..20 {

@@ -1,4 +1,4 @@
-//! Bodies that spin freely in space: the gyroscopic torque. In the plane there is none.
+//! Free spin in 3D: the gyroscopic torque. There is none in 2D.
 
 use avian::{math::Vector, prelude::*};
 use bevy_ecs::prelude::*;
@@ -43,7 +43,7 @@ impl Top {
 
 #[test]
 fn a_free_disc_wobbles_at_its_rate() {
-    // Seen from the body, the spin turns about its axis of symmetry at (I₃ − I₁) / I₁ · ω₃.
+    // In the body's frame, the spin rotates about its axis of symmetry at (I₃ − I₁) / I₁ · ω₃.
     let mut top = Top::new([1.0, 0.2, 1.0], Vector::new(1.0, 4.0, 0.0));
     let (mut turned, mut last) = (0.0, top.local_spin());
     for _ in 0..600 {
@@ -60,7 +60,7 @@ fn a_free_disc_wobbles_at_its_rate() {
 
 #[test]
 fn what_spins_about_its_middle_axis_turns_over() {
-    // Dzhanibekov's wing nut: a spin about the axis of the middle moment does not last.
+    // Dzhanibekov's wing nut: a spin about the axis of the intermediate moment is unstable.
     let mut top = Top::new([0.4, 1.0, 2.0], Vector::new(0.01, 5.0, 0.0));
     let (mut sign, mut turns) = (1.0, 0);
     for _ in 0..1200 {
@@ -77,7 +77,7 @@ fn free_spin_keeps_its_direction_and_gains_nothing() {
     let cases = [
         ([0.4, 1.0, 2.0], Vector::new(0.01, 5.0, 0.0), 0.9),
         ([1.0, 0.2, 1.0], Vector::new(1.0, 4.0, 0.0), 0.98),
-        // So thin and fast that an explicit step would blow it up; the implicit one takes what it cannot resolve.
+        // So thin and fast that an explicit step would diverge. The implicit step damps what it cannot resolve.
         ([0.02, 2.0, 0.02], Vector::new(100.0, 3.0, 0.0), 0.7),
         ([0.02, 2.0, 0.02], Vector::new(70.0, 70.0, 1.0), 0.0),
     ];

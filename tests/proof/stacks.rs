@@ -1,4 +1,4 @@
-//! What stands stays standing: row 16 of the physics that the engine is held to. 60 Hz, 4 substeps, sleeping off.
+//! Stacks stay standing: row 16 of the required physics. 60 Hz, 4 substeps, sleeping off.
 
 use avian::{math::Vector, prelude::*};
 use bevy_ecs::prelude::*;
@@ -6,7 +6,7 @@ use scenes::{DT, SUBSTEPS, headless_app, pyramid, scene::at, towers};
 
 use super::{dim, world::Lab};
 
-/// How far the top of a pyramid moves in `seconds` after ten seconds of settling, and how far it sagged before.
+/// Displacement of the top of a pyramid in `seconds` after ten seconds of settling, and how far it sagged before.
 fn unrest_of_pyramid(base: u32, seconds: f64) -> (f32, f32) {
     let mut lab = Lab { app: headless_app(DT, SUBSTEPS), dt: DT };
     let boxes = pyramid::large(lab.app.world_mut(), base);
@@ -37,7 +37,7 @@ fn a_pyramid_of_base_64_stands_for_a_minute() {
     assert!(moved < dim::PYRAMID_UNREST, "the top moved {moved} m");
 }
 
-/// Lets towers of boxes stand for twenty seconds, and looks whether their tops are where they were.
+/// Lets towers of boxes stand for twenty seconds, and compares the positions of their tops.
 fn towers_stand(heights: &[u32]) {
     let mut lab = Lab { app: headless_app(DT, SUBSTEPS), dt: DT };
     towers::towers(lab.app.world_mut(), heights);

@@ -1,4 +1,4 @@
-//! A small laboratory: an app that is stepped by hand, with short ways to put bodies in and read them out.
+//! A small laboratory: an app that is stepped by hand, with helpers to add bodies and read their state.
 
 use avian::{
     math::{Scalar, Vector},
@@ -51,7 +51,7 @@ impl Lab {
         self.app.insert_resource(Gravity(gravity));
     }
 
-    /// Friction and restitution of everything that says nothing else.
+    /// Default friction and restitution.
     pub fn surfaces(&mut self, friction: Scalar, restitution: Scalar) {
         self.app.insert_resource(DefaultFriction(Friction::new(friction)));
         self.app.insert_resource(DefaultRestitution(Restitution::new(restitution)));
@@ -128,7 +128,7 @@ impl Lab {
         dim::spin_of(self.get(entity))
     }
 
-    /// How far up the body's own y axis leans: 1 upright, 0 on its side.
+    /// The y component of the body's own y axis: 1 upright, 0 on its side.
     pub fn uprightness(&self, entity: Entity) -> Scalar {
         (self.get::<Rotation>(entity) * Vector::Y).y
     }

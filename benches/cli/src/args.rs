@@ -38,7 +38,7 @@ scenes    what there is
 --out FILE        where the results are, out/results.json if not given
 --docs FOLDER     where the page and the pictures go, ../docs if not given";
 
-/// What is to be done.
+/// A command.
 pub enum Command {
     Help,
     Scenes,
@@ -79,7 +79,7 @@ impl Command {
         })
     }
 
-    /// Does it.
+    /// Runs the command.
     pub fn run(self, engines: &Engines) -> Result<(), String> {
         match self {
             Self::Help => println!("{USAGE}"),
@@ -127,13 +127,13 @@ fn list<D: Scenes>() {
     }
 }
 
-/// Builds what is missing and runs what the plan says, with `split` a second time for the stages of where much moves
-/// and where nothing does.
+/// Builds missing binaries and runs the plan; with `split` a second time with timed stages, for scenes of families
+/// speed and idle.
 fn measure(engines: &Engines, plan: &Plan, split: bool) -> Result<Results, String> {
     if cfg!(debug_assertions) {
         return Err("only what is built with --release is worth measuring".to_owned());
     }
-    // Cargo gives rustc what it gives the C compiler.
+    // Cargo passes the C compiler's flags to rustc.
     if cfg!(feature = "box2d") && !option_env!("CFLAGS").unwrap_or("").contains("NDEBUG") {
         eprintln!("Box2D has its assertions on: build in the folder benches/");
     }
@@ -159,7 +159,7 @@ fn measure(engines: &Engines, plan: &Plan, split: bool) -> Result<Results, Strin
     Ok(runner.results)
 }
 
-/// The scenes of a dimension that the options choose, and for each the engines.
+/// The selected scenes of a dimension, and the engines for each.
 fn choose<D: Scenes>(plan: &Plan, known: impl Iterator<Item = &'static str>) -> Vec<Chosen> {
     let known: Vec<String> = known.chain(["ours"]).map(str::to_owned).collect();
     let engines = if plan.engines.is_empty() {
@@ -182,7 +182,7 @@ fn is_chosen<D: Dimension>(plan: &Plan, entry: &Entry<D>) -> bool {
     plan.scenes.is_empty() || plan.scenes.iter().any(|selector| selector.split('/').all(is))
 }
 
-/// As it is written on the command line.
+/// The name on the command line.
 pub fn family_name(family: Family) -> String {
     format!("{family:?}").to_lowercase()
 }

@@ -1,4 +1,4 @@
-//! The page of benchmarks and its pictures, from the runs of a measurement.
+//! Writes the page of benchmarks and its pictures, from the results.
 
 use std::{fmt::Write as _, path::Path};
 
@@ -164,7 +164,7 @@ fn quality(page: &mut String, cells: &[Cell], dim: u32) {
     });
 }
 
-/// How this engine's deepest overlap, and the way of a pyramid's top, compare with the least of any peer's.
+/// This engine's deepest overlap, and the displacement of a pyramid's top, relative to the least of any peer's.
 fn against_peers(beside: &[&Cell]) -> String {
     let Some(ours) = engine_cell(beside.iter().copied(), "ours") else { return "–".to_owned() };
     let ratio = |measure: fn(&Cell) -> Option<f32>| {
@@ -213,7 +213,7 @@ fn growth(
     Ok(())
 }
 
-/// Of engines in Bevy, what they cost more than the App without physics.
+/// For engines in Bevy, their time minus that of the App without physics.
 fn still(page: &mut String, cells: &[Cell], dim: u32) {
     let chosen: Vec<&Cell> =
         of(cells, dim, Family::Idle).into_iter().chain(of(cells, dim, Family::Small)).collect();
@@ -294,7 +294,7 @@ fn stages(page: &mut String, staged: &[Cell], dim: u32) {
     page.push('\n');
 }
 
-/// What one thread does alone while others wait, from runs of several threads whose shared time the engine counted.
+/// Single-threaded time per step, from runs with several threads whose shared time the engine counted.
 fn serial(page: &mut String, staged: &[Cell], dim: u32) {
     let ours = || staged.iter().filter(|cell| cell.first.dim == dim && cell.first.engine == "ours");
     let rows: Vec<_> = ours()

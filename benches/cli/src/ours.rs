@@ -1,4 +1,4 @@
-//! Has cargo build the binary that carries this engine.
+//! Builds the binary with this engine.
 
 use std::{
     env::{current_exe, var_os},
@@ -12,7 +12,7 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in a folder of the workspace")
 }
 
-/// Builds it where this binary was built, and says where it is. Quick if nothing changed.
+/// Builds it in the profile of this binary, and returns its path. Fast if nothing changed.
 pub fn build() -> Result<PathBuf, String> {
     let own = current_exe().map_err(|e| e.to_string())?;
     let folder = own.parent().ok_or("this binary is in a folder")?;

@@ -1,4 +1,4 @@
-//! Reports as pictures: SVG, with the fonts of whoever looks at them.
+//! Reports as SVG pictures, with the fonts of the viewer.
 
 use std::error::Error;
 
@@ -66,9 +66,9 @@ fn draw_legend(root: &Picture, engines: &[&str], (mut x, y): (i32, i32)) -> Done
     Ok(())
 }
 
-/// Time of a step in every scene of the family in which much moves, as a multiple of the best peer's.
+/// Time of a step in every scene of family speed, as a multiple of the best peer's.
 pub fn bars(cells: &[Cell], dim: u32, threads: usize) -> Result<String, String> {
-    /// Bars end here; the number on top says how far they would go.
+    /// Maximum length of a bar. A number on top gives the value of longer ones.
     const TOP: f64 = 5.0;
     let cells: Vec<Cell> = cells.iter().filter(|c| c.is(dim, Family::Speed, threads)).cloned().collect();
     let mut scenes: Vec<&str> = cells.iter().map(|cell| cell.first.scene.as_str()).collect();
@@ -117,7 +117,7 @@ pub fn bars(cells: &[Cell], dim: u32, threads: usize) -> Result<String, String> 
         }
         chart.draw_series(LineSeries::new([(0.0, 1.0), (scenes.len() as f64, 1.0)], BLACK))?;
         for (ratio, (x, y)) in ratios {
-            // The line at 1 would strike through what stands on bars of 0.9.
+            // The line at 1 would cross the text above bars of 0.9.
             root.draw(&Rectangle::new([(x - 8, y - 12), (x + 8, y - 2)], WHITE.filled()))?;
             draw_text(root, &ratio, (x, y - 7), 11, HPos::Center)?;
         }

@@ -1,4 +1,4 @@
-//! What a measurement leaves: every run, and what it ran on, in one file.
+//! Results of a measurement: every run and the machine, in one file.
 
 use std::{fs, path::Path, process::Command};
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ours::root;
 
-/// The packages whose versions are told, and what they are.
+/// The packages whose versions are recorded, with labels.
 const PACKAGES: [(&str, &str); 5] = [
     ("boxdd-sys", "Box2D, through boxdd-sys"),
     ("box3d-sys", "Box3D, through box3d-sys"),
@@ -19,14 +19,14 @@ const PACKAGES: [(&str, &str); 5] = [
 /// A measurement.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Results {
-    /// What it ran on and with: name and value.
+    /// Machine and versions: name and value.
     pub facts: Vec<(String, String)>,
     /// Every run.
     pub reports: Vec<Report>,
 }
 
 impl Results {
-    /// Nothing yet, on this machine.
+    /// No runs yet, on this machine.
     pub fn here() -> Self {
         Self { facts: facts(), reports: Vec::new() }
     }

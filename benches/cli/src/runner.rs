@@ -20,31 +20,31 @@ use crate::{ours::root, results::Results};
 /// The name of the App without physics.
 pub const BARE: &str = "bevy";
 
-/// What is to be measured, and how carefully.
+/// Settings of a measurement.
 pub struct Plan {
-    /// Which scenes; all if none are named.
+    /// The scenes; all if empty.
     pub scenes: Vec<String>,
-    /// Which engines; all if none are named.
+    /// The engines; all if empty.
     pub engines: Vec<String>,
-    /// How many threads each engine gets.
+    /// The numbers of threads.
     pub threads: Vec<usize>,
-    /// How often each is run.
+    /// Number of runs of each.
     pub repeats: usize,
-    /// How many steps are timed, if not as many as the scene says.
+    /// Number of timed steps, instead of the scene's own.
     pub steps: Option<usize>,
-    /// The engine that the table compares with.
+    /// The engine to which the table compares.
     pub baseline: Option<String>,
     /// Whether stages are timed.
     pub stages: bool,
     /// The longest wait for a quiet machine before each run, in seconds.
     pub wait_s: u64,
-    /// Runs during which others used more than this share of a core are repeated.
+    /// A run is repeated if other processes used more than this share of a core.
     pub foreign_limit: f64,
-    /// Which build of this engine, if not the present one.
+    /// Another build of this engine.
     pub ours: Option<PathBuf>,
-    /// Where the results go.
+    /// The file of results.
     pub out: PathBuf,
-    /// Where the page and the pictures go.
+    /// The folder of page and pictures.
     pub docs: PathBuf,
 }
 
@@ -68,7 +68,7 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// To see that everything runs, not to measure.
+    /// Checks that everything runs, without measuring.
     pub fn make_quick(&mut self) {
         self.steps = Some(10);
         self.wait_s = 0;
@@ -77,13 +77,13 @@ impl Plan {
     }
 }
 
-/// A scene to be run, and on what.
+/// A scene with the engines to run it on.
 pub struct Chosen {
     /// 2 or 3.
     pub dim: u32,
     /// The scene.
     pub name: &'static str,
-    /// What it is to show.
+    /// The family.
     pub family: Family,
     /// The engines.
     pub engines: Vec<String>,
@@ -95,22 +95,22 @@ pub struct Runner<'a> {
     ours: Option<PathBuf>,
     /// All runs so far.
     pub results: Results,
-    /// Engines that said that they cannot run a scene.
+    /// Engines that reported that they cannot run a scene.
     unable: HashSet<(u32, String, String)>,
 }
 
 impl<'a> Runner<'a> {
-    /// `ours` is the binary that runs engines whose names begin so.
+    /// `ours` is the binary for engines whose names begin with it.
     pub fn new(plan: &'a Plan, ours: Option<PathBuf>) -> Self {
         Self { plan, ours, results: Results::here(), unable: HashSet::new() }
     }
 
-    /// Runs scenes, and saves all that is known after each run.
+    /// Runs scenes, and saves all results after each run.
     pub fn run(&mut self, scenes: &[Chosen], repeats: usize, stages: bool) -> Result<(), String> {
         for scene in scenes {
             for repeat in 0..repeats {
                 for &threads in &self.plan.threads {
-                    // Queries are asked by one thread.
+                    // Queries run on one thread.
                     if threads > 1 && scene.family == Family::Queries {
                         continue;
                     }
@@ -131,7 +131,8 @@ impl<'a> Runner<'a> {
         Ok(())
     }
 
-    /// Runs a job until nobody disturbs it, three times at most. An engine that fails does not stop the others.
+    /// Repeats a job, up to three times, until other processes were idle. An engine that fails does not stop the
+    /// others.
     fn run_job(&mut self, job: &Job, repeat: usize) -> Result<(), String> {
         let Job { dim, scene, engine, threads, .. } = job;
         let name = format!("{dim}d/{scene} {engine}, threads {threads}");

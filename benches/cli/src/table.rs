@@ -13,7 +13,7 @@ use crate::runner::BARE;
 /// The engines in the order of columns and pictures.
 pub const ENGINES: [&str; 5] = ["ours", "box2d", "box3d", "rapier", "avian"];
 
-/// The name of an engine as it is shown.
+/// The display name of an engine.
 pub fn shown(engine: &str) -> &str {
     match engine {
         "ours" => "this",
@@ -25,22 +25,22 @@ pub fn shown(engine: &str) -> &str {
     }
 }
 
-/// What ran with the same scene, engine and number of threads, in the order in which it first ran.
+/// Runs with the same scene, engine and number of threads, in the order of the first of each.
 #[derive(Clone)]
 pub struct Cell<'a> {
-    /// Any of the runs.
+    /// One of the runs.
     pub first: &'a Report,
-    /// All of them.
+    /// All runs.
     pub runs: Vec<&'a Report>,
 }
 
 impl Cell<'_> {
-    /// The middle of some number over the runs.
+    /// The median of a number over the runs.
     pub fn middle(&self, number: impl Fn(&Report) -> f64) -> f64 {
         middle(self.runs.iter().map(|run| number(run)).collect())
     }
 
-    /// The middle of the runs' mean times, in milliseconds.
+    /// The median of the runs' mean times, in milliseconds.
     pub fn mean(&self) -> f64 {
         self.middle(|run| run.mean)
     }
@@ -49,20 +49,20 @@ impl Cell<'_> {
         self.is_beside(other) && self.first.engine == other.engine
     }
 
-    /// Whether it is of that kind.
+    /// Whether it is of a family.
     pub fn is(&self, dim: u32, family: Family, threads: usize) -> bool {
         let Report { dim: own, family: of, threads: with, .. } = self.first;
         (*own, *of, *with) == (dim, family, threads)
     }
 
-    /// Whether that is the same but for the engine.
+    /// Whether two differ only in the engine.
     pub fn is_beside(&self, other: &Report) -> bool {
         let key = |r: &Report| (r.dim, r.scene.clone(), r.threads);
         key(self.first) == key(other)
     }
 }
 
-/// The cell of an engine among some.
+/// The cell of an engine.
 pub fn engine_cell<'a, 'b>(
     mut cells: impl Iterator<Item = &'b Cell<'a>>,
     engine: &str,
@@ -73,13 +73,13 @@ where
     cells.find(|cell| cell.first.engine == engine)
 }
 
-/// The time of the fastest of the peers among some, in milliseconds.
+/// The time of the fastest peer, in milliseconds.
 pub fn best_peer<'a: 'b, 'b>(cells: impl Iterator<Item = &'b Cell<'a>>) -> Option<f64> {
     let peers = cells.filter(|cell| !cell.first.engine.starts_with("ours") && cell.first.engine != BARE);
     peers.map(Cell::mean).min_by(f64::total_cmp)
 }
 
-/// Folds repeated runs. What had its stages timed counts only if nothing else is wanted.
+/// Groups repeated runs. Runs with timed stages count only if there are no others.
 pub fn cells(reports: &[Report], staged: bool) -> Vec<Cell<'_>> {
     let mut cells: Vec<Cell> = Vec::new();
     for report in reports.iter().filter(|report| report.stages.is_empty() != staged) {
@@ -91,7 +91,7 @@ pub fn cells(reports: &[Report], staged: bool) -> Vec<Cell<'_>> {
     cells
 }
 
-/// One row per scene, number of threads and engine, with all that was judged.
+/// One row per scene, number of threads and engine, with all measures of the final state.
 pub fn markdown(reports: &[Report], baseline: Option<&str>) -> String {
     let (plain, staged) = (cells(reports, false), cells(reports, true));
     let all: Vec<Cell> = plain.into_iter().chain(staged).collect();
@@ -122,7 +122,7 @@ fn row(out: &mut String, cell: &Cell, ratio: f64) {
     );
 }
 
-/// The columns of what was judged.
+/// The columns of the final state.
 fn quality(report: &Report, mean: f64) -> String {
     let q = &report.quality;
     let drift = q.drift.map_or("–".to_owned(), |drift| format!("{drift:.3}"));

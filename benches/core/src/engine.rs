@@ -1,4 +1,4 @@
-//! What an engine has to do to be measured.
+//! The interface of an engine.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,21 +11,21 @@ use crate::{
 
 /// The length of a step in seconds.
 pub const DT: f32 = 1.0 / 60.0;
-/// How many substeps a step has, in every engine.
+/// Number of substeps per step, in every engine.
 pub const SUBSTEPS: u32 = 4;
 
-/// What every engine is made with; the rest is in the scene.
+/// Settings of every engine; all others are in the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// How many threads it may use.
+    /// Maximum number of threads.
     pub threads: usize,
     /// Whether bodies may fall asleep.
     pub sleeping: bool,
-    /// Whether clocks are to be put between the stages. They cost a little.
+    /// Whether clocks are added between the stages. They cost a little.
     pub stages: bool,
 }
 
-/// Whose time a stage is.
+/// The share that a stage belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Share {
     /// The simulation's.
@@ -34,19 +34,19 @@ pub enum Share {
     Ecs,
     /// Bevy's, around the physics.
     Bevy,
-    /// What the engine says of itself. It overlaps with the rest and is not part of a sum.
+    /// The engine's own timer. It overlaps with other stages and is not part of a sum.
     Own,
 }
 
-/// The name of the time for which several threads worked on a step.
+/// The name of the time in which several threads worked on a step.
 pub const SHARED: &str = "shared";
 
-/// How long a part of the last step took.
+/// The time of a part of the last step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Stage {
-    /// What it is.
+    /// The name of the part.
     pub name: String,
-    /// Whose time it is.
+    /// The share it belongs to.
     pub share: Share,
     /// In milliseconds.
     pub ms: f64,
@@ -61,7 +61,7 @@ impl Stage {
 
 /// One engine's world. Bodies are numbered in the order they are added.
 pub trait Engine<D: Dimension> {
-    /// What this build leaves out. It is never asked for it, and need not implement it.
+    /// Features that this build does not support. Their methods are never called.
     fn lacks(&self) -> &'static [Need] {
         &[]
     }
@@ -71,7 +71,7 @@ pub trait Engine<D: Dimension> {
     fn add_joint(&mut self, _joint: &Joint<D>) {
         unreachable!("an engine without joints is given none");
     }
-    /// Called once, after what the scene begins with is added and before the first step.
+    /// Called once, after the initial bodies are added and before the first step.
     fn ready(&mut self) {}
     /// Sets the velocity of a kinematic body.
     fn push(&mut self, body: usize, vel: D::Vec);
@@ -79,7 +79,7 @@ pub trait Engine<D: Dimension> {
     fn clear(&mut self);
     /// Steps the world once.
     fn step(&mut self);
-    /// Where the bodies are, in the order they were added.
+    /// The poses of the bodies, in the order they were added.
     fn states(&mut self, out: &mut Vec<State<D>>);
     /// How many dynamic bodies are awake.
     fn awake(&mut self) -> usize;
@@ -87,7 +87,7 @@ pub trait Engine<D: Dimension> {
     fn raycast(&mut self, _rays: &[Ray<D>], _out: &mut Vec<f32>) {
         unreachable!("an engine without queries is given none");
     }
-    /// How far a ball of that radius gets along each ray, or infinity.
+    /// The distance that a ball of a radius moves along each ray, or infinity.
     fn ballcast(&mut self, _radius: f32, _rays: &[Ray<D>], _out: &mut Vec<f32>) {
         unreachable!("an engine without queries is given none");
     }

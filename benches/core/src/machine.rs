@@ -1,9 +1,9 @@
-//! What a measurement has to know of the operating system: cores, and how busy they are.
+//! Operating system parts of a measurement: cores, and their load.
 //!
-//! On anything but Linux processes are not pinned, and no run is known to have been disturbed.
+//! On systems other than Linux, processes are not pinned, and disturbed runs are not detected.
 
-/// Pins the process to as many cores as the run may use, taken from the end of the list, before any engine starts a
-/// thread: "1 thread" then means one core for every engine.
+/// Pins the process to as many cores as the run may use, from the end of the list, before any engine starts a thread.
+/// So "1 thread" means one core for every engine.
 #[cfg(target_os = "linux")]
 #[expect(unsafe_code, reason = "the C library's calls")]
 pub fn pin(threads: usize) {
@@ -26,7 +26,7 @@ pub fn pin(threads: usize) {
 #[cfg(not(target_os = "linux"))]
 pub fn pin(_threads: usize) {}
 
-/// What processes used.
+/// Resources used by processes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Usage {
     /// CPU time in seconds.

@@ -1,4 +1,4 @@
-//! The clock, and the numbers that leave a run.
+//! The clock, and the results of a run.
 
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ use crate::{
     scene::Family,
 };
 
-/// How well the world stands at the end, judged the same way for every engine.
+/// The final state of the world, measured in the same way for every engine.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Quality {
     /// How many bodies are dynamic.
@@ -34,13 +34,13 @@ pub struct Quality {
     pub max_joint_error: f32,
     /// How far the watched body is from where it started, in metres.
     pub drift: Option<f32>,
-    /// Queries only: how many hit.
+    /// Queries only: the number of hits.
     pub hits: Option<usize>,
-    /// Queries only: how far the hits are on average, in metres.
+    /// Queries only: the mean distance of hits, in metres.
     pub mean_hit: Option<f64>,
 }
 
-/// What one run of one scene on one engine gave.
+/// The result of one run of one scene on one engine.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Report {
     /// The engine.
@@ -49,7 +49,7 @@ pub struct Report {
     pub dim: u32,
     /// The scene.
     pub scene: String,
-    /// What the scene is to show.
+    /// The family.
     pub family: Family,
     /// How many threads the engine had.
     pub threads: usize,
@@ -71,7 +71,7 @@ pub struct Report {
     pub max: f64,
     /// The parts of a step, on average. Empty unless asked for.
     pub stages: Vec<Stage>,
-    /// How the world stood at the end.
+    /// The final state.
     pub quality: Quality,
     /// Share of one core that other processes used meanwhile, which the parent fills in.
     #[serde(default)]
@@ -84,7 +84,7 @@ pub struct Report {
 #[derive(Default)]
 pub struct Clock(Vec<f64>);
 
-/// What a clock says.
+/// Statistics of times.
 pub struct Times {
     /// Mean.
     pub mean: f64,
@@ -114,7 +114,7 @@ impl Clock {
         self.0.push(ms);
     }
 
-    /// What the times come to.
+    /// The statistics.
     pub fn times(mut self) -> Times {
         self.0.sort_by(f64::total_cmp);
         let count = self.0.len().max(1);
@@ -160,7 +160,7 @@ pub fn sum_of(stages: &[Stage], share: Share) -> f64 {
     stages.iter().filter(|s| s.share == share).map(|s| s.ms).sum()
 }
 
-/// The middle of some numbers, NaN of none.
+/// The median of some numbers, NaN for none.
 pub fn middle(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
     match numbers.len() {

@@ -1,4 +1,4 @@
-//! Judges how a world stands at the end: one ruler, parry's contact query on the scene's shapes, for every engine.
+//! Measures the final state of a world, with parry's contact query on the scene's shapes for every engine.
 
 use std::collections::HashSet;
 
@@ -8,7 +8,7 @@ use crate::{
     world::{Dimension, Group, Kind, State, distance},
 };
 
-/// A shape where it ended up.
+/// A shape at its final pose.
 struct Item<D: Dimension> {
     body: usize,
     pose: D::Pose,
@@ -20,7 +20,7 @@ struct Item<D: Dimension> {
 /// Shapes wider than this, in metres, would make a plain sweep quadratic: they are swept against everything once.
 const WIDE: f32 = 5.0;
 
-/// Judges the final state.
+/// Measures the final state.
 pub(crate) fn judge<D: Dimension>(scene: &Scene<D>, states: &[State<D>], awake: usize) -> Quality {
     let mut quality = Quality { awake, ..Default::default() };
     let mut items = Vec::new();

@@ -1,28 +1,28 @@
-//! What a scene is: plain data, so that every engine gets the same one.
+//! Scenes as plain data, the same for every engine.
 
 use serde::{Deserialize, Serialize};
 
 use crate::world::{Body, Dimension, Joint, Ray};
 
-/// What a scene is to show. Tables and plots are per family.
+/// The family of a scene. Tables and plots are per family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Family {
-    /// How long a step takes in which much moves.
+    /// Time per step with many moving bodies.
     Speed,
-    /// How long a batch of queries takes.
+    /// Time of a batch of queries.
     Queries,
-    /// What a world costs in which little or nothing moves.
+    /// Cost of a world in which few or no bodies move.
     Idle,
-    /// What a step costs with hardly anything in it.
+    /// Cost of a step of an almost empty world.
     Small,
-    /// How long adding and removing a whole level takes.
+    /// Time for adding and removing a level.
     Bulk,
-    /// How the time grows with the number of bodies.
+    /// Growth of the time with the number of bodies.
     Growth,
 }
 
 impl Family {
-    /// Whether hardly anything moves: what it costs to have the bodies at all is then worth knowing.
+    /// Whether few bodies move: then the cost of having the bodies matters.
     pub fn is_mostly_still(self) -> bool {
         matches!(self, Self::Idle | Self::Small | Self::Bulk)
     }
@@ -37,17 +37,16 @@ pub enum Work {
     Raycasts,
     /// Batches of sweeps of a ball against a world at rest.
     Ballcasts,
-    /// Adding all bodies to an empty world, and the step that takes them in.
+    /// Adding all bodies to an empty world, and the step after it.
     Spawn,
-    /// Removing all bodies, and the step that lets them go.
+    /// Removing all bodies, and the step after it.
     Despawn,
 }
 
-/// What a scene may ask for beyond single bodies of one shape. An engine's build may lack some of it and is then
-/// not given the scenes that need it.
+/// Features that a scene may need, beyond single bodies of one shape. Engines that lack one do not run the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// That anything moves at all.
+    /// Moving bodies.
     Physics,
     /// Joints.
     Joints,
@@ -59,12 +58,12 @@ pub enum Need {
     Children,
 }
 
-/// How long a scene runs: `settle` steps are not timed, `timed` are.
+/// The length of a scene: `settle` steps are not timed, `timed` steps are.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
     /// What is timed.
     pub work: Work,
-    /// How many steps come before.
+    /// Number of steps before.
     pub settle: usize,
     /// How many steps or batches are timed.
     pub timed: usize,
@@ -76,23 +75,23 @@ impl Plan {
         Self { work: Work::Steps, settle: 5, timed }
     }
 
-    /// Steps, after some in which the scene comes to where it is interesting.
+    /// Steps, after others that bring the scene to its interesting part.
     pub const fn settled(settle: usize, timed: usize) -> Self {
         Self { work: Work::Steps, settle, timed }
     }
 
-    /// Batches of something else.
+    /// Batches of something other than steps.
     pub const fn batches(work: Work, timed: usize) -> Self {
         Self { work, settle: 2, timed }
     }
 }
 
-/// A kinematic body that is sent somewhere else in every step.
+/// A kinematic body that moves along a path.
 #[derive(Clone, Copy, Debug)]
 pub struct Drive<D: Dimension> {
     /// The body.
     pub body: usize,
-    /// Where it is at a time in seconds.
+    /// Its position at a time in seconds.
     pub place: fn(f32) -> D::Vec,
 }
 
@@ -105,10 +104,10 @@ impl<D: Dimension> Drive<D> {
     }
 }
 
-/// A world and what is done with it.
+/// A world and how it is run.
 #[derive(Clone, Debug)]
 pub struct Scene<D: Dimension> {
-    /// What is to be seen in it, in one line.
+    /// Description in one line.
     pub about: String,
     /// Gravity in m/s².
     pub gravity: D::Vec,
@@ -120,20 +119,20 @@ pub struct Scene<D: Dimension> {
     pub bodies: Vec<Body<D>>,
     /// The joints.
     pub joints: Vec<Joint<D>>,
-    /// What queries look along.
+    /// The rays of queries.
     pub rays: Vec<Ray<D>>,
     /// Radius of the ball that shape casts sweep.
     pub cast_radius: f32,
-    /// Dynamic bodies that end outside of this box have escaped.
+    /// Dynamic bodies outside of this box at the end have escaped.
     pub bounds: (D::Vec, D::Vec),
     /// The body whose displacement is reported as drift, the top of a pyramid.
     pub watch: Option<usize>,
-    /// A body that is sent somewhere in every step.
+    /// A body that moves along a path.
     pub drive: Option<Drive<D>>,
 }
 
 impl<D: Dimension> Scene<D> {
-    /// A world with nothing in it, in which gravity is 10 m/s² and nothing falls asleep.
+    /// An empty world with gravity of 10 m/s², in which no body sleeps.
     pub fn new(about: impl Into<String>, plan: Plan) -> Self {
         let (mut gravity, mut low, mut high) = (D::ZERO, D::ZERO, D::ZERO);
         gravity.as_mut()[1] = -10.0;
@@ -159,7 +158,7 @@ impl<D: Dimension> Scene<D> {
 pub struct Entry<D: Dimension> {
     /// Its name.
     pub name: &'static str,
-    /// What it is to show.
+    /// The family.
     pub family: Family,
     /// Makes it.
     pub build: fn() -> Scene<D>,

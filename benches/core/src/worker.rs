@@ -1,5 +1,5 @@
-//! One run of one scene on one engine, in a process of its own: task pools are global in some engines, and a crash
-//! or a leak in one run must not touch the next.
+//! One run of one scene on one engine, in a process of its own: task pools are global in some engines, and a crash or
+//! leak in one run must not affect the next.
 
 use std::time::Instant;
 
@@ -12,10 +12,10 @@ use crate::{
     world::Dimension,
 };
 
-/// How the error begins that makes the parent skip the scene for this engine.
+/// Prefix of the error that makes the parent skip the scene for this engine.
 pub const UNSUPPORTED: &str = "not supported by this build";
 
-/// What to run.
+/// A job.
 #[derive(Clone, Debug)]
 pub struct Job {
     /// 2 or 3.
@@ -56,7 +56,7 @@ impl Job {
     }
 }
 
-/// Runs the job that the arguments say, and prints its report as one line of JSON.
+/// Runs the job in the arguments, and prints its result as one line of JSON.
 pub fn main(engines: &Engines, args: &[String]) -> Result<(), String> {
     let job = Job::from_args(args).ok_or("worker DIM ENGINE SCENE THREADS STEPS|- stages|plain")?;
     pin(job.threads);
@@ -119,7 +119,7 @@ fn run<D: Scenes>(engines: &[(&str, Make<D>)], job: &Job) -> Result<Report, Stri
     })
 }
 
-/// Says no to a scene that needs something the engine's build lacks.
+/// Refuses a scene that needs a feature that the engine's build lacks.
 fn refuse(lacks: &[Need], needs: impl Fn(Need) -> bool) -> Result<(), String> {
     let missing: Vec<String> =
         lacks.iter().filter(|need| needs(**need)).map(|need| format!("{need:?}").to_lowercase()).collect();
@@ -143,7 +143,7 @@ struct Bench<'a, D: Dimension> {
 }
 
 impl<D: Dimension> Bench<'_, D> {
-    /// One after the other: steps, each with what the scene does in it, or batches of queries.
+    /// The parts of a run: steps, each with the scene's actions, or batches of queries.
     fn time_steps(&mut self, timed: usize) {
         let Self { engine, scene, clock, stages, out, .. } = self;
         let settle = scene.plan.settle;
@@ -162,7 +162,7 @@ impl<D: Dimension> Bench<'_, D> {
         }
     }
 
-    /// Empties and fills the world again and again; one of the two counts. The world is left full.
+    /// Empties and fills the world repeatedly, and times one of the two. The world is left full.
     fn time_batches(&mut self, timed: usize) {
         let Self { engine, scene, clock, .. } = self;
         let Plan { work, settle, .. } = scene.plan;
@@ -199,7 +199,7 @@ impl<D: Dimension> Bench<'_, D> {
     }
 }
 
-/// Steps once, after sending the driven body on its way.
+/// Takes a step, after setting the velocity of the driven body.
 fn step<D: Dimension>(engine: &mut dyn Engine<D>, scene: &Scene<D>, steps: usize) {
     if let Some(drive) = &scene.drive {
         engine.push(drive.body, drive.velocity(steps, DT));

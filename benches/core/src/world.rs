@@ -1,9 +1,9 @@
-//! What a world is made of, in either dimension: bodies, joints, rays, and where bodies are.
+//! Bodies, joints and rays in either dimension.
 
 use std::fmt::Debug;
 use std::ops::Mul;
 
-/// What differs between two and three dimensions.
+/// The types and operations of a dimension.
 pub trait Dimension: Copy + Debug + 'static {
     /// A point or a direction.
     type Vec: Copy + Debug + PartialEq + AsRef<[f32]> + AsMut<[f32]>;
@@ -31,15 +31,15 @@ pub trait Dimension: Copy + Debug + 'static {
     fn is_finite(turn: Self::Turn) -> bool;
     /// Whether the shape is a triangle mesh.
     fn is_mesh(shape: &Self::Shape) -> bool;
-    /// A pose for the ruler.
+    /// A pose in parry's type.
     fn pose(at: Self::Vec, turn: Self::Turn) -> Self::Pose;
-    /// A point of a body's frame in the world.
+    /// Transforms a point from a body's frame to the world.
     fn point(pose: &Self::Pose, local: Self::Vec) -> Self::Vec;
-    /// A shape for the ruler.
+    /// A shape in parry's type.
     fn solid(shape: &Self::Shape) -> Self::Solid;
     /// The box around a shape: its lowest and its highest corner.
     fn bounds(solid: &Self::Solid, pose: &Self::Pose) -> (Self::Vec, Self::Vec);
-    /// How deep two shapes overlap; 0 or less if they do not.
+    /// The depth of the overlap of two shapes; 0 or less if they do not overlap.
     fn depth(a: (&Self::Solid, &Self::Pose), b: (&Self::Solid, &Self::Pose)) -> f32;
 }
 
@@ -48,23 +48,23 @@ pub fn distance<D: Dimension>(a: D::Vec, b: D::Vec) -> f32 {
     a.as_ref().iter().zip(b.as_ref()).map(|(a, b)| (a - b) * (a - b)).sum::<f32>().sqrt()
 }
 
-/// How a body takes part.
+/// The kind of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Never moves.
     Static,
-    /// Moves with its velocity, and nothing changes that.
+    /// Moves by its velocity only.
     Kinematic,
-    /// Falls and collides.
+    /// Moves by forces and contacts.
     Dynamic,
 }
 
-/// Whether a body collides with the other bodies of its group.
+/// Whether a body collides with others of its group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// With everything.
+    /// Collides with all.
     All,
-    /// Not with others of this group.
+    /// Does not collide with others of this group.
     NotEachOther,
 }
 
@@ -94,7 +94,7 @@ impl<D: Dimension> Part<D> {
 /// A rigid body.
 #[derive(Clone, Debug)]
 pub struct Body<D: Dimension> {
-    /// How it takes part.
+    /// The kind.
     pub kind: Kind,
     /// Where its origin is, in metres.
     pub pos: D::Vec,
@@ -104,23 +104,23 @@ pub struct Body<D: Dimension> {
     pub vel: D::Vec,
     /// Angular velocity in rad/s.
     pub spin: D::Spin,
-    /// Of every shape, in kg/m² or kg/m³.
+    /// Density of every shape, in kg/m² or kg/m³.
     pub density: f32,
-    /// Of every shape.
+    /// Friction of every shape.
     pub friction: f32,
-    /// What it collides with.
+    /// The collision group.
     pub group: Group,
     /// Its shapes.
     pub parts: Vec<Part<D>>,
 }
 
 impl<D: Dimension> Body<D> {
-    /// A body of one shape, which is at its origin.
+    /// A body with one shape, at its origin.
     pub fn new(kind: Kind, pos: D::Vec, shape: D::Shape) -> Self {
         Self::compound(kind, pos, vec![Part::at(D::ZERO, shape)])
     }
 
-    /// A body of many shapes.
+    /// A body with several shapes.
     pub fn compound(kind: Kind, pos: D::Vec, parts: Vec<Part<D>>) -> Self {
         Self {
             kind,
@@ -145,7 +145,7 @@ impl<D: Dimension> Body<D> {
         Self::new(Kind::Static, pos, shape)
     }
 
-    /// The body's shape, if it has just one and that sits at the body's origin.
+    /// The body's shape, if there is only one, at the body's origin.
     pub fn only_shape(&self) -> Option<&D::Shape> {
         match &self.parts[..] {
             [part] if part.is_centred() => Some(&part.shape),
@@ -154,7 +154,7 @@ impl<D: Dimension> Body<D> {
     }
 }
 
-/// Holds a point of one body at a point of another; the two do not collide with each other.
+/// Keeps a point of one body at a point of another. The two bodies do not collide.
 #[derive(Clone, Copy, Debug)]
 pub struct Joint<D: Dimension> {
     /// The first body.
@@ -167,18 +167,18 @@ pub struct Joint<D: Dimension> {
     pub anchor_b: D::Vec,
 }
 
-/// What a query looks along.
+/// A ray of a query.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray<D: Dimension> {
-    /// Where it starts.
+    /// The origin.
     pub origin: D::Vec,
     /// Unit length.
     pub dir: D::Vec,
-    /// How far it goes, in metres.
+    /// The length, in metres.
     pub length: f32,
 }
 
-/// Where a body is and how it moves.
+/// Pose and velocity of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct State<D: Dimension> {
     /// Where its origin is.

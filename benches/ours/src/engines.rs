@@ -1,4 +1,4 @@
-//! The adapters, by path: the very files that upstream is measured with.
+//! The adapters, by path: the same files as for upstream.
 
 #[path = "../../cli/src/engines/app.rs"]
 pub mod app;

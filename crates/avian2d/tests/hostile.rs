@@ -1,6 +1,5 @@
-//! What avian2d makes of input that makes no sense: it is refused with an error, mended or quarantined with a
-//! warning; it never ends in a panic, and never reaches bodies that have nothing to do with it. The files are shared
-//! with avian3d.
+//! Invalid input to avian2d is refused with an error, repaired or quarantined with a warning. It never panics, and
+//! never affects unrelated bodies. The files are shared with avian3d.
 
 #[path = "../../../tests/hostile/changes.rs"]
 mod changes;

@@ -1,4 +1,4 @@
-//! What comes and goes in avian2d; the files are shared with avian3d.
+//! The life cycle in avian2d. The files are shared with avian3d.
 
 #[path = "../../../tests/lifecycle.rs"]
 mod lifecycle;

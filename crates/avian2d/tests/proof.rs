@@ -1,4 +1,4 @@
-//! What the whole engine does, in the plane: physics, snippets, life with the app. The files are shared with avian3d.
+//! Tests of the whole engine in 2D: physics, snippets, changes by the app. The files are shared with avian3d.
 
 #[path = "../../../tests/proof/behaviour.rs"]
 mod behaviour;

@@ -1,6 +1,5 @@
-//! What avian3d makes of input that makes no sense: it is refused with an error, mended or quarantined with a
-//! warning; it never ends in a panic, and never reaches bodies that have nothing to do with it. The files are shared
-//! with avian2d.
+//! Invalid input to avian3d is refused with an error, repaired or quarantined with a warning. It never panics, and
+//! never affects unrelated bodies. The files are shared with avian2d.
 
 #[path = "../../../tests/hostile/changes.rs"]
 mod changes;

@@ -1,4 +1,4 @@
-//! What comes and goes in avian3d; the files are shared with avian2d.
+//! The life cycle in avian3d. The files are shared with avian2d.
 
 #[path = "../../../tests/lifecycle.rs"]
 mod lifecycle;

@@ -1,4 +1,4 @@
-//! What the whole engine does, in space: physics, snippets, life with the app. The files are shared with avian2d.
+//! Tests of the whole engine in 3D: physics, snippets, changes by the app. The files are shared with avian2d.
 
 #[path = "../../../tests/proof/behaviour.rs"]
 mod behaviour;

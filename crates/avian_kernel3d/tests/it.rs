@@ -1,4 +1,4 @@
-//! The kernel's parts put together, without Bevy. The source is shared by both dimensions.
+//! Tests of the kernel's parts together, without Bevy. The source is shared by both dimensions.
 
 use avian_kernel3d as kernel;
 

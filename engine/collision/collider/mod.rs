@@ -32,7 +32,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use derive_more::From;
 
-/// Marks an entity as having a collider, of whatever type. Added by the engine.
+/// Marks an entity with a collider of any type. Added by the engine.
 #[derive(Reflect, Component, Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

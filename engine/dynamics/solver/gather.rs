@@ -304,7 +304,7 @@ pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
     ids.extend(table.awake_kinematic().filter(|id| at_rest(entities[*id as usize])));
     for &id in &ids {
         tables.link().set_kinematic_awake(id, false);
-        // Nobody reads it while it rests; were the old one kept, setting it again would be no change.
+        // A resting body has no velocity. With the old one in the table, setting it again would be no change.
         tables.bodies.table.set_velocity(id, Velocity::default());
     }
     tables.bodies.ids = ids;

@@ -15,14 +15,14 @@ use bevy_math::{Quat, Vec3};
 pub use form::Form;
 pub use image::Image;
 
-/// How a body takes part in the simulation, as far as its colour is concerned.
+/// The kind of a body, for its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Never moves.
     Static,
-    /// Moves as it likes.
+    /// Moves by its velocity only.
     Kinematic,
-    /// Moves as forces make it.
+    /// Moves by forces and contacts.
     Dynamic,
 }
 

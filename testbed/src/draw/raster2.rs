@@ -1,4 +1,4 @@
-//! Pictures of the plane: filled, outlined polygons, anti-aliased by drawing three times as large.
+//! 2D pictures: filled polygons with outlines, anti-aliased by supersampling.
 
 use bevy_math::{Vec2, Vec3};
 

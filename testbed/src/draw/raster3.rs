@@ -1,4 +1,4 @@
-//! Pictures of space: a z-buffer in perspective, sunlight with shadows, darkened creases, edges hinted.
+//! 3D pictures: a z-buffer in perspective, sunlight with shadows, ambient occlusion, edges.
 
 use bevy_math::{Vec2, Vec3};
 
@@ -106,7 +106,7 @@ impl Camera {
     }
 }
 
-/// What is seen at each pixel.
+/// The surface at each pixel.
 struct Buffer {
     /// Inverse distance; 0 is infinitely far.
     nearness: Vec<f32>,
@@ -125,7 +125,7 @@ impl Buffer {
             drawable: vec![NOTHING; count],
             panes: vec![0; count],
         };
-        // Glass last: it needs to know what stands in front of it.
+        // Glass last, since it is blended over opaque surfaces.
         for glass in [false, true] {
             for (index, drawable) in drawables.iter().enumerate().filter(|(_, d)| d.glass == glass) {
                 if let Form::Solid(solid) = &*drawable.form {
@@ -224,7 +224,8 @@ fn shade(
     if buffer.panes[pixel] > 0 { seen.lerp(Vec3::new(0.62, 0.74, 0.82), 0.16) } else { seen }
 }
 
-/// How open the hemisphere over a point is, by looking whether pixels around it rise above its tangent plane: 1 in
+/// The share of the hemisphere over a point that is open, by testing whether pixels around it rise above its tangent
+/// plane: 1 in the open, less in creases.
 /// the open, less in creases.
 fn openness(buffer: &Buffer, camera: &Camera, at: (usize, usize), point: Vec3, normal: Vec3) -> f32 {
     const DIRECTIONS: [(f32, f32); 8] = [

@@ -1,4 +1,4 @@
-//! A progress bar on standard error: redrawn in place on a terminal, one line for each scene elsewhere.
+//! A progress bar on standard error: redrawn in place on a terminal, one line per scene elsewhere.
 
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 const WIDTH: usize = 30;
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Shows how far the tour is.
+/// Shows the progress of the tour.
 pub struct Progress {
     scenes: usize,
     done: usize,
@@ -15,12 +15,12 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// For a tour of so many scenes.
+    /// For a tour of a number of scenes.
     pub fn new(scenes: usize) -> Self {
         Self { scenes, done: 0, terminal: io::stderr().is_terminal(), shown: None }
     }
 
-    /// So many steps of the scene are done. Draws at most ten times a second.
+    /// Records the finished steps of the scene. Draws at most ten times a second.
     pub fn step(&mut self, name: &str, step: u32, steps: u32) {
         let due = self.shown.is_none_or(|last| last.elapsed() >= PAUSE);
         if self.terminal && due {
@@ -29,7 +29,7 @@ impl Progress {
         }
     }
 
-    /// The scene is done.
+    /// Records that the scene is finished.
     pub fn finish(&mut self, name: &str, steps: u32) {
         self.done += 1;
         if self.terminal {
@@ -49,7 +49,7 @@ impl Progress {
     }
 }
 
-/// Progress is a courtesy: a closed standard error does not stop the tour.
+/// Errors are ignored: a closed standard error does not stop the tour.
 fn write(text: &str) {
     let mut out = io::stderr().lock();
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());

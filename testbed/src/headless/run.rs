@@ -43,7 +43,7 @@ fn run(entry: &Entry, simulation: &mut dyn Simulation, steps: u32, progress: &mu
         simulation.step();
         times.push(start.elapsed().as_secs_f64() * 1e3);
     }
-    // Published benchmarks leave out the first step too: in it every contact is new.
+    // The first step is left out, as in published benchmarks: all its contacts are new.
     if times.len() > 1 {
         times.remove(0);
     }
@@ -57,7 +57,7 @@ fn picture(entry: &Entry, simulation: &mut dyn Simulation, path: &Path) -> io::R
     draw::draw(&simulation.drawables(), entry.view, entry.dimension == 2, width, height).save(path)
 }
 
-/// Space is drawn 16 to 10; the plane as wide and high as the scene, within reason.
+/// 3D pictures are 16 by 10; 2D pictures have the aspect ratio of the scene, within limits.
 fn picture_size(entry: &Entry) -> (usize, usize) {
     let span = entry.view.max - entry.view.min;
     let aspect = if entry.dimension == 2 { (span.x / span.y).clamp(0.6, 4.0) } else { 1.6 };

@@ -5,17 +5,17 @@ use crate::sim::{Counts, Measures};
 /// One scene's results.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// Two or three.
+    /// 2 or 3.
     pub dimension: u32,
     /// The scene's name.
     pub name: &'static str,
-    /// What its drift means.
+    /// The meaning of its drift.
     pub drift: &'static str,
     /// Milliseconds of each step.
     pub times: Vec<f64>,
-    /// How much there was at the end.
+    /// Counts at the end.
     pub counts: Counts,
-    /// How well it went.
+    /// Measures of quality.
     pub measures: Measures,
 }
 
@@ -63,7 +63,7 @@ pub fn row(row: &Row) -> String {
     text
 }
 
-/// The value that a share of the sorted values does not exceed; `None` of nothing.
+/// The value at a share of the sorted values; `None` for an empty list.
 fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
     sorted.get((share * last as f64).round() as usize).copied()

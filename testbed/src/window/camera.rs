@@ -1,4 +1,4 @@
-//! The camera: turns around the scene, shifts, comes nearer.
+//! The camera: rotate, pan, zoom.
 
 use bevy::ecs::system::SystemParam;
 use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit};
@@ -9,10 +9,10 @@ use super::stage::Stage;
 /// Vertical field of view in radians.
 const FIELD_OF_VIEW: f32 = 0.6;
 
-/// Where the camera is, relative to what it looks at.
+/// The camera, relative to its target.
 #[derive(Resource, Default)]
 pub struct Orbit {
-    /// The scene it was placed for, as a number in the list.
+    /// Index of the scene that it was placed for.
     scene: Option<usize>,
     target: Vec3,
     yaw: f32,
@@ -27,7 +27,7 @@ impl Orbit {
         Vec3::new(self.yaw.sin() * cos, sin, self.yaw.cos() * cos)
     }
 
-    /// The first place for the scene on stage: all of its bounds in view.
+    /// The initial camera of the running scene: all of its bounds in view.
     fn reset(&mut self, stage: &Stage) {
         let Some(entry) = stage.entry() else { return };
         self.scene = Some(stage.chosen);
@@ -53,7 +53,7 @@ pub fn spawn(mut commands: Commands) {
     commands.spawn((sun, Transform::from_xyz(-0.45, 1.0, 0.55).looking_at(Vec3::ZERO, Vec3::Y)));
 }
 
-/// What the mouse does and over what.
+/// Mouse input, and the area under the mouse.
 #[derive(SystemParam)]
 pub struct Mouse<'w, 's> {
     buttons: Res<'w, ButtonInput<MouseButton>>,
@@ -63,8 +63,8 @@ pub struct Mouse<'w, 's> {
     list: Query<'w, 's, &'static Interaction>,
 }
 
-/// Turns with the left button (shifts in the plane), shifts with the right one, approaches with the wheel. Another
-/// scene puts the camera to its first place, a new start of the same does not.
+/// Rotates with the left button (pans in 2D), pans with the right one, zooms with the wheel. A change of the scene
+/// resets the camera, a restart of the same does not.
 pub fn read_mouse(
     mut orbit: ResMut<Orbit>,
     stage: NonSend<Stage>,
@@ -96,7 +96,7 @@ pub fn read_mouse(
     }
 }
 
-/// Puts the camera where it belongs.
+/// Places the camera.
 pub fn place(orbit: Res<Orbit>, mut camera: Single<&mut Transform, With<Camera3d>>) {
     let eye = orbit.target + orbit.backward() * orbit.distance;
     **camera = Transform::from_translation(eye).looking_at(orbit.target, Vec3::Y);

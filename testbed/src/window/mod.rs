@@ -48,8 +48,8 @@ pub fn run(entries: Vec<Entry>) -> ExitCode {
     }
 }
 
-/// Tells whoever started this process that the window has come up. Drawing is a frame behind, and in its first frame
-/// opens the surface: at the third, the first has been drawn.
+/// Reports to the waiting process that the window has drawn. Rendering is a frame behind, and opens the surface in its
+/// first frame: at the third frame, the first has been drawn.
 fn say_drawn(mut frame: Local<u32>) {
     *frame = frame.saturating_add(1);
     if *frame == 3 {

@@ -1,4 +1,4 @@
-//! Which scene runs, and how fast.
+//! The running scene, and its speed.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -10,22 +10,22 @@ use crate::sim::{Counts, Entry, Simulation};
 
 /// Seconds of one step of the scenes.
 const STEP: f32 = 1.0 / 60.0;
-/// Steps that are made up for in one frame; beyond it the scene just runs slower than time.
+/// Maximum number of steps per frame. If more are due, the scene runs slower than real time.
 const MOST_STEPS: u32 = 2;
 
 /// The scenes, and the chosen one running.
 pub struct Stage {
-    /// All that can be chosen.
+    /// All scenes.
     pub entries: Vec<Entry>,
-    /// Which one is.
+    /// The index of the running scene.
     pub chosen: usize,
-    /// Steps made.
+    /// Number of steps.
     pub steps: u32,
-    /// Whether time stands still.
+    /// Whether it is paused.
     pub paused: bool,
-    /// Whether one step is wanted in spite of the pause.
+    /// Whether one step is requested while paused.
     pub single: bool,
-    /// Counts up with every start of a scene.
+    /// Number of starts of scenes.
     pub generation: u32,
     /// Milliseconds of the latest steps.
     times: VecDeque<f64>,
@@ -51,7 +51,7 @@ impl Stage {
         stage
     }
 
-    /// Starts a scene from its beginning; numbers beyond the list wrap around.
+    /// Starts a scene. The index wraps around.
     pub fn choose(&mut self, index: usize) {
         self.chosen = index % self.entries.len().max(1);
         self.simulation = self.entries.get(self.chosen).and_then(|entry| (entry.start)(entry.name));
@@ -61,17 +61,17 @@ impl Stage {
         self.generation += 1;
     }
 
-    /// The chosen scene.
+    /// The running scene.
     pub fn entry(&self) -> Option<&Entry> {
         self.entries.get(self.chosen)
     }
 
-    /// How much there is on stage.
+    /// Counts of the running scene.
     pub fn counts(&mut self) -> Counts {
         self.simulation.as_mut().map(|simulation| simulation.counts()).unwrap_or_default()
     }
 
-    /// What there is to see.
+    /// The colliders of the running scene.
     pub fn drawables(&mut self) -> Vec<Drawable> {
         self.simulation.as_mut().map(|simulation| simulation.drawables()).unwrap_or_default()
     }
@@ -95,7 +95,7 @@ impl Stage {
     }
 }
 
-/// Makes as many steps as the time since the last frame asks for.
+/// Takes the steps that are due since the last frame.
 pub fn advance(mut stage: NonSendMut<Stage>, time: Res<Time<Real>>) {
     if stage.paused {
         stage.owed = 0.0;

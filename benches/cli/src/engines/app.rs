@@ -1,5 +1,4 @@
-//! The headless Bevy app in which both Avians run, and the one without physics: task pool, time, transforms,
-//! nothing else.
+//! The headless Bevy app for both Avians, and for no physics: task pool, time, transforms.
 
 use std::time::Instant;
 
@@ -14,7 +13,7 @@ use bevy::{
     time::{TimePlugin, TimeUpdateStrategy},
 };
 
-/// What the features leave out of the Avian adapters.
+/// Features that the Avian adapters do not support.
 pub const LACKS: &[Need] = &[
     #[cfg(not(feature = "joints"))]
     Need::Joints,
@@ -26,8 +25,8 @@ pub const LACKS: &[Need] = &[
     Need::Children,
 ];
 
-/// The stages of an update in order, and whose time they are. The clocks stand between the public sets, where
-/// [`put_clocks`] puts them; so a stage is all systems of its sets, and they add up to the whole update.
+/// The stages of an update in order, and their share. Clocks are between the public sets, added by [`put_clocks`]; so a
+/// stage is all systems of its sets, and the stages add up to the whole update.
 const STAGES: [(&str, Share); 14] = [
     ("before physics", Share::Bevy),
     ("transforms and masses in", Share::Ecs),
@@ -45,7 +44,7 @@ const STAGES: [(&str, Share); 14] = [
     ("after physics", Share::Bevy),
 ];
 
-/// When the last stage ended, and how long each of the last update took, in milliseconds.
+/// The end of the last stage, and the times of each of the last update, in milliseconds.
 #[derive(Resource)]
 pub struct StageClock {
     last: Instant,
@@ -65,7 +64,7 @@ pub fn end<const STAGE: usize>(mut clock: ResMut<StageClock>) {
     clock.end(STAGE);
 }
 
-/// Puts a clock between the stages of the engine whose prelude is in scope where this is used.
+/// Adds a clock between the stages of the engine whose prelude is in scope.
 macro_rules! put_clocks {
     ($app:expr) => {
         $app.add_systems(
@@ -97,7 +96,7 @@ macro_rules! put_clocks {
 }
 pub(crate) use put_clocks;
 
-/// The timers that the engine keeps itself, from its diagnostics.
+/// The engine's own timers, from its diagnostics.
 #[cfg(feature = "diagnostics")]
 macro_rules! own_timers {
     ($avian:ident, $world:expr) => {{
@@ -133,7 +132,7 @@ macro_rules! own_timers {
 #[cfg(feature = "diagnostics")]
 pub(crate) use own_timers;
 
-/// For how long several threads worked on the last step, as the engine counts it.
+/// The time in which several threads worked on the last step, by the engine.
 #[cfg(feature = "sharing")]
 macro_rules! shared {
     ($avian:ident, $world:expr) => {{
@@ -146,8 +145,8 @@ pub(crate) use shared;
 
 /// Makes an app in which one update runs exactly one fixed step.
 ///
-/// As many compute threads are made as the process is pinned to cores. Bevy's main thread also works while it waits
-/// for them, on the same cores. `BENCH_BEVY_COMPUTE` overrides the number.
+/// There are as many compute threads as cores that the process is pinned to. Bevy's main thread also works while it
+/// waits for them, on the same cores. `BENCH_BEVY_COMPUTE` overrides the number.
 pub fn app(settings: &Settings) -> App {
     let compute = std::env::var("BENCH_BEVY_COMPUTE").ok().and_then(|v| v.parse().ok());
     let compute = compute.unwrap_or(settings.threads);
@@ -177,7 +176,7 @@ pub fn app(settings: &Settings) -> App {
     app
 }
 
-/// Ends the building of the app. On one thread every schedule runs without the task pool.
+/// Finishes the app. With one thread every schedule runs without the task pool.
 pub fn finish(app: &mut App, settings: &Settings) {
     if settings.stages {
         app.insert_resource(StageClock { last: Instant::now(), ms: Default::default() });
@@ -190,7 +189,7 @@ pub fn finish(app: &mut App, settings: &Settings) {
             schedule.set_executor(SingleThreadedExecutor::new());
         }
     }
-    // Bevy's clock starts with an update in which no time passes; the engine sees the scene in it.
+    // Bevy's clock starts with an update without elapsed time, in which the engine adds the scene.
     app.update();
 }
 

@@ -1,5 +1,5 @@
-//! Avian 2D, through nothing but its prelude (and its diagnostics). The crate is chosen outside of this file, so that it
-//! compiles against upstream and against ours.
+//! Avian 2D, by its prelude and diagnostics only. The crate is chosen outside of this file, which compiles with
+//! upstream and with ours.
 
 #[cfg(feature = "joints")]
 use bench_core::dim2::Joint2;

@@ -1,5 +1,5 @@
-//! The App without physics: the same entities with nothing but a `Transform`. What an engine in Bevy costs where
-//! nothing moves is what it costs more than this.
+//! The App without physics: the same entities with only a `Transform`. The difference of an engine's time to this is
+//! its cost.
 
 use bench_core::{
     dim2::D2,
@@ -32,7 +32,7 @@ pub fn make3(_gravity: [f32; 3], settings: &Settings) -> Box<dyn Engine<D3>> {
     bare(settings)
 }
 
-/// Where something is. Orientations do not matter to what it costs.
+/// The position of an entity. Orientations do not matter for the cost.
 fn transform<D: Dimension>(at: D::Vec) -> Transform {
     let at = at.as_ref();
     Transform::from_xyz(at[0], at[1], at.get(2).copied().unwrap_or(0.0))

@@ -171,7 +171,7 @@ impl Engine<D2> for World {
 
 impl Drop for World {
     fn drop(&mut self) {
-        // SAFETY: the world is alive, and nobody uses it hereafter.
+        // SAFETY: the world is alive, and not used after this.
         unsafe { b2DestroyWorld(self.id) }
     }
 }

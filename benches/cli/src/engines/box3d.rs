@@ -229,7 +229,7 @@ impl Engine<D3> for World {
 
 impl Drop for World {
     fn drop(&mut self) {
-        // SAFETY: world and meshes are alive, and nobody uses them hereafter.
+        // SAFETY: world and meshes are alive, and not used after this.
         unsafe {
             b3DestroyWorld(self.id);
             self.meshes.iter().for_each(|m| b3DestroyMesh(*m));

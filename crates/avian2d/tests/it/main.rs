@@ -1,4 +1,4 @@
-//! What avian2d does within an app; the files are shared with avian3d.
+//! Tests of avian2d in an app. The files are shared with avian3d.
 
 #[path = "../../../../tests/contract.rs"]
 mod contract;

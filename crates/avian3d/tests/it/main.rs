@@ -1,4 +1,4 @@
-//! What avian3d does within an app; the files are shared with avian2d.
+//! Tests of avian3d in an app. The files are shared with avian2d.
 
 #[path = "../../../../tests/contract.rs"]
 mod contract;

@@ -55,7 +55,7 @@ pub enum AngularInertiaError {
 /// fn spawn(mut commands: Commands) {
 ///     // 7 kg in all.
 ///     commands.spawn((RigidBody::Dynamic, Mass(5.0))).with_child(Mass(2.0));
-///     // 5 kg whatever hangs on it.
+///     // 5 kg, without descendants.
 ///     commands.spawn((RigidBody::Dynamic, Mass(5.0), NoAutoMass)).with_child(Mass(2.0));
 /// }
 /// ```
