@@ -5,10 +5,11 @@
 
 use avian2d::prelude::*;
 use bevy::prelude::*;
+use examples2d::Scenery;
 
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default()))
         .insert_resource(Time::<Fixed>::from_hz(10.0))
         .insert_resource(Gravity::ZERO)
         .add_systems(Startup, setup)
@@ -29,16 +30,6 @@ fn setup(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<ColorMaterial>>,
 ) {
-    // Sizes are in metres; the camera shows 50 pixels for each.
-    commands.spawn((
-        Camera2d,
-        Projection::Orthographic(OrthographicProjection {
-            scale: 1.0 / 50.0,
-            ..OrthographicProjection::default_2d()
-        }),
-        Transform::from_xyz(0.0, 5.0, 0.0),
-    ));
-
     let disc = meshes.add(Circle::new(0.8));
     let teal = materials.add(Color::srgb(0.2, 0.65, 0.6));
     for y in [3.5, 6.5] {

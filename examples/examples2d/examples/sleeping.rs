@@ -5,10 +5,11 @@
 
 use avian2d::prelude::*;
 use bevy::prelude::*;
+use examples2d::Scenery;
 
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::with_floor()))
         .add_systems(Startup, setup)
         .add_systems(Update, (throw, paint))
         .run();
@@ -51,17 +52,6 @@ fn setup(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<ColorMaterial>>,
 ) {
-    // Sizes are in metres; the camera shows 50 pixels for each.
-    commands.spawn((
-        Camera2d,
-        Projection::Orthographic(OrthographicProjection {
-            scale: 1.0 / 50.0,
-            ..OrthographicProjection::default_2d()
-        }),
-        Transform::from_xyz(0.0, 5.0, 0.0),
-    ));
-
-    commands.spawn((RigidBody::Static, Collider::rectangle(24.0, 1.0), Transform::from_xyz(0.0, -0.5, 0.0)));
     let look = Look {
         disc: meshes.add(Circle::new(0.3)),
         awake: materials.add(Color::srgb(0.9, 0.6, 0.2)),

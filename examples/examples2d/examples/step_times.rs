@@ -5,10 +5,11 @@
 use avian2d::{prelude::*, schedule::StepTimes};
 use bevy::{prelude::*, time::common_conditions::on_timer};
 use core::time::Duration;
+use examples2d::Scenery;
 
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default()))
         .add_systems(Startup, setup)
         .add_systems(Update, print.run_if(on_timer(Duration::from_secs(1))))
         .run();
@@ -26,16 +27,6 @@ fn setup(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<ColorMaterial>>,
 ) {
-    // Sizes are in metres; the camera shows 50 pixels for each.
-    commands.spawn((
-        Camera2d,
-        Projection::Orthographic(OrthographicProjection {
-            scale: 1.0 / 50.0,
-            ..OrthographicProjection::default_2d()
-        }),
-        Transform::from_xyz(0.0, 5.0, 0.0),
-    ));
-
     let grey = materials.add(Color::srgb(0.35, 0.4, 0.45));
     for (x, angle) in [(-6.0, -0.5f32), (6.0, 0.5)] {
         commands.spawn((

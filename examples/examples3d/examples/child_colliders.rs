@@ -5,9 +5,14 @@
 
 use avian3d::prelude::*;
 use bevy::prelude::*;
+use examples3d::Scenery;
 
 fn main() {
-    App::new().add_plugins((DefaultPlugins, PhysicsPlugins::default())).add_systems(Startup, setup).run();
+    let scenery = Scenery::new(Vec3::new(-6.0, 5.0, 12.0), Vec3::new(0.0, 2.0, 0.0)).with_floor();
+    App::new()
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
+        .add_systems(Startup, setup)
+        .run();
 }
 
 fn setup(
@@ -15,22 +20,6 @@ fn setup(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    commands.spawn((
-        Camera3d::default(),
-        Transform::from_xyz(-6.0, 5.0, 12.0).looking_at(Vec3::new(0.0, 2.0, 0.0), Vec3::Y),
-    ));
-    commands.spawn((
-        DirectionalLight { shadow_maps_enabled: true, ..default() },
-        Transform::from_xyz(-3.0, 8.0, 5.0).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
-
-    commands.spawn((
-        RigidBody::Static,
-        Collider::cuboid(30.0, 1.0, 30.0),
-        Transform::from_xyz(0.0, -0.5, 0.0),
-        Mesh3d(meshes.add(Cuboid::new(30.0, 1.0, 30.0))),
-        MeshMaterial3d(materials.add(Color::srgb(0.35, 0.4, 0.45))),
-    ));
     let (handle, head) = (meshes.add(Cuboid::new(2.0, 0.2, 0.2)), meshes.add(Cuboid::new(0.4, 0.5, 0.8)));
     let (wood, iron) =
         (materials.add(Color::srgb(0.7, 0.5, 0.3)), materials.add(Color::srgb(0.4, 0.4, 0.45)));

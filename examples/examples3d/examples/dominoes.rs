@@ -4,9 +4,14 @@
 
 use avian3d::prelude::*;
 use bevy::prelude::*;
+use examples3d::Scenery;
 
 fn main() {
-    App::new().add_plugins((DefaultPlugins, PhysicsPlugins::default())).add_systems(Startup, setup).run();
+    let scenery = Scenery::new(Vec3::new(0.0, 12.0, 14.0), Vec3::ZERO).with_floor();
+    App::new()
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
+        .add_systems(Startup, setup)
+        .run();
 }
 
 fn setup(
@@ -14,22 +19,6 @@ fn setup(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    commands.spawn((
-        Camera3d::default(),
-        Transform::from_xyz(0.0, 12.0, 14.0).looking_at(Vec3::new(0.0, 0.0, 0.0), Vec3::Y),
-    ));
-    commands.spawn((
-        DirectionalLight { shadow_maps_enabled: true, ..default() },
-        Transform::from_xyz(-3.0, 8.0, 5.0).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
-
-    commands.spawn((
-        RigidBody::Static,
-        Collider::cuboid(30.0, 1.0, 30.0),
-        Transform::from_xyz(0.0, -0.5, 0.0),
-        Mesh3d(meshes.add(Cuboid::new(30.0, 1.0, 30.0))),
-        MeshMaterial3d(materials.add(Color::srgb(0.35, 0.4, 0.45))),
-    ));
     let domino = meshes.add(Cuboid::new(0.1, 1.0, 0.5));
     let colors = [0.0, 120.0, 240.0].map(|hue| materials.add(Color::hsl(hue, 0.5, 0.6)));
     let (mut angle, mut radius) = (0.0f32, 2.0f32);

@@ -5,9 +5,14 @@
 
 use avian3d::prelude::*;
 use bevy::prelude::*;
+use examples3d::Scenery;
 
 fn main() {
-    App::new().add_plugins((DefaultPlugins, PhysicsPlugins::default())).add_systems(Startup, setup).run();
+    let scenery = Scenery::new(Vec3::new(0.0, 6.0, 14.0), Vec3::new(0.0, 2.5, 0.0));
+    App::new()
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
+        .add_systems(Startup, setup)
+        .run();
 }
 
 #[derive(PhysicsLayer, Default, Clone, Copy)]
@@ -23,15 +28,6 @@ fn setup(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    commands.spawn((
-        Camera3d::default(),
-        Transform::from_xyz(0.0, 6.0, 14.0).looking_at(Vec3::new(0.0, 2.5, 0.0), Vec3::Y),
-    ));
-    commands.spawn((
-        DirectionalLight { shadow_maps_enabled: true, ..default() },
-        Transform::from_xyz(-3.0, 8.0, 5.0).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
-
     let floors = [
         (0.0, CollisionLayers::new(Layer::Floor, LayerMask::ALL), Color::srgb(0.35, 0.4, 0.45)),
         (3.0, CollisionLayers::new(Layer::Floor, Layer::Red), Color::srgb(0.6, 0.35, 0.35)),

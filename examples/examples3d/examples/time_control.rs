@@ -5,10 +5,12 @@
 
 use avian3d::prelude::*;
 use bevy::prelude::*;
+use examples3d::Scenery;
 
 fn main() {
+    let scenery = Scenery::new(Vec3::new(-8.0, 6.0, 14.0), Vec3::new(0.0, 4.0, 0.0)).with_floor();
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, setup)
         .add_systems(Update, control)
         .run();
@@ -45,22 +47,6 @@ fn setup(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    commands.spawn((
-        Camera3d::default(),
-        Transform::from_xyz(-8.0, 6.0, 14.0).looking_at(Vec3::new(0.0, 4.0, 0.0), Vec3::Y),
-    ));
-    commands.spawn((
-        DirectionalLight { shadow_maps_enabled: true, ..default() },
-        Transform::from_xyz(-3.0, 8.0, 5.0).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
-
-    commands.spawn((
-        RigidBody::Static,
-        Collider::cuboid(30.0, 1.0, 30.0),
-        Transform::from_xyz(0.0, -0.5, 0.0),
-        Mesh3d(meshes.add(Cuboid::new(30.0, 1.0, 30.0))),
-        MeshMaterial3d(materials.add(Color::srgb(0.35, 0.4, 0.45))),
-    ));
     let brick = meshes.add(Cuboid::new(1.0, 0.5, 0.5));
     let clay = materials.add(Color::srgb(0.75, 0.4, 0.3));
     for layer in 0..16 {
