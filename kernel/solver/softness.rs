@@ -1,10 +1,12 @@
 //! Soft-constraint coefficients, and parameters of a substep.
 
+use crate::math::min;
+
 /// Coefficients of a soft constraint for one substep.
 ///
 /// A damped harmonic oscillator of angular frequency ω and damping ratio ζ, integrated implicitly with
 /// time step h: with a₁ = 2ζ + hω, a₂ = hω a₁, a₃ = 1 / (1 + a₂) the constraint is solved with the bias
-/// velocity (ω / a₁) C, the mass scaled by a₂ a₃ and a share a₃ of the accumulated impulse taken back
+/// velocity (ω / a₁) C, the mass scaled by a₂ a₃ and a share a₃ of the accumulated impulse subtracted
 /// (Catto, "Soft Constraints", GDC 2011; Solver2D).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Softness {
@@ -62,6 +64,25 @@ pub struct SubstepParams {
 }
 
 impl SubstepParams {
+    /// Parameters for a step of `dt` seconds in `substeps` substeps, in a world whose unit of length is the metre.
+    ///
+    /// The frequency of contacts is 1.5 times the highest one that step and substeps resolve: half the step rate, and a
+    /// quarter of the substep rate (Catto, Solver2D, 2024).
+    pub fn new(dt: f32, substeps: u32) -> Self {
+        let h = dt / substeps as f32;
+        let frequency = 1.5 * min(0.5 / dt, 0.25 / h);
+        Self {
+            h,
+            inv_h: 1.0 / h,
+            soft: Softness::new(frequency, 10.0, h),
+            stiff: Softness::new(2.0 * frequency, 10.0, h),
+            max_push_speed: 4.0,
+            warm_start: 1.0,
+            restitution_threshold: 1.0,
+            friction_fade: 0.02,
+        }
+    }
+
     /// Whether a substep may be run with these parameters.
     pub(super) fn is_valid(&self) -> bool {
         let [h, inv_h] = [self.h, self.inv_h];

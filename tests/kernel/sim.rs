@@ -1,5 +1,4 @@
-//! A step made of the kernel's parts, in the order in which the engine runs them: what an embedder without
-//! an ECS would write.
+//! A step made of the kernel's parts, in the engine's order, as an embedder without an ECS would write it.
 #![expect(unsafe_code, reason = "the caller of `build_rows` answers for contacts and colours")]
 
 use super::dim::inverse_inertia;
@@ -13,8 +12,8 @@ use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::solver::{
-    BodyRow, BodyRows, Distance, DistanceError, DistanceTable, Limits, MassRow, Motion, RowInput, Softness,
-    Solver, SubstepParams,
+    BodyRow, BodyRows, Distance, DistanceError, DistanceTable, Limits, MassRow, Motion, RowInput, Solver,
+    SubstepParams,
 };
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
@@ -42,7 +41,7 @@ fn phase<'a>(
     }
 }
 
-/// Writes a value at an index that is in the list or next.
+/// Writes a value at an index in the list, or appends it.
 fn put<T>(list: &mut Vec<T>, id: u32, value: T) {
     match list.get_mut(id as usize) {
         Some(place) => *place = value,
@@ -121,7 +120,7 @@ impl Sim {
         }
     }
 
-    /// Computes with four contacts side by side, also where the CPU could with eight.
+    /// Uses four lanes, also if the CPU has eight.
     pub fn set_narrow(&mut self) {
         self.is_narrow = true;
         self.solver.set_narrow(true);
@@ -199,7 +198,7 @@ impl Sim {
         self.add(BodyKind::Dynamic, Shape::Cuboid(Cuboid { half }), position, Rot::IDENTITY)
     }
 
-    /// Removes a body with its collider. The id may be given out again at once.
+    /// Removes a body with its collider. Its id may be reused at once.
     pub fn remove(&mut self, id: u32) {
         self.link().destroy_of_collider(id);
         let (kind, proxy) = self.proxies[id as usize];
@@ -218,25 +217,25 @@ impl Sim {
         self.contacts.recycle_ids();
     }
 
-    /// Gives a body the mass of a shape of density 1.
+    /// Sets the mass of a body to that of a shape with density 1.
     pub fn weigh(&mut self, id: u32, shape: &Shape) {
         let mass = shape.mass_properties(1.0);
         self.masses[id as usize] = (1.0 / mass.mass, inverse_inertia(&mass));
     }
 
-    /// Gives a body another shape, and the mass of it.
+    /// Sets the shape of a body, and its mass.
     pub fn reshape(&mut self, id: u32, shape: Shape) {
         self.weigh(id, &shape);
         let def = ColliderDef { shape, ..self.colliders[id].def.clone() };
         self.colliders.redefine(id, def, &mut self.bodies);
     }
 
-    /// Keeps two points of two bodies at a distance.
+    /// Adds a distance constraint.
     pub fn join(&mut self, def: Distance) -> Result<u32, DistanceError> {
         self.with_distances(|distances, link| distances.add(link, def))
     }
 
-    /// Removes what keeps two points at a distance.
+    /// Removes a distance constraint.
     pub fn part(&mut self, id: u32) -> Result<(), DistanceError> {
         self.with_distances(|distances, link| distances.remove(link, id))
     }
@@ -267,27 +266,16 @@ impl Sim {
     }
 
     fn params(&self) -> SubstepParams {
-        let h = self.dt / self.substeps as f32;
-        let hertz = 1.5 * (0.5 / self.dt).min(0.25 / h);
-        SubstepParams {
-            h,
-            inv_h: 1.0 / h,
-            soft: Softness::new(hertz, 10.0, h),
-            stiff: Softness::new(2.0 * hertz, 10.0, h),
-            max_push_speed: 4.0,
-            warm_start: 1.0,
-            restitution_threshold: 1.0,
-            friction_fade: 0.02,
-        }
+        SubstepParams::new(self.dt, self.substeps)
     }
 
-    /// Has rows built from colours that may be another simulation's. Returns how many stages are shared.
+    /// Builds rows from the colours of another simulation. Returns the number of shared stages.
     #[cfg(debug_assertions)]
     pub fn solve_colors_of(&mut self, other: &Self) -> usize {
         self.gather();
         let params = self.params();
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies };
-        // SAFETY: debug builds refuse colours that do not fit.
+        // SAFETY: debug builds panic for colours that do not match.
         unsafe { self.solver.build_rows(&input, &other.colors, &params, &self.pool) };
         self.solver.shared_stages()
     }
@@ -363,7 +351,7 @@ impl Sim {
         }
     }
 
-    /// What the narrow phase makes of the contact of two bodies as they are now, and the contact.
+    /// The narrow phase's outcome for the contact of two bodies at their current poses, and the contact.
     pub fn look(&self, a: u32, b: u32) -> (Outcome, Contact) {
         let id = self.contacts.find(a, b).expect("they have a contact");
         let mut contact = self.contacts.get(id).clone();

@@ -4,7 +4,7 @@ use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Angular, InvInertia, Rot, Vector};
 use kernel::shape::{Cuboid, Hull, Shape};
-use kernel::solver::{BodyRow, MassRow, Motion, Softness, Solver, SubstepParams};
+use kernel::solver::{BodyRow, MassRow, Motion, Solver, SubstepParams};
 use kernel::table::BodyKind;
 use kernel::thread_pool::ThreadPool;
 use proptest::prelude::*;
@@ -41,17 +41,7 @@ impl Spinner {
 
     fn step(&mut self, angular_acceleration: Angular) {
         let (dt, substeps) = self.clock;
-        let h = dt / substeps as f32;
-        let params = SubstepParams {
-            h,
-            inv_h: 1.0 / h,
-            soft: Softness::new(30.0, 10.0, h),
-            stiff: Softness::new(60.0, 10.0, h),
-            max_push_speed: 4.0,
-            warm_start: 1.0,
-            restitution_threshold: 1.0,
-            friction_fade: 0.02,
-        };
+        let params = SubstepParams::new(dt, substeps);
         let local = self.inv_inertia();
         self.solver.begin_step(0, 1);
         let rows = &mut self.solver.bodies;
@@ -87,7 +77,7 @@ impl Spinner {
         (sum(|i, w| i * i * w * w).sqrt(), 0.5 * sum(|i, w| i * w * w))
     }
 
-    /// The angular momentum in the world.
+    /// The angular momentum in world axes.
     fn momentum(&self) -> Vector {
         let [x, y, z] = self.local();
         let [a, b, c] = self.moments;
@@ -167,7 +157,7 @@ fn a_symmetric_body_precesses_at_its_rate() {
             let mut body = Spinner::cuboid([side, side, axis], w, clock);
             let [i1, _, i3] = body.moments;
             let rate = (i3 - i1) / i1 * f64::from(w.z);
-            // The part of ω across the axis turns at that rate; its direction is unwrapped.
+            // The part of ω across the axis rotates at that rate; its direction is unwrapped.
             let (mut angle, mut last) = (0.0, 0.0f64);
             let steps = (5.0 / clock.0).round();
             for _ in 0..steps as usize {
@@ -187,7 +177,7 @@ fn a_symmetric_body_precesses_at_its_rate() {
 #[test]
 fn the_intermediate_axis_flips_on_time() {
     for clock in CLOCKS {
-        // The shortest, the intermediate and the longest moment belong to z, y and x.
+        // The smallest, the intermediate and the largest moment belong to z, y and x.
         let w = Vector { x: 0.4, y: 8.0, z: 0.4 };
         let mut body = Spinner::cuboid([1.0, 2.0, 3.0], w, clock);
         let moments = body.moments;
@@ -217,7 +207,7 @@ fn the_intermediate_axis_flips_on_time() {
 fn a_heavy_top_precesses_at_its_rate_and_stays_up() {
     // A disc of m = 1 kg, its centre r = 5 cm above the tip, g = 9.81 m/s²; moments about the tip.
     let (i1, i3, torque) = (0.0035, 0.002, 9.81 * 0.05);
-    // The torque follows the top from substep to substep, so each is a step of its own.
+    // The torque follows the top from substep to substep, so each substep is a step of its own.
     for clock in CLOCKS.map(|(dt, substeps)| (dt / substeps as f32, 1)) {
         for spin in [100.0f64, 150.0] {
             let tilt = 0.3f32;
@@ -231,7 +221,7 @@ fn a_heavy_top_precesses_at_its_rate_and_stays_up() {
             let axis = rotation.rotate(Vector::Z);
             // ω = Ω up + σ axis, whose part along the axis is the spin.
             let along = spin - rate * f64::from(tilt).cos();
-            // Velocities belong to the middle of the substep before.
+            // Velocities belong to the middle of the previous substep.
             let before = Rot::from_axis_angle(Vector::Z, -0.5 * rate as f32 * clock.0);
             top.w = Vector::Z * rate as f32 + before.rotate(axis) * along as f32;
             let (mut angle, mut last) = (0.0f64, f64::from(axis.y).atan2(f64::from(axis.x)));

@@ -11,7 +11,7 @@ use avian_kernel3d::data::BitSet;
 use avian_kernel3d::graph::ColorGraph;
 use avian_kernel3d::math::{Pose, Rot, Vector, WorldPose};
 use avian_kernel3d::shape::{Cuboid, Shape};
-use avian_kernel3d::solver::{BodyRow, MassRow, Motion, RowInput, Softness, Solver, SubstepParams};
+use avian_kernel3d::solver::{BodyRow, MassRow, Motion, RowInput, Solver, SubstepParams};
 use avian_kernel3d::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
     Surface,
@@ -53,17 +53,7 @@ fn main() {
     let mass = Shape::Cuboid(Cuboid { half }).mass_properties(1.0);
     let (mut listed, mut frames, mut workers) = (Vec::new(), vec![WorldPose::default(); 2], Vec::new());
     let (mut changed, mut outgrown) = (BitSet::default(), BitSet::default());
-    let h = DT / SUBSTEPS as f32;
-    let params = SubstepParams {
-        h,
-        inv_h: 1.0 / h,
-        soft: Softness::new(30.0, 10.0, h),
-        stiff: Softness::new(60.0, 10.0, h),
-        max_push_speed: 4.0,
-        warm_start: 1.0,
-        restitution_threshold: 1.0,
-        friction_fade: 0.02,
-    };
+    let params = SubstepParams::new(DT, SUBSTEPS);
     for step in 1..=90 {
         // A row for each body that moves.
         let kinematic = bodies.assign_rows(&mut listed);
