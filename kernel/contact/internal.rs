@@ -27,8 +27,8 @@ const CLIPPED: f32 = 1.0e-3;
 /// down is another part of a concave collider, which a pit may hold.
 const BELOW: f32 = 0.005;
 
-/// Planes whose normals differ by less than this hold the same: 1 − cos 0.5°.
-const PARALLEL: f32 = 4.0e-5;
+/// Planes whose normals differ by less than this hold the same: 1 − cos 0.2°.
+const PARALLEL: f32 = 6.1e-6;
 
 /// Bodies slower than this against ground that does not move slide over nothing, in m/s.
 const MOVING: f32 = 0.02;
