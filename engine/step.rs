@@ -17,6 +17,7 @@ use crate::{
         pairs::{find_new_pairs, refit_awake, update_stale_boxes},
     },
     dynamics::{
+        ccd::{SweptCcdSystems, sweep::sweep_bodies},
         drain::{drain_lifecycle, remove_lost_late},
         integrator::IntegrationSystems,
         lifecycle::{self, note_changed_colliders},
@@ -103,6 +104,8 @@ pub(crate) enum Owner {
     Integrator,
     /// `SolverPlugin`.
     Solver,
+    /// `CcdPlugin`.
+    Ccd,
     /// `IslandSleepingPlugin`.
     Sleeping,
 }
@@ -151,6 +154,8 @@ stages! {
     PrepareRows.in_set(SolverSystems::PrepareContactConstraints) => { Solver: prepare_rows }
     /// Runs the substeps.
     Substeps.in_set(SolverSystems::Substep) => { SolverSchedule: run_substeps }
+    /// Puts bodies back that got into something.
+    Sweep.in_set(SweptCcdSystems) => { Ccd: sweep_bodies }
     /// Applies restitution.
     Restitution.in_set(SolverSystems::Restitution) => { Solver: apply_restitution }
     /// Adds the displacement in the substeps to the poses. One system, so that no system of the app runs within.

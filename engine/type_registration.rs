@@ -36,7 +36,7 @@ fn register_schedule(app: &mut App) {
 fn register_dynamics(app: &mut App) {
     use crate::{
         dynamics::{
-            ccd::SpeculativeMargin,
+            ccd::{SpeculativeMargin, SweepMode, SweptCcd},
             integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
             rigid_body::sleeping::TimeToSleep,
             solver::{
@@ -50,7 +50,7 @@ fn register_dynamics(app: &mut App) {
     };
 
     register!(app:
-        SpeculativeMargin, Gravity, CustomVelocityIntegration, CustomPositionIntegration,
+        SpeculativeMargin, SweptCcd, SweepMode, Gravity, CustomVelocityIntegration, CustomPositionIntegration,
         PhysicsLengthUnit, SolverConfig, SolverDiagnostics, ContactSoftnessCoefficients, SubstepCount, WorkerCount,
         RowWidth,
         SoftnessParameters, SoftnessCoefficients, TimeToSleep, PhysicsTransformConfig,

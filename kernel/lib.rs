@@ -25,6 +25,7 @@
 compile_error!("choose a dimension: the feature `2d` or `3d`");
 
 pub mod bvh;
+pub mod ccd;
 pub mod contact;
 pub mod data;
 pub mod graph;

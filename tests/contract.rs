@@ -460,6 +460,10 @@ fn the_rest_can_be_named() {
     named::<(CustomPositionIntegration, CustomVelocityIntegration, ApplyPosToTransform, Matrix)>();
     named::<(MassPropertyChanged, WithComputedMassProperty, AabbContext<'static, 'static, 'static, ()>)>();
     named::<dynamics::ccd::SpeculativeMargin>();
+    named::<dynamics::ccd::SweptCcd>();
+    named::<dynamics::ccd::SweepMode>();
+    named::<dynamics::ccd::CcdPlugin>();
+    named::<dynamics::ccd::SweptCcdSystems>();
     named::<mass_properties::components::Mass>();
     named::<sleeping::SleepThreshold>();
     let _ = (IntoSystem::into_system(transform_to_position), IntoSystem::into_system(position_to_transform));

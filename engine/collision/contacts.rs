@@ -5,12 +5,12 @@ use bevy_time::Time;
 use kernel::{
     contact::{ManifoldSource, NarrowPhaseInput, WorkerBuffers},
     manifold::LocalManifold,
-    table::ColliderTable,
+    math::{Pose, Vector},
 };
 
 use crate::{
     collision::{
-        collider::{Collider, Workspace, foreign_manifolds},
+        collider::{Collider, Workspace, foreign_ball_manifolds, foreign_manifolds},
         diagnostics::CollisionDiagnostics,
         narrow_phase::NarrowPhaseConfig,
     },
@@ -38,10 +38,10 @@ const RECYCLE: f32 = (10.0 * LINEAR_SLOP) as f32;
 pub(crate) struct NarrowPhaseBuffers(Vec<WorkerBuffers<Workspace>>);
 
 /// Manifolds of shapes that the kernel does not have, by parry.
-struct Foreign<'a, 'w, 's, 'c> {
-    colliders: &'a Query<'w, 's, &'c Collider>,
-    entities: &'a [Entity],
-    table: &'a ColliderTable,
+pub(crate) struct Foreign<'a, 'w, 's, 'c> {
+    pub(crate) colliders: &'a Query<'w, 's, &'c Collider>,
+    /// The entity of each collider.
+    pub(crate) entities: &'a [Entity],
 }
 
 impl ManifoldSource for Foreign<'_, '_, '_, '_> {
@@ -49,16 +49,28 @@ impl ManifoldSource for Foreign<'_, '_, '_, '_> {
 
     fn manifolds(
         &self,
-        a: u32,
-        b: u32,
+        colliders: [u32; 2],
+        pose: &Pose,
         prediction: f32,
         workspace: &mut Workspace,
         out: &mut Vec<LocalManifold>,
     ) {
-        let entity = |id: u32| self.entities[id as usize];
-        if let Ok([ca, cb]) = self.colliders.get_many([entity(a), entity(b)]) {
-            let relative = self.table.poses[a as usize].relative(&self.table.poses[b as usize]);
-            foreign_manifolds(ca, cb, &relative, prediction, workspace, out);
+        if let Ok([a, b]) = self.colliders.get_many(colliders.map(|id| self.entities[id as usize])) {
+            foreign_manifolds(a, b, pose, prediction, workspace, out);
+        }
+    }
+
+    fn ball_manifolds(
+        &self,
+        collider: u32,
+        center: Vector,
+        radius: f32,
+        prediction: f32,
+        workspace: &mut Workspace,
+        out: &mut Vec<LocalManifold>,
+    ) {
+        if let Ok(collider) = self.colliders.get(self.entities[collider as usize]) {
+            foreign_ball_manifolds(collider, center, radius, prediction, workspace, out);
         }
     }
 }
@@ -85,7 +97,7 @@ pub(crate) fn update_contacts(
     let start = bevy_platform::time::Instant::now();
     let unit = unit.metres();
     let colliders = &tables.colliders;
-    let source = Foreign { colliders: &shapes, entities: &colliders.entities, table: &colliders.table };
+    let source = Foreign { colliders: &shapes, entities: &colliders.entities };
     let input = NarrowPhaseInput {
         bodies: &tables.bodies.table,
         colliders: &colliders.table,

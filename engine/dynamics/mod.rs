@@ -17,8 +17,14 @@ pub(crate) mod validate;
 
 /// The names of this module that most apps use.
 pub mod prelude {
+    #[expect(deprecated, reason = "former names stay importable")]
     pub use super::{
-        ccd::SpeculativeMargin,
+        ccd::SweptCcdSet,
+        rigid_body::sleeping::{DeactivationTime, SleepingThreshold, TimeSleeping},
+        solver::schedule::SolverSet,
+    };
+    pub use super::{
+        ccd::{CcdPlugin, SpeculativeMargin, SweepMode, SweptCcd},
         integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity, IntegratorPlugin},
         rigid_body::{
             mass_properties::{
@@ -42,10 +48,5 @@ pub mod prelude {
             schedule::{SolverSchedulePlugin, SolverSystems, SubstepCount, SubstepSchedule},
             solver_body::SolverBodyPlugin,
         },
-    };
-    #[expect(deprecated, reason = "former names stay importable")]
-    pub use super::{
-        rigid_body::sleeping::{DeactivationTime, SleepingThreshold, TimeSleeping},
-        solver::schedule::SolverSet,
     };
 }

@@ -2,7 +2,7 @@
 
 use super::record::Contact;
 use crate::manifold::LocalManifold;
-use crate::math::{Lane, Vector, WorldPose, max, min};
+use crate::math::{Lane, Pose, Vector, WorldPose, max, min};
 use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity, is_swinging, turn};
 
 /// Computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign).
@@ -10,12 +10,23 @@ pub trait ManifoldSource: Sync {
     /// Buffers of the source, kept between calls.
     type Workspace: Default + Send;
 
-    /// Adds the manifolds of colliders `a` and `b`, in `a`'s frame with normals from `a` to `b`, with
-    /// points up to `prediction` metres apart.
+    /// Adds the manifolds of colliders `a` and `b`, `pose` being where B is in A's frame: in A's frame with normals from A to
+    /// B, with points up to `prediction` metres apart.
     fn manifolds(
         &self,
-        a: u32,
-        b: u32,
+        colliders: [u32; 2],
+        pose: &Pose,
+        prediction: f32,
+        workspace: &mut Self::Workspace,
+        out: &mut Vec<LocalManifold>,
+    );
+
+    /// The same for a collider and a ball, whose centre is given in the collider's frame.
+    fn ball_manifolds(
+        &self,
+        collider: u32,
+        center: Vector,
+        radius: f32,
         prediction: f32,
         workspace: &mut Self::Workspace,
         out: &mut Vec<LocalManifold>,
@@ -25,7 +36,9 @@ pub trait ManifoldSource: Sync {
 impl ManifoldSource for () {
     type Workspace = ();
 
-    fn manifolds(&self, _: u32, _: u32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
+    fn manifolds(&self, _: [u32; 2], _: &Pose, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
+
+    fn ball_manifolds(&self, _: u32, _: Vector, _: f32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
 }
 
 /// What the narrow phase reads; constant while it runs.

@@ -322,10 +322,11 @@ fn search_foreign<S: ManifoldSource>(
     contact: &Contact,
     buffers: &mut WorkerBuffers<S::Workspace>,
 ) -> Search {
-    let [a, b] = contact.colliders;
+    let [a, b] = contact.colliders.map(|id| &input.colliders.poses[id as usize]);
     let prediction = input.prediction(contact);
     let farthest = input.farthest(contact, prediction) + input.margin(contact);
-    input.source.manifolds(a, b, farthest, &mut buffers.foreign, &mut buffers.local);
+    let pose = a.relative(b);
+    input.source.manifolds(contact.colliders, &pose, farthest, &mut buffers.foreign, &mut buffers.local);
     Search { prediction, meeting: None }
 }
 

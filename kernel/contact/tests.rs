@@ -249,7 +249,11 @@ struct Rounds(u32);
 impl ManifoldSource for Rounds {
     type Workspace = ();
 
-    fn manifolds(&self, a: u32, b: u32, _: f32, (): &mut (), out: &mut Vec<LocalManifold>) {
+    fn ball_manifolds(&self, _: u32, _: Vector, _: f32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {
+        unreachable!("nothing is swept");
+    }
+
+    fn manifolds(&self, [a, b]: [u32; 2], _: &Pose, _: f32, (): &mut (), out: &mut Vec<LocalManifold>) {
         // Some take long, so that workers take contacts in another order.
         if a % 97 == 3 {
             std::thread::sleep(std::time::Duration::from_micros(300));

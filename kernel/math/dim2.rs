@@ -398,6 +398,12 @@ impl Rot {
         let (sin, cos) = super::sin_cos(f64::from(angle));
         Self { cos: cos as f32, sin: sin as f32 }
     }
+    /// The angle of the rotation, with the number of whole turns that brings it nearest to `hint`.
+    pub fn angle_near(self, hint: Angular) -> Angular {
+        let angle = super::atan2(f64::from(self.sin), f64::from(self.cos));
+        let turns = ((f64::from(hint.z) - angle) / core::f64::consts::TAU).round();
+        Angular { z: (angle + turns * core::f64::consts::TAU) as f32 }
+    }
     /// Turned further by the angle `delta`, of any size.
     pub fn turned_by(self, delta: Angular) -> Self {
         Self::from_angle(delta.z).mul(self).normalized()

@@ -468,6 +468,26 @@ impl Rot {
         let v = axis * (sin as f32);
         Self { x: v.x, y: v.y, z: v.z, w: cos as f32 }
     }
+    /// The rotation as an axis times an angle, with the number of whole turns that brings it nearest to `hint`.
+    pub fn angle_near(self, hint: Angular) -> Angular {
+        let sign = if self.w < 0.0 { -1.0 } else { 1.0 };
+        let [x, y, z, w] = [self.x, self.y, self.z, self.w].map(|c| f64::from(c) * sign);
+        let sin = (x * x + y * y + z * z).sqrt();
+        let angle = 2.0 * super::atan2(sin, w);
+        let [a, b, c] = hint.to_array().map(f64::from);
+        let (axis, along) = if sin > 1.0e-9 {
+            let axis = [x / sin, y / sin, z / sin];
+            (axis, a * axis[0] + b * axis[1] + c * axis[2])
+        } else {
+            let length = (a * a + b * b + c * c).sqrt();
+            let k = if length > 0.0 { 1.0 / length } else { 0.0 };
+            ([a * k, b * k, c * k], length)
+        };
+        let turns = ((along - angle) / core::f64::consts::TAU).round();
+        let angle = angle + turns * core::f64::consts::TAU;
+        let [x, y, z] = axis.map(|c| (c * angle) as f32);
+        Angular { x, y, z }
+    }
     /// Turned further by the rotation vector `delta`, of any length.
     pub fn turned_by(self, delta: Angular) -> Self {
         let [x, y, z] = delta.to_array().map(f64::from);

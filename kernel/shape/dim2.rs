@@ -8,7 +8,7 @@ pub(crate) use super::primitives::{direction, direction_or};
 use super::{Ball, Capsule, Cuboid, RayHit, Segment, Triangle};
 use crate::math::{Vector, max, min};
 use core::f64::consts::PI;
-use hull2::outline::cast_ray_polygon;
+use hull2::outline::{cast_ray_polygon, least_depth};
 use hull2::wide::{cross, dot, length, sub, wide};
 
 /// Mass, centre of mass and moment of inertia.
@@ -66,6 +66,15 @@ pub(super) fn mass_of_triangle(triangle: &Triangle) -> MassProperties {
     let center = Vector::from_array(core::array::from_fn(|i| ((a[i] + b[i] + c[i]) / 3.0) as f32));
     let inertia = area * (dot(u, u) + dot(v, v) + dot(w, w)) / 36.0;
     MassProperties { mass: area as f32, center, inertia: inertia as f32 }
+}
+
+/// The centroid, and its distance to the nearest side.
+pub(super) fn core_of_triangle(triangle: &Triangle) -> (Vector, f32) {
+    let center = (triangle.a + triangle.b + triangle.c) * (1.0 / 3.0);
+    match oriented(triangle) {
+        Ok((corners, normals)) => (center, least_depth(center, &corners, &normals)),
+        Err(_) => (center, 0.0),
+    }
 }
 
 /// The hit of a ray along the unit vector `direction` on a solid triangle. Without area it acts as its longest side.

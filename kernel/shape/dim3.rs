@@ -43,6 +43,11 @@ impl MassProperties {
     }
 }
 
+/// A triangle has no inside.
+pub(super) fn core_of_triangle(triangle: &Triangle) -> (Vector, f32) {
+    ((triangle.a + triangle.b + triangle.c) * (1.0 / 3.0), 0.0)
+}
+
 /// The mass properties of a ball of 1 kg/m³: m = 4/3 π r³, I = 2/5 m r².
 pub fn mass_of_ball(ball: &Ball) -> MassProperties {
     let square = ball.radius * ball.radius;

@@ -135,6 +135,21 @@ impl Shape {
         }
     }
 
+    /// A large ball within the shape: its centre and its radius, 0 for what has no inside.
+    pub fn core(&self) -> (Vector, f32) {
+        match self {
+            Self::Ball(s) => (Vector::ZERO, s.radius),
+            Self::Capsule(s) => ((s.a + s.b) * 0.5, s.radius),
+            Self::Cuboid(s) => (Vector::ZERO, s.half.min_element()),
+            Self::Hull(s) => s.core(),
+            Self::Triangle(s) => core_of_triangle(s),
+            Self::Segment(s) => ((s.a + s.b) * 0.5, 0.0),
+            Self::HalfSpace(_) => (Vector::ZERO, f32::MAX),
+            // What is within the box is not known.
+            Self::Foreign(s) => (s.aabb.center(), 0.5 * s.aabb.half().min_element()),
+        }
+    }
+
     /// The radius around the shape's core (a point, a segment or a polygon), in metres. Zero for sharp and foreign shapes.
     pub fn radius(&self) -> f32 {
         match self {

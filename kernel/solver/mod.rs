@@ -39,6 +39,7 @@ mod shares;
 mod softness;
 mod split;
 mod stages;
+mod sweep;
 mod view;
 
 pub use body::{BodyRows, Limits, Motion};

@@ -3,7 +3,7 @@
 
 use super::{BodyKind, BodyTable, NONE};
 use crate::data::{BitSet, IdPool, Parts, prefetch};
-use crate::math::{DIM, Pose, Rot, Vector, WorldPose, min};
+use crate::math::{DIM, Pose, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Aabb, Shape};
 use crate::thread_pool::ThreadPool;
 use core::ops::{Index, IndexMut};
@@ -154,6 +154,19 @@ pub struct Reach {
     pub revision: u32,
 }
 
+/// What of a body's colliders tells whether it is fast.
+#[derive(Clone, Copy, Debug)]
+pub struct BodySize {
+    /// No ball within one of the colliders is smaller than one of this radius, in metres; infinite without colliders.
+    pub core: f32,
+    /// How far normals of the colliders' surfaces pass from the centre of mass at most, in metres.
+    pub arm: f32,
+}
+
+impl BodySize {
+    const NONE: Self = Self { core: f32::INFINITY, arm: 0.0 };
+}
+
 /// Maximum turn per step that prediction assumes, in radians. Bodies that turn further are treated as if they turned by
 /// this.
 pub(crate) const MOST_TURN: f32 = 1.5;
@@ -186,6 +199,8 @@ pub struct ColliderTable {
     pub fat: Vec<Aabb>,
     /// Reaches by id.
     pub reaches: Vec<Reach>,
+    /// By body, as far as bodies had colliders. What left still counts until the last collider of the body has left.
+    sizes: Vec<BodySize>,
 }
 
 /// How boxes are fattened, constant over a step.
@@ -265,6 +280,11 @@ impl ColliderTable {
         };
         let extent = def.shape.extent(center);
         let fixed = def.body == NONE || bodies[def.body].kind == BodyKind::Static;
+        if def.body != NONE {
+            let size = &mut self.sizes[def.body as usize];
+            size.core = min(size.core, def.shape.core().1);
+            size.arm = max(size.arm, self.colliders[id as usize].arm(bodies));
+        }
         let reach = &mut self.reaches[id as usize];
         *reach = Reach {
             extent,
@@ -288,6 +308,12 @@ impl ColliderTable {
     #[inline(always)]
     pub fn body(&self, id: u32) -> u32 {
         self.owners[id as usize]
+    }
+
+    /// What tells whether a body is fast.
+    #[inline(always)]
+    pub fn size_of(&self, body: u32) -> BodySize {
+        self.sizes.get(body as usize).copied().unwrap_or(BodySize::NONE)
     }
 
     /// The next collider of the same body, or [`NONE`].
@@ -387,6 +413,12 @@ impl ColliderTable {
             return;
         }
         let first = core::mem::replace(&mut bodies[body].first_collider, id);
+        if self.sizes.len() <= body as usize {
+            self.sizes.resize(body as usize + 1, BodySize::NONE);
+        }
+        if first == NONE {
+            self.sizes[body as usize] = BodySize::NONE;
+        }
         self[id].next = first;
         self[id].previous = NONE;
         if first != NONE {
@@ -434,7 +466,7 @@ impl Collider {
         let round = Aabb::new(Vector::ZERO, Vector::ZERO).at(body.center).grown(reach.extent);
         let velocity = bodies.velocities[def.body as usize].angular;
         let spin = velocity.length();
-        let turn = min(turn(spin, fattening.dt), def.speculative / arm);
+        let turn = turn(spin, fattening.dt);
         let rotation = Rot::IDENTITY.turned_by(velocity * (turn / spin)).mul(body.rotation);
         if !rotation.is_finite() {
             return round;
@@ -460,11 +492,7 @@ impl Collider {
         if def.body != NONE {
             *pose = bodies.frame(def.body).then(&def.local);
             let velocity = &bodies.velocities[def.body as usize];
-            let speed = bodies.poses[def.body as usize].speed;
             motion = velocity.linear * fattening.dt;
-            if speed * fattening.dt > def.speculative {
-                motion = velocity.linear * (def.speculative / speed);
-            }
             if !motion.is_finite() {
                 motion = Vector::ZERO;
             }

@@ -7,7 +7,8 @@ mod constraint;
 pub(crate) use body::BodyParts;
 pub use body::{Body, BodyKind, BodyPose, BodyTable, RestSpeed, Velocity};
 pub use collider::{
-    Collider, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material, Reach, Surface,
+    BodySize, Collider, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
+    Reach, Surface,
 };
 pub(crate) use collider::{MOST_TURN, is_swinging, turn};
 pub use constraint::{Constraint, ConstraintTable};

@@ -97,6 +97,21 @@ pub fn riders() -> Vec<(&'static str, Shape)> {
     ]
 }
 
+/// Small bodies of a size that are shot at walls.
+pub fn bullets(size: f32) -> Vec<(&'static str, Shape)> {
+    let half = 0.5 * size;
+    let along = Vector::X * (0.5 * half);
+    vec![
+        ("box", Shape::Cuboid(Cuboid { half: Vector::ONE * half })),
+        ("ball", Shape::Ball(crate::kernel::shape::Ball { radius: half })),
+        (
+            "capsule",
+            Shape::Capsule(crate::kernel::shape::Capsule { a: -along, b: along, radius: 0.5 * half }),
+        ),
+        ("rhombus", hull_of(Vector { x: half, y: 0.6 * half })),
+    ]
+}
+
 /// Floors of flush pieces, with their top at y = 0, from x = -3 to 14.
 pub fn tiles() -> Vec<(&'static str, Vec<(Shape, Vector)>)> {
     let cuboid = |half| Shape::Cuboid(Cuboid { half });

@@ -106,6 +106,26 @@ pub fn riders() -> Vec<(&'static str, Shape)> {
     ]
 }
 
+/// Small bodies of a size that are shot at walls.
+pub fn bullets(size: f32) -> Vec<(&'static str, Shape)> {
+    let half = 0.5 * size;
+    let along = Vector::Y * (0.5 * half);
+    let rim = (0..32).map(|i| {
+        let angle = (i % 16) as f32 * core::f32::consts::TAU / 16.0;
+        Vector { x: half * angle.cos(), y: if i < 16 { -half } else { half }, z: half * angle.sin() }
+    });
+    let rim: Vec<_> = rim.collect();
+    vec![
+        ("cube", Shape::Cuboid(Cuboid { half: Vector::ONE * half })),
+        ("ball", Shape::Ball(crate::kernel::shape::Ball { radius: half })),
+        (
+            "capsule",
+            Shape::Capsule(crate::kernel::shape::Capsule { a: -along, b: along, radius: 0.5 * half }),
+        ),
+        ("cylinder", Shape::Hull(Arc::new(Hull::convex_hull_of(&rim).expect("a prism is solid")))),
+    ]
+}
+
 /// Floors of flush pieces, with their top at y = 0, from x = -3 to 14.
 pub fn tiles() -> Vec<(&'static str, Vec<(Shape, Vector)>)> {
     let cuboid = |half| Shape::Cuboid(Cuboid { half });

@@ -26,4 +26,5 @@ mod sound;
 #[cfg(feature = "3d")]
 mod spin;
 mod swept_spin;
+mod tunnel;
 mod unrest;

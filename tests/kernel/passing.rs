@@ -36,6 +36,7 @@ fn shoot(sim: &mut Sim, id: u32, velocity: Vector) {
 fn the_margin_of_a_wall_does_not_widen_that_of_a_ball() {
     for margin in [0.0f32, 0.02] {
         let mut sim = free();
+        sim.sweeps = false;
         sim.add(BodyKind::Static, cuboid(0.5, 4.0, 4.0), Vector::X * 0.5, Rot::IDENTITY);
         let ball = sim.ball(BALL, Vector::X * -(BALL + 0.3));
         limit(&mut sim, ball, margin);
@@ -51,6 +52,7 @@ fn the_margin_of_a_wall_does_not_widen_that_of_a_ball() {
 fn the_margin_of_a_wall_does_not_limit_that_of_a_ball() {
     for margin in [0.0f32, 0.02] {
         let mut sim = free();
+        sim.sweeps = false;
         let wall = sim.add(BodyKind::Static, cuboid(0.5, 4.0, 4.0), Vector::X * 0.5, Rot::IDENTITY);
         limit(&mut sim, wall, margin);
         let ball = sim.ball(BALL, Vector::X * -(BALL + 0.3));

@@ -4,6 +4,7 @@
 use super::dim::inverse_inertia;
 use crate::kernel;
 use kernel::bvh::{FoundPairs, Mover, Movers, PairMask, ProxyId, TreeKind, Trees};
+use kernel::ccd::{SweepBuffers, SweepInput};
 use kernel::contact::{
     Contact, ContactTable, Link, NarrowPhaseInput, Outcome, WorkerBuffers, update_contact,
 };
@@ -66,6 +67,8 @@ pub struct Sim {
     pub checked: bool,
     /// Whether contacts are solved.
     pub builds_rows: bool,
+    /// Whether fast bodies are swept after the substeps.
+    pub sweeps: bool,
     pub locks: Vec<AxisLocks>,
     /// Number of stages that several workers shared in the last step.
     pub shared: usize,
@@ -76,6 +79,7 @@ pub struct Sim {
     solver: Solver,
     pool: ThreadPool,
     scratch: Vec<WorkerBuffers>,
+    sweep_buffers: Vec<SweepBuffers>,
     is_narrow: bool,
     scan: SleepScan,
     listed: Vec<u32>,
@@ -102,6 +106,7 @@ impl Sim {
             recycle: true,
             checked: true,
             builds_rows: true,
+            sweeps: true,
             locks: Vec::new(),
             shared: 0,
             trees: Trees::default(),
@@ -111,6 +116,7 @@ impl Sim {
             solver,
             pool: ThreadPool::default(),
             scratch: Vec::new(),
+            sweep_buffers: Vec::new(),
             is_narrow: false,
             scan: SleepScan::new(),
             listed: Vec::new(),
@@ -317,6 +323,17 @@ impl Sim {
         }
         for _ in 0..self.substeps {
             self.solver.substep(&params, &self.pool);
+        }
+        if self.sweeps && self.builds_rows {
+            let input = SweepInput {
+                bodies: &self.bodies,
+                colliders: &self.colliders,
+                trees: &self.trees,
+                source: &(),
+                tolerance: 0.005,
+                dt: self.dt,
+            };
+            self.solver.stop_fast(&input, &self.listed, &mut self.sweep_buffers, &self.pool);
         }
         self.solver.restitute(&params, &self.pool);
         self.solver.store_impulses(&mut self.contacts, &self.pool);

@@ -63,3 +63,17 @@ pub const PYRAMID_UNREST: f32 = 0.01;
 
 /// Layers of a heap of about a hundred pieces.
 pub const PILE_LAYERS: u32 = 12;
+
+/// An angular velocity about z.
+pub fn about_z(w: f32) -> f32 {
+    w
+}
+
+/// Walls without thickness at x = 0.
+pub fn thin_walls() -> Vec<(&'static str, Collider)> {
+    let points: Vec<_> = (0..=8).map(|i| Vector::new(0.0, i as f32 - 4.0)).collect();
+    vec![
+        ("segment", Collider::segment(Vector::new(0.0, -4.0), Vector::new(0.0, 4.0))),
+        ("polyline", Collider::polyline(points, None)),
+    ]
+}

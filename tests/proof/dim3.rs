@@ -71,3 +71,21 @@ pub const PYRAMID_UNREST: f32 = 0.01;
 
 /// Layers of a heap of about a hundred pieces.
 pub const PILE_LAYERS: u32 = 3;
+
+/// An angular velocity about z.
+pub fn about_z(w: f32) -> Vector {
+    Vector::Z * w
+}
+
+/// Walls without thickness at x = 0.
+pub fn thin_walls() -> Vec<(&'static str, Collider)> {
+    let corner = |y: f32, z: f32| Vector::new(0.0, y, z);
+    let vertices = vec![corner(-4.0, -4.0), corner(4.0, -4.0), corner(4.0, 4.0), corner(-4.0, 4.0)];
+    let field = Collider::heightfield(vec![vec![0.0; 9]; 9], Vector::new(8.0, 1.0, 8.0));
+    let upright = Rotation(scenes::scene::turned(core::f32::consts::FRAC_PI_2));
+    vec![
+        ("mesh", Collider::trimesh(vertices, vec![[0, 1, 2], [0, 2, 3]])),
+        ("height field", Collider::compound(vec![(Vector::ZERO, upright, field)])),
+        ("triangle", Collider::triangle(corner(-20.0, -20.0), corner(20.0, -20.0), corner(0.0, 20.0))),
+    ]
+}

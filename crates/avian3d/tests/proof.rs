@@ -2,6 +2,8 @@
 
 #[path = "../../../tests/proof/behaviour.rs"]
 mod behaviour;
+#[path = "../../../tests/proof/ccd.rs"]
+mod ccd;
 #[path = "../../../tests/proof/crowds.rs"]
 mod crowds;
 #[path = "../../../tests/proof/determinism.rs"]

@@ -2,7 +2,11 @@
 //! one and queries for it are empty.
 
 use bevy_ecs::prelude::Component;
-use kernel::{manifold::LocalManifold, math::Pose, shape::Shape};
+use kernel::{
+    manifold::LocalManifold,
+    math::{Pose, Vector},
+    shape::Shape,
+};
 
 /// No collider.
 #[derive(Component)]
@@ -17,6 +21,18 @@ impl Collider {
 
 /// Unused buffers.
 pub(crate) type Workspace = ();
+
+/// Contact manifolds of a collider that the kernel has no shape for, and a ball.
+pub(crate) fn foreign_ball_manifolds(
+    collider: &Collider,
+    _: Vector,
+    _: f32,
+    _: f32,
+    (): &mut Workspace,
+    _: &mut Vec<LocalManifold>,
+) {
+    match *collider {}
+}
 
 /// Contact manifolds of two colliders, one of which the kernel has no shape for.
 pub(crate) fn foreign_manifolds(

@@ -15,7 +15,7 @@ mod parry;
 
 pub use aabb::{ColliderAabb, EnlargedAabb};
 #[cfg(not(feature = "default-collider"))]
-pub(crate) use absent::{Collider, Workspace, foreign_manifolds};
+pub(crate) use absent::{Collider, Workspace, foreign_ball_manifolds, foreign_manifolds};
 pub use any_collider::{AabbContext, AnyCollider, IntoCollider, ScalableCollider, SimpleCollider};
 pub use backend::{ColliderBackendPlugin, update_collider_mass_properties};
 pub use layers::*;

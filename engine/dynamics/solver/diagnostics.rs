@@ -32,7 +32,7 @@ pub struct SolverDiagnostics {
     pub finalize: Duration,
     /// Storing impulses.
     pub store_impulses: Duration,
-    /// Swept continuous collision detection. Zero until it exists.
+    /// Sweeping fast bodies, and bodies with [`SweptCcd`](crate::dynamics::ccd::SweptCcd).
     pub swept_ccd: Duration,
     /// Number of contact manifolds that were solved.
     pub contact_constraint_count: u32,

@@ -11,7 +11,7 @@ use super::{
     solver_body::SolverBodyPlugin,
 };
 use crate::{
-    dynamics::integrator::IntegratorPlugin,
+    dynamics::{ccd::CcdPlugin, integrator::IntegratorPlugin},
     math::Scalar,
     schedule::PhysicsSchedule,
     step::{self, Owner},
@@ -25,6 +25,7 @@ use crate::{
 /// | [`SolverSchedulePlugin`] | the stages of the solver and the substeps |
 /// | [`IntegratorPlugin`] | gravity, the motion of bodies |
 /// | [`SolverPlugin`] | contacts |
+/// | [`CcdPlugin`] | sweeps of fast bodies |
 /// | [`IslandPlugin`] | which bodies rest on which |
 /// | [`IslandSleepingPlugin`] | sleep |
 #[derive(Debug, Default)]
@@ -46,6 +47,7 @@ impl PluginGroup for SolverPlugins {
             .add(SolverSchedulePlugin)
             .add(IntegratorPlugin::default())
             .add(self.length_unit.map_or_else(SolverPlugin::default, SolverPlugin::new_with_length_unit))
+            .add(CcdPlugin)
             .add(IslandPlugin)
             .add(IslandSleepingPlugin)
     }

@@ -11,7 +11,9 @@ use crate::math::{Vector, max, min};
 use crate::shape::primitives::{Stretch, checked_length, direction_or, hit_of_stretch};
 use crate::shape::{Aabb, Capsule, RayHit, ShapeError};
 use mass::mass_of_rounded_polygon;
-use outline::{cast_ray_polygon, edges, merge_distance, monotone_chain, simplified, turns_left_once};
+use outline::{
+    cast_ray_polygon, edges, least_depth, merge_distance, monotone_chain, simplified, turns_left_once,
+};
 use smallvec::SmallVec;
 use wide::{cross, length, sub, wide};
 
@@ -95,6 +97,12 @@ impl Hull {
     #[inline]
     pub fn bounds(&self) -> Aabb {
         self.aabb
+    }
+
+    /// The ball around the centroid within the polygon: its centre and radius.
+    pub fn core(&self) -> (Vector, f32) {
+        let center = self.mass.center;
+        (center, least_depth(center, self.vertices(), self.normals()) + self.radius)
     }
 
     /// The point farthest along `direction` (any length), radius included.

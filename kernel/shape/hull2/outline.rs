@@ -1,7 +1,7 @@
 //! Outlines of convex polygons: simplification, test for convexity, convex hull, and ray hits.
 
 use super::wide::{Point, cross, dot, length, sub, wide};
-use crate::math::Vector;
+use crate::math::{Vector, max, min};
 use crate::shape::primitives::hit_of_stretch;
 use crate::shape::{Aabb, RayHit, ShapeError};
 
@@ -12,6 +12,12 @@ pub(super) fn merge_distance(points: &[Vector]) -> f64 {
     let size = (bounds.max - bounds.min).max_element();
     let far = bounds.min.abs().max(bounds.max.abs()).max_element();
     1.0e-6 * f64::from(size) + 2.0 * f64::from(f32::EPSILON) * f64::from(far)
+}
+
+/// The least depth of a point below the edges of a convex polygon; 0 if it is outside.
+pub(in crate::shape) fn least_depth(point: Vector, corners: &[Vector], normals: &[Vector]) -> f32 {
+    let depths = corners.iter().zip(normals).map(|(corner, normal)| (*corner - point).dot(*normal));
+    max(depths.fold(f32::INFINITY, min), 0.0)
 }
 
 /// The edges of a closed outline.

@@ -209,6 +209,13 @@ impl Hull {
         &self.edges
     }
 
+    /// The ball around the centroid within the polyhedron: its centre and radius.
+    pub fn core(&self) -> (Vector, f32) {
+        let center = self.centroid();
+        let depths = self.faces().iter().map(|face| face.offset - face.normal.dot(center));
+        (center, max(depths.fold(f32::INFINITY, min), 0.0) + self.radius())
+    }
+
     /// The centre of mass at uniform density.
     pub fn centroid(&self) -> Vector {
         self.unit_mass.center

@@ -31,6 +31,20 @@ pub(crate) fn foreign_manifolds(
     parry_manifolds(a.shape_scaled(), b.shape_scaled(), pose, prediction, workspace, out);
 }
 
+/// Appends the contact manifolds of a collider and a ball, whose centre is given in the collider's frame.
+pub(crate) fn foreign_ball_manifolds(
+    collider: &Collider,
+    center: kernel::math::Vector,
+    radius: f32,
+    prediction: f32,
+    workspace: &mut Workspace,
+    out: &mut Vec<LocalManifold>,
+) {
+    let ball = SharedShape::ball(Scalar::from(radius));
+    let pose = Pose { position: center, ..Pose::IDENTITY };
+    parry_manifolds(collider.shape_scaled(), &ball, &pose, prediction, workspace, out);
+}
+
 /// Appends the contact manifolds of two shapes: one for convex shapes, one per touching part for composite ones, none
 /// for pairs that parry does not support.
 ///

@@ -40,7 +40,7 @@ pub use params::{FillMode, TrimeshFlags, VhacdParameters};
 #[cfg(feature = "2d")]
 pub use regular_polygon::RegularPolygonColliderShape;
 
-pub(crate) use manifold::{Workspace, foreign_manifolds};
+pub(crate) use manifold::{Workspace, foreign_ball_manifolds, foreign_manifolds};
 
 use super::{
     AabbContext, AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, IntoCollider,

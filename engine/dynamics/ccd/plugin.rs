@@ -1,0 +1,35 @@
+//! The plugin of sweeps.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
+
+use super::SweptCcdSystems;
+use crate::{
+    dynamics::solver::{
+        config::PhysicsLengthUnit, diagnostics::SolverDiagnostics, schedule::SolverSystems,
+        substeps::OwnSubstepSystems,
+    },
+    schedule::{PhysicsSchedule, PhysicsStepSystems},
+    step::{self, Owner},
+};
+
+/// Sweeps fast bodies against what does not move, and bodies with [`SweptCcd`](super::SweptCcd) against what moves.
+#[derive(Debug, Default)]
+pub struct CcdPlugin;
+
+impl Plugin for CcdPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<SolverDiagnostics>()
+            .init_resource::<OwnSubstepSystems>()
+            .init_resource::<PhysicsLengthUnit>();
+        step::install(app);
+        app.configure_sets(
+            PhysicsSchedule,
+            SweptCcdSystems
+                .in_set(PhysicsStepSystems::Solver)
+                .after(SolverSystems::PostSubstep)
+                .before(SolverSystems::Restitution),
+        );
+        step::add_systems_of(Owner::Ccd, app, PhysicsSchedule.intern());
+    }
+}

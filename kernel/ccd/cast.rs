@@ -1,0 +1,187 @@
+//! When two moving shapes meet, by conservative advancement (B. Mirtich, "Impulse-based Dynamic Simulation", 1996).
+//!
+//! A manifold's normal and least separation are a slab between the shapes. Time advances by what the slab takes to be
+//! crossed at least, until the shapes are as near as they may come.
+
+use super::path::Path;
+use crate::contact::ManifoldSource;
+use crate::manifold::{self, FeatureCache, LocalManifold};
+use crate::math::{Pose, Vector, WorldPose, max, min};
+use crate::shape::{Ball, Shape};
+
+/// Most steps of an advance. What takes more stops where it then is.
+const MAX_ROUNDS: usize = 40;
+
+/// A ball touches already if it is as near as this share of the distance at which it stops.
+const TOUCHING: f32 = 0.1;
+
+/// Manifolds of shapes with many parts are looked for up to this many extents of the moving shape at once, so that parts far
+/// ahead are not computed again and again.
+const VIEW: f32 = 4.0;
+
+/// A collider that takes part in a cast.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side<'a> {
+    pub(super) collider: u32,
+    pub(super) shape: &'a Shape,
+    /// The shape's frame in the body's.
+    pub(super) local: Pose,
+    /// The body's motion; a collider without a body has its own pose as that of a body.
+    pub(super) path: Path,
+    /// How far normals of the shape pass from the centre of mass at most.
+    pub(super) arm: f32,
+}
+
+impl Side<'_> {
+    pub(super) fn pose(&self, fraction: f32) -> WorldPose {
+        self.path.frame(fraction).then(&self.local)
+    }
+
+    /// How far turning moves the surface along its normals at most.
+    fn turning(&self) -> f32 {
+        self.arm * self.path.spin.length()
+    }
+}
+
+/// What of a moving collider is cast.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Caster {
+    /// The shape.
+    Whole,
+    /// A ball within it: its place in the shape's frame, and its radius.
+    Ball(Vector, f32),
+}
+
+/// How a cast ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cast {
+    /// The shapes do not meet.
+    Miss,
+    /// They are too near when the step begins.
+    Touching,
+    /// They meet after this fraction of the step.
+    Hit(f32),
+}
+
+/// Buffers of a cast, kept for their memory.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CastBuffers<W> {
+    found: Vec<LocalManifold>,
+    source: W,
+}
+
+/// Two colliders, one cast against the other.
+pub(super) struct Pair<'a, S> {
+    pub(super) source: &'a S,
+    pub(super) moving: Side<'a>,
+    pub(super) other: Side<'a>,
+    /// The sum of the collision margins.
+    pub(super) margin: f32,
+    /// As near as the shapes may come, margins subtracted.
+    pub(super) target: f32,
+    /// How far the moving shape reaches.
+    pub(super) extent: f32,
+}
+
+impl<S: ManifoldSource> Pair<'_, S> {
+    /// Casts the moving collider, or a ball within it.
+    pub(super) fn cast(&self, caster: Caster, buffers: &mut CastBuffers<S::Workspace>) -> Cast {
+        // Balls that stopped are not free to go on in the next step.
+        let (way, turning, touching) = match caster {
+            Caster::Whole => (self.moving.path.way, self.moving.turning(), self.target),
+            Caster::Ball(center, _) => (self.chord(center), 0.0, TOUCHING * self.target),
+        };
+        let (way, turning) = (way - self.other.path.way, turning + self.other.turning());
+        let fastest = way.length() + turning;
+        if !(fastest > 0.0) {
+            return Cast::Miss;
+        }
+        let mut fraction = 0.0;
+        for round in 0..MAX_ROUNDS {
+            let other = self.other.pose(fraction);
+            let rest = (1.0 - fraction) * fastest + 2.0 * self.target;
+            let gap = self.look(caster, &other, fraction, rest, buffers);
+            let mut advance = gap / fastest;
+            for local in &buffers.found {
+                let (gap, normal) = (local.lower_bound() - self.margin, other.rotation.rotate(local.normal));
+                if round == 0 && gap <= touching {
+                    return Cast::Touching;
+                }
+                let rate = turning - way.dot(normal);
+                if !(rate > 0.0) {
+                    continue;
+                }
+                if gap <= self.target {
+                    return Cast::Hit(fraction);
+                }
+                // So that the shapes stop apart.
+                let left = gap - 0.5 * self.target;
+                advance = min(advance, left / rate);
+            }
+            fraction += max(advance, 0.5 * self.target / fastest);
+            // A NaN is a miss.
+            if !(fraction < 1.0) {
+                return Cast::Miss;
+            }
+        }
+        Cast::Hit(fraction)
+    }
+
+    /// The way of a point of the moving shape over the step.
+    fn chord(&self, point: Vector) -> Vector {
+        let [start, end] = [0.0, 1.0].map(|fraction| self.moving.pose(fraction).transform(point));
+        (end - start).to_local()
+    }
+
+    /// Finds the manifolds after a fraction of the step, up to a distance, that of the rest of the motion. Returns a lower bound
+    /// of the distance to all else that may be met.
+    fn look(
+        &self,
+        caster: Caster,
+        other: &WorldPose,
+        fraction: f32,
+        distance: f32,
+        buffers: &mut CastBuffers<S::Workspace>,
+    ) -> f32 {
+        let CastBuffers { found, source } = buffers;
+        let [a, b] = [&self.other, &self.moving];
+        found.clear();
+        let reach = distance + self.margin;
+        let near = min(distance, VIEW * self.extent + self.target) + self.margin;
+        let is_foreign = |shape: &Shape| matches!(shape, Shape::Foreign(_));
+        let mut local = LocalManifold::default();
+        let mut cache = FeatureCache::NONE;
+        match caster {
+            Caster::Whole => {
+                let pose = other.relative(&b.pose(fraction));
+                if is_foreign(a.shape) || is_foreign(b.shape) {
+                    self.source.manifolds([a.collider, b.collider], &pose, near, source, found);
+                    return near - self.margin;
+                }
+                manifold::collide(a.shape, b.shape, &pose, reach, &mut cache, &mut local);
+            }
+            Caster::Ball(center, radius) => {
+                let mut position = b.pose(0.0).transform(center);
+                position += (self.chord(center) * fraction).to_world();
+                let pose = other.relative(&WorldPose { position, rotation: other.rotation });
+                if is_foreign(a.shape) {
+                    let center = pose.position;
+                    self.source.ball_manifolds(a.collider, center, radius, near, source, found);
+                    return near - self.margin;
+                }
+                let ball = Shape::Ball(Ball { radius });
+                manifold::collide(a.shape, &ball, &pose, reach, &mut cache, &mut local);
+            }
+        }
+        // Beyond the distance there is nothing that may be met.
+        found.extend((local.count > 0).then_some(local));
+        f32::INFINITY
+    }
+
+    /// How far the shapes overlap when the step ends; 0 if they do not.
+    pub(super) fn depth_at_end(&self, buffers: &mut CastBuffers<S::Workspace>) -> f32 {
+        self.look(Caster::Whole, &self.other.pose(1.0), 1.0, 0.0, buffers);
+        let depths = buffers.found.iter().map(|local| self.margin - local.lower_bound());
+        depths.fold(0.0, max)
+    }
+}

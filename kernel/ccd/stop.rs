@@ -1,0 +1,220 @@
+//! Where one body stops in the step.
+
+use super::cast::{Cast, CastBuffers, Caster, Pair, Side};
+use super::path::Path;
+use crate::bvh::{TreeKind, Trees};
+use crate::contact::ManifoldSource;
+use crate::math::{Vector, WorldPose, max, min};
+use crate::shape::Aabb;
+use crate::table::{BodyPose, BodyTable, ColliderTable, NONE};
+
+/// Bodies that move by less than this share of the ball within them stay on their side of a wall: it then pushes them back.
+const FAR: f32 = 0.5;
+
+/// Shapes stop at this share of the tolerance, or of the ball within them, before they touch.
+const TARGET: f32 = 0.1;
+
+/// A body that overlaps by more than this share of the ball within it when the step ends is put back to where it did not. Less
+/// is the solver's to push out: bodies that are put back lose time.
+const DEEP: f32 = 0.5;
+
+/// The radii of the balls that are cast where shapes touch already, as shares of that within them. The first that is free when
+/// the step begins counts.
+const BALLS: [f32; 3] = [0.5, 0.1, 0.0];
+
+/// What sweeps read; constant while they run.
+pub struct SweepInput<'a, S> {
+    /// The bodies as the step began.
+    pub bodies: &'a BodyTable,
+    /// The colliders as the step began.
+    pub colliders: &'a ColliderTable,
+    /// The trees of the colliders.
+    pub trees: &'a Trees,
+    /// For pairs with a foreign shape.
+    pub source: &'a S,
+    /// Shapes this far apart count as touching, in metres.
+    pub tolerance: f32,
+    /// The step's length, in seconds.
+    pub dt: f32,
+}
+
+/// How a body is swept against what moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swept {
+    /// Whether turning counts; else both bodies keep their rotation of the step's start.
+    pub turns: bool,
+    /// Whether it is swept against dynamic bodies, not against kinematic ones alone.
+    pub include_dynamic: bool,
+    /// Two bodies that move slower than this against each other are not swept if they turn slower as well, in m/s.
+    pub linear_threshold: f32,
+    /// The same for turning, in rad/s.
+    pub angular_threshold: f32,
+}
+
+/// Buffers of one worker, kept for their memory.
+#[derive(Clone, Debug)]
+pub struct SweepBuffers<W = ()> {
+    cast: CastBuffers<W>,
+    candidates: Vec<u32>,
+    /// Bodies that stop, and after what fractions of the step.
+    pub(crate) stops: Vec<(u32, f32)>,
+}
+
+impl<W: Default> Default for SweepBuffers<W> {
+    fn default() -> Self {
+        Self { cast: CastBuffers::default(), candidates: Vec::new(), stops: Vec::new() }
+    }
+}
+
+impl<S: ManifoldSource> SweepInput<'_, S> {
+    /// Whether a body that moves by `way` metres and turns by `angle` radians may get past something.
+    #[inline(always)]
+    pub fn is_far(&self, body: u32, way: f32, angle: f32) -> bool {
+        let size = self.colliders.size_of(body);
+        way + size.arm * angle > max(FAR * size.core, TARGET * self.tolerance)
+    }
+
+    /// The fraction of the step after which a body stops at what does not move; 1 if it does not.
+    pub fn stop(&self, body: u32, path: &Path, buffers: &mut SweepBuffers<S::Workspace>) -> f32 {
+        let mut first = 1.0;
+        self.each_candidate(
+            body,
+            path,
+            &[TreeKind::Static, TreeKind::Standalone],
+            buffers,
+            |pair, buffers| {
+                let [collider, other] = pair;
+                first = min(first, self.impact(collider, path, self.side(other, None), &mut buffers.cast));
+            },
+        );
+        first
+    }
+
+    /// Notes after what fractions of the step a body, and the moving bodies that it meets, stop. `path_of` gives the path of
+    /// a body that may move, if it has one in this step.
+    pub(crate) fn stop_swept(
+        &self,
+        body: u32,
+        swept: &Swept,
+        path_of: &impl Fn(u32) -> Option<Path>,
+        buffers: &mut SweepBuffers<S::Workspace>,
+    ) {
+        let Some(path) = path_of(body).map(|path| path.turning_if(swept.turns)) else { return };
+        let kinds = [TreeKind::Kinematic, TreeKind::Dynamic];
+        let kinds = if swept.include_dynamic { &kinds[..] } else { &kinds[..1] };
+        self.each_candidate(body, &path, kinds, buffers, |[collider, other], buffers| {
+            let other_body = self.colliders.body(other);
+            if other_body == body || other_body == NONE {
+                return;
+            }
+            let velocities = [body, other_body].map(|id| self.bodies.velocities[id as usize]);
+            let linear = (velocities[0].linear - velocities[1].linear).length();
+            let angular = (velocities[0].angular - velocities[1].angular).length();
+            if linear < swept.linear_threshold && angular < swept.angular_threshold {
+                return;
+            }
+            let other_path = path_of(other_body).map(|path| path.turning_if(swept.turns));
+            let fraction = self.impact(collider, &path, self.side(other, other_path), &mut buffers.cast);
+            if fraction < 1.0 {
+                buffers.stops.extend([(body, fraction), (other_body, fraction)]);
+            }
+        });
+    }
+
+    /// Calls `met` with each collider of a body and each that it may meet on its path, of some kinds.
+    fn each_candidate(
+        &self,
+        body: u32,
+        path: &Path,
+        kinds: &[TreeKind],
+        buffers: &mut SweepBuffers<S::Workspace>,
+        mut met: impl FnMut([u32; 2], &mut SweepBuffers<S::Workspace>),
+    ) {
+        let mut candidates = core::mem::take(&mut buffers.candidates);
+        for collider in self.colliders.of_body(body, self.bodies) {
+            let def = &self.colliders[collider].def;
+            if def.flags.sensor {
+                continue;
+            }
+            candidates.clear();
+            let around = self.around(collider, path);
+            for &kind in kinds {
+                self.trees[kind].query(&around, |other| {
+                    let found = &self.colliders[other].def;
+                    if !found.flags.sensor && def.layers.interacts_with(found.layers) {
+                        candidates.push(other);
+                    }
+                    true
+                });
+            }
+            candidates.iter().for_each(|other| met([collider, *other], buffers));
+        }
+        buffers.candidates = candidates;
+    }
+
+    /// The box of all places that a collider takes on its body's path.
+    fn around(&self, collider: u32, path: &Path) -> Aabb {
+        let (def, extent) = (&self.colliders[collider].def, self.colliders.reaches[collider as usize].extent);
+        let boxes = [0.0, 1.0].map(|fraction| def.shape.aabb(&path.frame(fraction).then(&def.local)));
+        let round = Aabb::new(Vector::ZERO, Vector::ZERO).at(path.start.center).grown(extent);
+        // A point goes along an arc. Off the line between its ends that is by r (1 - cos φ/2) < r φ²/8 at most.
+        let spin = path.spin.length_squared();
+        let arcs = boxes[0].union(&boxes[1]).grown(min(0.125 * extent * spin, 2.0 * extent));
+        arcs.intersection(&round.swept(path.way)).grown(def.margin + self.tolerance)
+    }
+
+    /// A collider on its body's path; without one it stays where it is.
+    fn side(&self, collider: u32, path: Option<Path>) -> Side<'_> {
+        let entry = &self.colliders[collider];
+        let def = &entry.def;
+        let (path, local) = match (path, def.body) {
+            (Some(path), _) => (path, def.local),
+            (None, NONE) => {
+                let WorldPose { position, rotation } = self.colliders.poses[collider as usize];
+                let pose = BodyPose { center: position, rotation, speed: 0.0, revision: 0 };
+                (Path::still(pose, Vector::ZERO), crate::math::Pose::IDENTITY)
+            }
+            (None, body) => {
+                (Path::still(self.bodies.poses[body as usize], self.bodies[body].local_center), def.local)
+            }
+        };
+        Side { collider, shape: &def.shape, local, path, arm: entry.arm(self.bodies) }
+    }
+
+    /// The fraction of the step after which a collider meets another, 1 if it does not.
+    fn impact(
+        &self,
+        collider: u32,
+        path: &Path,
+        other: Side,
+        buffers: &mut CastBuffers<S::Workspace>,
+    ) -> f32 {
+        let moving = self.side(collider, Some(*path));
+        let (center, core) = moving.shape.core();
+        let reaches = [collider, other.collider].map(|id| self.colliders.reaches[id as usize]);
+        let size = if core > 0.0 { min(core, self.tolerance) } else { self.tolerance };
+        let mut pair = Pair {
+            source: self.source,
+            moving,
+            other,
+            margin: reaches[0].margin + reaches[1].margin,
+            target: TARGET * size,
+            extent: reaches[0].extent,
+        };
+        if pair.depth_at_end(buffers) > DEEP * core
+            && let Cast::Hit(fraction) = pair.cast(Caster::Whole, buffers)
+        {
+            return fraction;
+        }
+        // What touches may slide, roll, and run over the seams of a floor. It must not pass.
+        pair.margin = 0.0;
+        for share in BALLS {
+            match pair.cast(Caster::Ball(center, share * core), buffers) {
+                Cast::Touching => {}
+                Cast::Miss => return 1.0,
+                Cast::Hit(fraction) => return fraction,
+            }
+        }
+        1.0
+    }
+}

@@ -1,0 +1,92 @@
+//! Bodies that moved far stop where they meet something; see [`ccd`](crate::ccd).
+#![expect(unsafe_code, reason = "rows of bodies are changed by several threads, each its own")]
+
+use super::{BodyRow, RowView, Solver};
+use crate::ccd::{Path, SweepBuffers, SweepInput, Swept};
+use crate::contact::ManifoldSource;
+use crate::math::max;
+use crate::thread_pool::ThreadPool;
+
+/// Number of bodies in a block of the job. More leaves workers idle at the end, fewer cost more claims.
+const BLOCK: usize = 512;
+
+/// Number of swept bodies in a block of the job.
+const SWEPT_BLOCK: usize = 8;
+
+impl Solver {
+    /// Puts bodies back that moved far in the substeps and met what does not move. `listed` are the bodies in the order of
+    /// rows, from row 1. `workers` are buffers, kept between steps.
+    pub fn stop_fast<S: ManifoldSource>(
+        &mut self,
+        input: &SweepInput<S>,
+        listed: &[u32],
+        workers: &mut Vec<SweepBuffers<S::Workspace>>,
+        pool: &ThreadPool,
+    ) {
+        let first_dynamic = self.bodies.first_dynamic();
+        let listed = &listed[..listed.len().min(self.bodies.rows.len().saturating_sub(1))];
+        let rows = &RowView::over(&mut self.bodies.rows, first_dynamic);
+        pool.each_into(workers, listed.chunks(BLOCK).enumerate(), |buffers, (block, ids)| {
+            for (i, &body) in ids.iter().enumerate() {
+                let row = (1 + block * BLOCK + i) as u32;
+                if row < first_dynamic || input.bodies.row(body) != row {
+                    continue;
+                }
+                // SAFETY: no two bodies have one row, and the reference does not outlive the copy.
+                let moved: BodyRow = unsafe { *rows.get(row) };
+                let (way, turn) = moved.delta();
+                // What turns by more than half a turn seems to turn less.
+                let angle = max(turn.small_turn().length(), moved.velocity().1.length() * input.dt);
+                if !input.is_far(body, way.length(), angle) {
+                    continue;
+                }
+                let path = path(input, body, &moved);
+                let fraction = input.stop(body, &path, buffers);
+                if fraction < 1.0 {
+                    let (way, turn) = path.delta(fraction);
+                    // SAFETY: as above; the copy is no reference.
+                    unsafe { rows.put(row, |row| row.set_delta(way, turn)) };
+                }
+            }
+        });
+    }
+
+    /// Puts bodies back that are swept against what moves, and what they met, kinematic bodies too. Each stops at the first of
+    /// its impacts.
+    pub fn stop_swept<S: ManifoldSource>(
+        &mut self,
+        input: &SweepInput<S>,
+        swept: &[(u32, Swept)],
+        workers: &mut Vec<SweepBuffers<S::Workspace>>,
+        pool: &ThreadPool,
+    ) {
+        if swept.is_empty() {
+            return;
+        }
+        let rows = &self.bodies.rows;
+        let path_of = |body: u32| match input.bodies.row(body) {
+            0 => None,
+            row => rows.get(row as usize).map(|row| path(input, body, row)),
+        };
+        pool.each_into(workers, swept.chunks(SWEPT_BLOCK), |buffers, swept| {
+            swept.iter().for_each(|(body, swept)| input.stop_swept(*body, swept, &path_of, buffers));
+        });
+        let mut stops: Vec<_> = workers.iter_mut().flat_map(|worker| worker.stops.drain(..)).collect();
+        stops.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        stops.dedup_by_key(|stop| stop.0);
+        let paths: Vec<_> = stops.iter().map(|(body, _)| path_of(*body)).collect();
+        for ((body, fraction), path) in stops.into_iter().zip(paths) {
+            if let Some(path) = path {
+                let (way, turn) = path.delta(fraction);
+                self.bodies.rows[input.bodies.row(body) as usize].set_delta(way, turn);
+            }
+        }
+    }
+}
+
+/// The path of a body in this step.
+fn path<S>(input: &SweepInput<S>, body: u32, moved: &BodyRow) -> Path {
+    let (way, turn) = moved.delta();
+    let spin = moved.velocity().1 * input.dt;
+    Path::new(input.bodies.poses[body as usize], input.bodies[body].local_center, way, turn, spin)
+}

@@ -1,0 +1,74 @@
+//! Nothing passes what does not move, however fast it flies and spins.
+
+use super::dim::{any_rotation, any_spin, bullets, sized, turned};
+use super::extreme::Dice;
+use super::sim::Sim;
+use crate::kernel;
+use kernel::math::{Rot, Vector};
+use kernel::shape::{Cuboid, Shape};
+use kernel::table::{BodyKind, Velocity};
+
+fn cuboid(x: f32, y: f32, depth: f32) -> Shape {
+    Shape::Cuboid(Cuboid { half: sized(x, y, depth) })
+}
+
+/// Shoots a spinning body at a static wall at x = 0. Returns whether it got through within some steps.
+fn passes(shape: &Shape, speed: f32, spin: f32, thickness: f32, dice: &mut Dice) -> bool {
+    let mut sim = Sim::new();
+    sim.checked = false;
+    (sim.dt, sim.substeps, sim.gravity) = (1.0 / 64.0, 6, Vector::ZERO);
+    sim.add(BodyKind::Static, cuboid(0.5 * thickness, 60.0, 60.0), Vector::ZERO, Rot::IDENTITY);
+    let extent = shape.extent(Vector::ZERO);
+    let away = 0.5 * thickness + 1.05 * extent + speed * sim.dt * dice.unit();
+    let rotation = any_rotation(dice);
+    let id = sim.add(BodyKind::Dynamic, shape.clone(), Vector::X * -away, rotation);
+    let angular = any_spin(dice) * spin;
+    let linear = turned(0.5 * dice.signed()).rotate(Vector::X * speed);
+    sim.bodies.set_velocity(id, Velocity { linear, angular });
+    (0..(away / speed * 64.0) as usize + 12).any(|_| {
+        sim.step();
+        sim.position(id).to_local().x > 0.0
+    })
+}
+
+fn through(shape: &Shape, speed: f32, spin: f32, thickness: f32, shots: u64) -> usize {
+    (0..shots).filter(|k| passes(shape, speed, spin, thickness, &mut Dice::new(*k))).count()
+}
+
+/// The bodies of 5 cm.
+#[test]
+fn small_spinning_bodies_do_not_pass_a_thin_wall() {
+    let mut bad = Vec::new();
+    for (name, shape) in bullets(0.05) {
+        for speed in [20.0, 50.0, 100.0, 200.0, 1000.0] {
+            for (spin, thickness) in [(20.0, 0.01), (100.0, 0.01), (20.0, 0.1)] {
+                let through = through(&shape, speed, spin, thickness, 120);
+                if through > 0 {
+                    bad.push((name, speed, spin, thickness, through));
+                }
+            }
+        }
+    }
+    assert!(bad.is_empty(), "shape, speed, spin, wall, through of 120: {bad:#?}");
+}
+
+#[test]
+fn long_rods_and_unit_boxes_do_not_pass_a_thin_wall() {
+    let rods = [
+        ("rod", cuboid(0.5, 0.025, 0.025)),
+        ("thin rod", cuboid(0.5, 0.005, 0.005)),
+        ("box", cuboid(0.5, 0.5, 0.5)),
+    ];
+    let mut bad = Vec::new();
+    for (name, shape) in rods {
+        for speed in [20.0, 50.0, 100.0] {
+            for spin in [5.0, 20.0] {
+                let through = through(&shape, speed, spin, 0.01, 60);
+                if through > 0 {
+                    bad.push((name, speed, spin, through));
+                }
+            }
+        }
+    }
+    assert!(bad.is_empty(), "shape, speed, spin, through of 60: {bad:#?}");
+}
