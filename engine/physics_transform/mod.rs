@@ -4,7 +4,7 @@
 //! - After it, the poses of bodies that moved are written back, relative to the parent if there is one.
 //! - If both were set since the last step, the pose wins over the transform, separately for position and rotation.
 //! - Bodies move independently of their parents in the simulation. A change to a parent's `Transform` by the app moves
-//! the bodies below it.
+//!   the bodies below it.
 
 /// `$left * $right` for every mix of values, references and mutable references.
 macro_rules! by_reference {
