@@ -6,7 +6,7 @@
 //! the contact. (Sweeps after the solver, by conservative advancement, and the smaller ball for what touches already, are
 //! E. Catto's, as in Box2D.)
 //!
-//! A sweep asks a pair only for its manifolds at a relative pose ([`cast`]). Each body stops at the first of its own times of
+//! A sweep asks a pair only for its manifolds at a relative pose (`cast.rs`). Each body stops at the first of its own times of
 //! impact. So results do not depend on the order of bodies or on threads.
 
 mod cast;

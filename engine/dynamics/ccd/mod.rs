@@ -67,8 +67,8 @@ impl SpeculativeMargin {
     pub const MAX: Self = Self(Scalar::MAX);
 }
 
-/// The systems that sweep bodies, after [`SolverSystems::PostSubstep`](crate::dynamics::solver::SolverSystems::PostSubstep) and
-/// before [`SolverSystems::Restitution`](crate::dynamics::solver::SolverSystems::Restitution).
+/// The systems that sweep bodies, after [`SolverSystems::PostSubstep`](crate::dynamics::solver::schedule::SolverSystems::PostSubstep) and
+/// before [`SolverSystems::Restitution`](crate::dynamics::solver::schedule::SolverSystems::Restitution).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SweptCcdSystems;
 
