@@ -5,7 +5,7 @@
 
 use super::path::Path;
 use crate::contact::ManifoldSource;
-use crate::manifold::{self, FeatureCache, LocalManifold};
+use crate::manifold::{self, CompositeBuffers, FeatureCache, LocalManifold, Look};
 use crate::math::{Pose, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
 
@@ -63,10 +63,20 @@ pub(super) enum Cast {
     Hit(f32),
 }
 
+/// The rest of a motion.
+#[derive(Clone, Copy)]
+struct Rest {
+    /// The way of the moving shape against the other.
+    way: Vector,
+    /// How far turning may close as well, with some room, in metres.
+    turning: f32,
+}
+
 /// Buffers of a cast, kept for their memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CastBuffers<W> {
     found: Vec<LocalManifold>,
+    parts: CompositeBuffers,
     source: W,
 }
 
@@ -99,7 +109,8 @@ impl<S: ManifoldSource> Pair<'_, S> {
         let mut fraction = 0.0;
         for round in 0..MAX_ROUNDS {
             let other = self.other.pose(fraction);
-            let rest = (1.0 - fraction) * fastest + 2.0 * self.target;
+            let left = 1.0 - fraction;
+            let rest = Rest { way: way * left, turning: left * turning + 2.0 * self.target };
             let gap = self.look(caster, &other, fraction, rest, buffers);
             let mut advance = gap / fastest;
             for local in &buffers.found {
@@ -133,22 +144,26 @@ impl<S: ManifoldSource> Pair<'_, S> {
         (end - start).to_local()
     }
 
-    /// Finds the manifolds after a fraction of the step, up to a distance, that of the rest of the motion. Returns a lower bound
-    /// of the distance to all else that may be met.
+    /// Finds the manifolds after a fraction of the step, as far as the rest of the motion may close. Returns a lower bound of
+    /// the distance to all else that may be met.
     fn look(
         &self,
         caster: Caster,
         other: &WorldPose,
         fraction: f32,
-        distance: f32,
+        rest: Rest,
         buffers: &mut CastBuffers<S::Workspace>,
     ) -> f32 {
-        let CastBuffers { found, source } = buffers;
+        let distance = rest.way.length() + rest.turning;
+        let CastBuffers { found, parts, source } = buffers;
         let [a, b] = [&self.other, &self.moving];
         found.clear();
         let reach = distance + self.margin;
         let near = min(distance, VIEW * self.extent + self.target) + self.margin;
         let is_foreign = |shape: &Shape| matches!(shape, Shape::Foreign(_));
+        let is_composite = |shape: &Shape| matches!(shape, Shape::Composite(_));
+        let motion = other.rotation.inverse_rotate(rest.way);
+        let look = Look { prediction: rest.turning + self.margin, motion };
         let mut local = LocalManifold::default();
         let mut cache = FeatureCache::NONE;
         match caster {
@@ -157,6 +172,10 @@ impl<S: ManifoldSource> Pair<'_, S> {
                 if is_foreign(a.shape) || is_foreign(b.shape) {
                     self.source.manifolds([a.collider, b.collider], &pose, near, source, found);
                     return near - self.margin;
+                }
+                if is_composite(a.shape) || is_composite(b.shape) {
+                    manifold::collide_each_part(a.shape, b.shape, &pose, look, parts, found);
+                    return f32::INFINITY;
                 }
                 manifold::collide(a.shape, b.shape, &pose, reach, &mut cache, &mut local);
             }
@@ -170,6 +189,10 @@ impl<S: ManifoldSource> Pair<'_, S> {
                     return near - self.margin;
                 }
                 let ball = Shape::Ball(Ball { radius });
+                if is_composite(a.shape) {
+                    manifold::collide_each_part(a.shape, &ball, &pose, look, parts, found);
+                    return f32::INFINITY;
+                }
                 manifold::collide(a.shape, &ball, &pose, reach, &mut cache, &mut local);
             }
         }
@@ -180,7 +203,8 @@ impl<S: ManifoldSource> Pair<'_, S> {
 
     /// How far the shapes overlap when the step ends; 0 if they do not.
     pub(super) fn depth_at_end(&self, buffers: &mut CastBuffers<S::Workspace>) -> f32 {
-        self.look(Caster::Whole, &self.other.pose(1.0), 1.0, 0.0, buffers);
+        let rest = Rest { way: Vector::ZERO, turning: 0.0 };
+        self.look(Caster::Whole, &self.other.pose(1.0), 1.0, rest, buffers);
         let depths = buffers.found.iter().map(|local| self.margin - local.lower_bound());
         depths.fold(0.0, max)
     }

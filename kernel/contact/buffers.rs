@@ -2,7 +2,7 @@
 
 use super::record::Manifold;
 use super::recycle::RecycleBatch;
-use crate::manifold::LocalManifold;
+use crate::manifold::{CompositeBuffers, LocalManifold};
 
 /// Buffers of one worker, kept between steps; `W` are those of its [`ManifoldSource`](super::ManifoldSource). They are
 /// written with every contact, so each worker's are in cache lines of their own.
@@ -12,6 +12,7 @@ pub struct WorkerBuffers<W = ()> {
     /// The manifolds of the contact at hand, in A's frame.
     pub(super) local: Vec<LocalManifold>,
     pub(super) foreign: W,
+    pub(super) composite: CompositeBuffers,
     /// Contacts that may be recycled.
     pub(super) batch: RecycleBatch,
     /// The manifolds after the first of the contact that was updated last.

@@ -145,10 +145,15 @@ impl<S> NarrowPhaseInput<'_, S> {
     /// Surfaces up to this distance apart count as a contact: as far as they can close in this step if nothing turns. The
     /// velocity of each body is limited by its own speculative margin.
     pub(super) fn prediction(&self, contact: &Contact) -> f32 {
+        max(self.near(contact), self.predicted_motion(contact).length())
+    }
+
+    /// How far B moves against A in this step, in world axes, as far as their speculative margins allow.
+    pub(super) fn predicted_motion(&self, contact: &Contact) -> Vector {
         let [a, b] = self.reaches(contact);
         let a = self.predicted_velocity(contact, 0, a.speculative);
         let b = self.predicted_velocity(contact, 1, b.speculative);
-        max(self.near(contact), (b - a).length() * self.dt)
+        (b - a) * self.dt
     }
 
     /// The [`prediction`](Self::prediction), and as far as turning may close as well.

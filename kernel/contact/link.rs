@@ -339,7 +339,10 @@ impl Link<'_> {
         let defs = colliders.map(|c| &self.colliders[c].def);
         let mut flags = ContactFlags::default();
         flags.set(ContactFlags::SENSOR, defs.iter().any(|d| d.flags.sensor));
-        flags.set(ContactFlags::FOREIGN, defs.iter().any(|d| matches!(d.shape, Shape::Foreign(_))));
+        let is_foreign = defs.iter().any(|d| matches!(d.shape, Shape::Foreign(_)));
+        let is_composite = defs.iter().any(|d| matches!(d.shape, Shape::Composite(_)));
+        flags.set(ContactFlags::FOREIGN, is_foreign);
+        flags.set(ContactFlags::COMPOSITE, is_composite && !is_foreign);
         let unattached = bodies.contains(&NONE);
         let movable = bodies.iter().any(|b| *b != NONE && self.bodies[*b].kind == BodyKind::Dynamic);
         flags.set(ContactFlags::IMMOVABLE, unattached || !movable);

@@ -4,7 +4,7 @@ use super::buffers::WorkerBuffers;
 use super::input::{ManifoldSource, NarrowPhaseInput};
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint};
 use super::sweep::Meeting;
-use crate::manifold::{self, LocalManifold};
+use crate::manifold::{self, LocalManifold, Look};
 use crate::math::{Rot, Vector};
 use crate::table::BodyPose;
 
@@ -26,6 +26,24 @@ pub(super) fn collide<S>(
     let [pose_a, pose_b] = [&input.colliders.poses[a as usize], &input.colliders.poses[b as usize]];
     let relative = pose_a.relative(pose_b);
     manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, local);
+}
+
+/// Adds the manifolds of two shapes of which one is composite, margins not subtracted. The motion is that of B against A in
+/// this step, in world axes. Returns a lower bound of the distance between the shapes.
+pub(super) fn collide_parts<S: ManifoldSource>(
+    input: &NarrowPhaseInput<S>,
+    contact: &Contact,
+    prediction: f32,
+    motion: Vector,
+    buffers: &mut WorkerBuffers<S::Workspace>,
+) -> f32 {
+    let [a, b] = contact.colliders;
+    let shapes = [&input.colliders[a].def.shape, &input.colliders[b].def.shape];
+    let [pose_a, pose_b] = [&input.colliders.poses[a as usize], &input.colliders.poses[b as usize]];
+    let relative = pose_a.relative(pose_b);
+    let look = Look { prediction, motion: pose_a.rotation.inverse_rotate(motion) };
+    let WorkerBuffers { composite, local, .. } = buffers;
+    manifold::collide_composite(shapes[0], shapes[1], &relative, look, composite, local)
 }
 
 /// Puts the manifolds in `buffers.local` in place of the contact's. Old points hand on their impulses. `body_a` is the pose
@@ -53,7 +71,10 @@ pub(super) fn replace<S: ManifoldSource>(
     let old = core::mem::take(&mut contact.manifold);
     for (i, local) in buffers.local.iter().enumerate() {
         let mut m = to_world(local, pose_a.rotation, to_shape, margin);
-        m.radii = [ca.shape.radius(), cb.shape.radius()];
+        m.radii = match contact.flags.has(ContactFlags::COMPOSITE) {
+            true => local.radii,
+            false => [ca.shape.radius(), cb.shape.radius()],
+        };
         if let Some(meeting) = meeting {
             meeting.rewind(&mut m);
         }

@@ -15,7 +15,7 @@ use super::sweep::{self, Meeting};
 use super::table::{ContactTable, PointCount, Stored};
 use crate::data::{BitSet, Parts};
 use crate::manifold::{FeatureCache, LocalManifold};
-use crate::math::max;
+use crate::math::{Vector, max};
 use crate::table::{BodyKind, BodyPose, BodyTable, NONE};
 use crate::thread_pool::ThreadPool;
 
@@ -68,7 +68,7 @@ impl ContactTable {
             input,
             contacts: Parts::of(contacts),
             points: Parts::of(points),
-            old_extra: extra,
+            extra: Parts::of(extra),
             crowded,
         };
         let buffers = Parts::of(workers);
@@ -127,12 +127,12 @@ struct Pass<'a, S> {
     input: &'a NarrowPhaseInput<'a, S>,
     contacts: Parts<'a, Contact>,
     points: Parts<'a, PointCount>,
-    old_extra: &'a [Vec<Manifold>],
+    extra: Parts<'a, Vec<Manifold>>,
     /// The bodies that overlapped others deeply before this update, if there are any.
     crowded: Option<&'a BitSet>,
 }
 
-impl<S: ManifoldSource> Pass<'_, S> {
+impl<'a, S: ManifoldSource> Pass<'a, S> {
     /// Updates some contacts.
     ///
     /// # Safety
@@ -174,7 +174,9 @@ impl<S: ManifoldSource> Pass<'_, S> {
             let id = worker.batch.ids()[place];
             // SAFETY: by the contract both are this thread's; those of the contact before are in use no more.
             let (contact, count) = unsafe { (self.contacts.one(id as usize), self.points.one(id as usize)) };
-            if recycle(self.input, &worker.batch, place, contact) {
+            // SAFETY: a slot belongs to one contact.
+            let extra = unsafe { self.extra(contact) };
+            if recycle(self.input, &worker.batch, place, contact, extra) {
                 worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
                 if self.input.may_be_internal(contact) {
                     worker.sliding.push(id);
@@ -184,6 +186,19 @@ impl<S: ManifoldSource> Pass<'_, S> {
             }
         }
         worker.batch.clear();
+    }
+
+    /// The manifolds of a contact after the first.
+    ///
+    /// # Safety
+    /// While they are in use no other thread may have the contact.
+    #[inline(always)]
+    unsafe fn extra(&self, contact: &Contact) -> &'a mut [Manifold] {
+        match contact.extra {
+            NONE => &mut [],
+            // SAFETY: a slot belongs to one contact, which is this thread's.
+            slot => unsafe { &mut self.extra.one(slot as usize)[..usize::from(contact.extra_count)] },
+        }
     }
 
     /// Recomputes a contact, and notes what is to be committed.
@@ -197,10 +212,8 @@ impl<S: ManifoldSource> Pass<'_, S> {
         let is_among = |crowd: &BitSet| contact.bodies.iter().any(|b| *b != NONE && crowd.contains(*b));
         let is_crowded = self.crowded.is_some_and(is_among);
         let touched = contact.flags.has(ContactFlags::TOUCHING);
-        let old_extra: &[Manifold] = match contact.extra {
-            NONE => &[],
-            slot => &self.old_extra[slot as usize][..usize::from(contact.extra_count)],
-        };
+        // SAFETY: by the contract the contact is this thread's, and its slot belongs to no other.
+        let old_extra = unsafe { self.extra(contact) };
         recompute(self.input, contact, old_extra, is_crowded, worker);
         if touched != contact.flags.has(ContactFlags::TOUCHING) {
             worker.changed.push(id);
@@ -226,7 +239,7 @@ impl<S: ManifoldSource> Pass<'_, S> {
 pub fn update_contact<S: ManifoldSource>(
     input: &NarrowPhaseInput<S>,
     contact: &mut Contact,
-    extra: &[Manifold],
+    extra: &mut [Manifold],
     crowded: bool,
     buffers: &mut WorkerBuffers<S::Workspace>,
 ) -> Outcome {
@@ -235,7 +248,7 @@ pub fn update_contact<S: ManifoldSource>(
         Class::Separated => return Outcome::Separated,
         Class::Recyclable => {
             buffers.batch.evaluate(input);
-            if recycle(input, &buffers.batch, 0, contact) {
+            if recycle(input, &buffers.batch, 0, contact, extra) {
                 return Outcome::Recycled;
             }
         }
@@ -270,8 +283,9 @@ fn recycle<S>(
     batch: &RecycleBatch,
     place: usize,
     contact: &mut Contact,
+    extra: &mut [Manifold],
 ) -> bool {
-    let is_kept = batch.apply(place, contact);
+    let is_kept = batch.apply(place, contact, extra);
     if is_kept {
         flags::recycled(input, contact);
     }
@@ -298,6 +312,8 @@ fn recompute<S: ManifoldSource>(
     buffers.local.clear();
     let search = if contact.flags.has(ContactFlags::FOREIGN) {
         search_foreign(input, contact, buffers)
+    } else if contact.flags.has(ContactFlags::COMPOSITE) {
+        search_parts(input, contact, buffers)
     } else {
         search_native(input, contact, poses, &mut buffers.local)
     };
@@ -328,6 +344,29 @@ fn search_foreign<S: ManifoldSource>(
     let pose = a.relative(b);
     input.source.manifolds(contact.colliders, &pose, farthest, &mut buffers.foreign, &mut buffers.local);
     Search { prediction, meeting: None }
+}
+
+/// Computes the manifolds of a pair with a composite shape: of the parts nearby, and of those that the step's motion meets.
+/// Parts are looked at as far as turning may close.
+fn search_parts<S: ManifoldSource>(
+    input: &NarrowPhaseInput<S>,
+    contact: &mut Contact,
+    buffers: &mut WorkerBuffers<S::Workspace>,
+) -> Search {
+    let (prediction, margin) = (input.prediction(contact), input.margin(contact));
+    let farthest = input.farthest(contact, prediction);
+    flags::set_platform(input, contact);
+    let gap = input.box_gap(contact) - margin;
+    if gap > farthest {
+        return Search { prediction: gap, meeting: None };
+    }
+    let near = input.near(contact);
+    let motion = if prediction > near { input.predicted_motion(contact) } else { Vector::ZERO };
+    let near = near + (farthest - prediction);
+    let gap = manifolds::collide_parts(input, contact, near + margin, motion, buffers);
+    // Without a part nearby the gap is infinite.
+    let known = if buffers.local.is_empty() && gap.is_finite() { max(gap - margin, near) } else { near };
+    Search { prediction: known, meeting: None }
 }
 
 /// Computes the manifold of two native shapes where they are now. If they do not touch, that of when the step's motion

@@ -30,6 +30,9 @@ impl ContactFlags {
     /// Body B is not dynamic: normal and anchors turn with it.
     pub const PLATFORM_B: Self = Self(1 << 8);
 
+    /// A shape is [composite](crate::shape::Composite), and no shape is foreign: there may be several manifolds.
+    pub const COMPOSITE: Self = Self(1 << 9);
+
     /// Whether all bits of `other` are set.
     #[inline(always)]
     pub fn has(self, other: Self) -> bool {
@@ -133,7 +136,7 @@ pub struct Contact {
     pub frozen: Frozen,
     /// The last separating axis or reference feature.
     pub cache: FeatureCache,
-    /// The first (for native pairs: only) manifold.
+    /// The first manifold, the only one of convex shapes.
     pub manifold: Manifold,
     /// The mixed coefficients of friction and restitution.
     pub surface: [f32; 2],

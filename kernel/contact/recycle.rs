@@ -15,7 +15,7 @@
 #![expect(unsafe_code, reason = "rows of numbers are turned into lanes of numbers")]
 
 use super::input::{NarrowPhaseInput, smaller};
-use super::record::{Contact, ContactFlags};
+use super::record::{Contact, ContactFlags, Manifold};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
 use crate::math::{Angular, F32x4, Ids, Lane, MAX_POINTS, Num, Quad, Rot, Vector, Width, max};
@@ -189,21 +189,21 @@ impl RecycleBatch {
         row.prediction = frozen.prediction;
         row.extents = [reaches[0].extent, reaches[1].extent];
         row.turning = [reaches[0].turning, reaches[1].turning];
-        // Only native pairs are recycled, and these have one manifold.
         let m = &contact.manifold;
         row.count = f32::from(m.count);
         row.platform = platform(contact.flags);
-        if usize::from(m.count) < MAX_POINTS {
+        let is_composite = contact.flags.has(ContactFlags::COMPOSITE);
+        if is_composite && m.count > 0 {
+            // No number of points tells that other parts are far.
+            row.count = 1.0;
+        }
+        if usize::from(m.count) < MAX_POINTS || is_composite {
             let [a, b] = [input.velocity(contact, 0), input.velocity(contact, 1)];
             row.speed = (b.linear - a.linear).length();
             row.angular = [a.angular, b.angular];
         }
         if m.count > 0 {
-            row.radii = m.radii;
-            row.normal = m.normal;
-            for (out, p) in row.points.iter_mut().zip(&m.points) {
-                *out = RowPoint { anchor: p.anchor, frozen_separation: p.frozen_separation };
-            }
+            row.set_manifold(m);
         }
         true
     }
@@ -218,16 +218,20 @@ impl RecycleBatch {
     /// Lets a contact that keeps its manifold follow the motion of its bodies; `false` if it does not keep it. `place` is
     /// the contact's index in the batch, which was evaluated.
     #[inline(always)]
-    pub(super) fn apply(&self, place: usize, contact: &mut Contact) -> bool {
+    pub(super) fn apply(&self, place: usize, contact: &mut Contact, extra: &mut [Manifold]) -> bool {
         let is_kept = self.kept & 1 << place != 0;
         if is_kept {
-            if self.turned & 1 << place != 0 {
-                turn(contact, self.rows[place].numbers.rotations);
+            let is_turned = self.turned & 1 << place != 0;
+            follow(&mut contact.manifold, self.separations[place].0);
+            if !extra.is_empty() {
+                let mut row = self.rows[place].numbers;
+                for m in extra.iter_mut() {
+                    row.set_manifold(m);
+                    follow(m, row.separations());
+                }
             }
-            let m = &mut contact.manifold;
-            for (p, separation) in m.points[..usize::from(m.count)].iter_mut().zip(self.separations[place].0)
-            {
-                p.separation = separation;
+            if is_turned {
+                turn(contact, extra, self.rows[place].numbers.rotations);
             }
         }
         is_kept
@@ -263,6 +267,26 @@ impl RecycleBatch {
             self.kept |= N::bits(numbers.is_kept(settings)) << start;
             self.turned |= N::bits(numbers.is_turned()) << start;
             N::scatter(numbers.separations(), &places, |place, quad| self.separations[place as usize] = quad);
+        }
+    }
+}
+
+/// Gives the points of a manifold their present separations.
+#[inline(always)]
+fn follow(m: &mut Manifold, separations: [f32; 4]) {
+    for (p, separation) in m.points[..usize::from(m.count)].iter_mut().zip(separations) {
+        p.separation = separation;
+    }
+}
+
+impl RecycleRow {
+    /// Copies the numbers of a manifold.
+    #[inline(always)]
+    fn set_manifold(&mut self, m: &Manifold) {
+        self.radii = m.radii;
+        self.normal = m.normal;
+        for (out, p) in self.points.iter_mut().zip(&m.points) {
+            *out = RowPoint { anchor: p.anchor, frozen_separation: p.frozen_separation };
         }
     }
 }
@@ -375,21 +399,22 @@ fn platform(flags: ContactFlags) -> f32 {
     }
 }
 
-/// Turns the frozen pose of a contact and its manifold with the platform. `rotations` are the present ones of both
+/// Turns the frozen pose of a contact and its manifolds with the platform. `rotations` are the present ones of both
 /// bodies.
 #[inline(never)]
-fn turn(contact: &mut Contact, rotations: [Rot; 2]) {
+fn turn(contact: &mut Contact, extra: &mut [Manifold], rotations: [Rot; 2]) {
     let own = usize::from(contact.flags.has(ContactFlags::PLATFORM_B));
     let frozen = &mut contact.frozen;
     let turn = rotations[own].mul(frozen.rotations[own].inverse()).renormalized();
     frozen.rotations[own] = rotations[own];
     frozen.rotations[1 - own] = turn.mul(frozen.rotations[1 - own]).renormalized();
     frozen.offset = turn.turn_little(frozen.offset);
-    let m = &mut contact.manifold;
-    m.normal = turn.turn_little(m.normal);
-    m.friction_impulse = turn.turn_little(m.friction_impulse);
-    for p in &mut m.points[..usize::from(m.count)] {
-        p.anchor = turn.turn_little(p.anchor);
+    for m in core::iter::once(&mut contact.manifold).chain(extra) {
+        m.normal = turn.turn_little(m.normal);
+        m.friction_impulse = turn.turn_little(m.friction_impulse);
+        for p in &mut m.points[..usize::from(m.count)] {
+            p.anchor = turn.turn_little(p.anchor);
+        }
     }
 }
 

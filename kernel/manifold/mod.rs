@@ -5,11 +5,13 @@
 //! have separations up to the prediction distance; those with a positive separation are speculative contacts.
 
 mod cache;
+mod composite;
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
 mod dim;
 
 pub use cache::FeatureCache;
+pub use composite::{CompositeBuffers, Look, collide_composite, collide_each_part};
 pub use dim::collide;
 
 use crate::math::{MAX_POINTS, Vector, min};
@@ -36,6 +38,8 @@ pub struct LocalManifold {
     pub count: usize,
     /// A lower bound of the distance of shapes without points, in metres; 0 if it is not known.
     pub gap: f32,
+    /// The radii of the two parts of composite shapes; 0 for others, which know them.
+    pub radii: [f32; 2],
 }
 
 impl LocalManifold {
@@ -66,6 +70,7 @@ impl LocalManifold {
     pub fn flipped(&self, pose: &crate::math::Pose) -> Self {
         let mut out = *self;
         out.normal = pose.rotation.inverse_rotate(-self.normal);
+        out.radii = [self.radii[1], self.radii[0]];
         for p in &mut out.points[..self.count] {
             p.point = pose.inverse_transform(p.point);
         }

@@ -2,11 +2,12 @@
 
 mod hull2;
 
+pub use super::Segment as Facet;
 pub use hull2::Hull;
 
 pub(crate) use super::primitives::{direction, direction_or};
 use super::{Ball, Capsule, Cuboid, RayHit, Segment, Triangle};
-use crate::math::{Vector, max, min};
+use crate::math::{Pose, Vector, max, min};
 use core::f64::consts::PI;
 use hull2::outline::{cast_ray_polygon, least_depth};
 use hull2::wide::{cross, dot, length, sub, wide};
@@ -31,6 +32,21 @@ impl MassProperties {
     pub fn scaled(self, density: f32) -> Self {
         Self { mass: self.mass * density, center: self.center, inertia: self.inertia * density }
     }
+}
+
+/// The properties of parts at poses together. Parts that overlap count twice.
+pub(super) fn mass_of_compound<'a>(
+    parts: impl Iterator<Item = (&'a Pose, MassProperties)> + Clone,
+) -> MassProperties {
+    let mass: f32 = parts.clone().map(|(_, part)| part.mass).sum();
+    if !(mass > 0.0) {
+        return MassProperties::ZERO;
+    }
+    let placed = parts.map(|(pose, part)| (part, pose.transform(part.center)));
+    let moment = placed.clone().fold(Vector::ZERO, |sum, (part, at)| sum + at * part.mass);
+    let center = moment * (1.0 / mass);
+    let inertia = placed.map(|(part, at)| part.inertia + part.mass * (at - center).length_squared()).sum();
+    MassProperties { mass, center, inertia }
 }
 
 /// π r², π r⁴ / 2.

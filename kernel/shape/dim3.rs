@@ -3,11 +3,12 @@
 
 mod hull3;
 
+pub use super::Triangle as Facet;
 pub use hull3::{Edge, Face, Hull};
 pub(crate) use hull3::{EdgeBlock, FaceBlock, farthest, largest, pack};
 
 use super::{Ball, Capsule, Cuboid, RayHit, Segment, Triangle};
-use crate::math::{Inertia, Vector};
+use crate::math::{Inertia, Pose, Vector};
 use core::f32::consts::PI;
 
 /// Mass, centre of mass and moment of inertia.
@@ -46,6 +47,38 @@ impl MassProperties {
 /// A triangle has no inside.
 pub(super) fn core_of_triangle(triangle: &Triangle) -> (Vector, f32) {
     ((triangle.a + triangle.b + triangle.c) * (1.0 / 3.0), 0.0)
+}
+
+/// The properties of parts at poses together. Parts that overlap count twice.
+pub(super) fn mass_of_compound<'a>(
+    parts: impl Iterator<Item = (&'a Pose, MassProperties)> + Clone,
+) -> MassProperties {
+    let mass: f32 = parts.clone().map(|(_, part)| part.mass).sum();
+    if !(mass > 0.0) {
+        return MassProperties::ZERO;
+    }
+    let moment =
+        parts.clone().fold(Vector::ZERO, |sum, (pose, part)| sum + pose.transform(part.center) * part.mass);
+    let center = moment * (1.0 / mass);
+    let inertia = parts.fold(Inertia::ZERO, |sum, (pose, part)| {
+        // Steiner's theorem: a part at r from the centre adds m (r² − r rᵀ) to its own, turned inertia.
+        let r = pose.transform(part.center) - center;
+        let square = Inertia::from_diagonal(Vector::ONE * (part.mass * r.length_squared()));
+        let own = part.inertia.rotated(pose.rotation);
+        let mut sum = sum;
+        for (out, part_of, square, outer) in [
+            (&mut sum.xx, own.xx, square.xx, r.x * r.x),
+            (&mut sum.yy, own.yy, square.yy, r.y * r.y),
+            (&mut sum.zz, own.zz, square.zz, r.z * r.z),
+            (&mut sum.xy, own.xy, 0.0, r.x * r.y),
+            (&mut sum.xz, own.xz, 0.0, r.x * r.z),
+            (&mut sum.yz, own.yz, 0.0, r.y * r.z),
+        ] {
+            *out += part_of + square - part.mass * outer;
+        }
+        sum
+    });
+    MassProperties { mass, center, inertia }
 }
 
 /// The mass properties of a ball of 1 kg/m³: m = 4/3 π r³, I = 2/5 m r².

@@ -1,24 +1,28 @@
 //! Shapes: their boxes, support points, masses, and ray hits.
 //!
-//! Shapes are convex, in `f32`, in a frame of their own. All other shapes are [`Shape::Foreign`] in the tables, and get their
+//! Shapes are in `f32`, in a frame of their own: convex, or [composites](Composite) of convex parts. All other shapes are [`Shape::Foreign`] in the tables, and get their
 //! manifolds from a [`ManifoldSource`](crate::contact::ManifoldSource).
 
 mod aabb;
+mod composite;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod part_tree;
 mod primitives;
 mod results;
 
 pub use aabb::Aabb;
+pub use composite::{Composite, NO_FACET, Part, Surface};
 pub use dim::*;
+pub use part_tree::PartTree;
 pub use primitives::{Ball, Capsule, Cuboid, HalfSpace, Segment, Triangle};
 pub use results::{RayHit, ShapeError};
 
-use crate::math::{Vector, WorldPose};
+use crate::math::{Pose, Vector, WorldPose};
 use std::sync::Arc;
 
-/// A convex shape.
+/// A shape.
 #[derive(Clone, Debug)]
 pub enum Shape {
     /// A circle or sphere.
@@ -35,6 +39,8 @@ pub enum Shape {
     Segment(Segment),
     /// The half of space behind a plane through the origin.
     HalfSpace(HalfSpace),
+    /// A surface of triangles (3D) or segments (2D), or solids that are one shape.
+    Composite(Arc<Composite<Self>>),
     /// A shape of the embedder, which provides its box and its manifolds.
     Foreign(Foreign),
 }
@@ -46,14 +52,55 @@ pub struct Foreign {
     pub aabb: Aabb,
 }
 
+impl From<Segment> for Shape {
+    fn from(segment: Segment) -> Self {
+        Self::Segment(segment)
+    }
+}
+
+impl From<Triangle> for Shape {
+    fn from(triangle: Triangle) -> Self {
+        Self::Triangle(triangle)
+    }
+}
+
 impl Shape {
+    /// A surface as a shape.
+    pub fn surface(surface: Surface) -> Self {
+        Self::Composite(Arc::new(Composite::of_surface(surface)))
+    }
+
+    /// Convex solids at poses as one shape.
+    ///
+    /// # Errors
+    /// If there is none, or one is not convex, unbounded, or unknown to the kernel.
+    pub fn compound(solids: Vec<(Pose, Self)>) -> Result<Self, ShapeError> {
+        let is_solid = |s: &Self| !matches!(s, Self::HalfSpace(_) | Self::Composite(_) | Self::Foreign(_));
+        if solids.is_empty() {
+            return Err(ShapeError::Degenerate);
+        }
+        if !solids.iter().all(|(_, solid)| is_solid(solid)) {
+            return Err(ShapeError::NotConvex);
+        }
+        if !solids.iter().all(|(pose, _)| pose.position.is_finite() && pose.rotation.is_finite()) {
+            return Err(ShapeError::NotFinite);
+        }
+        Ok(Self::Composite(Arc::new(Composite::of_solids(solids, |pose, solid| solid.local_box(pose)))))
+    }
+
+    /// The box around the shape at a pose, in that pose's outer frame.
+    pub fn local_box(&self, pose: &Pose) -> Aabb {
+        let turned = self.local_aabb(pose.rotation);
+        Aabb { min: turned.min + pose.position, max: turned.max + pose.position }
+    }
+
     /// The box around the shape at a world pose, rounded outward to `f32`. Half-spaces give an
     /// infinite box.
     pub fn aabb(&self, pose: &WorldPose) -> Aabb {
         self.local_aabb(pose.rotation).at(pose.position)
     }
 
-    /// Whether another shape is known to be the same. Hulls are compared by reference. Foreign shapes are never known to be the
+    /// Whether another shape is known to be the same. Hulls and composites are compared by reference. Foreign shapes are never known to be the
     /// same.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
@@ -64,6 +111,7 @@ impl Shape {
             (Self::Triangle(a), Self::Triangle(b)) => a == b,
             (Self::Segment(a), Self::Segment(b)) => a == b,
             (Self::HalfSpace(a), Self::HalfSpace(b)) => a == b,
+            (Self::Composite(a), Self::Composite(b)) => Arc::ptr_eq(a, b),
             _ => false,
         }
     }
@@ -86,12 +134,13 @@ impl Shape {
             Self::Triangle(s) => Aabb::around([s.a, s.b, s.c].map(|v| rotation.rotate(v))),
             Self::Segment(s) => Aabb::around([s.a, s.b].map(|v| rotation.rotate(v))),
             Self::HalfSpace(_) => Aabb::EVERYTHING,
+            Self::Composite(s) => composite_box(s, rotation),
             Self::Foreign(s) => s.aabb.rotated(rotation),
         }
     }
 
     /// The point of the shape farthest along `direction` (any length), radius included. `None` for
-    /// half-spaces and foreign shapes.
+    /// half-spaces, composites and foreign shapes.
     pub fn support(&self, direction: Vector) -> Option<Vector> {
         Some(match self {
             Self::Ball(s) => s.support(direction),
@@ -100,7 +149,7 @@ impl Shape {
             Self::Hull(s) => s.support(direction),
             Self::Triangle(s) => s.support(direction),
             Self::Segment(s) => s.support(direction),
-            Self::HalfSpace(_) | Self::Foreign(_) => return None,
+            Self::HalfSpace(_) | Self::Composite(_) | Self::Foreign(_) => return None,
         })
     }
 
@@ -118,6 +167,12 @@ impl Shape {
             Self::Triangle(s) => farthest(&[s.a, s.b, s.c]),
             Self::Segment(s) => farthest(&[s.a, s.b]),
             Self::HalfSpace(_) => 0.0,
+            Self::Composite(s) => match s.surface() {
+                Some(surface) => farthest(surface.vertices()),
+                None => s.solids().iter().fold(0.0, |most, (pose, solid)| {
+                    crate::math::max(most, solid.extent(pose.inverse_transform(center)))
+                }),
+            },
             Self::Foreign(s) => farthest(&s.aabb.corners()),
         }
     }
@@ -145,12 +200,14 @@ impl Shape {
             Self::Triangle(s) => core_of_triangle(s),
             Self::Segment(s) => ((s.a + s.b) * 0.5, 0.0),
             Self::HalfSpace(_) => (Vector::ZERO, f32::MAX),
+            Self::Composite(s) => core_of_composite(s),
             // What is within the box is not known.
             Self::Foreign(s) => (s.aabb.center(), 0.5 * s.aabb.half().min_element()),
         }
     }
 
-    /// The radius around the shape's core (a point, a segment or a polygon), in metres. Zero for sharp and foreign shapes.
+    /// The radius around the shape's core (a point, a segment or a polygon), in metres. Zero for sharp, composite
+    /// and foreign shapes.
     pub fn radius(&self) -> f32 {
         match self {
             Self::Ball(s) => s.radius,
@@ -160,6 +217,7 @@ impl Shape {
             | Self::Triangle(_)
             | Self::Segment(_)
             | Self::HalfSpace(_)
+            | Self::Composite(_)
             | Self::Foreign(_) => 0.0,
         }
     }
@@ -185,12 +243,13 @@ impl Shape {
             Self::Triangle(s) => cast_ray_triangle(s, origin, direction, max_distance, solid),
             Self::Segment(s) => cast_ray_segment(s, origin, direction, max_distance),
             Self::HalfSpace(s) => s.cast_ray(origin, direction, max_distance, solid),
+            Self::Composite(s) => cast_ray_composite(s, origin, direction, max_distance, solid),
             Self::Foreign(_) => None,
         }
     }
 
     /// Mass, centre of mass and inertia at a uniform density in kg/m² or kg/m³. Zero for shapes
-    /// without an inside, for half-spaces, and for foreign shapes.
+    /// without an inside, for half-spaces, and for foreign shapes. Parts of a compound that overlap count twice.
     pub fn mass_properties(&self, density: f32) -> MassProperties {
         let unit = match self {
             Self::Ball(s) => mass_of_ball(s),
@@ -198,8 +257,73 @@ impl Shape {
             Self::Cuboid(s) => mass_of_cuboid(s),
             Self::Hull(s) => s.unit_mass(),
             Self::Triangle(s) => mass_of_triangle(s),
+            Self::Composite(s) => {
+                mass_of_compound(s.solids().iter().map(|(p, s)| (p, s.mass_properties(1.0))))
+            }
             Self::Segment(_) | Self::HalfSpace(_) | Self::Foreign(_) => MassProperties::ZERO,
         };
         unit.scaled(density)
     }
+}
+
+/// The largest of the balls within solids. What is within a surface is not known; it counts as a shape that fills its box.
+fn core_of_composite(composite: &Composite<Shape>) -> (Vector, f32) {
+    let bounds = composite.tree().bounds();
+    let unknown = (bounds.center(), 0.5 * bounds.half().min_element());
+    let cores = composite.solids().iter().map(|(pose, solid)| {
+        let (center, radius) = solid.core();
+        (pose.transform(center), radius)
+    });
+    cores.reduce(|best, next| if next.1 > best.1 { next } else { best }).unwrap_or(unknown)
+}
+
+/// The box around a composite shape turned by `rotation` about its frame's origin.
+fn composite_box(composite: &Composite<Shape>, rotation: crate::math::Rot) -> Aabb {
+    /// Boxes of up to this number of parts are joined; of more, the box of all parts is turned, which is faster and larger.
+    const FEW: usize = 32;
+    let bounds = composite.tree().bounds();
+    if rotation == crate::math::Rot::IDENTITY {
+        return bounds;
+    }
+    let turned = bounds.rotated(rotation);
+    if composite.len() > FEW {
+        return turned;
+    }
+    let around = Pose::new(Vector::ZERO, rotation);
+    let parts = (0..composite.len() as u32).fold(Aabb::EMPTY, |all, part| {
+        let part = match composite.part(part) {
+            Part::Facet(facet) => Shape::from(facet).local_box(&around),
+            Part::Solid(pose, solid) => solid.local_box(&around.then(pose)),
+        };
+        all.union(&part)
+    });
+    parts.intersection(&turned)
+}
+
+/// The first hit of a ray on any part; of equally near parts, on the first.
+fn cast_ray_composite(
+    composite: &Composite<Shape>,
+    origin: Vector,
+    direction: Vector,
+    max_distance: f32,
+    solid: bool,
+) -> Option<RayHit> {
+    let inverse = Vector::from_array(direction.to_array().map(|c| 1.0 / c));
+    let mut best: Option<(RayHit, u32)> = None;
+    composite.tree().cast_ray(origin, inverse, max_distance, |part, limit| {
+        let hit = match composite.part(part) {
+            Part::Facet(facet) => Shape::from(facet).cast_ray(origin, direction, limit, solid),
+            Part::Solid(pose, shape) => {
+                let (from, along) = (pose.inverse_transform(origin), pose.rotation.inverse_rotate(direction));
+                let hit = shape.cast_ray(from, along, limit, solid);
+                hit.map(|hit| RayHit { normal: pose.rotation.rotate(hit.normal), ..hit })
+            }
+        };
+        let Some(hit) = hit else { return limit };
+        if best.is_none_or(|(b, of)| hit.distance < b.distance || hit.distance == b.distance && part < of) {
+            best = Some((hit, part));
+        }
+        crate::math::min(limit, hit.distance)
+    });
+    best.map(|(hit, _)| hit)
 }

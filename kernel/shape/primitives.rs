@@ -60,6 +60,18 @@ pub struct Triangle {
     pub c: Vector,
 }
 
+impl From<[Vector; 2]> for Segment {
+    fn from([a, b]: [Vector; 2]) -> Self {
+        Self { a, b }
+    }
+}
+
+impl From<[Vector; 3]> for Triangle {
+    fn from([a, b, c]: [Vector; 3]) -> Self {
+        Self { a, b, c }
+    }
+}
+
 /// The direction and length of a vector; `None` if it is shorter than 1e-15 m or not finite, where the
 /// square of its length leaves the normal range of `f32`.
 #[inline]

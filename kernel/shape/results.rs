@@ -22,6 +22,8 @@ pub enum ShapeError {
     Degenerate,
     /// An outline or mesh is not convex.
     NotConvex,
+    /// An index names no vertex.
+    OutOfRange,
 }
 
 impl core::fmt::Display for ShapeError {
@@ -31,6 +33,7 @@ impl core::fmt::Display for ShapeError {
             Self::Negative => "a radius or half extent is negative",
             Self::Degenerate => "the points do not span a shape",
             Self::NotConvex => "the points are not in convex position",
+            Self::OutOfRange => "an index names no vertex",
         })
     }
 }

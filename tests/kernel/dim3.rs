@@ -1,8 +1,8 @@
 //! 3D parts of the tests.
 
 use super::extreme::Dice;
-use crate::kernel::math::{Angular, InvInertia, Rot, Vector};
-use crate::kernel::shape::{Cuboid, Hull, MassProperties, Shape};
+use crate::kernel::math::{Angular, InvInertia, Pose, Rot, Vector};
+use crate::kernel::shape::{Cuboid, Hull, MassProperties, Shape, Surface};
 use std::sync::Arc;
 
 /// The inverse inertia of a body.
@@ -149,9 +149,38 @@ pub fn tiles() -> Vec<(&'static str, Vec<(Shape, Vector)>)> {
         let corners: Vec<_> = (0..8).map(corner).collect();
         Shape::Hull(Arc::new(Hull::convex_hull_of(&corners).expect("a box is solid")))
     };
+    let boxes: Vec<_> = grid(1.0, &cuboid);
+    let compound =
+        boxes.iter().map(|(shape, place)| (Pose::new(*place, Rot::IDENTITY), shape.clone())).collect();
+    let compound = Shape::compound(compound).expect("boxes are solid");
     vec![
         ("one box", vec![(cuboid(Vector { x: 20.0, y: 0.5, z: 20.0 }), Vector::Y * -0.5)]),
-        ("boxes", grid(1.0, &cuboid)),
+        ("boxes", boxes),
         ("hulls", grid(1.0, &hull)),
+        ("compound", vec![(compound, Vector::ZERO)]),
+        ("mesh", vec![(terrain(1.0, |_, _| 0.0), Vector::ZERO)]),
+        ("fine mesh", vec![(terrain(0.17, |_, _| 0.0), Vector::ZERO)]),
     ]
+}
+
+/// A surface over x = -3 to 14 and z = -2.13 to 1.87 of squares of two triangles, cut along either diagonal.
+pub fn terrain(size: f32, height: impl Fn(f32, f32) -> f32) -> Shape {
+    let (columns, rows) = ((17.0 / size) as u32 + 1, (4.0 / size) as u32 + 1);
+    let mut vertices = Vec::new();
+    for i in 0..=columns {
+        for j in 0..=rows {
+            let (x, z) = (-3.0 + size * i as f32, size * j as f32 - 2.13);
+            vertices.push(Vector { x, y: height(x, z), z });
+        }
+    }
+    let mut facets = Vec::new();
+    for i in 0..columns {
+        for j in 0..rows {
+            let at = |i: u32, j: u32| i * (rows + 1) + j;
+            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+            let halves = if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+            facets.extend(halves);
+        }
+    }
+    Shape::surface(Surface::new(vertices, facets).expect("a surface"))
 }

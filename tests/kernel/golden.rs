@@ -5,22 +5,23 @@
 //! hashes are in `golden2.rs` and `golden3.rs`. If a change of the simulation is intended, the table printed by the
 //! failing test replaces the old one, and the commit says why.
 
-use super::dim::{container, sized, turned};
+use super::dim::{container, sized, terrain as surface, turned};
 use super::golden_dim::{GOLDEN, coordinates, numbers, shapes, spun, terrain, tilted, trough};
 use super::sim::Sim;
 use crate::kernel;
-use kernel::math::{AxisLocks, DIM, Rot, Scalar, Vector, WorldPose};
+use kernel::math::{AxisLocks, DIM, Pose, Rot, Scalar, Vector, WorldPose};
 use kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Shape};
 use kernel::table::{BodyKind, Velocity};
 
 /// Name of a scene, and the function that builds and runs it.
-const SCENES: [(&str, fn(&mut Sim)); 15] = [
+const SCENES: [(&str, fn(&mut Sim)); 16] = [
     ("pyramid", pyramid),
     ("towers", towers),
     ("pairs", pairs),
     ("heap", heap),
     ("terrain", on_terrain),
     ("slopes", slopes),
+    ("composites", composites),
     ("bounces", bounces),
     ("crowd", crowd),
     ("sleepers", sleepers),
@@ -157,6 +158,29 @@ fn on_terrain(sim: &mut Sim) {
         push(sim, id, Vector::X * (chance.next() - 0.5));
     }
     sim.steps(120);
+}
+
+/// Bodies and compounds on a surface of waves, and a compound as a platform that moves under them.
+fn composites(sim: &mut Sim) {
+    let waves = |x: f32, z: f32| {
+        let wave = |t: f32| (t / 4.0 - (t / 4.0).floor() - 0.5).abs();
+        wave(x) + wave(z)
+    };
+    sim.add_with(BodyKind::Static, surface(0.6, waves), Vector::ZERO, Rot::IDENTITY, 0.6, 0.0);
+    let part = |x: f32, half| (Pose::new(Vector::X * x, Rot::IDENTITY), Shape::Cuboid(Cuboid { half }));
+    let hook = [part(0.0, sized(0.5, 0.1, 0.1)), part(0.4, sized(0.1, 0.4, 0.2))];
+    let hook = Shape::compound(hook.to_vec()).expect("blocks are solid");
+    let plates = [part(-1.0, sized(1.0, 0.1, 1.0)), part(1.0, sized(1.0, 0.1, 1.0))];
+    let plates = Shape::compound(plates.to_vec()).expect("blocks are solid");
+    let platform = sim.add_with(BodyKind::Kinematic, plates, sized(3.0, 1.5, 0.0), Rot::IDENTITY, 0.6, 0.0);
+    push(sim, platform, Vector::X);
+    for (i, shape) in shapes().into_iter().chain([hook.clone(), hook]).enumerate() {
+        for k in 0..3 {
+            let at = sized(0.9 * i as f32, 2.2 + 1.1 * k as f32, 0.2 * k as f32 - 0.2);
+            body(sim, shape.clone(), at, turned(0.3 * k as f32), 0.6, 0.0);
+        }
+    }
+    sim.steps(150);
 }
 
 /// Rolling, sliding and sticking on slopes: boxes, a half-space, and rotating floors.

@@ -5,18 +5,19 @@ use crate::kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Hull, Segment, Shap
 use std::sync::Arc;
 
 /// For each scene the hash with world positions in `f32`, and in `f64`.
-pub const GOLDEN: [(&str, u64, u64); 15] = [
+pub const GOLDEN: [(&str, u64, u64); 16] = [
     ("pyramid", 0x4c86672e2826440f, 0xc99ae46ed6728c01),
     ("towers", 0x336a6131c7c43b87, 0x3c93bfeb35fb9f0a),
     ("pairs", 0xe05913612e37af7c, 0xb0f822915737d27c),
-    ("heap", 0x6ddac384b2199dc7, 0xf691ba7e706e0686),
-    ("terrain", 0xd08e2521c4b2859d, 0xcffc03100193a17c),
-    ("slopes", 0x63896836ef527fcc, 0x936a735ff0c95679),
-    ("bounces", 0xd0be68b80dd260cc, 0xafe5debccf12aa5f),
+    ("heap", 0xf7ee5a6e3e8e3de9, 0xf691ba7e706e0686),
+    ("terrain", 0x178f25728120f803, 0xcffc03100193a17c),
+    ("slopes", 0x6eaf1bb30ddce8d5, 0x936a735ff0c95679),
+    ("composites", 0x2506f6635ff20daf, 0x1943868f3e04d6cc),
+    ("bounces", 0x4b56db1f6a03fa8f, 0xafe5debccf12aa5f),
     ("crowd", 0x8e8b36506dcb93da, 0x87cbfc19e6d02e62),
     ("sleepers", 0xf459c6eff7c5e77c, 0x2ce87b724e2980b8),
     ("held", 0x071c3d8d62adfcc8, 0x275fe069be1b3611),
-    ("dominance", 0x139bb35ce76e80cf, 0x93f3776dd74fb6dc),
+    ("dominance", 0x9a9e77e9ab8bbaa9, 0x93f3776dd74fb6dc),
     ("spin", 0x0b9694c915dec255, 0x110738c949849740),
     ("mixer", 0x570e87f8ce547f24, 0x310784be4042e967),
     ("changes", 0xbb6060bf4a258e9f, 0x3bfc0941a1ac1268),

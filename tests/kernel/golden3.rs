@@ -5,13 +5,14 @@ use crate::kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Hull, Segment, Shap
 use std::sync::Arc;
 
 /// For each scene the hash with world positions in `f32`, and in `f64`.
-pub const GOLDEN: [(&str, u64, u64); 15] = [
+pub const GOLDEN: [(&str, u64, u64); 16] = [
     ("pyramid", 0x577d9b1836d32805, 0xd2d184b964f8159d),
     ("towers", 0x3a9ff86f9ee73c38, 0xe867d70b3fec41d6),
     ("pairs", 0xb7fa66cb2dea297b, 0x49b28990496b733a),
     ("heap", 0x39b2a2d341d7c40e, 0x6d6bf40027dbf6ba),
     ("terrain", 0xf6ab5c8f5e29f4b9, 0xfff1b6a2850e5245),
     ("slopes", 0x8ac676d1f4654764, 0x4177421131af03e5),
+    ("composites", 0x8605c937c95e85d5, 0x03d8276a609c5066),
     ("bounces", 0xec4b514cb78a6e80, 0x5e7f827783dc6247),
     ("crowd", 0x213a1410d152bf75, 0x132430de7f1f63c9),
     ("sleepers", 0x0ac81f91d236bee5, 0xd3b3cc05a6911e84),

@@ -25,6 +25,7 @@ mod sim;
 mod sound;
 #[cfg(feature = "3d")]
 mod spin;
+mod surfaces;
 mod swept_spin;
 mod tunnel;
 mod unrest;

@@ -373,7 +373,7 @@ impl Sim {
         let id = self.contacts.find(a, b).expect("they have a contact");
         let mut contact = self.contacts.get(id).clone();
         let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle, self.is_narrow);
-        (update_contact(&phase, &mut contact, &[], false, &mut WorkerBuffers::default()), contact)
+        (update_contact(&phase, &mut contact, &mut [], false, &mut WorkerBuffers::default()), contact)
     }
 
     fn narrow(&mut self) {

@@ -7,6 +7,7 @@
 
 mod clip;
 mod cuboids;
+mod facet;
 mod half_space;
 mod points;
 mod polygonal;
@@ -18,13 +19,14 @@ mod tests;
 use super::{FeatureCache, LocalManifold};
 use crate::math::Pose;
 use crate::shape::Shape;
+pub(super) use facet::{Border, borders, collide_face, face_normal, few_points};
 use polygonal::{Buffer, Polygonal};
 
 /// The contact of shape `a` and shape `b`, given the pose of `b` in `a`'s frame; the result is in `a`'s
 /// frame with the normal from `a` to `b`.
 ///
 /// `out` is cleared first and stays empty if the surfaces are farther apart than `prediction` metres,
-/// for foreign shapes and for two half-spaces. All points have a separation of at most `prediction`. The normal of overlapping
+/// for composite and foreign shapes and for two half-spaces. All points have a separation of at most `prediction`. The normal of overlapping
 /// shapes is that of the least penetration; if all directions are equal, as for coinciding centres, it is a fixed one.
 /// Segments are two-sided.
 ///
@@ -46,7 +48,7 @@ pub fn collide(
     if !(pose_b_in_a.position.is_finite() && pose_b_in_a.rotation.is_finite()) {
         return;
     }
-    use Shape::{Ball, Capsule, Cuboid, Foreign, HalfSpace, Hull, Segment, Triangle};
+    use Shape::{Ball, Capsule, Composite, Cuboid, Foreign, HalfSpace, Hull, Segment, Triangle};
     // All pairs by name: a new shape does not compile until its pairs are here.
     match (a, b) {
         (Cuboid(a), Cuboid(b)) => cuboids::collide(a, b, pose_b_in_a, prediction, cache, out),
@@ -73,9 +75,15 @@ pub fn collide(
                 collide_polygonal(&a, &b, pose_b_in_a, prediction, cache, out);
             }
         }
-        // Manifolds of foreign shapes come from their `ManifoldSource`.
-        (Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_) | Foreign(_), Foreign(_))
-        | (Foreign(_), Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_)) => {}
+        // Composites are collided part by part, and foreign shapes by their `ManifoldSource`.
+        (
+            Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_) | Composite(_) | Foreign(_),
+            Composite(_) | Foreign(_),
+        )
+        | (
+            Composite(_) | Foreign(_),
+            Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_),
+        ) => {}
     }
 }
 

@@ -116,6 +116,25 @@ pub(super) fn collide_apart(
     Pair::new(a, b, pose, prediction).build_apart(separation, out);
 }
 
+/// The contact of one face of A, that with about the given normal, whatever the best axis is.
+pub(super) fn collide_face(
+    a: &View,
+    normal: Vector,
+    b: &View,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    let Some(face) = a.faces.iter().position(|face| face.normal.dot(normal) > 0.5) else { return };
+    let pair = Pair::new(a, b, pose, prediction);
+    let axis = sat::face_separation(a, face, b, &pair.b_in_a);
+    if axis.separation <= pair.limit() {
+        pair.build_face(&axis, false, out);
+    } else {
+        out.gap = axis.separation - pair.radius;
+    }
+}
+
 /// The cache for the next step. Features with an index above a byte are not cached.
 fn remember(axis: Axis) -> FeatureCache {
     let separation = axis.separation();

@@ -18,7 +18,7 @@ pub(super) fn collide(normal: Vector, b: &Shape, pose: &Pose, prediction: f32, o
             vertices(normal, (0..8).map(corner), 0.0, pose, prediction, out);
         }
         Shape::Hull(s) => vertices(normal, s.vertices().iter().copied(), 0.0, pose, prediction, out),
-        Shape::HalfSpace(_) | Shape::Foreign(_) => {}
+        Shape::HalfSpace(_) | Shape::Composite(_) | Shape::Foreign(_) => {}
     }
 }
 

@@ -6,6 +6,7 @@
 mod clip;
 mod convex;
 mod cuboids;
+mod facet;
 mod gjk;
 mod half_space;
 #[cfg(test)]
@@ -22,6 +23,7 @@ mod view;
 use super::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector};
 use crate::shape::{Capsule, Segment, Shape};
+pub(super) use facet::{Border, borders, collide_face, face_normal, few_points};
 use view::{Small, View};
 
 /// Centres farther apart than this, in metres, have no contact: their squares would overflow.
@@ -30,7 +32,7 @@ const FARTHEST: f32 = 1.0e15;
 /// The contact of two shapes, `pose_b_in_a` being where B is in A's frame.
 ///
 /// `out` gets the points no farther apart than `prediction` metres. It has none if a pose or size is not finite, and for two
-/// half-spaces and foreign shapes. `cache` is that of the same pair from the step before, or [`FeatureCache::NONE`].
+/// half-spaces, [composites](crate::shape::Composite) and foreign shapes. `cache` is that of the same pair from the step before, or [`FeatureCache::NONE`].
 pub fn collide(
     a: &Shape,
     b: &Shape,
@@ -62,7 +64,7 @@ fn rank(shape: &Shape) -> u8 {
         Shape::Cuboid(_) | Shape::Hull(_) | Shape::Triangle(_) => 1,
         Shape::Capsule(_) | Shape::Segment(_) => 2,
         Shape::Ball(_) => 3,
-        Shape::Foreign(_) => 4,
+        Shape::Composite(_) | Shape::Foreign(_) => 4,
     }
 }
 
@@ -91,7 +93,7 @@ fn dispatch(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    use Shape::{Ball, Capsule, Cuboid, Foreign, HalfSpace, Hull, Segment, Triangle};
+    use Shape::{Ball, Capsule, Composite, Cuboid, Foreign, HalfSpace, Hull, Segment, Triangle};
     let center = pose.position;
     match (a, b) {
         (HalfSpace(a), b) => half_space::collide(a.normal, b, pose, prediction, out),
@@ -108,16 +110,24 @@ fn dispatch(
         | (Cuboid(_) | Hull(_) | Triangle(_), Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_)) => {
             polyhedra(a, b, pose, prediction, cache, out);
         }
-        // Manifolds of foreign shapes come from their `ManifoldSource`.
-        (Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Ball(_) | Foreign(_), Foreign(_)) => {}
+        // Composites are collided part by part, and foreign shapes by their `ManifoldSource`.
+        (
+            Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Ball(_) | Composite(_) | Foreign(_),
+            Composite(_) | Foreign(_),
+        ) => {}
         // `collide` swaps these.
         (
-            Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Ball(_) | Foreign(_),
+            Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Ball(_) | Composite(_) | Foreign(_),
             HalfSpace(_),
         )
-        | (Capsule(_) | Segment(_) | Ball(_) | Foreign(_), Cuboid(_) | Hull(_) | Triangle(_))
-        | (Ball(_) | Foreign(_), Capsule(_) | Segment(_))
-        | (Foreign(_), Ball(_)) => debug_assert!(false, "shapes come in the order of their ranks"),
+        | (
+            Capsule(_) | Segment(_) | Ball(_) | Composite(_) | Foreign(_),
+            Cuboid(_) | Hull(_) | Triangle(_),
+        )
+        | (Ball(_) | Composite(_) | Foreign(_), Capsule(_) | Segment(_))
+        | (Composite(_) | Foreign(_), Ball(_)) => {
+            debug_assert!(false, "shapes come in the order of their ranks");
+        }
     }
 }
 
@@ -149,7 +159,7 @@ fn with_view(shape: &Shape, f: impl FnOnce(&View)) {
         Shape::Capsule(s) => Small::capsule(s),
         Shape::Segment(s) => Small::segment(s.a, s.b, 0.0),
         Shape::Ball(s) => Small::point(Vector::ZERO, s.radius),
-        Shape::HalfSpace(_) | Shape::Foreign(_) => return,
+        Shape::HalfSpace(_) | Shape::Composite(_) | Shape::Foreign(_) => return,
     };
     f(&small.view());
 }

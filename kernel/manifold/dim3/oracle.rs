@@ -39,7 +39,9 @@ impl Solid {
                 triangles: h.faces().iter().flat_map(|f| fan(h.outline(f))).collect(),
                 radius: 0.0,
             },
-            Shape::HalfSpace(_) | Shape::Foreign(_) => unreachable!("bounded shapes only"),
+            Shape::HalfSpace(_) | Shape::Composite(_) | Shape::Foreign(_) => {
+                unreachable!("bounded shapes only")
+            }
         }
     }
 

@@ -34,7 +34,9 @@ impl From<FillMode> for crate::parry::transformation::voxelization::FillMode {
 /// Mass properties at density 1.
 fn unit_mass_properties(collider: &Collider) -> MassProperties2d {
     match collider.native() {
-        NativeShape::Foreign(_) => foreign_mass_properties(collider.shape_scaled()),
+        NativeShape::Composite(_) | NativeShape::Foreign(_) => {
+            foreign_mass_properties(collider.shape_scaled())
+        }
         native => {
             let properties = native.mass_properties(1.0);
             MassProperties2d {

@@ -29,7 +29,9 @@ impl From<FillMode> for crate::parry::transformation::voxelization::FillMode {
 /// Mass properties at density 1.
 fn unit_mass_properties(collider: &Collider) -> MassProperties3d {
     match collider.native() {
-        NativeShape::Foreign(_) => foreign_mass_properties(collider.shape_scaled()),
+        NativeShape::Composite(_) | NativeShape::Foreign(_) => {
+            foreign_mass_properties(collider.shape_scaled())
+        }
         native => native_mass_properties(native),
     }
 }

@@ -1,5 +1,6 @@
 //! 2D parts of the default collider: poses, boxes, the kernel's polygons. `dim3.rs` exports the same names.
 
+use super::native_composite::{surface, surface_of_facets, unmoved};
 use super::regular_polygon::RegularPolygonColliderShape;
 use crate::math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to_kernel};
 use crate::parry::math::{Pose, Rot2};
@@ -26,6 +27,14 @@ pub(super) fn pose_from_kernel(pose: &kernel::math::Pose) -> Pose {
         pose.rotation.sin.adjust_precision(),
     );
     Pose::from_parts(vector_from_kernel(pose.position), rotation)
+}
+
+/// A relative pose as the kernel has it.
+pub(super) fn pose_to_kernel(pose: &Pose) -> kernel::math::Pose {
+    kernel::math::Pose {
+        position: vector_to_kernel(pose.translation),
+        rotation: Rotation { cos: pose.rotation.re, sin: pose.rotation.im }.to_kernel(),
+    }
 }
 
 /// The shape of the default collider.
@@ -74,6 +83,14 @@ pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> 
             let corners = [-h, Vector::new(h.x, -h.y), h, Vector::new(-h.x, h.y)];
             native_polygon(&corners, round.border_radius)
         }
+        TypedShape::Polyline(line) => {
+            surface(line.vertices().iter().copied(), line.indices().iter().copied())
+        }
+        TypedShape::HeightField(field) => surface_of_facets(field.segments().map(|s| [s.a, s.b])),
+        TypedShape::TriMesh(mesh) => unmoved(mesh.triangles().map(|t| {
+            let [a, b, c] = [t.a, t.b, t.c].map(vector_to_kernel);
+            NativeShape::Triangle(kernel::shape::Triangle { a, b, c })
+        })),
         TypedShape::Custom(custom) => {
             let polygon = custom.as_shape::<RegularPolygonColliderShape>()?;
             let corners: Vec<_> = polygon.corners().take(MAX_CORNERS + 1).collect();

@@ -1,8 +1,9 @@
 //! 3D parts of the default collider: poses, boxes, the kernel's polyhedra. `dim2.rs` exports the same names.
 
+use super::native_composite::{surface, surface_of_facets, unmoved};
 use crate::math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to_kernel};
 use crate::parry::math::{Pose, Rotation as ParryRotation};
-use crate::parry::shape::{HeightField, SharedShape, TypedShape};
+use crate::parry::shape::{ConvexPolyhedron, HeightField, SharedShape, TypedShape};
 use crate::physics_transform::Rotation;
 use bevy_math::Quat;
 use kernel::shape::Shape as NativeShape;
@@ -21,6 +22,14 @@ pub(super) fn pose_from_kernel(pose: &kernel::math::Pose) -> Pose {
     let r = pose.rotation;
     let rotation = Quat::from_xyzw(r.x, r.y, r.z, r.w).adjust_precision();
     Pose::from_parts(vector_from_kernel(pose.position), rotation)
+}
+
+/// A relative pose as the kernel has it.
+pub(super) fn pose_to_kernel(pose: &Pose) -> kernel::math::Pose {
+    kernel::math::Pose {
+        position: vector_to_kernel(pose.translation),
+        rotation: Rotation(pose.rotation).to_kernel(),
+    }
 }
 
 /// The shape of the default collider.
@@ -56,9 +65,19 @@ pub(super) fn is_solid(shape: &SharedShape) -> bool {
 
 /// The kernel's shape for shapes that only 3D has.
 pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> {
-    let TypedShape::ConvexPolyhedron(polyhedron) = shape else {
-        return None;
-    };
+    match shape {
+        TypedShape::ConvexPolyhedron(polyhedron) => native_polyhedron(polyhedron),
+        TypedShape::TriMesh(mesh) => surface(mesh.vertices().iter().copied(), mesh.indices().iter().copied()),
+        TypedShape::HeightField(field) => surface_of_facets(field.triangles().map(|t| [t.a, t.b, t.c])),
+        TypedShape::Polyline(line) => unmoved(line.segments().map(|s| {
+            let [a, b] = [s.a, s.b].map(vector_to_kernel);
+            NativeShape::Segment(kernel::shape::Segment { a, b })
+        })),
+        _ => None,
+    }
+}
+
+fn native_polyhedron(polyhedron: &ConvexPolyhedron) -> Option<NativeShape> {
     let vertices: Vec<_> = polyhedron.points().iter().map(|v| vector_to_kernel(*v)).collect();
     let faces: Vec<Vec<u32>> = polyhedron
         .faces()

@@ -17,6 +17,7 @@ mod ellipse;
 mod input;
 mod manifold;
 mod native;
+mod native_composite;
 mod params;
 #[cfg(feature = "2d")]
 mod primitives2d;

@@ -1,16 +1,17 @@
 //! Conversion of parry's shapes to the kernel's: a native shape where the kernel has one, otherwise a box whose
 //! contacts parry computes.
 
-use super::dim;
+use super::{dim, native_composite};
 use crate::math::{Scalar, Vector, vector_to_kernel};
-use crate::parry::shape::{SharedShape, TypedShape};
+use crate::parry::shape::{Compound, SharedShape, TypedShape};
 use kernel::shape::{Aabb, Ball, Capsule, Cuboid, Foreign, HalfSpace, Segment, Shape, Triangle};
 
 /// The kernel's shape for a shape of parry, in `f32`.
 ///
 /// Balls, capsules, cuboids, triangles, segments and half-spaces become themselves. Convex polygons with or without a
 /// radius, regular polygons, round rectangles and convex polyhedra become hulls, if the kernel has room for their
-/// features. All other shapes, and shapes with coordinates that are not finite, are foreign.
+/// features. Meshes, lines, height fields, voxels and compounds of native shapes become composites. All other shapes, and
+/// shapes with coordinates that are not finite, are foreign.
 pub(crate) fn native_shape(shape: &SharedShape) -> Shape {
     native(shape.as_typed_shape()).unwrap_or_else(|| Shape::Foreign(foreign(shape)))
 }
@@ -35,9 +36,20 @@ fn native(shape: TypedShape<'_>) -> Option<Shape> {
         TypedShape::HalfSpace(half_space) => {
             Shape::HalfSpace(HalfSpace { normal: point(half_space.normal)? })
         }
+        TypedShape::Compound(parts) => compound(parts)?,
+        TypedShape::Voxels(voxels) => native_composite::voxels(voxels)?,
         other => dim::native_of_dimension(other)?,
     };
     Some(native)
+}
+
+/// A compound, if all its parts are native and convex.
+fn compound(compound: &Compound) -> Option<Shape> {
+    let parts = compound
+        .shapes()
+        .iter()
+        .map(|(pose, part)| Some((dim::pose_to_kernel(pose), native(part.as_typed_shape())?)));
+    Shape::compound(parts.collect::<Option<_>>()?).ok()
 }
 
 /// A finite length that is not negative.

@@ -4,6 +4,7 @@ use super::input::MIN_LENGTH;
 use super::*;
 use crate::collision::collider::SimpleCollider;
 use crate::math::{ComputeMassProperties, DIM, Scalar};
+use crate::parry::math::IVector;
 use crate::physics_transform::Position;
 use kernel::{manifold::LocalManifold, math::Pose};
 
@@ -192,12 +193,21 @@ fn native_shapes_reach_as_far_as_parrys() {
 }
 
 #[test]
-fn what_has_no_native_shape_has_its_box() {
+fn native_composites() {
+    let part = |x| (Position::new(Vector::X * x), Rotation::default(), Collider::default());
+    assert_native(&Collider::compound(vec![part(0.0), part(3.0)]));
+    assert_native(&Collider::polyline(vec![Vector::ZERO, Vector::X, Vector::ONE], None));
+    assert_native(&Collider::voxels(Vector::ONE, &[IVector::ZERO, IVector::ONE]));
+    let cut = Collider::compound(vec![part(0.0)]).native().local_aabb(kernel::math::Rot::IDENTITY);
+    assert_eq!(cut, Collider::default().native().local_aabb(kernel::math::Rot::IDENTITY));
+}
+
+#[test]
+fn a_mesh_is_native_and_has_its_box() {
     let mesh = Collider::trimesh(vec![Vector::ZERO, Vector::X * 3.0, Vector::Y], vec![[0, 1, 2]]);
-    let kernel::shape::Shape::Foreign(foreign) = mesh.native() else {
-        panic!("a mesh is foreign");
-    };
-    assert_eq!(foreign.aabb.max, crate::math::vector_to_kernel(Vector::X * 3.0 + Vector::Y));
+    assert_native(&mesh);
+    let aabb = mesh.native().local_aabb(kernel::math::Rot::IDENTITY);
+    assert_eq!(aabb.max, crate::math::vector_to_kernel(Vector::X * 3.0 + Vector::Y));
 }
 
 #[test]

@@ -148,10 +148,8 @@ fn native_shapes_of_the_plane() {
     assert_native(&Collider::triangle(Vector::ZERO, Vector::X, Vector::Y));
     assert_native(&Collider::regular_polygon(1.5, 5));
     assert_native(&Collider::round_rectangle(1.0, 3.0, 0.25));
-    let foreign = [Collider::ellipse(2.0, 1.0), Collider::heightfield(vec![0.0, 1.0], Vector::ONE)];
-    for collider in foreign {
-        assert!(matches!(collider.native(), kernel::shape::Shape::Foreign(_)));
-    }
+    assert_native(&Collider::heightfield(vec![0.0, 1.0], Vector::ONE));
+    assert!(matches!(Collider::ellipse(2.0, 1.0).native(), kernel::shape::Shape::Foreign(_)));
 }
 
 #[test]

@@ -1,0 +1,355 @@
+//! Contact manifolds of composite shapes: part by part, without the edges inside a surface, merged into few.
+//!
+//! A facet alone ends at its borders, the surface does not. So a normal that leans over a border towards the neighbour is
+//! replaced by the facet's own: there the neighbour is nearer (convex edges keep the normals between both facets).
+
+use super::dim::{Border, borders, collide_face, face_normal, few_points};
+use super::{FeatureCache, LocalManifold, LocalPoint, collide};
+use crate::math::{Pose, Vector, max, min};
+use crate::shape::{Aabb, Composite, NO_FACET, Part, Shape, Surface};
+
+/// Manifolds with normals closer than this are merged: cos 2°. More merges slopes; less solves a plane several times.
+const SAME_NORMAL: f32 = 0.9994;
+
+/// Normals that lean over a border by less than this are the facet's own, in radians. More brakes what slides; rounding is
+/// a tenth of it.
+const LEAN: f32 = 1.0e-3;
+
+/// Contacts up to this share of a facet's size inside of a border are on the border.
+const ON_BORDER: f32 = 0.02;
+
+/// Points closer than this share of a manifold's size are one.
+const SAME_POINT: f32 = 0.01;
+
+/// Buffers for the manifolds of composite shapes, kept between calls.
+#[derive(Clone, Debug, Default)]
+pub struct CompositeBuffers {
+    parts: Vec<u32>,
+    found: Vec<LocalManifold>,
+    /// For each of `found` the merged manifold it belongs to.
+    groups: Vec<usize>,
+    points: Vec<LocalPoint>,
+}
+
+/// How far two shapes are looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// Points up to this distance are found, in metres.
+    pub prediction: f32,
+    /// How far B moves against A until the end of the step, in A's frame. Parts farther away than the prediction are followed to
+    /// where they meet.
+    pub motion: Vector,
+}
+
+/// Most steps to where a part meets what moves toward it. One that takes more meets where it then is.
+const MAX_ROUNDS: usize = 16;
+
+/// Parts meet at this share of the prediction. More stops what passes by; less takes more rounds.
+const MET: f32 = 0.1;
+
+/// A composite shape against a convex one, or against a part of another composite.
+#[derive(Clone, Copy)]
+struct Pass<'a> {
+    composite: &'a Composite<Shape>,
+    other: &'a Shape,
+    /// The other shape in the composite's frame.
+    pose: &'a Pose,
+    /// How far to look; the motion is that of the other shape.
+    look: Look,
+    /// Tells the features of several passes apart.
+    name: u32,
+    /// Whether parts are looked at as if each were alone, however far ahead.
+    alone: bool,
+}
+
+/// Adds the manifolds of two shapes of which at least one is composite, in A's frame; see [`collide`](super::collide). Returns a
+/// lower bound of the distance between the shapes: infinite if no part is near, 0 if there are points.
+pub fn collide_composite(
+    a: &Shape,
+    b: &Shape,
+    pose_b_in_a: &Pose,
+    look: Look,
+    buffers: &mut CompositeBuffers,
+    out: &mut Vec<LocalManifold>,
+) -> f32 {
+    let gap = collide_parts(a, b, pose_b_in_a, look, false, buffers);
+    merge(buffers, out);
+    if buffers.found.is_empty() { gap } else { 0.0 }
+}
+
+/// Adds the manifolds of all parts, each as if it were alone, in A's frame: of those within the prediction, and of those that the
+/// motion may meet. Their normals and separations are slabs between convex shapes.
+pub fn collide_each_part(
+    a: &Shape,
+    b: &Shape,
+    pose_b_in_a: &Pose,
+    look: Look,
+    buffers: &mut CompositeBuffers,
+    out: &mut Vec<LocalManifold>,
+) {
+    collide_parts(a, b, pose_b_in_a, look, true, buffers);
+    out.extend_from_slice(&buffers.found);
+}
+
+/// Fills `buffers.found` with the manifolds of parts. Returns a lower bound of the distance to parts without.
+fn collide_parts(
+    a: &Shape,
+    b: &Shape,
+    pose_b_in_a: &Pose,
+    look: Look,
+    alone: bool,
+    buffers: &mut CompositeBuffers,
+) -> f32 {
+    buffers.found.clear();
+    let is_usable = pose_b_in_a.position.is_finite() && pose_b_in_a.rotation.is_finite();
+    if !(is_usable && look.prediction.is_finite() && look.motion.is_finite()) {
+        return 0.0;
+    }
+    match (a, b) {
+        (Shape::Composite(a), Shape::Composite(b)) => collide_both([a, b], pose_b_in_a, look, alone, buffers),
+        (Shape::Composite(composite), other) => {
+            Pass { composite, other, pose: pose_b_in_a, look, name: 0, alone }.collide(buffers)
+        }
+        (other, Shape::Composite(composite)) => {
+            let pose = pose_b_in_a.inverse();
+            let motion = pose_b_in_a.rotation.inverse_rotate(-look.motion);
+            let look = Look { motion, ..look };
+            let gap = Pass { composite, other, pose: &pose, look, name: 0, alone }.collide(buffers);
+            buffers.found.iter_mut().for_each(|m| *m = m.flipped(&pose));
+            gap
+        }
+        _ => {
+            debug_assert!(false, "one of the shapes is composite");
+            0.0
+        }
+    }
+}
+
+/// Two composites: each part of B that is near A against all of A.
+fn collide_both(
+    [a, b]: [&Composite<Shape>; 2],
+    pose: &Pose,
+    look: Look,
+    alone: bool,
+    buffers: &mut CompositeBuffers,
+) -> f32 {
+    let (bounds, inverse) = (a.tree().bounds(), pose.inverse());
+    let around = bounds.rotated(inverse.rotation);
+    let near = Aabb { min: around.min + inverse.position, max: around.max + inverse.position };
+    let mut parts = Vec::new();
+    b.tree().query(&near.grown(look.prediction + look.motion.length()), |part| parts.push(part));
+    parts.iter().fold(f32::INFINITY, |gap, part| {
+        let pass = |other: &Shape, pose: &Pose, buffers: &mut CompositeBuffers| {
+            Pass { composite: a, other, pose, look, name: part + 1, alone }.collide(buffers)
+        };
+        let here = match b.part(*part) {
+            Part::Facet(facet) => pass(&Shape::from(facet), pose, buffers),
+            Part::Solid(at, solid) => pass(solid, &pose.then(at), buffers),
+        };
+        min(gap, here)
+    })
+}
+
+impl Pass<'_> {
+    /// Adds the manifolds of all parts to `buffers.found`, in the composite's frame. Returns a lower bound of the distance to
+    /// those without.
+    fn collide(&self, buffers: &mut CompositeBuffers) -> f32 {
+        let near = self.other.local_box(self.pose).swept(self.look.motion).grown(self.look.prediction);
+        let mut parts = core::mem::take(&mut buffers.parts);
+        parts.clear();
+        self.composite.tree().query(&near, |part| parts.push(part));
+        let mut gap = f32::INFINITY;
+        let mut local = LocalManifold::default();
+        for part in &parts {
+            if self.alone {
+                self.collide_alone(*part, self.look.prediction + self.look.motion.length(), &mut local);
+            } else {
+                self.collide_part(*part, self.look.prediction, &mut local);
+            }
+            if local.count == 0 {
+                gap = min(gap, local.gap);
+                if self.alone || !(self.look.motion != Vector::ZERO && self.cast(*part, &mut local)) {
+                    continue;
+                }
+            }
+            let count = local.count;
+            local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, *part, p.feature]));
+            buffers.found.push(local);
+        }
+        buffers.parts = parts;
+        gap
+    }
+
+    /// Fills `local` with the contact of one part.
+    fn collide_part(&self, part: u32, prediction: f32, local: &mut LocalManifold) {
+        self.collide_alone(part, prediction, local);
+        if let Some(surface) = self.composite.surface().filter(|_| local.count > 0) {
+            self.keep_on_surface(surface, part, prediction, local);
+        }
+    }
+
+    /// Fills `local` with the contact of one part as if there were no other.
+    fn collide_alone(&self, part: u32, prediction: f32, local: &mut LocalManifold) {
+        let mut none = FeatureCache::NONE;
+        let radius = match self.composite.part(part) {
+            Part::Facet(facet) => {
+                collide(&Shape::from(facet), self.other, self.pose, prediction, &mut none, local);
+                0.0
+            }
+            Part::Solid(at, solid) => {
+                collide(solid, self.other, &at.inverse().then(self.pose), prediction, &mut none, local);
+                local.normal = at.rotation.rotate(local.normal);
+                local.points[..local.count].iter_mut().for_each(|p| p.point = at.transform(p.point));
+                solid.radius()
+            }
+        };
+        local.radii = [radius, self.other.radius()];
+    }
+
+    /// Follows the motion to where a part that is farther away than the prediction meets the other shape. `local` receives the
+    /// contact there, with the separations of now. Returns whether they meet.
+    fn cast(&self, part: u32, local: &mut LocalManifold) -> bool {
+        let way = self.look.motion;
+        let met = MET * self.look.prediction;
+        let mut share = 0.0;
+        for round in 1..=MAX_ROUNDS {
+            let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
+            let there = Pass { pose: &pose, ..*self };
+            there.collide_alone(part, (1.0 - share) * way.length() + self.look.prediction, local);
+            let closing = -local.normal.dot(way);
+            // A plane between convex shapes that does not close is never crossed.
+            if local.count == 0 || !(closing > 0.0) {
+                break;
+            }
+            let gap = local.lower_bound();
+            if gap <= met || round == MAX_ROUNDS {
+                there.collide_part(part, self.look.prediction, local);
+                let along = local.normal.dot(way) * share;
+                let count = local.count;
+                for p in &mut local.points[..count] {
+                    // From the place on the other shape, where that is now.
+                    p.point -= way * share - local.normal * (0.5 * along);
+                    p.separation -= along;
+                }
+                return local.count > 0;
+            }
+            share += max(gap, met) / closing;
+            if !(share <= 1.0) {
+                break;
+            }
+        }
+        local.count = 0;
+        false
+    }
+
+    /// Replaces a facet's manifold by that of its face if its normal leans over a border where the surface goes on.
+    fn keep_on_surface(&self, surface: &Surface, facet: u32, prediction: f32, local: &mut LocalManifold) {
+        let corners = surface.corners(facet);
+        let Some(face) = face_normal(corners) else { return };
+        let along = local.normal.dot(face);
+        let toward = if along.abs() > 0.05 { along } else { (self.pose.position - corners[0]).dot(face) };
+        let own = if toward < 0.0 { -face } else { face };
+        let borders = borders(corners, face);
+        let (mut leans, mut is_free) = (false, true);
+        for (border, neighbor) in borders.iter().zip(surface.neighbors(facet)) {
+            if !(local.normal.dot(border.outward) > LEAN) {
+                continue;
+            }
+            leans = true;
+            if border.is_met_by(local) {
+                is_free &= neighbor == NO_FACET || {
+                    let beyond = border.toward_neighbor(surface.corners(neighbor));
+                    !(local.normal.dot(beyond) > LEAN)
+                };
+            }
+        }
+        // Where no border is met, the normal is that of a side that the facet does not have.
+        let is_met = || borders.iter().any(|b| local.normal.dot(b.outward) > LEAN && b.is_met_by(local));
+        if leans && !(is_free && is_met()) {
+            collide_face(corners, own, self.other, self.pose, prediction, local);
+        }
+    }
+}
+
+impl Border {
+    /// Whether all points of a manifold are on the facet's border.
+    fn is_met_by(&self, local: &LocalManifold) -> bool {
+        local.points().iter().all(|p| {
+            let on_facet = p.point - local.normal * (0.5 * p.separation);
+            (self.corner - on_facet).dot(self.outward) <= ON_BORDER * self.depth
+        })
+    }
+
+    /// The direction from the border into the neighbour's plane, across the border.
+    fn toward_neighbor<const N: usize>(&self, corners: [Vector; N]) -> Vector {
+        let across = corners.map(|corner| {
+            let to = corner - self.corner;
+            to - self.along * to.dot(self.along)
+        });
+        let farthest = across
+            .into_iter()
+            .fold(Vector::ZERO, |f, v| if v.length_squared() > f.length_squared() { v } else { f });
+        let length = farthest.length();
+        if length > 0.0 { farthest * (1.0 / length) } else { self.outward }
+    }
+}
+
+/// Merges the manifolds in `buffers.found` with about the same normal, the deepest first, and adds the results to `out`.
+fn merge(buffers: &mut CompositeBuffers, out: &mut Vec<LocalManifold>) {
+    let CompositeBuffers { found, groups, points, .. } = buffers;
+    if let [only] = &found[..] {
+        out.push(*only);
+        return;
+    }
+    let depth = |m: &LocalManifold| m.points().iter().fold(f32::INFINITY, |low, p| min(low, p.separation));
+    found.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+    groups.clear();
+    let start = out.len();
+    for m in found.iter() {
+        let is_same = |o: &LocalManifold| {
+            o.normal.dot(m.normal) > SAME_NORMAL && o.radii.map(f32::to_bits) == m.radii.map(f32::to_bits)
+        };
+        let group = out[start..].iter().position(is_same);
+        groups.push(group.unwrap_or(out.len() - start));
+        if group.is_none() {
+            out.push(*m);
+        }
+    }
+    for (group, merged) in out[start..].iter_mut().enumerate() {
+        if groups.iter().filter(|g| **g == group).count() == 1 {
+            continue;
+        }
+        points.clear();
+        for (m, _) in found.iter().zip(groups.iter()).filter(|(_, g)| **g == group) {
+            points.extend_from_slice(m.points());
+        }
+        drop_twins(points);
+        few_points(points, merged);
+    }
+}
+
+/// Drops points in the place of an earlier one.
+fn drop_twins(points: &mut Vec<LocalPoint>) {
+    let first = points[0].point;
+    let spread = points.iter().fold(0.0, |far, p| max(far, (p.point - first).length_squared()));
+    let mut kept = 0;
+    for i in 0..points.len() {
+        let point = points[i];
+        let is_near =
+            |p: &LocalPoint| (p.point - point.point).length_squared() <= SAME_POINT * SAME_POINT * spread;
+        match points[..kept].iter().position(is_near) {
+            Some(twin) if point.separation < points[twin].separation => points[twin] = point,
+            Some(_) => {}
+            None => {
+                points[kept] = point;
+                kept += 1;
+            }
+        }
+    }
+    points.truncate(kept);
+}
+
+/// One number of three: features only need to be told apart, and to be the same in the next step.
+fn mix(words: [u32; 3]) -> u32 {
+    words.into_iter().fold(0, |hash: u32, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9))
+}

@@ -1,0 +1,111 @@
+//! The segments of a surface: their ends, and contacts with their side alone.
+
+use super::clip::{Edge, Facing, Side};
+use super::points::Limits;
+use super::polygonal::{Buffer, view};
+use crate::manifold::{LocalManifold, LocalPoint};
+use crate::math::{Pose, Vector};
+use crate::shape::{Shape, direction};
+
+/// A single point may lie beyond an end by this share of the segment.
+const BESIDE: f32 = 1.0e-3;
+
+/// One end of a segment.
+pub(in crate::manifold) struct Border {
+    /// Where it is.
+    pub corner: Vector,
+    /// A point has no direction: 0.
+    pub along: Vector,
+    /// The unit direction out of the segment.
+    pub outward: Vector,
+    /// The length of the segment, in metres.
+    pub depth: f32,
+}
+
+/// The unit normal on the left of a segment; `None` if it has no length.
+pub(in crate::manifold) fn face_normal([a, b]: [Vector; 2]) -> Option<Vector> {
+    direction(b - a).map(|(axis, _)| axis.perp())
+}
+
+/// The ends of a segment with the given normal.
+pub(in crate::manifold) fn borders([a, b]: [Vector; 2], normal: Vector) -> [Border; 2] {
+    let axis = -normal.perp();
+    let depth = (b - a).dot(axis).abs();
+    let end = |corner, outward| Border { corner, along: Vector::ZERO, outward, depth };
+    [end(a, -axis), end(b, axis)]
+}
+
+/// Fills `out` with the contact of a segment's side alone, where the shape is over it. `normal` is the segment's, towards the
+/// shape.
+pub(in crate::manifold) fn collide_face(
+    corners: [Vector; 2],
+    normal: Vector,
+    other: &Shape,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    (out.count, out.gap) = (0, 0.0);
+    let mut room = Buffer::EMPTY;
+    let Some(polygon) = view(other, &mut room) else { return };
+    let facing = pose.rotation.inverse_rotate(-normal);
+    let height = |i: usize| polygon.vertices[i].dot(facing);
+    let lowest = (1..polygon.len()).fold(0, |best, i| if height(i) > height(best) { i } else { best });
+    let vertex = pose.transform(polygon.vertices[lowest]);
+    let [a, b] = corners;
+    // Counter-clockwise, the edge has its normal on the right.
+    let forward = normal.dot((b - a).perp()) < 0.0;
+    let (ends, indices) = if forward { ([a, b], [0, 1]) } else { ([b, a], [1, 0]) };
+    let separation = (vertex - ends[0]).dot(normal) - polygon.radius;
+    if !(separation <= prediction) {
+        out.gap = separation;
+        return;
+    }
+    if polygon.len() == 1 {
+        let is_beside = |b: &Border| (vertex - b.corner).dot(b.outward) > BESIDE * b.depth;
+        if !borders(corners, normal).iter().any(is_beside) {
+            out.normal = normal;
+            out.push(vertex - normal * (0.5 * (separation + 2.0 * polygon.radius)), separation, 0);
+        }
+        return;
+    }
+    let before = polygon.previous(lowest);
+    let turned = polygon.normals[before].dot(facing) > polygon.normals[lowest].dot(facing);
+    let first = if turned { before } else { lowest };
+    let second = polygon.next(first);
+    let incident =
+        Edge { ends: [polygon.vertices[first], polygon.vertices[second]], indices: [first, second] };
+    Facing {
+        side: Side::A,
+        normal,
+        reference: Edge { ends, indices },
+        incident: incident.moved(pose),
+        limits: Limits { radii: [0.0, polygon.radius], prediction },
+    }
+    .contact(false, out);
+    let tangent = normal.perp();
+    let along = |p: &LocalPoint| (p.point - ends[0]).dot(tangent);
+    let length = (ends[1] - ends[0]).dot(tangent);
+    if out.count == 1 && !(-BESIDE * length..=(1.0 + BESIDE) * length).contains(&along(&out.points[0])) {
+        out.count = 0;
+    }
+}
+
+/// Puts the points that hold the same as all of `points` into a manifold: the outermost two.
+pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalManifold) {
+    let tangent = out.normal.perp();
+    let along = |p: &LocalPoint| p.point.dot(tangent);
+    let (mut first, mut last) = (points[0], points[0]);
+    for p in points {
+        if along(p) < along(&first) {
+            first = *p;
+        }
+        if along(p) > along(&last) {
+            last = *p;
+        }
+    }
+    out.count = 0;
+    for p in [first, last].iter().take(points.len().min(2)) {
+        out.push(p.point, p.separation, p.feature);
+    }
+}

@@ -1,0 +1,96 @@
+//! The triangles of a surface: their borders, and contacts with their face alone.
+
+use super::convex;
+use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce};
+use super::view::Small;
+use super::with_view;
+use crate::manifold::{LocalManifold, LocalPoint};
+use crate::math::{Pose, Vector, max};
+use crate::shape::Shape;
+
+/// A single point may lie outside of a face by this share of its height over the border.
+const BESIDE: f32 = 1.0e-3;
+
+/// One side of a triangle.
+pub(in crate::manifold) struct Border {
+    /// Where it begins.
+    pub corner: Vector,
+    /// Its unit direction.
+    pub along: Vector,
+    /// The unit direction out of the triangle, in its plane.
+    pub outward: Vector,
+    /// How far the triangle reaches from it, in metres.
+    pub depth: f32,
+}
+
+/// The unit normal of a triangle, counter-clockwise from outside; `None` if it has no area.
+pub(in crate::manifold) fn face_normal([a, b, c]: [Vector; 3]) -> Option<Vector> {
+    let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(ac);
+    let length = normal.length();
+    let size = max(ab.length_squared(), ac.length_squared());
+    (length > 1.0e-6 * size).then(|| normal * (1.0 / length))
+}
+
+/// The sides of a triangle with the given normal.
+pub(in crate::manifold) fn borders(corners: [Vector; 3], normal: Vector) -> [Border; 3] {
+    core::array::from_fn(|k| {
+        let corner = corners[k];
+        let side = corners[(k + 1) % 3] - corner;
+        let along = side * (1.0 / max(side.length(), f32::MIN_POSITIVE));
+        let outward = along.cross(normal);
+        Border { corner, along, outward, depth: (corner - corners[(k + 2) % 3]).dot(outward) }
+    })
+}
+
+/// Fills `out` with the contact of a triangle's face alone, where the shape is over it. `normal` is the face's, towards the
+/// shape.
+pub(in crate::manifold) fn collide_face(
+    corners: [Vector; 3],
+    normal: Vector,
+    other: &Shape,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    (out.count, out.gap) = (0, 0.0);
+    let mut is_viewed = false;
+    if !matches!(other, Shape::Ball(_)) {
+        with_view(other, |view| {
+            is_viewed = true;
+            let small = Small::triangle(corners);
+            convex::collide_face(&small.view(), normal, view, pose, prediction, out);
+        });
+    }
+    if is_viewed {
+        return;
+    }
+    let Some(lowest) = other.support(pose.rotation.inverse_rotate(-normal)) else { return };
+    let lowest = pose.transform(lowest);
+    let is_beside = |b: &Border| (lowest - b.corner).dot(b.outward) > BESIDE * b.depth;
+    let separation = (lowest - corners[0]).dot(normal);
+    if separation <= prediction && !borders_of(corners).is_some_and(|all| all.iter().any(is_beside)) {
+        out.normal = normal;
+        out.push(lowest - normal * (0.5 * separation), separation, 0);
+    } else {
+        out.gap = max(separation, 0.0);
+    }
+}
+
+fn borders_of(corners: [Vector; 3]) -> Option<[Border; 3]> {
+    face_normal(corners).map(|normal| borders(corners, normal))
+}
+
+/// Puts the points that hold the same as all of `points` into a manifold.
+pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalManifold) {
+    let mut candidates = Candidates::<MAX_CANDIDATES>::new();
+    for &LocalPoint { point, separation, feature } in points {
+        candidates.push(Candidate { point, separation, feature });
+    }
+    let list = candidates.as_slice();
+    let (kept, count) = reduce(list, out.normal);
+    out.count = 0;
+    for k in &kept[..count] {
+        out.push(list[*k].point, list[*k].separation, list[*k].feature);
+    }
+}

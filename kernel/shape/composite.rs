@@ -1,0 +1,232 @@
+//! Shapes of many convex parts: surfaces of facets, and compounds of solids.
+
+use super::dim::Facet;
+use super::part_tree::PartTree;
+use super::{Aabb, ShapeError};
+use crate::math::{DIM, Pose, Vector};
+
+/// No facet.
+pub const NO_FACET: u32 = u32::MAX;
+
+/// A shape of convex parts, with a tree over them. `S` is the shape of solids.
+#[derive(Clone, Debug)]
+pub struct Composite<S> {
+    parts: Parts<S>,
+    tree: PartTree,
+}
+
+#[derive(Clone, Debug)]
+enum Parts<S> {
+    Surface(Surface),
+    Solids(Vec<(Pose, S)>),
+}
+
+/// One part of a composite shape.
+pub enum Part<'a, S> {
+    /// A triangle in 3D, a segment in 2D.
+    Facet(Facet),
+    /// A solid, at a pose in the composite's frame.
+    Solid(&'a Pose, &'a S),
+}
+
+/// A two-sided surface without thickness, of triangles in 3D and segments in 2D.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    vertices: Vec<Vector>,
+    facets: Vec<[u32; DIM]>,
+    /// The facet across each border of each facet, [`NO_FACET`] if there is none or more than one.
+    neighbors: Vec<[u32; DIM]>,
+}
+
+impl Surface {
+    /// The surface of `facets`, which are indices of `vertices`. Facets that meet at equal vertices are neighbours.
+    ///
+    /// # Errors
+    /// If there is no facet, a vertex is not finite, or an index is out of range.
+    pub fn new(vertices: Vec<Vector>, facets: Vec<[u32; DIM]>) -> Result<Self, ShapeError> {
+        if facets.is_empty() || facets.len() > (NO_FACET >> 2) as usize {
+            return Err(ShapeError::Degenerate);
+        }
+        let in_range = |facet: &[u32; DIM]| facet.iter().all(|i| (*i as usize) < vertices.len());
+        if !facets.iter().all(in_range) {
+            return Err(ShapeError::OutOfRange);
+        }
+        if !vertices.iter().all(|v| v.is_finite()) {
+            return Err(ShapeError::NotFinite);
+        }
+        let neighbors = neighbors(&vertices, &facets);
+        Ok(Self { vertices, facets, neighbors })
+    }
+
+    /// The vertices.
+    pub fn vertices(&self) -> &[Vector] {
+        &self.vertices
+    }
+
+    /// The corners of a facet.
+    #[inline]
+    pub fn corners(&self, facet: u32) -> [Vector; DIM] {
+        self.facets[facet as usize].map(|i| self.vertices[i as usize])
+    }
+
+    /// The facets across the borders of a facet: in 3D border `k` is the side from corner `k` to the next, in 2D corner `k`.
+    #[inline]
+    pub fn neighbors(&self, facet: u32) -> [u32; DIM] {
+        self.neighbors[facet as usize]
+    }
+}
+
+/// The facet across each border of each facet.
+fn neighbors(vertices: &[Vector], facets: &[[u32; DIM]]) -> Vec<[u32; DIM]> {
+    let names = welded(vertices);
+    let mut borders: Vec<(u64, u32)> = Vec::with_capacity(DIM * facets.len());
+    for (i, facet) in facets.iter().enumerate() {
+        for k in 0..DIM {
+            // In 3D a side from one corner to the next, in 2D one corner.
+            let [a, b] = [k, (k + DIM - 2) % DIM].map(|end| names[facet[end] as usize]);
+            borders.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), (i as u32) << 2 | k as u32));
+        }
+    }
+    borders.sort_unstable();
+    let mut all = vec![[NO_FACET; DIM]; facets.len()];
+    for same in borders.chunk_by(|a, b| a.0 == b.0) {
+        if let [(_, a), (_, b)] = same
+            && a >> 2 != b >> 2
+        {
+            all[(a >> 2) as usize][(a & 3) as usize] = b >> 2;
+            all[(b >> 2) as usize][(b & 3) as usize] = a >> 2;
+        }
+    }
+    all
+}
+
+/// The first of all vertices at the same place, for each vertex.
+fn welded(vertices: &[Vector]) -> Vec<u32> {
+    // Zero and minus zero are the same place.
+    let key = |i: u32| vertices[i as usize].to_array().map(|c| (c + 0.0).to_bits());
+    let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
+    order.sort_unstable_by_key(|i| (key(*i), *i));
+    let mut names = vec![0; vertices.len()];
+    for same in order.chunk_by(|a, b| key(*a) == key(*b)) {
+        same.iter().for_each(|i| names[*i as usize] = same[0]);
+    }
+    names
+}
+
+impl<S> Composite<S> {
+    /// A surface as a shape.
+    pub fn of_surface(surface: Surface) -> Self {
+        let boxes: Vec<Aabb> =
+            (0..surface.facets.len() as u32).map(|i| Aabb::around(surface.corners(i))).collect();
+        Self { tree: PartTree::new(&boxes), parts: Parts::Surface(surface) }
+    }
+
+    /// Solids as one shape; `aabb` gives the box of each in the composite's frame.
+    pub fn of_solids(solids: Vec<(Pose, S)>, aabb: impl Fn(&Pose, &S) -> Aabb) -> Self {
+        let boxes: Vec<Aabb> = solids.iter().map(|(pose, solid)| aabb(pose, solid)).collect();
+        Self { tree: PartTree::new(&boxes), parts: Parts::Solids(solids) }
+    }
+
+    /// The number of parts.
+    pub fn len(&self) -> usize {
+        match &self.parts {
+            Parts::Surface(surface) => surface.facets.len(),
+            Parts::Solids(solids) => solids.len(),
+        }
+    }
+
+    /// Whether there are no parts.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A part.
+    #[inline]
+    pub fn part(&self, index: u32) -> Part<'_, S> {
+        match &self.parts {
+            Parts::Surface(surface) => Part::Facet(Facet::from(surface.corners(index))),
+            Parts::Solids(solids) => {
+                let (pose, solid) = &solids[index as usize];
+                Part::Solid(pose, solid)
+            }
+        }
+    }
+
+    /// The surface, if it is one.
+    pub fn surface(&self) -> Option<&Surface> {
+        match &self.parts {
+            Parts::Surface(surface) => Some(surface),
+            Parts::Solids(_) => None,
+        }
+    }
+
+    /// The solids with their poses; none if it is a surface.
+    pub fn solids(&self) -> &[(Pose, S)] {
+        match &self.parts {
+            Parts::Surface(_) => &[],
+            Parts::Solids(solids) => solids,
+        }
+    }
+
+    /// The tree over the parts' boxes, in the composite's frame.
+    pub fn tree(&self) -> &PartTree {
+        &self.tree
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner(i: usize, j: usize) -> Vector {
+        Vector::X * i as f32 + Vector::AXES[DIM - 1] * j as f32
+    }
+
+    /// A strip of flat facets: squares of two triangles in 3D, segments in 2D. Each has its own vertices.
+    fn strip(count: usize) -> Surface {
+        let (mut vertices, mut facets) = (Vec::new(), Vec::new());
+        for i in 0..count {
+            let halves = if DIM == 2 {
+                vec![vec![corner(i, 0), corner(i + 1, 0)]]
+            } else {
+                let [a, b, c, d] = [corner(i, 0), corner(i + 1, 0), corner(i + 1, 1), corner(i, 1)];
+                vec![vec![a, b, c], vec![a, c, d]]
+            };
+            for half in halves {
+                let start = vertices.len() as u32;
+                vertices.extend(half);
+                facets.push(core::array::from_fn(|k| start + k as u32));
+            }
+        }
+        Surface::new(vertices, facets).expect("a surface")
+    }
+
+    #[test]
+    fn facets_at_equal_vertices_are_neighbors() {
+        let surface = strip(5);
+        let count = surface.facets.len() as u32;
+        for facet in 0..count {
+            let mut beside: Vec<u32> =
+                surface.neighbors(facet).into_iter().filter(|n| *n != NO_FACET).collect();
+            beside.sort_unstable();
+            let shared = |other: u32| {
+                let corners = surface.corners(other);
+                surface.corners(facet).iter().filter(|c| corners.contains(c)).count()
+            };
+            let expected: Vec<u32> = (0..count).filter(|o| *o != facet && shared(*o) == DIM - 1).collect();
+            assert_eq!(beside, expected, "of facet {facet}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_surface_is_an_error() {
+        let facet: [u32; DIM] = core::array::from_fn(|k| k as u32);
+        let good: Vec<Vector> = (0..DIM).map(|i| corner(i, i)).collect();
+        assert!(Surface::new(good.clone(), vec![facet]).is_ok());
+        assert!(Surface::new(good.clone(), Vec::new()).is_err());
+        assert!(Surface::new(good[1..].to_vec(), vec![facet]).is_err());
+        let mut odd = good;
+        odd[0] = Vector::ONE * f32::NAN;
+        assert!(Surface::new(odd, vec![facet]).is_err());
+    }
+}

@@ -1,0 +1,206 @@
+//! The tree over the parts of a composite shape, built once.
+
+use super::Aabb;
+use crate::math::{DIM, Vector};
+
+/// Leaves hold up to this number of parts. More makes walks test boxes in vain; less makes trees larger.
+const LEAF_PARTS: usize = 4;
+
+/// Below this depth ranges are halved by count, which bounds the depth of walks for any boxes.
+const MAX_FREE_DEPTH: u32 = 24;
+
+/// The capacity of a walk's stack: the free depth, and halvings of 2³² parts.
+const STACK: usize = MAX_FREE_DEPTH as usize + 40;
+
+/// A static tree of boxes. Its shape depends on the boxes alone, in their order.
+#[derive(Clone, Debug, Default)]
+pub struct PartTree {
+    /// A branch is followed by its first child.
+    nodes: Vec<Node>,
+    /// The parts, leaf by leaf.
+    order: Vec<u32>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    aabb: Aabb,
+    /// Of a leaf, its first place in `order`; of a branch, the node of its second child.
+    start: u32,
+    /// The number of a leaf's parts; 0 for a branch.
+    count: u32,
+}
+
+/// A range of `order` that becomes a node.
+struct Task {
+    start: usize,
+    end: usize,
+    depth: u32,
+    /// The branch whose second child it is.
+    parent: Option<usize>,
+}
+
+impl PartTree {
+    /// The tree over boxes, of which the `i`-th is part `i`. Boxes that are not `min ≤ max` are never found.
+    pub fn new(boxes: &[Aabb]) -> Self {
+        let mut tree = Self { nodes: Vec::new(), order: (0..boxes.len() as u32).collect() };
+        let mut order = core::mem::take(&mut tree.order);
+        let mut tasks = Vec::new();
+        if !boxes.is_empty() {
+            tree.nodes.reserve(boxes.len());
+            tasks.push(Task { start: 0, end: boxes.len(), depth: 0, parent: None });
+        }
+        while let Some(Task { start, end, depth, parent }) = tasks.pop() {
+            let node = tree.nodes.len();
+            if let Some(parent) = parent {
+                tree.nodes[parent].start = node as u32;
+            }
+            let range = &mut order[start..end];
+            let aabb =
+                range.iter().fold(Aabb::EMPTY, |all, part| all.union(&admitted(&boxes[*part as usize])));
+            if range.len() <= LEAF_PARTS {
+                tree.nodes.push(Node { aabb, start: start as u32, count: range.len() as u32 });
+                continue;
+            }
+            let middle = start + split(range, boxes, depth);
+            tree.nodes.push(Node { aabb, start: 0, count: 0 });
+            tasks.push(Task { start: middle, end, depth: depth + 1, parent: Some(node) });
+            tasks.push(Task { start, end: middle, depth: depth + 1, parent: None });
+        }
+        tree.order = order;
+        tree
+    }
+
+    /// The box around all parts; empty if there are none.
+    pub fn bounds(&self) -> Aabb {
+        self.nodes.first().map_or(Aabb::EMPTY, |root| root.aabb)
+    }
+
+    /// Calls `found` with every part whose leaf's box touches `aabb`, in an order that depends on the tree alone.
+    #[inline]
+    pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(u32)) {
+        self.walk(|b| b.overlaps(aabb), |parts| parts.iter().for_each(|part| found(*part)));
+    }
+
+    /// Visits the parts in leaves whose boxes a ray enters before a limit. `hit` gets a part and the present limit, and returns
+    /// the new one. `inverse` is the componentwise inverse of the direction.
+    pub fn cast_ray(
+        &self,
+        origin: Vector,
+        inverse: Vector,
+        limit: f32,
+        mut hit: impl FnMut(u32, f32) -> f32,
+    ) {
+        let limit = core::cell::Cell::new(limit);
+        self.walk(
+            |b| b.ray_entry(origin, inverse, limit.get()).is_some(),
+            |parts| parts.iter().for_each(|part| limit.set(hit(*part, limit.get()))),
+        );
+    }
+
+    /// Depth first through all boxes that pass the test.
+    #[inline(always)]
+    fn walk(&self, test: impl Fn(&Aabb) -> bool, mut leaf: impl FnMut(&[u32])) {
+        let mut stack = [0_u32; STACK];
+        let mut len = 0;
+        let mut next = if self.nodes.is_empty() { None } else { Some(0) };
+        while let Some(index) = next {
+            let node = &self.nodes[index];
+            next = None;
+            if test(&node.aabb) {
+                if node.count > 0 {
+                    leaf(&self.order[node.start as usize..(node.start + node.count) as usize]);
+                } else {
+                    stack[len] = node.start;
+                    len += 1;
+                    next = Some(index + 1);
+                }
+            }
+            if next.is_none() && len > 0 {
+                len -= 1;
+                next = Some(stack[len] as usize);
+            }
+        }
+    }
+}
+
+/// The box, or an empty one if it is inverted or NaN.
+#[inline(always)]
+fn admitted(aabb: &Aabb) -> Aabb {
+    let (low, high) = (aabb.min.to_array(), aabb.max.to_array());
+    if (0..DIM).all(|i| low[i] <= high[i]) { *aabb } else { Aabb::EMPTY }
+}
+
+/// Sorts at least two parts into two groups that are not empty, at the middle of the longest side of their centres' box.
+/// Returns the size of the first group.
+fn split(parts: &mut [u32], boxes: &[Aabb], depth: u32) -> usize {
+    // Twice the centre; what is not finite counts as 0.
+    let center = |part: u32| {
+        let b = &boxes[part as usize];
+        Vector::from_array((b.min + b.max).to_array().map(|c| if c.is_finite() { c } else { 0.0 }))
+    };
+    let around = parts.iter().fold(Aabb::EMPTY, |all, part| {
+        let c = center(*part);
+        Aabb { min: all.min.min(c), max: all.max.max(c) }
+    });
+    let size = (around.max - around.min).to_array();
+    let axis = (1..DIM).fold(0, |best, i| if size[i] > size[best] { i } else { best });
+    if depth < MAX_FREE_DEPTH {
+        let middle = around.center().to_array()[axis];
+        let (mut i, mut j) = (0, parts.len());
+        while i < j {
+            if center(parts[i]).to_array()[axis] <= middle {
+                i += 1;
+            } else {
+                j -= 1;
+                parts.swap(i, j);
+            }
+        }
+        if i > 0 && i < parts.len() {
+            return i;
+        }
+    }
+    let middle = parts.len() / 2;
+    let key = |part: &u32| center(*part).to_array()[axis];
+    parts.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
+    middle
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_query_finds_all_that_touches(
+            corners in prop::collection::vec(([-9.0..9.0f32, -9.0..9.0, -9.0..9.0], 0.0..2.0f32), 0..80),
+            copies in 1..40usize,
+            (at, reach) in ([-9.0..9.0f32, -9.0..9.0, -9.0..9.0], 0.0..4.0f32),
+        ) {
+            let vector = |v: [f32; 3]| Vector::from_array(core::array::from_fn(|i| v[i]));
+            let mut boxes: Vec<Aabb> =
+                corners.iter().map(|(c, size)| Aabb::new(vector(*c), vector(*c) + Vector::ONE * *size)).collect();
+            // Equal boxes cannot be told apart by any plane.
+            if let Some(first) = boxes.first().copied() {
+                boxes.extend((1..copies).map(|_| first));
+            }
+            let tree = PartTree::new(&boxes);
+            let wanted = Aabb::new(vector(at), vector(at)).grown(reach);
+            let mut found = vec![0; boxes.len()];
+            tree.query(&wanted, |part| found[part as usize] += 1);
+            for (i, b) in boxes.iter().enumerate() {
+                prop_assert!(found[i] <= 1 && (found[i] == 1 || !b.overlaps(&wanted)), "part {i} found {} times", found[i]);
+            }
+        }
+    }
+
+    #[test]
+    fn boxes_without_numbers_do_not_end_a_build() {
+        let odd = [Aabb::EMPTY, Aabb::new(Vector::ONE * f32::NAN, Vector::ONE), Aabb::EVERYTHING];
+        let boxes: Vec<Aabb> = (0..100).map(|i| odd[i % 3]).collect();
+        let tree = PartTree::new(&boxes);
+        let mut found = 0;
+        tree.query(&Aabb::new(Vector::ZERO, Vector::ZERO), |_| found += 1);
+        assert!(found >= 33);
+    }
+}
