@@ -42,7 +42,8 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32
     let best = if crossing { shallowest(&candidates) } else { nearest(&candidates) };
     let reach = prediction + a.radius + b.radius;
     if !crossing && best.square > reach * reach {
-        out.gap = best.square.sqrt() - a.radius - b.radius;
+        // Another feature may be nearer by the preference.
+        out.gap = best.square.sqrt() * (1.0 - PREFERENCE) - a.radius - b.radius;
         return;
     }
 
