@@ -67,8 +67,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    #[allow(clippy::useless_conversion, reason = "coordinates are i32 or i64")]
     fn cell(c: [i32; 3]) -> IVector {
-        IVector::from_array(core::array::from_fn(|i| c[i]))
+        IVector::from_array(core::array::from_fn(|i| c[i].into()))
     }
 
     proptest! {
@@ -78,7 +79,7 @@ mod tests {
             let boxes = joined(cells.iter().map(|c| IVector::from_array(*c)).collect());
             let mut count = 0;
             for [low, high] in &boxes {
-                count += (0..DIM).map(|i| high[i] - low[i] + 1).product::<i32>();
+                count += (0..DIM).fold(1, |count, i| count * (high[i] - low[i] + 1));
             }
             prop_assert_eq!(count as usize, cells.len());
             for c in &cells {
