@@ -112,8 +112,8 @@ impl Tables<'_> {
     }
 }
 
-/// Whether so few of the entities of some queries are needed that looking them up is cheaper than iterating. `all` are
-/// the size hints of the queries.
+/// Whether looking up the wanted entities is cheaper than iterating the queries: they are less than a quarter of all. `all`
+/// are the size hints of the queries.
 pub(crate) fn is_minority<const N: usize>(wanted: usize, all: [(usize, Option<usize>); N]) -> bool {
     4 * wanted < all.iter().map(|hint| hint.1.unwrap_or(0)).sum()
 }

@@ -11,7 +11,7 @@ use crate::shape::{Aabb, Composite, NO_FACET, Part, Shape, Surface};
 /// Manifolds with normals closer than this are merged: cos 2°. More merges slopes; less solves a plane several times.
 const SAME_NORMAL: f32 = 0.9994;
 
-/// Normals that lean over a border by less than this are the facet's own, in radians. More brakes what slides; rounding is
+/// Normals that lean over a border by less than this are the facet's own, in radians. More brakes sliding bodies; rounding is
 /// a tenth of it.
 const LEAN: f32 = 1.0e-3;
 
@@ -41,10 +41,10 @@ pub struct Look {
     pub motion: Vector,
 }
 
-/// Most steps to where a part meets what moves toward it. One that takes more meets where it then is.
+/// The maximum number of rounds of a cast. A pair that needs more meets where the last round placed it.
 const MAX_ROUNDS: usize = 16;
 
-/// Parts meet at this share of the prediction. More stops what passes by; less takes more rounds.
+/// Parts meet at a gap of this share of the prediction. More stops bodies that pass by; less takes more rounds.
 const MET: f32 = 0.1;
 
 /// A composite shape against a convex one, or against a part of another composite.
@@ -58,7 +58,7 @@ struct Pass<'a> {
     look: Look,
     /// Tells the features of several passes apart.
     name: u32,
-    /// Whether parts are looked at as if each were alone, however far ahead.
+    /// Whether each part is collided as if it were the only one, up to the end of the motion.
     alone: bool,
 }
 
@@ -227,7 +227,7 @@ impl Pass<'_> {
                 let along = local.normal.dot(way) * share;
                 let count = local.count;
                 for p in &mut local.points[..count] {
-                    // From the place on the other shape, where that is now.
+                    // The point is on the other shape, at that shape's current pose.
                     p.point -= way * share - local.normal * (0.5 * along);
                     p.separation -= along;
                 }
@@ -263,7 +263,7 @@ impl Pass<'_> {
                 };
             }
         }
-        // Where no border is met, the normal is that of a side that the facet does not have.
+        // A normal that leans over a border without points there belongs to no feature of the facet.
         let is_met = || borders.iter().any(|b| local.normal.dot(b.outward) > LEAN && b.is_met_by(local));
         if leans && !(is_free && is_met()) {
             collide_face(corners, own, self.other, self.pose, prediction, local);
