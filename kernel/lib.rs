@@ -13,6 +13,7 @@
 //! | [`contact`] | contacts by id, the narrow phase, and `Link`, which changes contacts, colours and islands |
 //! | [`graph`] | colours and islands of constraints |
 //! | [`solver`] | rows, substeps, poses |
+//! | [`query`] | rays, shape casts, nearest points, overlaps: of two shapes, and of all colliders |
 //! | [`thread_pool`] | the threads |
 //!
 //! `cargo run -p avian_kernel3d --example falling_box` is a whole step in 40 lines.
@@ -28,9 +29,11 @@ pub mod bvh;
 pub mod ccd;
 pub mod contact;
 pub mod data;
+mod distance;
 pub mod graph;
 pub mod manifold;
 pub mod math;
+pub mod query;
 pub mod shape;
 pub mod solver;
 pub mod table;

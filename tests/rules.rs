@@ -11,11 +11,12 @@ use std::path::{Path, PathBuf};
 const CFG_BUDGET: usize = 80;
 
 /// The kernel's folders from the bottom up: each may use those before it only.
-const KERNEL_FLOORS: [&str; 12] = [
+const KERNEL_FLOORS: [&str; 13] = [
     "math",
     "data",
     "thread_pool",
     "shape",
+    "distance",
     "bvh",
     "graph",
     "manifold",

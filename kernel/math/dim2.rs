@@ -93,6 +93,12 @@ impl Vector {
         self.x * other.y - self.y * other.x
     }
 
+    /// The same vector in `f64`.
+    #[inline(always)]
+    pub(crate) fn widen(self) -> Vector<f64> {
+        Vector { x: f64::from(self.x), y: f64::from(self.y) }
+    }
+
     /// Each component's absolute value.
     #[inline]
     pub fn abs(self) -> Self {
@@ -149,6 +155,20 @@ impl Vector<Scalar> {
     pub fn is_finite_world(self) -> bool {
         // `x * 0.0` is 0 unless x is infinite or NaN. The sum needs no branch.
         self.x * 0.0 + self.y * 0.0 == 0.0
+    }
+}
+
+impl Vector<f64> {
+    /// Rounded to `f32`.
+    #[inline(always)]
+    pub(crate) fn narrow(self) -> Vector {
+        Vector { x: self.x as f32, y: self.y as f32 }
+    }
+
+    /// The largest size of a component; infinite if one is not a number.
+    pub(crate) fn largest(self) -> f64 {
+        let finite = self.x * 0.0 + self.y * 0.0 == 0.0;
+        if finite { self.x.abs().max(self.y.abs()) } else { f64::INFINITY }
     }
 }
 
@@ -393,6 +413,11 @@ impl<N: Lane> Rot<N> {
 }
 
 impl Rot {
+    /// The same rotation in `f64`, of unit length.
+    #[inline]
+    pub(crate) fn widen(self) -> Rot<f64> {
+        Rot { cos: f64::from(self.cos), sin: f64::from(self.sin) }.normalized()
+    }
     /// The rotation by an angle in radians, counter-clockwise.
     pub fn from_angle(angle: f32) -> Self {
         let (sin, cos) = super::sin_cos(f64::from(angle));

@@ -90,6 +90,12 @@ impl Vector {
         Vector { x: self.x as Scalar, y: self.y as Scalar, z: self.z as Scalar }
     }
 
+    /// The same vector in `f64`.
+    #[inline(always)]
+    pub(crate) fn widen(self) -> Vector<f64> {
+        Vector { x: f64::from(self.x), y: f64::from(self.y), z: f64::from(self.z) }
+    }
+
     /// Each component's absolute value.
     #[inline]
     pub fn abs(self) -> Self {
@@ -154,6 +160,20 @@ impl Vector<Scalar> {
     pub fn is_finite_world(self) -> bool {
         // `x * 0.0` is 0 unless x is infinite or NaN. The sum needs no branch.
         self.x * 0.0 + self.y * 0.0 + self.z * 0.0 == 0.0
+    }
+}
+
+impl Vector<f64> {
+    /// Rounded to `f32`.
+    #[inline(always)]
+    pub(crate) fn narrow(self) -> Vector {
+        Vector { x: self.x as f32, y: self.y as f32, z: self.z as f32 }
+    }
+
+    /// The largest size of a component; infinite if one is not a number.
+    pub(crate) fn largest(self) -> f64 {
+        let finite = self.x * 0.0 + self.y * 0.0 + self.z * 0.0 == 0.0;
+        if finite { self.x.abs().max(self.y.abs()).max(self.z.abs()) } else { f64::INFINITY }
     }
 }
 
@@ -462,6 +482,12 @@ impl<N: Lane> Rot<N> {
 }
 
 impl Rot {
+    /// The same rotation in `f64`, of unit length.
+    #[inline]
+    pub(crate) fn widen(self) -> Rot<f64> {
+        Rot { x: f64::from(self.x), y: f64::from(self.y), z: f64::from(self.z), w: f64::from(self.w) }
+            .normalized()
+    }
     /// The rotation about the unit vector `axis` by an angle in radians, right-handed.
     pub fn from_axis_angle(axis: Vector, angle: f32) -> Self {
         let (sin, cos) = super::sin_cos(0.5 * f64::from(angle));

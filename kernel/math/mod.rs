@@ -91,6 +91,7 @@ pub use lane_sse::F32x4;
 #[cfg(feature = "3d")]
 pub(crate) use needle3::MAX_RATIO;
 pub use pose::{Pose, WorldPose, WorldVector};
+pub(crate) use pose::{wide_position, world_position};
 pub use tangent::{Tangent, TangentFrame, TangentMass};
 pub use trig::{atan2, cos, sin, sin_cos};
 

@@ -6,6 +6,34 @@ use super::{Rot, Scalar, Vector};
 /// A position in the world.
 pub type WorldVector = Vector<Scalar>;
 
+/// A world position in `f64`.
+#[cfg(feature = "f64")]
+#[inline(always)]
+pub(crate) fn wide_position(position: WorldVector) -> Vector<f64> {
+    position
+}
+
+/// A world position in `f64`.
+#[cfg(not(feature = "f64"))]
+#[inline(always)]
+pub(crate) fn wide_position(position: WorldVector) -> Vector<f64> {
+    position.widen()
+}
+
+/// A world position rounded from `f64`.
+#[cfg(feature = "f64")]
+#[inline(always)]
+pub(crate) fn world_position(position: Vector<f64>) -> WorldVector {
+    position
+}
+
+/// A world position rounded from `f64`.
+#[cfg(not(feature = "f64"))]
+#[inline(always)]
+pub(crate) fn world_position(position: Vector<f64>) -> WorldVector {
+    position.narrow()
+}
+
 /// A pose relative to another body or shape: rotate, then translate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {

@@ -97,6 +97,43 @@ impl PartTree {
         );
     }
 
+    /// Visits the parts of leaves by a distance of their boxes, nearer branches first, up to a limit. `entry` gives the distance
+    /// of a box, infinity to leave it out. `hit` gets a part and the present limit, and returns the new one; the walk ends
+    /// when it is negative.
+    pub fn visit(&self, mut limit: f32, entry: impl Fn(&Aabb) -> f32, mut hit: impl FnMut(u32, f32) -> f32) {
+        let mut stack = [(0_u32, 0.0_f32); STACK];
+        let mut len = 0;
+        let Some(root) = self.nodes.first() else { return };
+        let mut next = Some((0, entry(&root.aabb)));
+        while let Some((index, at)) = next {
+            next = None;
+            // Infinity is a miss also without a limit.
+            if at <= limit && at < f32::INFINITY {
+                let node = &self.nodes[index as usize];
+                if node.count == 0 {
+                    let children = [index + 1, node.start];
+                    let [first, second] =
+                        children.map(|child| (child, entry(&self.nodes[child as usize].aabb)));
+                    let (near, far) = if second.1 < first.1 { (second, first) } else { (first, second) };
+                    stack[len] = far;
+                    len += 1;
+                    next = Some(near);
+                } else {
+                    for part in &self.order[node.start as usize..(node.start + node.count) as usize] {
+                        limit = hit(*part, limit);
+                        if limit < 0.0 {
+                            return;
+                        }
+                    }
+                }
+            }
+            if next.is_none() && len > 0 {
+                len -= 1;
+                next = Some(stack[len]);
+            }
+        }
+    }
+
     /// Depth first through all boxes that pass the test.
     #[inline(always)]
     fn walk(&self, test: impl Fn(&Aabb) -> bool, mut leaf: impl FnMut(&[u32])) {

@@ -5,6 +5,7 @@
 //! `f64`, since tetrahedra may be thin.
 
 use super::view::{MatrixPose, View};
+use crate::distance::nearest_weights;
 use crate::math::{Vector, max};
 
 /// The most iterations. No tested hull needs as many; it only ends the loop.
@@ -13,14 +14,6 @@ const MAX_ITERATIONS: usize = 48;
 const GAP: f64 = 1.0e-6;
 
 type Wide = Vector<f64>;
-
-fn widen(v: Vector) -> Wide {
-    Wide { x: f64::from(v.x), y: f64::from(v.y), z: f64::from(v.z) }
-}
-
-fn narrow(v: Wide) -> Vector {
-    Vector { x: v.x as f32, y: v.y as f32, z: v.z as f32 }
-}
 
 /// The closest points of two polyhedra.
 #[derive(Clone, Copy)]
@@ -50,7 +43,7 @@ struct Vertex {
 pub(super) fn closest(a: &View, b: &View, frame: &MatrixPose) -> Option<Closest> {
     let vertex = |direction: Vector| {
         let (i, j) = (a.support(direction), b.support(-frame.direction_in(direction)));
-        let (p, q) = (widen(a.vertices[i]), widen(frame.point(b.vertices[j])));
+        let (p, q) = (a.vertices[i].widen(), frame.point(b.vertices[j]).widen());
         Vertex { a: p, b: q, w: p - q, ids: (i as u32, j as u32), weight: 1.0 }
     };
     let start = frame.point(b.center) - a.center;
@@ -65,7 +58,7 @@ pub(super) fn closest(a: &View, b: &View, frame: &MatrixPose) -> Option<Closest>
         if !(square > 1.0e-13 * scale) {
             return None;
         }
-        let new = vertex(narrow(nearest * (-1.0 / square.sqrt())));
+        let new = vertex((nearest * (-1.0 / square.sqrt())).narrow());
         scale = if new.w.length_squared() > scale { new.w.length_squared() } else { scale };
         let known = simplex[..count].iter().any(|v| v.ids == new.ids);
         if known || square - nearest.dot(new.w) <= GAP * square {
@@ -94,9 +87,9 @@ fn witness(simplex: &[Vertex], nearest: Wide) -> Closest {
         bits
     };
     Closest {
-        a: narrow(sum(|v| v.a)),
-        b: narrow(sum(|v| v.b)),
-        normal: narrow(nearest * (-1.0 / distance)),
+        a: sum(|v| v.a).narrow(),
+        b: sum(|v| v.b).narrow(),
+        normal: (nearest * (-1.0 / distance)).narrow(),
         distance: distance as f32,
         feature: mask(|v| v.ids.0) << 15 | mask(|v| v.ids.1),
     }
@@ -105,13 +98,8 @@ fn witness(simplex: &[Vertex], nearest: Wide) -> Closest {
 /// Reduces the simplex to its face nearest to the origin and returns the face's size and closest point. `None` if the origin
 /// is inside.
 fn solve(simplex: &mut [Vertex; 4], count: usize) -> Option<(usize, Wide)> {
-    let w = |i: usize| simplex[i].w;
-    let weights = match count {
-        1 => [1.0, 0.0, 0.0, 0.0],
-        2 => on_segment(w(0), w(1)),
-        3 => on_triangle(w(0), w(1), w(2)),
-        _ => on_tetrahedron([w(0), w(1), w(2), w(3)])?,
-    };
+    let corners = simplex.map(|v| v.w);
+    let weights = nearest_weights(&corners[..count])?;
     let mut kept = 0;
     let mut point = Wide::ZERO;
     for (i, weight) in weights.into_iter().enumerate().take(count) {
@@ -122,74 +110,6 @@ fn solve(simplex: &mut [Vertex; 4], count: usize) -> Option<(usize, Wide)> {
         }
     }
     Some((kept, point))
-}
-
-fn on_segment(a: Wide, b: Wide) -> [f64; 4] {
-    let ab = b - a;
-    let square = ab.length_squared();
-    let t = if square > 0.0 { -a.dot(ab) / square } else { 0.0 };
-    let t = t.clamp(0.0, 1.0);
-    [1.0 - t, t, 0.0, 0.0]
-}
-
-/// Barycentric weights of the point of a triangle nearest to the origin, by Voronoi regions (Ericson,
-/// "Real-Time Collision Detection", 5.1.5).
-fn on_triangle(a: Wide, b: Wide, c: Wide) -> [f64; 4] {
-    let (ab, ac) = (b - a, c - a);
-    let (d1, d2) = (-ab.dot(a), -ac.dot(a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return [1.0, 0.0, 0.0, 0.0];
-    }
-    let (d3, d4) = (-ab.dot(b), -ac.dot(b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return [0.0, 1.0, 0.0, 0.0];
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let t = d1 / (d1 - d3);
-        return [1.0 - t, t, 0.0, 0.0];
-    }
-    let (d5, d6) = (-ab.dot(c), -ac.dot(c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return [0.0, 0.0, 1.0, 0.0];
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let t = d2 / (d2 - d6);
-        return [1.0 - t, 0.0, t, 0.0];
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return [0.0, 1.0 - t, t, 0.0];
-    }
-    let k = 1.0 / (va + vb + vc);
-    let (v, w) = (vb * k, vc * k);
-    [1.0 - v - w, v, w, 0.0]
-}
-
-fn on_tetrahedron(p: [Wide; 4]) -> Option<[f64; 4]> {
-    // Each face with the corner across from it.
-    let faces = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]];
-    let mut best: Option<(f64, [f64; 4])> = None;
-    for [i, j, k, across] in faces {
-        let normal = (p[j] - p[i]).cross(p[k] - p[i]);
-        let (origin, inside) = (-normal.dot(p[i]), normal.dot(p[across] - p[i]));
-        // A flat tetrahedron has no inside: every face is a candidate.
-        let flat = inside.abs() <= 1.0e-12 * normal.length() * (p[across] - p[i]).length();
-        if origin * inside > 0.0 && !flat {
-            continue;
-        }
-        let local = on_triangle(p[i], p[j], p[k]);
-        let point = p[i] * local[0] + p[j] * local[1] + p[k] * local[2];
-        let square = point.length_squared();
-        if best.is_none_or(|b| square < b.0) {
-            let mut weights = [0.0; 4];
-            (weights[i], weights[j], weights[k]) = (local[0], local[1], local[2]);
-            best = Some((square, weights));
-        }
-    }
-    best.map(|b| b.1)
 }
 
 /// The distance below which closest points of shapes of these extents have no direction. Separating axes are used there.

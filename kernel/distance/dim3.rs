@@ -1,0 +1,46 @@
+//! Simplices and vertices in space. `dim2.rs` has the same functions for the plane.
+
+use super::simplex::{Weights, on_segment, on_triangle};
+use crate::math::Vector;
+use crate::shape::{Hull, farthest};
+
+/// The weights of the corners of the point of a simplex that is nearest to the origin. `None` if the origin is inside.
+pub(crate) fn nearest_weights(corners: &[Vector<f64>]) -> Option<Weights> {
+    match *corners {
+        [_] => Some([1.0, 0.0, 0.0, 0.0]),
+        [a, b] => Some(on_segment(a, b)),
+        [a, b, c] => Some(on_triangle(a, b, c)),
+        [a, b, c, d] => on_tetrahedron([a, b, c, d]),
+        _ => None,
+    }
+}
+
+fn on_tetrahedron(p: [Vector<f64>; 4]) -> Option<Weights> {
+    // Each face with the corner across from it.
+    let faces = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]];
+    let mut best: Option<(f64, Weights)> = None;
+    for [i, j, k, across] in faces {
+        let normal = (p[j] - p[i]).cross(p[k] - p[i]);
+        let (origin, inside) = (-normal.dot(p[i]), normal.dot(p[across] - p[i]));
+        // A flat tetrahedron has no inside: every face is a candidate.
+        let flat = inside.abs() <= 1.0e-12 * normal.length() * (p[across] - p[i]).length();
+        if origin * inside > 0.0 && !flat {
+            continue;
+        }
+        let local = on_triangle(p[i], p[j], p[k]);
+        let point = p[i] * local[0] + p[j] * local[1] + p[k] * local[2];
+        let square = point.length_squared();
+        if best.is_none_or(|b| square < b.0) {
+            let mut weights = [0.0; 4];
+            (weights[i], weights[j], weights[k]) = (local[0], local[1], local[2]);
+            best = Some((square, weights));
+        }
+    }
+    best.map(|b| b.1)
+}
+
+/// The vertex farthest along a direction.
+pub(super) fn farthest_vertex(hull: &Hull, direction: Vector) -> Vector {
+    let vertices = hull.vertices();
+    vertices[farthest(hull.blocks(), direction).0.min(vertices.len() - 1)]
+}

@@ -1,0 +1,15 @@
+//! Closest points of convex shapes by their support points.
+//!
+//! A convex shape is a core (a point, a segment, a polytope, or whatever has support points) and a radius around it. Cores that
+//! are apart have closest points ([`closest_cores`]); what overlaps deeper is measured by manifolds.
+
+mod convex;
+#[cfg_attr(feature = "2d", path = "dim2.rs")]
+#[cfg_attr(feature = "3d", path = "dim3.rs")]
+mod dim;
+mod gjk;
+mod simplex;
+
+pub(crate) use convex::Convex;
+pub(crate) use dim::nearest_weights;
+pub(crate) use gjk::{Accuracy, Cores, Frame, closest_cores};

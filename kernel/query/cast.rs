@@ -1,0 +1,247 @@
+//! When a shape that moves along a line meets another, by conservative advancement (B. Mirtich, "Impulse-based Dynamic
+//! Simulation", 1996).
+//!
+//! The distance of two convex shapes is a convex function of the way. The plane between both closes at a constant rate, and the
+//! distance is never less than its gap: advancing by gap / rate is Newton's method on a convex function, from the left. It does
+//! not pass the first root, ends after as many faces as are met on polytopes, and doubles its digits on curves.
+
+use super::closest::{Closest, closest};
+use crate::distance::{Accuracy, Convex, Frame, closest_cores};
+use crate::math::{Pose, Vector, max};
+use crate::shape::{Aabb, Composite, HalfSpace, Part, Shape};
+
+/// Most steps of an advance. A shape that touches another in passing takes the most: each step halves what is left.
+const MAX_ROUNDS: usize = 64;
+
+/// Shapes meet when they are as near as this share of their sizes.
+const MET: f64 = 1.0e-6;
+
+/// What counts as a hit of a cast.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CastConfig {
+    /// The distance at which shapes meet, in metres.
+    pub target_distance: f32,
+    /// Whether shapes that overlap from the start, and do not go deeper, are passed by.
+    pub ignore_origin_penetration: bool,
+    /// Whether points and normal are computed of shapes that overlap from the start.
+    pub compute_contact_on_penetration: bool,
+}
+
+impl Default for CastConfig {
+    fn default() -> Self {
+        Self { target_distance: 0.0, ignore_origin_penetration: false, compute_contact_on_penetration: true }
+    }
+}
+
+/// How a shape that moves, B, meets one that does not, A.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CastHit {
+    /// The way until then, in metres.
+    pub distance: f32,
+    /// The nearest points then, on A and on B, in A's frame. Both are the frame's origin if they were not asked for.
+    pub points: [Vector; 2],
+    /// The unit normal from A to B, in A's frame. Zero if it was not asked for.
+    pub normal: Vector,
+}
+
+/// A cast in the frame of the shape that does not move.
+#[derive(Clone, Copy)]
+struct Way {
+    /// Of unit length.
+    direction: Vector,
+    config: CastConfig,
+}
+
+/// The first hit of shape `b`, which moves from `pose_b_in_a` along the unit vector `direction` in A's frame, on shape `a` within
+/// `max_distance`, in metres.
+///
+/// `None` also if a number is not finite, and for foreign shapes.
+pub fn cast_shape(
+    a: &Shape,
+    b: &Shape,
+    pose_b_in_a: &Pose,
+    direction: Vector,
+    max_distance: f32,
+    config: &CastConfig,
+) -> Option<CastHit> {
+    let way = Way { direction, config: *config };
+    let limit = if max_distance > f32::MAX { f32::MAX } else { max_distance };
+    if !(limit >= 0.0) {
+        return None;
+    }
+    let hit = of_shapes(a, b, pose_b_in_a, &way, limit)?;
+    let finite =
+        hit.distance.is_finite() && hit.normal.is_finite() && hit.points.iter().all(|p| p.is_finite());
+    (finite && hit.distance <= limit).then_some(hit)
+}
+
+fn of_shapes(a: &Shape, b: &Shape, pose: &Pose, way: &Way, limit: f32) -> Option<CastHit> {
+    match (a, b) {
+        (Shape::Foreign(_), _) | (_, Shape::Foreign(_)) => None,
+        (Shape::Composite(a), b) => of_parts(a, b, pose, way, limit),
+        (Shape::HalfSpace(plane), b) if Convex::of(b).is_some() => onto_plane(*plane, a, b, pose, way, limit),
+        (a, Shape::Composite(_) | Shape::HalfSpace(_)) if !matches!(a, Shape::HalfSpace(_)) => {
+            turned(a, b, pose, way, limit)
+        }
+        (Shape::HalfSpace(_), Shape::Composite(_)) => turned(a, b, pose, way, limit),
+        (Shape::HalfSpace(a_plane), b) => facing(*a_plane, a, b, pose, way),
+        (a, b) => of_convex(a, b, pose, way, limit),
+    }
+}
+
+/// The same cast with A moving against B.
+fn turned(a: &Shape, b: &Shape, pose: &Pose, way: &Way, limit: f32) -> Option<CastHit> {
+    let back = Way { direction: -pose.rotation.inverse_rotate(way.direction), ..*way };
+    let hit = of_shapes(b, a, &pose.inverse(), &back, limit)?;
+    let then = Pose::new(pose.position + way.direction * hit.distance, pose.rotation);
+    if hit.normal == Vector::ZERO {
+        return Some(hit);
+    }
+    let [b, a] = hit.points.map(|point| then.transform(point));
+    Some(CastHit { points: [a, b], normal: -then.rotation.rotate(hit.normal), ..hit })
+}
+
+/// The first hit on any part; of equally near parts, on the first.
+fn of_parts(composite: &Composite<Shape>, b: &Shape, pose: &Pose, way: &Way, limit: f32) -> Option<CastHit> {
+    let around = b.local_box(pose);
+    let (from, inverse) = (around.center(), way.direction.to_array().map(|c| 1.0 / c));
+    let slack = 1.0e-6 * (from.abs() + around.half()).max_element();
+    let grown = around.half() + Vector::ONE * (max(way.config.target_distance, 0.0) + slack);
+    let entry = |aabb: &Aabb| {
+        let aabb = Aabb { min: aabb.min - grown, max: aabb.max + grown };
+        aabb.ray_entry(from, Vector::from_array(inverse), f32::MAX).unwrap_or(f32::INFINITY)
+    };
+    let mut best: Option<(CastHit, u32)> = None;
+    composite.tree().visit(limit, entry, |id, limit| {
+        let hit = match composite.part(id) {
+            Part::Facet(facet) => of_shapes(&Shape::from(facet), b, pose, way, limit),
+            Part::Solid(own, solid) => {
+                let inner = Way { direction: own.rotation.inverse_rotate(way.direction), ..*way };
+                let hit = of_shapes(solid, b, &own.inverse().then(pose), &inner, limit);
+                hit.map(|hit| CastHit {
+                    points: hit.points.map(|point| own.transform(point)),
+                    normal: own.rotation.rotate(hit.normal),
+                    ..hit
+                })
+            }
+        };
+        let Some(hit) = hit.filter(|hit| hit.distance <= limit) else { return limit };
+        if best.is_none_or(|best| (hit.distance, id) < (best.0.distance, best.1)) {
+            best = Some((hit, id));
+        }
+        hit.distance
+    });
+    best.map(|best| best.0)
+}
+
+/// A hit of shapes that are near enough from the start.
+fn at_start(a: &Shape, b: &Shape, pose: &Pose, way: &Way) -> Option<CastHit> {
+    let Way { direction, config } = way;
+    let unknown = CastHit { distance: 0.0, points: [Vector::ZERO; 2], normal: Vector::ZERO };
+    if !config.ignore_origin_penetration && !config.compute_contact_on_penetration {
+        return Some(unknown);
+    }
+    let Closest { points, normal, .. } = closest(a, b, pose, f32::MAX)?;
+    if config.ignore_origin_penetration && direction.dot(normal) >= 0.0 {
+        return None;
+    }
+    let known = CastHit { distance: 0.0, points, normal };
+    Some(if config.compute_contact_on_penetration { known } else { unknown })
+}
+
+fn size_of(shape: &Shape) -> f64 {
+    f64::from(shape.local_aabb(Pose::IDENTITY.rotation).half().length())
+}
+
+fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, way: &Way, limit: f32) -> Option<CastHit> {
+    let (a, b) = (Convex::of(shape_a)?, Convex::of(shape_b)?);
+    let direction = way.direction.widen();
+    let radii = [a.radius, b.radius].map(f64::from);
+    let target = radii[0] + radii[1] + f64::from(max(way.config.target_distance, 0.0));
+    let met = MET * (size_of(shape_a) + size_of(shape_b));
+    let accuracy = Accuracy { tolerance: 0.1 * met, beyond: f64::INFINITY };
+    let start = Frame::from(pose);
+    let (mut way_done, mut normal) = (0.0, Vector::<f64>::ZERO);
+    for round in 0..MAX_ROUNDS {
+        let frame = Frame { position: start.position + direction * way_done, rotation: start.rotation };
+        let guess = if round == 0 { direction * -1.0 } else { normal };
+        let cores = closest_cores(&a, &b, &frame, guess, accuracy)?;
+        let gap = cores.distance - target;
+        if round == 0 && gap <= 0.0 {
+            return at_start(shape_a, shape_b, pose, way);
+        }
+        // Where cores touch the normal is that of the plane which was crossed.
+        if cores.distance > 0.0 {
+            normal = cores.normal;
+        }
+        let rate = -direction.dot(normal);
+        if gap <= met {
+            // Those that already part, or slide along each other, do not meet.
+            let parting = !(rate > 1.0e-7);
+            if parting && round == 0 {
+                return None;
+            }
+            // The rest of the way is short, so that the points stay what they are.
+            let rest = if parting { 0.0 } else { (gap / rate).clamp(0.0, 16.0 * met) };
+            let distance = (way_done + rest).min(f64::from(limit).max(way_done));
+            let cores = if cores.distance > 0.0 {
+                cores
+            } else {
+                let back = Frame { position: frame.position - direction * (4.0 * met), ..frame };
+                closest_cores(&a, &b, &back, normal, accuracy)?
+            };
+            let normal = if cores.distance > 0.0 { cores.normal } else { normal };
+            let on_a = cores.a + normal * radii[0];
+            let on_b = on_a + normal * (target - radii[0] - radii[1]);
+            let points = [on_a.narrow(), on_b.narrow()];
+            return Some(CastHit { distance: distance as f32, points, normal: normal.narrow() });
+        }
+        // A NaN is a miss.
+        if !(rate > 0.0) {
+            return None;
+        }
+        // The plane's gap may be less than the distance by the tolerance.
+        let left = (cores.gap - target - 0.5 * met).max(0.25 * met);
+        way_done += left / rate;
+        if !(way_done <= f64::from(limit)) {
+            return None;
+        }
+    }
+    None
+}
+
+/// A bounded convex shape that moves onto a half-space.
+fn onto_plane(plane: HalfSpace, a: &Shape, b: &Shape, pose: &Pose, way: &Way, limit: f32) -> Option<CastHit> {
+    let now = closest(a, b, pose, f32::MAX)?;
+    let gap = f64::from(now.distance) - f64::from(max(way.config.target_distance, 0.0));
+    if gap <= 0.0 {
+        return at_start(a, b, pose, way);
+    }
+    let rate = -way.direction.widen().dot(plane.normal.widen());
+    if !(rate > 0.0) {
+        return None;
+    }
+    let distance = (gap / rate) as f32;
+    if !(distance <= limit) {
+        return None;
+    }
+    let on_b = now.points[1] + way.direction * distance;
+    let on_a = on_b - plane.normal * on_b.dot(plane.normal);
+    Some(CastHit { distance, points: [on_a, on_b], normal: plane.normal })
+}
+
+/// Two half-spaces.
+fn facing(plane: HalfSpace, a: &Shape, b: &Shape, pose: &Pose, way: &Way) -> Option<CastHit> {
+    let now = closest(a, b, pose, f32::MAX)?;
+    let gap = now.distance - max(way.config.target_distance, 0.0);
+    if gap <= 0.0 {
+        return at_start(a, b, pose, way);
+    }
+    let rate = -way.direction.dot(plane.normal);
+    if !(rate > 0.0) {
+        return None;
+    }
+    let distance = gap / rate;
+    let points = [now.points[0], now.points[1] + way.direction * distance];
+    Some(CastHit { distance, points, normal: plane.normal })
+}

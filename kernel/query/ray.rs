@@ -1,0 +1,113 @@
+//! Rays in the world.
+
+use super::hits::Hit;
+use super::near::Line;
+use crate::bvh::Trees;
+use crate::math::{Rot, Scalar, Vector, WorldPose, WorldVector, wide_position};
+use crate::shape::Shape;
+
+/// Rays that begin farther than this from a shape, in metres, are cast from a nearer point: `f32` is too coarse there.
+const FAR: f64 = 8.0;
+
+/// A ray in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    line: Line,
+    max_distance: Scalar,
+    solid: bool,
+}
+
+/// The hit of a ray on a collider.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayCastHit {
+    /// The collider.
+    pub collider: u32,
+    /// The distance along the ray, in metres.
+    pub distance: Scalar,
+    /// The outward unit normal; zero if the ray begins inside of a solid.
+    pub normal: Vector,
+}
+
+impl Hit for RayCastHit {
+    fn distance(&self) -> Scalar {
+        self.distance
+    }
+
+    fn collider(&self) -> u32 {
+        self.collider
+    }
+}
+
+impl Ray {
+    /// The ray from `origin` along `direction`, of any length, up to `max_distance` metres, which may be infinite.
+    ///
+    /// A ray that begins inside of a shape hits it at distance 0 if `solid`, else from within.
+    ///
+    /// `None` if origin or direction is not finite, the direction is zero, or the distance negative or NaN: such a ray hits
+    /// nothing.
+    pub fn new(
+        origin: WorldVector,
+        direction: WorldVector,
+        max_distance: Scalar,
+        solid: bool,
+    ) -> Option<Self> {
+        let line = Line::new(origin, direction)?;
+        let max_distance = if max_distance > Scalar::MAX { Scalar::MAX } else { max_distance };
+        (max_distance >= 0.0).then_some(Self { line, max_distance, solid })
+    }
+
+    /// Its length in metres.
+    pub fn max_distance(&self) -> Scalar {
+        self.max_distance
+    }
+
+    /// Calls `visit` with the colliders whose boxes it meets, nearer branches first, and the present limit. It returns the new
+    /// limit: the distance of a hit to find nearer ones only, negative to stop.
+    pub fn visit(&self, trees: &Trees, visit: impl FnMut(u32, Scalar) -> Scalar) {
+        self.line.visit(trees, Vector::ZERO, self.max_distance, visit);
+    }
+
+    /// The first hit of a collider's shape at a pose, within `limit` metres. Foreign shapes are never hit.
+    pub fn hit(&self, collider: u32, shape: &Shape, pose: &WorldPose, limit: Scalar) -> Option<RayCastHit> {
+        let rotation: Rot<f64> = pose.rotation.widen();
+        let origin = rotation.inverse_rotate(self.line.origin - wide_position(pose.position));
+        let direction = rotation.inverse_rotate(self.line.direction);
+        let before = lead(shape, origin, direction);
+        let from = (origin + direction * before).narrow();
+        let rest = f64::from(limit) - before;
+        if !(rest >= 0.0) || !from.is_finite() {
+            return None;
+        }
+        // The end of the ray is decided in full precision.
+        let reach = (rest as f32).next_up();
+        let hit = shape.cast_ray(
+            from,
+            direction.narrow(),
+            if reach < f32::MAX { reach } else { f32::MAX },
+            self.solid,
+        )?;
+        let distance = (before + f64::from(hit.distance)) as Scalar;
+        let normal = pose.rotation.rotate(hit.normal);
+        (distance <= limit && distance.is_finite() && normal.is_finite()).then_some(RayCastHit {
+            collider,
+            distance,
+            normal,
+        })
+    }
+}
+
+/// A way along a line, in metres, after which a shape around the frame's origin is not met yet. 0 where it is near.
+fn lead(shape: &Shape, origin: Vector<f64>, direction: Vector<f64>) -> f64 {
+    if !(origin.length_squared() > FAR * FAR) {
+        return 0.0;
+    }
+    way_to_ball(shape, 0.0, origin, direction)
+}
+
+/// The way along a line until it may be within `room` metres of the ball around a shape.
+pub(super) fn way_to_ball(shape: &Shape, room: f64, origin: Vector<f64>, direction: Vector<f64>) -> f64 {
+    let aabb = shape.local_aabb(Rot::IDENTITY);
+    let radius = 1.001 * f64::from(aabb.half().length()) + room;
+    let way = (aabb.center().widen() - origin).dot(direction) - radius;
+    if way > 0.0 && radius < 1.0e9 { way } else { 0.0 }
+}
