@@ -47,7 +47,8 @@ fn overlaps_by<S>(input: &NarrowPhaseInput<S>, share: f32, contact: &Contact) ->
 #[inline(always)]
 pub(super) fn set_platform<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact) {
     let is_platform = |body: u32| body == NONE || input.bodies[body].kind != BodyKind::Dynamic;
-    let is_round = |s: &Shape| matches!(s, Shape::Ball(_) | Shape::Capsule(_) | Shape::Segment(_));
+    let is_round =
+        |s: &Shape| matches!(s, Shape::Ball(_) | Shape::Capsule(_) | Shape::Curved(_) | Shape::Segment(_));
     let are_round = contact.colliders.iter().all(|id| is_round(&input.colliders[*id].def.shape));
     let [a, b] = contact.bodies.map(|body| !are_round && is_platform(body));
     contact.flags.set(ContactFlags::PLATFORM_A, a);

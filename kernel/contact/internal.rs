@@ -13,6 +13,7 @@ use super::input::{ManifoldSource, NarrowPhaseInput, smaller};
 use super::record::{Contact, ContactFlags, Manifold};
 use super::table::{ContactTable, PointCount};
 use crate::math::{Vector, max, min};
+use crate::shape::Shape;
 use crate::table::{BodyKind, NONE};
 use crate::thread_pool::ThreadPool;
 
@@ -63,7 +64,8 @@ impl<'a> Seen<'a> {
         let origin = (poses[ground].center - poses[side].center).to_local() - frozen;
         let normal = if side == 0 { -manifold.normal } else { manifold.normal };
         let [a, b] = input.reaches(contact);
-        let is_clipped = manifold.radii == [0.0; 2];
+        let is_curved = |id: u32| matches!(input.colliders[id].def.shape, Shape::Curved(_));
+        let is_clipped = manifold.radii == [0.0; 2] || contact.colliders.into_iter().any(is_curved);
         let clipped = if is_clipped { CLIPPED * smaller([a.extent, b.extent]) } else { 0.0 };
         Self { manifold, normal, origin, flush: FLUSH + clipped }
     }

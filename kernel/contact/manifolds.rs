@@ -69,12 +69,10 @@ pub(super) fn replace<S: ManifoldSource>(
     // From body A's centre of mass to collider A's origin, in world axes.
     let to_shape = (pose_a.position - body_a.center).to_local();
     let old = core::mem::take(&mut contact.manifold);
+    let is_foreign = contact.flags.has(ContactFlags::FOREIGN);
     for (i, local) in buffers.local.iter().enumerate() {
         let mut m = to_world(local, pose_a.rotation, to_shape, margin);
-        m.radii = match contact.flags.has(ContactFlags::COMPOSITE) {
-            true => local.radii,
-            false => [ca.shape.radius(), cb.shape.radius()],
-        };
+        m.radii = if is_foreign { [ca.shape.radius(), cb.shape.radius()] } else { local.radii };
         if let Some(meeting) = meeting {
             meeting.rewind(&mut m);
         }

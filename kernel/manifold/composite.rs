@@ -10,6 +10,8 @@ use crate::shape::{Aabb, Composite, NO_FACET, Part, Shape, Surface};
 
 /// Manifolds with normals closer than this are merged: cos 2°. More merges slopes; less solves a plane several times.
 const SAME_NORMAL: f32 = 0.9994;
+/// Manifolds of curved shapes are merged if their radii differ by less than this share, as they do by less than 2°.
+const SAME_RADIUS: f32 = 0.02;
 
 /// Normals that lean over a border by less than this are the facet's own, in radians. More brakes sliding bodies; rounding is
 /// a tenth of it.
@@ -191,19 +193,16 @@ impl Pass<'_> {
     /// Fills `local` with the contact of one part as if there were no other.
     fn collide_alone(&self, part: u32, prediction: f32, local: &mut LocalManifold) {
         let mut none = FeatureCache::NONE;
-        let radius = match self.composite.part(part) {
+        match self.composite.part(part) {
             Part::Facet(facet) => {
                 collide(&Shape::from(facet), self.other, self.pose, prediction, &mut none, local);
-                0.0
             }
             Part::Solid(at, solid) => {
                 collide(solid, self.other, &at.inverse().then(self.pose), prediction, &mut none, local);
                 local.normal = at.rotation.rotate(local.normal);
                 local.points[..local.count].iter_mut().for_each(|p| p.point = at.transform(p.point));
-                solid.radius()
             }
-        };
-        local.radii = [radius, self.other.radius()];
+        }
     }
 
     /// Follows the motion to where a part that is farther away than the prediction meets the other shape. `local` receives the
@@ -306,9 +305,10 @@ fn merge(buffers: &mut CompositeBuffers, out: &mut Vec<LocalManifold>) {
     groups.clear();
     let start = out.len();
     for m in found.iter() {
-        let is_same = |o: &LocalManifold| {
-            o.normal.dot(m.normal) > SAME_NORMAL && o.radii.map(f32::to_bits) == m.radii.map(f32::to_bits)
+        let is_round_alike = |o: &LocalManifold| {
+            o.radii.iter().zip(m.radii).all(|(r, q)| (r - q).abs() <= SAME_RADIUS * max(*r, q))
         };
+        let is_same = |o: &LocalManifold| o.normal.dot(m.normal) > SAME_NORMAL && is_round_alike(o);
         let group = out[start..].iter().position(is_same);
         groups.push(group.unwrap_or(out.len() - start));
         if group.is_none() {

@@ -38,7 +38,7 @@ pub struct LocalManifold {
     pub count: usize,
     /// A lower bound of the distance of shapes without points, in metres; 0 if it is not known.
     pub gap: f32,
-    /// The radii of the two parts of composite shapes; 0 for others, which know them.
+    /// How far the core that each surface turns about is behind it, in metres: a centre, an axis, a centre of curvature.
     pub radii: [f32; 2],
 }
 

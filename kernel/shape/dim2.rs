@@ -1,8 +1,10 @@
 //! Shapes in the plane: masses and areas, rays against triangles and segments, the convex polygon.
 
+mod curved2;
 mod hull2;
 
 pub use super::Segment as Facet;
+pub use curved2::Curved;
 pub use hull2::Hull;
 
 pub(crate) use super::primitives::{direction, direction_or};

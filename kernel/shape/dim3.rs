@@ -1,9 +1,14 @@
 //! What differs in space: mass properties, rays against flat shapes, and the polyhedron. `dim2.rs`
 //! exports the same names.
 
+mod curved3;
 mod hull3;
+#[cfg(test)]
+#[path = "tests_rays3.rs"]
+mod rays;
 
 pub use super::Triangle as Facet;
+pub use curved3::Curved;
 pub use hull3::{Edge, Face, Hull};
 pub(crate) use hull3::{EdgeBlock, FaceBlock, farthest, largest, pack};
 

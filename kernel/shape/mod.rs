@@ -1,7 +1,7 @@
 //! Shapes: their boxes, support points, masses, and ray hits.
 //!
-//! Shapes are in `f32`, in a frame of their own: convex, or [composites](Composite) of convex parts. All other shapes are [`Shape::Foreign`] in the tables, and get their
-//! manifolds from a [`ManifoldSource`](crate::contact::ManifoldSource).
+//! Shapes are in `f32`, in a frame of their own: convex, or [composites](Composite) of convex parts. All other shapes are
+//! [`Shape::Foreign`] in the tables, and get their manifolds from a [`ManifoldSource`](crate::contact::ManifoldSource).
 
 mod aabb;
 mod composite;
@@ -35,6 +35,8 @@ pub enum Shape {
     Hull(Arc<Hull>),
     /// A triangle: solid in 2D, a two-sided surface in 3D.
     Triangle(Triangle),
+    /// An ellipse in 2D; a cylinder, cone or frustum in 3D.
+    Curved(Curved),
     /// A line segment without thickness.
     Segment(Segment),
     /// The half of space behind a plane through the origin.
@@ -100,8 +102,8 @@ impl Shape {
         self.local_aabb(pose.rotation).at(pose.position)
     }
 
-    /// Whether another shape is known to be the same. Hulls and composites are compared by reference. Foreign shapes are never known to be the
-    /// same.
+    /// Whether another shape is known to be the same. Hulls and composites are compared by reference. Foreign shapes are
+    /// never known to be the same.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Ball(a), Self::Ball(b)) => a == b,
@@ -110,6 +112,7 @@ impl Shape {
             (Self::Hull(a), Self::Hull(b)) => Arc::ptr_eq(a, b),
             (Self::Triangle(a), Self::Triangle(b)) => a == b,
             (Self::Segment(a), Self::Segment(b)) => a == b,
+            (Self::Curved(a), Self::Curved(b)) => a == b,
             (Self::HalfSpace(a), Self::HalfSpace(b)) => a == b,
             (Self::Composite(a), Self::Composite(b)) => Arc::ptr_eq(a, b),
             _ => false,
@@ -133,6 +136,7 @@ impl Shape {
             Self::Hull(s) => Aabb::around(s.vertices().iter().map(|v| rotation.rotate(*v))).grown(s.radius()),
             Self::Triangle(s) => Aabb::around([s.a, s.b, s.c].map(|v| rotation.rotate(v))),
             Self::Segment(s) => Aabb::around([s.a, s.b].map(|v| rotation.rotate(v))),
+            Self::Curved(s) => s.local_aabb(rotation),
             Self::HalfSpace(_) => Aabb::EVERYTHING,
             Self::Composite(s) => composite_box(s, rotation),
             Self::Foreign(s) => s.aabb.rotated(rotation),
@@ -149,6 +153,7 @@ impl Shape {
             Self::Hull(s) => s.support(direction),
             Self::Triangle(s) => s.support(direction),
             Self::Segment(s) => s.support(direction),
+            Self::Curved(s) => s.support(direction),
             Self::HalfSpace(_) | Self::Composite(_) | Self::Foreign(_) => return None,
         })
     }
@@ -166,6 +171,7 @@ impl Shape {
             Self::Hull(s) => farthest(s.vertices()) + s.radius(),
             Self::Triangle(s) => farthest(&[s.a, s.b, s.c]),
             Self::Segment(s) => farthest(&[s.a, s.b]),
+            Self::Curved(s) => s.extent(center),
             Self::HalfSpace(_) => 0.0,
             Self::Composite(s) => match s.surface() {
                 Some(surface) => farthest(surface.vertices()),
@@ -198,6 +204,7 @@ impl Shape {
             Self::Cuboid(s) => (Vector::ZERO, s.half.min_element()),
             Self::Hull(s) => s.core(),
             Self::Triangle(s) => core_of_triangle(s),
+            Self::Curved(s) => s.core(),
             Self::Segment(s) => ((s.a + s.b) * 0.5, 0.0),
             Self::HalfSpace(_) => (Vector::ZERO, f32::MAX),
             Self::Composite(s) => core_of_composite(s),
@@ -206,8 +213,8 @@ impl Shape {
         }
     }
 
-    /// The radius around the shape's core (a point, a segment or a polygon), in metres. Zero for sharp, composite
-    /// and foreign shapes.
+    /// The radius around the shape's core (a point, a segment or a polygon), in metres. Zero for sharp, curved, composite and
+    /// foreign shapes.
     pub fn radius(&self) -> f32 {
         match self {
             Self::Ball(s) => s.radius,
@@ -216,6 +223,7 @@ impl Shape {
             Self::Cuboid(_)
             | Self::Triangle(_)
             | Self::Segment(_)
+            | Self::Curved(_)
             | Self::HalfSpace(_)
             | Self::Composite(_)
             | Self::Foreign(_) => 0.0,
@@ -242,6 +250,7 @@ impl Shape {
             Self::Hull(s) => s.cast_ray(origin, direction, max_distance, solid),
             Self::Triangle(s) => cast_ray_triangle(s, origin, direction, max_distance, solid),
             Self::Segment(s) => cast_ray_segment(s, origin, direction, max_distance),
+            Self::Curved(s) => s.cast_ray(origin, direction, max_distance, solid),
             Self::HalfSpace(s) => s.cast_ray(origin, direction, max_distance, solid),
             Self::Composite(s) => cast_ray_composite(s, origin, direction, max_distance, solid),
             Self::Foreign(_) => None,
@@ -260,6 +269,7 @@ impl Shape {
             Self::Composite(s) => {
                 mass_of_compound(s.solids().iter().map(|(p, s)| (p, s.mass_properties(1.0))))
             }
+            Self::Curved(s) => s.unit_mass(),
             Self::Segment(_) | Self::HalfSpace(_) | Self::Foreign(_) => MassProperties::ZERO,
         };
         unit.scaled(density)

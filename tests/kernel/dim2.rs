@@ -2,7 +2,7 @@
 
 use super::extreme::Dice;
 use crate::kernel::math::{Angular, InvInertia, Pose, Rot, Vector};
-use crate::kernel::shape::{Cuboid, Hull, MassProperties, Shape, Surface};
+use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape, Surface};
 use std::sync::Arc;
 
 /// The inverse inertia of a body.
@@ -94,6 +94,7 @@ pub fn riders() -> Vec<(&'static str, Shape)> {
         ("hull", Shape::Hull(Arc::new(Hull::convex_hull_of(&corners, 0.0).expect("a hexagon is solid")))),
         ("ball", Shape::Ball(crate::kernel::shape::Ball { radius: 0.25 })),
         ("capsule along", Shape::Capsule(crate::kernel::shape::Capsule { a: -along, b: along, radius: 0.2 })),
+        ("ellipse", Shape::Curved(Curved { half: Vector { x: 0.35, y: 0.25 } })),
     ]
 }
 
@@ -109,6 +110,7 @@ pub fn bullets(size: f32) -> Vec<(&'static str, Shape)> {
             Shape::Capsule(crate::kernel::shape::Capsule { a: -along, b: along, radius: 0.5 * half }),
         ),
         ("rhombus", hull_of(Vector { x: half, y: 0.6 * half })),
+        ("ellipse", Shape::Curved(Curved { half: Vector { x: half, y: 0.6 * half } })),
     ]
 }
 

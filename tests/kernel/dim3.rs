@@ -2,7 +2,7 @@
 
 use super::extreme::Dice;
 use crate::kernel::math::{Angular, InvInertia, Pose, Rot, Vector};
-use crate::kernel::shape::{Cuboid, Hull, MassProperties, Shape, Surface};
+use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape, Surface};
 use std::sync::Arc;
 
 /// The inverse inertia of a body.
@@ -103,6 +103,7 @@ pub fn riders() -> Vec<(&'static str, Shape)> {
             Shape::Capsule(crate::kernel::shape::Capsule { a: -across, b: across, radius: 0.2 }),
         ),
         ("capsule along", Shape::Capsule(crate::kernel::shape::Capsule { a: -along, b: along, radius: 0.2 })),
+        ("cylinder", Shape::Curved(Curved { lower: 0.3, upper: 0.3, half_height: 0.2 })),
     ]
 }
 
@@ -122,7 +123,9 @@ pub fn bullets(size: f32) -> Vec<(&'static str, Shape)> {
             "capsule",
             Shape::Capsule(crate::kernel::shape::Capsule { a: -along, b: along, radius: 0.5 * half }),
         ),
-        ("cylinder", Shape::Hull(Arc::new(Hull::convex_hull_of(&rim).expect("a prism is solid")))),
+        ("prism", Shape::Hull(Arc::new(Hull::convex_hull_of(&rim).expect("a prism is solid")))),
+        ("cylinder", Shape::Curved(Curved { lower: half, upper: half, half_height: half })),
+        ("cone", Shape::Curved(Curved { lower: half, upper: 0.0, half_height: half })),
     ]
 }
 

@@ -21,6 +21,8 @@ mod physics;
 mod pushed;
 mod recycling;
 mod reload;
+#[cfg(feature = "3d")]
+mod round;
 mod sim;
 mod sound;
 #[cfg(feature = "3d")]

@@ -27,7 +27,8 @@ fn passes(shape: &Shape, speed: f32, spin: f32, thickness: f32, dice: &mut Dice)
     sim.bodies.set_velocity(id, Velocity { linear, angular });
     (0..(away / speed * 64.0) as usize + 12).any(|_| {
         sim.step();
-        sim.position(id).to_local().x > 0.0
+        // The ball within it gets through, not only a tip.
+        sim.bodies.frame(id).transform(shape.core().0).to_local().x > 0.0
     })
 }
 

@@ -1,14 +1,17 @@
 //! The segments of a surface: their ends, and contacts with their side alone.
 
 use super::clip::{Edge, Facing, Side};
+use super::collide;
 use super::points::Limits;
 use super::polygonal::{Buffer, view};
-use crate::manifold::{LocalManifold, LocalPoint};
+use crate::manifold::{FeatureCache, LocalManifold, LocalPoint};
 use crate::math::{Pose, Vector};
-use crate::shape::{Shape, direction};
+use crate::shape::{Curved, Segment, Shape, direction};
 
 /// A single point may lie beyond an end by this share of the segment.
 const BESIDE: f32 = 1.0e-3;
+/// Sides overlapped by more than this share of an ellipse's smaller half size have a contact in any case.
+const DEEP: f32 = 0.05;
 
 /// One end of a segment.
 pub(in crate::manifold) struct Border {
@@ -46,6 +49,9 @@ pub(in crate::manifold) fn collide_face(
     out: &mut LocalManifold,
 ) {
     (out.count, out.gap) = (0, 0.0);
+    if let Shape::Curved(other) = other {
+        return collide_curved(corners, normal, other, pose, prediction, out);
+    }
     let mut room = Buffer::EMPTY;
     let Some(polygon) = view(other, &mut room) else { return };
     let facing = pose.rotation.inverse_rotate(-normal);
@@ -107,5 +113,32 @@ pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalMani
     out.count = 0;
     for p in [first, last].iter().take(points.len().min(2)) {
         out.push(p.point, p.separation, p.feature);
+    }
+}
+
+fn collide_curved(
+    corners: [Vector; 2],
+    normal: Vector,
+    other: &Curved,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    let facing = pose.rotation.inverse_rotate(-normal);
+    let lowest = pose.transform(other.support(facing));
+    let separation = (lowest - corners[0]).dot(normal);
+    if !(separation <= prediction) {
+        out.gap = separation;
+        return;
+    }
+    let is_beside = |b: &Border| (lowest - b.corner).dot(b.outward) > BESIDE * b.depth;
+    if !borders(corners, normal).iter().any(is_beside) {
+        (out.normal, out.radii) = (normal, [0.0, other.curvature_radius(facing)]);
+        out.push(lowest - normal * (0.5 * separation), separation, 0);
+    } else if separation < -DEEP * other.half.min_element() {
+        // What is deep under a side need not be over it.
+        let [a, b] = corners;
+        let segment = Shape::Segment(Segment { a, b });
+        collide(&segment, &Shape::Curved(*other), pose, prediction, &mut FeatureCache::NONE.clone(), out);
     }
 }

@@ -1,12 +1,13 @@
 //! Contacts of convex shapes in the plane: at most two points, midway between the surfaces.
 //!
 //! Every bounded shape is seen as a polygon with a radius: a ball has one vertex, a capsule or segment
-//! two, the others three or more. The function of a pair depends on the numbers of vertices only, so that seven kinds of
+//! two, the others three or more; ellipses are curves. The function of a pair depends on the numbers of vertices only, so that seven kinds of
 //! shapes need five functions. (Capsules and rounded polygons as polygons with a radius, pairs of vertices as feature ids, and
 //! the early exit by a cached edge follow ideas of E. Catto's Box2D v3.)
 
 mod clip;
 mod cuboids;
+mod curved;
 mod facet;
 mod half_space;
 mod points;
@@ -15,6 +16,8 @@ mod polygons;
 mod segments;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_curved;
 
 use super::{FeatureCache, LocalManifold};
 use crate::math::Pose;
@@ -48,10 +51,16 @@ pub fn collide(
     if !(pose_b_in_a.position.is_finite() && pose_b_in_a.rotation.is_finite()) {
         return;
     }
-    use Shape::{Ball, Capsule, Composite, Cuboid, Foreign, HalfSpace, Hull, Segment, Triangle};
+    use Shape::{Ball, Capsule, Composite, Cuboid, Curved, Foreign, HalfSpace, Hull, Segment, Triangle};
     // All pairs by name: a new shape does not compile until its pairs are here.
     match (a, b) {
         (Cuboid(a), Cuboid(b)) => cuboids::collide(a, b, pose_b_in_a, prediction, cache, out),
+        (HalfSpace(a), Curved(b)) => curved::half_space(a.normal, b, pose_b_in_a, prediction, out),
+        (Curved(a), HalfSpace(b)) => {
+            let pose = pose_b_in_a.inverse();
+            curved::half_space(b.normal, a, &pose, prediction, out);
+            *out = out.flipped(&pose);
+        }
         (HalfSpace(a), b) => {
             let mut room = Buffer::EMPTY;
             if let Some(b) = polygonal::view(b, &mut room) {
@@ -75,15 +84,33 @@ pub fn collide(
                 collide_polygonal(&a, &b, pose_b_in_a, prediction, cache, out);
             }
         }
+        (Curved(a), Curved(b)) => curved::collide_round(a, b, pose_b_in_a, prediction, out),
+        (Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_), Curved(b)) => {
+            let mut room = Buffer::EMPTY;
+            if let Some(a) = polygonal::view(a, &mut room) {
+                curved::collide(&a, b, pose_b_in_a, prediction, out);
+            }
+        }
+        (Curved(a), Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_)) => {
+            let (pose, mut room) = (pose_b_in_a.inverse(), Buffer::EMPTY);
+            if let Some(b) = polygonal::view(b, &mut room) {
+                curved::collide(&b, a, &pose, prediction, out);
+                *out = out.flipped(&pose);
+            }
+        }
         // Composites are collided part by part, and foreign shapes by their `ManifoldSource`.
         (
-            Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_) | Composite(_) | Foreign(_),
+            Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_) | Curved(_) | Composite(_)
+            | Foreign(_),
             Composite(_) | Foreign(_),
         )
         | (
             Composite(_) | Foreign(_),
-            Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_),
+            Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_) | Curved(_),
         ) => {}
+    }
+    if !matches!((a, b), (Curved(_), _) | (_, Curved(_))) {
+        out.radii = [a.radius(), b.radius()];
     }
 }
 

@@ -42,7 +42,7 @@ impl Polygonal<'_> {
     }
 }
 
-/// The polygon of a shape; `None` for half-spaces and foreign shapes.
+/// The polygon of a shape; `None` for ellipses, half-spaces and foreign shapes.
 #[inline]
 pub(super) fn view<'a>(shape: &'a Shape, room: &'a mut Buffer) -> Option<Polygonal<'a>> {
     Some(match shape {
@@ -66,7 +66,7 @@ pub(super) fn view<'a>(shape: &'a Shape, room: &'a mut Buffer) -> Option<Polygon
             Err(side) => segment(side.a, side.b, 0.0, room),
         },
         Shape::Hull(s) => Polygonal { vertices: s.vertices(), normals: s.normals(), radius: s.radius() },
-        Shape::HalfSpace(_) | Shape::Composite(_) | Shape::Foreign(_) => return None,
+        Shape::Composite(_) | Shape::Curved(_) | Shape::HalfSpace(_) | Shape::Foreign(_) => return None,
     })
 }
 

@@ -37,7 +37,7 @@ impl Core {
             Shape::Triangle(s) if (s.b - s.a).perp_dot(s.c - s.a) < 0.0 => (vec![s.a, s.c, s.b], 0.0),
             Shape::Triangle(s) => (vec![s.a, s.b, s.c], 0.0),
             Shape::Hull(s) => (s.vertices().to_vec(), s.radius()),
-            Shape::HalfSpace(_) | Shape::Composite(_) | Shape::Foreign(_) => return None,
+            Shape::Composite(_) | Shape::Curved(_) | Shape::HalfSpace(_) | Shape::Foreign(_) => return None,
         };
         let (c, s) = (f64::from(pose.rotation.cos), f64::from(pose.rotation.sin));
         let at = wide(pose.position);

@@ -361,7 +361,7 @@ impl<'a> Pair<'a> {
 
 /// The closest points of two lines that are not parallel, clamped to the segments given by their ends, and whether they were
 /// inside of these.
-fn closest_of_lines(a: [Vector; 2], b: [Vector; 2]) -> (Vector, Vector, bool) {
+pub(super) fn closest_of_lines(a: [Vector; 2], b: [Vector; 2]) -> (Vector, Vector, bool) {
     let (u, v, w) = (a[1] - a[0], b[1] - b[0], b[0] - a[0]);
     let (uu, vv, uv) = (u.length_squared(), v.length_squared(), u.dot(v));
     let (uw, vw) = (u.dot(w), v.dot(w));

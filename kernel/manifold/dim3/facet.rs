@@ -1,6 +1,7 @@
 //! The triangles of a surface: their borders, and contacts with their face alone.
 
 use super::convex;
+use super::curved;
 use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce};
 use super::view::Small;
 use super::with_view;
@@ -54,6 +55,10 @@ pub(in crate::manifold) fn collide_face(
     out: &mut LocalManifold,
 ) {
     (out.count, out.gap) = (0, 0.0);
+    if let Shape::Curved(other) = other {
+        let small = Small::triangle(corners);
+        return curved::collide_face(&small.view(), normal, other, pose, prediction, out);
+    }
     let mut is_viewed = false;
     if !matches!(other, Shape::Ball(_)) {
         with_view(other, |view| {

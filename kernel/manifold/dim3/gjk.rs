@@ -7,6 +7,7 @@
 use super::view::{MatrixPose, View};
 use crate::distance::nearest_weights;
 use crate::math::{Vector, max};
+use crate::shape::Curved;
 
 /// The most iterations. No tested hull needs as many; it only ends the loop.
 const MAX_ITERATIONS: usize = 48;
@@ -15,7 +16,39 @@ const GAP: f64 = 1.0e-6;
 
 type Wide = Vector<f64>;
 
-/// The closest points of two polyhedra.
+/// A convex core by its farthest points.
+pub(super) trait Core {
+    /// The point farthest along a direction of any length, and the number of its feature.
+    fn farthest_point(&self, direction: Vector) -> (Vector, u32);
+    /// A point inside.
+    fn center(&self) -> Vector;
+}
+
+impl Core for View<'_> {
+    #[inline]
+    fn farthest_point(&self, direction: Vector) -> (Vector, u32) {
+        let i = self.support(direction);
+        (self.vertices[i], i as u32)
+    }
+
+    fn center(&self) -> Vector {
+        self.center
+    }
+}
+
+impl Core for Curved {
+    #[inline]
+    fn farthest_point(&self, direction: Vector) -> (Vector, u32) {
+        let (point, end) = self.farthest(direction);
+        (point, end as u32)
+    }
+
+    fn center(&self) -> Vector {
+        Vector::ZERO
+    }
+}
+
+/// The closest points of two cores.
 #[derive(Clone, Copy)]
 pub(super) struct Closest {
     /// On A, in A's frame.
@@ -39,14 +72,15 @@ struct Vertex {
     weight: f64,
 }
 
-/// The closest points, or `None` if the polyhedra touch or overlap.
-pub(super) fn closest(a: &View, b: &View, frame: &MatrixPose) -> Option<Closest> {
+/// The closest points, or `None` if the cores touch or overlap.
+pub(super) fn closest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> Option<Closest> {
     let vertex = |direction: Vector| {
-        let (i, j) = (a.support(direction), b.support(-frame.direction_in(direction)));
-        let (p, q) = (a.vertices[i].widen(), frame.point(b.vertices[j]).widen());
-        Vertex { a: p, b: q, w: p - q, ids: (i as u32, j as u32), weight: 1.0 }
+        let (p, i) = a.farthest_point(direction);
+        let (q, j) = b.farthest_point(-frame.direction_in(direction));
+        let (p, q) = (p.widen(), frame.point(q).widen());
+        Vertex { a: p, b: q, w: p - q, ids: (i, j), weight: 1.0 }
     };
-    let start = frame.point(b.center) - a.center;
+    let start = frame.point(b.center()) - a.center();
     let mut simplex = [Vertex::default(); 4];
     simplex[0] = vertex(start);
     let mut count = 1;
@@ -60,7 +94,7 @@ pub(super) fn closest(a: &View, b: &View, frame: &MatrixPose) -> Option<Closest>
         }
         let new = vertex((nearest * (-1.0 / square.sqrt())).narrow());
         scale = if new.w.length_squared() > scale { new.w.length_squared() } else { scale };
-        let known = simplex[..count].iter().any(|v| v.ids == new.ids);
+        let known = simplex[..count].iter().any(|v| v.ids == new.ids && v.w == new.w);
         if known || square - nearest.dot(new.w) <= GAP * square {
             break;
         }

@@ -17,8 +17,8 @@ pub(super) fn collide(normal: Vector, b: &Shape, pose: &Pose, prediction: f32, o
             let corner = |i: usize| Vector { x: side(i & 1), y: side(i & 2), z: side(i & 4) }.scale(s.half);
             vertices(normal, (0..8).map(corner), 0.0, pose, prediction, out);
         }
-        Shape::Hull(s) => vertices(normal, s.vertices().iter().copied(), 0.0, pose, prediction, out),
-        Shape::HalfSpace(_) | Shape::Composite(_) | Shape::Foreign(_) => {}
+        Shape::Hull(s) => vertices(normal, s.vertices().iter().copied(), s.radius(), pose, prediction, out),
+        Shape::Composite(_) | Shape::Curved(_) | Shape::HalfSpace(_) | Shape::Foreign(_) => {}
     }
 }
 

@@ -1,11 +1,12 @@
 //! Contact manifolds in space. `dim2` has the same function for the plane.
 //!
 //! Balls and capsules have closed forms where they exist, two boxes have a function of their own, and all other pairs of
-//! polyhedra (with radii) share [`convex`].
+//! polyhedra (with radii) share [`convex`]. What is round about an axis is in [`curved`].
 
 mod clip;
 mod convex;
 mod cuboids;
+mod curved;
 mod facet;
 mod gjk;
 mod half_space;
@@ -22,7 +23,7 @@ mod view;
 
 use super::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector};
-use crate::shape::{Capsule, Segment, Shape};
+use crate::shape::{Capsule, Curved, Segment, Shape};
 pub(super) use facet::{Border, borders, collide_face, face_normal, few_points};
 use view::{Small, View};
 
@@ -54,6 +55,9 @@ pub fn collide(
     } else {
         dispatch(a, b, pose_b_in_a, prediction, cache, out);
     }
+    if !matches!((a, b), (Shape::Curved(_), _) | (_, Shape::Curved(_))) {
+        out.radii = [a.radius(), b.radius()];
+    }
     drop_unusable(out);
 }
 
@@ -63,8 +67,9 @@ fn rank(shape: &Shape) -> u8 {
         Shape::HalfSpace(_) => 0,
         Shape::Cuboid(_) | Shape::Hull(_) | Shape::Triangle(_) => 1,
         Shape::Capsule(_) | Shape::Segment(_) => 2,
-        Shape::Ball(_) => 3,
-        Shape::Composite(_) | Shape::Foreign(_) => 4,
+        Shape::Curved(_) => 3,
+        Shape::Ball(_) => 4,
+        Shape::Composite(_) | Shape::Foreign(_) => 5,
     }
 }
 
@@ -93,42 +98,60 @@ fn dispatch(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    use Shape::{Ball, Capsule, Composite, Cuboid, Foreign, HalfSpace, Hull, Segment, Triangle};
+    use Shape::{Ball, Capsule, Composite, Cuboid, Curved, Foreign, HalfSpace, Hull, Segment, Triangle};
     let center = pose.position;
     match (a, b) {
+        (HalfSpace(a), Curved(b)) => curved::half_space(a.normal, b, pose, prediction, cache, out),
         (HalfSpace(a), b) => half_space::collide(a.normal, b, pose, prediction, out),
         (Ball(a), Ball(b)) => round::balls(a.radius, center, b.radius, prediction, out),
         (Cuboid(a), Ball(b)) => round::cuboid_ball(a.half, center, b.radius, prediction, out),
         (Triangle(a), Ball(b)) => round::triangle_ball(a, center, b.radius, prediction, out),
         (Capsule(a), Ball(b)) => round::capsule_ball(a, center, b.radius, prediction, out),
         (Segment(a), Ball(b)) => round::capsule_ball(&capsule(a), center, b.radius, prediction, out),
+        (Curved(a), Ball(b)) => curved::ball(a, center, b.radius, prediction, out),
         (Capsule(a), Capsule(b)) => round::capsules(a, b, pose, prediction, out),
         (Capsule(a), Segment(b)) => round::capsules(a, &capsule(b), pose, prediction, out),
         (Segment(a), Capsule(b)) => round::capsules(&capsule(a), b, pose, prediction, out),
         (Segment(a), Segment(b)) => round::capsules(&capsule(a), &capsule(b), pose, prediction, out),
+        (Curved(a), Curved(b)) => curved::frusta(a, b, pose, prediction, cache, out),
+        (Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_), Curved(b)) => {
+            curved_with(a, b, pose, prediction, cache, out);
+        }
         (Hull(_), Ball(_))
         | (Cuboid(_) | Hull(_) | Triangle(_), Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_)) => {
             polyhedra(a, b, pose, prediction, cache, out);
         }
         // Composites are collided part by part, and foreign shapes by their `ManifoldSource`.
-        (
-            Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Ball(_) | Composite(_) | Foreign(_),
-            Composite(_) | Foreign(_),
-        ) => {}
+        (_, Composite(_) | Foreign(_)) => {}
         // `collide` swaps these.
         (
-            Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Ball(_) | Composite(_) | Foreign(_),
+            Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Curved(_) | Ball(_) | Composite(_)
+            | Foreign(_),
             HalfSpace(_),
         )
         | (
-            Capsule(_) | Segment(_) | Ball(_) | Composite(_) | Foreign(_),
+            Capsule(_) | Segment(_) | Curved(_) | Ball(_) | Composite(_) | Foreign(_),
             Cuboid(_) | Hull(_) | Triangle(_),
         )
-        | (Ball(_) | Composite(_) | Foreign(_), Capsule(_) | Segment(_))
+        | (Curved(_) | Ball(_) | Composite(_) | Foreign(_), Capsule(_) | Segment(_))
+        | (Ball(_) | Composite(_) | Foreign(_), Curved(_))
         | (Composite(_) | Foreign(_), Ball(_)) => {
             debug_assert!(false, "shapes come in the order of their ranks");
         }
     }
+}
+
+/// A shape with a polyhedral core and a frustum. Not inlined, since its stack frame is large.
+#[inline(never)]
+fn curved_with(
+    a: &Shape,
+    b: &Curved,
+    pose: &Pose,
+    prediction: f32,
+    cache: &mut FeatureCache,
+    out: &mut LocalManifold,
+) {
+    with_view(a, |a| curved::with_polyhedron(a, b, pose, prediction, cache, out));
 }
 
 /// Two shapes with polyhedral cores. Not inlined, since its stack frame is large.
@@ -159,7 +182,7 @@ fn with_view(shape: &Shape, f: impl FnOnce(&View)) {
         Shape::Capsule(s) => Small::capsule(s),
         Shape::Segment(s) => Small::segment(s.a, s.b, 0.0),
         Shape::Ball(s) => Small::point(Vector::ZERO, s.radius),
-        Shape::HalfSpace(_) | Shape::Composite(_) | Shape::Foreign(_) => return,
+        Shape::Composite(_) | Shape::Curved(_) | Shape::HalfSpace(_) | Shape::Foreign(_) => return,
     };
     f(&small.view());
 }

@@ -37,10 +37,10 @@ impl Solid {
                 points: h.vertices().iter().map(|p| widen(*p)).collect(),
                 edges: h.edges().iter().map(|e| [e.tail as usize, e.head as usize]).collect(),
                 triangles: h.faces().iter().flat_map(|f| fan(h.outline(f))).collect(),
-                radius: 0.0,
+                radius: f64::from(h.radius()),
             },
-            Shape::HalfSpace(_) | Shape::Composite(_) | Shape::Foreign(_) => {
-                unreachable!("bounded shapes only")
+            Shape::Composite(_) | Shape::Curved(_) | Shape::HalfSpace(_) | Shape::Foreign(_) => {
+                unreachable!("polyhedra with radii only")
             }
         }
     }

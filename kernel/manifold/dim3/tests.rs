@@ -7,7 +7,7 @@ use super::sat;
 use super::view::{MatrixPose, View};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Rot, Vector};
-use crate::shape::{Ball, Capsule, Cuboid, HalfSpace, Hull, Segment, Shape, Triangle};
+use crate::shape::{Ball, Capsule, Cuboid, Curved, HalfSpace, Hull, Segment, Shape, Triangle};
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -15,17 +15,17 @@ pub(super) fn v(x: f32, y: f32, z: f32) -> Vector {
     Vector { x, y, z }
 }
 
-fn vector(range: f32) -> impl Strategy<Value = Vector> {
+pub(super) fn vector(range: f32) -> impl Strategy<Value = Vector> {
     [-range..range, -range..range, -range..range].prop_map(Vector::from_array)
 }
 
-fn rotation() -> impl Strategy<Value = Rot> {
+pub(super) fn rotation() -> impl Strategy<Value = Rot> {
     [-1.0f32..1.0, -1.0..1.0, -1.0..1.0, -1.0..1.0]
         .prop_filter("not zero", |q| q.iter().map(|c| c * c).sum::<f32>() > 0.01)
         .prop_map(|[x, y, z, w]| Rot { x, y, z, w }.normalized())
 }
 
-fn pose(range: f32) -> impl Strategy<Value = Pose> {
+pub(super) fn pose(range: f32) -> impl Strategy<Value = Pose> {
     (vector(range), rotation()).prop_map(|(p, r)| Pose::new(p, r))
 }
 
@@ -33,6 +33,13 @@ fn hull() -> impl Strategy<Value = Shape> {
     prop::collection::vec(vector(1.0), 8..20)
         .prop_filter_map("no volume", |points| Hull::convex_hull_of(&points).ok())
         .prop_map(|h| Shape::Hull(Arc::new(h)))
+}
+
+fn rounded_hull() -> impl Strategy<Value = Shape> {
+    (hull(), 0.05f32..0.5).prop_map(|(shape, radius)| {
+        let Shape::Hull(hull) = shape else { unreachable!() };
+        Shape::Hull(Arc::new(Hull::clone(&hull).rounded(radius).expect("a good radius")))
+    })
 }
 
 fn cuboid() -> impl Strategy<Value = Shape> {
@@ -46,7 +53,7 @@ fn triangle() -> impl Strategy<Value = Shape> {
 }
 
 fn faceted() -> impl Strategy<Value = Shape> {
-    prop_oneof![hull(), cuboid(), triangle()]
+    prop_oneof![hull(), cuboid(), triangle(), rounded_hull()]
 }
 
 fn rounded() -> impl Strategy<Value = Shape> {
@@ -61,7 +68,7 @@ fn rounded() -> impl Strategy<Value = Shape> {
     ]
 }
 
-fn bounded() -> impl Strategy<Value = Shape> {
+pub(super) fn bounded() -> impl Strategy<Value = Shape> {
     prop_oneof![faceted(), rounded()]
 }
 
@@ -78,7 +85,7 @@ pub(super) fn fresh(a: &Shape, b: &Shape, pose: &Pose, prediction: f32) -> Local
     out
 }
 
-fn deepest(m: &LocalManifold) -> f32 {
+pub(super) fn deepest(m: &LocalManifold) -> f32 {
     m.points().iter().map(|p| p.separation).fold(f32::INFINITY, f32::min)
 }
 
@@ -272,17 +279,21 @@ proptest! {
 }
 
 /// A shape `k` times as large.
-fn scaled(shape: &Shape, k: f32) -> Shape {
+pub(super) fn scaled(shape: &Shape, k: f32) -> Shape {
     match shape {
         Shape::Ball(s) => Shape::Ball(Ball { radius: s.radius * k }),
         Shape::Capsule(s) => Shape::Capsule(Capsule { a: s.a * k, b: s.b * k, radius: s.radius * k }),
         Shape::Segment(s) => Shape::Segment(Segment { a: s.a * k, b: s.b * k }),
         Shape::Cuboid(s) => Shape::Cuboid(Cuboid { half: s.half * k }),
+        Shape::Curved(s) => {
+            Shape::Curved(Curved { lower: s.lower * k, upper: s.upper * k, half_height: s.half_height * k })
+        }
         Shape::Triangle(s) => Shape::Triangle(Triangle { a: s.a * k, b: s.b * k, c: s.c * k }),
         Shape::Hull(h) => {
             let points: Vec<Vector> = h.vertices().iter().map(|p| *p * k).collect();
             let faces = h.faces().iter().map(|f| h.outline(f).to_vec()).collect();
-            Shape::Hull(Arc::new(Hull::from_mesh(points, faces).expect("scaling keeps a hull a hull")))
+            let hull = Hull::from_mesh(points, faces).and_then(|scaled| scaled.rounded(h.radius() * k));
+            Shape::Hull(Arc::new(hull.expect("scaling keeps a hull a hull")))
         }
         other => other.clone(),
     }

@@ -67,8 +67,8 @@ impl<'a> From<&'a Hull> for View<'a> {
             fans: hull.fans().0,
             fan_starts: hull.fans().1,
             center: hull.centroid(),
-            extent: hull.reach(),
-            radius: 0.0,
+            extent: hull.reach() + hull.radius(),
+            radius: hull.radius(),
         }
     }
 }

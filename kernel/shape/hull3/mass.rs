@@ -12,46 +12,91 @@ use crate::shape::MassProperties;
 /// the inertia tensor (or other mass properties) of a 3D solid body represented by a triangle mesh",
 /// 2004). With o inside there is no cancellation; sums are in `f64`.
 pub(super) fn of_polyhedron(vertices: &[Vector], outlines: &[Vec<u32>]) -> MassProperties {
-    let count = vertices.len() as f64;
-    let origin = vertices.iter().fold(Wide::ZERO, |sum, v| sum + widen(*v)) * (1.0 / count);
+    let mut moments = Moments::about(center_of(vertices));
+    add_polyhedron(&mut moments, vertices, outlines.iter().map(Vec::as_slice));
+    moments.finish()
+}
+
+/// The mean of some points.
+pub(super) fn center_of(vertices: &[Vector]) -> Wide {
+    vertices.iter().fold(Wide::ZERO, |sum, v| sum + widen(*v)) * (1.0 / vertices.len() as f64)
+}
+
+/// Adds a polyhedron.
+pub(super) fn add_polyhedron<'a>(
+    moments: &mut Moments,
+    vertices: &[Vector],
+    outlines: impl Iterator<Item = &'a [u32]>,
+) {
+    let origin = moments.origin;
     let at = |i: u32| widen(vertices[i as usize]) - origin;
-    let (mut volume, mut moment) = (0.0, Wide::ZERO);
-    // Second moments: xx, yy, zz, xy, xz, yz.
-    let mut second = [0.0f64; 6];
     for outline in outlines {
         for k in 2..outline.len() {
             let (a, b, c) = (at(outline[0]), at(outline[k - 1]), at(outline[k]));
             let v = a.dot(b.cross(c)) / 6.0;
             let s = a + b + c;
-            volume += v;
-            moment += s * (v / 4.0);
+            moments.volume += v;
+            moments.first += s * (v / 4.0);
             for p in [a, b, c, s] {
-                let products = [p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.x * p.z, p.y * p.z];
-                for (sum, product) in second.iter_mut().zip(products) {
-                    *sum += v / 20.0 * product;
-                }
+                moments.add_second(p, p, v / 20.0);
             }
         }
     }
-    if !(volume > 0.0) {
-        return MassProperties::ZERO;
+}
+
+/// Sums of volume, first and second moments about a point.
+pub(super) struct Moments {
+    pub origin: Wide,
+    pub volume: f64,
+    pub first: Wide,
+    /// xx, yy, zz, xy, xz, yz.
+    second: [f64; 6],
+}
+
+impl Moments {
+    pub fn about(origin: Wide) -> Self {
+        Self { origin, volume: 0.0, first: Wide::ZERO, second: [0.0; 6] }
     }
-    let center = moment * (1.0 / volume);
-    // To the centre of mass (Steiner's theorem), then from second moments to the inertia tensor.
-    let [xx, yy, zz] = [
-        second[0] - volume * center.x * center.x,
-        second[1] - volume * center.y * center.y,
-        second[2] - volume * center.z * center.z,
-    ];
-    let inertia = Inertia {
-        xx: (yy + zz) as f32,
-        yy: (xx + zz) as f32,
-        zz: (xx + yy) as f32,
-        xy: -(second[3] - volume * center.x * center.y) as f32,
-        xz: -(second[4] - volume * center.x * center.z) as f32,
-        yz: -(second[5] - volume * center.y * center.z) as f32,
-    };
-    MassProperties { mass: volume as f32, center: narrow(origin + center), inertia }
+
+    /// Adds k/2 (abᵀ + baᵀ) to the second moment.
+    pub fn add_second(&mut self, a: Wide, b: Wide, k: f64) {
+        let half = |p: f64, q: f64| 0.5 * k * (p + q);
+        let products = [
+            k * a.x * b.x,
+            k * a.y * b.y,
+            k * a.z * b.z,
+            half(a.x * b.y, a.y * b.x),
+            half(a.x * b.z, a.z * b.x),
+            half(a.y * b.z, a.z * b.y),
+        ];
+        for (sum, product) in self.second.iter_mut().zip(products) {
+            *sum += product;
+        }
+    }
+
+    /// The mass properties at 1 kg/m³.
+    pub fn finish(&self) -> MassProperties {
+        let Self { volume, second, .. } = *self;
+        if !(volume > 0.0) {
+            return MassProperties::ZERO;
+        }
+        let center = self.first * (1.0 / volume);
+        // To the centre of mass (Steiner's theorem), then from second moments to the inertia tensor.
+        let [xx, yy, zz] = [
+            second[0] - volume * center.x * center.x,
+            second[1] - volume * center.y * center.y,
+            second[2] - volume * center.z * center.z,
+        ];
+        let inertia = Inertia {
+            xx: (yy + zz) as f32,
+            yy: (xx + zz) as f32,
+            zz: (xx + yy) as f32,
+            xy: -(second[3] - volume * center.x * center.y) as f32,
+            xz: -(second[4] - volume * center.x * center.z) as f32,
+            yz: -(second[5] - volume * center.y * center.z) as f32,
+        };
+        MassProperties { mass: volume as f32, center: narrow(self.origin + center), inertia }
+    }
 }
 
 /// The signed volume of a closed surface of polygons, in m³.

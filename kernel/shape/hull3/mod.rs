@@ -3,12 +3,14 @@
 mod mass;
 mod mesh;
 mod quickhull;
+mod rounded;
 #[cfg(test)]
 mod tests;
 mod wide;
 
 use super::MassProperties;
 use crate::math::{F32x4, Lane, Num, Vector, max, min};
+use crate::shape::primitives::direction_or;
 use crate::shape::{RayHit, ShapeError};
 
 /// A face of a hull: its plane and the range of its vertices in the list of loops.
@@ -62,7 +64,7 @@ pub(crate) struct FaceBlock {
     pub offset: F32x4,
 }
 
-/// A convex polyhedron.
+/// A convex polyhedron, or all points within a radius of one.
 ///
 /// Immutable. Vertices, faces and edges are stored twice: one by one, and four side by side for the searches of the narrow
 /// phase.
@@ -78,12 +80,17 @@ pub struct Hull {
     fans: Vec<u32>,
     fan_starts: Vec<u32>,
     unit_mass: MassProperties,
+    centroid: Vector,
     extent: f32,
+    radius: f32,
 }
 
 impl PartialEq for Hull {
     fn eq(&self, other: &Self) -> bool {
-        self.vertices == other.vertices && self.faces == other.faces && self.loops == other.loops
+        self.vertices == other.vertices
+            && self.faces == other.faces
+            && self.loops == other.loops
+            && self.radius == other.radius
     }
 }
 
@@ -180,7 +187,9 @@ impl Hull {
             loops,
             edges,
             unit_mass,
+            centroid: unit_mass.center,
             extent,
+            radius: 0.0,
         }
     }
 
@@ -189,9 +198,9 @@ impl Hull {
         &self.vertices
     }
 
-    /// The radius around the polyhedron: always 0 in space.
+    /// The radius around the polyhedron, in metres.
     pub fn radius(&self) -> f32 {
-        0.0
+        self.radius
     }
 
     /// The faces.
@@ -216,9 +225,9 @@ impl Hull {
         (center, max(depths.fold(f32::INFINITY, min), 0.0) + self.radius())
     }
 
-    /// The centre of mass at uniform density.
+    /// The centre of mass of the polyhedron at uniform density, without its radius.
     pub fn centroid(&self) -> Vector {
-        self.unit_mass.center
+        self.centroid
     }
 
     /// The distance from the centroid to the farthest vertex, in metres.
@@ -251,9 +260,13 @@ impl Hull {
         (&self.fans, &self.fan_starts)
     }
 
-    /// The vertex farthest along `direction` (any length).
+    /// The point farthest along `direction` (any length), radius included.
     pub fn support(&self, direction: Vector) -> Vector {
-        self.vertices[farthest(&self.blocks, direction).0.min(self.vertices.len() - 1)]
+        let vertex = self.vertices[farthest(&self.blocks, direction).0.min(self.vertices.len() - 1)];
+        if self.radius == 0.0 {
+            return vertex;
+        }
+        vertex + direction_or(direction, Vector::X) * self.radius
     }
 
     /// Mass, centre and inertia at 1 kg/m³.
@@ -273,6 +286,9 @@ impl Hull {
         max_distance: f32,
         solid: bool,
     ) -> Option<RayHit> {
+        if self.radius > 0.0 {
+            return self.cast_ray_rounded(origin, direction, max_distance, solid);
+        }
         let (mut enter, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
         let (mut enter_normal, mut exit_normal) = (Vector::ZERO, Vector::ZERO);
         for face in &self.faces {

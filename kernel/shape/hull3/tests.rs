@@ -1,5 +1,6 @@
 //! Hulls: topology, errors, mass against closed forms, rays against brute force.
 
+use super::super::rays::{check_mass_by_rays, check_ray};
 use super::{Hull, size_of};
 use crate::math::{Inertia, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Shape, ShapeError, Triangle};
@@ -348,4 +349,41 @@ fn a_triangle_is_hit_from_both_sides() {
     }
     let segment = Shape::Segment(crate::shape::Segment { a: Vector::ZERO, b: Vector::X });
     assert!(segment.cast_ray(v(0.5, 0.0, 1.0), Vector::Z * -1.0, 5.0, true).is_none());
+}
+
+#[test]
+fn a_rounded_hull_weighs_what_rays_find() {
+    let corners = [v(0.1, 0.2, 0.0), v(1.3, 0.0, 0.2), v(0.2, 1.0, 0.1), v(0.4, 0.3, 1.1)];
+    let wedge = [v(0.0, 0.0, 0.0), v(2.0, 0.0, 0.0), v(2.0, 0.4, 0.0), v(0.0, 0.0, 0.5), v(2.0, 0.0, 0.7)];
+    for points in [&corners[..], &wedge[..]] {
+        for radius in [0.0, 0.2, 1.0] {
+            let hull = Hull::convex_hull_of(points).and_then(|h| h.rounded(radius)).expect("it is solid");
+            check_mass_by_rays(&Shape::Hull(hull.into()), 1.5 + radius);
+        }
+    }
+    let cuboid = Hull::cuboid(v(0.5, 0.3, 0.8)).and_then(|h| h.rounded(0.25)).expect("it is solid");
+    let mass = cuboid.unit_mass();
+    // A box, six plates, twelve quarters of cylinders, a ball.
+    let volume =
+        0.96 + 0.25 * 2.0 * (0.6 + 1.6 + 0.96) + core::f32::consts::PI * (0.0625 * 3.2 + 0.0625 / 3.0);
+    assert!((mass.mass - volume).abs() < 1.0e-5 && mass.center.length() < 1.0e-6, "{} {volume}", mass.mass);
+    check_mass_by_rays(&Shape::Hull(cuboid.into()), 1.3);
+}
+
+#[test]
+fn a_bad_radius_is_refused() {
+    let cube = || Hull::cuboid(Vector::ONE).expect("positive");
+    assert_eq!(cube().rounded(-0.1), Err(ShapeError::Negative));
+    assert_eq!(cube().rounded(f32::NAN), Err(ShapeError::NotFinite));
+    assert_eq!(cube().rounded(0.0), Ok(cube()));
+}
+
+proptest! {
+    #[test]
+    fn rays_hit_rounded_hulls_where_their_normal_says(
+        points in cloud(), radius in 0.01f32..0.5, from in vector(4.0), to in vector(1.0), solid in any::<bool>(),
+    ) {
+        let Ok(hull) = Hull::convex_hull_of(&points).and_then(|h| h.rounded(radius)) else { return Ok(()) };
+        check_ray(&Shape::Hull(hull.into()), from, to, solid)?;
+    }
 }

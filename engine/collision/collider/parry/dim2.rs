@@ -1,5 +1,6 @@
 //! 2D parts of the default collider: poses, boxes, the kernel's polygons. `dim3.rs` exports the same names.
 
+use super::ellipse::EllipseColliderShape;
 use super::native_composite::{surface, surface_of_facets, unmoved};
 use super::regular_polygon::RegularPolygonColliderShape;
 use crate::math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to_kernel};
@@ -92,6 +93,10 @@ pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> 
             NativeShape::Triangle(kernel::shape::Triangle { a, b, c })
         })),
         TypedShape::Custom(custom) => {
+            if let Some(ellipse) = custom.as_shape::<EllipseColliderShape>() {
+                let half = kernel::math::Vector::from_array(ellipse.half_size.to_array());
+                return kernel::shape::Curved::ellipse(half).ok().map(NativeShape::Curved);
+            }
             let polygon = custom.as_shape::<RegularPolygonColliderShape>()?;
             let corners: Vec<_> = polygon.corners().take(MAX_CORNERS + 1).collect();
             native_polygon(&corners, 0.0)

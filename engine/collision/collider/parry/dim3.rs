@@ -6,7 +6,7 @@ use crate::parry::math::{Pose, Rotation as ParryRotation};
 use crate::parry::shape::{ConvexPolyhedron, HeightField, SharedShape, TypedShape};
 use crate::physics_transform::Rotation;
 use bevy_math::Quat;
-use kernel::shape::Shape as NativeShape;
+use kernel::shape::{Curved, Hull, Shape as NativeShape, ShapeError};
 
 /// The default of [`VhacdParameters::concavity`](super::VhacdParameters::concavity).
 pub(super) const VHACD_CONCAVITY: Scalar = 0.01;
@@ -66,18 +66,32 @@ pub(super) fn is_solid(shape: &SharedShape) -> bool {
 /// The kernel's shape for shapes that only 3D has.
 pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> {
     match shape {
-        TypedShape::ConvexPolyhedron(polyhedron) => native_polyhedron(polyhedron),
+        TypedShape::ConvexPolyhedron(polyhedron) => native_hull(hull_of(polyhedron)?, 0.0),
+        TypedShape::RoundConvexPolyhedron(round) => {
+            native_hull(hull_of(&round.inner_shape)?, round.border_radius)
+        }
+        TypedShape::RoundCuboid(round) => {
+            let hull = Hull::cuboid(vector_to_kernel(round.inner_shape.half_extents)).ok()?;
+            native_hull(hull, round.border_radius)
+        }
         TypedShape::TriMesh(mesh) => surface(mesh.vertices().iter().copied(), mesh.indices().iter().copied()),
         TypedShape::HeightField(field) => surface_of_facets(field.triangles().map(|t| [t.a, t.b, t.c])),
         TypedShape::Polyline(line) => unmoved(line.segments().map(|s| {
             let [a, b] = [s.a, s.b].map(vector_to_kernel);
             NativeShape::Segment(kernel::shape::Segment { a, b })
         })),
+        TypedShape::Cylinder(s) => native_curved(Curved::cylinder(s.radius as f32, s.half_height as f32)),
+        TypedShape::Cone(s) => native_curved(Curved::cone(s.radius as f32, s.half_height as f32)),
         _ => None,
     }
 }
 
-fn native_polyhedron(polyhedron: &ConvexPolyhedron) -> Option<NativeShape> {
+fn native_curved(shape: Result<Curved, ShapeError>) -> Option<NativeShape> {
+    shape.ok().map(NativeShape::Curved)
+}
+
+/// The polyhedron of the kernel, if it takes it.
+fn hull_of(polyhedron: &ConvexPolyhedron) -> Option<Hull> {
     let vertices: Vec<_> = polyhedron.points().iter().map(|v| vector_to_kernel(*v)).collect();
     let faces: Vec<Vec<u32>> = polyhedron
         .faces()
@@ -88,6 +102,10 @@ fn native_polyhedron(polyhedron: &ConvexPolyhedron) -> Option<NativeShape> {
             polyhedron.vertices_adj_to_face()[range].to_vec()
         })
         .collect();
-    let hull = kernel::shape::Hull::from_mesh(vertices, faces).ok()?;
-    Some(NativeShape::Hull(std::sync::Arc::new(hull)))
+    Hull::from_mesh(vertices, faces).ok()
+}
+
+/// A polyhedron of the kernel with a radius.
+fn native_hull(hull: Hull, radius: Scalar) -> Option<NativeShape> {
+    Some(NativeShape::Hull(std::sync::Arc::new(hull.rounded(radius as f32).ok()?)))
 }

@@ -145,11 +145,14 @@ fn native_shapes_of_space() {
     assert_native(&Collider::cuboid(1.0, 2.0, 3.0));
     assert_native(&Collider::triangle(Vector::ZERO, Vector::X, Vector::Y));
     assert_native(&Tetrahedron::default().into());
-    for collider in
-        [Collider::cylinder(1.0, 1.0), Collider::cone(1.0, 1.0), Collider::round_cuboid(1.0, 1.0, 1.0, 0.1)]
-    {
-        assert!(matches!(collider.native(), kernel::shape::Shape::Foreign(_)));
-    }
+    assert_native(&Collider::round_cuboid(1.0, 0.5, 2.0, 0.1));
+    let corners = vec![Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
+    let inner = SharedShape::round_convex_hull(&corners, 0.2).expect("it is solid");
+    assert_native(&Collider::from(inner));
+    assert_native(&Collider::cylinder(1.0, 2.0));
+    assert_native(&Collider::cone(1.0, 3.0));
+    let foreign = Collider::from(SharedShape::round_cylinder(1.0, 1.0, 0.1));
+    assert!(matches!(foreign.native(), kernel::shape::Shape::Foreign(_)));
 }
 
 /// A pose above the origin.

@@ -1,0 +1,206 @@
+//! Ellipses against everything else: one point, since two would come and go on a curve.
+//!
+//! Along the best axis the farthest points of both shapes are across from each other. So the side to which they are shifted
+//! tells to which side the axis has to turn, and it is found by bisection. Edges of polygons are axes of their own.
+
+use super::super::LocalManifold;
+use super::polygonal::Polygonal;
+use crate::math::{Pose, Rot, Vector, max};
+use crate::shape::{Curved, direction};
+
+/// How many directions of a turn are tried for two curves.
+const DIRECTIONS: usize = 16;
+/// Halvings of an angle: to 1e-6 of it.
+const HALVINGS: usize = 20;
+
+/// Overlaps deeper than this share of the ellipse are deep.
+const DEEP: f32 = 0.02;
+
+/// A round shape by its farthest points.
+pub(super) trait Rounded {
+    /// The point of the core that is farthest along a unit direction.
+    fn farthest(&self, direction: Vector) -> Vector;
+    /// The radius around the core.
+    fn radius(&self) -> f32;
+    /// The radius of curvature of the surface with a normal.
+    fn curvature(&self, normal: Vector) -> f32;
+}
+
+impl Rounded for Curved {
+    fn farthest(&self, direction: Vector) -> Vector {
+        self.support(direction)
+    }
+
+    fn radius(&self) -> f32 {
+        0.0
+    }
+
+    fn curvature(&self, normal: Vector) -> f32 {
+        self.curvature_radius(normal)
+    }
+}
+
+/// The pair of a shape A and an ellipse B.
+struct Pair<'a> {
+    b: &'a Curved,
+    pose: &'a Pose,
+    prediction: f32,
+}
+
+impl Pair<'_> {
+    /// The farthest point of B against a direction.
+    fn lowest(&self, normal: Vector) -> Vector {
+        self.pose.transform(self.b.support(self.pose.rotation.inverse_rotate(-normal)))
+    }
+
+    /// Fills `out` from a unit normal, a point of A's core and that of B, and A's radii: around its core, and of curvature.
+    fn push(&self, normal: Vector, [on_a, on_b]: [Vector; 2], radii: [f32; 2], out: &mut LocalManifold) {
+        let [radius, curvature] = radii;
+        let separation = normal.dot(on_b - on_a) - radius;
+        out.normal = normal;
+        if separation <= self.prediction {
+            out.radii = [curvature, self.b.curvature_radius(self.pose.rotation.inverse_rotate(normal))];
+            out.push((on_a + on_b + normal * radius) * 0.5, separation, 0);
+        } else {
+            out.gap = max(separation, 0.0);
+        }
+    }
+
+    /// The normal of the largest separation from a core: the best of several directions, improved.
+    fn best_normal(&self, a: &impl Rounded) -> Vector {
+        // A sixteenth of a turn.
+        let step = Rot { cos: 0.923_879_5, sin: 0.382_683_43 };
+        let (mut most, mut best, mut normal) = (f32::NEG_INFINITY, Vector::Y, Vector::Y);
+        for _ in 0..DIRECTIONS {
+            let separation = self.separation(normal, a.farthest(normal));
+            if separation > most {
+                (most, best) = (separation, normal);
+            }
+            normal = step.rotate(normal);
+        }
+        self.bisect(step.inverse_rotate(best), step.rotate(best), |n| a.farthest(n))
+    }
+
+    /// The separation along a normal from a point of A.
+    fn separation(&self, normal: Vector, point: Vector) -> f32 {
+        normal.dot(self.lowest(normal) - point)
+    }
+
+    /// The normal between two at which the farthest points are across from each other. `point` gives that of A.
+    fn bisect(&self, mut low: Vector, mut high: Vector, point: impl Fn(Vector) -> Vector) -> Vector {
+        for _ in 0..HALVINGS {
+            let Some((middle, _)) = direction(low + high) else { break };
+            let shift = (self.lowest(middle) - point(middle)).dot(middle.perp());
+            if shift > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        direction(low + high).map_or(low, |(normal, _)| normal)
+    }
+}
+
+/// A circle's core.
+struct Point {
+    at: Vector,
+    radius: f32,
+}
+
+impl Rounded for Point {
+    fn farthest(&self, _: Vector) -> Vector {
+        self.at
+    }
+
+    fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    fn curvature(&self, _: Vector) -> f32 {
+        self.radius
+    }
+}
+
+impl Rounded for Polygonal<'_> {
+    fn farthest(&self, direction: Vector) -> Vector {
+        let higher = |p: Vector, q: &Vector| if q.dot(direction) > p.dot(direction) { *q } else { p };
+        self.vertices.iter().fold(self.vertices[0], higher)
+    }
+
+    fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    fn curvature(&self, _: Vector) -> f32 {
+        self.radius
+    }
+}
+
+/// A ball or ellipse A and an ellipse B.
+pub(super) fn collide_round(
+    a: &impl Rounded,
+    b: &Curved,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    let pair = Pair { b, pose, prediction };
+    let normal = pair.best_normal(a);
+    let points = [a.farthest(normal), pair.lowest(normal)];
+    pair.push(normal, points, [a.radius(), a.curvature(normal)], out);
+}
+
+/// A ball or polygon A and an ellipse B.
+pub(super) fn collide(a: &Polygonal, b: &Curved, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+    if a.len() == 1 {
+        let point = Point { at: a.vertices[0], radius: a.radius };
+        return collide_round(&point, b, pose, prediction, out);
+    }
+    let pair = Pair { b, pose, prediction };
+    let (mut most, mut edge) = (f32::NEG_INFINITY, 0);
+    for (i, (v, n)) in a.vertices.iter().zip(a.normals).enumerate() {
+        let separation = pair.separation(*n, *v);
+        if separation > most {
+            (most, edge) = (separation, i);
+        }
+    }
+    let (start, end, n) = (a.vertices[edge], a.vertices[a.next(edge)], a.normals[edge]);
+    let lowest = pair.lowest(n);
+    let axis = n.perp();
+    let radii = [a.radius; 2];
+    let (before, after) = ((lowest - start).dot(axis) < 0.0, (lowest - end).dot(axis) > 0.0);
+    let (mut normal, mut points) = (n, [lowest - n * most, lowest]);
+    if before || after {
+        // The normals of a corner are those between its edges, counter-clockwise.
+        let (corner, outward) = if before { (start, -axis) } else { (end, axis) };
+        let (mut low, mut high) =
+            if before { (a.normals[a.previous(edge)], n) } else { (n, a.normals[a.next(edge)]) };
+        if a.len() == 2 {
+            // Those of an end of a segment are half a turn.
+            let shift = (pair.lowest(outward) - corner).dot(outward.perp());
+            (low, high) = if shift > 0.0 { (outward, high) } else { (low, outward) };
+        }
+        normal = pair.bisect(low, high, |_| corner);
+        points = [corner, pair.lowest(normal)];
+    }
+    // Of shapes that overlap deeply another corner or side may be the best.
+    let separation = normal.dot(points[1] - points[0]);
+    if separation < -DEEP * b.half.max_element() {
+        let other = pair.best_normal(a);
+        let found = [a.farthest(other), pair.lowest(other)];
+        if other.dot(found[1] - found[0]) > separation + 1.0e-3 * b.half.max_element() {
+            (normal, points) = (other, found);
+        }
+    }
+    pair.push(normal, points, radii, out);
+}
+
+/// A half-space A, of the given normal, and an ellipse B.
+pub(super) fn half_space(normal: Vector, b: &Curved, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+    let pair = Pair { b, pose, prediction };
+    let lowest = pair.lowest(normal);
+    pair.push(normal, [lowest - normal * normal.dot(lowest), lowest], [0.0; 2], out);
+    if out.count == 0 {
+        out.gap = normal.dot(lowest);
+    }
+}

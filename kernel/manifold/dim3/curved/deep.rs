@@ -1,0 +1,171 @@
+//! The axis along which two overlapping cores are least deep, by an expanding polytope (van den Bergen, "Proximity Queries and
+//! Penetration Depth Computation on 3D Game Objects", 2001).
+//!
+//! A polytope within the Minkowski difference A − B grows toward the surface where its own surface is nearest to the origin.
+//! That distance is a lower bound of the depth, and the difference's support along the face's normal is an upper bound. Both
+//! meet at the least depth of all directions, however many others are the least near themselves.
+
+use super::super::gjk::Core;
+use super::super::view::MatrixPose;
+use crate::math::Vector;
+
+type Wide = Vector<f64>;
+
+/// The search ends when both bounds differ by less than this share of the depth.
+pub(super) const RESOLUTION: f64 = 0.01;
+/// It also ends at this many corners, which only shapes about as deep along very many directions have.
+const MAX_CORNERS: usize = 96;
+/// A closed surface of triangles has two for each corner, less four.
+const MAX_FACES: usize = 2 * MAX_CORNERS - 4;
+/// A corner must be over a face by this share of the difference's size to replace it.
+const FLAT: f64 = 1.0e-6;
+
+/// A triangle of the polytope, counter-clockwise from outside.
+#[derive(Clone, Copy)]
+struct Face {
+    corners: [u8; 3],
+    normal: Wide,
+    /// The distance of its plane from the origin; infinite if it has no area.
+    offset: f64,
+}
+
+/// A convex polytope of triangles.
+struct Polytope {
+    corners: [Wide; MAX_CORNERS],
+    corner_count: usize,
+    faces: [Face; MAX_FACES],
+    face_count: usize,
+    size: f64,
+}
+
+/// The normal from A to B along which the cores are least deep, to within [`RESOLUTION`]. `None` if their difference is
+/// flat. Not inlined, since its stack frame is large.
+#[inline(never)]
+pub(super) fn shallowest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> Option<Vector> {
+    let support = |normal: Wide| {
+        let n = normal.narrow();
+        let far_b = b.farthest_point(-frame.direction_in(n)).0;
+        a.farthest_point(n).0.widen() - frame.point(far_b).widen()
+    };
+    let mut polytope = Polytope::start(&support)?;
+    let (mut depth, mut normal) = (f64::INFINITY, Wide::ZERO);
+    loop {
+        let face = polytope.nearest();
+        let corner = support(face.normal);
+        let height = corner.dot(face.normal);
+        if height < depth {
+            (depth, normal) = (height, face.normal);
+        }
+        if !(depth - face.offset > RESOLUTION * depth) || !polytope.add(corner) {
+            return (depth < f64::INFINITY).then(|| normal.narrow());
+        }
+    }
+}
+
+impl Polytope {
+    /// A tetrahedron of points far apart.
+    fn start(support: &impl Fn(Wide) -> Wide) -> Option<Self> {
+        // Of the points farthest along a line, the one farther from a given point.
+        let farther = |direction: Wide, from: Wide| {
+            let ends = [support(direction), support(-direction)];
+            let [over, under] = ends.map(|p| (p - from).dot(direction).abs());
+            if over >= under { (ends[0], over) } else { (ends[1], under) }
+        };
+        let x = Vector::X.widen();
+        let (first, second) = (support(x), support(-x));
+        let along = second - first;
+        let size = along.length();
+        if !(size > 0.0 && size.is_finite()) {
+            return None;
+        }
+        let across = (along * (1.0 / size)).narrow().any_orthonormal().widen();
+        let (third, width) = farther(across, first);
+        let normal = along.cross(third - first);
+        let (fourth, height) = farther(normal * (1.0 / normal.length()), first);
+        if !(width > FLAT * size && height > FLAT * size) {
+            return None;
+        }
+        let none = Face { corners: [0; 3], normal, offset: f64::INFINITY };
+        let mut tetrahedron = Self {
+            corners: [first; MAX_CORNERS],
+            corner_count: 4,
+            faces: [none; MAX_FACES],
+            face_count: 0,
+            size,
+        };
+        tetrahedron.corners[..4].copy_from_slice(&[first, second, third, fourth]);
+        // Counter-clockwise, if the fourth corner is under the first face.
+        let is_under = (fourth - first).dot(normal) < 0.0;
+        for [i, j, k] in [[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]] {
+            tetrahedron.add_face(if is_under { [i, j, k] } else { [j, i, k] });
+        }
+        Some(tetrahedron)
+    }
+
+    fn add_face(&mut self, corners: [u8; 3]) {
+        let [p, q, r] = corners.map(|i| self.corners[usize::from(i)]);
+        let normal = (q - p).cross(r - p);
+        let length = normal.length();
+        // A face without area stays as it is: it is never the nearest, and never seen from a new corner.
+        let mut face = Face { corners, normal, offset: f64::INFINITY };
+        if length > 0.0 {
+            face.normal = normal * (1.0 / length);
+            face.offset = face.normal.dot(p);
+        }
+        self.faces[self.face_count] = face;
+        self.face_count += 1;
+    }
+
+    /// The face nearest to the origin; of faces that the origin is outside of, the farthest.
+    fn nearest(&self) -> Face {
+        let mut nearest = self.faces[0];
+        for face in &self.faces[1..self.face_count] {
+            if face.offset < nearest.offset {
+                nearest = *face;
+            }
+        }
+        nearest
+    }
+
+    /// Adds a corner: the faces that it sees give way to a fan from it to their outline. Returns whether there was room, and
+    /// a face to replace.
+    fn add(&mut self, corner: Wide) -> bool {
+        let margin = FLAT * self.size;
+        let mut outline = [[0; 2]; MAX_FACES];
+        let (mut sides, mut kept) = (0, 0);
+        let mut put = |side: [u8; 2]| {
+            // A side inside of the outline comes once in each direction.
+            match outline[..sides].iter().position(|s| *s == [side[1], side[0]]) {
+                Some(i) => {
+                    outline[i] = outline[sides - 1];
+                    sides -= 1;
+                }
+                None => {
+                    outline[sides] = side;
+                    sides += 1;
+                }
+            }
+        };
+        let faces = self.faces;
+        for face in &faces[..self.face_count] {
+            if face.normal.dot(corner) - face.offset > margin {
+                let [i, j, k] = face.corners;
+                [[i, j], [j, k], [k, i]].into_iter().for_each(&mut put);
+            } else {
+                self.faces[kept] = *face;
+                kept += 1;
+            }
+        }
+        if kept == self.face_count || self.corner_count == MAX_CORNERS || kept + sides > MAX_FACES {
+            return false;
+        }
+        let apex = self.corner_count as u8;
+        self.corners[self.corner_count] = corner;
+        self.corner_count += 1;
+        self.face_count = kept;
+        for side in &outline[..sides] {
+            self.add_face([side[0], side[1], apex]);
+        }
+        true
+    }
+}

@@ -1,0 +1,539 @@
+//! Cylinders, cones and frusta against everything else.
+//!
+//! The separating axis is looked for among planes first: faces of a polyhedron, and ends of frusta. A plane whose lowest point
+//! is in the region where both parts face each other is the best axis, and its region gives up to four points. Else the axis
+//! is found by closest points (GJK). Shapes that overlap are first moved apart along the best axis so far, which is repeated
+//! until the axis stays; this takes two or three rounds where they overlap little.
+
+mod deep;
+mod party;
+mod patch;
+#[cfg(test)]
+mod tests;
+
+use super::gjk;
+use super::reduce::reduce;
+use super::round::unit_or;
+use super::view::{MatrixPose, View};
+use crate::manifold::{FeatureCache, LocalManifold};
+use crate::math::{Pose, Vector, max, min};
+use crate::shape::Curved;
+use party::Party;
+use patch::{Phase, Region};
+
+/// [`FeatureCache::kind`] of a plane of A; `a` is the plane, `b` the phase of its circles.
+const PLANE_A: u8 = 1;
+/// [`FeatureCache::kind`] of an end of B; `a` is the end, `b` the phase of its circles.
+const PLANE_B: u8 = 2;
+/// [`FeatureCache::kind`] of any other axis, which is in `a` and `b`.
+const LINE: u8 = 3;
+
+/// A cached plane is kept if its separation changed by less than this share of the smaller shape's extent.
+const CACHE_TOLERANCE: f32 = 0.005;
+/// Another axis must beat a plane by this share of the smaller shape's extent, and an end of B a plane of A by a tenth of it.
+const PREFER_PLANES: f32 = 0.002;
+/// An axis counts as exact if the nearest point is farther than its separation by at most this share of the smaller shape's
+/// extent.
+const EXACT: f32 = 1.0e-3;
+/// Closest points are looked for where shapes are this share of the smaller one's extent apart, or farther.
+const APART: f32 = 0.03;
+/// The most rounds of moving shapes apart. Deep overlaps take more than shallow ones.
+const MAX_ROUNDS: usize = 32;
+/// A round that gains less than this share of the smaller shape's extent is the last.
+const GAIN: f32 = 1.0e-5;
+
+/// An axis counts as the best of all if no other can be less deep by more than this share of the smaller shape's extent.
+const SURE: f32 = 0.005;
+
+/// Faces overlapped by more than this share of the smaller shape's extent have a contact in any case.
+const DEEP: f32 = 0.05;
+
+/// The name of the point of a contact that has one.
+const SINGLE: u32 = 15 << 16;
+
+/// An axis between the shapes.
+#[derive(Clone, Copy)]
+enum Axis {
+    /// A plane of A, by its number.
+    PlaneA(usize),
+    /// An end of B.
+    PlaneB(usize),
+    /// Any other.
+    Line,
+}
+
+/// An axis, the unit normal from A to B along it, and the distance between the cores.
+#[derive(Clone, Copy)]
+struct Found {
+    axis: Axis,
+    normal: Vector,
+    separation: f32,
+}
+
+/// Two shapes and their relative pose.
+struct Pair<'a, A> {
+    a: &'a A,
+    b: &'a Curved,
+    b_in_a: MatrixPose,
+    prediction: f32,
+    smaller: f32,
+    larger: f32,
+}
+
+/// The contact of a polyhedron with a radius and a frustum.
+pub(super) fn with_polyhedron(
+    a: &View,
+    b: &Curved,
+    pose: &Pose,
+    prediction: f32,
+    cache: &mut FeatureCache,
+    out: &mut LocalManifold,
+) {
+    collide(a, b, pose, prediction, cache, out);
+}
+
+/// The contact of two frusta. Not inlined, since its stack frame is large.
+#[inline(never)]
+pub(super) fn frusta(
+    a: &Curved,
+    b: &Curved,
+    pose: &Pose,
+    prediction: f32,
+    cache: &mut FeatureCache,
+    out: &mut LocalManifold,
+) {
+    collide(a, b, pose, prediction, cache, out);
+}
+
+fn collide<A: Party>(
+    a: &A,
+    b: &Curved,
+    pose: &Pose,
+    prediction: f32,
+    cache: &mut FeatureCache,
+    out: &mut LocalManifold,
+) {
+    let pair = Pair::new(a, b, pose, prediction);
+    if !pair.try_cached(cache, out) {
+        pair.search(cache, out);
+    }
+}
+
+/// The contact of one face of a polyhedron, that with the given normal, and a frustum: its points over the face, if any.
+pub(super) fn collide_face(
+    a: &View,
+    normal: Vector,
+    b: &Curved,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    let Some(face) = (0..a.faces.len()).find(|i| a.faces[*i].normal.dot(normal) > 0.5) else { return };
+    let pair = Pair::new(a, b, pose, prediction);
+    let found = pair.plane_a(face);
+    if found.separation > pair.limit() {
+        out.gap = found.separation - a.radius;
+        return;
+    }
+    pair.build_plane(&found, &mut 0, out);
+    // What is deep under a face need not be over it.
+    if out.count == 0 && found.separation < -DEEP * pair.smaller {
+        pair.search(&mut FeatureCache::NONE.clone(), out);
+    }
+}
+
+/// The contact of a half-space with the given normal and a frustum.
+pub(super) fn half_space(
+    normal: Vector,
+    b: &Curved,
+    pose: &Pose,
+    prediction: f32,
+    cache: &mut FeatureCache,
+    out: &mut LocalManifold,
+) {
+    let frame = MatrixPose::new(pose);
+    let down = -frame.direction_in(normal);
+    out.normal = normal;
+    out.gap = normal.dot(frame.point(b.support(down)));
+    if !(out.gap <= prediction) {
+        return;
+    }
+    let phase = if cache.kind == PLANE_A { cache.b } else { 0 };
+    let mut region = Region::new(normal, 0.0, prediction, b.extent(Vector::ZERO), phase);
+    region.fill_plane(&party::facing(b, down, &frame));
+    *cache = FeatureCache { kind: PLANE_A, a: 0, b: region.phase, separation: out.gap };
+    take(&region, out);
+    out.radii = [0.0, party::rolling(b, down)];
+}
+
+/// The contact of a frustum and a ball.
+pub(super) fn ball(a: &Curved, center: Vector, radius: f32, prediction: f32, out: &mut LocalManifold) {
+    let nearest = a.nearest(center);
+    let separation = nearest.distance - radius;
+    if !(separation <= prediction) {
+        out.gap = separation;
+        return;
+    }
+    out.normal = nearest.normal;
+    let point = center - nearest.normal * (0.5 * (nearest.distance + radius));
+    out.push(point, separation, 0);
+    let own = if nearest.on_side { party::rolling(a, nearest.normal) } else { 0.0 };
+    out.radii = [own, radius];
+}
+
+/// Takes at most four points of a region.
+fn take(region: &Region, out: &mut LocalManifold) {
+    (out.normal, out.count) = (region.normal, 0);
+    let list = region.candidates.as_slice();
+    let (kept, count) = reduce(list, region.normal);
+    for k in &kept[..count] {
+        out.push(list[*k].point, list[*k].separation, list[*k].feature);
+    }
+}
+
+impl<'a, A: Party> Pair<'a, A> {
+    fn new(a: &'a A, b: &'a Curved, pose: &Pose, prediction: f32) -> Self {
+        let extents = [a.extent(), b.extent(Vector::ZERO)];
+        let (smaller, larger) = (min(extents[0], extents[1]), max(extents[0], extents[1]));
+        Self { a, b, b_in_a: MatrixPose::new(pose), prediction, smaller, larger }
+    }
+
+    /// Cores farther apart than this have no contact.
+    fn limit(&self) -> f32 {
+        self.prediction + self.a.radius()
+    }
+
+    /// The distance between the cores along a unit normal.
+    fn separation(&self, normal: Vector) -> f32 {
+        let b = self.b.support(-self.b_in_a.direction_in(normal));
+        normal.dot(self.b_in_a.point(b)) - normal.dot(self.a.farthest_point(normal).0)
+    }
+
+    fn plane_a(&self, plane: usize) -> Found {
+        let (normal, offset) = self.a.plane(plane);
+        let b = self.b.support(-self.b_in_a.direction_in(normal));
+        let separation = normal.dot(self.b_in_a.point(b)) - offset;
+        Found { axis: Axis::PlaneA(plane), normal, separation }
+    }
+
+    fn plane_b(&self, end: usize) -> Found {
+        let outward = self.b_in_a.axes[1] * if end == 0 { -1.0 } else { 1.0 };
+        let a = self.a.farthest_point(-outward).0;
+        let separation = outward.dot(a - self.b_in_a.position) - self.b.half_height;
+        Found { axis: Axis::PlaneB(end), normal: -outward, separation }
+    }
+
+    /// Whether the cached axis decides the contact.
+    fn try_cached(&self, cache: &mut FeatureCache, out: &mut LocalManifold) -> bool {
+        let index = usize::from(cache.a);
+        let found = match cache.kind {
+            PLANE_A if index < self.a.planes() => self.plane_a(index),
+            PLANE_B if index < 2 => self.plane_b(index),
+            LINE => {
+                let normal = normal_of(cache);
+                Found { axis: Axis::Line, normal, separation: self.separation(normal) }
+            }
+            _ => return false,
+        };
+        if found.separation > self.limit() {
+            out.gap = found.separation - self.a.radius();
+            return true;
+        }
+        if matches!(found.axis, Axis::Line)
+            || !((found.separation - cache.separation).abs() < CACHE_TOLERANCE * self.smaller)
+        {
+            return false;
+        }
+        let mut phase = cache.b;
+        let is_best = self.build_plane(&found, &mut phase, out) && self.is_best(&found, self.middle(out));
+        if is_best {
+            cache.b = phase;
+        }
+        is_best
+    }
+
+    /// Finds the axis and fills the manifold.
+    fn search(&self, cache: &mut FeatureCache, out: &mut LocalManifold) {
+        let known = *cache;
+        let phase = if known.kind == PLANE_A || known.kind == PLANE_B { known.b } else { 0 };
+        let preference = PREFER_PLANES * self.smaller;
+        let mut best = self.plane_b(0);
+        let mut consider = |found: Found, bonus: f32| {
+            if found.separation + bonus > best.separation {
+                best = found;
+            }
+        };
+        consider(self.plane_b(1), 0.0);
+        (0..self.a.planes()).for_each(|plane| consider(self.plane_a(plane), 0.1 * preference));
+        if best.separation > self.limit() {
+            self.remember(&best, phase, cache);
+            out.gap = best.separation - self.a.radius();
+            return;
+        }
+        let plane = best;
+        let mut lines = [None; 2];
+        lines[0] = self.across_axes();
+        lines[1] = (known.kind == LINE).then(|| normal_of(&known));
+        let mut start = plane;
+        for (i, normal) in lines.into_iter().enumerate() {
+            let Some(normal) = normal else { continue };
+            let line = Found { axis: Axis::Line, normal, separation: self.separation(normal) };
+            if line.separation <= max(start.separation, plane.separation + preference) {
+                continue;
+            }
+            start = line;
+            if line.separation > self.limit() {
+                return self.finish_line(&line, None, cache, out);
+            }
+            // The cached axis is rounded.
+            if i == 0 && self.build_line(&line, None, out) && self.is_best(&line, self.middle(out)) {
+                self.remember(&line, 0, cache);
+                return;
+            }
+        }
+        let mut turned: Phase = phase;
+        let is_exact = self.build_plane(&plane, &mut turned, out);
+        let is_start = matches!(start.axis, Axis::PlaneA(_) | Axis::PlaneB(_));
+        if is_exact && is_start && self.is_best(&plane, self.middle(out)) {
+            return self.remember(&plane, turned, cache);
+        }
+        let refined = self.refine_all(&start);
+        let resolution = gjk::resolution(self.larger, self.smaller);
+        let is_better = refined.0.separation > plane.separation + preference;
+        if out.count > 0 && plane.separation <= resolution && !is_better {
+            if !is_exact {
+                self.add_deepest(&refined.0, refined.1, out);
+            }
+            return self.remember(&plane, turned, cache);
+        }
+        self.finish_line(&refined.0, refined.1, cache, out);
+    }
+
+    /// Adds the nearest points to the region of a plane that lacks them.
+    fn add_deepest(&self, line: &Found, witness: Option<[Vector; 2]>, out: &mut LocalManifold) {
+        let separation = line.separation - self.a.radius();
+        let Some([a, b]) = witness else { return };
+        if separation <= self.prediction {
+            out.count = out.count.min(out.points.len() - 1);
+            out.push((a + b + out.normal * self.a.radius()) * 0.5, separation, SINGLE);
+        }
+    }
+
+    /// Fills the manifold along an axis that is no plane.
+    fn finish_line(
+        &self,
+        line: &Found,
+        witness: Option<[Vector; 2]>,
+        cache: &mut FeatureCache,
+        out: &mut LocalManifold,
+    ) {
+        self.remember(line, 0, cache);
+        out.count = 0;
+        if !(line.separation <= self.limit()) {
+            out.gap = max(line.separation - self.a.radius(), 0.0);
+            return;
+        }
+        self.build_line(line, witness, out);
+    }
+
+    /// The cache for the next step.
+    fn remember(&self, found: &Found, phase: Phase, cache: &mut FeatureCache) {
+        let (kind, a, b) = match found.axis {
+            Axis::PlaneA(plane) => (PLANE_A, plane, phase),
+            Axis::PlaneB(end) => (PLANE_B, end, phase),
+            Axis::Line => {
+                let [a, b] = bytes_of(found.normal);
+                (LINE, usize::from(a), b)
+            }
+        };
+        *cache = match u8::try_from(a) {
+            Ok(a) => FeatureCache { kind, a, b, separation: found.separation },
+            Err(_) => FeatureCache::NONE,
+        };
+    }
+
+    /// Fills the manifold from a plane. Returns whether its nearest point is as near as the plane.
+    fn build_plane(&self, found: &Found, phase: &mut Phase, out: &mut LocalManifold) -> bool {
+        let n = found.normal;
+        let mut region = self.region(found, *phase);
+        match found.axis {
+            Axis::PlaneA(plane) => {
+                let down = -self.b_in_a.direction_in(n);
+                region.fill(&self.a.part(plane), &party::facing(self.b, down, &self.b_in_a));
+            }
+            Axis::PlaneB(end) => {
+                region.fill(&self.a.facing(n), &party::end(self.b, end, &self.b_in_a));
+            }
+            Axis::Line => return false,
+        }
+        *phase = region.phase;
+        take(&region, out);
+        self.set_radii(out);
+        region.least <= found.separation + EXACT * self.smaller
+    }
+
+    fn region(&self, found: &Found, phase: Phase) -> Region {
+        let mut region = Region::new(found.normal, self.a.radius(), self.prediction, self.smaller, phase);
+        region.deepest = found.separation - EXACT * self.smaller;
+        region
+    }
+
+    fn set_radii(&self, out: &mut LocalManifold) {
+        let n = out.normal;
+        let down = -self.b_in_a.direction_in(n);
+        out.radii = [self.a.rolling(n), party::rolling(self.b, down)];
+    }
+
+    /// Fills the manifold from an axis that is no plane: the points of two lines side by side, or one point. `witness` are
+    /// the nearest points, if they are known. Returns whether the points are as near as the axis says.
+    fn build_line(&self, found: &Found, witness: Option<[Vector; 2]>, out: &mut LocalManifold) -> bool {
+        let n = found.normal;
+        let mut region = self.region(found, 0);
+        let down = -self.b_in_a.direction_in(n);
+        let line_b = party::line_along(self.b, down).map(|ends| ends.map(|p| self.b_in_a.point(p)));
+        let bar = found.separation + EXACT * self.smaller;
+        if let (Some(a), Some(b)) = (self.a.line_along(n), line_b)
+            && region.parallel_lines(&a, &b)
+            && region.least <= bar
+        {
+            take(&region, out);
+            self.set_radii(out);
+            return true;
+        }
+        let (ends, is_exact) = match (witness, self.a.line_along(n), line_b) {
+            (Some(witness), ..) => (witness, true),
+            (None, Some(a), Some(b)) => {
+                let (p, q, inside) = super::convex::closest_of_lines(a, b);
+                let aside = (q - p - n * found.separation).length();
+                ([p, q], inside && aside <= EXACT * self.smaller)
+            }
+            _ => {
+                let (a, b) = (self.a.farthest_point(n).0, self.b_in_a.point(self.b.support(down)));
+                ([a, b], (b - a - n * found.separation).length() <= EXACT * self.smaller)
+            }
+        };
+        (out.normal, out.count) = (n, 0);
+        let separation = found.separation - self.a.radius();
+        if separation <= self.prediction {
+            let point = (ends[0] + ends[1] + n * self.a.radius()) * 0.5;
+            out.push(point, separation, SINGLE);
+        }
+        self.set_radii(out);
+        is_exact
+    }
+
+    /// The direction between the axes of two cylinders, capsules or segments, across both.
+    fn across_axes(&self) -> Option<Vector> {
+        let a = self.a.axis()?;
+        if self.b.lower != self.b.upper {
+            return None;
+        }
+        let end = self.b_in_a.axes[1] * self.b.half_height;
+        let b = [self.b_in_a.position - end, self.b_in_a.position + end];
+        let (u, v) = (a[1] - a[0], b[1] - b[0]);
+        let between = (b[0] + b[1] - a[0] - a[1]) * 0.5;
+        let across = u.cross(v);
+        let (uu, vv) = (u.length_squared(), v.length_squared());
+        let normal = if across.length_squared() > 1.0e-4 * uu * vv {
+            unit_or(across, Vector::Y)
+        } else {
+            let along = if uu > vv { u * (1.0 / uu) } else { v * (1.0 / max(vv, f32::MIN_POSITIVE)) };
+            let along = along * max(uu, vv);
+            let off = between - along * (along.dot(between) / max(along.length_squared(), f32::MIN_POSITIVE));
+            if !(off.length_squared() > 1.0e-6 * self.smaller * self.smaller) {
+                return None;
+            }
+            unit_or(off, Vector::Y)
+        };
+        Some(if normal.dot(between) < 0.0 { -normal } else { normal })
+    }
+
+    /// The middle of a manifold's points: on A's core and on that of B.
+    fn middle(&self, out: &LocalManifold) -> Option<[Vector; 2]> {
+        if out.count == 0 {
+            return None;
+        }
+        let to_a = |separation: f32| out.normal * (0.5 * separation + self.a.radius());
+        let ends = out.points().iter().fold([Vector::ZERO; 2], |[a, b], p| {
+            [a + p.point - to_a(p.separation), b + p.point + out.normal * (0.5 * p.separation)]
+        });
+        Some(ends.map(|sum| sum * (1.0 / out.count as f32)))
+    }
+
+    /// Whether no axis is clearly less deep, by a point of each core. If the ball of a radius about a point of B is within A,
+    /// all axes are at least as deep as that, and the other way around.
+    fn is_best(&self, found: &Found, points: Option<[Vector; 2]>) -> bool {
+        let sure = found.separation + SURE * self.smaller;
+        sure >= 0.0
+            || points.is_some_and(|[on_a, on_b]| {
+                let on_a = self.b_in_a.direction_in(on_a - self.b_in_a.position);
+                max(self.a.depth_of(on_b), -self.b.nearest(on_a).distance) >= -sure
+            })
+    }
+
+    /// The axis that separates the cores best, and the nearest points. Where cores overlap, there may be several that are the
+    /// best near themselves.
+    fn refine_all(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
+        let near = self.refine(start);
+        if self.is_best(&near.0, near.1) {
+            return near;
+        }
+        let Some(normal) = deep::shallowest(self.a, self.b, &self.b_in_a) else { return near };
+        let axis = Found { axis: Axis::Line, normal, separation: self.separation(normal) };
+        let all = self.refine(&axis);
+        if all.0.separation > near.0.separation { all } else { near }
+    }
+
+    /// The axis that separates the cores best, near a given one, and the nearest points.
+    fn refine(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
+        let apart = APART * self.smaller;
+        if let Some(c) = gjk::closest(self.a, self.b, &self.b_in_a)
+            && c.distance > gjk::resolution(self.larger, self.smaller)
+        {
+            let found = Found { axis: Axis::Line, normal: c.normal, separation: self.separation(c.normal) };
+            return (found, Some([c.a, c.b]));
+        }
+        let mut best = (Found { axis: Axis::Line, ..*start }, None);
+        let mut normal = start.normal;
+        let mut separation = start.separation;
+        for _ in 0..MAX_ROUNDS {
+            let push = max(apart - separation, 0.0);
+            let mut frame = self.b_in_a;
+            frame.position += normal * push;
+            let Some(closest) = gjk::closest(self.a, self.b, &frame) else { break };
+            let found = self.separation(closest.normal);
+            let gain = found - best.0.separation;
+            // Moved along another direction, the nearest points are not across from each other.
+            let aside = (closest.normal - normal).length() * push;
+            let points = Some([closest.a, closest.b - normal * push]);
+            if gain >= -GAIN * self.smaller {
+                best = (Found { axis: Axis::Line, normal: closest.normal, separation: found }, points);
+            } else if best.1.is_none() {
+                best.1 = points;
+            }
+            if !(gain > GAIN * self.smaller || gain >= -GAIN * self.smaller && aside > EXACT * self.smaller) {
+                break;
+            }
+            (normal, separation) = (closest.normal, found);
+        }
+        best
+    }
+}
+
+/// A direction in two bytes: its place on an octahedron that is unfolded to a square.
+fn bytes_of(normal: Vector) -> [u8; 2] {
+    let size = normal.x.abs() + normal.y.abs() + normal.z.abs();
+    let (x, y) = (normal.x / size, normal.y / size);
+    let fold = |own: f32, other: f32| if own < 0.0 { other.abs() - 1.0 } else { 1.0 - other.abs() };
+    let (x, y) = if normal.z < 0.0 { (fold(x, y), fold(y, x)) } else { (x, y) };
+    [x, y].map(|c| ((c * 127.0).round() + 127.0) as u8)
+}
+
+/// The direction in the bytes of a cache.
+fn normal_of(cache: &FeatureCache) -> Vector {
+    let [x, y] = [cache.a, cache.b].map(|c| (f32::from(c) - 127.0) / 127.0);
+    let z = 1.0 - x.abs() - y.abs();
+    let fold = |own: f32, other: f32| if own < 0.0 { other.abs() - 1.0 } else { 1.0 - other.abs() };
+    let (x, y) = if z < 0.0 { (fold(x, y), fold(y, x)) } else { (x, y) };
+    unit_or(Vector { x, y, z }, Vector::Y)
+}
