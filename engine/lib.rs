@@ -48,6 +48,7 @@
 //! | make it slide or bounce | [`Friction`](prelude::Friction), [`Restitution`](prelude::Restitution) |
 //! | choose what it collides with | [`CollisionLayers`](prelude::CollisionLayers), [`Sensor`](prelude::Sensor), [`Dominance`](prelude::Dominance) |
 //! | let it sleep, or wake it | [`Sleeping`](prelude::Sleeping), [`SleepingDisabled`](prelude::SleepingDisabled), [`WakeBody`](prelude::WakeBody) |
+//! | cast rays and shapes, find what is near | [`spatial_query`], [`RayCaster`](prelude::RayCaster) |
 //! | take it out of the simulation | [`RigidBodyDisabled`](prelude::RigidBodyDisabled), [`ColliderDisabled`](prelude::ColliderDisabled) |
 //! | draw it smoothly between steps | [`TransformInterpolation`](prelude::TransformInterpolation), [`TransformExtrapolation`](prelude::TransformExtrapolation) |
 //! | pause, slow down or step by hand | [`Time<Physics>`](schedule::Physics), [`PhysicsSchedule`](prelude::PhysicsSchedule) |
@@ -89,6 +90,7 @@ pub mod interpolation;
 pub mod math;
 pub mod physics_transform;
 pub mod schedule;
+pub mod spatial_query;
 
 mod columns;
 mod noted;
@@ -121,5 +123,6 @@ pub mod prelude {
             Physics, PhysicsSchedule, PhysicsSchedulePlugin, PhysicsStepSystems, PhysicsSystems, PhysicsTime,
             Substeps,
         },
+        spatial_query::{self, *},
     };
 }

@@ -23,6 +23,7 @@ use crate::{
     math::Scalar,
     physics_transform::PhysicsTransformPlugin,
     schedule::PhysicsSchedulePlugin,
+    spatial_query::SpatialQueryPlugin,
     type_registration::PhysicsTypeRegistrationPlugin,
 };
 
@@ -40,6 +41,7 @@ use crate::{
 /// | [`NarrowPhasePlugin`](crate::collision::narrow_phase::NarrowPhasePlugin) | contacts between them |
 /// | [`SolverPlugins`] | motion, contact response, sleep |
 /// | [`BroadPhaseCorePlugin`], [`BvhBroadPhasePlugin`] | pairs that might touch |
+/// | [`SpatialQueryPlugin`] | ray casters and shape casters |
 /// | [`PhysicsTransformPlugin`] | `Transform` to `Position` and `Rotation`, and back |
 /// | [`PhysicsInterpolationPlugin`] | smooth transforms between steps, for those who ask |
 ///
@@ -103,6 +105,7 @@ impl PluginGroup for PhysicsPlugins {
             )
             .add(BroadPhaseCorePlugin)
             .add(BvhBroadPhasePlugin::<()>::default())
+            .add(SpatialQueryPlugin::new(self.schedule))
             .add(PhysicsTransformPlugin::new(self.schedule))
             .add(PhysicsInterpolationPlugin::default())
     }

@@ -22,6 +22,7 @@ impl Plugin for PhysicsTypeRegistrationPlugin {
         register_bodies(app);
         register_mass_properties(app);
         register_collision(app);
+        register_queries(app);
         register_collider_settings(app);
     }
 }
@@ -112,12 +113,23 @@ fn register_collision(app: &mut App) {
     );
 }
 
+fn register_queries(app: &mut App) {
+    use crate::spatial_query::{RayCaster, RayHitData, RayHits, SpatialQueryDiagnostics, SpatialQueryFilter};
+
+    register!(app: SpatialQueryFilter, SpatialQueryDiagnostics, RayCaster, RayHits, RayHitData);
+}
+
 /// The settings of colliders. Shapes themselves are not reflected yet.
 #[cfg(feature = "default-collider")]
 fn register_collider_settings(app: &mut App) {
-    use crate::collision::collider::{FillMode, TrimeshFlags, VhacdParameters};
+    use crate::{
+        collision::collider::{FillMode, TrimeshFlags, VhacdParameters},
+        spatial_query::{PointProjection, ShapeCastConfig, ShapeCaster, ShapeHitData, ShapeHits},
+    };
 
-    register!(app: VhacdParameters, FillMode, TrimeshFlags);
+    register!(app:
+        VhacdParameters, FillMode, TrimeshFlags, ShapeCaster, ShapeHits, ShapeHitData, ShapeCastConfig, PointProjection,
+    );
 }
 
 #[cfg(not(feature = "default-collider"))]

@@ -12,7 +12,7 @@ use avian::{
             softness_parameters::{SoftnessCoefficients, SoftnessParameters},
         },
     },
-    math::{AsF32, Scalar, Vector},
+    math::{AsF32, Dir, Scalar, Vector},
     physics_transform::PhysicsTransformConfig,
     prelude::*,
 };
@@ -35,9 +35,10 @@ use scenes::dim::{ball, block, spin};
 use serde::{Serialize, de::DeserializeOwned, de::DeserializeSeed};
 
 /// Types that are not stored: measurements of a step, and ticks of a world.
-const NOT_STORED: [&str; 6] = [
+const NOT_STORED: [&str; 7] = [
     "CollisionDiagnostics",
     "ColliderTreeDiagnostics",
+    "SpatialQueryDiagnostics",
     "SolverDiagnostics",
     "StepTimes",
     "LastPhysicsTick",
@@ -125,6 +126,11 @@ fn components_come_back() {
     comes_back((ComputedMass::new(0.3), ComputedCenterOfMass(Vector::ONE * 0.1), NoAutoMass));
     comes_back((ComputedAngularInertia::default(), NoAutoAngularInertia, NoAutoCenterOfMass));
     comes_back(ColliderMassProperties::from_shape(&block(0.3, 0.7, 0.9), 0.1));
+    let filter = SpatialQueryFilter::from_mask(6).with_excluded_entities([body, collider]);
+    comes_back(filter.clone());
+    comes_back(RayCaster::new(Vector::ONE * 0.3, Dir::Y).with_max_hits(2).with_query_filter(filter));
+    comes_back(RayHits(vec![RayHitData { entity: body, distance: 0.1, normal: Vector::Y }]));
+    comes_back(ShapeCastConfig::from_target_distance(0.3).with_max_distance(7.0));
 }
 
 #[test]

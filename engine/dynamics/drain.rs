@@ -105,7 +105,7 @@ fn remove_lost(queue: &mut LifecycleQueue, tables: &mut Tables, census: &mut Cen
 }
 
 /// The pose of a collider on its body.
-fn local_pose(transform: &ColliderTransform) -> Pose {
+pub(crate) fn local_pose(transform: &ColliderTransform) -> Pose {
     Pose::new(vector_to_kernel(transform.translation), unit_rotation(&transform.rotation))
 }
 

@@ -14,7 +14,10 @@
 //! ```
 
 use bevy_app::App;
-use bevy_ecs::{entity::EntityIndexSet, entity_disabling::Disabled, prelude::*, system::SystemChangeTick};
+use bevy_ecs::{
+    change_detection::Tick, entity::EntityIndexSet, entity_disabling::Disabled, prelude::*,
+    system::SystemChangeTick,
+};
 use kernel::table::NONE;
 
 use crate::{
@@ -49,6 +52,8 @@ pub(crate) struct LifecycleQueue {
     pub(crate) refused: EntityIndexSet,
     /// Colliders of bodies that are not in the simulation. They use their own pose.
     pub(crate) detached: EntityIndexSet,
+    /// Tick of the last search for mutated colliders.
+    pub(crate) drained: Tick,
 }
 
 impl LifecycleQueue {
@@ -143,6 +148,7 @@ pub(crate) fn note_changed_colliders(
     system: SystemChangeTick,
 ) {
     let since = Since::last_run(system);
+    queue.drained = system.this_run();
     let LifecycleQueue { colliders: noted, refused, detached, .. } = &mut *queue;
     // Refused colliders enter as soon as their pose is finite, in the order in which they were refused.
     let has_moved = |entity: &Entity| {

@@ -1,6 +1,6 @@
 //! Type aliases of 2D, and conversions to and from the kernel's types. `dim3.rs` exports the same names.
 
-use bevy_math::{Dir2, Vec2};
+use bevy_math::{Dir2, Ray2d, Vec2};
 use kernel::math as k;
 
 use super::{AdjustPrecision, Scalar, Vector};
@@ -10,6 +10,10 @@ pub const DIM: usize = 2;
 /// A direction of unit length.
 pub type Dir = Dir2;
 
+/// A ray in `f32`.
+pub(crate) type Ray = Ray2d;
+/// A rotation in queries: an angle in radians.
+pub(crate) type RotationValue = Scalar;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Scalar;
 /// An angular inertia.

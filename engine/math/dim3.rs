@@ -1,15 +1,19 @@
 //! Type aliases of 3D, and conversions to and from the kernel's types. `dim2.rs` exports the same names.
 
-use bevy_math::{Dir3, Vec3};
+use bevy_math::{Dir3, Ray3d, Vec3};
 use kernel::math as k;
 
-use super::{AsF32, Matrix3, Scalar, SymmetricMatrix3, Vector, Vector3};
+use super::{AsF32, Matrix3, Quaternion, Scalar, SymmetricMatrix3, Vector, Vector3};
 
 /// The number of spatial dimensions.
 pub const DIM: usize = 3;
 /// A direction of unit length.
 pub type Dir = Dir3;
 
+/// A ray in `f32`.
+pub(crate) type Ray = Ray3d;
+/// A rotation in queries.
+pub(crate) type RotationValue = Quaternion;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Vector;
 /// An angular inertia.

@@ -1,5 +1,5 @@
-//! The closest points of two convex cores (Gilbert, Johnson and Keerthi, "A Fast Procedure for Computing the Distance Between
-//! Complex Objects in Three-Dimensional Space", 1988), in `f64`.
+//! The closest points of two convex cores (Gilbert, Johnson and Keerthi, "A Fast Procedure for Computing the Distance
+//! Between Complex Objects in Three-Dimensional Space", 1988), in `f64`.
 
 use super::{Convex, nearest_weights};
 use crate::math::{DIM, Pose, Rot, Vector};
@@ -76,8 +76,8 @@ impl Difference<'_> {
     }
 }
 
-/// The closest points of core A and core B, `frame` being where B is in A's. `guess` is a direction from A to B, of about unit
-/// length or zero. `None` if a number is not finite.
+/// The closest points of core A and core B, `frame` being where B is in A's. `guess` is a direction from A to B, of
+/// about unit length or zero. `None` if a number is not finite.
 pub(crate) fn closest_cores(
     a: &Convex<'_>,
     b: &Convex<'_>,
@@ -128,8 +128,8 @@ pub(crate) fn closest_cores(
     Some(Cores { a, b, normal, distance, gap })
 }
 
-/// Reduces the simplex to its face nearest to the origin and returns the face's size and nearest point. `None` if the origin
-/// is inside.
+/// Reduces the simplex to its face nearest to the origin and returns the face's size and nearest point. `None` if the
+/// origin is inside.
 fn reduced(simplex: &mut [Vertex; DIM + 1], count: usize) -> Option<(usize, Wide)> {
     let corners = simplex.map(|v| v.w);
     let weights = nearest_weights(&corners[..count])?;

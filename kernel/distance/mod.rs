@@ -1,7 +1,7 @@
 //! Closest points of convex shapes by their support points.
 //!
-//! A convex shape is a core (a point, a segment, a polytope, or whatever has support points) and a radius around it. Cores that
-//! are apart have closest points ([`closest_cores`]); what overlaps deeper is measured by manifolds.
+//! A convex shape is a core (a point, a segment, a polytope, or whatever has support points) and a radius around it.
+//! Cores that are apart have closest points ([`closest_cores`]); what overlaps deeper is measured by manifolds.
 
 mod convex;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]

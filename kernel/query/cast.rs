@@ -1,9 +1,10 @@
 //! When a shape that moves along a line meets another, by conservative advancement (B. Mirtich, "Impulse-based Dynamic
 //! Simulation", 1996).
 //!
-//! The distance of two convex shapes is a convex function of the way. The plane between both closes at a constant rate, and the
-//! distance is never less than its gap: advancing by gap / rate is Newton's method on a convex function, from the left. It does
-//! not pass the first root, ends after as many faces as are met on polytopes, and doubles its digits on curves.
+//! The distance of two convex shapes is a convex function of the way. The plane between both closes at a constant rate,
+//! and the distance is never less than its gap: advancing by gap / rate is Newton's method on a convex function, from
+//! the left. It does not pass the first root, ends after as many faces as are met on polytopes, and doubles its digits
+//! on curves.
 
 use super::closest::{Closest, closest};
 use crate::distance::{Accuracy, Convex, Frame, closest_cores};
@@ -52,8 +53,8 @@ struct Way {
     config: CastConfig,
 }
 
-/// The first hit of shape `b`, which moves from `pose_b_in_a` along the unit vector `direction` in A's frame, on shape `a` within
-/// `max_distance`, in metres.
+/// The first hit of shape `b`, which moves from `pose_b_in_a` along the unit vector `direction` in A's frame, on shape
+/// `a` within `max_distance`, in metres.
 ///
 /// `None` also if a number is not finite, and for foreign shapes.
 pub fn cast_shape(

@@ -12,8 +12,8 @@ pub struct Closest {
     pub points: [Vector; 2],
     /// The unit normal from A to B, in A's frame. Zero for two half-spaces that are not opposite.
     pub normal: Vector,
-    /// In metres; negative where they overlap: B is then free after moving so far along the normal. The normal is that of the
-    /// least depth, or that of a face with somewhat more, as in contacts.
+    /// In metres; negative where they overlap: B is then free after moving so far along the normal. The normal is that
+    /// of the least depth, or that of a face with somewhat more, as in contacts.
     pub distance: f32,
 }
 
@@ -45,8 +45,8 @@ impl Closest {
     }
 }
 
-/// The nearest points of shape `a` and shape `b`, `pose_b_in_a` being where B is in A's frame. `None` if they are farther apart
-/// than `limit` metres, if a number is not finite, and for foreign shapes.
+/// The nearest points of shape `a` and shape `b`, `pose_b_in_a` being where B is in A's frame. `None` if they are
+/// farther apart than `limit` metres, if a number is not finite, and for foreign shapes.
 ///
 /// Of composites it is the nearest part; where parts overlap the deepest.
 pub fn closest(a: &Shape, b: &Shape, pose_b_in_a: &Pose, limit: f32) -> Option<Closest> {
@@ -102,8 +102,9 @@ fn of_shapes(a: &Shape, b: &Shape, pose: &Pose, limit: f32) -> Option<Closest> {
     }
 }
 
-/// Calls `visit` with the parts of a composite whose boxes may be within a limit of a shape: the part's number, the part, its
-/// pose in the composite's frame, the shape's pose in the part's frame, and the present limit. It returns the new limit.
+/// Calls `visit` with the parts of a composite whose boxes may be within a limit of a shape: the part's number, the
+/// part, its pose in the composite's frame, the shape's pose in the part's frame, and the present limit. It returns the
+/// new limit.
 fn visit_parts(
     composite: &Composite<Shape>,
     other: &Shape,

@@ -1,7 +1,7 @@
 //! Spatial queries: rays, shape casts, nearest points and overlaps.
 //!
-//! Of two shapes at poses: [`closest`], [`overlaps`], [`cast_shape`], [`project_point`]. Of all colliders in trees: a [`Ray`] or a
-//! [`ShapeCast`] is made once and visits what it may meet.
+//! Of two shapes at poses: [`closest`], [`overlaps`], [`cast_shape`], [`project_point`]. Of all colliders in trees: a
+//! [`Ray`] or a [`ShapeCast`] is made once and visits what it may meet.
 //!
 //! All queries read only, take any numbers, and give the same bits for the same input. Distances are in metres.
 

@@ -9,8 +9,8 @@ use crate::shape::Aabb;
 /// Rounding of a unit vector to `f32`, per component.
 const DIRECTION_ROUNDING: f32 = 1.2e-7;
 
-/// How far lines are followed whose tree has no end, as those with half-spaces, to find how far rounding takes them aside; in
-/// metres.
+/// How far lines are followed whose tree has no end, as those with half-spaces, to find how far rounding takes them
+/// aside; in metres.
 const ENDLESS: f32 = 1.0e6;
 
 /// Calls `visit` with every collider whose box touches a box, until it returns `false`.
@@ -22,8 +22,8 @@ pub fn visit_touching(trees: &Trees, aabb: &Aabb, mut visit: impl FnMut(u32) -> 
     }
 }
 
-/// Calls `visit` with the colliders whose boxes are within a limit of a point, nearer branches first, and the present limit. It
-/// returns the new limit, negative to stop.
+/// Calls `visit` with the colliders whose boxes are within a limit of a point, nearer branches first, and the present
+/// limit. It returns the new limit, negative to stop.
 pub fn visit_near(
     trees: &Trees,
     point: WorldVector,
@@ -69,8 +69,8 @@ impl Line {
         (direction.largest() < f64::INFINITY).then_some(Self { origin, direction })
     }
 
-    /// Calls `visit` with the colliders whose boxes are met within a limit by a box of half size `half` whose centre moves along
-    /// the line, nearer branches first, and the present limit. It returns the new limit, negative to stop.
+    /// Calls `visit` with the colliders whose boxes are met within a limit by a box of half size `half` whose centre
+    /// moves along the line, nearer branches first, and the present limit. It returns the new limit, negative to stop.
     pub(super) fn visit(
         &self,
         trees: &Trees,

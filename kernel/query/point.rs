@@ -17,8 +17,8 @@ pub struct Projection {
 
 const POINT: Shape = Shape::Ball(Ball { radius: 0.0 });
 
-/// The nearest point of a shape to a point in its frame. A point inside is its own projection if `solid`, else it is projected
-/// onto the boundary; of a compound onto the boundary of the part that it is deepest in.
+/// The nearest point of a shape to a point in its frame. A point inside is its own projection if `solid`, else it is
+/// projected onto the boundary; of a compound onto the boundary of the part that it is deepest in.
 ///
 /// `None` if it is farther than `limit` metres, if a number is not finite, and for foreign shapes.
 pub fn project_point(shape: &Shape, point: Vector, solid: bool, limit: f32) -> Option<Projection> {

@@ -43,8 +43,8 @@ impl Ray {
     ///
     /// A ray that begins inside of a shape hits it at distance 0 if `solid`, else from within.
     ///
-    /// `None` if origin or direction is not finite, the direction is zero, or the distance negative or NaN: such a ray hits
-    /// nothing.
+    /// `None` if origin or direction is not finite, the direction is zero, or the distance negative or NaN: such a ray
+    /// hits nothing.
     pub fn new(
         origin: WorldVector,
         direction: WorldVector,
@@ -61,8 +61,8 @@ impl Ray {
         self.max_distance
     }
 
-    /// Calls `visit` with the colliders whose boxes it meets, nearer branches first, and the present limit. It returns the new
-    /// limit: the distance of a hit to find nearer ones only, negative to stop.
+    /// Calls `visit` with the colliders whose boxes it meets, nearer branches first, and the present limit. It returns
+    /// the new limit: the distance of a hit to find nearer ones only, negative to stop.
     pub fn visit(&self, trees: &Trees, visit: impl FnMut(u32, Scalar) -> Scalar) {
         self.line.visit(trees, Vector::ZERO, self.max_distance, visit);
     }

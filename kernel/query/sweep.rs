@@ -46,9 +46,11 @@ impl Hit for ShapeCastHit {
 }
 
 impl<'a> ShapeCast<'a> {
-    /// A shape that moves from a pose along `direction`, of any length, for `max_distance` metres, which may be infinite.
+    /// A shape that moves from a pose along `direction`, of any length, for `max_distance` metres, which may be
+    /// infinite.
     ///
-    /// `None` if a number is not finite, the direction is zero, or the distance negative or NaN: such a cast hits nothing.
+    /// `None` if a number is not finite, the direction is zero, or the distance negative or NaN: such a cast hits
+    /// nothing.
     pub fn new(
         shape: &'a Shape,
         pose: &WorldPose,
@@ -76,8 +78,8 @@ impl<'a> ShapeCast<'a> {
         self.max_distance
     }
 
-    /// Calls `visit` with the colliders whose boxes its box comes near, nearer branches first, and the present limit. It returns
-    /// the new limit: the distance of a hit to find nearer ones only, negative to stop.
+    /// Calls `visit` with the colliders whose boxes its box comes near, nearer branches first, and the present limit.
+    /// It returns the new limit: the distance of a hit to find nearer ones only, negative to stop.
     pub fn visit(&self, trees: &Trees, visit: impl FnMut(u32, Scalar) -> Scalar) {
         let room = max(self.config.target_distance, 0.0);
         let center = Line { origin: self.line.origin + self.center.widen(), ..self.line };

@@ -8,6 +8,8 @@ mod contract_dim;
 mod marble;
 #[path = "../../../../tests/plugins.rs"]
 mod plugins;
+#[path = "../../../../tests/queries.rs"]
+mod queries;
 #[path = "../../../../tests/reflection.rs"]
 mod reflection;
 #[path = "../../../../tests/schedule.rs"]

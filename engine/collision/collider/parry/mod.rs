@@ -26,6 +26,7 @@ mod primitives3d;
 mod queries;
 #[cfg(feature = "2d")]
 mod regular_polygon;
+mod spatial;
 #[cfg(feature = "serialize")]
 mod stored;
 #[cfg(test)]
@@ -42,6 +43,7 @@ pub use params::{FillMode, TrimeshFlags, VhacdParameters};
 pub use regular_polygon::RegularPolygonColliderShape;
 
 pub(crate) use manifold::{Workspace, foreign_ball_manifolds, foreign_manifolds};
+pub(crate) use spatial::{ForeignCast, cast_foreign, overlaps_foreign};
 
 use super::{
     AabbContext, AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, IntoCollider,

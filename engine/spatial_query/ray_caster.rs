@@ -1,0 +1,244 @@
+//! Rays that are cast from an entity again and again.
+
+use bevy_derive::{Deref, DerefMut};
+use bevy_ecs::{
+    entity::{EntityMapper, MapEntities},
+    prelude::*,
+};
+use bevy_reflect::prelude::*;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+
+use super::{SpatialQueryFilter, frame::CasterFrame};
+use crate::math::{AdjustPrecision, Dir, Ray, Scalar, Vector, VectorF32};
+
+/// Casts a ray from its entity once per run of the schedule. The hits are in [`RayHits`].
+///
+/// Origin and direction are in the frame of the entity, so that the ray moves and turns with it.
+///
+/// ```
+/// # use avian::{math::*, prelude::*};
+/// # use bevy_ecs::prelude::*;
+/// fn setup(mut commands: Commands) {
+///     commands.spawn((RigidBody::Kinematic, RayCaster::new(Vector::ZERO, Dir::X).with_max_distance(50.0)));
+/// }
+///
+/// fn print_hits(casters: Query<(&RayCaster, &RayHits)>) {
+///     for (ray, hits) in &casters {
+///         for hit in hits {
+///             println!("{} at {}", hit.entity, ray.get_global_point(hit.distance));
+///         }
+///     }
+/// }
+/// ```
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default, PartialEq)]
+#[require(RayHits)]
+pub struct RayCaster {
+    /// Whether the ray is cast. A disabled caster has no hits. True by default.
+    pub enabled: bool,
+    /// Where the ray begins, in the entity's frame, in metres.
+    pub origin: Vector,
+    /// Its direction, in the entity's frame. Along x by default.
+    pub direction: Dir,
+    /// The most hits. If there are more the nearest are kept. No limit by default.
+    pub max_hits: u32,
+    /// The length of the ray in metres. No limit by default.
+    pub max_distance: Scalar,
+    /// Whether a ray that begins inside of a collider hits it at distance 0. If not it hits the boundary from within.
+    /// True by default.
+    pub solid: bool,
+    /// Whether the ray passes through the colliders of its entity, and of the body that this belongs to. True by
+    /// default.
+    pub ignore_self: bool,
+    /// Which colliders are hit. All by default.
+    pub query_filter: SpatialQueryFilter,
+    global_origin: Vector,
+    global_direction: Dir,
+}
+
+impl Default for RayCaster {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            origin: Vector::ZERO,
+            direction: Dir::X,
+            max_hits: u32::MAX,
+            max_distance: Scalar::MAX,
+            solid: true,
+            ignore_self: true,
+            query_filter: SpatialQueryFilter::DEFAULT,
+            global_origin: Vector::ZERO,
+            global_direction: Dir::X,
+        }
+    }
+}
+
+impl From<Ray> for RayCaster {
+    fn from(ray: Ray) -> Self {
+        Self::from_ray(ray)
+    }
+}
+
+impl RayCaster {
+    /// A ray with an origin in metres and a direction, both in the entity's frame.
+    pub fn new(origin: Vector, direction: Dir) -> Self {
+        Self { origin, direction, global_origin: origin, global_direction: direction, ..Self::default() }
+    }
+
+    /// A ray in the entity's frame.
+    pub fn from_ray(ray: Ray) -> Self {
+        Self::new(ray.origin.adjust_precision(), ray.direction)
+    }
+
+    /// The same from another origin, in metres.
+    pub fn with_origin(mut self, origin: Vector) -> Self {
+        self.origin = origin;
+        self
+    }
+
+    /// The same in another direction.
+    pub fn with_direction(mut self, direction: Dir) -> Self {
+        self.direction = direction;
+        self
+    }
+
+    /// The same with another value of [`solid`](Self::solid).
+    pub fn with_solidness(mut self, solid: bool) -> Self {
+        self.solid = solid;
+        self
+    }
+
+    /// The same with another value of [`ignore_self`](Self::ignore_self).
+    pub fn with_ignore_self(mut self, ignore: bool) -> Self {
+        self.ignore_self = ignore;
+        self
+    }
+
+    /// The same with another length, in metres.
+    pub fn with_max_distance(mut self, max_distance: Scalar) -> Self {
+        self.max_distance = max_distance;
+        self
+    }
+
+    /// The same with at most this number of hits.
+    pub fn with_max_hits(mut self, max_hits: u32) -> Self {
+        self.max_hits = max_hits;
+        self
+    }
+
+    /// The same with another filter.
+    pub fn with_query_filter(mut self, query_filter: SpatialQueryFilter) -> Self {
+        self.query_filter = query_filter;
+        self
+    }
+
+    /// Casts the ray from now on.
+    pub fn enable(&mut self) {
+        self.enabled = true;
+    }
+
+    /// Casts the ray no more. Its hits are cleared.
+    pub fn disable(&mut self) {
+        self.enabled = false;
+    }
+
+    /// The origin in the world when the ray was last cast, in metres.
+    pub fn global_origin(&self) -> Vector {
+        self.global_origin
+    }
+
+    /// The direction in the world when the ray was last cast.
+    pub fn global_direction(&self) -> Dir {
+        self.global_direction
+    }
+
+    /// The point at a distance along the ray, in the entity's frame, in metres.
+    pub fn get_point(&self, distance: Scalar) -> Vector {
+        self.origin + VectorF32::from(self.direction).adjust_precision() * distance
+    }
+
+    /// The point at a distance along the ray, in the world, in metres.
+    pub fn get_global_point(&self, distance: Scalar) -> Vector {
+        self.global_origin + VectorF32::from(self.global_direction).adjust_precision() * distance
+    }
+
+    /// Places the ray in the world.
+    pub(super) fn place(&mut self, frame: &CasterFrame) {
+        self.global_origin = frame.point(self.origin);
+        self.global_direction = frame.direction(self.direction);
+    }
+}
+
+/// The hits of a [`RayCaster`], nearest first; at the same distance in the order in which colliders entered the
+/// simulation.
+#[derive(Component, Clone, Debug, Default, Deref, DerefMut, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default, PartialEq)]
+#[component(map_entities)]
+pub struct RayHits(pub Vec<RayHitData>);
+
+impl RayHits {
+    /// The hits, nearest first. They are already, unless the app changed them.
+    pub fn iter_sorted(&self) -> std::vec::IntoIter<RayHitData> {
+        let mut hits = self.0.clone();
+        hits.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        hits.into_iter()
+    }
+}
+
+impl IntoIterator for RayHits {
+    type Item = RayHitData;
+    type IntoIter = std::vec::IntoIter<RayHitData>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter()
+    }
+}
+
+impl<'a> IntoIterator for &'a RayHits {
+    type Item = &'a RayHitData;
+    type IntoIter = core::slice::Iter<'a, RayHitData>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter()
+    }
+}
+
+impl<'a> IntoIterator for &'a mut RayHits {
+    type Item = &'a mut RayHitData;
+    type IntoIter = core::slice::IterMut<'a, RayHitData>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter_mut()
+    }
+}
+
+impl MapEntities for RayHits {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        self.0.iter_mut().for_each(|hit| hit.map_entities(mapper));
+    }
+}
+
+/// The hit of a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, PartialEq)]
+pub struct RayHitData {
+    /// The collider.
+    pub entity: Entity,
+    /// The distance along the ray, in metres.
+    pub distance: Scalar,
+    /// The outward unit normal of the collider, in the world. Zero if the ray begins inside of a solid collider.
+    pub normal: Vector,
+}
+
+impl MapEntities for RayHitData {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        self.entity = mapper.get_mapped(self.entity);
+    }
+}

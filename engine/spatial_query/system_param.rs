@@ -1,0 +1,561 @@
+//! [`SpatialQuery`], the system parameter.
+
+use bevy_ecs::{prelude::*, system::SystemParam};
+use bevy_reflect::prelude::*;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use kernel::{
+    math::{WorldPose, WorldVector},
+    query::{CastConfig, Ray as KernelRay, ShapeCast, contains_point, overlaps, project_point},
+    shape::{Aabb, Shape},
+};
+use std::sync::Arc;
+
+use super::{
+    RayHitData, ShapeCastConfig, ShapeHitData, SpatialQueryFilter,
+    recent::{Recent, World},
+    search::{Candidate, Found, Scene, Walk, all, nearest, some},
+};
+use crate::{
+    collision::collider::{Collider, ColliderAabb, ForeignCast, cast_foreign, overlaps_foreign},
+    math::{
+        AdjustPrecision, Dir, RotationValue, Scalar, Vector, VectorF32, to_f32, vector_from_kernel,
+        world_from_kernel, world_to_kernel,
+    },
+    physics_transform::{Position, Rotation, pose_from_kernel, world_pose},
+};
+
+/// Rays, shape casts, nearest points and overlaps of all colliders, as a system parameter.
+///
+/// Colliders are seen as their components are now; see [`spatial_query`](crate::spatial_query). Results are the same on
+/// every machine and for any number of threads: hits are nearest first, at the same distance in the order in which
+/// colliders entered the simulation. Sensors are found, disabled colliders are not.
+///
+/// A query reads only, so that many threads can share the parameter. A ray or cast whose origin is not finite, whose
+/// direction has no length, or whose distance is negative or NaN hits nothing. Lengths are in metres.
+///
+/// ```
+/// # use avian::{math::*, prelude::*};
+/// # use bevy_ecs::prelude::*;
+/// fn is_on_ground(players: Query<(Entity, &Position), With<RigidBody>>, queries: SpatialQuery) {
+///     for (player, position) in &players {
+///         let filter = SpatialQueryFilter::from_excluded_entities([player]);
+///         if let Some(hit) = queries.cast_ray(position.0, Dir::NEG_Y, 1.1, true, &filter) {
+///             println!("{player} stands {} m above {}", hit.distance, hit.entity);
+///         }
+///     }
+/// }
+/// ```
+#[derive(SystemParam)]
+pub struct SpatialQuery<'w, 's> {
+    world: World<'w, 's>,
+}
+
+/// The nearest point of a collider to a point.
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, PartialEq)]
+pub struct PointProjection {
+    /// The collider.
+    pub entity: Entity,
+    /// Its nearest point, in the world, in metres.
+    pub point: Vector,
+    /// Whether the given point is inside of the collider.
+    pub is_inside: bool,
+}
+
+/// What a query has of a search: the colliders as they are, and the filter.
+struct Search<'a> {
+    world: &'a World<'a, 'a>,
+    recent: &'a Recent,
+    filter: &'a SpatialQueryFilter,
+}
+
+impl Search<'_> {
+    fn scene(&self) -> Scene<'_> {
+        Scene { tables: &self.world.colliders, recent: self.recent }
+    }
+
+    /// The collider of a candidate, if it passes the filter. Only parry's shapes need it.
+    fn component(&self, candidate: &Candidate) -> Option<&Collider> {
+        self.world.component(candidate.entity)
+    }
+
+    fn passes(&self, candidate: &Candidate) -> bool {
+        self.filter.test(candidate.entity, candidate.layers)
+    }
+}
+
+fn is_foreign(shape: &Shape) -> bool {
+    matches!(shape, Shape::Foreign(_))
+}
+
+struct RaySearch<'a> {
+    search: Search<'a>,
+    ray: KernelRay,
+    origin: Vector,
+    direction: Vector,
+    solid: bool,
+}
+
+impl Walk<Vector> for RaySearch<'_> {
+    fn walk(&self, visit: &mut dyn FnMut(&Candidate, Scalar) -> Scalar) {
+        self.search.scene().along_ray(&self.ray, visit);
+    }
+
+    fn hit(&self, candidate: &Candidate, limit: Scalar) -> Option<Found<Vector>> {
+        if !self.search.passes(candidate) {
+            return None;
+        }
+        if is_foreign(candidate.shape) {
+            let (position, rotation) = candidate.components();
+            let collider = self.search.component(candidate)?;
+            let hit =
+                collider.cast_ray(position, rotation, self.origin, self.direction, limit, self.solid)?;
+            return Some(Found::new(candidate, hit.0, hit.1));
+        }
+        let hit = self.ray.hit(candidate.order, candidate.shape, &candidate.pose, limit)?;
+        Some(Found::new(candidate, hit.distance, vector_from_kernel(hit.normal)))
+    }
+}
+
+/// Points and normals of a hit of a cast shape: on the collider, then on the shape.
+#[derive(Clone, Copy)]
+struct Touch {
+    points: [Vector; 2],
+    normals: [Vector; 2],
+}
+
+struct CastSearch<'a> {
+    search: Search<'a>,
+    cast: ShapeCast<'a>,
+    shape: &'a Collider,
+    pose: (Position, Rotation),
+    direction: Vector,
+    config: &'a ShapeCastConfig,
+}
+
+impl Walk<Touch> for CastSearch<'_> {
+    fn walk(&self, visit: &mut dyn FnMut(&Candidate, Scalar) -> Scalar) {
+        self.search.scene().along_cast(&self.cast, visit);
+    }
+
+    fn hit(&self, candidate: &Candidate, limit: Scalar) -> Option<Found<Touch>> {
+        if !self.search.passes(candidate) {
+            return None;
+        }
+        if is_foreign(candidate.shape) || is_foreign(self.shape.native()) {
+            let cast = ForeignCast {
+                direction: self.direction,
+                max_distance: limit,
+                target_distance: self.config.target_distance,
+                compute_contact: self.config.compute_contact_on_penetration,
+                ignore_penetration: self.config.ignore_origin_penetration,
+            };
+            let collider = self.search.component(candidate)?;
+            let hit = cast_foreign((collider, candidate.components()), (self.shape, self.pose), &cast)?;
+            return Some(Found::new(
+                candidate,
+                hit.distance,
+                Touch { points: hit.points, normals: hit.normals },
+            ));
+        }
+        let hit = self.cast.hit(candidate.order, candidate.shape, &candidate.pose, limit)?;
+        let normal = vector_from_kernel(hit.normal);
+        let touch = Touch { points: hit.points.map(world_from_kernel), normals: [normal, -normal] };
+        Some(Found::new(candidate, hit.distance, touch))
+    }
+}
+
+struct NearSearch<'a> {
+    search: Search<'a>,
+    point: Vector,
+    solid: bool,
+}
+
+impl Walk<(Vector, bool)> for NearSearch<'_> {
+    fn walk(&self, visit: &mut dyn FnMut(&Candidate, Scalar) -> Scalar) {
+        self.search.scene().near(world_to_kernel(self.point), visit);
+    }
+
+    fn hit(&self, candidate: &Candidate, limit: Scalar) -> Option<Found<(Vector, bool)>> {
+        if !self.search.passes(candidate) {
+            return None;
+        }
+        if is_foreign(candidate.shape) {
+            let (position, rotation) = candidate.components();
+            let collider = self.search.component(candidate)?;
+            let (point, is_inside) = collider.project_point(position, rotation, self.point, self.solid);
+            let distance = (point - self.point).length();
+            return (distance <= limit).then(|| Found::new(candidate, distance, (point, is_inside)));
+        }
+        let local = candidate.pose.inverse_transform(world_to_kernel(self.point));
+        // Rounded up.
+        let limit = to_f32(limit).next_up();
+        let limit = if limit < f32::MAX { limit } else { f32::MAX };
+        let found = project_point(candidate.shape, local, self.solid, limit)?;
+        let is_given = found.is_inside && self.solid;
+        let point =
+            if is_given { self.point } else { world_from_kernel(candidate.pose.transform(found.point)) };
+        Some(Found::new(candidate, found.distance as Scalar, (point, found.is_inside)))
+    }
+}
+
+impl From<Found<Vector>> for RayHitData {
+    fn from(found: Found<Vector>) -> Self {
+        Self { entity: found.entity, distance: kernel::query::Hit::distance(&found), normal: found.data }
+    }
+}
+
+impl From<Found<Touch>> for ShapeHitData {
+    fn from(found: Found<Touch>) -> Self {
+        let Touch { points: [point1, point2], normals: [normal1, normal2] } = found.data;
+        let distance = kernel::query::Hit::distance(&found);
+        Self { entity: found.entity, distance, point1, point2, normal1, normal2 }
+    }
+}
+
+/// A direction in the public precision.
+fn vector_of(direction: Dir) -> Vector {
+    VectorF32::from(direction).adjust_precision()
+}
+
+/// The pose of a shape in a query.
+fn pose_of(position: Vector, rotation: RotationValue) -> (Position, Rotation) {
+    (Position(position), Rotation::from(rotation))
+}
+
+const EVERY: &dyn Fn(Entity) -> bool = &|_| true;
+
+static EVERYTHING: &SpatialQueryFilter = &SpatialQueryFilter::DEFAULT;
+
+impl SpatialQuery<'_, '_> {
+    /// The first collider that a ray hits.
+    ///
+    /// A ray that begins inside of a collider hits it at distance 0 with a zero normal if `solid`, else its boundary
+    /// from within.
+    pub fn cast_ray(
+        &self,
+        origin: Vector,
+        direction: Dir,
+        max_distance: Scalar,
+        solid: bool,
+        filter: &SpatialQueryFilter,
+    ) -> Option<RayHitData> {
+        self.cast_ray_predicate(origin, direction, max_distance, solid, filter, EVERY)
+    }
+
+    /// The first collider that a ray hits, of those that the predicate is true for.
+    pub fn cast_ray_predicate(
+        &self,
+        origin: Vector,
+        direction: Dir,
+        max_distance: Scalar,
+        solid: bool,
+        filter: &SpatialQueryFilter,
+        predicate: &dyn Fn(Entity) -> bool,
+    ) -> Option<RayHitData> {
+        let recent = self.world.recent();
+        let search = self.ray(&recent, origin, direction, max_distance, solid, filter)?;
+        nearest(&search, predicate).map(RayHitData::from)
+    }
+
+    /// All colliders that a ray hits, nearest first, at most `max_hits`.
+    pub fn ray_hits(
+        &self,
+        origin: Vector,
+        direction: Dir,
+        max_distance: Scalar,
+        max_hits: u32,
+        solid: bool,
+        filter: &SpatialQueryFilter,
+    ) -> Vec<RayHitData> {
+        let recent = self.world.recent();
+        let search = self.ray(&recent, origin, direction, max_distance, solid, filter);
+        let hits = search.map(|search| some(&search, max_hits, EVERY)).unwrap_or_default();
+        hits.into_iter().map(RayHitData::from).collect()
+    }
+
+    /// Calls `callback` with all colliders that a ray hits, nearest first, until it returns `false`.
+    pub fn ray_hits_callback(
+        &self,
+        origin: Vector,
+        direction: Dir,
+        max_distance: Scalar,
+        solid: bool,
+        filter: &SpatialQueryFilter,
+        mut callback: impl FnMut(RayHitData) -> bool,
+    ) {
+        let recent = self.world.recent();
+        let search = self.ray(&recent, origin, direction, max_distance, solid, filter);
+        let hits = search.map(|search| all(&search, EVERY)).unwrap_or_default();
+        _ = hits.into_iter().all(|hit| callback(hit.into()));
+    }
+
+    /// The first collider that a shape meets, which moves from `origin` along `direction` without turning.
+    ///
+    /// A shape that touches a collider from the start hits it at distance 0; see [`ShapeCastConfig`].
+    pub fn cast_shape(
+        &self,
+        shape: &Collider,
+        origin: Vector,
+        shape_rotation: RotationValue,
+        direction: Dir,
+        config: &ShapeCastConfig,
+        filter: &SpatialQueryFilter,
+    ) -> Option<ShapeHitData> {
+        self.cast_shape_predicate(shape, origin, shape_rotation, direction, config, filter, EVERY)
+    }
+
+    /// The first collider that a shape meets, of those that the predicate is true for.
+    #[expect(clippy::too_many_arguments, reason = "as in Avian")]
+    pub fn cast_shape_predicate(
+        &self,
+        shape: &Collider,
+        origin: Vector,
+        shape_rotation: RotationValue,
+        direction: Dir,
+        config: &ShapeCastConfig,
+        filter: &SpatialQueryFilter,
+        predicate: &dyn Fn(Entity) -> bool,
+    ) -> Option<ShapeHitData> {
+        let recent = self.world.recent();
+        let start = (shape, pose_of(origin, shape_rotation));
+        nearest(&self.shape(&recent, start, direction, config, filter)?, predicate).map(ShapeHitData::from)
+    }
+
+    /// All colliders that a shape meets on its way, nearest first, at most `max_hits`.
+    #[expect(clippy::too_many_arguments, reason = "as in Avian")]
+    pub fn shape_hits(
+        &self,
+        shape: &Collider,
+        origin: Vector,
+        shape_rotation: RotationValue,
+        direction: Dir,
+        max_hits: u32,
+        config: &ShapeCastConfig,
+        filter: &SpatialQueryFilter,
+    ) -> Vec<ShapeHitData> {
+        let start = (shape, pose_of(origin, shape_rotation));
+        self.shape_hits_predicate(start, direction, max_hits, config, filter, EVERY)
+    }
+
+    /// Calls `callback` with all colliders that a shape meets on its way, nearest first, until it returns `false`.
+    #[expect(clippy::too_many_arguments, reason = "as in Avian")]
+    pub fn shape_hits_callback(
+        &self,
+        shape: &Collider,
+        origin: Vector,
+        shape_rotation: RotationValue,
+        direction: Dir,
+        config: &ShapeCastConfig,
+        filter: &SpatialQueryFilter,
+        mut callback: impl FnMut(ShapeHitData) -> bool,
+    ) {
+        let hits = self.shape_hits(shape, origin, shape_rotation, direction, u32::MAX, config, filter);
+        _ = hits.into_iter().all(&mut callback);
+    }
+
+    /// The collider that is nearest to a point, and its nearest point.
+    ///
+    /// A point inside of a collider is its own projection if `solid`, else it is projected onto the boundary.
+    pub fn project_point(
+        &self,
+        point: Vector,
+        solid: bool,
+        filter: &SpatialQueryFilter,
+    ) -> Option<PointProjection> {
+        self.project_point_predicate(point, solid, filter, EVERY)
+    }
+
+    /// The nearest collider to a point, of those that the predicate is true for.
+    pub fn project_point_predicate(
+        &self,
+        point: Vector,
+        solid: bool,
+        filter: &SpatialQueryFilter,
+        predicate: &dyn Fn(Entity) -> bool,
+    ) -> Option<PointProjection> {
+        let recent = self.world.recent();
+        let search = NearSearch { search: self.search(&recent, filter), point, solid };
+        let found = nearest(&search, predicate)?;
+        let (point, is_inside) = found.data;
+        Some(PointProjection { entity: found.entity, point, is_inside })
+    }
+
+    /// All colliders that contain a point, in the order in which they entered the simulation.
+    pub fn point_intersections(&self, point: Vector, filter: &SpatialQueryFilter) -> Vec<Entity> {
+        let recent = self.world.recent();
+        let search = self.search(&recent, filter);
+        let at = world_to_kernel(point);
+        let zero = Aabb::around([kernel::math::Vector::ZERO]);
+        search.scene().touching(&zero.at(at), |candidate| {
+            if !search.passes(candidate) {
+                return false;
+            }
+            if is_foreign(candidate.shape) {
+                let (position, rotation) = candidate.components();
+                return search
+                    .component(candidate)
+                    .is_some_and(|collider| collider.contains_point(position, rotation, point));
+            }
+            contains_point(candidate.shape, candidate.pose.inverse_transform(at))
+        })
+    }
+
+    /// Calls `callback` with all colliders that contain a point, until it returns `false`.
+    pub fn point_intersections_callback(
+        &self,
+        point: Vector,
+        filter: &SpatialQueryFilter,
+        mut callback: impl FnMut(Entity) -> bool,
+    ) {
+        _ = self.point_intersections(point, filter).into_iter().all(&mut callback);
+    }
+
+    /// All colliders whose boxes touch a box, in the order in which they entered the simulation.
+    pub fn aabb_intersections_with_aabb(&self, aabb: ColliderAabb) -> Vec<Entity> {
+        let recent = self.world.recent();
+        let search = self.search(&recent, EVERYTHING);
+        let aabb = to_kernel_box(&aabb);
+        search.scene().touching(&aabb, |candidate| candidate.shape.aabb(&candidate.pose).overlaps(&aabb))
+    }
+
+    /// Calls `callback` with all colliders whose boxes touch a box, until it returns `false`.
+    pub fn aabb_intersections_with_aabb_callback(
+        &self,
+        aabb: ColliderAabb,
+        mut callback: impl FnMut(Entity) -> bool,
+    ) {
+        _ = self.aabb_intersections_with_aabb(aabb).into_iter().all(&mut callback);
+    }
+
+    /// All colliders that touch or overlap a shape, in the order in which they entered the simulation.
+    pub fn shape_intersections(
+        &self,
+        shape: &Collider,
+        shape_position: Vector,
+        shape_rotation: RotationValue,
+        filter: &SpatialQueryFilter,
+    ) -> Vec<Entity> {
+        let recent = self.world.recent();
+        let search = self.search(&recent, filter);
+        let pose = pose_of(shape_position, shape_rotation);
+        let at = world_pose(&pose.0, &pose.1);
+        if !(at.position.is_finite_world() && at.rotation.is_finite()) {
+            return Vec::new();
+        }
+        let native = shape.native();
+        search.scene().touching(&native.aabb(&at), |candidate| {
+            if !search.passes(candidate) {
+                return false;
+            }
+            if is_foreign(candidate.shape) || is_foreign(native) {
+                let collider = search.component(candidate);
+                return collider
+                    .is_some_and(|c| overlaps_foreign((c, candidate.components()), (shape, pose)));
+            }
+            overlaps(candidate.shape, native, &candidate.pose.relative(&at))
+        })
+    }
+
+    /// Calls `callback` with all colliders that touch or overlap a shape, until it returns `false`.
+    pub fn shape_intersections_callback(
+        &self,
+        shape: &Collider,
+        shape_position: Vector,
+        shape_rotation: RotationValue,
+        filter: &SpatialQueryFilter,
+        mut callback: impl FnMut(Entity) -> bool,
+    ) {
+        let found = self.shape_intersections(shape, shape_position, shape_rotation, filter);
+        _ = found.into_iter().all(&mut callback);
+    }
+
+    /// As [`ray_hits`](Self::ray_hits), of the colliders that the predicate is true for.
+    #[expect(clippy::too_many_arguments, reason = "as the public functions")]
+    pub(super) fn ray_hits_predicate(
+        &self,
+        origin: Vector,
+        direction: Dir,
+        max_distance: Scalar,
+        max_hits: u32,
+        solid: bool,
+        filter: &SpatialQueryFilter,
+        predicate: &dyn Fn(Entity) -> bool,
+    ) -> Vec<RayHitData> {
+        let recent = self.world.recent();
+        let search = self.ray(&recent, origin, direction, max_distance, solid, filter);
+        let hits = search.map(|search| some(&search, max_hits, predicate)).unwrap_or_default();
+        hits.into_iter().map(RayHitData::from).collect()
+    }
+
+    /// As [`shape_hits`](Self::shape_hits), of the colliders that the predicate is true for.
+    pub(super) fn shape_hits_predicate(
+        &self,
+        start: (&Collider, (Position, Rotation)),
+        direction: Dir,
+        max_hits: u32,
+        config: &ShapeCastConfig,
+        filter: &SpatialQueryFilter,
+        predicate: &dyn Fn(Entity) -> bool,
+    ) -> Vec<ShapeHitData> {
+        let recent = self.world.recent();
+        let search = self.shape(&recent, start, direction, config, filter);
+        let hits = search.map(|search| some(&search, max_hits, predicate)).unwrap_or_default();
+        hits.into_iter().map(ShapeHitData::from).collect()
+    }
+
+    /// The body of a collider.
+    pub(super) fn body_of(&self, collider: Entity) -> Option<Entity> {
+        self.world.body_of(collider)
+    }
+
+    fn search<'a>(&'a self, recent: &'a Arc<Recent>, filter: &'a SpatialQueryFilter) -> Search<'a> {
+        Search { world: &self.world, recent, filter }
+    }
+
+    fn ray<'a>(
+        &'a self,
+        recent: &'a Arc<Recent>,
+        origin: Vector,
+        direction: Dir,
+        max_distance: Scalar,
+        solid: bool,
+        filter: &'a SpatialQueryFilter,
+    ) -> Option<RaySearch<'a>> {
+        let direction = vector_of(direction);
+        let ray = KernelRay::new(world_to_kernel(origin), world_to_kernel(direction), max_distance, solid)?;
+        Some(RaySearch { search: self.search(recent, filter), ray, origin, direction, solid })
+    }
+
+    fn shape<'a>(
+        &'a self,
+        recent: &'a Arc<Recent>,
+        (shape, pose): (&'a Collider, (Position, Rotation)),
+        direction: Dir,
+        config: &'a ShapeCastConfig,
+        filter: &'a SpatialQueryFilter,
+    ) -> Option<CastSearch<'a>> {
+        let direction = vector_of(direction);
+        let start: WorldPose = world_pose(&pose.0, &pose.1);
+        let along: WorldVector = world_to_kernel(direction);
+        let wanted = CastConfig {
+            target_distance: to_f32(config.target_distance),
+            ignore_origin_penetration: config.ignore_origin_penetration,
+            compute_contact_on_penetration: config.compute_contact_on_penetration,
+        };
+        let cast = ShapeCast::new(shape.native(), &start, along, config.max_distance, &wanted)?;
+        // Parry takes a unit rotation.
+        let pose = pose_from_kernel(start);
+        Some(CastSearch { search: self.search(recent, filter), cast, shape, pose, direction, config })
+    }
+}
+
+/// A box in the kernel's precision, rounded outward.
+fn to_kernel_box(aabb: &ColliderAabb) -> Aabb {
+    let zero = Aabb::around([kernel::math::Vector::ZERO]);
+    let (low, high) = (zero.at(world_to_kernel(aabb.min)), zero.at(world_to_kernel(aabb.max)));
+    Aabb::new(low.min, high.max)
+}
