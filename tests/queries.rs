@@ -289,14 +289,17 @@ proptest! {
                 prop_assert!(grazes(missed.0), "{missed:?} is not in {:?}", a.all);
             }
             for hit in &a.all {
-                if let Some(other) = expected.iter().find(|other| other.0 == hit.entity) {
-                    // Not later than parry, whose rays are less exact from inside, and not off the boundary.
-                    prop_assert!(hit.distance < other.1 + 1.0e-2, "{hit:?} and not at {}", other.1);
-                }
-                let off = off_boundary(&app, hit.entity, origin + along * hit.distance);
                 let collider = app.world().get::<Collider>(hit.entity).expect("a shape");
+                // Of shapes that only parry has it answers both, from poses that differ in the last bit.
                 let room = if collider.shape().as_round_triangle().is_some() { 1.0e-2 } else { 1.0e-4 };
-                prop_assert!(off < room || solid && hit.distance == 0.0, "off the boundary by {off}: {hit:?}");
+                let other = expected.iter().find(|other| other.0 == hit.entity);
+                if other.is_some_and(|other| (other.1 - hit.distance).abs() < room) {
+                    continue;
+                }
+                // Parry's rays are less exact from inside and of compounds: the boundary tells.
+                let off = off_boundary(&app, hit.entity, origin + along * hit.distance);
+                prop_assert!(off < room, "off the boundary by {off}: {hit:?} and not {other:?}");
+                prop_assert!(other.is_none_or(|other| hit.distance < other.1 + 1.0e-2), "{hit:?} after {other:?}");
             }
             // The methods agree with each other.
             prop_assert_eq!(a.first, a.all.first().copied());
