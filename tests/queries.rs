@@ -263,7 +263,7 @@ proptest! {
     /// After any changes and steps, queries find what looking at the components of all colliders finds.
     #[test]
     fn queries_find_what_looking_at_all_components_finds(
-        changes in prop::collection::vec(change(), 1..25), from in [-7..7i8, -7..7i8], angle in 0.0..6.28f32,
+        changes in prop::collection::vec(change(), 1..25), from in [-7..7i8, -7..7i8], angle in 0.0..6.25f32,
         solid in any::<bool>(),
     ) {
         let mut app = app();
