@@ -26,6 +26,10 @@ use core::mem::MaybeUninit;
 /// lag behind; less recomputes them more often.
 const RECYCLE_SHARE: f32 = 0.25;
 
+/// Bodies that touch with round cores may move at most this share of both radii. A frozen normal lags behind a rolling body,
+/// and its hysteresis keeps capsules rocking in a pile.
+const ROUND_SHARE: f32 = 0.005;
+
 /// The least cosine of a body's turn since the manifold was computed: 10°. Beyond it the small-angle bounds below fail.
 const RECYCLE_COS: f32 = 0.985;
 
@@ -316,6 +320,9 @@ impl<N: Lane> RecycleRow<N> {
         let closing = self.closing(N::splat(settings.dt));
         let without_points = prediction - closing.max(N::splat(settings.tolerance));
         let errors = N::splat(settings.recycle_distance).min(N::splat(RECYCLE_SHARE) * smaller(extents));
+        let radius = self.radii[0] + self.radii[1];
+        let is_round = N::and(N::ZERO.lt(count), N::ZERO.lt(radius));
+        let errors = N::select(is_round, errors.min(radius * N::splat(ROUND_SHARE)), errors);
         // A manifold that is not full may lack points that were too far apart. None of these may close in this step.
         let is_full = count.eq(N::splat(MAX_POINTS as f32));
         let with_points = N::select(is_full, errors, errors.min(prediction - closing));

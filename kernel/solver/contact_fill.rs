@@ -11,6 +11,13 @@ use crate::table::{BodyTable, NONE};
 /// Prefetch distance, in rows: the contacts of a colour are scattered over the table.
 pub(super) const PREFETCH_DISTANCE: usize = 1;
 
+/// Lever of torsional friction of a contact in one point, as a share of both radii. Less lets balls spin on the spot for
+/// longer and keeps piles awake.
+const SPIN_LEVER: f32 = 0.02;
+
+/// The same for a corner, as a share of its distance from the nearer centre of mass.
+const CORNER_SPIN_LEVER: f32 = 0.002;
+
 /// The rows of one block.
 pub(super) struct BlockRows<'a, N: Lane, M, const P: usize> {
     pub(super) rows: &'a mut [ContactRow<N, M, P>],
@@ -250,6 +257,13 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             let there = N::select(N::ZERO.lt(self.weights[i]), N::ONE, N::ZERO);
             anchors[i] += (row.points[i].anchor - core) * there;
         }
-        row.twist.prepare(n, core, anchors, row.inv_inertia);
+        // More points have levers of their own.
+        let patch = if P == 1 {
+            let arm = ra.length().min(rb.length());
+            (row.radius * N::splat(SPIN_LEVER)).max(arm * N::splat(CORNER_SPIN_LEVER))
+        } else {
+            N::ZERO
+        };
+        row.twist.prepare(n, core, anchors, patch, row.inv_inertia);
     }
 }

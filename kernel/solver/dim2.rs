@@ -144,6 +144,7 @@ impl<N: Lane, const P: usize> Twist<N, P> {
         _normal: Vector<N>,
         _center: Vector<N>,
         _anchors: [Vector<N>; P],
+        _patch: N,
         _inertia: [InvInertia<N>; 2],
     ) {
     }
@@ -173,4 +174,23 @@ impl<N: Lane, const P: usize> Twist<N, P> {
     }
     /// Sets the accumulated impulse of lane `i`, N·m·s.
     pub(super) fn set_impulse(&mut self, _i: usize, _value: f32) {}
+}
+
+/// Rolling resistance: an impulse of at most `limit` against the relative angular velocity. It is not
+/// accumulated. With `scale` times that velocity, the limit fades from 1 on and is 0 from 2 on.
+#[inline(always)]
+pub(super) fn resist_rolling<N: Lane>(
+    _normal: Vector<N>,
+    scale: N,
+    limit: N,
+    inertia: [InvInertia<N>; 2],
+    w: &mut [Angular<N>; 2],
+) {
+    let speed = w[1].z - w[0].z;
+    let limit = limit * (N::splat(2.0) - speed.max(-speed) * scale).max(N::ZERO).min(N::ONE);
+    let k = inertia[0].zz + inertia[1].zz;
+    let mass = N::select(N::ZERO.lt(k), N::ONE / k, N::ZERO);
+    let impulse = (mass * speed).max(-limit).min(limit);
+    w[0].z += inertia[0].zz * impulse;
+    w[1].z -= inertia[1].zz * impulse;
 }

@@ -179,19 +179,20 @@ impl<N: Lane, const P: usize> Default for Twist<N, P> {
 }
 
 impl<N: Lane, const P: usize> Twist<N, P> {
-    /// Computes the effective mass and the levers.
+    /// Computes the effective mass and the levers. `patch` is the lever of a point by itself, in metres.
     #[inline(always)]
     pub(super) fn prepare(
         &mut self,
         normal: Vector<N>,
         center: Vector<N>,
         anchors: [Vector<N>; P],
+        patch: N,
         inertia: [InvInertia<N>; 2],
     ) {
         let k = normal.dot(inertia[0].apply(normal) + inertia[1].apply(normal));
         self.mass = N::select(N::ZERO.lt(k), N::ONE / k, N::ZERO);
         for (lever, anchor) in self.levers.iter_mut().zip(anchors) {
-            *lever = (anchor - center).length();
+            *lever = (anchor - center).length() + patch;
         }
     }
     /// Applies the accumulated impulse.
@@ -231,4 +232,26 @@ impl<N: Lane, const P: usize> Twist<N, P> {
     pub(super) fn set_impulse(&mut self, i: usize, value: f32) {
         self.impulse.set(i, value);
     }
+}
+
+/// Rolling resistance: an impulse of at most `limit` against the relative angular velocity across the normal. It is not
+/// accumulated. With `scale` times that velocity, the limit fades from 1 on and is 0 from 2 on.
+#[inline(always)]
+pub(super) fn resist_rolling<N: Lane>(
+    normal: Vector<N>,
+    scale: N,
+    limit: N,
+    inertia: [InvInertia<N>; 2],
+    w: &mut [Angular<N>; 2],
+) {
+    let relative = w[1] - w[0];
+    let rolling = relative - normal * relative.dot(normal);
+    let speed = rolling.length();
+    let limit = limit * (N::splat(2.0) - speed * scale).max(N::ZERO).min(N::ONE);
+    // The trace is at least the largest eigenvalue, so the impulse reverses the rotation about no axis.
+    let k = inertia[0].trace() + inertia[1].trace();
+    let mass = N::select(N::ZERO.lt(k), N::ONE / k, N::ZERO);
+    let impulse = rolling * N::select(N::ZERO.lt(speed), mass.min(limit / speed), N::ZERO);
+    w[0] += inertia[0].apply(impulse);
+    w[1] -= inertia[1].apply(impulse);
 }

@@ -43,6 +43,7 @@ mod sweep;
 mod view;
 
 pub use body::{BodyRows, Limits, Motion};
+use dim::resist_rolling;
 pub use dim::{BodyRow, MassRow, Twist};
 pub use distance::{Distance, DistanceError, DistanceTable, Spring};
 pub use fill::{BodyFiller, FilledBody, SpecialBodies};

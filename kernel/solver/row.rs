@@ -2,8 +2,15 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::pair::{Pair, SoftLanes};
-use super::{BodyRow, InvMass, RowView, SubstepParams, Twist};
-use crate::math::{Angular, Ids, InvInertia, Lane, Tangent, TangentFrame, TangentMass, Vector};
+use super::{BodyRow, InvMass, RowView, SubstepParams, Twist, resist_rolling};
+use crate::math::{Angular, DIM, Ids, InvInertia, Lane, Tangent, TangentFrame, TangentMass, Vector, max};
+
+/// Lever of rolling resistance, as a share of both radii: at friction 0.6 a ball rolls as if up a slope of 0.6 %. Less
+/// keeps round bodies rocking in a pile, more holds them on steeper slopes.
+const ROLL_LEVER: f32 = 0.01;
+
+/// The same for corners and edges, as a share of their distance from the nearer centre of mass.
+const CORNER_ROLL_LEVER: f32 = 0.002;
 
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, Default)]
@@ -90,7 +97,7 @@ pub struct SplitImpulseRow<N: Lane, const P: usize> {
 }
 
 const _: () = {
-    use crate::math::{DIM, F32x4};
+    use crate::math::F32x4;
     let two = size_of::<ContactRow<F32x4, F32x4, 2>>() / 4;
     let four = size_of::<ContactRow<F32x4, F32x4, 4>>() / 4;
     assert!(if DIM == 2 { two <= 156 } else { four <= 400 }, "a contact row outgrew its budget");
@@ -200,7 +207,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     ) {
         // SAFETY: by the contract.
         let mut pair = unsafe { Pair::load(rows, &self.ids) };
-        self.solve_friction(&mut pair);
+        self.solve_friction(&mut pair, params);
         // SAFETY: by the contract.
         unsafe { self.solve_normals(rows, &mut pair, params, None, restitution) };
         // SAFETY: by the contract.
@@ -321,12 +328,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         frame.project(relative) - self.surface_velocity
     }
 
-    /// Central friction, limited by μ times the sum of normal impulses, and torsional friction.
+    /// Central friction, limited by μ times the sum of normal impulses, torsional friction, and the rolling resistance of
+    /// round cores that move slowly.
     ///
     /// The impulses of the solve pass contain the push-out of overlap. The part of each that would undo the separating
     /// velocity of its point is left out of the limit. The relax pass removes about the same part.
     #[inline(always)]
-    fn solve_friction(&mut self, pair: &mut Pair<N>) {
+    fn solve_friction(&mut self, pair: &mut Pair<N>, params: &SubstepParams) {
         let n = self.normal;
         let frame = TangentFrame::new(n);
         let mut impulses = [N::ZERO; P];
@@ -345,6 +353,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let impulse = frame.expand(new - self.tangent_impulse);
         self.tangent_impulse = new;
         self.push(pair, impulse, [ra.cross(impulse), rb.cross(impulse)]);
+        // Contacts with more points bear on a face, which does not roll.
+        if P < DIM && params.roll_speed > 0.0 {
+            let reach = ra.length().min(rb.length());
+            let lever = (self.radius * N::splat(ROLL_LEVER)).max(reach * N::splat(CORNER_ROLL_LEVER));
+            let scale = reach * N::splat(1.0 / max(params.roll_speed, 1.0e-9));
+            resist_rolling(n, scale, self.friction * sum * lever, self.inv_inertia, &mut pair.w);
+        }
     }
 
     /// The impact pass: points that close within this substep, and faster than the threshold, rebound before any other

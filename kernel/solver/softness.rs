@@ -61,6 +61,8 @@ pub struct SubstepParams {
     pub restitution_threshold: f32,
     /// Separation over which the weight of a point in the friction centre fades, in metres.
     pub friction_fade: f32,
+    /// Rolling speed up to which rolling resistance is full, m/s. It is gone at twice that speed. 0 turns it off.
+    pub roll_speed: f32,
 }
 
 impl SubstepParams {
@@ -80,6 +82,7 @@ impl SubstepParams {
             warm_start: 1.0,
             restitution_threshold: 1.0,
             friction_fade: 0.02,
+            roll_speed: 0.2,
         }
     }
 
@@ -87,7 +90,7 @@ impl SubstepParams {
     pub(super) fn is_valid(&self) -> bool {
         let [h, inv_h] = [self.h, self.inv_h];
         let is_step = h.is_finite() && h >= 0.0 && inv_h.is_finite() && inv_h >= 0.0;
-        let limits = [self.max_push_speed, self.restitution_threshold, self.friction_fade];
+        let limits = [self.max_push_speed, self.restitution_threshold, self.friction_fade, self.roll_speed];
         is_step
             && self.soft.is_valid()
             && self.stiff.is_valid()

@@ -33,6 +33,9 @@ pub fn spin(z: f32) -> Angular {
 /// The moment of inertia of a solid ball, divided by m r².
 pub const BALL_INERTIA: f32 = 0.5;
 
+/// Piles that fall asleep: width in bodies, number of bodies, number of seeds, seconds.
+pub const PILES: [(usize, usize, u64, usize); 2] = [(10, 100, 6, 12), (21, 441, 2, 12)];
+
 /// The kinetic energy of rotation.
 pub fn spin_energy(inverse: InvInertia, _rotation: Rot, w: Angular) -> f64 {
     if inverse.zz > 0.0 { 0.5 * f64::from(w.z * w.z / inverse.zz) } else { 0.0 }

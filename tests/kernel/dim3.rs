@@ -33,6 +33,9 @@ pub fn sized(x: f32, y: f32, depth: f32) -> Vector {
 /// The moment of inertia of a solid ball, divided by m r².
 pub const BALL_INERTIA: f32 = 0.4;
 
+/// Piles that fall asleep: width in bodies, number of bodies, number of seeds, seconds.
+pub const PILES: [(usize, usize, u64, usize); 2] = [(5, 100, 6, 8), (7, 441, 2, 12)];
+
 /// The kinetic energy of rotation.
 pub fn spin_energy(inverse: InvInertia, rotation: Rot, w: Angular) -> f64 {
     let local = rotation.inverse_rotate(w);

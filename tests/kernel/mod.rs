@@ -21,6 +21,7 @@ mod physics;
 mod pushed;
 mod recycling;
 mod reload;
+mod rest;
 #[cfg(feature = "3d")]
 mod round;
 mod sim;

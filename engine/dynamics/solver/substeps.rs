@@ -51,6 +51,7 @@ impl Default for StepSolver {
                 warm_start: 1.0,
                 restitution_threshold: 1.0,
                 friction_fade: 0.02,
+                roll_speed: 0.2,
             },
             substeps: 1,
         }
@@ -92,6 +93,10 @@ impl OwnSubstepSystems {
 /// points open and close.
 const FRICTION_FADE: f32 = (4.0 * LINEAR_SLOP) as f32;
 
+/// Round bodies that roll no faster than this, times the length unit, in m/s, meet full rolling resistance; at twice this
+/// speed none. Less keeps piles of balls and capsules awake, more slows down what a game rolls on purpose.
+const ROLL_SPEED: f32 = 0.2;
+
 fn softness(c: SoftnessCoefficients) -> Softness {
     Softness {
         bias_rate: to_f32(c.bias),
@@ -130,6 +135,7 @@ pub(crate) fn prepare_params(
         warm_start: setting(config.warm_start_coefficient, default.warm_start_coefficient).min(1.0),
         restitution_threshold: setting(config.restitution_threshold, default.restitution_threshold) * unit,
         friction_fade: FRICTION_FADE * unit,
+        roll_speed: ROLL_SPEED * unit,
     };
 }
 

@@ -63,6 +63,24 @@ proptest! {
     }
 
     #[test]
+    fn a_small_turn_of_capsules_side_by_side_hardly_turns_their_normal(
+        u in unit(), side in unit(), tilt in -0.1f32..0.1, axis in unit(), radius in 0.2f32..0.5,
+    ) {
+        let side = side - u * side.dot(u);
+        prop_assume!(side.length() > 0.1);
+        let side = side * (1.0 / side.length());
+        let half = u * (0.8 * radius);
+        let a = Shape::Capsule(Capsule { a: -half, b: half, radius });
+        let normal = |extra: f32| {
+            let turn = Rot::from_axis_angle(axis, extra).mul(Rot::from_axis_angle(side, tilt));
+            fresh(&a, &a, &Pose::new(side * (1.99 * radius), turn), 0.5).normal
+        };
+        // Two capsules that cross in a point turn it by the turn over the sine of their angle.
+        let turned = (normal(4.0e-3) - normal(0.0)).length();
+        prop_assert!(turned < 8.0e-3, "{turned} of 0.004");
+    }
+
+    #[test]
     fn a_ball_on_a_capsules_axis_parts_across_it(u in unit(), side in unit(), s in inner(), gap in gap()) {
         let side = side - u * side.dot(u);
         prop_assume!(side.length() > 0.1);

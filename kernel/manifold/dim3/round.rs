@@ -4,8 +4,16 @@ use crate::manifold::LocalManifold;
 use crate::math::{Pose, Vector, clamp, max, min};
 use crate::shape::{Capsule, Triangle};
 
-/// Below this sine two capsules count as parallel and get two points. Less makes resting capsules rock on one point.
-const PARALLEL: f32 = 0.02;
+/// Below this sine the common normal of two capsules is not computed from their cross product.
+const PARALLEL: f32 = 1.0e-3;
+
+/// Capsules touch along a line while the directions between their axes differ by less than this angle, in radians, from
+/// that between their closest points. There the point of contact would jump from end to end with every small turn, and
+/// resting capsules would rock on it.
+const LINE_TURN: f32 = 0.1;
+
+/// Capsules whose axes have a larger sine than this touch in a point, however short they are.
+const LINE_SINE: f32 = 0.2;
 
 /// The closest points of both cores, and the radii.
 #[derive(Clone, Copy)]
@@ -212,7 +220,8 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
     let cores = Cores { a: a.a + u * s, b: b0 + v * t, radius_a: a.radius, radius_b: b.radius };
     let crossed = u.cross(v);
     let (uu, vv) = (u.length_squared(), v.length_squared());
-    let parallel = !(crossed.length_squared() > PARALLEL * PARALLEL * uu * vv);
+    let is_within = |sine: f32| !(crossed.length_squared() > sine * sine * uu * vv);
+    let parallel = is_within(PARALLEL);
     let mut fallback = if parallel {
         unit_or(u, unit_or(v, Vector::X)).any_orthonormal()
     } else {
@@ -225,33 +234,73 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
     if side < 0.0 {
         fallback = -fallback;
     }
+    let lines = Lines { a, u, b0, v, cores };
+    if is_within(LINE_SINE)
+        && lines.touch(parallel, |middle| middle.direction_or(fallback, rounding), prediction, out)
+    {
+        return;
+    }
     if !parallel && s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0 {
         // Between the ends of both, the normal is across both at any distance.
         out.normal = fallback;
         return cores.push(fallback, prediction, 0, out);
     }
-    if parallel && uu > 0.0 && vv > 0.0 {
-        // B's ends along A, clamped to A: the range in which both are side by side.
-        let ends = [b0, b1].map(|p| clamp((p - a.a).dot(u) / uu, 0.0, 1.0));
+    cores.contact(fallback, rounding, prediction, out);
+    if parallel {
+        // The closest points of parallel lines are found by rounding.
+        out.gap = 0.0;
+    }
+}
+
+/// Two capsules side by side.
+struct Lines<'a> {
+    a: &'a Capsule,
+    /// A's axis.
+    u: Vector,
+    /// B's first end and axis.
+    b0: Vector,
+    v: Vector,
+    /// The closest points.
+    cores: Cores,
+}
+
+impl Lines<'_> {
+    /// A contact with a point at each end of the range in which both are side by side, if they are nearly parallel there.
+    /// The normal is that in the middle of the range.
+    fn touch(
+        &self,
+        parallel: bool,
+        normal_or: impl Fn(&Cores) -> Vector,
+        prediction: f32,
+        out: &mut LocalManifold,
+    ) -> bool {
+        let &Self { a, u, b0, v, cores } = self;
+        let (uu, vv) = (u.length_squared(), v.length_squared());
+        if uu == 0.0 || vv == 0.0 {
+            return false;
+        }
+        // B's ends along A, clamped to A.
+        let ends = [b0, b0 + v].map(|p| clamp((p - a.a).dot(u) / uu, 0.0, 1.0));
         let (low, high) = (min(ends[0], ends[1]), max(ends[0], ends[1]));
         let across = |s: f32| {
             let p = a.a + u * s;
             let q = b0 + v * clamp((p - b0).dot(v) / vv, 0.0, 1.0);
             Cores { a: p, b: q, ..cores }
         };
-        if high - low > 0.01 {
-            out.normal = cores.direction_or(fallback, rounding);
-            for (feature, s) in [(1, low), (2, high)] {
-                across(s).push(out.normal, prediction, feature, out);
-            }
-            out.gap = 0.0;
-            return;
+        let [first, last] = [low, high].map(across);
+        let between = cores.b - cores.a;
+        let sway = [first, last].map(|end| ((end.b - end.a) - between).length_squared());
+        let size = LINE_TURN * min(between.length(), cores.radius_a + cores.radius_b);
+        let is_line = parallel || max(sway[0], sway[1]) < size * size;
+        if !is_line || !(high - low > 0.01) {
+            return false;
         }
-    }
-    cores.contact(fallback, rounding, prediction, out);
-    if parallel {
-        // The closest points of parallel lines are found by rounding.
+        out.normal = normal_or(&across(0.5 * (low + high)));
+        for (feature, ends) in [(1, first), (2, last)] {
+            ends.push(out.normal, prediction, feature, out);
+        }
         out.gap = 0.0;
+        true
     }
 }
 
