@@ -30,9 +30,14 @@ impl<'a> Convex<'a> {
             Shape::Segment(s) => Core::Segment(s.a, s.b),
             Shape::Hull(s) => Core::Hull(s),
             Shape::HalfSpace(_) | Shape::Composite(_) | Shape::Foreign(_) => return None,
-            _ => Core::Whole(shape),
+            Shape::Cuboid(_) | Shape::Triangle(_) | Shape::Curved(_) => Core::Whole(shape),
         };
         Some(Self { core, radius: shape.radius() })
+    }
+
+    /// Whether the points of the core are rounded, since they lie on a curve. Vertices are exact.
+    pub(crate) fn is_curved(&self) -> bool {
+        matches!(self.core, Core::Whole(Shape::Curved(_)))
     }
 
     /// The point of the core farthest along a direction of any length.

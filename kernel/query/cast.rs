@@ -17,6 +17,10 @@ const MAX_ROUNDS: usize = 64;
 /// Shapes meet when they are as near as this share of their sizes.
 const MET: f64 = 1.0e-6;
 
+/// How far curves are moved apart, times how near they meet, to tell their normal. More turns the normal, by the way over
+/// the radius of curvature.
+const FAR_ENOUGH: f64 = 300.0;
+
 /// What counts as a hit of a cast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CastConfig {
@@ -191,7 +195,13 @@ fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, way: &Way, limit: f3
                 let back = Frame { position: frame.position - direction * (4.0 * met), ..frame };
                 closest_cores(&a, &b, &back, normal, accuracy)?
             };
-            let normal = if cores.distance > 0.0 { cores.normal } else { normal };
+            let mut normal = if cores.distance > 0.0 { cores.normal } else { normal };
+            if (a.is_curved() || b.is_curved()) && cores.distance < FAR_ENOUGH * met {
+                // Points on curves are rounded to f32, and so is the direction between near ones.
+                let back = Frame { position: frame.position - direction * (FAR_ENOUGH * met), ..frame };
+                let apart = closest_cores(&a, &b, &back, normal, accuracy)?;
+                normal = if apart.distance > 0.0 { apart.normal } else { normal };
+            }
             let on_a = cores.a + normal * radii[0];
             let on_b = on_a + normal * (target - radii[0] - radii[1]);
             let points = [on_a.narrow(), on_b.narrow()];

@@ -52,6 +52,7 @@ fn convex() -> impl Strategy<Value = Shape> {
             .prop_filter_map("no hull", |(points, radius)| dim::hull(&points, radius)),
         [vector(1.0), vector(1.0), vector(1.0)].prop_map(|[a, b, c]| Shape::Triangle(Triangle { a, b, c })),
         [vector(1.0), vector(1.0)].prop_map(|[a, b]| Shape::Segment(Segment { a, b })),
+        dim::curved(),
     ]
 }
 
