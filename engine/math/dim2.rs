@@ -13,6 +13,7 @@ pub type Dir = Dir2;
 /// A ray in `f32`.
 pub(crate) type Ray = Ray2d;
 /// A rotation in queries: an angle in radians.
+#[cfg(feature = "default-collider")]
 pub(crate) type RotationValue = Scalar;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Scalar;

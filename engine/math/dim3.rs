@@ -3,7 +3,7 @@
 use bevy_math::{Dir3, Ray3d, Vec3};
 use kernel::math as k;
 
-use super::{AsF32, Matrix3, Quaternion, Scalar, SymmetricMatrix3, Vector, Vector3};
+use super::{AsF32, Matrix3, Scalar, SymmetricMatrix3, Vector, Vector3};
 
 /// The number of spatial dimensions.
 pub const DIM: usize = 3;
@@ -13,7 +13,8 @@ pub type Dir = Dir3;
 /// A ray in `f32`.
 pub(crate) type Ray = Ray3d;
 /// A rotation in queries.
-pub(crate) type RotationValue = Quaternion;
+#[cfg(feature = "default-collider")]
+pub(crate) type RotationValue = super::Quaternion;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Vector;
 /// An angular inertia.

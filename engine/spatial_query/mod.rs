@@ -15,6 +15,7 @@
 //! [`PhysicsTransformHelper`](crate::physics_transform::PhysicsTransformHelper) at once.
 
 mod diagnostics;
+#[cfg(feature = "default-collider")]
 mod frame;
 mod plugin;
 mod query_filter;

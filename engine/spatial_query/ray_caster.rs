@@ -9,7 +9,9 @@ use bevy_reflect::prelude::*;
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
-use super::{SpatialQueryFilter, frame::CasterFrame};
+use super::SpatialQueryFilter;
+#[cfg(feature = "default-collider")]
+use super::frame::CasterFrame;
 use crate::math::{AdjustPrecision, Dir, Ray, Scalar, Vector, VectorF32};
 
 /// Casts a ray from its entity once per run of the schedule. The hits are in [`RayHits`].
@@ -166,6 +168,7 @@ impl RayCaster {
     }
 
     /// Places the ray in the world.
+    #[cfg(feature = "default-collider")]
     pub(super) fn place(&mut self, frame: &CasterFrame) {
         self.global_origin = frame.point(self.origin);
         self.global_direction = frame.direction(self.direction);
