@@ -11,12 +11,12 @@ use crate::graph::{ColorGraph, ConstraintId, ConstraintKind, IslandId, Islands};
 use crate::shape::Shape;
 use crate::table::{BodyKind, BodyTable, ColliderTable, Material, NONE};
 
-/// What changed of a contact, for whoever tells others about it.
+/// A change of a contact, for reports to the app.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// Points came.
+    /// The shapes began to touch: the first point appeared.
     Began,
-    /// The last point went.
+    /// The shapes no longer touch: the last point disappeared.
     Ended,
 }
 
@@ -210,8 +210,8 @@ impl Link<'_> {
         }
     }
 
-    /// The sleeping body of a contact that nobody else looks at: its other body is at rest, and not by
-    /// sleeping. Such a contact stays unseen until the sleeper wakes.
+    /// The sleeping body of a contact whose other body does not move either, because it is static or a kinematic one at rest.
+    /// The narrow phase skips such a contact until the sleeping body wakes.
     pub fn unseen_sleeper(&self, id: u32) -> Option<u32> {
         let contact = self.contacts.get(id);
         if contact.is_inert() || contact.bodies.iter().any(|b| self.is_awake(*b)) {

@@ -2,6 +2,7 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::batch::{Filling, Item, Pass, Passes};
+use super::row::{CORNER_SPIN_LEVER, SPIN_LEVER};
 use super::split::DeepCounts;
 use super::{BodyRow, ContactRow, InvMass, MassRow, RestitutionRow, RowView, SplitImpulseRow, SubstepParams};
 use crate::contact::{Contact, Manifold};
@@ -10,13 +11,6 @@ use crate::table::{BodyTable, NONE};
 
 /// Prefetch distance, in rows: the contacts of a colour are scattered over the table.
 pub(super) const PREFETCH_DISTANCE: usize = 1;
-
-/// Lever of torsional friction of a contact in one point, as a share of both radii. Less lets balls spin on the spot for
-/// longer and keeps piles awake.
-const SPIN_LEVER: f32 = 0.02;
-
-/// The same for a corner, as a share of its distance from the nearer centre of mass.
-const CORNER_SPIN_LEVER: f32 = 0.002;
 
 /// The rows of one block.
 pub(super) struct BlockRows<'a, N: Lane, M, const P: usize> {

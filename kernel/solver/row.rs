@@ -5,6 +5,15 @@ use super::pair::{Pair, SoftLanes};
 use super::{BodyRow, InvMass, RowView, SubstepParams, Twist, resist_rolling};
 use crate::math::{Angular, DIM, Ids, InvInertia, Lane, Tangent, TangentFrame, TangentMass, Vector, max};
 
+// Levers of resistance times the normal force and the coefficient of friction are the greatest torques.
+
+/// Lever of torsional friction of a contact in one point, as a share of both radii. Less lets balls spin on the spot for
+/// longer and keeps piles awake.
+pub(super) const SPIN_LEVER: f32 = 0.02;
+
+/// The same for a corner, as a share of its distance from the nearer centre of mass.
+pub(super) const CORNER_SPIN_LEVER: f32 = 0.002;
+
 /// Lever of rolling resistance, as a share of both radii: at friction 0.6 a ball rolls as if up a slope of 0.6 %. Less
 /// keeps round bodies rocking in a pile, more holds them on steeper slopes.
 const ROLL_LEVER: f32 = 0.01;
