@@ -14,8 +14,12 @@ use crate::shape::{Aabb, Composite, HalfSpace, Part, Shape};
 /// Most steps of an advance. A shape that touches another in passing takes the most: each step halves what is left.
 const MAX_ROUNDS: usize = 64;
 
-/// Shapes meet when they are as near as this share of their sizes.
+/// Shapes meet when they are as near as this share of their sizes, of which a larger one without curves counts as the
+/// smaller: its vertices are exact, so that a cast over a large floor is as exact as over a small one.
 const MET: f64 = 1.0e-6;
+
+/// The same, of the larger size, where the distance that counts as touching is more.
+const MET_OF_LARGER: f64 = 1.0e-9;
 
 /// How far curves are moved apart, times how near they meet, to tell their normal. More turns the normal, by the way over
 /// the radius of curvature.
@@ -158,12 +162,19 @@ fn size_of(shape: &Shape) -> f64 {
     f64::from(shape.local_aabb(Pose::IDENTITY.rotation).half().length())
 }
 
+/// The distance at which shapes meet, in metres.
+fn met_distance(shapes: [(&Shape, &Convex); 2]) -> f64 {
+    let [a, b] = shapes.map(|(shape, _)| size_of(shape));
+    let size = |i: usize, size: f64| if shapes[i].1.is_curved() { size } else { a.min(b) };
+    MET * (size(0, a) + size(1, b)) + MET_OF_LARGER * a.max(b)
+}
+
 fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, way: &Way, limit: f32) -> Option<CastHit> {
     let (a, b) = (Convex::of(shape_a)?, Convex::of(shape_b)?);
     let direction = way.direction.widen();
     let radii = [a.radius, b.radius].map(f64::from);
     let target = radii[0] + radii[1] + f64::from(max(way.config.target_distance, 0.0));
-    let met = MET * (size_of(shape_a) + size_of(shape_b));
+    let met = met_distance([(shape_a, &a), (shape_b, &b)]);
     let accuracy = Accuracy { tolerance: 0.1 * met, beyond: f64::INFINITY };
     let start = Frame::from(pose);
     let (mut way_done, mut normal) = (0.0, Vector::<f64>::ZERO);
@@ -253,6 +264,7 @@ fn facing(plane: HalfSpace, a: &Shape, b: &Shape, pose: &Pose, way: &Way) -> Opt
         return None;
     }
     let distance = gap / rate;
-    let points = [now.points[0], now.points[1] + way.direction * distance];
+    let on_b = now.points[1] + way.direction * distance;
+    let points = [on_b - plane.normal * on_b.dot(plane.normal), on_b];
     Some(CastHit { distance, points, normal: plane.normal })
 }

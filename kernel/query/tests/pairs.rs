@@ -3,7 +3,7 @@
 use super::super::*;
 use super::{any_shape, composite, convex, half_space, parts, pose, unit, vector};
 use crate::math::{Pose, Rot, Vector};
-use crate::shape::Shape;
+use crate::shape::{Ball, Cuboid, HalfSpace, Shape};
 use proptest::prelude::*;
 
 /// The height of a shape along a direction; infinite for half-spaces but along their normal.
@@ -304,4 +304,27 @@ fn a_box_on_a_floor_slides_on_if_what_it_overlaps_is_ignored() {
     assert!(cast(-Vector::Y, &ignoring).is_some(), "it would go deeper");
     let silent = CastConfig { compute_contact_on_penetration: false, ..Default::default() };
     assert_eq!(cast(Vector::X, &silent).map(|hit| hit.normal), Some(Vector::ZERO));
+}
+
+#[test]
+fn issue_casts_close_above_a_large_floor_hit_far_too_early() {
+    for size in [1.0f32, 100.0, 10_000.0] {
+        let floor = Shape::Cuboid(Cuboid { half: (Vector::ONE - Vector::Y) * size + Vector::Y * 0.5 });
+        let ball = Shape::Ball(Ball { radius: 0.125 });
+        let start = Pose::new(Vector::Y * (0.625 + 1.0 / 512.0), Rot::IDENTITY);
+        let down = Vector::X - Vector::Y * (1.0 / 256.0);
+        let direction = down * (1.0 / down.length());
+        let hit = cast_shape(&floor, &ball, &start, direction, 5.0, &CastConfig::default()).expect("a hit");
+        assert!((hit.distance - 0.5).abs() < 0.005, "{} m of 0.5 over {size} m", hit.distance);
+    }
+}
+
+#[test]
+fn half_spaces_that_meet_have_points_across_from_each_other() {
+    let [ground, ceiling] = [Vector::Y, -Vector::Y].map(|normal| Shape::HalfSpace(HalfSpace { normal }));
+    let start = Pose::new(Vector::Y * 2.0, Rot::IDENTITY);
+    let direction = (Vector::X - Vector::Y) * 0.5f32.sqrt();
+    let hit = cast_shape(&ground, &ceiling, &start, direction, 10.0, &CastConfig::default()).expect("a hit");
+    assert!((hit.points[0] - hit.points[1]).length() < 1.0e-6, "{hit:?}");
+    assert!((hit.points[0] - Vector::X * 2.0).length() < 1.0e-6, "{hit:?}");
 }
