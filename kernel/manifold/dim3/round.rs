@@ -15,6 +15,9 @@ const LINE_TURN: f32 = 0.1;
 /// Capsules whose axes have a larger sine than this touch in a point, however short they are.
 const LINE_SINE: f32 = 0.2;
 
+/// Capsules touch along a line if they are side by side over more than this share of the shorter one.
+const LINE_SHARE: f32 = 0.01;
+
 /// The closest points of both cores, and the radii.
 #[derive(Clone, Copy)]
 struct Cores {
@@ -292,7 +295,8 @@ impl Lines<'_> {
         let sway = [first, last].map(|end| ((end.b - end.a) - between).length_squared());
         let size = LINE_TURN * min(between.length(), cores.radius_a + cores.radius_b);
         let is_line = parallel || max(sway[0], sway[1]) < size * size;
-        if !is_line || !(high - low > 0.01) {
+        let shared = (high - low) * (high - low) * uu;
+        if !is_line || !(shared > LINE_SHARE * LINE_SHARE * min(uu, vv)) {
             return false;
         }
         out.normal = normal_or(&across(0.5 * (low + high)));

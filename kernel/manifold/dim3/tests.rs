@@ -539,3 +539,15 @@ fn a_small_box_beside_a_face_as_near_as_its_plane_is_not_missed() {
         assert!(m.count == 1 && (m.points()[0].separation - 0.005035617).abs() < 1e-4, "{m:?}");
     }
 }
+
+#[test]
+fn issue_a_capsule_on_a_long_rail_touched_in_one_point() {
+    let capsule = |half: f32| {
+        let end = Vector { x: half, y: 0.0, z: 0.0 };
+        Shape::Capsule(Capsule { a: -end, b: end, radius: 0.1 })
+    };
+    let (rail, short) = (capsule(50.0), capsule(0.25));
+    let pose = Pose::new(Vector { x: 3.0, y: 0.195, z: 0.0 }, Rot::IDENTITY);
+    assert_eq!(fresh(&rail, &short, &pose, 0.02).count, 2);
+    assert_eq!(fresh(&short, &rail, &pose.inverse(), 0.02).count, 2);
+}

@@ -131,7 +131,8 @@ impl Polytope {
     /// a face to replace.
     fn add(&mut self, corner: Wide) -> bool {
         let margin = FLAT * self.size;
-        let mut outline = [[0; 2]; MAX_FACES];
+        // A face that gives way adds at most three sides.
+        let mut outline = [[0; 2]; 3 * MAX_FACES];
         let (mut sides, mut kept) = (0, 0);
         let mut put = |side: [u8; 2]| {
             // A side inside of the outline comes once in each direction.

@@ -334,7 +334,8 @@ impl Region {
         }
         let ends = [0, 1].map(|i| clamp((b[i] - a[0]).dot(u) / uu, 0.0, 1.0));
         let (low, high) = (min(ends[0], ends[1]), max(ends[0], ends[1]));
-        if !(high - low > 0.01) {
+        let shared = (high - low) * (high - low) * uu;
+        if !(shared > LINE_SHARE * LINE_SHARE * min(uu, vv)) {
             return false;
         }
         let across = self.normal.cross(u) * (1.0 / uu.sqrt());
@@ -356,6 +357,8 @@ impl Region {
 
 /// Lines with a smaller sine between them are side by side.
 const SIDE_BY_SIDE: f32 = 0.02;
+/// Lines run side by side if they do over more than this share of the shorter one.
+const LINE_SHARE: f32 = 0.01;
 /// Lines side by side may pass each other by this share of the smaller shape's extent.
 const ASIDE: f32 = 2.0e-3;
 

@@ -353,3 +353,14 @@ fn axes_are_the_best_of_all() -> Result<(), TestCaseError> {
     let turn = rotation(-0.5352065, 0.120785296, 0.7028287, -0.4527658);
     check(&cone, &stub, &Pose::new(v(-0.25770807, -0.708012, -1.1463908), turn))
 }
+
+#[test]
+fn issue_a_cylinder_on_a_long_rail_touched_in_one_point() {
+    let pose = Pose::new(v(0.195, 3.0, 0.0), Rot::IDENTITY);
+    let end = v(0.0, 50.0, 0.0);
+    let rails = [cylinder(0.1, 50.0), Shape::Capsule(Capsule { a: -end, b: end, radius: 0.1 })];
+    for rail in rails {
+        assert_eq!(fresh(&rail, &cylinder(0.1, 0.25), &pose, 0.02).count, 2);
+        assert_eq!(fresh(&cylinder(0.1, 0.25), &rail, &pose.inverse(), 0.02).count, 2);
+    }
+}
