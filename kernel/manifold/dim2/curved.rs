@@ -8,8 +8,10 @@ use super::polygonal::Polygonal;
 use crate::math::{Pose, Rot, Vector, max};
 use crate::shape::{Curved, direction};
 
-/// How many directions of a turn are tried for two curves.
+/// How many directions of a turn are tried for two curves, for each of them.
 const DIRECTIONS: usize = 16;
+/// The ratio of half sizes of the flattest ellipse whose normals are tried. At 0 all would be across it.
+const FLATTEST: f32 = 1.0e-4;
 /// Halvings of an angle: to 1e-6 of it.
 const HALVINGS: usize = 20;
 
@@ -24,9 +26,17 @@ pub(super) trait Rounded {
     fn radius(&self) -> f32;
     /// The radius of curvature of the surface with a normal.
     fn curvature(&self, normal: Vector) -> f32;
+    /// Half sizes of the ellipse that it is or resembles. Its normals are tried.
+    fn half(&self) -> Vector {
+        Vector::ONE
+    }
 }
 
 impl Rounded for Curved {
+    fn half(&self) -> Vector {
+        self.half
+    }
+
     fn farthest(&self, direction: Vector) -> Vector {
         self.support(direction)
     }
@@ -68,17 +78,29 @@ impl Pair<'_> {
 
     /// The normal of the largest separation from a core: the best of several directions, improved.
     fn best_normal(&self, a: &impl Rounded) -> Vector {
+        let of_a = self.best_in_fan(a, |around| normal_of(a.half(), around));
+        let rotation = self.pose.rotation;
+        let of_b = self.best_in_fan(a, |around| rotation.rotate(normal_of(self.b.half, around)));
+        if of_b.0 > of_a.0 { of_b.1 } else { of_a.1 }
+    }
+
+    /// The largest separation from a core near the best of the normals that `fan` makes of directions around an ellipse,
+    /// and its normal. Those of a flat ellipse are close together.
+    fn best_in_fan(&self, a: &impl Rounded, fan: impl Fn(Vector) -> Vector) -> (f32, Vector) {
         // A sixteenth of a turn.
         let step = Rot { cos: 0.923_879_5, sin: 0.382_683_43 };
-        let (mut most, mut best, mut normal) = (f32::NEG_INFINITY, Vector::Y, Vector::Y);
+        let (mut most, mut best, mut around) = (f32::NEG_INFINITY, Vector::Y, Vector::Y);
         for _ in 0..DIRECTIONS {
+            let normal = fan(around);
             let separation = self.separation(normal, a.farthest(normal));
             if separation > most {
-                (most, best) = (separation, normal);
+                (most, best) = (separation, around);
             }
-            normal = step.rotate(normal);
+            around = step.rotate(around);
         }
-        self.bisect(step.inverse_rotate(best), step.rotate(best), |n| a.farthest(n))
+        let [low, high] = [step.inverse_rotate(best), step.rotate(best)].map(&fan);
+        let normal = self.bisect(low, high, |n| a.farthest(n));
+        (self.separation(normal, a.farthest(normal)), normal)
     }
 
     /// The separation along a normal from a point of A.
@@ -99,6 +121,13 @@ impl Pair<'_> {
         }
         direction(low + high).map_or(low, |(normal, _)| normal)
     }
+}
+
+/// The normal of an ellipse at the point that a circle with a normal is stretched to.
+fn normal_of(half: Vector, around: Vector) -> Vector {
+    let least = FLATTEST * half.max_element();
+    let (x, y) = (max(half.y, least) * around.x, max(half.x, least) * around.y);
+    direction(Vector { x, y }).map_or(around, |(normal, _)| normal)
 }
 
 /// A circle's core.

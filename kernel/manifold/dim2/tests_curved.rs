@@ -148,3 +148,25 @@ fn hostile_ellipses_give_no_contact() {
         }
     }
 }
+
+/// The best of sixteen directions was on the other side of a blade.
+#[test]
+fn issue_a_small_ball_was_pushed_through_a_flat_ellipse() {
+    let ball = Shape::Ball(Ball { radius: 0.02 });
+    for flat in [0.0, 0.001, 0.02] {
+        let blade = Shape::Curved(Curved { half: Vector { x: 1.0, y: flat } });
+        for i in 0..200 {
+            let turn = Rot::from_angle(0.0317 * i as f32);
+            let x = -0.9 + 0.009 * i as f32;
+            let y = flat * (1.0 - x * x).sqrt();
+            let normal = Vector { x: flat * x, y: (1.0 - x * x).sqrt() };
+            let normal = normal * (1.0 / normal.length());
+            // The ball overlaps the blade by 1 mm.
+            let center = Vector { x, y } + normal * 0.019;
+            let pose = Pose::new(turn.rotate(-center), turn);
+            let m = fresh(&ball, &blade, &pose, 0.1);
+            let off = (m.normal + turn.rotate(normal)).length();
+            assert!(off < 0.02 && (m.points[0].separation + 0.001).abs() < 2e-4, "{flat} {x}: {m:?}");
+        }
+    }
+}
