@@ -281,6 +281,12 @@ impl<N: Num> SymTensor<N> {
 }
 
 impl<N: Lane> SymTensor<N> {
+    /// Sum of the eigenvalues.
+    #[inline(always)]
+    pub fn trace(self) -> N {
+        self.zz
+    }
+
     /// Writes lane `i`.
     #[inline(always)]
     pub fn set(&mut self, i: usize, v: SymTensor) {

@@ -253,8 +253,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         }
         // More points have levers of their own.
         let patch = if P == 1 {
-            let arm = ra.length().min(rb.length());
-            (row.radius * N::splat(SPIN_LEVER)).max(arm * N::splat(CORNER_SPIN_LEVER))
+            (row.radius * N::splat(SPIN_LEVER)).max(row.rolling_arm() * N::splat(CORNER_SPIN_LEVER))
         } else {
             N::ZERO
         };

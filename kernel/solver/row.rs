@@ -11,15 +11,19 @@ use crate::math::{Angular, DIM, Ids, InvInertia, Lane, Tangent, TangentFrame, Ta
 /// longer and keeps piles awake.
 pub(super) const SPIN_LEVER: f32 = 0.02;
 
-/// The same for a corner, as a share of its distance from the nearer centre of mass.
+/// The same for a corner, as a share of its distance from the nearer centre of mass of a body that can turn.
 pub(super) const CORNER_SPIN_LEVER: f32 = 0.002;
 
 /// Lever of rolling resistance, as a share of both radii: at friction 0.6 a ball rolls as if up a slope of 0.6 %. Less
 /// keeps round bodies rocking in a pile, more holds them on steeper slopes.
 const ROLL_LEVER: f32 = 0.01;
 
-/// The same for corners and edges, as a share of their distance from the nearer centre of mass.
+/// The same for corners and edges, as a share of their distance from the nearer centre of mass of a body that can turn.
 const CORNER_ROLL_LEVER: f32 = 0.002;
+
+/// Rolling resistance takes friction coefficients for at most this. Apps set high ones against sliding, and balls with
+/// them still have to roll down a slope.
+const ROLL_FRICTION: f32 = 1.0;
 
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, Default)]
@@ -329,6 +333,17 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         [self.center, self.center - self.offset - self.normal * self.radius]
     }
 
+    /// The shorter arm of those bodies that can turn, in metres; 0 if neither can. The centre of mass of a static body has
+    /// nothing to do with rolling.
+    #[inline(always)]
+    pub(super) fn rolling_arm(&self) -> N {
+        let far = N::splat(f32::MAX);
+        let arms = self.surface_arms();
+        let arm = |i: usize| N::select(N::ZERO.lt(self.inv_inertia[i].trace()), arms[i].length(), far);
+        let shorter = arm(0).min(arm(1));
+        N::select(shorter.lt(far), shorter, N::ZERO)
+    }
+
     /// Sliding velocity of B's surface over A's at the friction centre, less the target velocity.
     #[inline(always)]
     fn slip(&self, pair: &Pair<N>, frame: &TangentFrame<N>) -> Tangent<N> {
@@ -364,10 +379,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         self.push(pair, impulse, [ra.cross(impulse), rb.cross(impulse)]);
         // Contacts with more points bear on a face, which does not roll.
         if P < DIM && params.roll_speed > 0.0 {
-            let reach = ra.length().min(rb.length());
+            let reach = self.rolling_arm();
             let lever = (self.radius * N::splat(ROLL_LEVER)).max(reach * N::splat(CORNER_ROLL_LEVER));
             let scale = reach * N::splat(1.0 / max(params.roll_speed, 1.0e-9));
-            resist_rolling(n, scale, self.friction * sum * lever, self.inv_inertia, &mut pair.w);
+            let friction = self.friction.min(N::splat(ROLL_FRICTION));
+            resist_rolling(n, scale, friction * sum * lever, self.inv_inertia, &mut pair.w);
         }
     }
 

@@ -5,7 +5,7 @@ use super::extreme::Dice;
 use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{DIM, Rot, Vector};
-use kernel::shape::{Cuboid, Shape};
+use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::table::BodyKind;
 
 fn shapes() -> Vec<(&'static str, Vec<Shape>)> {
@@ -119,4 +119,34 @@ fn a_slow_ball_rolls_to_a_stop() {
     sim.steps(240);
     let rolled = sim.position(ball).to_local().x;
     assert!((rolled - expected).abs() < 0.02 * expected, "{rolled} m of {expected}");
+}
+
+/// The arm of a static body had counted, which is short over the middle of a slab.
+#[test]
+fn issue_a_ball_was_braked_over_the_middle_of_thin_slabs() {
+    let mut sim = Sim::new();
+    for i in 0..12 {
+        let slab = Shape::Cuboid(Cuboid { half: sized(0.5, 0.01, 0.5) });
+        sim.add(BodyKind::Static, slab, sized(i as f32, -0.01, 0.0), Rot::IDENTITY);
+    }
+    let ball = sim.ball(0.5, Vector::Y * 0.5);
+    sim.steps(10);
+    let v = &mut sim.bodies.velocities[ball as usize];
+    (v.linear, v.angular) = (Vector::X, spin(-2.0));
+    sim.steps(600);
+    let v = sim.bodies.velocities[ball as usize].linear;
+    assert!((v - Vector::X).length() < 1.0e-3, "10 s at 1 m/s: {v:?}");
+}
+
+#[test]
+fn issue_a_ball_with_high_friction_stuck_to_a_steep_slope() {
+    let mut sim = Sim::new();
+    sim.gravity = sized(7.0, -7.0, 0.0);
+    let ground = Shape::Cuboid(Cuboid { half: sized(50.0, 1.0, 50.0) });
+    sim.add_with(BodyKind::Static, ground, -Vector::Y, Rot::IDENTITY, 100.0, 0.0);
+    let ball = Shape::Ball(Ball { radius: 0.5 });
+    let ball = sim.add_with(BodyKind::Dynamic, ball, Vector::Y * 0.5, Rot::IDENTITY, 100.0, 0.0);
+    sim.steps(60);
+    let (v, expected) = (sim.bodies.velocities[ball as usize].linear.x, 7.0 / (1.0 + BALL_INERTIA));
+    assert!((v - expected).abs() < 0.02 * expected, "{v} m/s of {expected} after 1 s");
 }
