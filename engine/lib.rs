@@ -54,7 +54,7 @@
 //! | pause, slow down or step by hand | [`Time<Physics>`](schedule::Physics), [`PhysicsSchedule`](prelude::PhysicsSchedule) |
 //! | run a system within the step | [`PhysicsStepSystems`](schedule::PhysicsStepSystems), [`SubstepSchedule`](prelude::SubstepSchedule) |
 //! | make it more accurate | [`SubstepCount`](prelude::SubstepCount), [`SolverConfig`](dynamics::solver::SolverConfig), [`SpeculativeMargin`](prelude::SpeculativeMargin) |
-//! | see where time goes | [`StepTimes`](schedule::StepTimes) |
+//! | see where time goes | [`StepTimes`](schedule::StepTimes), [`diagnostics`] |
 //!
 //! # When it runs
 //!
@@ -85,6 +85,7 @@ compile_error!("feature `default-collider` needs `parry-f32` or `parry-f64`, as 
 
 pub mod collider_tree;
 pub mod collision;
+pub mod diagnostics;
 pub mod dynamics;
 pub mod interpolation;
 pub mod math;
@@ -110,6 +111,10 @@ pub use type_registration::PhysicsTypeRegistrationPlugin;
 
 /// The names that most apps use.
 pub mod prelude {
+    #[cfg(feature = "bevy_diagnostic")]
+    pub use crate::diagnostics::PhysicsDiagnosticsPlugin;
+    #[cfg(feature = "diagnostic_ui")]
+    pub use crate::diagnostics::ui::{PhysicsDiagnosticsUiPlugin, PhysicsDiagnosticsUiSettings};
     #[expect(deprecated, reason = "former names stay importable")]
     pub use crate::schedule::{PhysicsSet, PhysicsStepSet};
     pub use crate::{

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::{
     collision::{broad_phase::BroadPhaseSystems, collider::AnyCollider},
+    diagnostics::{Within, list},
     dynamics::solver::config::PhysicsLengthUnit,
     schedule::{PhysicsSchedule, PhysicsStepSystems},
     step::{self, Owner},
@@ -34,9 +35,8 @@ struct SharedTreePlugin;
 
 impl Plugin for SharedTreePlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<ColliderTreeOptimization>()
-            .init_resource::<ColliderTreeDiagnostics>()
-            .init_resource::<PhysicsLengthUnit>();
+        app.init_resource::<ColliderTreeOptimization>().init_resource::<PhysicsLengthUnit>();
+        list::<ColliderTreeDiagnostics>(app, Within::Step);
         step::install(app);
         step::add_systems_of(Owner::Trees, app, PhysicsSchedule.intern());
 

@@ -32,7 +32,8 @@ impl CasterFrame {
     }
 }
 
-/// The places of casters: that of the simulation where it has one, else by `Transform`s below the nearest that has.
+/// Poses of casters: `Position` and `Rotation` where an entity has them, else its `Transform` applied to the pose of its
+/// parent.
 #[derive(SystemParam)]
 pub(super) struct Frames<'w, 's> {
     poses: Query<'w, 's, (&'static Position, &'static Rotation)>,

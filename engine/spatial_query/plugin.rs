@@ -5,7 +5,11 @@ use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel};
 use bevy_transform::TransformSystems;
 
 use super::{SpatialQueryDiagnostics, SpatialQuerySystems};
-use crate::{schedule::PhysicsSystems, step};
+use crate::{
+    diagnostics::{Within, list},
+    schedule::PhysicsSystems,
+    step,
+};
 
 /// Updates [`RayCaster`](super::RayCaster)s and `ShapeCaster`s once per run of a schedule, also while physics is
 /// paused. The parameter `SpatialQuery` works without it.
@@ -29,7 +33,8 @@ impl Default for SpatialQueryPlugin {
 impl Plugin for SpatialQueryPlugin {
     fn build(&self, app: &mut App) {
         step::install(app);
-        app.init_resource::<SpatialQueryDiagnostics>().configure_sets(
+        list::<SpatialQueryDiagnostics>(app, Within::Nothing);
+        app.configure_sets(
             self.schedule,
             SpatialQuerySystems.after(PhysicsSystems::Last).after(TransformSystems::Propagate),
         );

@@ -45,7 +45,7 @@ impl Default for CastConfig {
 /// How a shape that moves, B, meets one that does not, A.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CastHit {
-    /// The way until then, in metres.
+    /// The distance moved until the hit, in metres.
     pub distance: f32,
     /// The nearest points then, on A and on B, in A's frame. Both are the frame's origin if they were not asked for.
     pub points: [Vector; 2],

@@ -27,7 +27,7 @@ pub struct ShapeCast<'a> {
 pub struct ShapeCastHit {
     /// The collider.
     pub collider: u32,
-    /// The way until then, in metres.
+    /// The distance moved until the hit, in metres.
     pub distance: Scalar,
     /// The nearest points then, on the collider and on the shape, in the world.
     pub points: [WorldVector; 2],

@@ -7,6 +7,7 @@ use core::marker::PhantomData;
 use super::{CollisionEventSystems, ContactResponse, NarrowPhaseConfig, NarrowPhaseSystems};
 use crate::{
     collision::{collider::AnyCollider, contacts::NarrowPhaseBuffers, diagnostics::CollisionDiagnostics},
+    diagnostics::{Within, list},
     dynamics::{
         materials::watch_surfaces,
         rigid_body::{DefaultFriction, DefaultRestitution},
@@ -59,9 +60,9 @@ impl Plugin for SharedNarrowPhasePlugin {
             .init_resource::<DefaultFriction>()
             .init_resource::<DefaultRestitution>()
             .init_resource::<NarrowPhaseBuffers>()
-            .init_resource::<CollisionDiagnostics>()
             .init_resource::<PhysicsLengthUnit>()
             .insert_resource(ContactResponse(self.generate_constraints));
+        list::<CollisionDiagnostics>(app, Within::Step);
         step::install(app);
         watch_surfaces(app);
         step::add_systems_of(Owner::NarrowPhase, app, self.schedule);

@@ -1,5 +1,6 @@
 //! Timers and counters of the solver.
 
+use crate::diagnostics::diagnostic_paths;
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use core::time::Duration;
@@ -36,6 +37,24 @@ pub struct SolverDiagnostics {
     pub swept_ccd: Duration,
     /// Number of contact manifolds that were solved.
     pub contact_constraint_count: u32,
+}
+
+diagnostic_paths! {
+    SolverDiagnostics {
+        timer PREPARE_CONSTRAINTS: "avian/solver/prepare_constraints" = prepare_constraints,
+        timer UPDATE_VELOCITY_INCREMENTS: "avian/solver/update_velocity_increments" = update_velocity_increments,
+        timer INTEGRATE_VELOCITIES: "avian/solver/integrate_velocities" = integrate_velocities,
+        timer WARM_START: "avian/solver/warm_start" = warm_start,
+        timer SOLVE_CONSTRAINTS: "avian/solver/solve_constraints" = solve_constraints,
+        timer INTEGRATE_POSITIONS: "avian/solver/integrate_positions" = integrate_positions,
+        timer RELAX_VELOCITIES: "avian/solver/relax_velocities" = relax_velocities,
+        timer APPLY_RESTITUTION: "avian/solver/apply_restitution" = apply_restitution,
+        timer FINALIZE: "avian/solver/finalize" = finalize,
+        timer STORE_IMPULSES: "avian/solver/store_impulses" = store_impulses,
+        timer SWEPT_CCD: "avian/solver/swept_ccd" = swept_ccd,
+        counter CONTACT_CONSTRAINT_COUNT: "avian/solver/contact_constraint_count" = contact_constraint_count,
+    }
+    reset reset_solver
 }
 
 pub(crate) fn reset_solver(mut diagnostics: ResMut<SolverDiagnostics>) {

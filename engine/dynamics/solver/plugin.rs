@@ -11,6 +11,7 @@ use super::{
     solver_body::SolverBodyPlugin,
 };
 use crate::{
+    diagnostics::{Within, list},
     dynamics::{ccd::CcdPlugin, integrator::IntegratorPlugin},
     math::Scalar,
     schedule::PhysicsSchedule,
@@ -75,7 +76,7 @@ impl Plugin for SolverPlugin {
             .init_resource::<SolverConfig>()
             .init_resource::<ContactSoftnessCoefficients>();
 
-        app.init_resource::<SolverDiagnostics>();
+        list::<SolverDiagnostics>(app, Within::Step);
         step::install(app);
         step::add_substep_systems_of(Owner::Solver, app, SubstepSchedule.intern());
         step::add_systems_of(Owner::Solver, app, PhysicsSchedule.intern());

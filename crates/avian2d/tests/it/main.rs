@@ -4,6 +4,8 @@
 mod contract;
 #[path = "../../../../tests/contract2.rs"]
 mod contract_dim;
+#[path = "../../../../tests/diagnostics.rs"]
+mod diagnostics;
 #[path = "../../../../tests/marble2.rs"]
 mod marble;
 #[path = "../../../../tests/plugins.rs"]

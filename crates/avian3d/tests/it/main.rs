@@ -4,6 +4,8 @@
 mod contract;
 #[path = "../../../../tests/contract3.rs"]
 mod contract_dim;
+#[path = "../../../../tests/diagnostics.rs"]
+mod diagnostics;
 #[path = "../../../../tests/marble3.rs"]
 mod marble;
 #[path = "../../../../tests/plugins.rs"]

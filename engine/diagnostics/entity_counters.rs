@@ -1,0 +1,69 @@
+//! Numbers of bodies and colliders.
+
+use super::{PhysicsDiagnosticsSystems, Within, diagnostic_paths, list};
+use crate::{
+    collision::collider::ColliderMarker,
+    dynamics::rigid_body::{RigidBody, RigidBodyDisabled},
+    schedule::PhysicsSchedule,
+};
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+
+/// Counts bodies and colliders after each step, in [`PhysicsEntityDiagnostics`].
+pub struct PhysicsEntityDiagnosticsPlugin;
+
+impl Plugin for PhysicsEntityDiagnosticsPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<PhysicsEntityDiagnostics>();
+        list::<PhysicsEntityDiagnostics>(app, Within::Nothing);
+        app.add_systems(PhysicsSchedule, count_entities.in_set(PhysicsDiagnosticsSystems::Reset));
+    }
+}
+
+/// Numbers of entities in physics, as they were before the last step.
+#[derive(Resource, Debug, Default, Reflect)]
+#[reflect(Resource, Debug, Default)]
+pub struct PhysicsEntityDiagnostics {
+    /// Number of dynamic bodies.
+    pub dynamic_body_count: u32,
+    /// Number of kinematic bodies.
+    pub kinematic_body_count: u32,
+    /// Number of static bodies.
+    pub static_body_count: u32,
+    /// Number of colliders.
+    pub collider_count: u32,
+    /// Number of joints. 0 until there are joints.
+    pub joint_count: u32,
+}
+
+diagnostic_paths! {
+    PhysicsEntityDiagnostics {
+        counter DYNAMIC_BODY_COUNT: "avian/entity_count/dynamic_bodies" = dynamic_body_count,
+        counter KINEMATIC_BODY_COUNT: "avian/entity_count/kinematic_bodies" = kinematic_body_count,
+        counter STATIC_BODY_COUNT: "avian/entity_count/static_bodies" = static_body_count,
+        counter COLLIDER_COUNT: "avian/entity_count/colliders" = collider_count,
+        counter JOINT_COUNT: "avian/entity_count/joints" = joint_count,
+    }
+    reset keep
+}
+
+/// The numbers are counted anew in each step.
+fn keep(_: ResMut<PhysicsEntityDiagnostics>) {}
+
+fn count_entities(
+    bodies: Query<&RigidBody, Without<RigidBodyDisabled>>,
+    colliders: Query<(), With<ColliderMarker>>,
+    mut diagnostics: ResMut<PhysicsEntityDiagnostics>,
+) {
+    let mut counts = PhysicsEntityDiagnostics::default();
+    for body in &bodies {
+        match body {
+            RigidBody::Dynamic => counts.dynamic_body_count += 1,
+            RigidBody::Kinematic => counts.kinematic_body_count += 1,
+            RigidBody::Static => counts.static_body_count += 1,
+        }
+    }
+    counts.collider_count = u32::try_from(colliders.iter().count()).unwrap_or(u32::MAX);
+    *diagnostics = counts;
+}

@@ -1,0 +1,122 @@
+//! A panel that shows the timers and counters of physics in the window.
+
+mod plugin;
+
+pub use plugin::PhysicsDiagnosticsUiPlugin;
+
+use super::{DiagnosticPath, registry::Registered};
+use bevy_color::Color;
+use bevy_diagnostic::{Diagnostic, DiagnosticsStore};
+use bevy_ecs::prelude::*;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use bevy_text::{FontSize, TextColor, TextFont};
+use bevy_ui::{
+    AlignItems, BackgroundColor, FlexDirection, GlobalZIndex, JustifyContent, Node, PositionType, UiRect,
+    Val, widget::Text,
+};
+
+/// What [`PhysicsDiagnosticsUiPlugin`] shows.
+#[derive(Resource, Debug, Reflect)]
+#[reflect(Resource, Debug, Default)]
+pub struct PhysicsDiagnosticsUiSettings {
+    /// Whether the panel is shown. Default: `true`.
+    pub enabled: bool,
+    /// Whether times are smoothed over the last steps, instead of those of the last step. Default: `true`.
+    pub show_average_times: bool,
+}
+
+impl Default for PhysicsDiagnosticsUiSettings {
+    fn default() -> Self {
+        Self { enabled: true, show_average_times: true }
+    }
+}
+
+/// The root of the panel. Change its `Node` to place it elsewhere.
+#[derive(Component)]
+pub struct PhysicsDiagnosticsUiNode;
+
+/// The text with the value of one timer or counter.
+#[derive(Component)]
+struct Value(&'static DiagnosticPath);
+
+/// Number of rows that the panel was built with.
+#[derive(Component)]
+struct Rows(usize);
+
+/// Spawns the panel, and again when more timers and counters were registered. Despawns it when it is disabled.
+fn build_panel(
+    settings: Res<PhysicsDiagnosticsUiSettings>,
+    registered: Res<Registered>,
+    panels: Query<(Entity, &Rows), With<PhysicsDiagnosticsUiNode>>,
+    mut commands: Commands,
+) {
+    let paths = &registered.paths;
+    let mut is_shown = false;
+    for (panel, rows) in &panels {
+        is_shown = settings.enabled && rows.0 == paths.len();
+        if !is_shown {
+            commands.entity(panel).despawn();
+        }
+    }
+    if is_shown || !settings.enabled || paths.is_empty() {
+        return;
+    }
+    let panel = Node {
+        position_type: PositionType::Absolute,
+        top: Val::Px(5.0),
+        left: Val::Px(5.0),
+        width: Val::Px(260.0),
+        padding: UiRect::all(Val::Px(8.0)),
+        flex_direction: FlexDirection::Column,
+        ..Node::default()
+    };
+    let background = BackgroundColor(Color::srgba(0.05, 0.05, 0.05, 0.8));
+    commands
+        .spawn((PhysicsDiagnosticsUiNode, Rows(paths.len()), panel, background, GlobalZIndex(1000)))
+        .with_children(|panel| {
+            for path in paths {
+                let row = Node {
+                    justify_content: JustifyContent::SpaceBetween,
+                    align_items: AlignItems::Center,
+                    ..Node::default()
+                };
+                panel.spawn(row).with_children(|row| {
+                    row.spawn(text(name(path)));
+                    row.spawn((text(String::new()), Value(path)));
+                });
+            }
+        });
+}
+
+/// A small white text.
+fn text(text: String) -> impl Bundle {
+    (Text(text), TextFont { font_size: FontSize::Px(11.0), ..TextFont::default() }, TextColor(Color::WHITE))
+}
+
+/// The last part of a path, in words.
+fn name(path: &DiagnosticPath) -> String {
+    path.components().last().unwrap_or_default().replace('_', " ")
+}
+
+fn update_rows(
+    settings: Res<PhysicsDiagnosticsUiSettings>,
+    store: Res<DiagnosticsStore>,
+    mut values: Query<(&Value, &mut Text)>,
+) {
+    for (value, mut text) in &mut values {
+        let new = store.get(value.0).map(|diagnostic| shown(diagnostic, settings.show_average_times));
+        let new = new.unwrap_or_default();
+        if text.0 != new {
+            text.0 = new;
+        }
+    }
+}
+
+/// The value of a diagnostic: times with two digits, counters as they are.
+fn shown(diagnostic: &Diagnostic, is_smoothed: bool) -> String {
+    if diagnostic.suffix.is_empty() {
+        return diagnostic.value().map(|value| format!("{value:.0}")).unwrap_or_default();
+    }
+    let value = if is_smoothed { diagnostic.smoothed() } else { diagnostic.value() };
+    value.map(|value| format!("{value:.2} {}", diagnostic.suffix)).unwrap_or_default()
+}
