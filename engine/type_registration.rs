@@ -23,6 +23,8 @@ impl Plugin for PhysicsTypeRegistrationPlugin {
         register_mass_properties(app);
         register_collision(app);
         register_queries(app);
+        #[cfg(feature = "bevy_diagnostic")]
+        register_diagnostics(app);
         register_collider_settings(app);
     }
 }
@@ -32,6 +34,15 @@ fn register_schedule(app: &mut App) {
     use bevy_time::Time;
 
     register!(app: Physics, Substeps, Time<Physics>, Time<Substeps>, LastPhysicsTick, StepTimes);
+}
+
+#[cfg(feature = "bevy_diagnostic")]
+fn register_diagnostics(app: &mut App) {
+    use crate::diagnostics::{PhysicsEntityDiagnostics, PhysicsTotalDiagnostics};
+
+    register!(app: PhysicsEntityDiagnostics, PhysicsTotalDiagnostics);
+    #[cfg(feature = "diagnostic_ui")]
+    register!(app: crate::diagnostics::ui::PhysicsDiagnosticsUiSettings);
 }
 
 fn register_dynamics(app: &mut App) {

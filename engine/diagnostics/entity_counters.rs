@@ -15,7 +15,6 @@ pub struct PhysicsEntityDiagnosticsPlugin;
 
 impl Plugin for PhysicsEntityDiagnosticsPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<PhysicsEntityDiagnostics>();
         list::<PhysicsEntityDiagnostics>(app, Within::Nothing);
         app.add_systems(PhysicsSchedule, count_entities.in_set(PhysicsDiagnosticsSystems::Reset));
     }

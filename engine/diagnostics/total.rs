@@ -14,7 +14,7 @@ pub struct PhysicsTotalDiagnosticsPlugin;
 
 impl Plugin for PhysicsTotalDiagnosticsPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<PhysicsTotalDiagnostics>().init_resource::<Start>();
+        app.init_resource::<Start>();
         list::<PhysicsTotalDiagnostics>(app, Within::Nothing);
         let rest = Diagnostic::new(PhysicsTotalDiagnostics::MISCELLANEOUS.clone());
         app.register_diagnostic(rest.with_suffix("ms"));

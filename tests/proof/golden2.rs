@@ -14,11 +14,11 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("crowd", 0xed73d6b8ccab7b5c),
     ("sleepers", 0x4e0efe5706ee98bf),
     ("bounces", 0xf019a32d553cc2ea),
-    ("settings", 0x22d6ac5003435f4b),
+    ("settings", 0x89044fc8acda76e9),
 ];
 
 /// For each scene with shapes of parry the hash of its final state.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xde8c3d19b70e4be0), ("slopes", 0x8845ec133ae003a8)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xa4ad974dd28dd64d), ("slopes", 0x8845ec133ae003a8)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 20;

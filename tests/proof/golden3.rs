@@ -14,7 +14,7 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("crowd", 0xf5826c7d0834f572),
     ("sleepers", 0x9c530a3ca9e34cba),
     ("bounces", 0x5e3416363a4a45f1),
-    ("settings", 0x5072f386ff80236a),
+    ("settings", 0xabb866586f42ffff),
 ];
 
 /// For each scene with shapes of parry the hash of its final state.

@@ -14,8 +14,7 @@ impl Plugin for PhysicsDiagnosticsUiPlugin {
         if !app.is_plugin_added::<PhysicsDiagnosticsPlugin>() {
             app.add_plugins(PhysicsDiagnosticsPlugin);
         }
-        app.register_type::<PhysicsDiagnosticsUiSettings>()
-            .init_resource::<PhysicsDiagnosticsUiSettings>()
+        app.init_resource::<PhysicsDiagnosticsUiSettings>()
             .add_systems(Update, (build_panel, update_rows).chain());
     }
 }
