@@ -35,7 +35,10 @@ use scenes::dim::{ball, block, spin};
 use serde::{Serialize, de::DeserializeOwned, de::DeserializeSeed};
 
 /// Types that are not stored: measurements of a step, and ticks of a world.
-const NOT_STORED: [&str; 7] = [
+const NOT_STORED: [&str; 10] = [
+    "PhysicsDiagnosticsUiSettings",
+    "PhysicsEntityDiagnostics",
+    "PhysicsTotalDiagnostics",
     "CollisionDiagnostics",
     "ColliderTreeDiagnostics",
     "SpatialQueryDiagnostics",
