@@ -1,5 +1,9 @@
 //! 3D parts of the tests.
 
+mod leaning;
+mod round;
+mod spin;
+
 use super::extreme::Dice;
 use crate::kernel::math::{Angular, InvInertia, Pose, Rot, Vector};
 use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape, Surface};

@@ -1,6 +1,6 @@
 //! Bodies that lean at a wall slide down, and none of them gains energy.
 
-use super::sim::Sim;
+use super::super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Rot, Vector};
 use kernel::shape::{Capsule, Cuboid, Hull, Shape};

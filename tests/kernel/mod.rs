@@ -13,8 +13,6 @@ mod golden;
 #[cfg_attr(feature = "3d", path = "golden3.rs")]
 mod golden_dim;
 mod held;
-#[cfg(feature = "3d")]
-mod leaning;
 mod memory;
 mod passing;
 mod physics;
@@ -22,12 +20,8 @@ mod pushed;
 mod recycling;
 mod reload;
 mod rest;
-#[cfg(feature = "3d")]
-mod round;
 mod sim;
 mod sound;
-#[cfg(feature = "3d")]
-mod spin;
 mod surfaces;
 mod swept_spin;
 mod tunnel;

@@ -1,6 +1,6 @@
 //! Round bodies come to rest, roll straight, and stand still.
 
-use super::sim::Sim;
+use super::super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Rot, Vector};
 use kernel::shape::{Cuboid, Curved, Hull, Shape};

@@ -65,6 +65,6 @@ fn a_row_named_twice_is_limited_and_spun_once() {
     assert_eq!(twice(&|rows| rows.limit(row, limits)), cfg!(debug_assertions));
     let sides = Vector::from_array(core::array::from_fn(|axis| 1.0 + axis as f32));
     let inv_inertia = inverse_inertia(&Shape::Cuboid(Cuboid { half: sides }).mass_properties(1.0));
-    let spins = cfg!(feature = "3d");
+    let spins = super::dim::upright().is_some();
     assert_eq!(twice(&|rows| rows.spin(row, inv_inertia, Rot::IDENTITY)), spins && cfg!(debug_assertions));
 }

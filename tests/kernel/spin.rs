@@ -1,6 +1,6 @@
 //! Free spin in space against closed forms and a reference integration in `f64`.
 
-use super::sim::Sim;
+use super::super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Angular, InvInertia, Rot, Vector};
 use kernel::shape::{Cuboid, Hull, Shape};
