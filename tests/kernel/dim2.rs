@@ -1,5 +1,8 @@
 //! 2D parts of the tests.
 
+#[path = "golden2.rs"]
+pub mod golden_dim;
+
 use super::extreme::Dice;
 use crate::kernel::math::{Angular, InvInertia, Pose, Rot, Vector};
 use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape, Surface};

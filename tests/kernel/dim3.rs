@@ -4,6 +4,9 @@ mod leaning;
 mod round;
 mod spin;
 
+#[path = "golden3.rs"]
+pub mod golden_dim;
+
 use super::extreme::Dice;
 use crate::kernel::math::{Angular, InvInertia, Pose, Rot, Vector};
 use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape, Surface};

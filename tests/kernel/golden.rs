@@ -5,8 +5,8 @@
 //! hashes are in `golden2.rs` and `golden3.rs`. If a change of the simulation is intended, the table printed by the
 //! failing test replaces the old one, and the commit says why.
 
+use super::dim::golden_dim::{GOLDEN, coordinates, numbers, shapes, spun, terrain, tilted, trough};
 use super::dim::{container, sized, terrain as surface, turned};
-use super::golden_dim::{GOLDEN, coordinates, numbers, shapes, spun, terrain, tilted, trough};
 use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{AxisLocks, DIM, Pose, Rot, Scalar, Vector, WorldPose};

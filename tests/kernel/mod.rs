@@ -9,9 +9,6 @@ mod distance;
 mod extreme;
 mod ghosts;
 mod golden;
-#[cfg_attr(feature = "2d", path = "golden2.rs")]
-#[cfg_attr(feature = "3d", path = "golden3.rs")]
-mod golden_dim;
 mod held;
 mod memory;
 mod passing;
