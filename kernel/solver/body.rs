@@ -28,6 +28,53 @@ impl Motion {
     };
 }
 
+/// Acceleration of a body by forces, in addition to its [`Motion`]. Few bodies have one. Constant over a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thrust {
+    /// Acceleration in world axes, m/s².
+    pub linear: Vector,
+    /// Angular acceleration about world axes, rad/s².
+    pub angular: Angular,
+    /// Acceleration in the body's frame, m/s². It turns with the body in each substep.
+    pub local_linear: Vector,
+    /// Angular acceleration in the body's frame, rad/s². It turns with the body in each substep.
+    pub local_angular: Angular,
+}
+
+impl Thrust {
+    /// No acceleration.
+    pub const NONE: Self = Self {
+        linear: Vector::ZERO,
+        angular: Angular::ZERO,
+        local_linear: Vector::ZERO,
+        local_angular: Angular::ZERO,
+    };
+
+    /// Whether all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let linear = self.linear.is_finite() && self.local_linear.is_finite();
+        linear && self.angular.is_finite() && self.local_angular.is_finite()
+    }
+}
+
+/// An acceleration that turns with its body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LocalThrust {
+    linear: Vector,
+    angular: Angular,
+    /// Rotation at the start of the step.
+    rotation: Rot,
+}
+
+impl LocalThrust {
+    /// Accelerates the body for `h` seconds, by its rotation now.
+    pub(super) fn accelerate(&self, row: &mut BodyRow, h: f32) {
+        let (v, w) = row.velocity();
+        let rotation = world_rotation(row.delta().1, self.rotation);
+        row.set_velocity(v + rotation.rotate(self.linear) * h, w + to_world(rotation, self.angular) * h);
+    }
+}
+
 /// Limits on a body's velocity, which few bodies have. Constant over a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
@@ -161,6 +208,8 @@ pub struct BodyRows {
     pub(super) limits: OnceEach<Limits>,
     /// Bodies with free spin. None in 2D.
     pub(super) spins: OnceEach<Spin>,
+    /// Bodies with accelerations in their own frame.
+    pub(super) thrusts: OnceEach<LocalThrust>,
     /// Locked axes by row. Empty if no body has locked axes of translation.
     pub(super) locks: Vec<AxisLocks>,
     pub(super) claims: Claims,
@@ -179,6 +228,7 @@ impl BodyRows {
         self.motions.resize(count, Motion::FREE);
         self.limits.clear();
         self.spins.clear();
+        self.thrusts.clear();
         self.locks.clear();
         self.first_dynamic = 1 + kinematic as u32;
         self.set_at_rest(0);
@@ -202,6 +252,21 @@ impl BodyRows {
         if is_first && limits.locks.is_translation_held() {
             self.locks.resize(self.rows.len(), AxisLocks::NONE);
             self.locks[row] = limits.locks;
+        }
+    }
+
+    /// Accelerates a dynamic body, whose row is filled, in each substep. `rotation` is the rotation at the start of the
+    /// step. At most once a step: later calls for the same row add no acceleration in the body's frame.
+    pub fn thrust(&mut self, row: usize, thrust: &Thrust, rotation: Rot) {
+        debug_assert!((self.first_dynamic as usize..self.rows.len()).contains(&row), "row {row} is dynamic");
+        debug_assert!(thrust.is_finite(), "{thrust:?}");
+        let motion = &mut self.motions[row];
+        motion.acceleration += thrust.linear;
+        motion.angular_acceleration += thrust.angular;
+        let (linear, angular) = (thrust.local_linear, thrust.local_angular);
+        if linear != Vector::ZERO || angular != Angular::ZERO {
+            let is_first = self.thrusts.push(row, LocalThrust { linear, angular, rotation });
+            debug_assert!(is_first, "body row {row} is accelerated twice");
         }
     }
 

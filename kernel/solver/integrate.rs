@@ -35,7 +35,7 @@ fn limit_factor(speed: f32, max: f32) -> f32 {
 
 impl BodyRows {
     /// v ← v / (1 + c h) + h a for every dynamic body. Damping acts on the old velocity, so that without forces v falls
-    /// by exactly 1 / (1 + c h).
+    /// by exactly 1 / (1 + c h). An acceleration in a body's frame has the direction of the start of the substep.
     pub(super) fn integrate_velocities(&mut self, h: f32, pool: &ThreadPool) {
         let Self { rows, motions, first_dynamic, .. } = self;
         debug_assert_eq!(rows.len(), motions.len(), "each row has its motion");
@@ -57,6 +57,7 @@ impl BodyRows {
                 unsafe { view.put(id as u32, change) };
             }
         });
+        each_of(&mut self.thrusts, &mut self.rows, pool, |thrust, row| thrust.accelerate(row, h));
         self.hold_back(pool);
     }
 
@@ -152,7 +153,7 @@ fn large_turn<N: Lane>(q: Rot<N>, delta: Angular<N>) -> Rot<N> {
 mod tests {
     use super::*;
     use crate::math::Vector;
-    use crate::solver::{Limits, Motion};
+    use crate::solver::{Limits, Motion, Thrust};
 
     fn one_body(motion: Motion, v: Vector) -> BodyRows {
         let mut bodies = BodyRows::default();
@@ -176,6 +177,47 @@ mod tests {
         let want = Vector::X * (3.0 * t) + g * (0.5 * t * (t + h));
         assert!((p - want).length() < 1e-5 * want.length(), "{p:?} is not {want:?}");
         assert!((v.y + 9.81 * t).abs() < 1e-4);
+    }
+
+    /// v_n = h Σ R(ω k h) a: each substep accelerates by the rotation at its start. Twice as many bodies as in a block.
+    #[test]
+    fn an_acceleration_in_the_frame_of_a_body_turns_with_it() {
+        let (h, steps, rate, a) = (1.0 / 240.0, 300, 3.0, Vector::X * 8.0 + Vector::Y);
+        let count = 2 * BLOCK + 3;
+        let mut bodies = BodyRows::default();
+        bodies.reset(0, count);
+        let start = Rot::IDENTITY.turned_by(spin(0.5));
+        let thrust = Thrust { local_linear: a, linear: Vector::Y * 0.25, ..Thrust::NONE };
+        for row in 1..=count {
+            bodies.set_at_rest(row);
+            bodies.rows[row] = BodyRow::new(Vector::ZERO, spin(rate));
+            bodies.thrust(row, &thrust, start);
+        }
+        let mut want = Vector::ZERO;
+        for k in 0..steps {
+            bodies.integrate_velocities(h, &ThreadPool::default());
+            bodies.integrate_positions(h, &ThreadPool::default());
+            want += start.turned_by(spin(rate * h * k as f32)).rotate(a) * h + Vector::Y * (0.25 * h);
+        }
+        for row in 1..=count {
+            let (v, w) = bodies.rows[row].velocity();
+            assert!((v - want).length() < 1e-4 * a.length(), "row {row}: {v:?} is not {want:?}");
+            assert_eq!(w, spin(rate));
+        }
+    }
+
+    #[test]
+    fn an_angular_acceleration_in_the_frame_of_a_body_adds_up() {
+        let mut bodies = one_body(Motion::FREE, Vector::ZERO);
+        let thrust = Thrust { angular: spin(0.5), local_angular: spin(1.5), ..Thrust::NONE };
+        bodies.thrust(1, &thrust, Rot::IDENTITY);
+        for _ in 0..120 {
+            bodies.integrate_velocities(1.0 / 60.0, &ThreadPool::default());
+            bodies.integrate_positions(1.0 / 60.0, &ThreadPool::default());
+        }
+        let (v, w) = bodies.rows[1].velocity();
+        assert_eq!(v, Vector::ZERO);
+        assert!((w - spin(4.0)).length_squared() < 1e-8, "{w:?}");
     }
 
     #[test]

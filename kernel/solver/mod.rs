@@ -42,7 +42,7 @@ mod stages;
 mod sweep;
 mod view;
 
-pub use body::{BodyRows, Limits, Motion};
+pub use body::{BodyRows, Limits, Motion, Thrust};
 use dim::resist_rolling;
 pub use dim::{BodyRow, MassRow, Twist};
 pub use distance::{Distance, DistanceError, DistanceTable, Spring};
