@@ -43,6 +43,7 @@
 //! | give it a shape | `Collider` and its constructors; child entities with a `Collider` for a body of several shapes |
 //! | set its mass | `ColliderDensity`, [`Mass`](prelude::Mass), [`AngularInertia`](prelude::AngularInertia), [`CenterOfMass`](prelude::CenterOfMass) |
 //! | move it | [`LinearVelocity`](prelude::LinearVelocity), [`AngularVelocity`](prelude::AngularVelocity); [`Position`](prelude::Position) or `Transform` to teleport |
+//! | push it | [`Forces`](prelude::Forces), [`ConstantForce`](prelude::ConstantForce), [`forces`](dynamics::rigid_body::forces) |
 //! | change how it falls | [`Gravity`](prelude::Gravity), [`GravityScale`](prelude::GravityScale), [`LinearDamping`](prelude::LinearDamping), [`MaxLinearSpeed`](prelude::MaxLinearSpeed) |
 //! | hold it along or about axes | [`LockedAxes`](prelude::LockedAxes) |
 //! | make it slide or bounce | [`Friction`](prelude::Friction), [`Restitution`](prelude::Restitution) |

@@ -18,7 +18,10 @@ use crate::{
             collider_hierarchy::ColliderHierarchyPlugin, collider_transform::ColliderTransformPlugin,
         },
     },
-    dynamics::{rigid_body::mass_properties::MassPropertyPlugin, solver::SolverPlugins},
+    dynamics::{
+        rigid_body::{forces::ForcePlugin, mass_properties::MassPropertyPlugin},
+        solver::SolverPlugins,
+    },
     interpolation::PhysicsInterpolationPlugin,
     math::Scalar,
     physics_transform::PhysicsTransformPlugin,
@@ -34,6 +37,7 @@ use crate::{
 /// | [`PhysicsSchedulePlugin`] | the schedule of a step, its clocks, and the system that takes it |
 /// | [`PhysicsTypeRegistrationPlugin`] | reflection of components and resources |
 /// | [`MassPropertyPlugin`] | mass, inertia and centre of mass from colliders |
+/// | [`ForcePlugin`] | forces, torques and accelerations |
 /// | [`ColliderHierarchyPlugin`] | which colliders belong to which body |
 /// | [`ColliderTransformPlugin`] | where they are on it |
 /// | [`ColliderBackendPlugin`](crate::collision::collider::ColliderBackendPlugin) | boxes, scale and mass of `Collider`s |
@@ -90,6 +94,7 @@ impl PluginGroup for PhysicsPlugins {
             .add(PhysicsSchedulePlugin::new(self.schedule))
             .add(PhysicsTypeRegistrationPlugin)
             .add(MassPropertyPlugin::new(self.schedule))
+            .add(ForcePlugin)
             .add(ColliderHierarchyPlugin)
             .add(ColliderTransformPlugin::new(self.schedule));
 

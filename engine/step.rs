@@ -24,6 +24,10 @@ use crate::{
         materials::refresh_surfaces,
         rigid_body::{
             DefaultFriction, DefaultRestitution,
+            forces::{
+                ForceSystems,
+                apply::{apply_forces, clear_forces, follow_forces},
+            },
             mass_properties::queue::{recompute, warn_of_missing_mass},
         },
         sleep::{follow_requests, mirror_sleeping, sleep_islands},
@@ -98,6 +102,8 @@ pub(crate) enum Owner {
     NarrowPhase,
     /// `SolverSchedulePlugin`.
     SolverSchedule,
+    /// `ForcePlugin`.
+    Forces,
     /// `SolverBodyPlugin`.
     SolverBodies,
     /// `IntegratorPlugin`.
@@ -130,6 +136,8 @@ stages! {
     RefreshSurfaces.in_set(PhysicsStepSystems::First) => { NarrowPhase: refresh_surfaces }
     /// Puts islands to sleep and wakes them, as requested by the app.
     FollowSleep.in_set(PhysicsStepSystems::First) => { Sleeping: follow_requests }
+    /// Wakes bodies with forces.
+    FollowForces.in_set(PhysicsStepSystems::First) => { Forces: follow_forces }
     /// Wakes bodies that the app moved or pushed.
     FollowApp.in_set(PhysicsStepSystems::First) => { SolverBodies: (wake_changed, rest_kinematic).chain() }
     /// Reads poses and velocities of awake bodies.
@@ -148,12 +156,16 @@ stages! {
     }
     /// Fills the rows of awake bodies.
     Gather.in_set(SolverSystems::PrepareSolverBodies) => { SolverBodies: gather_bodies }
+    /// Adds forces to the rows of awake bodies.
+    ApplyForces.in_set(ForceSystems::ApplyConstantForces) => { Forces: apply_forces }
     /// Computes the parameters of the substeps, also for bodies without contacts.
     PrepareParams.in_set(SolverSystems::PrepareJoints) => { SolverSchedule: prepare_params }
     /// Builds the rows of touching contacts.
     PrepareRows.in_set(SolverSystems::PrepareContactConstraints) => { Solver: prepare_rows }
     /// Runs the substeps.
     Substeps.in_set(SolverSystems::Substep) => { SolverSchedule: run_substeps }
+    /// Ends the forces of this step.
+    ClearForces.in_set(ForceSystems::Clear) => { Forces: clear_forces }
     /// Puts bodies back that got into something.
     Sweep.in_set(SweptCcdSystems) => { Ccd: sweep_bodies }
     /// Applies restitution.

@@ -49,7 +49,9 @@ fn register_dynamics(app: &mut App) {
     use crate::{
         dynamics::{
             ccd::{SpeculativeMargin, SweepMode, SweptCcd},
-            integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity},
+            integrator::{
+                CustomPositionIntegration, CustomVelocityIntegration, Gravity, VelocityIntegrationData,
+            },
             rigid_body::sleeping::TimeToSleep,
             solver::{
                 ContactSoftnessCoefficients, PhysicsLengthUnit, RowWidth, SolverConfig, SolverDiagnostics,
@@ -63,6 +65,7 @@ fn register_dynamics(app: &mut App) {
 
     register!(app:
         SpeculativeMargin, SweptCcd, SweepMode, Gravity, CustomVelocityIntegration, CustomPositionIntegration,
+        VelocityIntegrationData,
         PhysicsLengthUnit, SolverConfig, SolverDiagnostics, ContactSoftnessCoefficients, SubstepCount, WorkerCount,
         RowWidth,
         SoftnessParameters, SoftnessCoefficients, TimeToSleep, PhysicsTransformConfig,
@@ -75,6 +78,10 @@ fn register_bodies(app: &mut App) {
             AngularDamping, AngularVelocity, CoefficientCombine, DefaultFriction, DefaultRestitution,
             Dominance, Friction, GravityScale, LinearDamping, LinearVelocity, LockedAxes, MaxAngularSpeed,
             MaxLinearSpeed, Restitution, RigidBody, RigidBodyDisabled,
+            forces::{
+                self, ConstantAngularAcceleration, ConstantForce, ConstantLinearAcceleration,
+                ConstantLocalForce, ConstantLocalLinearAcceleration, ConstantTorque,
+            },
             sleeping::{SleepThreshold, SleepTimer, Sleeping, SleepingDisabled},
         },
         physics_transform::{Position, Rotation},
@@ -85,7 +92,10 @@ fn register_bodies(app: &mut App) {
         MaxAngularSpeed, GravityScale, LinearDamping, AngularDamping, Dominance, LockedAxes,
         Friction, Restitution, CoefficientCombine, DefaultFriction, DefaultRestitution,
         Sleeping, SleepingDisabled, SleepThreshold, SleepTimer,
+        ConstantForce, ConstantTorque, ConstantLocalForce, ConstantLinearAcceleration, ConstantAngularAcceleration,
+        ConstantLocalLinearAcceleration,
     );
+    forces::register_types(app);
 }
 
 fn register_mass_properties(app: &mut App) {

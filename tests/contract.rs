@@ -11,10 +11,13 @@ use avian::{
         narrow_phase::CollisionEventSystems,
     },
     dynamics::{
-        integrator::IntegrationSystems,
-        rigid_body::mass_properties::{
-            MassPropertyChanged, MassPropertySystems, WithComputedMassProperty,
-            components::{AngularInertiaError, MassError, RecomputeMassProperties},
+        integrator::{IntegrationSystems, VelocityIntegrationData},
+        rigid_body::{
+            forces::{AccumulatedLocalAcceleration, ForcesItem, ForcesReadOnlyItem, NonWakingForcesItem},
+            mass_properties::{
+                MassPropertyChanged, MassPropertySystems, WithComputedMassProperty,
+                components::{AngularInertiaError, MassError, RecomputeMassProperties},
+            },
         },
         solver::{
             ContactSoftnessCoefficients, SolverConfig, SolverDiagnostics,
@@ -37,22 +40,26 @@ use avian::prelude::{
     Collider, ColliderAabb, ColliderBackendPlugin, ColliderDensity, ColliderDisabled, ColliderHierarchyPlugin,
     ColliderMarker, ColliderMassProperties, ColliderOf, ColliderTransform, ColliderTransformPlugin,
     ColliderTreeOptimization, ColliderTreePlugin, CollisionLayers, CollisionMargin, ComputeMassProperties2d,
-    ComputeMassProperties3d, ComputedAngularInertia, ComputedCenterOfMass, ComputedMass, CustomPositionIntegration,
-    CustomVelocityIntegration, DefaultFriction, DefaultRestitution, Dominance, FillMode, Friction, Gravity,
+    ComputeMassProperties3d, ComputedAngularInertia, ComputedCenterOfMass, ComputedMass, ConstantAngularAcceleration,
+    ConstantForce, ConstantLinearAcceleration, ConstantLocalForce, ConstantLocalLinearAcceleration, ConstantTorque,
+    CustomPositionIntegration,
+    CustomVelocityIntegration, DefaultFriction, DefaultRestitution, Dominance, FillMode, ForcePlugin,
+    ForceSystems, Forces, Friction, Gravity,
     GravityScale, IntegratorPlugin, IntoCollider, IslandPlugin, IslandSleepingPlugin, LayerMask, LinearDamping,
     LinearVelocity, LockedAxes, Mass, MassProperties2d, MassProperties3d, MassPropertiesBundle, MassPropertiesExt,
     MassPropertyHelper, MassPropertyPlugin, MaxAngularSpeed, MaxLinearSpeed, NarrowPhaseConfig, NarrowPhasePlugin,
     NarrowPhaseSystems, NoAutoAngularInertia, NoAutoCenterOfMass, NoAutoMass, NoRotationEasing, NoScaleEasing,
     NoTransformEasing, NoTranslationEasing, Physics, PhysicsInterpolationPlugin, PhysicsLayer, PhysicsLengthUnit,
     PhysicsPlugins, PhysicsSchedule, PhysicsSchedulePlugin, PhysicsStepSystems, PhysicsSystems, PhysicsTime,
-    PhysicsTransformHelper, PhysicsTransformPlugin, Position, Restitution, RigidBody, RigidBodyColliders,
-    RigidBodyDisabled, Rotation, RotationExtrapolation, RotationHermiteEasing, RotationInterpolation,
+    PhysicsTransformHelper, PhysicsTransformPlugin, Position, ReadRigidBodyForces, Restitution, RigidBody, RigidBodyColliders,
+    RigidBodyDisabled, RigidBodyForces, RigidBodyQuery, RigidBodyQueryItem, RigidBodyQueryReadOnly,
+    RigidBodyQueryReadOnlyItem, Rotation, RotationExtrapolation, RotationHermiteEasing, RotationInterpolation,
     ScalableCollider, ScaleInterpolation, Sensor, SimpleCollider, SleepBody, SleepThreshold, SleepTimer, Sleeping,
     SleepingDisabled, SolverBodyPlugin, SolverPlugin, SolverPlugins, SolverSchedulePlugin, SolverSystems,
     SpeculativeMargin, SubstepCount, SubstepSchedule, Substeps, TimeToSleep, 
     TransformEasingSystems, TransformExtrapolation, TransformHermiteEasing, TransformInterpolation,
     TranslationExtrapolation, TranslationHermiteEasing, TranslationInterpolation, TreeOptimizationMode,
-    TrimeshFlags, VhacdParameters, WakeBody, dynamics, mass_properties, sleeping,
+    TrimeshFlags, VhacdParameters, WakeBody, WriteRigidBodyForces, dynamics, forces, mass_properties, sleeping,
 };
 use bevy_app::{Plugin, PluginGroup, PostUpdate};
 use bevy_ecs::{
@@ -111,6 +118,10 @@ fn components_derive_what_they_derive_in_avian() {
             NoAutoCenterOfMass, RecomputeMassProperties, Sleeping, SleepingDisabled, SleepThreshold, SleepTimer,
             ColliderMarker, ColliderAabb, EnlargedAabb, ColliderDisabled, Sensor, CollisionLayers, CollisionMargin,
             ColliderOf, RigidBodyColliders, ColliderTransform, SpeculativeMargin;
+        Component, Reflect, Clone, Debug, Default, PartialEq =>
+            ConstantForce, ConstantTorque, ConstantLocalForce, ConstantLinearAcceleration,
+            ConstantAngularAcceleration, ConstantLocalLinearAcceleration, AccumulatedLocalAcceleration;
+        Component, Reflect, Debug, Default, PartialEq => VelocityIntegrationData;
         Copy =>
             RigidBody, RigidBodyDisabled, LinearVelocity, AngularVelocity, GravityScale, Friction, Restitution,
             Position, Rotation, Mass, AngularInertia, CenterOfMass, ComputedMass, ComputedAngularInertia,
@@ -151,8 +162,12 @@ fn components_derive_what_they_derive_in_avian() {
         From<bevy_math::DQuat> => Rotation;
         From<Rotation> => Quaternion;
         From<avian::parry::shape::SharedShape> => Collider;
-        ops::Deref<Target = Vector> => LinearVelocity, Position, ComputedCenterOfMass;
-        ops::DerefMut<Target = Vector> => LinearVelocity, Position, ComputedCenterOfMass;
+        ops::Deref<Target = Vector> =>
+            LinearVelocity, Position, ComputedCenterOfMass, ConstantForce, ConstantLocalForce,
+            ConstantLinearAcceleration, ConstantLocalLinearAcceleration;
+        ops::DerefMut<Target = Vector> =>
+            LinearVelocity, Position, ComputedCenterOfMass, ConstantForce, ConstantLocalForce,
+            ConstantLinearAcceleration, ConstantLocalLinearAcceleration;
         ops::Deref<Target = Scalar> =>
             MaxLinearSpeed, MaxAngularSpeed, GravityScale, LinearDamping, AngularDamping, CollisionMargin,
             SpeculativeMargin, PhysicsLengthUnit;
@@ -229,13 +244,13 @@ fn plugins_and_sets_are_where_they_were() {
             ColliderTreePlugin<Collider>, NarrowPhasePlugin<Collider>, SolverPlugin, SolverSchedulePlugin,
             IntegratorPlugin, BvhBroadPhasePlugin, PhysicsTransformPlugin, PhysicsInterpolationPlugin;
         Plugin =>
-            ColliderHierarchyPlugin, SolverBodyPlugin, IslandPlugin, IslandSleepingPlugin, BroadPhaseCorePlugin,
+            ForcePlugin, ColliderHierarchyPlugin, SolverBodyPlugin, IslandPlugin, IslandSleepingPlugin, BroadPhaseCorePlugin,
             avian::PhysicsTypeRegistrationPlugin;
         PluginGroup, Default => PhysicsPlugins, SolverPlugins;
         SystemSet, Copy, Debug, Eq, Hash =>
             PhysicsSystems, PhysicsStepSystems, SolverSystems, SubstepSolverSystems, IntegrationSystems,
             BroadPhaseSystems, NarrowPhaseSystems, CollisionEventSystems, ColliderTreeSystems, MassPropertySystems,
-            PhysicsTransformSystems;
+            PhysicsTransformSystems, ForceSystems;
         ScheduleLabel, Clone, Debug, Eq, Hash => PhysicsSchedule, SubstepSchedule;
         SystemParam => MassPropertyHelper<'static, 'static>, PhysicsTransformHelper<'static, 'static>;
         Command => SleepBody, WakeBody;
@@ -257,6 +272,7 @@ fn plugins_and_sets_are_where_they_were() {
     let _ = [N::First, N::Update, N::Last];
     let _ = [I::UpdateVelocityIncrements, I::Velocity, I::Position, I::ClearVelocityIncrements];
     let _ = [U::WarmStart, U::SolveConstraints, U::Relax, U::Damping];
+    let _ = [ForceSystems::ApplyConstantForces, ForceSystems::ApplyLocalAcceleration, ForceSystems::Clear];
     let _ = [T::UpdateAabbs, T::BeginOptimize, T::EndOptimize];
     let _ = [M::UpdateColliderMassProperties, M::QueueRecomputation, M::UpdateComputedMassProperties];
     let _ = [P::Propagate, P::TransformToPosition, P::PositionToTransform];
@@ -286,6 +302,11 @@ fn former_names_are_still_there() {
 
 #[test]
 fn methods_have_the_signatures_they_had() {
+    type Item = ForcesItem<'static, 'static>;
+    type ReadItem = ForcesReadOnlyItem<'static, 'static>;
+    type QuietItem = NonWakingForcesItem<'static, 'static>;
+    type Body = RigidBodyQueryItem<'static, 'static>;
+    type ReadBody = RigidBodyQueryReadOnlyItem<'static, 'static>;
     are! {
         fn(&RigidBody) -> bool = RigidBody::is_dynamic, RigidBody::is_static, RigidBody::is_kinematic;
         fn(Vector, Vector) -> ColliderAabb = ColliderAabb::new, ColliderAabb::from_min_max;
@@ -311,6 +332,33 @@ fn methods_have_the_signatures_they_had() {
         fn() -> LockedAxes = LockedAxes::new;
         fn(u8) -> LockedAxes = LockedAxes::from_bits;
         fn(&LockedAxes) -> u8 = LockedAxes::to_bits;
+        fn(&mut VelocityIntegrationData, Vector) = VelocityIntegrationData::apply_linear_acceleration;
+        fn(&mut VelocityIntegrationData, Scalar, Scalar) =
+            VelocityIntegrationData::update_linear_damping_rhs, VelocityIntegrationData::update_angular_damping_rhs;
+        fn(&Item) -> Vector =
+            ReadRigidBodyForces::linear_velocity, ReadRigidBodyForces::accumulated_linear_acceleration;
+        fn(&ReadItem) -> &Position = ReadRigidBodyForces::position;
+        fn(&QuietItem) -> &Rotation = ReadRigidBodyForces::rotation;
+        fn(&ReadItem, Vector) -> Vector = ReadRigidBodyForces::velocity_at_point;
+        fn(&mut Item, Vector) =
+            WriteRigidBodyForces::apply_force, WriteRigidBodyForces::apply_local_force,
+            WriteRigidBodyForces::apply_linear_impulse, WriteRigidBodyForces::apply_local_linear_impulse,
+            WriteRigidBodyForces::apply_linear_acceleration,
+            WriteRigidBodyForces::apply_local_linear_acceleration;
+        fn(&mut QuietItem, Vector, Vector) =
+            WriteRigidBodyForces::apply_force_at_point, WriteRigidBodyForces::apply_linear_impulse_at_point,
+            WriteRigidBodyForces::apply_linear_acceleration_at_point;
+        fn(&mut Item) -> &mut Vector = WriteRigidBodyForces::linear_velocity_mut;
+        fn(&mut Item) =
+            WriteRigidBodyForces::reset_accumulated_linear_acceleration,
+            WriteRigidBodyForces::reset_accumulated_angular_acceleration;
+        fn(&Body, Vector) -> Vector = RigidBodyQueryItem::velocity_at_point;
+        fn(&ReadBody, Vector) -> Vector = RigidBodyQueryReadOnlyItem::velocity_at_point;
+        fn(&Body) -> Vector = RigidBodyQueryItem::effective_inverse_mass;
+        fn(&Body) -> i16 = RigidBodyQueryItem::dominance;
+        fn(&Body) -> ComputedAngularInertia =
+            RigidBodyQueryItem::angular_inertia, RigidBodyQueryItem::effective_global_angular_inertia;
+        fn(&ReadBody) -> ComputedMass = RigidBodyQueryReadOnlyItem::mass;
         fn(LockedAxes) -> LockedAxes =
             LockedAxes::lock_translation_x, LockedAxes::lock_translation_y, LockedAxes::unlock_translation_x,
             LockedAxes::unlock_translation_y;
@@ -433,6 +481,7 @@ fn what_a_body_and_a_collider_require_is_there() {
     }
     has!(Position, Rotation, LinearVelocity, AngularVelocity, RecomputeMassProperties);
     has!(ComputedMass, ComputedAngularInertia, ComputedCenterOfMass);
+    has!(AccumulatedLocalAcceleration, VelocityIntegrationData);
     has!(
         ColliderMarker,
         ColliderAabb,
@@ -459,6 +508,10 @@ fn the_rest_can_be_named() {
     )>();
     named::<(CustomPositionIntegration, CustomVelocityIntegration, ApplyPosToTransform, Matrix)>();
     named::<(MassPropertyChanged, WithComputedMassProperty, AabbContext<'static, 'static, 'static, ()>)>();
+    named::<(Forces, RigidBodyQuery, RigidBodyQueryReadOnly, forces::ForcePlugin)>();
+    fn both<F: RigidBodyForces>() {}
+    let _ = (both::<ForcesItem>, both::<NonWakingForcesItem>);
+    let _ = |mut forces: ForcesItem| drop(forces.non_waking().waking().reborrow());
     named::<dynamics::ccd::SpeculativeMargin>();
     named::<dynamics::ccd::SweptCcd>();
     named::<dynamics::ccd::SweepMode>();

@@ -166,6 +166,7 @@ macro_rules! without {
 without! {
     without_type_registration: PhysicsTypeRegistrationPlugin => moves, rests, is_attached;
     without_mass_properties: MassPropertyPlugin => moves, falls_through, is_massless, is_attached;
+    without_forces: ForcePlugin => moves, rests, is_attached;
     without_collider_hierarchy: ColliderHierarchyPlugin => moves, falls_through, is_detached;
     without_collider_transform: ColliderTransformPlugin => moves, falls_through, is_detached;
     without_collider_backend: ColliderBackendPlugin<Collider> => moves, falls_through, is_massless, is_attached;

@@ -5,8 +5,10 @@ use avian::{
     PhysicsTypeRegistrationPlugin,
     collision::collider::EnlargedAabb,
     dynamics::{
-        integrator::{CustomPositionIntegration, CustomVelocityIntegration},
-        rigid_body::mass_properties::components::RecomputeMassProperties,
+        integrator::{CustomPositionIntegration, CustomVelocityIntegration, VelocityIntegrationData},
+        rigid_body::{
+            forces::AccumulatedLocalAcceleration, mass_properties::components::RecomputeMassProperties,
+        },
         solver::{
             ContactSoftnessCoefficients, RowWidth, SolverConfig, WorkerCount,
             softness_parameters::{SoftnessCoefficients, SoftnessParameters},
@@ -101,6 +103,11 @@ fn components_come_back() {
     comes_back((MaxLinearSpeed(Scalar::INFINITY), MaxAngularSpeed(0.3), GravityScale(-0.1)));
     comes_back((LinearDamping(0.1), AngularDamping(0.2), SpeculativeMargin(0.3), CollisionMargin(0.7)));
     comes_back((CustomPositionIntegration, CustomVelocityIntegration, RecomputeMassProperties));
+    comes_back((ConstantForce(Vector::X * 0.1), ConstantTorque(spin(0.3).0), ConstantLocalForce(Vector::Y)));
+    comes_back((ConstantLinearAcceleration(Vector::X * 0.1), ConstantAngularAcceleration(spin(0.3).0)));
+    comes_back(ConstantLocalLinearAcceleration(Vector::X * 0.1));
+    comes_back(AccumulatedLocalAcceleration { linear: Vector::X * 0.1, ..Default::default() });
+    comes_back(VelocityIntegrationData { linear_increment: Vector::X * 0.1, ..Default::default() });
     let friction =
         Friction { dynamic_coefficient: 0.1, static_coefficient: 0.7, combine_rule: CoefficientCombine::Max };
     comes_back((friction, Restitution::new(0.9)));

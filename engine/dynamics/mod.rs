@@ -17,6 +17,8 @@ pub(crate) mod validate;
 
 /// The names of this module that most apps use.
 pub mod prelude {
+    #[cfg(feature = "3d")]
+    pub use super::rigid_body::forces::{ConstantLocalAngularAcceleration, ConstantLocalTorque};
     #[expect(deprecated, reason = "former names stay importable")]
     pub use super::{
         ccd::SweptCcdSet,
@@ -27,6 +29,11 @@ pub mod prelude {
         ccd::{CcdPlugin, SpeculativeMargin, SweepMode, SweptCcd},
         integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity, IntegratorPlugin},
         rigid_body::{
+            forces::{
+                ConstantAngularAcceleration, ConstantForce, ConstantLinearAcceleration, ConstantLocalForce,
+                ConstantLocalLinearAcceleration, ConstantTorque, ForcePlugin, ForceSystems, Forces,
+                ReadRigidBodyForces, RigidBodyForces, WriteRigidBodyForces,
+            },
             mass_properties::{
                 MassPropertiesExt, MassPropertyHelper, MassPropertyPlugin,
                 bevy_heavy::{

@@ -1,7 +1,9 @@
 //! Gravity, and the system sets of integration.
 
+mod data;
 mod plugin;
 
+pub use data::VelocityIntegrationData;
 pub use plugin::IntegratorPlugin;
 
 use bevy_ecs::prelude::*;

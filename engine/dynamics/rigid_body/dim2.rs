@@ -7,7 +7,8 @@ use bevy_reflect::prelude::*;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use derive_more::From;
 
-use crate::math::Scalar;
+use super::{LockedAxes, mass_properties::components::ComputedAngularInertia};
+use crate::{math::Scalar, physics_transform::Rotation};
 
 /// Angular velocity of a body, in rad/s, counter-clockwise.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
@@ -24,4 +25,13 @@ crate::type_path::type_path!(AngularVelocity, "dynamics::rigid_body");
 impl AngularVelocity {
     /// No rotation.
     pub const ZERO: AngularVelocity = AngularVelocity(0.0);
+}
+
+/// The angular inertia in world axes, infinite if rotation is locked.
+pub(super) fn world_inertia(
+    inertia: ComputedAngularInertia,
+    _rotation: &Rotation,
+    locks: LockedAxes,
+) -> ComputedAngularInertia {
+    if locks.is_rotation_locked() { ComputedAngularInertia::INFINITY } else { inertia }
 }

@@ -7,7 +7,11 @@ use bevy_reflect::prelude::*;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use derive_more::From;
 
-use crate::math::Vector;
+use super::{LockedAxes, mass_properties::components::ComputedAngularInertia};
+use crate::{
+    math::{AdjustPrecision, SymmetricMatrix, Vector, inv_inertia_to_kernel},
+    physics_transform::Rotation,
+};
 
 /// Angular velocity of a body, in rad/s about each of the world's axes, right-handed.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
@@ -24,4 +28,21 @@ crate::type_path::type_path!(AngularVelocity, "dynamics::rigid_body");
 impl AngularVelocity {
     /// No rotation.
     pub const ZERO: AngularVelocity = AngularVelocity(Vector::ZERO);
+}
+
+/// The angular inertia in world axes, infinite about locked axes.
+pub(super) fn world_inertia(
+    inertia: ComputedAngularInertia,
+    rotation: &Rotation,
+    locks: LockedAxes,
+) -> ComputedAngularInertia {
+    let world = inertia.rotated(rotation.0);
+    let locks = locks.to_kernel();
+    if locks.rotation() == 0 {
+        return world;
+    }
+    let inverse = inv_inertia_to_kernel(world.inverse()).locked(locks);
+    let [m00, m01, m02] = [inverse.xx, inverse.xy, inverse.xz].map(|m| m.adjust_precision());
+    let [m11, m12, m22] = [inverse.yy, inverse.yz, inverse.zz].map(|m| m.adjust_precision());
+    ComputedAngularInertia::from_inverse_tensor(SymmetricMatrix { m00, m01, m02, m11, m12, m22 })
 }

@@ -3,14 +3,19 @@
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+pub mod forces;
 mod locked_axes;
 pub mod mass_properties;
 mod physics_material;
 pub mod sleeping;
+mod world_query;
 
 pub use dim::AngularVelocity;
 pub use locked_axes::LockedAxes;
 pub use physics_material::{CoefficientCombine, DefaultFriction, DefaultRestitution, Friction, Restitution};
+pub use world_query::{
+    RigidBodyQuery, RigidBodyQueryItem, RigidBodyQueryReadOnly, RigidBodyQueryReadOnlyItem,
+};
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -19,10 +24,12 @@ use bevy_reflect::prelude::*;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use derive_more::From;
 
+use self::forces::{AccumulatedLocalAcceleration, PushedVelocity};
 use self::mass_properties::components::{
     ComputedAngularInertia, ComputedCenterOfMass, ComputedMass, RecomputeMassProperties,
 };
 use crate::dynamics::ids::BodyId;
+use crate::dynamics::integrator::VelocityIntegrationData;
 use crate::math::{Scalar, Vector};
 use crate::physics_transform::{Position, Rotation};
 
@@ -62,6 +69,9 @@ use crate::physics_transform::{Position, Rotation};
     ComputedAngularInertia,
     ComputedCenterOfMass,
     RecomputeMassProperties,
+    AccumulatedLocalAcceleration,
+    VelocityIntegrationData,
+    PushedVelocity,
     BodyId
 )]
 #[component(immutable)]
@@ -248,6 +258,7 @@ mod tests {
         assert_eq!(body.get::<AngularVelocity>(), Some(&AngularVelocity::ZERO));
         assert!(body.get::<ComputedMass>().expect("required").is_infinite());
         assert!(body.contains::<RecomputeMassProperties>());
+        assert!(body.contains::<AccumulatedLocalAcceleration>());
     }
 
     #[test]

@@ -14,7 +14,7 @@ use core::time::Duration;
 pub struct SolverDiagnostics {
     /// Gathering bodies and building constraint rows.
     pub prepare_constraints: Duration,
-    /// Summing accelerations. Zero until there are forces: gravity is part of
+    /// Adding forces to the rows of bodies. Gravity is part of
     /// [`integrate_velocities`](Self::integrate_velocities).
     pub update_velocity_increments: Duration,
     /// Integrating velocities.

@@ -6,6 +6,10 @@ mod contract;
 mod contract_dim;
 #[path = "../../../../tests/diagnostics.rs"]
 mod diagnostics;
+#[path = "../../../../tests/forces.rs"]
+mod forces;
+#[path = "../../../../tests/forces2.rs"]
+mod forces_dim;
 #[path = "../../../../tests/marble2.rs"]
 mod marble;
 #[path = "../../../../tests/plugins.rs"]

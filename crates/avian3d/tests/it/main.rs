@@ -6,6 +6,10 @@ mod contract;
 mod contract_dim;
 #[path = "../../../../tests/diagnostics.rs"]
 mod diagnostics;
+#[path = "../../../../tests/forces.rs"]
+mod forces;
+#[path = "../../../../tests/forces3.rs"]
+mod forces_dim;
 #[path = "../../../../tests/marble3.rs"]
 mod marble;
 #[path = "../../../../tests/plugins.rs"]

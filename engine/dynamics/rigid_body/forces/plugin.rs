@@ -1,0 +1,37 @@
+//! The plugin of forces.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
+
+use super::{ForceSystems, apply};
+use crate::{
+    dynamics::{
+        integrator::IntegrationSystems,
+        solver::schedule::{SolverSystems, SubstepSchedule},
+    },
+    schedule::PhysicsSchedule,
+    step::{self, Owner},
+};
+
+/// Accelerates bodies by [`Forces`](super::Forces) and constant forces. Part of
+/// [`PhysicsPlugins`](crate::PhysicsPlugins). Without it forces have no effect; impulses still have.
+pub struct ForcePlugin;
+
+impl Plugin for ForcePlugin {
+    fn build(&self, app: &mut App) {
+        step::install(app);
+        apply::watch(app);
+        step::add_systems_of(Owner::Forces, app, PhysicsSchedule.intern());
+        app.configure_sets(
+            PhysicsSchedule,
+            (
+                ForceSystems::ApplyConstantForces.in_set(SolverSystems::PrepareSolverBodies),
+                ForceSystems::Clear.in_set(IntegrationSystems::ClearVelocityIncrements),
+            ),
+        );
+        app.configure_sets(
+            SubstepSchedule,
+            ForceSystems::ApplyLocalAcceleration.in_set(IntegrationSystems::Velocity),
+        );
+    }
+}
