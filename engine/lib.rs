@@ -48,6 +48,7 @@
 //! | hold it along or about axes | [`LockedAxes`](prelude::LockedAxes) |
 //! | make it slide or bounce | [`Friction`](prelude::Friction), [`Restitution`](prelude::Restitution) |
 //! | choose what it collides with | [`CollisionLayers`](prelude::CollisionLayers), [`Sensor`](prelude::Sensor), [`Dominance`](prelude::Dominance) |
+//! | know what touches what | [`CollisionStart`](prelude::CollisionStart), [`CollisionEnd`](prelude::CollisionEnd), [`CollidingEntities`](prelude::CollidingEntities), [`Collisions`](prelude::Collisions) |
 //! | let it sleep, or wake it | [`Sleeping`](prelude::Sleeping), [`SleepingDisabled`](prelude::SleepingDisabled), [`WakeBody`](prelude::WakeBody) |
 //! | cast rays and shapes, find what is near | [`spatial_query`], [`RayCaster`](prelude::RayCaster) |
 //! | take it out of the simulation | [`RigidBodyDisabled`](prelude::RigidBodyDisabled), [`ColliderDisabled`](prelude::ColliderDisabled) |
@@ -86,6 +87,7 @@ compile_error!("feature `default-collider` needs `parry-f32` or `parry-f64`, as 
 
 pub mod collider_tree;
 pub mod collision;
+pub mod data_structures;
 pub mod diagnostics;
 pub mod dynamics;
 pub mod interpolation;

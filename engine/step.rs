@@ -11,9 +11,11 @@ use crate::{
     collider_tree::{ColliderTreeSystems, diagnostics::reset_trees},
     collision::{
         broad_phase::BroadPhaseSystems,
+        collision_events::send_collision_events,
+        contact_types::views::{ContactViews, forget_views},
         contacts::{link_contacts, update_contacts},
         diagnostics::reset_collision,
-        narrow_phase::{NarrowPhaseConfig, NarrowPhaseSystems},
+        narrow_phase::{CollisionEventSystems, NarrowPhaseConfig, NarrowPhaseSystems},
         pairs::{find_new_pairs, refit_awake, update_stale_boxes},
     },
     dynamics::{
@@ -131,7 +133,9 @@ stages! {
         Solver: reset_solver,
     }
     /// Adds, changes and removes bodies and colliders in the tables.
-    DrainLifecycle.in_set(PhysicsStepSystems::First) => { Step: (note_changed_colliders, drain_lifecycle).chain() }
+    DrainLifecycle.in_set(PhysicsStepSystems::First) => {
+        Step: (note_changed_colliders, drain_lifecycle.pipe(forget_views)).chain(),
+    }
     /// Updates friction, restitution and margins from components.
     RefreshSurfaces.in_set(PhysicsStepSystems::First) => { NarrowPhase: refresh_surfaces }
     /// Puts islands to sleep and wakes them, as requested by the app.
@@ -145,11 +149,15 @@ stages! {
     /// Updates boxes of colliders that were added, or moved by the app.
     UpdateBoxes.in_set(ColliderTreeSystems::UpdateAabbs) => { Trees: update_stale_boxes }
     /// Finds new pairs, and adds contacts for them.
-    FindPairs.in_set(BroadPhaseSystems::CollectCollisions) => { BroadPhase: find_new_pairs }
+    FindPairs.in_set(BroadPhaseSystems::CollectCollisions) => {
+        BroadPhase: find_new_pairs.pipe(forget_views),
+    }
     /// Updates the manifolds of awake contacts.
     UpdateContacts.in_set(NarrowPhaseSystems::Update) => { NarrowPhase: update_contacts }
     /// Applies contacts that began or ended: colours, islands, waking.
-    LinkContacts.in_set(NarrowPhaseSystems::Update) => { NarrowPhase: link_contacts }
+    LinkContacts.in_set(NarrowPhaseSystems::Update) => {
+        NarrowPhase: link_contacts.pipe(forget_views),
+    }
     /// Computes the softness of contacts from the length of the substeps.
     UpdateSoftness.after(PhysicsStepSystems::NarrowPhase).before(PhysicsStepSystems::Solver) => {
         Solver: update_contact_softness,
@@ -177,13 +185,19 @@ stages! {
         SolverBodies: note_moved_late.pipe(scatter_bodies).pipe(keep_moved_within),
     }
     /// Stores impulses in the manifolds.
-    StoreImpulses.in_set(SolverSystems::StoreContactImpulses) => { Solver: store_impulses }
+    StoreImpulses.in_set(SolverSystems::StoreContactImpulses) => {
+        Solver: store_impulses.pipe(forget_views),
+    }
     /// Puts islands at rest to sleep.
     Sleep.in_set(PhysicsStepSystems::Sleeping) => { Sleeping: sleep_islands }
     /// Updates boxes of moved colliders, and the trees.
     Refit.in_set(PhysicsStepSystems::Finalize) => { Trees: refit_awake }
     /// Removes bodies and colliders that were despawned during the step.
-    RemoveLost.in_set(PhysicsStepSystems::Finalize) => { Step: remove_lost_late }
+    RemoveLost.in_set(PhysicsStepSystems::Finalize) => {
+        Step: remove_lost_late.pipe(forget_views),
+    }
+    /// Sends collision events.
+    SendEvents.in_set(CollisionEventSystems) => { NarrowPhase: send_collision_events }
     /// Updates [`Sleeping`](crate::dynamics::rigid_body::sleeping::Sleeping) components.
     MirrorSleep.in_set(PhysicsStepSystems::Finalize) => { Sleeping: mirror_sleeping }
 }
@@ -215,6 +229,7 @@ pub(crate) fn install(app: &mut App) {
     app.init_resource::<Bodies>()
         .init_resource::<Colliders>()
         .init_resource::<Contacts>()
+        .init_resource::<ContactViews>()
         .init_resource::<StepSolver>()
         .init_resource::<WorkerCount>()
         .init_resource::<RowWidth>()

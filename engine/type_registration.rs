@@ -118,11 +118,13 @@ fn register_collision(app: &mut App) {
         collision::{
             CollisionDiagnostics,
             collider::{
-                ColliderAabb, ColliderDisabled, ColliderMarker, CollisionLayers, CollisionMargin,
-                EnlargedAabb, LayerMask, Sensor,
+                ColliderAabb, ColliderDisabled, ColliderMarker, CollidingEntities, CollisionLayers,
+                CollisionMargin, EnlargedAabb, LayerMask, Sensor,
                 collider_hierarchy::{ColliderOf, RigidBodyColliders},
                 collider_transform::ColliderTransform,
             },
+            collision_events::CollisionEventsEnabled,
+            contact_types::{ContactEdgeFlags, ContactId, ContactPairFlags, PackedFeatureId},
             narrow_phase::NarrowPhaseConfig,
         },
     };
@@ -131,6 +133,7 @@ fn register_collision(app: &mut App) {
         NarrowPhaseConfig, CollisionDiagnostics, ColliderTreeOptimization, TreeOptimizationMode,
         ColliderTreeDiagnostics, ColliderMarker, ColliderAabb, EnlargedAabb, ColliderDisabled, Sensor,
         CollisionLayers, LayerMask, CollisionMargin, ColliderOf, RigidBodyColliders, ColliderTransform,
+        CollidingEntities, CollisionEventsEnabled, ContactId, ContactEdgeFlags, ContactPairFlags, PackedFeatureId,
     );
 }
 

@@ -183,9 +183,8 @@ impl ProxyTable {
         let dynamic = PairMask::only(TreeKind::Dynamic);
         let moving = dynamic.with(PairMask::only(TreeKind::Kinematic));
         let mask = match kind {
-            TreeKind::Static => moving,
-            TreeKind::Standalone => moving.with(PairMask::only(TreeKind::Standalone)),
-            TreeKind::Kinematic | TreeKind::Dynamic => PairMask::ALL,
+            TreeKind::Static => moving.with(PairMask::only(TreeKind::Standalone)),
+            TreeKind::Standalone | TreeKind::Kinematic | TreeKind::Dynamic => PairMask::ALL,
         };
         Some(Mover { id, kind, mask, aabb })
     }

@@ -120,7 +120,9 @@ pub(crate) fn update_contacts(
 /// Applies the effects of contacts that began or ended: colours, islands, waking.
 pub(crate) fn link_contacts(mut tables: Tables) {
     let changed = core::mem::take(&mut tables.contacts.changed);
-    tables.link().apply(&changed, |_, _, _| {});
+    let (mut link, mut reporter) = tables.link_and_reporter();
+    link.apply(&changed, |_, contact, status| reporter.note(contact, status));
+    reporter.drop_resumed();
     tables.contacts.changed = changed;
     if cfg!(feature = "validate") {
         tables.link().validate();

@@ -1,8 +1,11 @@
 //! Collision detection: [colliders](collider), the [broad phase](broad_phase) that finds pairs of overlapping boxes,
-//! and the [narrow phase](narrow_phase) that computes contacts.
+//! and the [narrow phase](narrow_phase) that computes contacts. [`Collisions`](contact_types::Collisions) gives
+//! contacts, [collision events](collision_events) tell of changes.
 
 pub mod broad_phase;
 pub mod collider;
+pub mod collision_events;
+pub mod contact_types;
 pub(crate) mod contacts;
 pub(crate) mod diagnostics;
 pub mod narrow_phase;
@@ -14,17 +17,25 @@ pub use diagnostics::CollisionDiagnostics;
 pub mod prelude {
     #[cfg(feature = "default-collider")]
     pub use super::collider::{Collider, FillMode, TrimeshFlags, VhacdParameters};
-    #[expect(deprecated, reason = "former names stay importable")]
-    pub use super::narrow_phase::NarrowPhaseSet;
     pub use super::{
         broad_phase::{BroadPhaseCorePlugin, BroadPhaseSystems, BvhBroadPhasePlugin},
         collider::{
             AabbContext, AnyCollider, ColliderAabb, ColliderBackendPlugin, ColliderDisabled, ColliderMarker,
-            CollisionLayers, CollisionMargin, IntoCollider, LayerMask, PhysicsLayer, ScalableCollider,
-            Sensor, SimpleCollider,
+            CollidingEntities, CollisionLayers, CollisionMargin, IntoCollider, LayerMask, PhysicsLayer,
+            ScalableCollider, Sensor, SimpleCollider,
             collider_hierarchy::{ColliderHierarchyPlugin, ColliderOf, RigidBodyColliders},
             collider_transform::{ColliderTransform, ColliderTransformPlugin},
         },
+        collision_events::{CollisionEnd, CollisionEventsEnabled, CollisionStart},
+        contact_types::{
+            Collisions, ContactEdge, ContactGraph, ContactManifold, ContactPair, ContactPairFlags,
+            ContactPoint,
+        },
         narrow_phase::{NarrowPhaseConfig, NarrowPhasePlugin, NarrowPhaseSystems},
+    };
+    #[expect(deprecated, reason = "former names stay importable")]
+    pub use super::{
+        collision_events::{OnCollisionEnd, OnCollisionStart},
+        narrow_phase::NarrowPhaseSet,
     };
 }

@@ -18,7 +18,7 @@ use crate::{
     dynamics::{
         ids::ColliderId,
         solver::config::PhysicsLengthUnit,
-        tables::{Bodies, Colliders, Tables, is_minority},
+        tables::{Bodies, Colliders, Tables, is_minority, may_collide},
     },
     math::vector_from_kernel,
     scan::IN_TABLES,
@@ -50,24 +50,32 @@ type Boxes = (&'static ColliderId, &'static mut ColliderAabb, &'static mut Enlar
 /// are swept along it, since they may hit something in this step.
 pub(crate) fn update_stale_boxes(
     (fat_boxes, threads): (FatBoxes, Res<Threads>),
-    mut bodies: ResMut<Bodies>,
-    mut colliders: ResMut<Colliders>,
+    mut tables: Tables,
     mut boxes: Query<Boxes>,
     optimization: Res<ColliderTreeOptimization>,
     mut diagnostics: ResMut<ColliderTreeDiagnostics>,
 ) {
-    mark_pushed(&mut bodies.table, &mut colliders);
-    if colliders.stale.is_empty() {
+    mark_pushed(&mut tables.bodies.table, &mut tables.colliders);
+    if tables.colliders.stale.is_empty() {
         return;
     }
     let start = bevy_platform::time::Instant::now();
     let fattening = fat_boxes.fattening();
-    let Colliders { table, trees, moved, stale, entities } = &mut *colliders;
+    let bodies = &tables.bodies.table;
+    let Colliders { table, trees, moved, stale, entities, .. } = &mut *tables.colliders;
     let mut changed = BitSet::default();
-    for id in stale.iter().filter(|id| table.ids.is_live(*id)).collect::<Vec<_>>() {
-        let outgrown = table.refresh(id, &bodies.table, fattening);
+    let mut resting = Vec::new();
+    for id in stale.iter() {
+        if !table.ids.is_live(id) {
+            continue;
+        }
+        let outgrown = table.refresh(id, bodies, fattening);
         if outgrown || trees.is_new(id) {
             changed.insert(id);
+        }
+        let body = table.body(id);
+        if body == NONE || !bodies[body].awake {
+            resting.push(id);
         }
         if let Ok((_, mut shown, mut enlarged)) = boxes.get_mut(entities[id as usize]) {
             *shown = to_public(&table.tight[id as usize]);
@@ -78,6 +86,8 @@ pub(crate) fn update_stale_boxes(
     let (mode, pool) = (optimization.optimization_mode, &threads.pool);
     diagnostics.optimize += trees.update(&changed, &table.fat, mode, pool);
     moved.union_with(&changed);
+    let mut link = tables.link();
+    resting.into_iter().for_each(|id| link.visit_of_collider(id));
     diagnostics.update += start.elapsed();
 }
 
@@ -219,10 +229,11 @@ pub(crate) fn find_new_pairs(
     }
     let mut sleepers = Vec::new();
     for &(a, b) in found.pairs() {
-        if may_collide(a, b, &tables) {
+        if may_collide(&tables.bodies.table, &tables.colliders.table, [a, b]) {
             let mut link = tables.link();
             let id = link.create(a, b);
             sleepers.extend(link.unseen_sleeper(id));
+            link.visit(id);
         }
     }
     wake_beset(&sleepers, &mut tables);
@@ -239,16 +250,4 @@ fn wake_beset(sleepers: &[u32], tables: &mut Tables) {
     for &body in sleepers.iter().filter(|body| !flipped.contains(**body)) {
         tables.link().wake_body(body);
     }
-}
-
-/// Whether two colliders of different bodies may form a contact: their layers interact, and one of them can be pushed
-/// or is a sensor.
-fn may_collide(a: u32, b: u32, tables: &Tables) -> bool {
-    use kernel::table::BodyKind;
-    let [da, db] = [a, b].map(|c| &tables.colliders.table[c].def);
-    let kind = |body: u32| (body != NONE).then(|| tables.bodies.table[body].kind);
-    let kinds = [kind(da.body), kind(db.body)];
-    let pushed = kinds.contains(&Some(BodyKind::Dynamic));
-    let detects = da.flags.sensor || db.flags.sensor;
-    (pushed || detects) && da.layers.interacts_with(db.layers)
 }

@@ -9,9 +9,12 @@ use kernel::{
 };
 
 use crate::{
-    collision::collider::{
-        Collider, ColliderDisabled, CollisionLayers, Sensor, collider_hierarchy::ColliderOf,
-        collider_transform::ColliderTransform,
+    collision::{
+        collider::{
+            Collider, ColliderDisabled, CollidingEntities, CollisionLayers, Sensor,
+            collider_hierarchy::ColliderOf, collider_transform::ColliderTransform,
+        },
+        collision_events::CollisionEventsEnabled,
     },
     dynamics::{
         ids::{BodyId, ColliderId},
@@ -21,7 +24,7 @@ use crate::{
         rigid_body::{
             Dominance, RigidBody, RigidBodyDisabled, mass_properties::components::ComputedCenterOfMass,
         },
-        tables::Tables,
+        tables::{Colliders, Tables, may_collide},
     },
     math::vector_to_kernel,
     physics_transform::{Position, Rotation, said_pose, unit_rotation, world_pose},
@@ -57,6 +60,7 @@ pub(crate) struct Census<'w, 's> {
     colliders: Query<'w, 's, ColliderState, (With<ColliderId>, Allow<Disabled>)>,
     body_ids: Query<'w, 's, &'static mut BodyId, Allow<Disabled>>,
     collider_ids: Query<'w, 's, &'static mut ColliderId, Allow<Disabled>>,
+    reports: Query<'w, 's, (Has<CollisionEventsEnabled>, Has<CollidingEntities>), Allow<Disabled>>,
     surfaces: SurfaceQuery<'w, 's>,
     commands: Commands<'w, 's>,
 }
@@ -66,6 +70,7 @@ pub(crate) struct Census<'w, 's> {
 pub(crate) fn drain_lifecycle(mut queue: ResMut<LifecycleQueue>, mut tables: Tables, mut census: Census) {
     // Systems that mirror sleep have run at the end of the last step.
     tables.bodies.table.flipped.clear();
+    tables.contacts.changed.clear();
     remove_lost(&mut queue, &mut tables, &mut census);
     // Includes ids of entities that were despawned since the last step, so that a level that is replaced at once gets
     // the same ids.
@@ -110,14 +115,19 @@ pub(crate) fn local_pose(transform: &ColliderTransform) -> Pose {
 }
 
 fn remove_collider(id: u32, tables: &mut Tables) {
-    tables.link().destroy_of_collider(id);
+    tables.end_contacts(id, |_, _| true);
     let Tables { bodies, colliders, .. } = tables;
     let colliders = &mut **colliders;
     colliders.trees.remove(id);
     colliders.moved.remove(id);
     colliders.stale.remove(id);
     colliders.table.remove(id, &mut bodies.table);
-    colliders.entities[id as usize] = Entity::PLACEHOLDER;
+    colliders.forget(id);
+}
+
+/// Removes the contacts of a collider that may not be any more.
+fn drop_forbidden(id: u32, tables: &mut Tables) {
+    tables.end_contacts(id, |link, contact| !may_collide(link.bodies, link.colliders, contact.colliders));
 }
 
 pub(super) fn kind_of(body: &RigidBody) -> BodyKind {
@@ -182,6 +192,10 @@ impl Census<'_, '_> {
                 if tables.bodies.table[id].kind != kind {
                     tables.link().retype(id, kind);
                     move_to_tree(id, kind, tables);
+                    let colliders = tables.colliders.table.of_body(id, &tables.bodies.table);
+                    for collider in colliders.collect::<Vec<_>>() {
+                        drop_forbidden(collider, tables);
+                    }
                 }
             }
         }
@@ -276,7 +290,7 @@ impl Census<'_, '_> {
         } else {
             let Tables { bodies, colliders, .. } = &mut *tables;
             let id = colliders.table.add(def, world, &mut bodies.table);
-            put(&mut colliders.entities, id, entity, Entity::PLACEHOLDER);
+            colliders.name(id, entity);
             // Contacts of a sleeping body are not computed, so the body wakes.
             tables.link().wake_body(body);
             id
@@ -294,6 +308,23 @@ impl Census<'_, '_> {
         if let Ok(mut component) = self.collider_ids.get_mut(entity) {
             component.0 = id;
         }
+        self.settle_reports(entity, id, tables);
+    }
+
+    /// Reads whether a collider reports or tracks collisions.
+    fn settle_reports(&self, entity: Entity, id: u32, tables: &mut Tables) {
+        let (reports, tracks) = self.reports.get(entity).unwrap_or_default();
+        let Colliders { reporting, tracking, .. } = &mut *tables.colliders;
+        for (set, is_in) in [(reporting, reports), (tracking, tracks)] {
+            if is_in {
+                set.insert(id);
+            } else {
+                set.remove(id);
+            }
+        }
+        if tracks {
+            tables.contacts.reports.trackers.insert(entity);
+        }
     }
 }
 
@@ -305,22 +336,16 @@ fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
     if old.is_same(&def) {
         return;
     }
-    let filtered = old.layers != def.layers;
     // A collider that becomes or ceases to be a sensor needs other pairs.
-    let repaired = filtered || old.flags != def.flags;
+    let repaired = old.layers != def.layers || old.flags != def.flags;
     let mut link = tables.link();
     if body != NONE {
         link.wake_body(body);
         link.wake_touching(body);
     }
     link.colliders.redefine(id, def, link.bodies);
-    if filtered {
-        link.retain_of_collider(id, |colliders, contact| {
-            let [a, b] = contact.colliders.map(|c| colliders[c].def.layers);
-            a.interacts_with(b)
-        });
-    }
     if repaired {
+        drop_forbidden(id, tables);
         // New partners are found as for a collider that moved.
         tables.colliders.moved.insert(id);
     }

@@ -21,9 +21,12 @@ use bevy_ecs::{
 use kernel::table::NONE;
 
 use crate::{
-    collision::collider::{
-        Collider, ColliderDisabled, CollisionLayers, Sensor, collider_hierarchy::ColliderOf,
-        collider_transform::ColliderTransform,
+    collision::{
+        collider::{
+            Collider, ColliderDisabled, CollidingEntities, CollisionLayers, Sensor,
+            collider_hierarchy::ColliderOf, collider_transform::ColliderTransform,
+        },
+        collision_events::CollisionEventsEnabled,
     },
     dynamics::{
         ids::{BodyId, ColliderId},
@@ -105,6 +108,8 @@ pub(crate) fn watch(app: &mut App) {
     note_collider::<ColliderDisabled>(app);
     note_collider::<CollisionLayers>(app);
     note_collider::<Sensor>(app);
+    note_collider::<CollisionEventsEnabled>(app);
+    note_collider::<CollidingEntities>(app);
     note_collider::<Disabled>(app);
     app.add_observer(|on: On<Add, BodyEssentials>, mut queue: ResMut<LifecycleQueue>| {
         queue.note_body(on.entity);

@@ -8,6 +8,7 @@ pub mod integrator;
 pub(crate) mod lifecycle;
 pub(crate) mod materials;
 pub(crate) mod quarantine;
+pub(crate) mod reports;
 pub mod rigid_body;
 pub(crate) mod sleep;
 pub mod solver;

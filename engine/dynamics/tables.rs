@@ -3,15 +3,16 @@
 
 use bevy_ecs::{change_detection::Tick, prelude::*, system::SystemParam};
 use kernel::{
-    contact::{ContactTable, Link},
+    contact::{Contact, ContactFlags, ContactTable, Link, Status},
     data::BitSet,
     graph::{ColorGraph, Islands},
     math::WorldPose,
-    table::{BodyTable, ColliderTable, Velocity},
+    table::{BodyKind, BodyTable, ColliderTable, NONE, Velocity},
 };
 
 use crate::{
     collider_tree::proxies::ProxyTable,
+    dynamics::reports::{Report, Reports},
     physics_transform::{Position, Rotation},
     scan::Since,
 };
@@ -74,6 +75,46 @@ pub(crate) struct Colliders {
     pub(crate) moved: BitSet,
     /// Colliders whose pose must be updated before the next search for pairs.
     pub(crate) stale: BitSet,
+    /// The id of each entity, by the entity's index; outdated for entities without a collider.
+    by_entity: Vec<u32>,
+    /// Colliders that report collisions.
+    pub(crate) reporting: BitSet,
+    /// Colliders with a set of what they touch.
+    pub(crate) tracking: BitSet,
+}
+
+impl Colliders {
+    /// Stores the entity of a new id.
+    pub(crate) fn name(&mut self, id: u32, entity: Entity) {
+        let (place, index) = (id as usize, entity.index_u32() as usize);
+        if self.entities.len() <= place {
+            self.entities.resize(place + 1, Entity::PLACEHOLDER);
+        }
+        if self.by_entity.len() <= index {
+            self.by_entity.resize(index + 1, NONE);
+        }
+        self.entities[place] = entity;
+        self.by_entity[index] = id;
+    }
+
+    /// Forgets the entity of an id that is free again.
+    pub(crate) fn forget(&mut self, id: u32) {
+        self.entities[id as usize] = Entity::PLACEHOLDER;
+        self.reporting.remove(id);
+        self.tracking.remove(id);
+    }
+
+    /// The id of an entity's collider.
+    pub(crate) fn find(&self, entity: Entity) -> Option<u32> {
+        let id = *self.by_entity.get(entity.index_u32() as usize)?;
+        (self.entities.get(id as usize) == Some(&entity)).then_some(id)
+    }
+
+    /// The entity with an index, if it has a collider.
+    pub(crate) fn find_index(&self, index: u32) -> Option<Entity> {
+        let id = *self.by_entity.get(index as usize)?;
+        self.entities.get(id as usize).copied().filter(|entity| entity.index_u32() == index)
+    }
 }
 
 /// All contacts, and their colours.
@@ -83,6 +124,8 @@ pub(crate) struct Contacts {
     pub(crate) colors: ColorGraph,
     /// Contacts that began or ceased to touch in this step's narrow phase.
     pub(crate) changed: BitSet,
+    /// Collisions to be sent.
+    pub(crate) reports: Reports,
 }
 
 /// The islands. Absent without the island plugin: then no body sleeps.
@@ -101,15 +144,79 @@ pub(crate) struct Tables<'w> {
 impl Tables<'_> {
     /// The kernel's interface for changes of contacts.
     pub(crate) fn link(&mut self) -> Link<'_> {
-        let Contacts { table, colors, .. } = &mut *self.contacts;
-        Link {
-            bodies: &mut self.bodies.table,
-            colliders: &mut self.colliders.table,
-            contacts: table,
-            colors,
-            islands: self.islands.as_mut().map(|i| &mut i.0),
+        self.link_and_reporter().0
+    }
+
+    /// The same, and what notes collisions that begin and end.
+    pub(crate) fn link_and_reporter(&mut self) -> (Link<'_>, Reporter<'_>) {
+        let Contacts { table: contacts, colors, reports, .. } = &mut *self.contacts;
+        let Colliders { table: colliders, entities, reporting, tracking, .. } = &mut *self.colliders;
+        let Bodies { table: bodies, entities: body_entities, .. } = &mut *self.bodies;
+        let islands = self.islands.as_mut().map(|i| &mut i.0);
+        let reporter = Reporter { bodies: body_entities, colliders: entities, reporting, tracking, reports };
+        (Link { bodies, colliders, contacts, colors, islands }, reporter)
+    }
+
+    /// Removes the contacts of a collider that `is_gone` names, and notes the collisions that end.
+    pub(crate) fn end_contacts(&mut self, collider: u32, is_gone: impl Fn(&Link, &Contact) -> bool) {
+        let (mut link, mut reporter) = self.link_and_reporter();
+        let all = link.contacts.of_collider(collider, link.colliders);
+        let mut gone: Vec<u32> = all.filter(|id| is_gone(&link, link.contacts.get(*id))).collect();
+        gone.sort_unstable();
+        for id in gone {
+            let contact = link.contacts.get(id);
+            if contact.flags.has(ContactFlags::TOUCHING) {
+                reporter.note(contact, Status::Ended);
+            }
+            link.destroy(id);
         }
     }
+}
+
+/// Notes collisions of colliders that report or track them.
+pub(crate) struct Reporter<'a> {
+    bodies: &'a [Entity],
+    colliders: &'a [Entity],
+    reporting: &'a BitSet,
+    tracking: &'a BitSet,
+    reports: &'a mut Reports,
+}
+
+impl Reporter<'_> {
+    /// Notes that a contact began or ended.
+    #[inline]
+    pub(crate) fn note(&mut self, contact: &Contact, status: Status) {
+        let is_sent = contact.colliders.iter().any(|id| self.reporting.contains(*id));
+        if !is_sent && !contact.colliders.iter().any(|id| self.tracking.contains(*id)) {
+            return;
+        }
+        let colliders = contact.colliders.map(|id| self.colliders[id as usize]);
+        let bodies = contact.bodies.map(|id| (id != NONE).then(|| self.bodies[id as usize]));
+        for (id, entity) in contact.colliders.into_iter().zip(colliders) {
+            if self.tracking.contains(id) {
+                self.reports.trackers.insert(entity);
+            }
+        }
+        let report = Report { colliders, bodies, is_sent };
+        match status {
+            Status::Began => self.reports.started.push(report),
+            Status::Ended => self.reports.ended.push(report),
+        }
+    }
+
+    /// Drops collisions that ended and began again in this step.
+    pub(crate) fn drop_resumed(&mut self) {
+        self.reports.drop_resumed();
+    }
+}
+
+/// Whether two colliders of different bodies may form a contact: their layers interact, and one of them can be pushed,
+/// is a sensor or belongs to a kinematic body.
+pub(crate) fn may_collide(bodies: &BodyTable, colliders: &ColliderTable, pair: [u32; 2]) -> bool {
+    let [a, b] = pair.map(|id| &colliders[id].def);
+    let moves = |body: u32| body != NONE && bodies[body].kind != BodyKind::Static;
+    let detects = a.flags.sensor || b.flags.sensor;
+    (moves(a.body) || moves(b.body) || detects) && a.layers.interacts_with(b.layers)
 }
 
 /// Whether looking up the wanted entities is cheaper than iterating the queries: they are less than a quarter of all. `all`

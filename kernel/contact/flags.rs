@@ -15,10 +15,10 @@ const DEEP: f32 = 0.1;
 const NO_LONGER_DEEP: f32 = 0.01;
 
 /// Sets the bit of deep overlap after the manifold was recomputed. Only contacts whose bodies were `placed` where they are
-/// can become deep.
+/// can become deep. What pushes nothing is never deep.
 #[inline(always)]
 pub(super) fn recomputed<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, placed: bool) {
-    let deep = match (contact.flags.has(ContactFlags::DEEP), placed) {
+    let deep = match (contact.flags.has(ContactFlags::DEEP), placed && !contact.is_inert()) {
         (true, _) => overlaps_by(input, NO_LONGER_DEEP, contact),
         (false, true) => overlaps_by(input, DEEP, contact),
         (false, false) => false,

@@ -73,6 +73,28 @@ impl Link<'_> {
         if let Some(islands) = &mut self.islands {
             islands.drain_woken(|body| self.bodies[body].sleep_timer = 0.0);
         }
+        for id in core::mem::take(&mut self.contacts.visited) {
+            if self.contacts.is_live(id) {
+                self.refresh(ConstraintId::contact(id));
+            }
+        }
+    }
+
+    /// Has the next narrow phase update those contacts of a collider that push nothing, although both bodies are at rest:
+    /// after the collider was moved, or added. Others wait until a body wakes.
+    pub fn visit_of_collider(&mut self, collider: u32) {
+        let ids: Vec<u32> = self.contacts.of_collider(collider, self.colliders).collect();
+        for id in ids {
+            self.visit(id);
+        }
+    }
+
+    /// Has the next narrow phase update a contact that pushes nothing, although both bodies are at rest.
+    pub fn visit(&mut self, id: u32) {
+        if self.contacts.get(id).is_inert() && !self.contacts.is_active(id) {
+            self.contacts.activate(id);
+            self.contacts.visited.push(id);
+        }
     }
 
     /// Removes a contact. What it held up is woken.
@@ -91,18 +113,6 @@ impl Link<'_> {
     pub fn destroy_of_collider(&mut self, collider: u32) {
         while self.colliders[collider].first_contact != NONE {
             self.destroy(self.colliders[collider].first_contact >> 1);
-        }
-    }
-
-    /// Removes those contacts of a collider that `keep` does not want any more.
-    pub fn retain_of_collider(&mut self, collider: u32, keep: impl Fn(&ColliderTable, &Contact) -> bool) {
-        let gone: Vec<u32> = self
-            .contacts
-            .of_collider(collider, self.colliders)
-            .filter(|id| !keep(self.colliders, self.contacts.get(*id)))
-            .collect();
-        for id in gone {
-            self.destroy(id);
         }
     }
 

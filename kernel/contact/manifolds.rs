@@ -5,7 +5,7 @@ use super::input::{ManifoldSource, NarrowPhaseInput};
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint};
 use super::sweep::Meeting;
 use crate::manifold::{self, LocalManifold, Look};
-use crate::math::{Rot, Vector};
+use crate::math::{Rot, Vector, min};
 use crate::table::BodyPose;
 
 /// A manifold continues an old one if the cosine between their normals is above this: 25°. More loses impulses of bodies
@@ -44,6 +44,34 @@ pub(super) fn collide_parts<S: ManifoldSource>(
     let look = Look { prediction, motion: pose_a.rotation.inverse_rotate(motion) };
     let WorkerBuffers { composite, local, .. } = buffers;
     manifold::collide_composite(shapes[0], shapes[1], &relative, look, composite, local)
+}
+
+/// Removes the points of a sensor's contact at which the surfaces are apart and do not meet in this step. Returns the least
+/// separation of those, or infinity.
+pub(super) fn keep_met<S>(
+    input: &NarrowPhaseInput<S>,
+    contact: &Contact,
+    found: &mut Vec<LocalManifold>,
+) -> f32 {
+    let pose_a = &input.colliders.poses[contact.colliders[0] as usize];
+    let motion = pose_a.rotation.inverse_rotate(input.predicted_motion(contact));
+    let margin = input.margin(contact);
+    let mut gap = f32::INFINITY;
+    for local in found.iter_mut() {
+        let parting = local.normal.dot(motion);
+        let all = core::mem::take(&mut local.count);
+        for i in 0..all {
+            let separation = local.points[i].separation - margin;
+            if separation <= 0.0 || separation + parting <= 0.0 {
+                local.points[local.count] = local.points[i];
+                local.count += 1;
+            } else {
+                gap = min(gap, separation);
+            }
+        }
+    }
+    found.retain(|local| local.count > 0);
+    gap
 }
 
 /// Puts the manifolds in `buffers.local` in place of the contact's. Old points hand on their impulses. `body_a` is the pose

@@ -15,7 +15,7 @@ use super::sweep::{self, Meeting};
 use super::table::{ContactTable, PointCount, Stored};
 use crate::data::{BitSet, Parts};
 use crate::manifold::{FeatureCache, LocalManifold};
-use crate::math::{Vector, max};
+use crate::math::{Vector, max, min};
 use crate::table::{BodyKind, BodyPose, BodyTable, NONE};
 use crate::thread_pool::ThreadPool;
 
@@ -310,14 +310,18 @@ fn recompute<S: ManifoldSource>(
     }
     contact.revisions = revisions;
     buffers.local.clear();
-    let search = if contact.flags.has(ContactFlags::FOREIGN) {
+    let mut search = if contact.flags.has(ContactFlags::FOREIGN) {
         search_foreign(input, contact, buffers)
     } else if contact.flags.has(ContactFlags::COMPOSITE) {
         search_parts(input, contact, buffers)
     } else {
         search_native(input, contact, poses, &mut buffers.local)
     };
-    freeze(input, contact, poses, &search);
+    if contact.flags.has(ContactFlags::SENSOR) && search.meeting.is_none() {
+        let gap = manifolds::keep_met(input, contact, &mut buffers.local);
+        search.prediction = min(search.prediction, gap);
+    }
+    freeze(input, contact, poses, &search, buffers.local.is_empty());
     manifolds::replace(input, contact, old_extra, poses[0], search.meeting.as_ref(), buffers);
     // Only what has just come together, or was changed by hand, was placed where it is; all else was pressed there,
     // unless its bodies are crowded by those that were placed.
@@ -409,9 +413,16 @@ fn search_native<S>(
     Search { prediction, meeting }
 }
 
-/// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is not recycled.
+/// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is not recycled,
+/// nor a sensor's with points, which would be kept while the shapes part.
 #[inline(always)]
-fn freeze<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, poses: [&BodyPose; 2], search: &Search) {
+fn freeze<S>(
+    input: &NarrowPhaseInput<S>,
+    contact: &mut Contact,
+    poses: [&BodyPose; 2],
+    search: &Search,
+    is_empty: bool,
+) {
     let offset = (poses[1].center - poses[0].center).to_local();
     contact.frozen = Frozen {
         rotations: poses.map(|p| p.rotation),
@@ -420,5 +431,6 @@ fn freeze<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, poses: [&BodyPo
     };
     let is_native = !contact.flags.has(ContactFlags::FOREIGN);
     let is_recyclable = input.recycle_distance > 0.0 && is_native && search.meeting.is_none();
-    contact.flags.set(ContactFlags::FROZEN, is_recyclable);
+    let is_kept = is_empty || !contact.flags.has(ContactFlags::SENSOR);
+    contact.flags.set(ContactFlags::FROZEN, is_recyclable && is_kept);
 }

@@ -21,6 +21,8 @@ pub struct ContactTable {
     pub(super) active: BitSet,
     /// The number of active contacts.
     active_count: usize,
+    /// Contacts that are active in this update only.
+    pub(super) visited: Vec<u32>,
     /// Whether the last update found a deeply overlapping contact.
     pub(super) any_deep: bool,
     /// The dynamic bodies that overlapped others deeply when contacts were last updated.

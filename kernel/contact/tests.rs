@@ -316,6 +316,48 @@ fn the_table_is_the_same_to_the_byte_whatever_pool_updated_it() {
     }
 }
 
+/// Sensors on static bodies are updated once after they were moved. Only shapes that overlap touch them.
+#[test]
+fn a_visited_sensor_at_rest_is_updated_once() {
+    for (distance, touches) in [(1.9, true), (2.01, false)] {
+        let mut world = World::with([BodyKind::Static; 2]);
+        let mut def = world.colliders[1].def.clone();
+        def.flags.sensor = true;
+        def.local = Pose::new(Vector::X * distance, Default::default());
+        world.colliders.redefine(1, def, &mut world.bodies);
+        for id in 0..2 {
+            world.colliders.refresh(id, &world.bodies, Fattening { margin: 0.1, dt: 0.01 });
+        }
+        let id = world.link().create(0, 1);
+        let pool = ThreadPool::new(1);
+        let update = |world: &mut World| {
+            let input = NarrowPhaseInput {
+                bodies: &world.bodies,
+                colliders: &world.colliders,
+                source: &(),
+                dt: 0.01,
+                tolerance: 0.005,
+                speculative: 0.02,
+                recycle_distance: 0.05,
+                match_points: true,
+                narrow: false,
+            };
+            let mut changed = BitSet::new();
+            world.contacts.update(&input, &pool, &mut Vec::new(), &mut changed);
+            let mut began = 0;
+            world.link().apply(&changed, |_, _, status| began += usize::from(status == Status::Began));
+            world.link().validate();
+            began
+        };
+        assert_eq!(update(&mut world), 0, "nothing is awake");
+        world.link().visit_of_collider(1);
+        assert!(world.contacts.is_active(id));
+        assert_eq!(update(&mut world), usize::from(touches), "{distance}");
+        assert!(!world.contacts.is_active(id), "visited once");
+        assert_eq!(world.contacts.get(id).flags.has(ContactFlags::TOUCHING), touches);
+    }
+}
+
 const KINDS: [BodyKind; 3] = [BodyKind::Static, BodyKind::Kinematic, BodyKind::Dynamic];
 
 proptest! {

@@ -24,6 +24,7 @@ pub use parry::*;
 
 use crate::math::Scalar;
 use bevy_derive::{Deref, DerefMut};
+use bevy_ecs::entity::{EntityHashSet, EntityMapper, MapEntities};
 use bevy_ecs::prelude::Component;
 use bevy_ecs::reflect::ReflectComponent;
 use bevy_reflect::Reflect;
@@ -64,6 +65,30 @@ pub struct ColliderDisabled;
 #[reflect(Debug, Component, Default, PartialEq)]
 #[doc(alias = "Trigger")]
 pub struct Sensor;
+
+/// The colliders that a collider touches, sensors included. Insert it on a collider; the engine fills it at the end of each
+/// step, before collision events are sent.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// fn print(touched: Query<(Entity, &CollidingEntities)>) {
+///     for (collider, others) in &touched {
+///         println!("{collider} touches {} others", others.len());
+///     }
+/// }
+/// ```
+#[derive(Reflect, Clone, Component, Debug, Default, Deref, DerefMut, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default, PartialEq)]
+pub struct CollidingEntities(pub EntityHashSet);
+
+impl MapEntities for CollidingEntities {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        self.0 = self.0.drain().map(|entity| mapper.get_mapped(entity)).collect();
+    }
+}
 
 /// Distance from the surface at which other colliders are kept, in metres.
 ///

@@ -6,7 +6,12 @@ use core::marker::PhantomData;
 
 use super::{CollisionEventSystems, ContactResponse, NarrowPhaseConfig, NarrowPhaseSystems};
 use crate::{
-    collision::{collider::AnyCollider, contacts::NarrowPhaseBuffers, diagnostics::CollisionDiagnostics},
+    collision::{
+        collider::AnyCollider,
+        collision_events::{CollisionEnd, CollisionStart},
+        contacts::NarrowPhaseBuffers,
+        diagnostics::CollisionDiagnostics,
+    },
     diagnostics::{Within, list},
     dynamics::{
         materials::watch_surfaces,
@@ -61,6 +66,8 @@ impl Plugin for SharedNarrowPhasePlugin {
             .init_resource::<DefaultRestitution>()
             .init_resource::<NarrowPhaseBuffers>()
             .init_resource::<PhysicsLengthUnit>()
+            .add_message::<CollisionStart>()
+            .add_message::<CollisionEnd>()
             .insert_resource(ContactResponse(self.generate_constraints));
         list::<CollisionDiagnostics>(app, Within::Step);
         step::install(app);

@@ -1,5 +1,7 @@
 //! Tests of avian2d in an app. The files are shared with avian3d.
 
+#[path = "../../../../tests/collisions.rs"]
+mod collisions;
 #[path = "../../../../tests/contract.rs"]
 mod contract;
 #[path = "../../../../tests/contract2.rs"]

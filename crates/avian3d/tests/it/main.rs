@@ -1,5 +1,7 @@
 //! Tests of avian3d in an app. The files are shared with avian2d.
 
+#[path = "../../../../tests/collisions.rs"]
+mod collisions;
 #[path = "../../../../tests/contract.rs"]
 mod contract;
 #[path = "../../../../tests/contract3.rs"]

@@ -1,0 +1,185 @@
+//! Collision events: [`CollisionStart`] and [`CollisionEnd`], as messages and for observers.
+//!
+//! A collider with [`CollisionEventsEnabled`] reports when it begins and ceases to touch another collider. It may be
+//! inserted and removed at any time; it counts from the next step on.
+//!
+//! - A **message** is written once per pair, if either collider reports. Read it with a `MessageReader`.
+//! - An **entity event** is triggered for each of the two that reports, with that collider first. Observe it on the
+//!   collider's entity.
+//!
+//! Events are sent at the end of a step, in [`CollisionEventSystems`](super::narrow_phase::CollisionEventSystems): the
+//! messages, then the triggers, all starts before all ends, in the order of the engine's ids. The order is the same in
+//! every run and with any number of threads. Impulses are known then, and
+//! [`Collisions`](super::contact_types::Collisions) has the contacts.
+//!
+//! A collision also ends if a collider or its body is despawned or disabled, if the component is removed, or if layers
+//! forbid the pair from now on. Such an end is sent in the next step (in the same one if it happened within). The event
+//! then names an entity that may be gone; observers of the other collider run. Bodies that fall asleep do not end a
+//! collision, and a collider that moves to another body ends none with what it still touches.
+//!
+//! Colliders touch while they have contact points: from 2 cm (times the length unit) before their surfaces meet, or if
+//! they meet in the step at hand. Sensors touch if they overlap, or will in the step. A pair of which no body can be
+//! pushed is reported if one is a [`Sensor`](super::collider::Sensor), or one is kinematic. Colliders of static bodies are
+//! no pair, sensor or not.
+//!
+//! ```
+//! # use avian::prelude::*;
+//! # use bevy_ecs::prelude::*;
+//! # #[derive(Component)]
+//! # struct Player;
+//! fn spawn_plate(mut commands: Commands) {
+//!     commands
+//!         .spawn((Sensor, Collider::capsule(1.0, 2.0), CollisionEventsEnabled))
+//!         .observe(|event: On<CollisionStart>, players: Query<&Player>| {
+//!             if players.contains(event.collider2) {
+//!                 println!("pressed");
+//!             }
+//!         });
+//! }
+//!
+//! fn print_all(mut started: MessageReader<CollisionStart>) {
+//!     for event in started.read() {
+//!         println!("{} touches {}", event.collider1, event.collider2);
+//!     }
+//! }
+//! ```
+
+use bevy_ecs::{entity::EntityHashSet, message::Messages, prelude::*};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use kernel::contact::ContactFlags;
+
+use crate::{
+    collision::collider::CollidingEntities,
+    dynamics::{
+        reports::{Report, Reports},
+        tables::{Colliders, Contacts},
+    },
+};
+
+/// Two colliders began to touch. See the [module](self) for who is told, and when.
+#[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
+pub struct CollisionStart {
+    /// The first collider. An observer runs on this one.
+    #[event_target]
+    pub collider1: Entity,
+    /// The second collider.
+    pub collider2: Entity,
+    /// The body of the first collider, if it has one in the simulation.
+    pub body1: Option<Entity>,
+    /// The body of the second collider, if it has one in the simulation.
+    pub body2: Option<Entity>,
+}
+
+/// Two colliders ceased to touch. See the [module](self) for who is told, and when.
+///
+/// Entities may be gone: despawning one ends the collision.
+#[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
+pub struct CollisionEnd {
+    /// The first collider. An observer runs on this one.
+    #[event_target]
+    pub collider1: Entity,
+    /// The second collider.
+    pub collider2: Entity,
+    /// The body of the first collider when they touched, if it had one.
+    pub body1: Option<Entity>,
+    /// The body of the second collider when they touched, if it had one.
+    pub body2: Option<Entity>,
+}
+
+/// The former name of [`CollisionStart`].
+#[deprecated(since = "0.4.0", note = "renamed to `CollisionStart`")]
+pub type OnCollisionStart = CollisionStart;
+
+/// The former name of [`CollisionEnd`].
+#[deprecated(since = "0.4.0", note = "renamed to `CollisionEnd`")]
+pub type OnCollisionEnd = CollisionEnd;
+
+/// Has a collider report when it begins and ceases to touch others, by [`CollisionStart`] and [`CollisionEnd`].
+///
+/// If all colliders are to report, call `app.register_required_components::<Collider, CollisionEventsEnabled>()`.
+#[derive(Component, Clone, Copy, Debug, Default, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, Default)]
+pub struct CollisionEventsEnabled;
+
+/// Makes one of the two events from a report, seen from one side.
+macro_rules! seen_from {
+    ($event:ident, $report:expr, $side:expr) => {{
+        let (report, one, other): (&Report, usize, usize) = ($report, $side, 1 - $side);
+        $event {
+            collider1: report.colliders[one],
+            collider2: report.colliders[other],
+            body1: report.bodies[one],
+            body2: report.bodies[other],
+        }
+    }};
+}
+
+/// Sends what began and ended in this step.
+pub(crate) fn send_collision_events(world: &mut World) {
+    let mut contacts = world.resource_mut::<Contacts>();
+    let Reports { started, ended, trackers } = &mut contacts.bypass_change_detection().reports;
+    if started.is_empty() && ended.is_empty() && trackers.is_empty() {
+        return;
+    }
+    let (started, ended) = (core::mem::take(started), core::mem::take(ended));
+    let trackers = core::mem::take(trackers);
+
+    let sent = |reports: &[Report]| reports.iter().copied().filter(|r| r.is_sent).collect::<Vec<_>>();
+    let (started, ended) = (sent(&started), sent(&ended));
+    if let Some(mut messages) = world.get_resource_mut::<Messages<CollisionStart>>() {
+        messages.write_batch(started.iter().map(|report| seen_from!(CollisionStart, report, 0)));
+    }
+    if let Some(mut messages) = world.get_resource_mut::<Messages<CollisionEnd>>() {
+        messages.write_batch(ended.iter().map(|report| seen_from!(CollisionEnd, report, 0)));
+    }
+    update_trackers(world, trackers.into_iter().collect());
+    for report in &started {
+        for side in [0, 1] {
+            if is_reporting(world, report.colliders[side]) {
+                world.trigger(seen_from!(CollisionStart, report, side));
+                // The next observer sees what the commands of this one did.
+                world.flush();
+            }
+        }
+    }
+    for report in &ended {
+        for side in [0, 1] {
+            if is_reporting(world, report.colliders[side]) {
+                world.trigger(seen_from!(CollisionEnd, report, side));
+                world.flush();
+            }
+        }
+    }
+}
+
+/// Whether an entity exists, and reports. An observer may have despawned it just now.
+fn is_reporting(world: &World, collider: Entity) -> bool {
+    world.get_entity(collider).is_ok_and(|entity| entity.contains::<CollisionEventsEnabled>())
+}
+
+/// Writes the sets of colliders whose collisions changed.
+fn update_trackers(world: &mut World, trackers: Vec<Entity>) {
+    if trackers.is_empty() {
+        return;
+    }
+    let (colliders, contacts) = (world.resource::<Colliders>(), world.resource::<Contacts>());
+    let touching = |collider: Entity| -> EntityHashSet {
+        let Some(id) = colliders.find(collider) else { return EntityHashSet::default() };
+        let all = contacts.table.of_collider(id, &colliders.table).map(|contact| contacts.table.get(contact));
+        let touching = all.filter(|contact| contact.flags.has(ContactFlags::TOUCHING));
+        let other = |[a, b]: [u32; 2]| colliders.entities[if a == id { b } else { a } as usize];
+        touching.map(|contact| other(contact.colliders)).collect()
+    };
+    let sets: Vec<(Entity, EntityHashSet)> = trackers.into_iter().map(|e| (e, touching(e))).collect();
+    for (collider, set) in sets {
+        if let Ok(mut entity) = world.get_entity_mut(collider)
+            && let Some(mut shown) = entity.get_mut::<CollidingEntities>()
+        {
+            shown.set_if_neq(CollidingEntities(set));
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! [`Collisions`], the system parameter.
+
+use bevy_ecs::{prelude::*, system::SystemParam};
+
+use super::{
+    contact_graph::ContactGraph,
+    pair::ContactPair,
+    views::{ContactViews, Source},
+};
+use crate::{
+    data_structures::pair_key::PairKey,
+    dynamics::{
+        solver::schedule::SubstepCount,
+        tables::{Bodies, Colliders, Contacts},
+    },
+};
+
+/// The pairs of colliders that touch, as a system parameter.
+///
+/// Colliders touch while they have contact points: from 2 cm (times the length unit) before their surfaces meet, or
+/// if they meet in the step at hand. Sensors touch if they overlap, or will in the step.
+///
+/// Contacts are complete from [`NarrowPhaseSystems::Last`] on, their impulses from
+/// [`SolverSystems::StoreContactImpulses`] on. Systems that run between steps read those of the last step. Contacts are made when they are read, once for all readers; a step in which nothing is read costs nothing.
+///
+/// To be told of changes, use [`CollisionStart`](crate::prelude::CollisionStart) and
+/// [`CollisionEnd`](crate::prelude::CollisionEnd).
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// # #[derive(Component)]
+/// # struct Player;
+/// fn print_load(players: Query<Entity, With<Player>>, collisions: Collisions) {
+///     for player in &players {
+///         for contact in collisions.collisions_with(player) {
+///             println!("{} N·s", contact.total_normal_impulse_magnitude());
+///         }
+///     }
+/// }
+/// ```
+///
+/// [`NarrowPhaseSystems::Last`]: crate::collision::narrow_phase::NarrowPhaseSystems::Last
+/// [`SolverSystems::StoreContactImpulses`]: crate::dynamics::solver::schedule::SolverSystems::StoreContactImpulses
+#[derive(SystemParam)]
+pub struct Collisions<'w> {
+    views: Res<'w, ContactViews>,
+    bodies: Res<'w, Bodies>,
+    colliders: Res<'w, Colliders>,
+    contacts: Res<'w, Contacts>,
+    substeps: Option<Res<'w, SubstepCount>>,
+}
+
+impl Collisions<'_> {
+    fn source(&self) -> Source<'_> {
+        Source {
+            bodies: &self.bodies,
+            colliders: &self.colliders,
+            contacts: &self.contacts,
+            substeps: self.substeps.as_ref().map_or(1, |count| count.0.max(1)),
+        }
+    }
+
+    /// All contacts, also of colliders that are near each other and do not touch. It is made anew in each step in which
+    /// it is read; [`get`](Self::get) and [`collisions_with`](Self::collisions_with) make only the contacts asked for.
+    pub fn graph(&self) -> &ContactGraph {
+        self.views.graph(self.source())
+    }
+
+    /// The contact of two colliders that touch, in either order.
+    pub fn get(&self, entity1: Entity, entity2: Entity) -> Option<&ContactPair> {
+        let id = self.source().find(entity1, entity2)?;
+        Some(self.views.pair(id, self.source()))
+    }
+
+    /// Whether two colliders touch.
+    pub fn contains(&self, entity1: Entity, entity2: Entity) -> bool {
+        self.source().find(entity1, entity2).is_some()
+    }
+
+    /// Whether two colliders touch, by the indices of their entities.
+    pub fn contains_key(&self, pair_key: &PairKey) -> bool {
+        let (first, second) = pair_key.get();
+        let [first, second] = [first, second].map(|index| self.colliders.find_index(index));
+        first.zip(second).is_some_and(|(first, second)| self.contains(first, second))
+    }
+
+    /// All pairs that touch, in the order of ids.
+    pub fn iter(&self) -> impl Iterator<Item = &ContactPair> {
+        let source = self.source();
+        let touching = move |id: &u32| source.is_touching(*id);
+        source
+            .contacts
+            .table
+            .iter()
+            .map(|(id, _)| id)
+            .filter(touching)
+            .map(move |id| self.views.pair(id, source))
+    }
+
+    /// The pairs of a collider that touch, in the order of ids.
+    pub fn collisions_with(&self, entity: Entity) -> impl Iterator<Item = &ContactPair> {
+        let source = self.source();
+        source.touching(entity).into_iter().map(move |id| self.views.pair(id, source))
+    }
+
+    /// The colliders that touch a collider, in the order of ids.
+    pub fn entities_colliding_with(&self, entity: Entity) -> impl Iterator<Item = Entity> + '_ {
+        let source = self.source();
+        source.touching(entity).into_iter().map(move |id| {
+            let [a, b] = source.entities(id);
+            if a == entity { b } else { a }
+        })
+    }
+}

@@ -1,0 +1,205 @@
+//! Contacts of the kernel as the app sees them, made when they are read.
+
+use bevy_ecs::prelude::*;
+use kernel::{
+    contact::{Contact, ContactFlags, Manifold, ManifoldPoint},
+    math as k,
+    table::{BodyKind, NONE, Velocity},
+};
+use std::sync::OnceLock;
+
+use super::{
+    contact_graph::ContactGraph,
+    dim::{ContactManifold, tangent_impulse},
+    feature_id::PackedFeatureId,
+    pair::{ContactEdge, ContactEdgeFlags, ContactId, ContactPair, ContactPairFlags},
+    point::ContactPoint,
+};
+use crate::{
+    dynamics::tables::{Bodies, Colliders, Contacts},
+    math::{AdjustPrecision, Scalar, vector_from_kernel, world_from_kernel},
+};
+
+/// The contacts that were read since contacts last changed.
+///
+/// Readers share the tables, so each contact is filled once, by the first of them. As long as nothing is read, nothing
+/// is allocated.
+#[derive(Resource, Default)]
+pub(crate) struct ContactViews {
+    /// By contact id.
+    pairs: OnceLock<Box<[OnceLock<Box<ContactPair>>]>>,
+    graph: OnceLock<Box<ContactGraph>>,
+}
+
+/// Forgets what was read. Piped behind each system that changes contacts, so that no system of the app reads in between.
+pub(crate) fn forget_views(mut views: ResMut<ContactViews>) {
+    let views = views.bypass_change_detection();
+    if views.pairs.get().is_some() || views.graph.get().is_some() {
+        *views = ContactViews::default();
+    }
+}
+
+/// What contacts are made of.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub(super) bodies: &'a Bodies,
+    pub(super) colliders: &'a Colliders,
+    pub(super) contacts: &'a Contacts,
+    /// The number of substeps.
+    pub(super) substeps: u32,
+}
+
+impl ContactViews {
+    /// A contact in use.
+    pub(super) fn pair(&self, id: u32, source: Source) -> &ContactPair {
+        let capacity = source.contacts.table.capacity();
+        let pairs = self.pairs.get_or_init(|| (0..capacity).map(|_| OnceLock::new()).collect());
+        pairs[id as usize].get_or_init(|| Box::new(source.pair(id)))
+    }
+
+    /// All contacts.
+    pub(super) fn graph(&self, source: Source) -> &ContactGraph {
+        self.graph.get_or_init(|| {
+            let mut graph = ContactGraph::default();
+            for (id, _) in source.contacts.table.iter() {
+                graph.push(source.edge(id), self.pair(id, source).clone());
+            }
+            Box::new(graph)
+        })
+    }
+}
+
+impl<'a> Source<'a> {
+    /// The contact of two colliders, if they touch.
+    pub(super) fn find(self, entity1: Entity, entity2: Entity) -> Option<u32> {
+        let [a, b] = [self.colliders.find(entity1)?, self.colliders.find(entity2)?];
+        self.contacts.table.find(a, b).filter(|id| self.is_touching(*id))
+    }
+
+    /// Whether the colliders of a contact touch.
+    pub(super) fn is_touching(self, id: u32) -> bool {
+        self.contacts.table.get(id).flags.has(ContactFlags::TOUCHING)
+    }
+
+    /// The contacts of a collider that touch, by id.
+    pub(super) fn touching(self, entity: Entity) -> Vec<u32> {
+        let Some(collider) = self.colliders.find(entity) else { return Vec::new() };
+        let all = self.contacts.table.of_collider(collider, &self.colliders.table);
+        let mut ids: Vec<u32> = all.filter(|id| self.is_touching(*id)).collect();
+        ids.sort_unstable();
+        ids
+    }
+
+    /// Both colliders of a contact.
+    pub(super) fn entities(self, id: u32) -> [Entity; 2] {
+        self.contacts.table.get(id).colliders.map(|collider| self.colliders.entities[collider as usize])
+    }
+
+    fn kind(self, body: u32) -> Option<BodyKind> {
+        (body != NONE).then(|| self.bodies.table[body].kind)
+    }
+
+    fn body_entities(self, contact: &Contact) -> [Option<Entity>; 2] {
+        contact.bodies.map(|body| (body != NONE).then(|| self.bodies.entities[body as usize]))
+    }
+
+    /// The contact without its manifolds.
+    fn edge(self, id: u32) -> ContactEdge {
+        let contact = self.contacts.table.get(id);
+        let [collider1, collider2] = self.entities(id);
+        let [body1, body2] = self.body_entities(contact);
+        let can_sleep = contact.bodies.iter().any(|body| self.kind(*body) == Some(BodyKind::Dynamic));
+        let sleeps = can_sleep && !self.contacts.table.is_active(id);
+        let reports = contact.colliders.iter().any(|collider| self.colliders.reporting.contains(*collider));
+        let mut flags = ContactEdgeFlags::empty();
+        flags.set(ContactEdgeFlags::TOUCHING, contact.flags.has(ContactFlags::TOUCHING));
+        flags.set(ContactEdgeFlags::SLEEPING, sleeps);
+        flags.set(ContactEdgeFlags::CONTACT_EVENTS, reports);
+        ContactEdge { id: ContactId(id), collider1, collider2, body1, body2, pair_index: 0, flags }
+    }
+
+    /// The contact with its manifolds.
+    fn pair(self, id: u32) -> ContactPair {
+        let table = &self.contacts.table;
+        let contact = table.get(id);
+        let [collider1, collider2] = self.entities(id);
+        let [body1, body2] = self.body_entities(contact);
+        let all = core::iter::once(&contact.manifold).chain(table.extra_of(contact));
+        let manifolds = all.filter(|m| m.count > 0).map(|m| self.manifold(contact, m)).collect();
+        let flags = self.pair_flags(id, contact);
+        ContactPair { contact_id: ContactId(id), collider1, collider2, body1, body2, manifolds, flags }
+    }
+
+    fn pair_flags(self, id: u32, contact: &Contact) -> ContactPairFlags {
+        let touches = contact.flags.has(ContactFlags::TOUCHING);
+        let responds = !contact.is_inert();
+        let changed = self.contacts.changed.contains(id);
+        let [a, b] = contact.bodies.map(|body| self.kind(body) == Some(BodyKind::Static));
+        let mut flags = ContactPairFlags::empty();
+        flags.set(ContactPairFlags::TOUCHING, touches);
+        flags.set(ContactPairFlags::DISJOINT_AABB, contact.flags.has(ContactFlags::SEPARATED));
+        flags.set(ContactPairFlags::STARTED_TOUCHING, changed && touches);
+        flags.set(ContactPairFlags::STOPPED_TOUCHING, changed && !touches);
+        flags.set(ContactPairFlags::GENERATE_CONSTRAINTS, responds);
+        flags.set(ContactPairFlags::STARTED_GENERATING_CONSTRAINTS, responds && changed && touches);
+        flags.set(ContactPairFlags::STATIC1, a);
+        flags.set(ContactPairFlags::STATIC2, b);
+        flags
+    }
+
+    fn manifold(self, contact: &Contact, manifold: &Manifold) -> ContactManifold {
+        let [a, b] = [0, 1].map(|side| self.center(contact, side));
+        let offset = (b - a).to_local();
+        let velocities = contact.bodies.map(|body| match body {
+            NONE => Velocity::default(),
+            body => self.bodies.table.velocities[body as usize],
+        });
+        let share = 1.0 / f32::from(manifold.count);
+        let friction = tangent_impulse(manifold.normal, manifold.friction_impulse * share);
+        let points = manifold.points().iter().map(|p| ContactPoint {
+            warm_start_tangent_impulse: friction,
+            ..self.point(a, offset, velocities, manifold.normal, p)
+        });
+        let [friction, restitution] = contact.surface.map(|coefficient| coefficient.adjust_precision());
+        ContactManifold {
+            friction,
+            restitution,
+            ..ContactManifold::new(points, vector_from_kernel(manifold.normal))
+        }
+    }
+
+    /// The centre of mass of a side's body, or the place of a collider without one.
+    fn center(self, contact: &Contact, side: usize) -> k::WorldVector {
+        match contact.bodies[side] {
+            NONE => self.colliders.table.poses[contact.colliders[side] as usize].position,
+            body => self.bodies.table.poses[body as usize].center,
+        }
+    }
+
+    /// A point without friction.
+    fn point(
+        self,
+        center: k::WorldVector,
+        offset: k::Vector,
+        [a, b]: [Velocity; 2],
+        normal: k::Vector,
+        p: &ManifoldPoint,
+    ) -> ContactPoint {
+        let anchors = [p.anchor, p.anchor - offset];
+        let parting = b.linear + b.angular.cross(anchors[1]) - a.linear - a.angular.cross(anchors[0]);
+        let [anchor1, anchor2] = anchors.map(vector_from_kernel);
+        let impulse = p.impulse.adjust_precision();
+        let point = ContactPoint {
+            normal_impulse: impulse * self.substeps as Scalar,
+            normal_speed: normal.dot(parting).adjust_precision(),
+            warm_start_normal_impulse: impulse,
+            ..ContactPoint::new(
+                anchor1,
+                anchor2,
+                world_from_kernel(center) + anchor1,
+                (-p.separation).adjust_precision(),
+            )
+        };
+        point.with_feature_ids(PackedFeatureId(p.feature), PackedFeatureId::UNKNOWN)
+    }
+}

@@ -1,0 +1,3 @@
+//! Data structures of the public interface.
+
+pub mod pair_key;

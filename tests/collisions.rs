@@ -1,0 +1,666 @@
+//! Collisions as the app sees them: who is told of starts and ends, when and in which order, and what `Collisions` has.
+#![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+
+use avian::{
+    collision::contact_types::ContactId,
+    data_structures::pair_key::PairKey,
+    dynamics::solver::WorkerCount,
+    math::{Scalar, Vector},
+    prelude::*,
+};
+use bevy_app::prelude::*;
+use bevy_ecs::{entity_disabling::Disabled, prelude::*};
+use bevy_time::{TimePlugin, TimeUpdateStrategy, prelude::*};
+use bevy_transform::{TransformPlugin, components::Transform};
+use core::time::Duration;
+use scenes::dim::{ball, block};
+
+const DT: Duration = Duration::from_micros(15_625);
+
+/// What was told, by message or to an observer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Said {
+    Started(Entity, Entity),
+    Ended(Entity, Entity),
+    SawStart(Entity, Entity),
+    SawEnd(Entity, Entity),
+}
+use Said::*;
+
+#[derive(Resource, Default)]
+struct Log(Vec<Said>);
+
+fn listen(app: &mut App, schedule: impl bevy_ecs::schedule::ScheduleLabel) {
+    app.init_resource::<Log>()
+        .insert_resource(Gravity::ZERO)
+        .add_systems(
+            schedule,
+            |mut starts: MessageReader<CollisionStart>,
+             mut ends: MessageReader<CollisionEnd>,
+             mut log: ResMut<Log>| {
+                log.0.extend(starts.read().map(|e| Started(e.collider1, e.collider2)));
+                log.0.extend(ends.read().map(|e| Ended(e.collider1, e.collider2)));
+            },
+        )
+        .add_observer(|on: On<CollisionStart>, mut log: ResMut<Log>| {
+            log.0.push(SawStart(on.collider1, on.collider2));
+        })
+        .add_observer(|on: On<CollisionEnd>, mut log: ResMut<Log>| {
+            log.0.push(SawEnd(on.collider1, on.collider2));
+        });
+    app.finish();
+    app.cleanup();
+}
+
+fn app() -> App {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update)));
+    listen(&mut app, PostUpdate);
+    app
+}
+
+fn step(app: &mut App) {
+    app.world_mut().resource_mut::<Time>().advance_by(DT);
+    app.update();
+}
+
+fn steps(app: &mut App, count: u32) {
+    (0..count).for_each(|_| step(app));
+}
+
+/// What was told since the last call.
+fn said(app: &mut App) -> Vec<Said> {
+    core::mem::take(&mut app.world_mut().resource_mut::<Log>().0)
+}
+
+fn at(x: f32, y: f32) -> Transform {
+    Transform::from_xyz(x, y, 0.0)
+}
+
+fn right(speed: Scalar) -> LinearVelocity {
+    LinearVelocity(Vector::X * speed)
+}
+
+/// A static ball and a dynamic one beside it, overlapping a little. Both report and track.
+fn touching(app: &mut App) -> [Entity; 2] {
+    let reporting = (CollisionEventsEnabled, CollidingEntities::default());
+    let wall = app.world_mut().spawn((RigidBody::Static, ball(0.5), at(0.0, 0.0), reporting.clone())).id();
+    let body = (RigidBody::Dynamic, ball(0.5), at(0.995, 0.0), reporting, SleepingDisabled);
+    let body = app.world_mut().spawn(body).id();
+    step(app);
+    assert_eq!(
+        said(app),
+        [SawStart(wall, body), SawStart(body, wall), Started(wall, body)],
+        "the message is read in PostUpdate, after the observers ran"
+    );
+    assert_eq!([touched(app, wall), touched(app, body)], [vec![body], vec![wall]]);
+    [wall, body]
+}
+
+fn touched(app: &App, collider: Entity) -> Vec<Entity> {
+    let mut all: Vec<Entity> =
+        app.world().get::<CollidingEntities>(collider).expect("it tracks").iter().copied().collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn a_pair_is_told_once_of_its_start_and_once_of_its_end() {
+    for (one, other) in [(true, true), (true, false), (false, true), (false, false)] {
+        let mut app = app();
+        let world = app.world_mut();
+        let wall = world.spawn((RigidBody::Static, ball(0.5), Restitution::new(1.0))).id();
+        let body = (RigidBody::Dynamic, ball(0.5), at(1.5, 0.0), right(-4.0), Restitution::new(1.0));
+        let body = world.spawn(body).id();
+        for (entity, reports) in [(wall, one), (body, other)] {
+            if reports {
+                world.entity_mut(entity).insert(CollisionEventsEnabled);
+            }
+        }
+        steps(&mut app, 60);
+        assert!(app.world().get::<Position>(body).expect("a body").x > 2.0, "it bounced");
+        let all = said(&mut app);
+        let count = |what: Said| all.iter().filter(|said| **said == what).count();
+        let any = usize::from(one || other);
+        assert_eq!([count(Started(wall, body)), count(Ended(wall, body))], [any; 2]);
+        assert_eq!([count(SawStart(wall, body)), count(SawEnd(wall, body))], [usize::from(one); 2]);
+        assert_eq!([count(SawStart(body, wall)), count(SawEnd(body, wall))], [usize::from(other); 2]);
+        assert_eq!(all.len(), 2 * (any + usize::from(one) + usize::from(other)), "and nothing else");
+    }
+}
+
+#[test]
+fn events_name_the_bodies_of_child_colliders() {
+    #[derive(Resource, Default)]
+    struct Seen(Vec<[Option<Entity>; 2]>);
+    let mut app = app();
+    app.init_resource::<Seen>().add_observer(|on: On<CollisionStart>, mut seen: ResMut<Seen>| {
+        seen.0.push([on.body1, on.body2]);
+    });
+    let wall = app.world_mut().spawn((Collider::half_space(Vector::Y), at(0.0, 0.0))).id();
+    let body = app.world_mut().spawn((RigidBody::Dynamic, at(0.0, 0.4))).id();
+    app.world_mut().spawn((ball(0.5), CollisionEventsEnabled, ChildOf(body)));
+    step(&mut app);
+    assert_eq!(app.world().resource::<Seen>().0, [[Some(body), None]]);
+    assert!(app.world().get_entity(wall).is_ok());
+}
+
+#[test]
+fn sensors_are_told_of_what_overlaps_them_and_not_of_what_passes_by() {
+    let mut app = app();
+    let sensor = (RigidBody::Static, Sensor, ball(0.5), CollisionEventsEnabled);
+    let sensor = app.world_mut().spawn(sensor).id();
+    let passing = (RigidBody::Dynamic, ball(0.5), at(-3.0, 1.01), right(8.0), SleepingDisabled);
+    app.world_mut().spawn(passing);
+    let resting = (RigidBody::Dynamic, ball(0.5), at(0.0, -1.005), SleepingDisabled);
+    app.world_mut().spawn(resting);
+    steps(&mut app, 60);
+    assert_eq!(said(&mut app), []);
+    let hit = (RigidBody::Dynamic, ball(0.5), at(-3.0, 0.9), right(8.0), SleepingDisabled);
+    let hit = app.world_mut().spawn(hit).id();
+    steps(&mut app, 60);
+    let told = [SawStart(sensor, hit), Started(sensor, hit), SawEnd(sensor, hit), Ended(sensor, hit)];
+    assert_eq!(said(&mut app), told);
+    assert_eq!(app.world().get::<LinearVelocity>(hit), Some(&right(8.0)), "sensors push nothing");
+}
+
+/// Each pair is moved by the app: onto the other collider, then away.
+#[test]
+fn pairs_that_push_nothing_are_told_as_well() {
+    let bodies = [Some(RigidBody::Static), Some(RigidBody::Kinematic), Some(RigidBody::Dynamic), None];
+    for (i, one) in bodies.into_iter().enumerate() {
+        for (j, other) in bodies.into_iter().enumerate() {
+            for sensor in [false, true] {
+                let mut app = app();
+                let mut spawn = |body: Option<RigidBody>, x: f32| {
+                    let mut entity = app.world_mut().spawn((ball(0.5), at(x, 0.0)));
+                    if let Some(body) = body {
+                        entity.insert(body);
+                    }
+                    entity.id()
+                };
+                let (still, moved) = (spawn(one, 0.0), spawn(other, 5.0));
+                app.world_mut().entity_mut(moved).insert(CollisionEventsEnabled);
+                if sensor {
+                    app.world_mut().entity_mut(moved).insert(Sensor);
+                }
+                // Long enough for what is dynamic to fall asleep.
+                steps(&mut app, 80);
+                let statics = [one, other] == [Some(RigidBody::Static); 2];
+                let pushes = i.max(j) == 2 && i.min(j) < 2 || [i, j] == [2, 2];
+                let moves = [i, j].contains(&1) || [i, j].contains(&2);
+                let told = if sensor { !statics } else { moves };
+                assert!(pushes <= moves);
+                *app.world_mut().get_mut::<Transform>(moved).expect("it is there") = at(0.9, 0.0);
+                steps(&mut app, 1);
+                let start = if told { 2 } else { 0 };
+                let all = said(&mut app);
+                assert_eq!(all.len(), start, "{one:?}, {other:?}, {sensor}: {all:?}");
+                *app.world_mut().get_mut::<Transform>(moved).expect("it is there") = at(5.0, 0.0);
+                steps(&mut app, 1);
+                let all = said(&mut app);
+                assert_eq!(all.len(), start, "{one:?}, {other:?}, {sensor}: {all:?}");
+                assert!(app.world().get_entity(still).is_ok());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_platform_is_told_of_walls_that_it_drives_into() {
+    let mut app = app();
+    let wall = app.world_mut().spawn((RigidBody::Static, ball(0.5))).id();
+    let platform = (RigidBody::Kinematic, ball(0.5), at(-2.0, 0.0), right(2.0), CollisionEventsEnabled);
+    let platform = app.world_mut().spawn(platform).id();
+    steps(&mut app, 128);
+    let told =
+        [SawStart(platform, wall), Started(wall, platform), SawEnd(platform, wall), Ended(wall, platform)];
+    assert_eq!(said(&mut app), told);
+    assert!(app.world().get::<Position>(platform).expect("a body").x > 1.9, "walls do not stop it");
+}
+
+/// All that ends a collision without parting the shapes. In each case the other one still hears of it.
+#[test]
+fn a_collision_ends_with_whatever_takes_the_collider_out() {
+    type Change = fn(&mut World, Entity);
+    let changes: [(&str, Change); 8] = [
+        ("despawn", |world, e| _ = world.despawn(e)),
+        ("collider disabled", |world, e| _ = world.entity_mut(e).insert(ColliderDisabled)),
+        ("entity disabled", |world, e| _ = world.entity_mut(e).insert(Disabled)),
+        ("collider removed", |world, e| _ = world.entity_mut(e).remove::<Collider>()),
+        ("layers", |world, e| _ = world.entity_mut(e).insert(CollisionLayers::NONE)),
+        ("teleport", |world, e| _ = world.entity_mut(e).insert(at(50.0, 0.0))),
+        ("despawn in an exclusive system", |world, e| _ = world.despawn(e)),
+        ("body made static", |world, e| _ = world.entity_mut(e).insert(RigidBody::Static)),
+    ];
+    for (name, change) in changes {
+        for side in [0, 1] {
+            if side == 0 && name == "body made static" {
+                continue;
+            }
+            let mut app = app();
+            let pair = touching(&mut app);
+            let (gone, left) = (pair[side], pair[1 - side]);
+            change(app.world_mut(), gone);
+            step(&mut app);
+            let all = said(&mut app);
+            let count = |what: Said| all.iter().filter(|said| **said == what).count();
+            assert_eq!(count(SawEnd(left, gone)), 1, "{name} {side}: {all:?}");
+            assert_eq!(count(Ended(pair[0], pair[1])), 1, "{name} {side}: {all:?}");
+            let exists = app.world().get_entity(gone).is_ok();
+            assert_eq!(count(SawEnd(gone, left)), usize::from(exists), "{name} {side}: {all:?}");
+            assert_eq!(all.len(), 2 + usize::from(exists), "{name} {side}: {all:?}");
+            assert_eq!(touched(&app, left), [], "{name} {side}");
+            if exists {
+                assert_eq!(touched(&app, gone), [], "{name} {side}");
+            }
+            steps(&mut app, 3);
+            assert_eq!(said(&mut app), [], "{name} {side}");
+        }
+    }
+}
+
+#[test]
+fn removing_a_body_ends_what_its_collider_may_not_touch_alone() {
+    for disabled in [false, true] {
+        let mut app = app();
+        let [wall, body] = touching(&mut app);
+        if disabled {
+            app.world_mut().entity_mut(body).insert(RigidBodyDisabled);
+        } else {
+            app.world_mut().entity_mut(body).remove::<RigidBody>();
+        }
+        step(&mut app);
+        assert_eq!(said(&mut app), [SawEnd(wall, body), SawEnd(body, wall), Ended(wall, body)]);
+    }
+}
+
+#[test]
+fn both_despawned_at_once_end_with_a_message_alone() {
+    let mut app = app();
+    let [wall, body] = touching(&mut app);
+    app.world_mut().despawn(wall);
+    app.world_mut().despawn(body);
+    step(&mut app);
+    assert_eq!(said(&mut app), [Ended(wall, body)]);
+}
+
+#[test]
+fn what_is_despawned_within_the_step_ends_in_it() {
+    #[derive(Resource)]
+    struct Doomed(Option<Entity>);
+    let mut app = app();
+    app.add_systems(
+        PhysicsSchedule,
+        (|world: &mut World| {
+            if let Some(entity) = world.resource_mut::<Doomed>().0.take() {
+                world.despawn(entity);
+            }
+        })
+        .in_set(NarrowPhaseSystems::Last),
+    )
+    .insert_resource(Doomed(None));
+    let [wall, body] = touching(&mut app);
+    app.insert_resource(Doomed(Some(wall)));
+    step(&mut app);
+    assert_eq!(said(&mut app), [SawEnd(body, wall), Ended(wall, body)]);
+}
+
+#[test]
+fn falling_asleep_ends_nothing() {
+    let mut app = app();
+    app.insert_resource(Gravity(Vector::NEG_Y * 9.81));
+    let floor = app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::Y))).id();
+    let body = (RigidBody::Dynamic, block(1.0, 1.0, 1.0), at(0.0, 0.6), CollisionEventsEnabled);
+    let body = app.world_mut().spawn((body, CollidingEntities::default())).id();
+    steps(&mut app, 200);
+    assert!(app.world().get::<Sleeping>(body).is_some());
+    assert_eq!(said(&mut app), [SawStart(body, floor), Started(floor, body)]);
+    assert_eq!(touched(&app, body), [floor]);
+    app.world_mut().entity_mut(body).remove::<Sleeping>();
+    steps(&mut app, 5);
+    assert_eq!(said(&mut app), []);
+    app.world_mut().despawn(floor);
+    step(&mut app);
+    assert_eq!(said(&mut app), [SawEnd(body, floor), Ended(floor, body)]);
+}
+
+#[test]
+fn a_collider_that_moves_to_another_body_keeps_what_it_touches() {
+    let mut app = app();
+    let wall = app.world_mut().spawn((RigidBody::Static, ball(0.5), CollisionEventsEnabled)).id();
+    let body = || (RigidBody::Dynamic, at(0.9, 0.0), SleepingDisabled);
+    let (one, other) = (app.world_mut().spawn(body()).id(), app.world_mut().spawn(body()).id());
+    let part = (ball(0.5), CollisionEventsEnabled, CollidingEntities::default(), ChildOf(one));
+    let part = app.world_mut().spawn(part).id();
+    step(&mut app);
+    assert_eq!(said(&mut app).len(), 3);
+    app.world_mut().entity_mut(other).insert(at(0.9, 0.0));
+    app.world_mut().entity_mut(part).insert(ChildOf(other));
+    step(&mut app);
+    assert_eq!(app.world().get::<ColliderOf>(part).map(|of| of.body), Some(other));
+    assert_eq!(said(&mut app), []);
+    assert_eq!(touched(&app, part), [wall]);
+}
+
+#[test]
+fn reporting_may_begin_and_stop_at_any_time() {
+    let mut app = app();
+    let wall = app.world_mut().spawn((RigidBody::Static, ball(0.5))).id();
+    let body = app.world_mut().spawn((RigidBody::Dynamic, ball(0.5), at(0.99, 0.0), SleepingDisabled)).id();
+    steps(&mut app, 3);
+    assert_eq!(said(&mut app), []);
+    app.world_mut().entity_mut(body).insert((CollisionEventsEnabled, CollidingEntities::default()));
+    step(&mut app);
+    assert_eq!(said(&mut app), [], "it touched before");
+    assert_eq!(touched(&app, body), [wall]);
+    app.world_mut().entity_mut(body).insert(at(5.0, 0.0));
+    step(&mut app);
+    assert_eq!(said(&mut app), [SawEnd(body, wall), Ended(wall, body)]);
+    app.world_mut().entity_mut(body).insert(at(0.99, 0.0));
+    step(&mut app);
+    assert_eq!(said(&mut app), [SawStart(body, wall), Started(wall, body)]);
+    app.world_mut().entity_mut(body).remove::<CollisionEventsEnabled>().insert(at(5.0, 0.0));
+    step(&mut app);
+    assert_eq!(said(&mut app), []);
+    assert_eq!(touched(&app, body), []);
+}
+
+#[test]
+fn changes_during_a_pause_are_told_in_the_next_step() {
+    let mut app = app();
+    let [wall, body] = touching(&mut app);
+    app.world_mut().resource_mut::<Time<Physics>>().pause();
+    steps(&mut app, 5);
+    app.world_mut().despawn(wall);
+    steps(&mut app, 5);
+    assert_eq!(said(&mut app), []);
+    app.world_mut().resource_mut::<Time<Physics>>().unpause();
+    step(&mut app);
+    assert_eq!(said(&mut app), [SawEnd(body, wall), Ended(wall, body)]);
+}
+
+/// A collider that is disabled and enabled between two steps still touches.
+#[test]
+fn what_ends_and_begins_between_two_steps_is_not_told() {
+    let mut app = app();
+    let [_, body] = touching(&mut app);
+    app.world_mut().entity_mut(body).insert(ColliderDisabled).remove::<ColliderDisabled>();
+    step(&mut app);
+    assert_eq!(said(&mut app), []);
+    app.world_mut().entity_mut(body).insert(CollidingEntities::default());
+    step(&mut app);
+    assert_eq!(touched(&app, body).len(), 1, "the set is filled again");
+}
+
+/// At 30, 64 and 144 frames a second each message reaches a system in `Update` once, and the steps tell the same.
+#[test]
+fn each_message_is_read_once_at_any_frame_rate() {
+    let run = |rate: u32| {
+        let mut app = App::new();
+        app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin, PhysicsPlugins::default()));
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs(1) / rate));
+        listen(&mut app, Update);
+        app.insert_resource(Gravity(Vector::NEG_Y * 9.81));
+        app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::Y), Restitution::new(1.0)));
+        for i in 0..5u8 {
+            let place = at(f32::from(i) * 3.0, 1.0 + 0.3 * f32::from(i));
+            let body = (RigidBody::Dynamic, ball(0.5), place, CollisionEventsEnabled);
+            app.world_mut().spawn(body);
+        }
+        (0..4 * rate).for_each(|_| app.update());
+        let all = said(&mut app);
+        let messages = all.iter().filter(|said| matches!(said, Started(..) | Ended(..))).count();
+        assert_eq!(2 * messages, all.len(), "an observer ran for each message");
+        all.into_iter().filter(|said| matches!(said, SawStart(..) | SawEnd(..))).collect::<Vec<_>>()
+    };
+    let [slow, even, fast] = [30, 64, 144].map(run);
+    assert!(even.len() > 20, "{} events", even.len());
+    let least = slow.len().min(even.len()).min(fast.len());
+    assert!(least + 4 >= even.len(), "{} {} {}", slow.len(), even.len(), fast.len());
+    assert_eq!(slow[..least], even[..least]);
+    assert_eq!(fast[..least], even[..least]);
+}
+
+#[test]
+fn the_order_is_the_same_with_any_number_of_workers() {
+    let run = |workers: usize| {
+        let mut app = app();
+        app.insert_resource(Gravity(Vector::NEG_Y * 9.81)).insert_resource(WorkerCount(workers));
+        app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::Y)));
+        for i in 0..120u8 {
+            let place = at(f32::from(i % 10) * 1.01, 0.6 + 1.1 * f32::from(i / 10));
+            let body = (RigidBody::Dynamic, ball(0.5), place, right(Scalar::from(i % 3)));
+            app.world_mut().spawn((body, CollisionEventsEnabled));
+        }
+        steps(&mut app, 90);
+        said(&mut app)
+    };
+    let one = run(1);
+    assert!(one.len() > 500, "{} events", one.len());
+    assert_eq!(one, run(2));
+    assert_eq!(one, run(4));
+}
+
+#[test]
+fn observers_may_despawn_the_other_collider_and_their_own() {
+    for own in [false, true] {
+        let mut app = app();
+        app.add_observer(move |on: On<CollisionStart>, mut commands: Commands| {
+            commands.entity(if own { on.collider1 } else { on.collider2 }).despawn();
+        });
+        let reporting = CollisionEventsEnabled;
+        let wall = app.world_mut().spawn((RigidBody::Static, ball(0.5), reporting)).id();
+        let body = app.world_mut().spawn((RigidBody::Dynamic, ball(0.5), at(0.9, 0.0), reporting)).id();
+        let third = app.world_mut().spawn((RigidBody::Dynamic, ball(0.5), at(-0.9, 0.0), reporting)).id();
+        steps(&mut app, 4);
+        let all = said(&mut app);
+        let count = |what: Said| all.iter().filter(|said| **said == what).count();
+        for other in [body, third] {
+            assert_eq!([count(Started(wall, other)), count(Ended(wall, other))], [1; 2], "{all:?}");
+        }
+        let left = [wall, body, third].into_iter().filter(|e| app.world().get_entity(*e).is_ok()).count();
+        assert_eq!(left, usize::from(!own), "{all:?}");
+    }
+}
+
+#[test]
+fn observers_may_despawn_all_colliders() {
+    let mut app = app();
+    app.add_observer(|on: On<CollisionEnd>, mut commands: Commands| {
+        commands.queue(|world: &mut World| {
+            let all: Vec<Entity> = world.query_filtered::<Entity, With<Collider>>().iter(world).collect();
+            all.into_iter().for_each(|entity| _ = world.despawn(entity));
+        });
+        assert_ne!(on.collider1, on.collider2);
+    });
+    let [wall, body] = touching(&mut app);
+    app.world_mut().entity_mut(wall).insert(ColliderDisabled);
+    steps(&mut app, 3);
+    assert_eq!(said(&mut app), [SawEnd(wall, body), Ended(wall, body)]);
+}
+
+/// Sees the contacts of a step where `system` runs.
+fn look(
+    set: impl IntoSystemSet<()> + 'static,
+    read: fn(&Collisions) -> Vec<ContactPair>,
+) -> (App, [Entity; 2]) {
+    #[derive(Resource, Default)]
+    struct Read(Vec<Vec<ContactPair>>);
+    let mut app = app();
+    let set = set.into_system_set();
+    app.init_resource::<Read>().insert_resource(Gravity(Vector::NEG_Y * 10.0)).add_systems(
+        PhysicsSchedule,
+        (move |collisions: Collisions, mut all: ResMut<Read>| all.0.push(read(&collisions))).after(set),
+    );
+    let floor = (RigidBody::Static, Collider::half_space(Vector::Y), Friction::new(0.3));
+    let floor = app.world_mut().spawn(floor).id();
+    let body = (RigidBody::Dynamic, ball(0.5), at(0.0, 0.5), Mass(2.0), Friction::new(0.3), SleepingDisabled);
+    let body = app.world_mut().spawn(body).id();
+    steps(&mut app, 60);
+    let read = app.world_mut().remove_resource::<Read>().expect("it was added");
+    app.insert_resource(Last(read.0.last().expect("there were steps").clone()));
+    (app, [floor, body])
+}
+
+#[derive(Resource)]
+struct Last(Vec<ContactPair>);
+
+#[test]
+fn contacts_have_points_normals_and_impulses() {
+    let all = |collisions: &Collisions| collisions.iter().cloned().collect();
+    for is_late in [false, true] {
+        let (app, [floor, body]) = if is_late {
+            look(SolverSystems::StoreContactImpulses, all)
+        } else {
+            look(NarrowPhaseSystems::Update, all)
+        };
+        let pairs = &app.world().resource::<Last>().0;
+        assert_eq!(pairs.len(), 1, "late: {is_late}");
+        let pair = &pairs[0];
+        assert_eq!([pair.collider1, pair.collider2], [floor, body]);
+        assert_eq!([pair.body1, pair.body2], [Some(floor), Some(body)]);
+        assert!(pair.is_touching() && pair.generates_constraints() && !pair.collision_started());
+        assert!(
+            pair.flags.contains(ContactPairFlags::STATIC1) && !pair.flags.contains(ContactPairFlags::STATIC2)
+        );
+        let weight = 2.0 * 10.0 * DT.as_secs_f32() as Scalar;
+        assert!((pair.total_normal_impulse_magnitude() - weight).abs() < 0.02 * weight, "{pair:?}");
+        assert!(pair.total_normal_impulse().distance(Vector::Y * weight) < 0.02 * weight, "{pair:?}");
+        assert_eq!(pair.max_normal_impulse_magnitude(), pair.total_normal_impulse_magnitude());
+        let [manifold] = &pair.manifolds[..] else { panic!("one manifold: {pair:?}") };
+        assert!(manifold.normal.distance(Vector::Y) < 1.0e-6);
+        assert!((manifold.friction - 0.3).abs() < 1.0e-6);
+        let [point] = &manifold.points[..] else { panic!("one point: {pair:?}") };
+        let place = app.world().get::<Position>(body).expect("a body").0;
+        assert!(point.point.distance(place - Vector::Y * 0.5) < 0.01, "{point:?}");
+        assert!(point.anchor2.distance(Vector::NEG_Y * 0.5) < 0.01, "{point:?}");
+        assert!(point.penetration.abs() < 0.01 && point.normal_speed.abs() < 0.05, "{point:?}");
+        assert!(point.warm_start_normal_impulse > 0.0);
+        assert_eq!(manifold.find_deepest_contact(), Some(point));
+        assert_eq!(pair.find_deepest_contact(), Some(point));
+    }
+}
+
+#[test]
+fn before_the_solver_a_point_has_the_speed_of_the_impact() {
+    #[derive(Resource, Default)]
+    struct Speeds(Vec<Scalar>);
+    let mut app = app();
+    app.init_resource::<Speeds>().add_systems(
+        PhysicsSchedule,
+        (|collisions: Collisions, mut speeds: ResMut<Speeds>| {
+            let started = collisions.iter().filter(|pair| pair.collision_started());
+            speeds.0.extend(started.filter_map(|pair| Some(pair.find_deepest_contact()?.normal_speed)));
+        })
+        .in_set(NarrowPhaseSystems::Last),
+    );
+    app.world_mut().spawn((RigidBody::Static, ball(0.5)));
+    app.world_mut().spawn((RigidBody::Dynamic, ball(0.5), at(2.0, 0.0), right(-4.0)));
+    steps(&mut app, 60);
+    let speeds = &app.world().resource::<Speeds>().0;
+    assert!(speeds.len() == 1 && (speeds[0] + 4.0).abs() < 1.0e-4, "{speeds:?}");
+}
+
+#[test]
+fn contacts_are_found_by_colliders_in_any_order() {
+    let mut app = app();
+    let [wall, body] = touching(&mut app);
+    let far = app.world_mut().spawn((RigidBody::Dynamic, ball(0.5), at(9.0, 0.0))).id();
+    // Its box overlaps that of the wall, its shape does not.
+    let near = app.world_mut().spawn((RigidBody::Dynamic, ball(0.5), at(-0.8, 0.8), SleepingDisabled)).id();
+    step(&mut app);
+    let check = move |collisions: Collisions| {
+        let pair = collisions.get(wall, body).expect("they touch");
+        assert!(core::ptr::eq(pair, collisions.get(body, wall).expect("they touch")), "made once");
+        assert!(collisions.contains(body, wall) && !collisions.contains(wall, near));
+        assert!(collisions.get(body, body).is_none() && collisions.get(wall, far).is_none());
+        assert!(collisions.contains_key(&PairKey::new(body.index_u32(), wall.index_u32())));
+        assert!(!collisions.contains_key(&PairKey::new(far.index_u32(), 70_000)));
+        assert_eq!(collisions.collisions_with(body).collect::<Vec<_>>(), [pair]);
+        assert_eq!(collisions.entities_colliding_with(wall).collect::<Vec<_>>(), [body]);
+        assert_eq!(collisions.entities_colliding_with(far).count(), 0);
+        assert_eq!(collisions.entities_colliding_with(Entity::PLACEHOLDER).count(), 0);
+
+        let graph = collisions.graph();
+        let (edge, same) = graph.get(body, wall).expect("they touch");
+        assert!(edge.is_touching() && edge.events_enabled() && !edge.is_sleeping());
+        assert_eq!((same, edge.id), (pair, pair.contact_id));
+        assert_eq!(graph.get_by_id(edge.id), Some((edge, same)));
+        assert!(graph.get_by_id(ContactId::PLACEHOLDER).is_none());
+        assert!(graph.contains(wall, near) && !graph.contains(wall, far));
+        assert_eq!(graph.entities_colliding_with(wall).collect::<Vec<_>>(), [body, near]);
+        assert_eq!(graph.active_pairs().len(), 2);
+        assert_eq!(graph.iter_active_touching().count(), 1);
+        assert_eq!(graph.sleeping_pairs().len(), 0);
+    };
+    bevy_ecs::system::RunSystemOnce::run_system_once(app.world_mut(), check).expect("it runs");
+    app.world_mut().entity_mut(body).remove::<SleepingDisabled>();
+    app.world_mut().entity_mut(near).remove::<SleepingDisabled>();
+    steps(&mut app, 120);
+    let check = move |collisions: Collisions| {
+        assert!(collisions.get(wall, body).is_some(), "also asleep");
+        assert_eq!(collisions.graph().iter_sleeping_touching().count(), 1);
+        assert_eq!(collisions.graph().active_pairs().len(), 0);
+    };
+    bevy_ecs::system::RunSystemOnce::run_system_once(app.world_mut(), check).expect("it runs");
+    app.world_mut().despawn(wall);
+    step(&mut app);
+    let check = move |collisions: Collisions| assert_eq!(collisions.iter().count(), 0);
+    bevy_ecs::system::RunSystemOnce::run_system_once(app.world_mut(), check).expect("it runs");
+}
+
+/// Impulses are known when events are sent.
+#[test]
+fn an_observer_reads_the_contact_that_began() {
+    #[derive(Resource, Default)]
+    struct Impulse(Scalar);
+    let mut app = app();
+    app.init_resource::<Impulse>().add_observer(
+        |on: On<CollisionStart>, collisions: Collisions, mut impulse: ResMut<Impulse>| {
+            let pair = collisions.get(on.collider1, on.collider2).expect("it began");
+            assert!(pair.collision_started());
+            impulse.0 = pair.total_normal_impulse_magnitude();
+        },
+    );
+    app.insert_resource(Gravity(Vector::NEG_Y * 10.0));
+    app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::Y), CollisionEventsEnabled));
+    app.world_mut().spawn((RigidBody::Dynamic, ball(0.5), at(0.0, 0.5), Mass(2.0)));
+    step(&mut app);
+    let weight = 2.0 * 10.0 * DT.as_secs_f32() as Scalar;
+    let impulse = app.world().resource::<Impulse>().0;
+    assert!((impulse - weight).abs() < 0.1 * weight, "{impulse} N·s, weight {weight}");
+}
+
+/// Most is proven by compiling.
+#[test]
+fn names_and_signatures_are_avians() {
+    use avian::collision::contact_types::{ContactEdgeFlags, PackedFeatureId};
+    fn is_event<T: Message + EntityEvent + Clone + Copy + core::fmt::Debug + PartialEq>() {}
+    fn is_data<T: Clone + core::fmt::Debug + PartialEq>() {}
+    is_event::<CollisionStart>();
+    is_event::<CollisionEnd>();
+    is_data::<ContactEdge>();
+    is_data::<ContactPair>();
+    is_data::<ContactManifold>();
+    is_data::<ContactPoint>();
+    let _: fn(Entity, Entity) -> ContactEdge = ContactEdge::new;
+    let _: fn(Entity, Entity, ContactId) -> ContactPair = ContactPair::new;
+    let _: fn(Vector, Vector, Vector, Scalar) -> ContactPoint = ContactPoint::new;
+    let _: fn(&ContactPair) -> Vector = ContactPair::max_normal_impulse;
+    let _: fn(&ContactManifold) -> Scalar = ContactManifold::total_normal_impulse;
+    let _ = (CollisionEventsEnabled, CollidingEntities::default(), ContactGraph::default());
+    assert_eq!([ContactEdgeFlags::TOUCHING, ContactEdgeFlags::CONTACT_EVENTS].map(|f| f.bits()), [1, 4]);
+    assert_eq!(ContactPairFlags::all().bits(), (1 << 9) - 1);
+    assert!(PackedFeatureId::vertex(3).is_vertex() && PackedFeatureId::face(3).is_face());
+    assert!(PackedFeatureId::UNKNOWN.is_unknown());
+
+    let point =
+        |x: Scalar, depth: Scalar| ContactPoint::new(Vector::X * x, Vector::Y * x, Vector::X * x, depth);
+    let mut manifold = ContactManifold::new([point(0.0, 0.1), point(1.0, 0.2)], Vector::Y);
+    assert_eq!(manifold.find_deepest_contact(), Some(&point(1.0, 0.2)));
+    assert_eq!(point(1.0, 0.2).flipped().anchor1, Vector::Y);
+    let old = ContactPoint { warm_start_normal_impulse: 2.0, ..point(1.001, 0.0) };
+    manifold.match_contacts(&[old], 0.01);
+    assert_eq!(manifold.points.iter().map(|p| p.warm_start_normal_impulse).collect::<Vec<_>>(), [0.0, 2.0]);
+}
