@@ -49,6 +49,8 @@
 //! | make it slide or bounce | [`Friction`](prelude::Friction), [`Restitution`](prelude::Restitution) |
 //! | choose what it collides with | [`CollisionLayers`](prelude::CollisionLayers), [`Sensor`](prelude::Sensor), [`Dominance`](prelude::Dominance) |
 //! | know what touches what | [`CollisionStart`](prelude::CollisionStart), [`CollisionEnd`](prelude::CollisionEnd), [`CollidingEntities`](prelude::CollidingEntities), [`Collisions`](prelude::Collisions) |
+//! | know how hard something was hit | [`CollisionHit`](prelude::CollisionHit) |
+//! | let some pairs pass, or change their contacts | [`CollisionHooks`](prelude::CollisionHooks) |
 //! | let it sleep, or wake it | [`Sleeping`](prelude::Sleeping), [`SleepingDisabled`](prelude::SleepingDisabled), [`WakeBody`](prelude::WakeBody) |
 //! | cast rays and shapes, find what is near | [`spatial_query`], [`RayCaster`](prelude::RayCaster) |
 //! | take it out of the simulation | [`RigidBodyDisabled`](prelude::RigidBodyDisabled), [`ColliderDisabled`](prelude::ColliderDisabled) |
@@ -56,6 +58,7 @@
 //! | pause, slow down or step by hand | [`Time<Physics>`](schedule::Physics), [`PhysicsSchedule`](prelude::PhysicsSchedule) |
 //! | run a system within the step | [`PhysicsStepSystems`](schedule::PhysicsStepSystems), [`SubstepSchedule`](prelude::SubstepSchedule) |
 //! | make it more accurate | [`SubstepCount`](prelude::SubstepCount), [`SolverConfig`](dynamics::solver::SolverConfig), [`SpeculativeMargin`](prelude::SpeculativeMargin) |
+//! | see shapes, contacts and casts as lines | `PhysicsDebugPlugin`, `PhysicsGizmos`, `DebugRender` |
 //! | see where time goes | [`StepTimes`](schedule::StepTimes), [`diagnostics`] |
 //!
 //! # When it runs
@@ -88,6 +91,8 @@ compile_error!("feature `default-collider` needs `parry-f32` or `parry-f64`, as 
 pub mod collider_tree;
 pub mod collision;
 pub mod data_structures;
+#[cfg(feature = "debug-plugin")]
+pub mod debug_render;
 pub mod diagnostics;
 pub mod dynamics;
 pub mod interpolation;
@@ -109,11 +114,13 @@ mod type_registration;
 pub use parry_f32 as parry;
 #[cfg(feature = "parry-f64")]
 pub use parry_f64 as parry;
-pub use plugins::PhysicsPlugins;
+pub use plugins::{PhysicsPlugins, PhysicsPluginsWithHooks};
 pub use type_registration::PhysicsTypeRegistrationPlugin;
 
 /// The names that most apps use.
 pub mod prelude {
+    #[cfg(feature = "debug-plugin")]
+    pub use crate::debug_render::*;
     #[cfg(feature = "bevy_diagnostic")]
     pub use crate::diagnostics::PhysicsDiagnosticsPlugin;
     #[cfg(feature = "diagnostic_ui")]

@@ -1,7 +1,8 @@
 //! [`PhysicsPlugins`]: all plugins of the engine, in the order they are added.
 
 use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
-use bevy_ecs::{intern::Interned, schedule::ScheduleLabel};
+use bevy_ecs::{intern::Interned, schedule::ScheduleLabel, system::SystemParamItem};
+use core::marker::PhantomData;
 
 #[cfg(feature = "default-collider")]
 use crate::{
@@ -17,6 +18,7 @@ use crate::{
         collider::{
             collider_hierarchy::ColliderHierarchyPlugin, collider_transform::ColliderTransformPlugin,
         },
+        hooks::CollisionHooks,
     },
     dynamics::{
         rigid_body::{forces::ForcePlugin, mass_properties::MassPropertyPlugin},
@@ -80,17 +82,21 @@ impl PhysicsPlugins {
         self.length_unit = Some(unit);
         self
     }
-}
 
-impl Default for PhysicsPlugins {
-    fn default() -> Self {
-        Self::new(FixedPostUpdate)
+    /// Adds [`CollisionHooks`] of the app.
+    pub fn with_collision_hooks<H: CollisionHooks + 'static>(self) -> PhysicsPluginsWithHooks<H>
+    where
+        for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
+    {
+        PhysicsPluginsWithHooks { plugins: self, hooks: PhantomData }
     }
-}
 
-impl PluginGroup for PhysicsPlugins {
-    fn build(self) -> PluginGroupBuilder {
-        let builder = PluginGroupBuilder::start::<Self>()
+    /// The plugins in their order.
+    fn group<G: PluginGroup, H: CollisionHooks + 'static>(self) -> PluginGroupBuilder
+    where
+        for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
+    {
+        let builder = PluginGroupBuilder::start::<G>()
             .add(PhysicsSchedulePlugin::new(self.schedule))
             .add(PhysicsTypeRegistrationPlugin)
             .add(MassPropertyPlugin::new(self.schedule))
@@ -102,16 +108,61 @@ impl PluginGroup for PhysicsPlugins {
         let builder = builder
             .add(ColliderBackendPlugin::<Collider>::new(self.schedule))
             .add(ColliderTreePlugin::<Collider>::default())
-            .add(NarrowPhasePlugin::<Collider>::default());
+            .add(NarrowPhasePlugin::<Collider, H>::default());
 
         builder
             .add_group(
                 self.length_unit.map_or_else(SolverPlugins::default, SolverPlugins::new_with_length_unit),
             )
             .add(BroadPhaseCorePlugin)
-            .add(BvhBroadPhasePlugin::<()>::default())
+            .add(BvhBroadPhasePlugin::<H>::default())
             .add(SpatialQueryPlugin::new(self.schedule))
             .add(PhysicsTransformPlugin::new(self.schedule))
             .add(PhysicsInterpolationPlugin::default())
+    }
+}
+
+impl Default for PhysicsPlugins {
+    fn default() -> Self {
+        Self::new(FixedPostUpdate)
+    }
+}
+
+impl PluginGroup for PhysicsPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        self.group::<Self, ()>()
+    }
+}
+
+/// [`PhysicsPlugins`] with the [`CollisionHooks`] of the app.
+pub struct PhysicsPluginsWithHooks<H: CollisionHooks> {
+    plugins: PhysicsPlugins,
+    hooks: PhantomData<fn() -> H>,
+}
+
+impl<H: CollisionHooks> PhysicsPluginsWithHooks<H> {
+    /// Physics hosted in `schedule`, as [`PhysicsPlugins::new`].
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self { plugins: PhysicsPlugins::new(schedule), hooks: PhantomData }
+    }
+
+    /// Sets the length of a metre, as [`PhysicsPlugins::with_length_unit`].
+    pub fn with_length_unit(self, unit: Scalar) -> Self {
+        Self { plugins: self.plugins.with_length_unit(unit), ..self }
+    }
+}
+
+impl<H: CollisionHooks> Default for PhysicsPluginsWithHooks<H> {
+    fn default() -> Self {
+        Self { plugins: PhysicsPlugins::default(), hooks: PhantomData }
+    }
+}
+
+impl<H: CollisionHooks + 'static> PluginGroup for PhysicsPluginsWithHooks<H>
+where
+    for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
+{
+    fn build(self) -> PluginGroupBuilder {
+        self.plugins.group::<Self, H>()
     }
 }

@@ -12,11 +12,12 @@ use crate::{
     collision::{
         broad_phase::BroadPhaseSystems,
         collision_events::send_collision_events,
+        collision_hits::{find_hits, note_approaches, send_hits},
         contact_types::views::{ContactViews, forget_views},
         contacts::{link_contacts, update_contacts},
         diagnostics::reset_collision,
         narrow_phase::{CollisionEventSystems, NarrowPhaseConfig, NarrowPhaseSystems},
-        pairs::{find_new_pairs, refit_awake, update_stale_boxes},
+        pairs::{FilterPairs, add_contacts, find_new_pairs, refit_awake, update_stale_boxes},
     },
     dynamics::{
         ccd::{SweptCcdSystems, sweep::sweep_bodies},
@@ -150,13 +151,13 @@ stages! {
     UpdateBoxes.in_set(ColliderTreeSystems::UpdateAabbs) => { Trees: update_stale_boxes }
     /// Finds new pairs, and adds contacts for them.
     FindPairs.in_set(BroadPhaseSystems::CollectCollisions) => {
-        BroadPhase: find_new_pairs.pipe(forget_views),
+        BroadPhase: (find_new_pairs, add_contacts.pipe(forget_views).after(FilterPairs)).chain(),
     }
     /// Updates the manifolds of awake contacts.
     UpdateContacts.in_set(NarrowPhaseSystems::Update) => { NarrowPhase: update_contacts }
     /// Applies contacts that began or ended: colours, islands, waking.
     LinkContacts.in_set(NarrowPhaseSystems::Update) => {
-        NarrowPhase: link_contacts.pipe(forget_views),
+        NarrowPhase: (link_contacts.pipe(forget_views), note_approaches).chain(),
     }
     /// Computes the softness of contacts from the length of the substeps.
     UpdateSoftness.after(PhysicsStepSystems::NarrowPhase).before(PhysicsStepSystems::Solver) => {
@@ -186,7 +187,7 @@ stages! {
     }
     /// Stores impulses in the manifolds.
     StoreImpulses.in_set(SolverSystems::StoreContactImpulses) => {
-        Solver: store_impulses.pipe(forget_views),
+        Solver: (store_impulses.pipe(forget_views), find_hits).chain(),
     }
     /// Puts islands at rest to sleep.
     Sleep.in_set(PhysicsStepSystems::Sleeping) => { Sleeping: sleep_islands }
@@ -197,7 +198,9 @@ stages! {
         Step: remove_lost_late.pipe(forget_views),
     }
     /// Sends collision events.
-    SendEvents.in_set(CollisionEventSystems) => { NarrowPhase: send_collision_events }
+    SendEvents.in_set(CollisionEventSystems) => {
+        NarrowPhase: (send_hits, send_collision_events).chain(),
+    }
     /// Updates [`Sleeping`](crate::dynamics::rigid_body::sleeping::Sleeping) components.
     MirrorSleep.in_set(PhysicsStepSystems::Finalize) => { Sleeping: mirror_sleeping }
 }

@@ -23,6 +23,8 @@ impl Plugin for PhysicsTypeRegistrationPlugin {
         register_mass_properties(app);
         register_collision(app);
         register_queries(app);
+        #[cfg(feature = "debug-plugin")]
+        register_drawing(app);
         #[cfg(feature = "bevy_diagnostic")]
         register_diagnostics(app);
         register_collider_settings(app);
@@ -124,7 +126,9 @@ fn register_collision(app: &mut App) {
                 collider_transform::ColliderTransform,
             },
             collision_events::CollisionEventsEnabled,
+            collision_hits::CollisionHitsEnabled,
             contact_types::{ContactEdgeFlags, ContactId, ContactPairFlags, PackedFeatureId},
+            hooks::ActiveCollisionHooks,
             narrow_phase::NarrowPhaseConfig,
         },
     };
@@ -133,8 +137,15 @@ fn register_collision(app: &mut App) {
         NarrowPhaseConfig, CollisionDiagnostics, ColliderTreeOptimization, TreeOptimizationMode,
         ColliderTreeDiagnostics, ColliderMarker, ColliderAabb, EnlargedAabb, ColliderDisabled, Sensor,
         CollisionLayers, LayerMask, CollisionMargin, ColliderOf, RigidBodyColliders, ColliderTransform,
-        CollidingEntities, CollisionEventsEnabled, ContactId, ContactEdgeFlags, ContactPairFlags, PackedFeatureId,
+        CollidingEntities, CollisionEventsEnabled, CollisionHitsEnabled, ActiveCollisionHooks, ContactId, ContactEdgeFlags, ContactPairFlags, PackedFeatureId,
     );
+}
+
+#[cfg(feature = "debug-plugin")]
+fn register_drawing(app: &mut App) {
+    use crate::debug_render::{ContactGizmoScale, DebugRender, PhysicsGizmos};
+
+    register!(app: PhysicsGizmos, ContactGizmoScale, DebugRender);
 }
 
 fn register_queries(app: &mut App) {
@@ -147,12 +158,13 @@ fn register_queries(app: &mut App) {
 #[cfg(feature = "default-collider")]
 fn register_collider_settings(app: &mut App) {
     use crate::{
-        collision::collider::{FillMode, TrimeshFlags, VhacdParameters},
+        collision::collider::{FillMode, TrimeshFlags, VhacdParameters, contact_query::ClosestPoints},
         spatial_query::{PointProjection, ShapeCastConfig, ShapeCaster, ShapeHitData, ShapeHits},
     };
 
     register!(app:
         VhacdParameters, FillMode, TrimeshFlags, ShapeCaster, ShapeHits, ShapeHitData, ShapeCastConfig, PointProjection,
+        ClosestPoints,
     );
 }
 

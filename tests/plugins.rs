@@ -9,7 +9,7 @@ use avian::{
     prelude::*,
 };
 use bevy_app::{PluginGroupBuilder, prelude::*};
-use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel, system::SystemParam};
 use bevy_time::{Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
@@ -347,7 +347,12 @@ impl ScalableCollider for Marble {
 }
 
 /// Collision hooks of the app.
-struct Hooks;
+#[derive(SystemParam)]
+struct Hooks<'w, 's> {
+    _bodies: Query<'w, 's, &'static RigidBody>,
+}
+
+impl CollisionHooks for Hooks<'_, '_> {}
 
 #[test]
 fn plugins_for_a_second_collider_type_leave_the_first_as_it_was() {

@@ -510,3 +510,48 @@ fn no_caster_disturbs_the_others() {
         assert!(shapes.into_iter().flatten().all(|hit| hit.distance.is_finite() && hit.normal1.is_finite()));
     }
 }
+
+#[test]
+fn many_queries_at_once_are_the_single_ones() {
+    let mut app = app();
+    for i in 0..40 {
+        app.world_mut().spawn((
+            RigidBody::Static,
+            cube(),
+            Transform::from_xyz(i as f32 * 1.7 - 30.0, (i % 5) as f32, 0.0),
+        ));
+    }
+    step(&mut app);
+    // One that the trees do not know yet.
+    app.world_mut().spawn((cube(), at(3.3)));
+    let same = ask(&mut app, |q| {
+        let ball = Collider::capsule(0.3, 0.2);
+        let way = |i: i32| Vector::X * ((i as Scalar * 0.731) % 70.0 - 35.0) + Vector::Y * 10.0;
+        let rays: Vec<_> =
+            (0..3_000).map(|i| (way(i), if i % 3 == 0 { Dir::Y } else { Dir::NEG_Y })).collect();
+        let mut hits = vec![None; rays.len() + 5];
+        q.cast_rays(&rays, 50.0, true, &ALL, &mut hits);
+        let rays_agree =
+            rays.iter().zip(&hits).all(|(ray, hit)| *hit == q.cast_ray(ray.0, ray.1, 50.0, true, &ALL));
+        let rest_is_none = hits[rays.len()..].iter().all(Option::is_none);
+
+        let casts: Vec<_> =
+            rays.iter().map(|(at, direction)| (*at, Default::default(), *direction)).collect();
+        let config = ShapeCastConfig::from_max_distance(50.0);
+        let mut found = vec![None; 700];
+        q.cast_shapes(&ball, &casts, &config, &ALL, &mut found);
+        let casts_agree = casts
+            .iter()
+            .zip(&found)
+            .all(|(cast, hit)| *hit == q.cast_shape(&ball, cast.0, cast.1, cast.2, &config, &ALL));
+
+        let points: Vec<_> = rays.iter().map(|ray| ray.0).collect();
+        let mut nearest = vec![None; points.len()];
+        q.project_points(&points, true, &ALL, &mut nearest);
+        let points_agree =
+            points.iter().zip(&nearest).all(|(point, found)| *found == q.project_point(*point, true, &ALL));
+        let any = hits.iter().flatten().count() > 100 && found.iter().flatten().count() > 100;
+        [rays_agree, rest_is_none, casts_agree, points_agree, any]
+    });
+    assert_eq!(same, [true; 5]);
+}

@@ -36,8 +36,11 @@ use core::{fmt::Debug, time::Duration};
 use scenes::dim::{ball, block, spin};
 use serde::{Serialize, de::DeserializeOwned, de::DeserializeSeed};
 
-/// Types that are not stored: measurements of a step, and ticks of a world.
-const NOT_STORED: [&str; 10] = [
+/// Types that are not stored: measurements of a step, ticks of a world, and settings of what is shown.
+const NOT_STORED: [&str; 13] = [
+    "PhysicsGizmos",
+    "ContactGizmoScale",
+    "DebugRender",
     "PhysicsDiagnosticsUiSettings",
     "PhysicsEntityDiagnostics",
     "PhysicsTotalDiagnostics",

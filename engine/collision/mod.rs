@@ -5,9 +5,11 @@
 pub mod broad_phase;
 pub mod collider;
 pub mod collision_events;
+pub mod collision_hits;
 pub mod contact_types;
 pub(crate) mod contacts;
 pub(crate) mod diagnostics;
+pub mod hooks;
 pub mod narrow_phase;
 pub(crate) mod pairs;
 
@@ -27,10 +29,12 @@ pub mod prelude {
             collider_transform::{ColliderTransform, ColliderTransformPlugin},
         },
         collision_events::{CollisionEnd, CollisionEventsEnabled, CollisionStart},
+        collision_hits::{CollisionHit, CollisionHitsEnabled},
         contact_types::{
             Collisions, ContactEdge, ContactGraph, ContactManifold, ContactPair, ContactPairFlags,
             ContactPoint,
         },
+        hooks::{ActiveCollisionHooks, CollisionHooks},
         narrow_phase::{NarrowPhaseConfig, NarrowPhasePlugin, NarrowPhaseSystems},
     };
     #[expect(deprecated, reason = "former names stay importable")]

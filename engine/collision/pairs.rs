@@ -18,7 +18,7 @@ use crate::{
     dynamics::{
         ids::ColliderId,
         solver::config::PhysicsLengthUnit,
-        tables::{Bodies, Colliders, Tables, is_minority, may_collide},
+        tables::{Bodies, Colliders, Contacts, Tables, is_minority, may_collide},
     },
     math::vector_from_kernel,
     scan::IN_TABLES,
@@ -176,6 +176,19 @@ const MANY_MOVERS: usize = 256;
 pub(crate) struct PairSearch {
     found: FoundPairs,
     movers: Movers,
+    /// Places of pairs that hooks have rejected.
+    rejected: BitSet,
+}
+
+impl PairSearch {
+    /// Rejects pairs of this step.
+    pub(crate) fn reject(&mut self, mut is_rejected: impl FnMut((u32, u32)) -> bool) {
+        for (place, pair) in self.found.pairs().iter().enumerate() {
+            if is_rejected(*pair) {
+                self.rejected.insert(place as u32);
+            }
+        }
+    }
 }
 
 /// Pairs to be skipped: of one body, or with a contact.
@@ -203,33 +216,45 @@ impl Known for Contacted<'_> {
     }
 }
 
-/// Finds pairs of moved boxes, and adds contacts for those that may collide, in the order of ids.
+/// Finds pairs of moved boxes that have no contact yet.
 pub(crate) fn find_new_pairs(
     mut search: ResMut<PairSearch>,
     threads: Res<Threads>,
-    mut tables: Tables,
+    mut colliders: ResMut<Colliders>,
+    contacts: Res<Contacts>,
     mut diagnostics: ResMut<CollisionDiagnostics>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let PairSearch { found, movers } = &mut *search;
-    {
-        let Colliders { table, trees, moved, .. } = &mut *tables.colliders;
-        if moved.is_empty() {
-            diagnostics.broad_phase = start.elapsed();
-            return;
-        }
+    let PairSearch { found, movers, rejected } = &mut *search;
+    rejected.clear();
+    let Colliders { table, trees, moved, .. } = &mut *colliders;
+    if moved.is_empty() {
+        found.clear();
+    } else {
         trees.movers(moved, &table.fat, movers);
         moved.clear();
-        let known = Contacted { colliders: table, pairs: tables.contacts.table.pairs() };
+        let known = Contacted { colliders: table, pairs: contacts.table.pairs() };
         let pool = &threads.pool;
         if movers.list().len() >= MANY_MOVERS {
             pool.wake();
         }
         found.find(&trees.trees, movers, &known, pool);
     }
+    diagnostics.broad_phase = start.elapsed();
+}
+
+/// Adds contacts for the pairs found that may collide, in the order of ids.
+pub(crate) fn add_contacts(
+    search: Res<PairSearch>,
+    mut tables: Tables,
+    mut diagnostics: ResMut<CollisionDiagnostics>,
+) {
+    let start = bevy_platform::time::Instant::now();
     let mut sleepers = Vec::new();
-    for &(a, b) in found.pairs() {
-        if may_collide(&tables.bodies.table, &tables.colliders.table, [a, b]) {
+    for (place, &(a, b)) in search.found.pairs().iter().enumerate() {
+        if may_collide(&tables.bodies.table, &tables.colliders.table, [a, b])
+            && !search.rejected.contains(place as u32)
+        {
             let mut link = tables.link();
             let id = link.create(a, b);
             sleepers.extend(link.unseen_sleeper(id));
@@ -237,8 +262,12 @@ pub(crate) fn find_new_pairs(
         }
     }
     wake_beset(&sleepers, &mut tables);
-    diagnostics.broad_phase = start.elapsed();
+    diagnostics.broad_phase += start.elapsed();
 }
+
+/// The hooks that filter pairs, between the search and [`add_contacts`].
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct FilterPairs;
 
 /// Wakes sleeping bodies beside which something static, or kinematic at rest, appeared. Bodies that were put to sleep
 /// in this step stay asleep: a level may be spawned asleep.

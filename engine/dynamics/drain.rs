@@ -15,6 +15,8 @@ use crate::{
             collider_hierarchy::ColliderOf, collider_transform::ColliderTransform,
         },
         collision_events::CollisionEventsEnabled,
+        collision_hits::CollisionHitsEnabled,
+        hooks::ActiveCollisionHooks,
     },
     dynamics::{
         ids::{BodyId, ColliderId},
@@ -60,7 +62,17 @@ pub(crate) struct Census<'w, 's> {
     colliders: Query<'w, 's, ColliderState, (With<ColliderId>, Allow<Disabled>)>,
     body_ids: Query<'w, 's, &'static mut BodyId, Allow<Disabled>>,
     collider_ids: Query<'w, 's, &'static mut ColliderId, Allow<Disabled>>,
-    reports: Query<'w, 's, (Has<CollisionEventsEnabled>, Has<CollidingEntities>), Allow<Disabled>>,
+    reports: Query<
+        'w,
+        's,
+        (
+            Has<CollisionEventsEnabled>,
+            Has<CollidingEntities>,
+            Has<CollisionHitsEnabled>,
+            Option<&'static ActiveCollisionHooks>,
+        ),
+        Allow<Disabled>,
+    >,
     surfaces: SurfaceQuery<'w, 's>,
     commands: Commands<'w, 's>,
 }
@@ -311,11 +323,18 @@ impl Census<'_, '_> {
         self.settle_reports(entity, id, tables);
     }
 
-    /// Reads whether a collider reports or tracks collisions.
+    /// Reads whether a collider reports or tracks collisions, and which hooks it has.
     fn settle_reports(&self, entity: Entity, id: u32, tables: &mut Tables) {
-        let (reports, tracks) = self.reports.get(entity).unwrap_or_default();
-        let Colliders { reporting, tracking, .. } = &mut *tables.colliders;
-        for (set, is_in) in [(reporting, reports), (tracking, tracks)] {
+        let (reports, tracks, hits, hooks) = self.reports.get(entity).unwrap_or_default();
+        let has = |flag| hooks.is_some_and(|hooks| hooks.contains(flag));
+        let Colliders { reporting, tracking, hitting, filtering, modifying, .. } = &mut *tables.colliders;
+        for (set, is_in) in [
+            (reporting, reports),
+            (tracking, tracks),
+            (hitting, hits),
+            (filtering, has(ActiveCollisionHooks::FILTER_PAIRS)),
+            (modifying, has(ActiveCollisionHooks::MODIFY_CONTACTS)),
+        ] {
             if is_in {
                 set.insert(id);
             } else {

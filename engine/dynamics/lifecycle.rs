@@ -27,6 +27,8 @@ use crate::{
             collider_hierarchy::ColliderOf, collider_transform::ColliderTransform,
         },
         collision_events::CollisionEventsEnabled,
+        collision_hits::CollisionHitsEnabled,
+        hooks::ActiveCollisionHooks,
     },
     dynamics::{
         ids::{BodyId, ColliderId},
@@ -110,6 +112,8 @@ pub(crate) fn watch(app: &mut App) {
     note_collider::<Sensor>(app);
     note_collider::<CollisionEventsEnabled>(app);
     note_collider::<CollidingEntities>(app);
+    note_collider::<ActiveCollisionHooks>(app);
+    note_collider::<CollisionHitsEnabled>(app);
     note_collider::<Disabled>(app);
     app.add_observer(|on: On<Add, BodyEssentials>, mut queue: ResMut<LifecycleQueue>| {
         queue.note_body(on.entity);

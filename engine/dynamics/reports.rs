@@ -1,7 +1,10 @@
-//! Collisions that began and ended, until they are sent.
+//! Collisions that began and ended, and blows, until they are sent.
 
 use bevy_ecs::entity::{Entity, EntityIndexSet};
 use bevy_platform::collections::HashSet;
+use kernel::math as k;
+
+use crate::math::{Scalar, Vector};
 
 /// Two colliders that began or ceased to touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,4 +45,34 @@ impl Reports {
             self.ended.retain(|report| !resumed.contains(&key(report)));
         }
     }
+}
+
+/// A contact that closes fast, before it is solved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Approach {
+    pub(crate) colliders: [Entity; 2],
+    pub(crate) bodies: [u32; 2],
+    /// From both centres of mass to the middle of the points.
+    pub(crate) arms: [k::Vector; 2],
+    pub(crate) point: k::WorldVector,
+    pub(crate) normal: k::Vector,
+    pub(crate) speed: f32,
+}
+
+/// A fast contact whose bodies do not approach any more.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Blow {
+    pub(crate) colliders: [Entity; 2],
+    pub(crate) bodies: [Option<Entity>; 2],
+    pub(crate) point: Vector,
+    pub(crate) normal: Vector,
+    pub(crate) speed: Scalar,
+    pub(crate) impulse: Scalar,
+}
+
+/// The fast contacts of a step, and what became of them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Hits {
+    pub(crate) approaches: Vec<Approach>,
+    pub(crate) blows: Vec<Blow>,
 }

@@ -12,7 +12,7 @@ use kernel::{
 
 use crate::{
     collider_tree::proxies::ProxyTable,
-    dynamics::reports::{Report, Reports},
+    dynamics::reports::{Hits, Report, Reports},
     physics_transform::{Position, Rotation},
     scan::Since,
 };
@@ -81,6 +81,12 @@ pub(crate) struct Colliders {
     pub(crate) reporting: BitSet,
     /// Colliders with a set of what they touch.
     pub(crate) tracking: BitSet,
+    /// Colliders whose pairs hooks filter.
+    pub(crate) filtering: BitSet,
+    /// Colliders whose contacts hooks change.
+    pub(crate) modifying: BitSet,
+    /// Colliders that report blows.
+    pub(crate) hitting: BitSet,
 }
 
 impl Colliders {
@@ -102,6 +108,9 @@ impl Colliders {
         self.entities[id as usize] = Entity::PLACEHOLDER;
         self.reporting.remove(id);
         self.tracking.remove(id);
+        self.filtering.remove(id);
+        self.modifying.remove(id);
+        self.hitting.remove(id);
     }
 
     /// The id of an entity's collider.
@@ -126,6 +135,8 @@ pub(crate) struct Contacts {
     pub(crate) changed: BitSet,
     /// Collisions to be sent.
     pub(crate) reports: Reports,
+    /// Fast contacts, and blows to be sent.
+    pub(crate) hits: Hits,
 }
 
 /// The islands. Absent without the island plugin: then no body sleeps.

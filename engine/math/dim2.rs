@@ -17,6 +17,8 @@ pub(crate) type Ray = Ray2d;
 pub(crate) type RotationValue = Scalar;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Scalar;
+/// A vector in the tangent space of a normal.
+pub(crate) type TangentVector = Scalar;
 /// An angular inertia.
 pub(crate) type SymmetricTensor = Scalar;
 /// A vector in `f32`, with any public precision.

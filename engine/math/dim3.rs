@@ -17,6 +17,8 @@ pub(crate) type Ray = Ray3d;
 pub(crate) type RotationValue = super::Quaternion;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Vector;
+/// A vector in the tangent space of a normal.
+pub(crate) type TangentVector = super::Vector2;
 /// An angular inertia.
 pub(crate) type SymmetricTensor = SymmetricMatrix3;
 /// A vector in `f32`, with any public precision.

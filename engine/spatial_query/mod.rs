@@ -14,6 +14,8 @@
 //! `Transform` that was set by hand is read before the next step, or by
 //! [`PhysicsTransformHelper`](crate::physics_transform::PhysicsTransformHelper) at once.
 
+#[cfg(feature = "default-collider")]
+mod batch;
 mod diagnostics;
 #[cfg(feature = "default-collider")]
 mod frame;

@@ -216,17 +216,63 @@ impl From<Found<Touch>> for ShapeHitData {
     }
 }
 
+/// Searches for the first hits of the colliders as they are in one run of a system.
+pub(super) struct FirstHits<'a> {
+    queries: &'a SpatialQuery<'a, 'a>,
+    recent: Arc<Recent>,
+}
+
+impl FirstHits<'_> {
+    pub(super) fn of_ray(
+        &self,
+        origin: Vector,
+        direction: Dir,
+        max_distance: Scalar,
+        solid: bool,
+        filter: &SpatialQueryFilter,
+        predicate: &dyn Fn(Entity) -> bool,
+    ) -> Option<RayHitData> {
+        let search = self.queries.ray(&self.recent, origin, direction, max_distance, solid, filter)?;
+        nearest(&search, predicate).map(RayHitData::from)
+    }
+
+    pub(super) fn of_shape(
+        &self,
+        start: (&Collider, (Position, Rotation)),
+        direction: Dir,
+        config: &ShapeCastConfig,
+        filter: &SpatialQueryFilter,
+        predicate: &dyn Fn(Entity) -> bool,
+    ) -> Option<ShapeHitData> {
+        let search = self.queries.shape(&self.recent, start, direction, config, filter)?;
+        nearest(&search, predicate).map(ShapeHitData::from)
+    }
+
+    pub(super) fn of_point(
+        &self,
+        point: Vector,
+        solid: bool,
+        filter: &SpatialQueryFilter,
+        predicate: &dyn Fn(Entity) -> bool,
+    ) -> Option<PointProjection> {
+        let search = NearSearch { search: self.queries.search(&self.recent, filter), point, solid };
+        let found = nearest(&search, predicate)?;
+        let (point, is_inside) = found.data;
+        Some(PointProjection { entity: found.entity, point, is_inside })
+    }
+}
+
 /// A direction in the public precision.
 fn vector_of(direction: Dir) -> Vector {
     VectorF32::from(direction).adjust_precision()
 }
 
 /// The pose of a shape in a query.
-fn pose_of(position: Vector, rotation: RotationValue) -> (Position, Rotation) {
+pub(super) fn pose_of(position: Vector, rotation: RotationValue) -> (Position, Rotation) {
     (Position(position), Rotation::from(rotation))
 }
 
-const EVERY: &dyn Fn(Entity) -> bool = &|_| true;
+pub(super) const EVERY: &dyn Fn(Entity) -> bool = &|_| true;
 
 static EVERYTHING: &SpatialQueryFilter = &SpatialQueryFilter::DEFAULT;
 
@@ -256,9 +302,7 @@ impl SpatialQuery<'_, '_> {
         filter: &SpatialQueryFilter,
         predicate: &dyn Fn(Entity) -> bool,
     ) -> Option<RayHitData> {
-        let recent = self.world.recent();
-        let search = self.ray(&recent, origin, direction, max_distance, solid, filter)?;
-        nearest(&search, predicate).map(RayHitData::from)
+        self.first_hits().of_ray(origin, direction, max_distance, solid, filter, predicate)
     }
 
     /// All colliders that a ray hits, nearest first, at most `max_hits`.
@@ -320,9 +364,8 @@ impl SpatialQuery<'_, '_> {
         filter: &SpatialQueryFilter,
         predicate: &dyn Fn(Entity) -> bool,
     ) -> Option<ShapeHitData> {
-        let recent = self.world.recent();
         let start = (shape, pose_of(origin, shape_rotation));
-        nearest(&self.shape(&recent, start, direction, config, filter)?, predicate).map(ShapeHitData::from)
+        self.first_hits().of_shape(start, direction, config, filter, predicate)
     }
 
     /// All colliders that a shape meets on its way, nearest first, at most `max_hits`.
@@ -377,11 +420,7 @@ impl SpatialQuery<'_, '_> {
         filter: &SpatialQueryFilter,
         predicate: &dyn Fn(Entity) -> bool,
     ) -> Option<PointProjection> {
-        let recent = self.world.recent();
-        let search = NearSearch { search: self.search(&recent, filter), point, solid };
-        let found = nearest(&search, predicate)?;
-        let (point, is_inside) = found.data;
-        Some(PointProjection { entity: found.entity, point, is_inside })
+        self.first_hits().of_point(point, solid, filter, predicate)
     }
 
     /// All colliders that contain a point, in the order in which they entered the simulation.
@@ -505,6 +544,11 @@ impl SpatialQuery<'_, '_> {
         let search = self.shape(&recent, start, direction, config, filter);
         let hits = search.map(|search| some(&search, max_hits, predicate)).unwrap_or_default();
         hits.into_iter().map(ShapeHitData::from).collect()
+    }
+
+    /// Searches for first hits of all colliders.
+    pub(super) fn first_hits(&self) -> FirstHits<'_> {
+        FirstHits { queries: self, recent: self.world.recent() }
     }
 
     /// The body of a collider.

@@ -352,6 +352,11 @@ impl FoundPairs {
         sorted.sort_unstable();
     }
 
+    /// Forgets the pairs found last.
+    pub fn clear(&mut self) {
+        self.sorted.clear();
+    }
+
     /// The pairs found last, `(lower id, higher id)`, sorted.
     pub fn pairs(&self) -> &[(u32, u32)] {
         &self.sorted

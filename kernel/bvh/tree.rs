@@ -291,11 +291,15 @@ impl Tree {
         }
     }
 
+    /// The boxes of all nodes but the root.
+    pub fn boxes(&self) -> impl Iterator<Item = Aabb> {
+        self.branches.iter().filter(|branch| branch.height > 0).flat_map(|branch| branch.boxes)
+    }
+
     /// A measure of the cost of queries: the surface of all boxes in m², in 2D their perimeter in m. Infinite boxes are
     /// skipped. Takes O(n).
     pub fn cost(&self) -> f32 {
-        let costs = self.branches.iter().filter(|b| b.height > 0).flat_map(|b| b.boxes.map(|b| b.cost()));
-        costs.filter(|cost| cost.is_finite()).sum()
+        self.boxes().map(|aabb| aabb.cost()).filter(|cost| cost.is_finite()).sum()
     }
 
     #[inline(always)]

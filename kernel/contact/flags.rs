@@ -14,7 +14,7 @@ const DEEP: f32 = 0.1;
 /// out the last tenth, and a row of a hundred bodies would fly apart.
 const NO_LONGER_DEEP: f32 = 0.01;
 
-/// Sets the bit of deep overlap after the manifold was recomputed. Only contacts whose bodies were `placed` where they are
+/// Sets the bits that follow from a recomputed manifold: that of deep overlap, and that the embedder has changed nothing. Only contacts whose bodies were `placed` where they are
 /// can become deep. What pushes nothing is never deep.
 #[inline(always)]
 pub(super) fn recomputed<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, placed: bool) {
@@ -24,6 +24,7 @@ pub(super) fn recomputed<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, 
         (false, false) => false,
     };
     contact.flags.set(ContactFlags::DEEP, deep);
+    contact.flags.set(ContactFlags::CHANGED, false);
 }
 
 /// Clears the bit of deep overlap if a recycled contact does not overlap deeply any more.

@@ -2,7 +2,7 @@
 //! [`Link`], which alone changes contacts, colours and islands.
 //!
 //! `narrow_phase` is read top to bottom; `input`, `recycle`, `manifolds`, `sweep`, `flags` and `internal` are its
-//! helpers and do not know it.
+//! helpers and do not know it. `modify` takes what the embedder makes of its results.
 
 mod buffers;
 mod constraint;
@@ -11,6 +11,7 @@ mod input;
 mod internal;
 mod link;
 mod manifolds;
+mod modify;
 mod narrow_phase;
 mod record;
 mod recycle;
@@ -22,7 +23,7 @@ pub use buffers::WorkerBuffers;
 pub use input::{ManifoldSource, NarrowPhaseInput};
 pub use link::{Link, Status};
 pub use narrow_phase::{Outcome, update_contact};
-pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint};
+pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint, ManifoldSurface};
 pub use table::ContactTable;
 pub(crate) use view::ManifoldsView;
 

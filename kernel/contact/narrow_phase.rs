@@ -61,6 +61,7 @@ impl ContactTable {
         if workers.len() < pool.workers() {
             workers.resize_with(pool.workers(), WorkerBuffers::default);
         }
+        self.forget_changes();
         self.find_crowded(input.bodies);
         let Self { contacts, points, active, extra, .. } = self;
         let crowded = self.any_deep.then_some(&self.crowded);

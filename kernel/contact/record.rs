@@ -33,6 +33,9 @@ impl ContactFlags {
     /// A shape is [composite](crate::shape::Composite), and no shape is foreign: there may be several manifolds.
     pub const COMPOSITE: Self = Self(1 << 9);
 
+    /// The embedder changed the manifolds in this step; their surfaces are not the contact's.
+    pub const CHANGED: Self = Self(1 << 10);
+
     /// Whether all bits of `other` are set.
     #[inline(always)]
     pub fn has(self, other: Self) -> bool {
@@ -101,6 +104,17 @@ impl Manifold {
     pub fn solved_points(&self) -> u32 {
         if self.is_internal { 0 } else { u32::from(self.count) }
     }
+}
+
+/// What a changed manifold has beside its points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ManifoldSurface {
+    /// The coefficient of friction, not negative.
+    pub friction: f32,
+    /// The coefficient of restitution, not negative.
+    pub restitution: f32,
+    /// The velocity that friction gives B's surface relative to A's, in world axes, m/s. Only what lies in the tangent plane counts.
+    pub velocity: Vector,
 }
 
 /// The relative pose of the bodies at which the manifold was computed, turned since then with a platform.

@@ -1,8 +1,9 @@
 //! All contacts by id, the map from pairs to contacts, and the set of awake contacts.
 
-use super::record::{Contact, Manifold};
+use super::record::{Contact, Manifold, ManifoldSurface};
 use crate::data::{BitSet, IdPool, PairSet, prefetch};
 use crate::table::{ColliderTable, NONE};
+use std::collections::BTreeMap;
 
 /// All contacts.
 ///
@@ -31,6 +32,8 @@ pub struct ContactTable {
     free_extra: Vec<u32>,
     /// Buffer of the narrow phase's commit; empty between updates.
     pub(super) stored: Vec<Stored>,
+    /// The surfaces of changed manifolds, by contact and index.
+    pub(super) surfaces: BTreeMap<(u32, u32), ManifoldSurface>,
     /// Contacts that may be of internal edges; empty between updates.
     pub(super) sliding: Vec<u32>,
 }
@@ -237,6 +240,7 @@ impl ContactTable {
     /// Removes a contact from all lists but the colours and islands, and frees its id.
     pub(super) fn remove(&mut self, id: u32, colliders: &mut ColliderTable) {
         self.deactivate(id);
+        self.forget_surfaces(id);
         let Contact { colliders: [a, b], next, previous, extra, .. } = *self.get(id);
         debug_assert_eq!(self.find(a, b), Some(id), "the pair's contact is this one");
         self.pairs.remove(a, b);

@@ -5,7 +5,7 @@ use super::batch::{Filling, Item, Pass, Passes};
 use super::row::{CORNER_SPIN_LEVER, SPIN_LEVER};
 use super::split::DeepCounts;
 use super::{BodyRow, ContactRow, InvMass, MassRow, RestitutionRow, RowView, SplitImpulseRow, SubstepParams};
-use crate::contact::{Contact, Manifold};
+use crate::contact::{Contact, ContactFlags, Manifold};
 use crate::math::{Ids, Lane, TangentFrame, Vector};
 use crate::table::{BodyTable, NONE};
 
@@ -90,6 +90,9 @@ struct Fill<N, const P: usize> {
     radii: [N; 2],
     free: [Vector<N>; 2],
     dominated: [N; 2],
+    surface_velocity: Vector<N>,
+    /// Whether a lane has a surface velocity.
+    is_driven: bool,
 }
 
 impl<N: Lane, const P: usize> Fill<N, P> {
@@ -101,6 +104,8 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             radii: [N::ZERO; 2],
             free: [Vector::splat(Vector::ONE); 2],
             dominated: [N::ZERO; 2],
+            surface_velocity: Vector::ZERO,
+            is_driven: false,
         }
     }
 
@@ -140,7 +145,14 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         if input.bodies.any_dominance {
             self.dominate(input.bodies, contact, lane);
         }
-        let [friction, restitution] = contact.surface;
+        let [mut friction, mut restitution] = contact.surface;
+        if contact.flags.has(ContactFlags::CHANGED)
+            && let Some(surface) = input.contacts.changed_surface(item.id, item.index)
+        {
+            [friction, restitution] = [surface.friction, surface.restitution];
+            self.surface_velocity.set(lane, surface.velocity);
+            self.is_driven = true;
+        }
         debug_assert!(friction >= 0.0 && restitution >= 0.0, "a surface: {friction}, {restitution}");
         row.friction.set(lane, friction);
         bounce.restitution.set(lane, restitution);
@@ -245,6 +257,9 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let [m0, m1] = row.inv_mass;
         row.tangent_mass = frame.mass(m0.diagonal() + m1.diagonal(), arms);
         row.tangent_impulse = frame.project(self.friction_impulse);
+        if self.is_driven {
+            row.surface_velocity = frame.project(self.surface_velocity);
+        }
         let mut anchors = [core; P];
         for i in 0..P {
             // Absent points must not add a lever.

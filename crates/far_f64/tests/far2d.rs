@@ -4,6 +4,10 @@ extern crate avian2d as avian;
 
 #[path = "../../../tests/far.rs"]
 mod far;
+#[path = "../../../tests/forces.rs"]
+mod forces;
+#[path = "../../../tests/forces2.rs"]
+mod forces_dim;
 
 use avian::prelude::Collider;
 

@@ -4,6 +4,10 @@ extern crate avian3d as avian;
 
 #[path = "../../../tests/far.rs"]
 mod far;
+#[path = "../../../tests/forces.rs"]
+mod forces;
+#[path = "../../../tests/forces3.rs"]
+mod forces_dim;
 
 use avian::prelude::Collider;
 

@@ -1,14 +1,18 @@
 //! The plugins of the broad phase: its stages, and the one that finds pairs.
 
 use bevy_app::{App, Plugin};
-use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
-use core::marker::PhantomData;
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel, system::SystemParamItem};
+use core::{any::TypeId, marker::PhantomData};
 
 use super::BroadPhaseSystems;
 use crate::{
-    collision::{diagnostics::CollisionDiagnostics, pairs::PairSearch},
+    collision::{
+        diagnostics::CollisionDiagnostics,
+        hooks::{CollisionHooks, filter_pairs},
+        pairs::{FilterPairs, PairSearch, find_new_pairs},
+    },
     schedule::{PhysicsSchedule, PhysicsStepSystems},
-    step::{self, Owner},
+    step::{self, Owner, Stage},
 };
 
 /// The system sets that every broad phase shares.
@@ -29,18 +33,25 @@ impl Plugin for BroadPhaseCorePlugin {
 
 /// Finds pairs with the bounding volume hierarchies of [`ColliderTreePlugin`](crate::collider_tree::ColliderTreePlugin).
 ///
-/// `H` is reserved for the app's collision hooks. It has no effect yet.
-pub struct BvhBroadPhasePlugin<H = ()>(PhantomData<fn() -> H>);
+/// `H` are the [`CollisionHooks`] that filter them.
+pub struct BvhBroadPhasePlugin<H: CollisionHooks = ()>(PhantomData<fn() -> H>);
 
-impl<H> Default for BvhBroadPhasePlugin<H> {
+impl<H: CollisionHooks> Default for BvhBroadPhasePlugin<H> {
     fn default() -> Self {
         Self(PhantomData)
     }
 }
 
-impl<H: 'static> Plugin for BvhBroadPhasePlugin<H> {
+impl<H: CollisionHooks + 'static> Plugin for BvhBroadPhasePlugin<H>
+where
+    for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
+{
     fn build(&self, app: &mut App) {
         step::add_once(app, SharedBroadPhasePlugin);
+        if TypeId::of::<H>() != TypeId::of::<()>() {
+            let filter = filter_pairs::<H>.in_set(FilterPairs).in_set(Stage::FindPairs).after(find_new_pairs);
+            step::add_systems(app, PhysicsSchedule, filter);
+        }
     }
 }
 

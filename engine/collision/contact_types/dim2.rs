@@ -17,7 +17,8 @@ pub struct ContactManifold {
     pub friction: Scalar,
     /// The mixed coefficient of restitution.
     pub restitution: Scalar,
-    /// The speed of the surface along the tangent, m/s.
+    /// The speed of the second surface relative to the first that friction brings about, m/s, as of a conveyor belt. Along
+    /// the tangent, the normal turned clockwise. 0 unless [`CollisionHooks`](crate::prelude::CollisionHooks) set it.
     pub tangent_speed: Scalar,
 }
 
@@ -37,4 +38,20 @@ impl ContactManifold {
 /// An impulse along the tangent of a normal.
 pub(super) fn tangent_impulse(normal: k::Vector, impulse: k::Vector) -> Scalar {
     k::TangentFrame::new(normal).project(impulse).x.adjust_precision()
+}
+
+/// The tangent along which a surface's speed is measured: right where the normal points up.
+fn tangent(normal: Vector) -> Vector {
+    Vector::new(normal.y, -normal.x)
+}
+
+impl ContactManifold {
+    /// The velocity of the second surface relative to the first that friction brings about.
+    pub(super) fn surface_velocity(&self) -> Vector {
+        tangent(self.normal) * self.tangent_speed
+    }
+
+    pub(super) fn set_surface_velocity(&mut self, velocity: Vector) {
+        self.tangent_speed = tangent(self.normal).dot(velocity);
+    }
 }

@@ -19,7 +19,8 @@ pub struct ContactManifold {
     pub friction: Scalar,
     /// The mixed coefficient of restitution.
     pub restitution: Scalar,
-    /// The velocity of the surface, in the world, m/s.
+    /// The velocity of the second surface relative to the first that friction brings about, in the world, m/s, as of a
+    /// conveyor belt. 0 unless [`CollisionHooks`](crate::prelude::CollisionHooks) set it.
     pub tangent_velocity: Vector,
 }
 
@@ -66,4 +67,15 @@ impl ContactManifold {
 pub(super) fn tangent_impulse(normal: k::Vector, impulse: k::Vector) -> Vector2 {
     let k::Tangent { x, y } = k::TangentFrame::new(normal).project(impulse);
     Vector2::new(x.adjust_precision(), y.adjust_precision())
+}
+
+impl ContactManifold {
+    /// The velocity of the second surface relative to the first that friction brings about.
+    pub(super) fn surface_velocity(&self) -> Vector {
+        self.tangent_velocity
+    }
+
+    pub(super) fn set_surface_velocity(&mut self, velocity: Vector) {
+        self.tangent_velocity = velocity;
+    }
 }

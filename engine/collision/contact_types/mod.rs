@@ -8,6 +8,7 @@ mod feature_id;
 mod manifold;
 mod pair;
 mod point;
+mod single_contact;
 mod system_param;
 pub(crate) mod views;
 
@@ -16,4 +17,5 @@ pub use dim::ContactManifold;
 pub use feature_id::PackedFeatureId;
 pub use pair::{ContactEdge, ContactEdgeFlags, ContactId, ContactPair, ContactPairFlags};
 pub use point::ContactPoint;
+pub use single_contact::SingleContact;
 pub use system_param::Collisions;

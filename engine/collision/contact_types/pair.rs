@@ -127,7 +127,7 @@ bitflags! {
         const STATIC1 = 1 << 6;
         /// The second body is static.
         const STATIC2 = 1 << 7;
-        /// Collision hooks modify the contact. Not set yet.
+        /// [`CollisionHooks`](crate::prelude::CollisionHooks) modify the contact.
         const MODIFY_CONTACTS = 1 << 8;
     }
 }

@@ -1,9 +1,7 @@
 //! [`ContactPoint`]: one point of a manifold.
 
 use super::feature_id::PackedFeatureId;
-#[cfg(feature = "3d")]
-use crate::math::Vector2;
-use crate::math::{Scalar, Vector};
+use crate::math::{Scalar, TangentVector, Vector};
 
 /// One point of a [`ContactManifold`](super::ContactManifold).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +22,9 @@ pub struct ContactPoint {
     pub normal_speed: Scalar,
     /// The normal impulse that the next step starts from, N·s.
     pub warm_start_normal_impulse: Scalar,
-    /// This point's part of the friction impulse that the next step starts from, along the tangent, N·s.
-    #[cfg(feature = "2d")]
-    pub warm_start_tangent_impulse: Scalar,
-    /// This point's part of the friction impulse that the next step starts from, along both tangents, N·s.
-    #[cfg(feature = "3d")]
-    pub warm_start_tangent_impulse: Vector2,
+    /// This point's part of the friction impulse that the next step starts from, along the tangent (2D) or both tangents (3D),
+    /// N·s.
+    pub warm_start_tangent_impulse: TangentVector,
     /// The feature of the first shape.
     pub feature_id1: PackedFeatureId,
     /// The feature of the second shape.

@@ -2,7 +2,7 @@
 
 use bevy_ecs::prelude::*;
 use kernel::{
-    contact::{Contact, ContactFlags, Manifold, ManifoldPoint},
+    contact::{Contact, ContactFlags, Manifold, ManifoldPoint, ManifoldSurface},
     math as k,
     table::{BodyKind, NONE, Velocity},
 };
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     dynamics::tables::{Bodies, Colliders, Contacts},
-    math::{AdjustPrecision, Scalar, vector_from_kernel, world_from_kernel},
+    math::{AdjustPrecision, Scalar, to_f32, vector_from_kernel, vector_to_kernel, world_from_kernel},
 };
 
 /// The contacts that were read since contacts last changed.
@@ -41,12 +41,12 @@ pub(crate) fn forget_views(mut views: ResMut<ContactViews>) {
 
 /// What contacts are made of.
 #[derive(Clone, Copy)]
-pub(super) struct Source<'a> {
-    pub(super) bodies: &'a Bodies,
-    pub(super) colliders: &'a Colliders,
-    pub(super) contacts: &'a Contacts,
+pub(crate) struct Source<'a> {
+    pub(crate) bodies: &'a Bodies,
+    pub(crate) colliders: &'a Colliders,
+    pub(crate) contacts: &'a Contacts,
     /// The number of substeps.
-    pub(super) substeps: u32,
+    pub(crate) substeps: u32,
 }
 
 impl ContactViews {
@@ -119,13 +119,24 @@ impl<'a> Source<'a> {
     }
 
     /// The contact with its manifolds.
-    fn pair(self, id: u32) -> ContactPair {
+    pub(crate) fn pair(self, id: u32) -> ContactPair {
         let table = &self.contacts.table;
         let contact = table.get(id);
         let [collider1, collider2] = self.entities(id);
         let [body1, body2] = self.body_entities(contact);
-        let all = core::iter::once(&contact.manifold).chain(table.extra_of(contact));
-        let manifolds = all.filter(|m| m.count > 0).map(|m| self.manifold(contact, m)).collect();
+        let all = core::iter::once(&contact.manifold).chain(table.extra_of(contact)).enumerate();
+        let shown = all.filter(|(_, m)| m.count > 0).map(|(index, m)| {
+            let mut shown = self.manifold(contact, m);
+            if contact.flags.has(ContactFlags::CHANGED)
+                && let Some(surface) = table.changed_surface(id, index as u32)
+            {
+                shown.friction = surface.friction.adjust_precision();
+                shown.restitution = surface.restitution.adjust_precision();
+                shown.set_surface_velocity(vector_from_kernel(surface.velocity));
+            }
+            shown
+        });
+        let manifolds = shown.collect();
         let flags = self.pair_flags(id, contact);
         ContactPair { contact_id: ContactId(id), collider1, collider2, body1, body2, manifolds, flags }
     }
@@ -144,6 +155,8 @@ impl<'a> Source<'a> {
         flags.set(ContactPairFlags::STARTED_GENERATING_CONSTRAINTS, responds && changed && touches);
         flags.set(ContactPairFlags::STATIC1, a);
         flags.set(ContactPairFlags::STATIC2, b);
+        let is_hooked = |collider: &u32| self.colliders.modifying.contains(*collider);
+        flags.set(ContactPairFlags::MODIFY_CONTACTS, contact.colliders.iter().any(is_hooked));
         flags
     }
 
@@ -201,5 +214,41 @@ impl<'a> Source<'a> {
             )
         };
         point.with_feature_ids(PackedFeatureId(p.feature), PackedFeatureId::UNKNOWN)
+    }
+}
+
+/// Contacts that hooks have changed, for the kernel.
+impl Source<'_> {
+    /// The manifolds of a pair, which was made of this contact.
+    pub(crate) fn manifolds_to_kernel(self, id: u32, pair: &ContactPair) -> Vec<(Manifold, ManifoldSurface)> {
+        let contact = self.contacts.table.get(id);
+        let old = || core::iter::once(&contact.manifold).chain(self.contacts.table.extra_of(contact));
+        let is_solved = pair.flags.contains(ContactPairFlags::GENERATE_CONSTRAINTS);
+        let convert = |manifold: &ContactManifold| {
+            let normal = vector_to_kernel(manifold.normal);
+            // What the app cannot see comes from the old manifold that faces the same way.
+            let like = |m: &&Manifold| m.normal.dot(normal);
+            let from = old().filter(|m| m.count > 0).max_by(|a, b| like(a).total_cmp(&like(b)));
+            let mut to = Manifold { normal, count: 0, ..from.copied().unwrap_or_default() };
+            to.is_internal |= !is_solved;
+            for (point, slot) in manifold.points.iter().zip(&mut to.points) {
+                let separation = -to_f32(point.penetration);
+                *slot = ManifoldPoint {
+                    anchor: vector_to_kernel(point.anchor1),
+                    frozen_separation: separation,
+                    separation,
+                    impulse: to_f32(point.warm_start_normal_impulse),
+                    feature: point.feature_id1.0,
+                };
+                to.count += 1;
+            }
+            let surface = ManifoldSurface {
+                friction: to_f32(manifold.friction),
+                restitution: to_f32(manifold.restitution),
+                velocity: vector_to_kernel(manifold.surface_velocity()),
+            };
+            (to, surface)
+        };
+        pair.manifolds.iter().map(convert).collect()
     }
 }

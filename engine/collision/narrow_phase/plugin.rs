@@ -1,16 +1,18 @@
 //! The plugin that computes contacts.
 
 use bevy_app::{App, Plugin};
-use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel};
-use core::marker::PhantomData;
+use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel, system::SystemParamItem};
+use core::{any::TypeId, marker::PhantomData};
 
 use super::{CollisionEventSystems, ContactResponse, NarrowPhaseConfig, NarrowPhaseSystems};
 use crate::{
     collision::{
         collider::AnyCollider,
         collision_events::{CollisionEnd, CollisionStart},
-        contacts::NarrowPhaseBuffers,
+        collision_hits::CollisionHit,
+        contacts::{NarrowPhaseBuffers, update_contacts},
         diagnostics::CollisionDiagnostics,
+        hooks::{CollisionHooks, modify_contacts},
     },
     diagnostics::{Within, list},
     dynamics::{
@@ -19,14 +21,14 @@ use crate::{
         solver::config::PhysicsLengthUnit,
     },
     schedule::{PhysicsSchedule, PhysicsStepSystems},
-    step::{self, Owner},
+    step::{self, Owner, Stage},
 };
 
 /// Computes the contacts between colliders of type `C`. Add one instance per collider type. All instances share the
 /// settings of the first.
 ///
-/// `H` is reserved for the app's collision hooks. It has no effect yet.
-pub struct NarrowPhasePlugin<C: AnyCollider, H = ()> {
+/// `H` are the [`CollisionHooks`] that change contacts.
+pub struct NarrowPhasePlugin<C: AnyCollider, H: CollisionHooks = ()> {
     shared: SharedNarrowPhasePlugin,
     backend: PhantomData<fn() -> (C, H)>,
 }
@@ -38,7 +40,7 @@ struct SharedNarrowPhasePlugin {
     generate_constraints: bool,
 }
 
-impl<C: AnyCollider, H> NarrowPhasePlugin<C, H> {
+impl<C: AnyCollider, H: CollisionHooks> NarrowPhasePlugin<C, H> {
     /// Computes contacts in `schedule`, by default [`PhysicsSchedule`]. If `generate_constraints` is false, they are
     /// not solved.
     pub fn new(schedule: impl ScheduleLabel, generate_constraints: bool) -> Self {
@@ -47,15 +49,37 @@ impl<C: AnyCollider, H> NarrowPhasePlugin<C, H> {
     }
 }
 
-impl<C: AnyCollider, H> Default for NarrowPhasePlugin<C, H> {
+impl<C: AnyCollider, H: CollisionHooks> Default for NarrowPhasePlugin<C, H> {
     fn default() -> Self {
         Self::new(PhysicsSchedule, true)
     }
 }
 
-impl<C: AnyCollider, H: 'static> Plugin for NarrowPhasePlugin<C, H> {
+impl<C: AnyCollider, H: CollisionHooks + 'static> Plugin for NarrowPhasePlugin<C, H>
+where
+    for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
+{
     fn build(&self, app: &mut App) {
         step::add_once(app, self.shared);
+        if TypeId::of::<H>() != TypeId::of::<()>() {
+            step::add_once(app, HooksPlugin::<H> { schedule: self.shared.schedule, hooks: PhantomData });
+        }
+    }
+}
+
+/// Adds the hooks that change contacts, once for all collider types.
+struct HooksPlugin<H> {
+    schedule: Interned<dyn ScheduleLabel>,
+    hooks: PhantomData<fn() -> H>,
+}
+
+impl<H: CollisionHooks + 'static> Plugin for HooksPlugin<H>
+where
+    for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
+{
+    fn build(&self, app: &mut App) {
+        let modify = modify_contacts::<H>.in_set(Stage::UpdateContacts).after(update_contacts);
+        step::add_systems(app, self.schedule, modify);
     }
 }
 
@@ -68,6 +92,7 @@ impl Plugin for SharedNarrowPhasePlugin {
             .init_resource::<PhysicsLengthUnit>()
             .add_message::<CollisionStart>()
             .add_message::<CollisionEnd>()
+            .add_message::<CollisionHit>()
             .insert_resource(ContactResponse(self.generate_constraints));
         list::<CollisionDiagnostics>(app, Within::Step);
         step::install(app);

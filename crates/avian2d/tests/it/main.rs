@@ -1,17 +1,29 @@
 //! Tests of avian2d in an app. The files are shared with avian3d.
 
+#[path = "../../../../tests/collision_hits.rs"]
+mod collision_hits;
 #[path = "../../../../tests/collisions.rs"]
 mod collisions;
+#[path = "../../../../tests/contact_query.rs"]
+mod contact_query;
+#[path = "../../../../tests/contact_query2.rs"]
+mod contact_query_dim;
 #[path = "../../../../tests/contract.rs"]
 mod contract;
 #[path = "../../../../tests/contract2.rs"]
 mod contract_dim;
 #[path = "../../../../tests/diagnostics.rs"]
 mod diagnostics;
+#[path = "../../../../tests/drawing.rs"]
+mod drawing;
 #[path = "../../../../tests/forces.rs"]
 mod forces;
 #[path = "../../../../tests/forces2.rs"]
 mod forces_dim;
+#[path = "../../../../tests/hooks.rs"]
+mod hooks;
+#[path = "../../../../tests/hooks2.rs"]
+mod hooks_dim;
 #[path = "../../../../tests/marble2.rs"]
 mod marble;
 #[path = "../../../../tests/plugins.rs"]

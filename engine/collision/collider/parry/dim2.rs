@@ -1,8 +1,8 @@
 //! 2D parts of the default collider: poses, boxes, the kernel's polygons. `dim3.rs` exports the same names.
 
-use super::ellipse::EllipseColliderShape;
 use super::native_composite::{surface, surface_of_facets, unmoved};
-use super::regular_polygon::RegularPolygonColliderShape;
+use super::shapes::ellipse::EllipseColliderShape;
+use super::shapes::regular_polygon::RegularPolygonColliderShape;
 use crate::math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to_kernel};
 use crate::parry::math::{Pose, Rot2};
 use crate::parry::shape::{HeightField, SharedShape, TypedShape};

@@ -1,31 +1,23 @@
 //! [`Collider`], the default collider: a shape of parry with a scale.
 //!
-//! `constructors`, `dim2`, `dim3` and `primitives` make colliders, `native` converts their shapes for the kernel, and
+//! `constructors`, `shapes2` and `shapes3` make colliders, `native` converts their shapes for the kernel, and
 //! `manifold` computes contacts of shapes that the kernel does not have.
 
-#[cfg(feature = "2d")]
-mod collider2d;
-#[cfg(feature = "3d")]
-mod collider3d;
 mod composite;
 mod constructors;
+pub mod contact_query;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
-#[cfg(feature = "2d")]
-mod ellipse;
 mod input;
 mod manifold;
 mod native;
 mod native_composite;
 mod params;
-#[cfg(feature = "2d")]
-mod primitives2d;
-#[cfg(feature = "3d")]
-mod primitives3d;
 mod queries;
-#[cfg(feature = "2d")]
-mod regular_polygon;
+#[cfg_attr(feature = "2d", path = "shapes2/mod.rs")]
+#[cfg_attr(feature = "3d", path = "shapes3/mod.rs")]
+mod shapes;
 mod spatial;
 #[cfg(feature = "serialize")]
 mod stored;
@@ -36,11 +28,9 @@ mod tests;
 #[cfg_attr(feature = "3d", path = "tests3d.rs")]
 mod tests_dim;
 
-#[cfg(feature = "2d")]
-pub use ellipse::EllipseColliderShape;
 pub use params::{FillMode, TrimeshFlags, VhacdParameters};
-#[cfg(feature = "2d")]
-pub use regular_polygon::RegularPolygonColliderShape;
+#[allow(unused_imports, reason = "3D has no shapes of its own")]
+pub use shapes::*;
 
 pub(crate) use manifold::{Workspace, foreign_ball_manifolds, foreign_manifolds};
 pub(crate) use spatial::{ForeignCast, cast_foreign, overlaps_foreign};

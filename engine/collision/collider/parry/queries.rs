@@ -1,10 +1,13 @@
-//! Queries of one [`Collider`] at a pose: points and rays.
+//! Queries of one [`Collider`] at a pose: points and rays. The kernel answers for its own shapes, parry for others.
 
 use super::{Collider, dim};
-use crate::math::{Scalar, Vector};
+use crate::math::{Scalar, Vector, vector_from_kernel, world_from_kernel, world_to_kernel};
 use crate::parry::math::Pose;
 use crate::parry::query::Ray;
-use crate::physics_transform::{Position, Rotation};
+use crate::physics_transform::{Position, Rotation, world_pose};
+use kernel::math::WorldPose;
+use kernel::query;
+use kernel::shape::Shape;
 
 impl Collider {
     /// The nearest point of the collider to `point`, and whether `point` is inside.
@@ -18,6 +21,11 @@ impl Collider {
         point: Vector,
         solid: bool,
     ) -> (Vector, bool) {
+        let (translation, rotation) = (translation.into(), rotation.into());
+        if let Some((native, pose)) = self.native_at(&translation, &rotation, point) {
+            let found = project(native, &pose, point, solid);
+            return found.map_or((point, false), |found| (found.0, found.1));
+        }
         match usable_pose(translation, rotation, point) {
             Some(pose) => {
                 let projection = self.shape_scaled().project_point(&pose, point, solid);
@@ -37,6 +45,12 @@ impl Collider {
         point: Vector,
         solid: bool,
     ) -> Scalar {
+        let (translation, rotation) = (translation.into(), rotation.into());
+        if let Some((native, pose)) = self.native_at(&translation, &rotation, point) {
+            let found = project(native, &pose, point, solid);
+            return found
+                .map_or(Scalar::INFINITY, |(_, inside, distance)| if inside { -distance } else { distance });
+        }
         let pose = usable_pose(translation, rotation, point);
         pose.map_or(Scalar::INFINITY, |pose| self.shape_scaled().distance_to_point(&pose, point, solid))
     }
@@ -48,6 +62,10 @@ impl Collider {
         rotation: impl Into<Rotation>,
         point: Vector,
     ) -> bool {
+        let (translation, rotation) = (translation.into(), rotation.into());
+        if let Some((native, pose)) = self.native_at(&translation, &rotation, point) {
+            return query::contains_point(native, pose.inverse_transform(world_to_kernel(point)));
+        }
         let pose = usable_pose(translation, rotation, point);
         pose.is_some_and(|pose| self.shape_scaled().contains_point(&pose, point))
     }
@@ -65,6 +83,12 @@ impl Collider {
         max_distance: Scalar,
         solid: bool,
     ) -> Option<(Scalar, Vector)> {
+        let (translation, rotation) = (translation.into(), rotation.into());
+        let native = self.native();
+        if !matches!(native, Shape::Foreign(_)) {
+            let pose = world_pose(&translation, &rotation);
+            return cast(native, &pose, [ray_origin, ray_direction], max_distance, solid);
+        }
         let (pose, ray) = usable_ray(translation, rotation, ray_origin, ray_direction)?;
         let hit = self.shape_scaled().cast_ray_and_get_normal(&pose, &ray, max_distance, solid)?;
         hit.normal.is_finite().then_some((hit.time_of_impact, hit.normal))
@@ -79,9 +103,56 @@ impl Collider {
         ray_direction: Vector,
         max_distance: Scalar,
     ) -> bool {
-        usable_ray(translation, rotation, ray_origin, ray_direction)
-            .is_some_and(|(pose, ray)| self.shape_scaled().intersects_ray(&pose, &ray, max_distance))
+        self.cast_ray(translation, rotation, ray_origin, ray_direction, max_distance, true).is_some()
     }
+
+    /// The kernel's shape and its pose, if the kernel answers for points. It does not know the inside of surfaces, which
+    /// a mesh may have, and takes no pose or point that is not finite.
+    fn native_at(
+        &self,
+        position: &Position,
+        rotation: &Rotation,
+        point: Vector,
+    ) -> Option<(&Shape, WorldPose)> {
+        let native = self.native();
+        let is_known = match native {
+            Shape::Foreign(_) => false,
+            Shape::Composite(composite) => composite.surface().is_none(),
+            _ => true,
+        };
+        let pose = world_pose(position, rotation);
+        let finite = dim::pose(position.0, *rotation).is_finite() && point.is_finite();
+        (is_known && finite).then_some((native, pose))
+    }
+}
+
+/// The nearest point of a shape, whether the given point is inside, and the distance.
+fn project(shape: &Shape, pose: &WorldPose, point: Vector, solid: bool) -> Option<(Vector, bool, Scalar)> {
+    let local = pose.inverse_transform(world_to_kernel(point));
+    let found = query::project_point(shape, local, solid, f32::MAX)?;
+    if solid && found.is_inside {
+        return Some((point, true, 0.0));
+    }
+    let nearest = world_from_kernel(pose.transform(found.point));
+    Some((nearest, found.is_inside, found.distance as Scalar))
+}
+
+/// The first hit of a ray, its distance in lengths of the direction.
+fn cast(
+    shape: &Shape,
+    pose: &WorldPose,
+    [origin, direction]: [Vector; 2],
+    max_distance: Scalar,
+    solid: bool,
+) -> Option<(Scalar, Vector)> {
+    let length = direction.length();
+    if !(length > 0.0 && length.is_finite() && pose.rotation.is_finite()) {
+        return None;
+    }
+    let reach = max_distance * length;
+    let ray = query::Ray::new(world_to_kernel(origin), world_to_kernel(direction), reach, solid)?;
+    let hit = ray.hit(0, shape, pose, ray.max_distance())?;
+    Some((hit.distance / length, vector_from_kernel(hit.normal)))
 }
 
 /// The pose in parry's type. `None` if it or the point is not finite: parry's projections panic then.

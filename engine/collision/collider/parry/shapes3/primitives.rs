@@ -3,9 +3,9 @@
 //! Tori, which are not convex, and extrusions have none: decompose them as finely as the game needs
 //! (`Collider::compound`, `Collider::convex_decomposition_from_mesh`).
 
-use super::Collider;
-use super::constructors::speck;
-use super::input::checked;
+use super::super::Collider;
+use super::super::constructors::speck;
+use super::super::input::checked;
 use crate::collision::collider::IntoCollider;
 use crate::math::{AdjustPrecision, Scalar, TAU, Vector};
 use bevy_math::primitives::{

@@ -1,10 +1,10 @@
 //! The constructors and mass properties of 3D colliders.
 
-use super::Collider;
-use super::constructors::speck;
-use super::dim::cuboid_shape;
-use super::input::{MIN_LENGTH, checked};
-use super::params::{FillMode, VhacdParameters};
+use super::super::Collider;
+use super::super::constructors::speck;
+use super::super::dim::cuboid_shape;
+use super::super::input::{MIN_LENGTH, checked};
+use super::super::params::{FillMode, VhacdParameters};
 use crate::math::{AsF32, Scalar, Vector};
 use crate::parry::shape::SharedShape;
 use crate::parry::utils::Array2;
@@ -14,7 +14,7 @@ use kernel::shape::Shape as NativeShape;
 
 impl FillMode {
     /// The default of [`VhacdParameters::fill_mode`].
-    pub(super) const USUAL: Self = Self::FloodFill { detect_cavities: false };
+    pub(in super::super) const USUAL: Self = Self::FloodFill { detect_cavities: false };
 }
 
 impl From<FillMode> for crate::parry::transformation::voxelization::FillMode {

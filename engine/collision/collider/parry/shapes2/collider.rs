@@ -1,11 +1,11 @@
 //! The constructors and mass properties of 2D colliders.
 
-use super::Collider;
-use super::constructors::{speck, usable_vertices};
-use super::dim::{cuboid_shape, is_solid};
+use super::super::Collider;
+use super::super::constructors::{speck, usable_vertices};
+use super::super::dim::{cuboid_shape, is_solid};
+use super::super::input::{Input, MIN_LENGTH, checked, is_usable};
+use super::super::params::{FillMode, VhacdParameters};
 use super::ellipse::EllipseColliderShape;
-use super::input::{Input, MIN_LENGTH, checked, is_usable};
-use super::params::{FillMode, VhacdParameters};
 use super::regular_polygon::RegularPolygonColliderShape;
 use crate::math::{AdjustPrecision, AsF32, Scalar, Vector};
 use crate::parry::shape::SharedShape;
@@ -16,7 +16,7 @@ use kernel::shape::Shape as NativeShape;
 
 impl FillMode {
     /// The default of [`VhacdParameters::fill_mode`].
-    pub(super) const USUAL: Self =
+    pub(in super::super) const USUAL: Self =
         Self::FloodFill { detect_cavities: false, detect_self_intersections: false };
 }
 
@@ -211,7 +211,7 @@ impl Collider {
 
     /// The polygon with an outline, decomposed into convex ones. An outline that crosses itself becomes its convex
     /// hull.
-    pub(super) fn polygon(outline: Vec<Vector>, input: &mut Input) -> Self {
+    pub(in super::super) fn polygon(outline: Vec<Vector>, input: &mut Input) -> Self {
         let mut outline = usable_outline(outline, input);
         let area: Scalar = corners(&outline).map(|[a, b, _]| a.perp_dot(b)).sum();
         if area < 0.0 {
@@ -220,7 +220,7 @@ impl Collider {
         if let Some(convex) = Self::convex_polyline(outline.clone()) {
             return convex;
         }
-        let parts = super::input::without_panic(|| {
+        let parts = super::super::input::without_panic(|| {
             let mesh = crate::parry::shape::TriMesh::from_polygon(outline.clone())?;
             crate::parry::shape::Compound::decompose_trimesh(&mesh)
         });

@@ -4,8 +4,8 @@
 //! have none: their outlines are curved, and the app chooses how to approximate them (a `Collider::compound` of convex
 //! parts, or a `Collider::polyline`).
 
-use super::Collider;
-use super::input::checked;
+use super::super::Collider;
+use super::super::input::checked;
 use crate::collision::collider::IntoCollider;
 use crate::math::{AdjustPrecision, Scalar, Vector};
 use bevy_math::Vec2;

@@ -39,7 +39,7 @@ impl RegularPolygonColliderShape {
     }
 
     /// The corners, counter-clockwise.
-    pub(super) fn corners(&self) -> impl Iterator<Item = Vector> + '_ {
+    pub(in super::super) fn corners(&self) -> impl Iterator<Item = Vector> + '_ {
         (0..self.count()).map(|i| self.corner(i))
     }
 

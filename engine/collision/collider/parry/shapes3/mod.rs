@@ -1,0 +1,4 @@
+//! Constructors of 3D. `shapes2` has those of 2D, and its shapes.
+
+mod collider;
+mod primitives;

@@ -1,0 +1,219 @@
+//! [`CollisionHit`]: blows above a speed, for sound and damage.
+//!
+//! A collider with [`CollisionHitsEnabled`] reports each blow in which it meets another collider faster than its
+//! [`min_speed`](CollisionHitsEnabled::min_speed). Blows are sent as messages and entity events with the
+//! [collision events](super::collision_events) of the step, before these.
+//!
+//! ```
+//! # use avian::prelude::*;
+//! # use bevy_ecs::prelude::*;
+//! # #[derive(Component)]
+//! # struct Health(f32);
+//! fn spawn(mut commands: Commands) {
+//!     commands
+//!         .spawn((RigidBody::Dynamic, Collider::default(), CollisionHitsEnabled::above(3.0), Health(100.0)))
+//!         .observe(|hit: On<CollisionHit>, mut healths: Query<&mut Health>| {
+//!             if let Ok(mut health) = healths.get_mut(hit.collider1) {
+//!                 health.0 -= hit.impulse as f32;
+//!             }
+//!         });
+//! }
+//! ```
+
+use bevy_ecs::{message::Messages, prelude::*};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use kernel::{
+    contact::{Contact, Manifold},
+    math as k,
+    table::{BodyTable, NONE, Velocity},
+};
+
+use crate::{
+    dynamics::{
+        reports::{Approach, Blow, Hits},
+        solver::{config::PhysicsLengthUnit, substeps::StepSolver},
+        tables::{Bodies, Colliders, Contacts},
+    },
+    math::{AdjustPrecision, Scalar, Vector, to_f32, vector_from_kernel, world_from_kernel},
+};
+
+/// A collider has been hit, or has hit another one.
+#[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
+pub struct CollisionHit {
+    /// The first collider. An observer runs on this one.
+    #[event_target]
+    pub collider1: Entity,
+    /// The second collider.
+    pub collider2: Entity,
+    /// The body of the first collider, if it has one.
+    pub body1: Option<Entity>,
+    /// The body of the second collider, if it has one.
+    pub body2: Option<Entity>,
+    /// Where they met, in the world, in metres: the middle of the contact points.
+    pub point: Vector,
+    /// The unit normal there, from the first collider to the second.
+    pub normal: Vector,
+    /// The speed at which they approached along the normal, m/s.
+    pub speed: Scalar,
+    /// The impulse along the normal that turned the approach into what it was afterwards, N·s, by the masses that both bodies
+    /// have at the point.
+    pub impulse: Scalar,
+}
+
+impl From<Blow> for CollisionHit {
+    fn from(blow: Blow) -> Self {
+        let Blow { colliders: [collider1, collider2], bodies: [body1, body2], point, normal, speed, impulse } =
+            blow;
+        Self { collider1, collider2, body1, body2, point, normal, speed, impulse }
+    }
+}
+
+impl CollisionHit {
+    /// The same seen from the other collider.
+    pub fn flipped(&self) -> Self {
+        Self {
+            collider1: self.collider2,
+            collider2: self.collider1,
+            body1: self.body2,
+            body2: self.body1,
+            normal: -self.normal,
+            ..*self
+        }
+    }
+}
+
+/// Has a collider report blows by [`CollisionHit`].
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Component, Debug, Default, PartialEq)]
+pub struct CollisionHitsEnabled {
+    /// The speed of approach above which a blow is reported, m/s, times the
+    /// [`PhysicsLengthUnit`](crate::prelude::PhysicsLengthUnit). 1 by default. NaN reports none.
+    pub min_speed: Scalar,
+}
+
+impl Default for CollisionHitsEnabled {
+    fn default() -> Self {
+        Self::above(1.0)
+    }
+}
+
+impl CollisionHitsEnabled {
+    /// Reports blows above a speed, m/s.
+    pub fn above(min_speed: Scalar) -> Self {
+        Self { min_speed }
+    }
+}
+
+/// Notes the contacts of reporting colliders that close faster than these want to know.
+pub(crate) fn note_approaches(
+    settings: Query<&CollisionHitsEnabled>,
+    unit: Res<PhysicsLengthUnit>,
+    bodies: Res<Bodies>,
+    colliders: Res<Colliders>,
+    mut contacts: ResMut<Contacts>,
+) {
+    let Contacts { table, hits, .. } = &mut *contacts.bypass_change_detection();
+    hits.approaches.clear();
+    if colliders.hitting.is_empty() {
+        return;
+    }
+    let all = colliders.hitting.iter().flat_map(|id| table.of_collider(id, &colliders.table));
+    let mut ids: Vec<u32> = all.filter(|id| table.is_active(*id) && table.get(*id).is_solved()).collect();
+    ids.sort_unstable();
+    ids.dedup();
+    for id in ids {
+        let contact = table.get(id);
+        let entities = contact.colliders.map(|collider| colliders.entities[collider as usize]);
+        let min_speed = |entity: Entity| settings.get(entity).map_or(f32::INFINITY, |s| to_f32(s.min_speed));
+        let min_speed = min_speed(entities[0]).min(min_speed(entities[1])) * unit.metres();
+        let manifolds = core::iter::once(&contact.manifold).chain(table.extra_of(contact));
+        let solved = manifolds.filter(|manifold| manifold.solved_points() > 0);
+        let approaches = solved.map(|manifold| approach(&bodies.table, &colliders, contact, manifold));
+        let fastest = approaches.max_by(|a, b| a.speed.total_cmp(&b.speed));
+        hits.approaches.extend(fastest.filter(|approach| approach.speed > min_speed));
+    }
+}
+
+/// How fast the bodies of a manifold approach in the middle of its points.
+fn approach(bodies: &BodyTable, colliders: &Colliders, contact: &Contact, manifold: &Manifold) -> Approach {
+    let sum = manifold.points().iter().fold(k::Vector::ZERO, |sum, point| sum + point.anchor);
+    let arm = sum * (1.0 / f32::from(manifold.count));
+    let center = |side: usize| match contact.bodies[side] {
+        NONE => colliders.table.poses[contact.colliders[side] as usize].position,
+        body => bodies.poses[body as usize].center,
+    };
+    let point = center(0) + arm.to_world();
+    let arms = [arm, (point - center(1)).to_local()];
+    let parting = parting(bodies, contact.bodies, arms, manifold.normal);
+    let entities = contact.colliders.map(|collider| colliders.entities[collider as usize]);
+    let bodies = contact.bodies;
+    Approach { colliders: entities, bodies, arms, point, normal: manifold.normal, speed: -parting }
+}
+
+/// The speed along the normal at which two bodies part at a point.
+fn parting(bodies: &BodyTable, pair: [u32; 2], arms: [k::Vector; 2], normal: k::Vector) -> f32 {
+    let velocity = |side: usize| {
+        let Velocity { linear, angular } = match pair[side] {
+            NONE => Velocity::default(),
+            body => bodies.velocities[body as usize],
+        };
+        linear + angular.cross(arms[side])
+    };
+    normal.dot(velocity(1) - velocity(0))
+}
+
+/// Makes hits of the fast contacts whose bodies do not approach any more, by half at least.
+pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contacts: ResMut<Contacts>) {
+    let Hits { approaches, blows } = &mut contacts.bypass_change_detection().hits;
+    for approach in approaches.drain(..) {
+        let Approach { colliders, bodies: pair, arms, point, normal, speed } = approach;
+        let change = parting(&bodies.table, pair, arms, normal) + speed;
+        if !(change > 0.5 * speed) {
+            continue;
+        }
+        let mut inverse_mass = 0.0;
+        for (body, arm) in pair.into_iter().zip(arms).filter(|(body, _)| *body != NONE) {
+            let mass =
+                solver.kernel.bodies.masses.get(bodies.table.row(body) as usize).copied().unwrap_or_default();
+            let moment = arm.cross(normal);
+            inverse_mass += mass.inv_mass() + moment.dot(mass.inv_inertia().apply(moment));
+        }
+        let [body1, body2] = pair.map(|body| (body != NONE).then(|| bodies.entities[body as usize]));
+        let impulse = if inverse_mass > 0.0 { change / inverse_mass } else { 0.0 };
+        blows.push(Blow {
+            colliders,
+            bodies: [body1, body2],
+            point: world_from_kernel(point),
+            normal: vector_from_kernel(normal),
+            speed: speed.adjust_precision(),
+            impulse: impulse.adjust_precision(),
+        });
+    }
+}
+
+/// Sends the hits of the step.
+pub(crate) fn send_hits(world: &mut World) {
+    let mut contacts = world.resource_mut::<Contacts>();
+    if contacts.hits.blows.is_empty() {
+        return;
+    }
+    let blows = core::mem::take(&mut contacts.bypass_change_detection().hits.blows);
+    let hits: Vec<CollisionHit> = blows.into_iter().map(CollisionHit::from).collect();
+    if let Some(mut messages) = world.get_resource_mut::<Messages<CollisionHit>>() {
+        messages.write_batch(hits.iter().copied());
+    }
+    for hit in hits {
+        for seen in [hit, hit.flipped()] {
+            let entity = world.get_entity(seen.collider1);
+            if entity.is_ok_and(|entity| entity.contains::<CollisionHitsEnabled>()) {
+                world.trigger(seen);
+                // The next observer sees what the commands of this one did.
+                world.flush();
+            }
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! The lines of 2D: boxes, axes, arrows. `dim3` exports the same names.
+
+#[cfg(feature = "default-collider")]
+pub(super) mod outline;
+#[cfg(all(test, feature = "default-collider"))]
+pub(super) mod shapes;
+
+use bevy_color::{Color, palettes::css};
+use bevy_math::{Affine3A, Quat, Vec3};
+use bevy_transform::components::GlobalTransform;
+
+use crate::{
+    math::{AsF32, Vector},
+    physics_transform::Rotation,
+};
+
+/// A point in the plane of gizmos.
+pub(in crate::debug_render) fn point(v: Vector) -> Vec3 {
+    v.f32().extend(0.0)
+}
+
+/// The frame of a pose.
+pub(in crate::debug_render) fn frame(position: Vector, rotation: Rotation) -> Affine3A {
+    Affine3A::from_rotation_translation(Quat::from_rotation_z(rotation.as_radians() as f32), point(position))
+}
+
+/// The frame of an entity as it is drawn, without scale. Lines are drawn at z = 0, over all meshes.
+pub(in crate::debug_render) fn drawn_frame(transform: &GlobalTransform) -> Affine3A {
+    let (_, rotation, translation) = transform.to_scale_rotation_translation();
+    Affine3A::from_rotation_translation(rotation, translation.with_z(0.0))
+}
+
+/// The edges of a box as one line.
+pub(in crate::debug_render) fn edges(min: Vec3, max: Vec3) -> [Vec3; 5] {
+    let corner = |x, y| Vec3::new(x, y, 0.0);
+    [
+        corner(min.x, min.y),
+        corner(max.x, min.y),
+        corner(max.x, max.y),
+        corner(min.x, max.y),
+        corner(min.x, min.y),
+    ]
+}
+
+/// The axes of a body, with their colors.
+pub(in crate::debug_render) fn axes(lengths: Vector) -> [(Vec3, Color); 2] {
+    let l = point(lengths);
+    [(Vec3::X * l.x, css::RED.into()), (Vec3::Y * l.y, Color::srgb(0.0, 1.0, 0.0))]
+}
+
+/// The directions in which the head of an arrow spreads.
+pub(in crate::debug_render) fn spread(direction: Vec3) -> [Vec3; 2] {
+    let side = Vec3::new(-direction.y, direction.x, 0.0);
+    [side, -side]
+}

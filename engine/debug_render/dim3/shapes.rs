@@ -1,0 +1,51 @@
+//! The shapes of 3D whose outlines are tested.
+
+use crate::{
+    collision::collider::Collider,
+    math::Vector,
+    parry::shape::{RoundCone, RoundCylinder, SharedShape},
+};
+
+fn v(x: f32, y: f32, z: f32) -> Vector {
+    Vector::new(x.into(), y.into(), z.into())
+}
+
+pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider)> {
+    let part = |i: u32, factor: u32| (i * factor % 23) as f32 / 11.0 - 1.0;
+    let hull: Vec<Vector> = (0..24).map(|i| v(part(i, 5), part(i, 7), part(i, 11))).collect();
+    let [a, b, c] = [v(0.0, 0.0, 0.0), v(1.0, 0.1, 0.0), v(0.3, 0.9, 0.4)];
+    vec![
+        ("sphere", Collider::sphere(0.7)),
+        ("capsule", Collider::capsule_endpoints(0.3, v(-0.5, 0.2, 0.0), v(0.6, 0.9, 0.3))),
+        ("cuboid", Collider::cuboid(1.0, 2.0, 0.5)),
+        ("round cuboid", Collider::round_cuboid(1.0, 2.0, 0.5, 0.2)),
+        ("triangle", Collider::triangle(a, b, c)),
+        ("round triangle", SharedShape::round_triangle(a, b, c, 0.2).into()),
+        ("cylinder", Collider::cylinder(0.5, 2.0)),
+        (
+            "round cylinder",
+            SharedShape::new(RoundCylinder {
+                inner_shape: crate::parry::shape::Cylinder::new(1.0, 0.5),
+                border_radius: 0.2,
+            })
+            .into(),
+        ),
+        ("cone", Collider::cone(0.5, 2.0)),
+        (
+            "round cone",
+            SharedShape::new(RoundCone {
+                inner_shape: crate::parry::shape::Cone::new(1.0, 0.5),
+                border_radius: 0.2,
+            })
+            .into(),
+        ),
+        ("hull", Collider::convex_hull(hull.clone()).expect("a hull")),
+        ("round hull", SharedShape::round_convex_hull(&hull, 0.2).expect("a hull").into()),
+        ("segment", Collider::segment(a, b)),
+        ("mesh", Collider::trimesh(vec![a, b, c, v(0.0, 1.0, 1.0)], vec![[0, 1, 2], [0, 2, 3]])),
+        (
+            "height field",
+            Collider::heightfield(vec![vec![0.0, 0.5, 0.2], vec![0.3, 0.1, 0.4]], v(4.0, 1.0, 3.0)),
+        ),
+    ]
+}

@@ -1,0 +1,31 @@
+//! Drawing of bodies, colliders, contacts and queries as lines, with feature `debug-plugin`.
+//!
+//! [`PhysicsDebugPlugin`] draws what [`PhysicsGizmos`] asks for. [`DebugRender`] on an entity takes its place there.
+//! [`PhysicsGizmoExt`] has the same lines for systems of the app.
+
+#[cfg(feature = "default-collider")]
+mod casts;
+#[cfg(feature = "default-collider")]
+mod colliders;
+mod configuration;
+mod contacts;
+#[cfg(feature = "default-collider")]
+mod curves;
+#[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
+#[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
+mod dim;
+mod draw;
+mod gizmos;
+mod lines;
+mod meshes;
+#[cfg(feature = "default-collider")]
+mod outline;
+mod plugin;
+#[cfg(all(test, feature = "default-collider"))]
+mod tests;
+#[cfg(feature = "default-collider")]
+mod voxels;
+
+pub use configuration::{ContactGizmoScale, DebugRender, PhysicsGizmos};
+pub use gizmos::PhysicsGizmoExt;
+pub use plugin::PhysicsDebugPlugin;

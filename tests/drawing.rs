@@ -1,0 +1,337 @@
+//! Debug drawing, read from the buffers of gizmos in headless apps.
+
+use avian::{
+    math::{Scalar, Vector},
+    prelude::*,
+};
+use bevy_app::prelude::*;
+use bevy_asset::{Assets, Handle};
+use bevy_camera::visibility::{InheritedVisibility, Visibility};
+use bevy_color::{Color, LinearRgba};
+use bevy_ecs::prelude::*;
+use bevy_gizmos::{GizmoHandles, prelude::*};
+use bevy_math::Vec3;
+use bevy_mesh::Mesh3d;
+use bevy_time::Time;
+use bevy_transform::{TransformPlugin, components::Transform};
+use core::{any::TypeId, time::Duration};
+
+const RED: Color = Color::srgb(1.0, 0.0, 0.0);
+const GREEN: Color = Color::srgb(0.0, 1.0, 0.0);
+
+/// An app that draws what is given.
+fn app(gizmos: PhysicsGizmos) -> App {
+    let mut app = App::new();
+    app.add_plugins((
+        TaskPoolPlugin::default(),
+        TransformPlugin,
+        PhysicsPlugins::new(Update),
+        PhysicsDebugPlugin,
+    ));
+    app.insert_gizmo_config(gizmos, GizmoConfig::default());
+    app
+}
+
+fn frame(app: &mut App) {
+    app.world_mut().resource_mut::<Time>().advance_by(Duration::from_secs_f64(1.0 / 60.0));
+    app.update();
+}
+
+/// The points drawn in the last frame, with their colors.
+fn drawn(app: &App) -> Vec<(Vec3, LinearRgba)> {
+    let handles = app.world().resource::<GizmoHandles>().handles();
+    let Some(handle) = handles[&TypeId::of::<PhysicsGizmos>()].clone() else { return Vec::new() };
+    let asset = app.world().resource::<Assets<GizmoAsset>>().get(&handle).expect("the handle is in use");
+    let view = asset.buffer().buffer();
+    let strips = view.strip_positions.iter().copied().zip(view.strip_colors.iter().copied());
+    strips.filter(|(point, _)| !point.is_nan()).collect()
+}
+
+/// The middle of the drawn points.
+fn middle(app: &App) -> Vec3 {
+    let points = drawn(app);
+    let (low, high) =
+        points.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), (p, _)| (l.min(*p), h.max(*p)));
+    (low + high) / 2.0
+}
+
+fn cube(half: Scalar) -> Collider {
+    let mut corners = vec![Vector::ZERO];
+    for axis in Vector::AXES {
+        corners = corners.iter().flat_map(|c| [*c - axis * half, *c + axis * half]).collect();
+    }
+    Collider::convex_hull(corners).expect("a box is convex")
+}
+
+fn spawn_body(app: &mut App, at: f32) -> Entity {
+    app.world_mut()
+        .spawn((
+            RigidBody::Kinematic,
+            LinearVelocity(Vector::X * 6.0),
+            cube(0.5),
+            Transform::from_xyz(at, 2.0, 0.0),
+        ))
+        .id()
+}
+
+#[test]
+fn outlines_are_where_the_meshes_of_the_frame_are() {
+    let mut app = app(PhysicsGizmos::colliders(RED));
+    let body = spawn_body(&mut app, 1.0);
+    for i in 0..20 {
+        frame(&mut app);
+        let at = app.world().get::<Transform>(body).unwrap().translation;
+        assert!((middle(&app) - at).length() < 1.0e-5, "frame {i}: {} for {at}", middle(&app));
+    }
+    // What the app moves after physics is drawn there in the same frame.
+    app.add_systems(PreUpdate, |mut bodies: Query<&mut Transform>| {
+        bodies.iter_mut().for_each(|mut transform| transform.translation.y = 5.0);
+    });
+    frame(&mut app);
+    assert!((middle(&app).y - 5.0).abs() < 1.0e-5);
+}
+
+#[test]
+fn what_is_off_or_gone_is_not_drawn() {
+    let mut app = app(PhysicsGizmos::colliders(RED));
+    let body = spawn_body(&mut app, 1.0);
+    frame(&mut app);
+    let count = drawn(&app).len();
+    assert!(count > 4);
+    assert!(drawn(&app).iter().all(|(_, color)| *color == LinearRgba::from(RED)));
+
+    app.world_mut().entity_mut(body).insert(ColliderDisabled);
+    frame(&mut app);
+    assert_eq!(drawn(&app).len(), 0);
+    app.world_mut().entity_mut(body).remove::<ColliderDisabled>();
+    frame(&mut app);
+    assert_eq!(drawn(&app).len(), count);
+
+    app.world_mut().resource_mut::<GizmoConfigStore>().config_mut::<PhysicsGizmos>().0.enabled = false;
+    frame(&mut app);
+    assert_eq!(drawn(&app).len(), 0);
+    app.world_mut().resource_mut::<GizmoConfigStore>().config_mut::<PhysicsGizmos>().0.enabled = true;
+    app.world_mut().entity_mut(body).despawn();
+    frame(&mut app);
+    assert_eq!(drawn(&app).len(), 0);
+}
+
+#[test]
+fn a_changed_collider_gets_a_new_outline() {
+    let mut app = app(PhysicsGizmos::colliders(RED));
+    let body = spawn_body(&mut app, 0.0);
+    frame(&mut app);
+    let width = |app: &App| {
+        let x: Vec<f32> = drawn(app).iter().map(|(point, _)| point.x).collect();
+        x.iter().copied().fold(f32::MIN, f32::max) - x.iter().copied().fold(f32::MAX, f32::min)
+    };
+    assert!((width(&app) - 1.0).abs() < 1.0e-4);
+    *app.world_mut().get_mut::<Collider>(body).unwrap() = cube(1.5);
+    frame(&mut app);
+    assert!((width(&app) - 3.0).abs() < 1.0e-4);
+    // A new entity in the place of the old one.
+    app.world_mut().entity_mut(body).despawn();
+    app.world_mut().spawn((cube(0.25), Transform::default()));
+    frame(&mut app);
+    assert!((width(&app) - 0.5).abs() < 1.0e-4);
+}
+
+#[test]
+fn debug_render_replaces_the_settings_of_the_group() {
+    let mut app = app(PhysicsGizmos::none());
+    let body = spawn_body(&mut app, 0.0);
+    frame(&mut app);
+    assert_eq!(drawn(&app).len(), 0);
+    app.world_mut().entity_mut(body).insert(DebugRender::collider(GREEN));
+    frame(&mut app);
+    assert!(
+        drawn(&app).iter().all(|(_, color)| *color == LinearRgba::from(GREEN)) && !drawn(&app).is_empty()
+    );
+    app.world_mut().entity_mut(body).insert(DebugRender::axes(Vector::splat(2.0)));
+    frame(&mut app);
+    assert_eq!(drawn(&app).len(), 2 * Vector::AXES.len());
+    app.world_mut().entity_mut(body).insert(DebugRender::aabb(GREEN));
+    frame(&mut app);
+    assert!(drawn(&app).len() >= 5);
+    app.world_mut().entity_mut(body).insert(DebugRender::none());
+    frame(&mut app);
+    assert_eq!(drawn(&app).len(), 0);
+}
+
+#[test]
+fn sleeping_bodies_are_darker() {
+    let mut app = app(PhysicsGizmos::default().without_axes());
+    app.insert_resource(Gravity(Vector::ZERO));
+    app.world_mut().spawn((RigidBody::Dynamic, cube(0.5), Transform::default()));
+    frame(&mut app);
+    let awake = drawn(&app)[0].1;
+    for _ in 0..200 {
+        frame(&mut app);
+    }
+    let asleep = drawn(&app)[0].1;
+    assert!(asleep.red < 0.5 * awake.red, "{asleep:?} for {awake:?}");
+}
+
+#[test]
+fn contact_normals_are_as_long_as_the_force() {
+    let scale = 0.1;
+    let mut app =
+        app(PhysicsGizmos::contact_normals(RED).with_contact_normal_scale(ContactGizmoScale::Scaled(scale)));
+    app.insert_resource(Gravity(Vector::NEG_Y * 10.0));
+    app.world_mut().spawn((RigidBody::Static, cube(10.0), Transform::from_xyz(0.0, -10.0, 0.0)));
+    app.world_mut().spawn((
+        RigidBody::Dynamic,
+        cube(0.5),
+        Mass(3.0),
+        SleepingDisabled,
+        Transform::from_xyz(0.0, 0.5, 0.0),
+    ));
+    for _ in 0..120 {
+        frame(&mut app);
+    }
+    // An arrow is a shaft, and a line to its tip from each side.
+    let points = drawn(&app);
+    let lines = if Vector::AXES.len() == 2 { 3 } else { 5 };
+    let shafts = points.chunks(2 * lines).map(|arrow| arrow[0].0.distance(arrow[1].0));
+    let sum: f32 = shafts.sum();
+    assert!((sum - 30.0 * scale as f32).abs() < 0.02 * sum, "{sum} m for 30 N");
+}
+
+#[test]
+fn casts_contacts_islands_and_trees_are_drawn() {
+    let gizmos = [
+        PhysicsGizmos::none().with_raycast_colors(Some(RED), Some(RED), Some(RED)),
+        PhysicsGizmos::none().with_shapecast_colors(Some(RED), Some(RED), Some(RED), Some(RED)),
+        PhysicsGizmos { island_color: Some(RED), ..PhysicsGizmos::none() },
+        PhysicsGizmos { collider_tree_color: Some(RED), ..PhysicsGizmos::none() },
+        PhysicsGizmos::contact_points(RED),
+        PhysicsGizmos::aabbs(RED),
+        PhysicsGizmos::axes(Vector::ONE),
+        PhysicsGizmos::all(),
+    ];
+    for (i, gizmos) in gizmos.into_iter().enumerate() {
+        let mut app = app(gizmos);
+        app.world_mut().spawn((RigidBody::Static, cube(10.0), Transform::from_xyz(0.0, -10.0, 0.0)));
+        for x in 0..3 {
+            let at = Transform::from_xyz(x as f32 * 2.0, 0.499, 0.0);
+            app.world_mut().spawn((RigidBody::Dynamic, cube(0.5), at));
+        }
+        let down = avian::math::Dir::NEG_Y;
+        app.world_mut().spawn((Transform::from_xyz(1.0, 5.0, 0.0), RayCaster::new(Vector::ZERO, down)));
+        app.world_mut().spawn((
+            Transform::from_xyz(1.0, 5.0, 0.0),
+            ShapeCaster::new(cube(0.2), Vector::ZERO, Default::default(), down),
+        ));
+        for _ in 0..3 {
+            frame(&mut app);
+        }
+        let points = drawn(&app);
+        assert!(!points.is_empty(), "nothing is drawn for the settings {i}");
+        assert!(points.iter().all(|(point, _)| point.is_finite()));
+    }
+}
+
+#[test]
+fn meshes_are_hidden_and_shown_again() {
+    let mut app = app(PhysicsGizmos::default());
+    let mut spawn = |visibility| {
+        app.world_mut().spawn((cube(0.5), Transform::default(), Mesh3d(Handle::default()), visibility)).id()
+    };
+    let meshes = [spawn(Visibility::Inherited), spawn(Visibility::Visible), spawn(Visibility::Hidden)];
+    let seen = |app: &App| meshes.map(|mesh| *app.world().get::<Visibility>(mesh).unwrap());
+    let before = seen(&app);
+    let hide = |app: &mut App, hides| {
+        app.world_mut().resource_mut::<GizmoConfigStore>().config_mut::<PhysicsGizmos>().1.hide_meshes =
+            hides;
+        frame(app);
+    };
+    hide(&mut app, true);
+    assert_eq!(seen(&app), [Visibility::Hidden; 3]);
+    hide(&mut app, false);
+    assert_eq!(seen(&app), before);
+    app.world_mut().entity_mut(meshes[0]).insert(DebugRender::default().with_mesh_visibility(false));
+    frame(&mut app);
+    assert_eq!(seen(&app)[0], Visibility::Hidden);
+    app.world_mut().entity_mut(meshes[0]).remove::<DebugRender>();
+    frame(&mut app);
+    assert_eq!(seen(&app), before);
+}
+
+#[test]
+fn what_the_app_hides_is_not_drawn() {
+    let mut app = app(PhysicsGizmos::colliders(RED).with_mesh_visibility(false));
+    let mesh = (cube(0.5), Transform::default(), Mesh3d(Handle::default()), Visibility::Visible);
+    let body = app.world_mut().spawn(mesh).id();
+    let is_drawn = |app: &mut App, visibility: InheritedVisibility| {
+        // As Bevy propagates it.
+        app.world_mut().entity_mut(body).insert(visibility);
+        frame(app);
+        !drawn(app).is_empty()
+    };
+    // Its mesh is hidden by the settings, and its outline drawn instead.
+    assert!(
+        is_drawn(&mut app, InheritedVisibility::VISIBLE) && is_drawn(&mut app, InheritedVisibility::HIDDEN)
+    );
+    app.world_mut().resource_mut::<GizmoConfigStore>().config_mut::<PhysicsGizmos>().1.hide_meshes = false;
+    frame(&mut app);
+    assert!(
+        is_drawn(&mut app, InheritedVisibility::VISIBLE) && !is_drawn(&mut app, InheritedVisibility::HIDDEN)
+    );
+    // The app had hidden it before the settings did.
+    app.world_mut().entity_mut(body).insert(Visibility::Hidden);
+    app.world_mut().resource_mut::<GizmoConfigStore>().config_mut::<PhysicsGizmos>().1.hide_meshes = true;
+    frame(&mut app);
+    assert!(!is_drawn(&mut app, InheritedVisibility::HIDDEN));
+}
+
+#[test]
+fn the_group_is_there_when_the_plugin_is_built_and_without_physics() {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), PhysicsDebugPlugin));
+    let mut store = app.world_mut().resource_mut::<GizmoConfigStore>();
+    assert_eq!(store.config_mut::<PhysicsGizmos>().1.axis_lengths, Some(Vector::splat(0.5)));
+    app.update();
+    app.update();
+}
+
+#[test]
+fn systems_of_the_app_draw_without_the_plugin() {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update)));
+    app.init_resource::<Assets<GizmoAsset>>().init_gizmo_group::<PhysicsGizmos>();
+    app.add_systems(Update, |mut gizmos: Gizmos<PhysicsGizmos>| {
+        gizmos.draw_line(Vector::ZERO, Vector::X, RED);
+        gizmos.draw_arrow(Vector::ZERO, Vector::Y, 0.1, RED);
+        gizmos.draw_line_strip(vec![Vector::X, Vector::Y], Vector::ONE, Rotation::default(), true, RED);
+        gizmos.draw_polyline(
+            &[Vector::X, Vector::Y],
+            &[[0, 1], [1, 7]],
+            Vector::ONE,
+            Rotation::default(),
+            RED,
+        );
+        gizmos.draw_collider(&cube(0.5), Vector::ONE, Rotation::default(), RED);
+    });
+    frame(&mut app);
+    assert!(drawn(&app).len() > 10 && drawn(&app).iter().all(|(point, _)| point.is_finite()));
+}
+
+#[test]
+fn values_that_are_not_finite_draw_nothing_and_harm_nothing() {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update)));
+    app.init_resource::<Assets<GizmoAsset>>().init_gizmo_group::<PhysicsGizmos>();
+    app.add_systems(Update, |mut gizmos: Gizmos<PhysicsGizmos>| {
+        for bad in [Scalar::NAN, Scalar::INFINITY, Scalar::MAX] {
+            let v = Vector::splat(bad);
+            gizmos.draw_line(Vector::ZERO, v, RED);
+            gizmos.draw_arrow(v, Vector::ZERO, bad, RED);
+            gizmos.draw_arrow(Vector::ZERO, Vector::ZERO, bad, RED);
+            gizmos.draw_collider(&cube(0.5), v, Rotation::default(), RED);
+            gizmos.draw_raycast(v, avian::math::Dir::X, bad, &[], RED, RED, RED, bad);
+            gizmos.draw_line_strip(vec![], v, Rotation::default(), true, RED);
+        }
+    });
+    frame(&mut app);
+    frame(&mut app);
+}
