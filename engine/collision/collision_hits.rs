@@ -91,7 +91,7 @@ impl CollisionHit {
 #[reflect(Component, Debug, Default, PartialEq)]
 pub struct CollisionHitsEnabled {
     /// The speed of approach above which a blow is reported, m/s, times the
-    /// [`PhysicsLengthUnit`](crate::prelude::PhysicsLengthUnit). 1 by default. NaN reports none.
+    /// [`PhysicsLengthUnit`]. 1 by default. NaN reports none.
     pub min_speed: Scalar,
 }
 
