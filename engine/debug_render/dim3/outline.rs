@@ -29,7 +29,7 @@ pub(in crate::debug_render) fn add_of_dimension(shape: &TypedShape<'_>, lines: &
         TypedShape::Capsule(s) => capsule(s.segment.a.f32(), s.segment.b.f32(), s.radius as f32, lines),
         TypedShape::Cuboid(s) => lines.push(edges(-s.half_extents.f32(), s.half_extents.f32())),
         TypedShape::RoundCuboid(s) => {
-            round_box(s.inner_shape.half_extents.f32(), s.border_radius as f32, lines)
+            round_box(s.inner_shape.half_extents.f32(), s.border_radius as f32, lines);
         }
         TypedShape::Triangle(s) => lines.push_closed([s.a, s.b, s.c].map(point)),
         TypedShape::RoundTriangle(s) => {

@@ -175,6 +175,7 @@ pub fn contact(
 /// Replaces `manifolds` by the contact manifolds of two colliders, with points up to `prediction_distance` metres apart.
 ///
 /// Anchors are from the positions given, in world axes. There are none if a number is not finite.
+#[expect(clippy::too_many_arguments, reason = "as in Avian")]
 pub fn contact_manifolds(
     collider1: &Collider,
     position1: impl Into<Position>,
@@ -305,6 +306,7 @@ pub fn intersection_test(
 /// # Errors
 ///
 /// If parry is asked, and does not support the shapes.
+#[expect(clippy::too_many_arguments, reason = "as in Avian")]
 pub fn time_of_impact(
     collider1: &Collider,
     position1: impl Into<Position>,

@@ -84,9 +84,9 @@ unsafe impl<T: Component<Mutability = Mutable>, const WRITES: bool> WorldQuery f
         (<Write<T> as WorldQuery>::shrink_fetch(fetch.0), <Read<T> as WorldQuery>::shrink_fetch(fetch.1))
     }
 
-    unsafe fn init_fetch<'w, 's>(
+    unsafe fn init_fetch<'w>(
         world: UnsafeWorldCell<'w>,
-        state: &'s Self::State,
+        state: &Self::State,
         last_run: Tick,
         this_run: Tick,
     ) -> Self::Fetch<'w> {
@@ -101,9 +101,9 @@ unsafe impl<T: Component<Mutability = Mutable>, const WRITES: bool> WorldQuery f
 
     const IS_DENSE: bool = <Read<T> as WorldQuery>::IS_DENSE;
 
-    unsafe fn set_archetype<'w, 's>(
+    unsafe fn set_archetype<'w>(
         fetch: &mut Self::Fetch<'w>,
-        state: &'s Self::State,
+        state: &Self::State,
         archetype: &'w Archetype,
         table: &'w Table,
     ) {
@@ -114,7 +114,7 @@ unsafe impl<T: Component<Mutability = Mutable>, const WRITES: bool> WorldQuery f
         }
     }
 
-    unsafe fn set_table<'w, 's>(fetch: &mut Self::Fetch<'w>, state: &'s Self::State, table: &'w Table) {
+    unsafe fn set_table<'w>(fetch: &mut Self::Fetch<'w>, state: &Self::State, table: &'w Table) {
         // SAFETY: as the caller's contract.
         unsafe {
             <Write<T> as WorldQuery>::set_table(&mut fetch.0, &state.id, table);
