@@ -511,7 +511,9 @@ fn the_rest_can_be_named() {
     named::<(Forces, RigidBodyQuery, RigidBodyQueryReadOnly, forces::ForcePlugin)>();
     fn both<F: RigidBodyForces>() {}
     let _ = (both::<ForcesItem>, both::<NonWakingForcesItem>);
-    let _ = |mut forces: ForcesItem| drop(forces.non_waking().waking().reborrow());
+    let _ = |mut forces: ForcesItem| {
+        let _ = forces.non_waking().waking().reborrow();
+    };
     named::<dynamics::ccd::SpeculativeMargin>();
     named::<dynamics::ccd::SweptCcd>();
     named::<dynamics::ccd::SweepMode>();

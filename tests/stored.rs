@@ -109,6 +109,7 @@ fn components_come_back() {
     comes_back((ConstantForce(Vector::X * 0.1), ConstantTorque(spin(0.3).0), ConstantLocalForce(Vector::Y)));
     comes_back((ConstantLinearAcceleration(Vector::X * 0.1), ConstantAngularAcceleration(spin(0.3).0)));
     comes_back(ConstantLocalLinearAcceleration(Vector::X * 0.1));
+    #[allow(clippy::needless_update, reason = "3D has one more field")]
     comes_back(AccumulatedLocalAcceleration { linear: Vector::X * 0.1, ..Default::default() });
     comes_back(VelocityIntegrationData { linear_increment: Vector::X * 0.1, ..Default::default() });
     let friction =
