@@ -142,7 +142,7 @@ fn slow_blows_sensors_and_what_does_not_ask_report_nothing() {
     steps(&mut app, 100);
     let seen = app.world().resource::<Seen>();
     assert!(seen.messages.is_empty() && seen.observed.is_empty(), "{:?}", seen.messages);
-    // Asked for now, the next blow is told.
+    // After `CollisionHitsEnabled` is inserted, the next blow is reported.
     app.world_mut().entity_mut(slow).insert(LinearVelocity(Vector::Y * 5.0));
     app.world_mut()
         .entity_mut(deaf)

@@ -1,4 +1,4 @@
-//! Collisions as the app sees them: who is told of starts and ends, when and in which order, and what `Collisions` has.
+//! Collision events: their receivers, time and order. The content of `Collisions`.
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
 use avian::{

@@ -774,7 +774,7 @@ fn forces_on_what_is_gone_do_nothing() {
     assert!(lab.at(bare).is_finite());
 }
 
-/// How often a system in a schedule and set runs in the first step after it is told to push.
+/// Whether forces that a system in a schedule and set applies count in the same step.
 fn counts_in_the_same_step(schedule: impl ScheduleLabel, set: impl SystemSet) -> bool {
     #[derive(Resource)]
     struct Push(bool);

@@ -151,7 +151,7 @@ fn a_dropped_contact_is_no_collision() {
     }
     assert!(position(&app, falling).y < -0.5);
     assert_eq!(reported(&app), 0, "a dropped contact is reported");
-    // Let go of, it touches, and its end is told once it is dropped again.
+    // Without the hook the collider touches the floor. With the hook again the collision ends.
     app.world_mut().entity_mut(falling).remove::<ActiveCollisionHooks>();
     steps(&mut app, 1);
     assert!(app.world().get::<CollidingEntities>(falling).unwrap().contains(&floor));

@@ -58,7 +58,7 @@ use crate::{
     },
 };
 
-/// Two colliders began to touch. See the [module](self) for who is told, and when.
+/// Two colliders began to touch. The [module](self) lists the receivers and the time of sending.
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
 pub struct CollisionStart {
     /// The first collider. An observer runs on this one.
@@ -72,7 +72,7 @@ pub struct CollisionStart {
     pub body2: Option<Entity>,
 }
 
-/// Two colliders ceased to touch. See the [module](self) for who is told, and when.
+/// Two colliders ceased to touch. The [module](self) lists the receivers and the time of sending.
 ///
 /// Entities may be gone: despawning one ends the collision.
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]

@@ -13,15 +13,15 @@ fn points(collider: &Collider) -> Vec<Vec3> {
     outline(collider).points().iter().copied().filter(|point| !point.is_nan()).collect()
 }
 
-fn check(name: &str, collider: &Collider, tolerance: f32) {
+/// Checks an outline. It may end `open` metres before the box of the shape: a tilted round shape is drawn by few of its circles.
+fn check(name: &str, collider: &Collider, tolerance: f32, open: f32) {
     let points = points(collider);
     assert!(!points.is_empty(), "{name} has no outline");
     let aabb = collider.shape_scaled().compute_local_aabb();
     let (low, high) = points.iter().fold((points[0], points[0]), |(l, h), p| (l.min(*p), h.max(*p)));
     let (min, max) = (point(aabb.mins), point(aabb.maxs));
     let apart = (low - min).abs().max((high - max).abs()).max_element();
-    // Few points of a tilted round shape's outline are extreme.
-    assert!(apart <= 50.0 * tolerance, "{name}: the outline ends {apart} m from the box of the shape");
+    assert!(apart <= tolerance + open, "{name}: the outline ends {apart} m from the box of the shape");
     for p in points {
         let at = Vector::from_slice(&p.to_array().map(Into::into)[..DIM]);
         let distance = collider.distance_to_point(Vector::ZERO, Rotation::default(), at, false).abs() as f32;
@@ -31,11 +31,11 @@ fn check(name: &str, collider: &Collider, tolerance: f32) {
 
 #[test]
 fn outlines_lie_on_surfaces_and_reach_their_ends() {
-    for (name, collider) in shapes() {
-        check(name, &collider, 2.0e-3);
+    for (name, collider, open) in shapes() {
+        check(name, &collider, 2.0e-3, open);
         let mut scaled = collider.clone();
         scaled.set_scale(Vector::splat(3.0), 10);
-        check(name, &scaled, 6.0e-3);
+        check(name, &scaled, 6.0e-3, 3.0 * open);
     }
 }
 

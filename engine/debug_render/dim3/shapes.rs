@@ -2,26 +2,27 @@
 
 use crate::{
     collision::collider::Collider,
-    math::Vector,
+    math::{Scalar, Vector},
     parry::shape::{RoundCone, RoundCylinder, SharedShape},
 };
 
-fn v(x: f32, y: f32, z: f32) -> Vector {
-    Vector::new(x.into(), y.into(), z.into())
+fn v(x: Scalar, y: Scalar, z: Scalar) -> Vector {
+    Vector::new(x, y, z)
 }
 
-pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider)> {
-    let part = |i: u32, factor: u32| (i * factor % 23) as f32 / 11.0 - 1.0;
+/// Names, colliders, and how far their outlines may end before their boxes: of tilted round edges few circles are drawn.
+pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider, f32)> {
+    let part = |i: u32, factor: u32| (i * factor % 23) as Scalar / 11.0 - 1.0;
     let hull: Vec<Vector> = (0..24).map(|i| v(part(i, 5), part(i, 7), part(i, 11))).collect();
     let [a, b, c] = [v(0.0, 0.0, 0.0), v(1.0, 0.1, 0.0), v(0.3, 0.9, 0.4)];
     vec![
-        ("sphere", Collider::sphere(0.7)),
-        ("capsule", Collider::capsule_endpoints(0.3, v(-0.5, 0.2, 0.0), v(0.6, 0.9, 0.3))),
-        ("cuboid", Collider::cuboid(1.0, 2.0, 0.5)),
-        ("round cuboid", Collider::round_cuboid(1.0, 2.0, 0.5, 0.2)),
-        ("triangle", Collider::triangle(a, b, c)),
-        ("round triangle", SharedShape::round_triangle(a, b, c, 0.2).into()),
-        ("cylinder", Collider::cylinder(0.5, 2.0)),
+        ("sphere", Collider::sphere(0.7), 0.0),
+        ("capsule", Collider::capsule_endpoints(0.3, v(-0.5, 0.2, 0.0), v(0.6, 0.9, 0.3)), 0.0),
+        ("cuboid", Collider::cuboid(1.0, 2.0, 0.5), 0.0),
+        ("round cuboid", Collider::round_cuboid(1.0, 2.0, 0.5, 0.2), 0.0),
+        ("triangle", Collider::triangle(a, b, c), 0.0),
+        ("round triangle", SharedShape::round_triangle(a, b, c, 0.2).into(), 0.0),
+        ("cylinder", Collider::cylinder(0.5, 2.0), 0.0),
         (
             "round cylinder",
             SharedShape::new(RoundCylinder {
@@ -29,8 +30,9 @@ pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider)> {
                 border_radius: 0.2,
             })
             .into(),
+            0.0,
         ),
-        ("cone", Collider::cone(0.5, 2.0)),
+        ("cone", Collider::cone(0.5, 2.0), 0.0),
         (
             "round cone",
             SharedShape::new(RoundCone {
@@ -38,14 +40,16 @@ pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider)> {
                 border_radius: 0.2,
             })
             .into(),
+            0.0,
         ),
-        ("hull", Collider::convex_hull(hull.clone()).expect("a hull")),
-        ("round hull", SharedShape::round_convex_hull(&hull, 0.2).expect("a hull").into()),
-        ("segment", Collider::segment(a, b)),
-        ("mesh", Collider::trimesh(vec![a, b, c, v(0.0, 1.0, 1.0)], vec![[0, 1, 2], [0, 2, 3]])),
+        ("hull", Collider::convex_hull(hull.clone()).expect("a hull"), 0.0),
+        ("round hull", SharedShape::round_convex_hull(&hull, 0.2).expect("a hull").into(), 0.0),
+        ("segment", Collider::segment(a, b), 0.0),
+        ("mesh", Collider::trimesh(vec![a, b, c, v(0.0, 1.0, 1.0)], vec![[0, 1, 2], [0, 2, 3]]), 0.0),
         (
             "height field",
             Collider::heightfield(vec![vec![0.0, 0.5, 0.2], vec![0.3, 0.1, 0.4]], v(4.0, 1.0, 3.0)),
+            0.0,
         ),
     ]
 }
