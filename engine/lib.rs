@@ -53,6 +53,7 @@
 //! | let some pairs pass, or change their contacts | [`CollisionHooks`](prelude::CollisionHooks) |
 //! | let it sleep, or wake it | [`Sleeping`](prelude::Sleeping), [`SleepingDisabled`](prelude::SleepingDisabled), [`WakeBody`](prelude::WakeBody) |
 //! | cast rays and shapes, find what is near | [`spatial_query`], [`RayCaster`](prelude::RayCaster) |
+//! | let pointers hover, click and drag it | `PhysicsPickingPlugin` |
 //! | take it out of the simulation | [`RigidBodyDisabled`](prelude::RigidBodyDisabled), [`ColliderDisabled`](prelude::ColliderDisabled) |
 //! | draw it smoothly between steps | [`TransformInterpolation`](prelude::TransformInterpolation), [`TransformExtrapolation`](prelude::TransformExtrapolation) |
 //! | pause, slow down or step by hand | [`Time<Physics>`](schedule::Physics), [`PhysicsSchedule`](prelude::PhysicsSchedule) |
@@ -98,6 +99,8 @@ pub mod dynamics;
 pub mod interpolation;
 pub mod math;
 pub mod physics_transform;
+#[cfg(all(feature = "bevy_picking", feature = "default-collider"))]
+pub mod picking;
 pub mod schedule;
 pub mod spatial_query;
 
@@ -125,6 +128,10 @@ pub mod prelude {
     pub use crate::diagnostics::PhysicsDiagnosticsPlugin;
     #[cfg(feature = "diagnostic_ui")]
     pub use crate::diagnostics::ui::{PhysicsDiagnosticsUiPlugin, PhysicsDiagnosticsUiSettings};
+    #[cfg(all(feature = "bevy_picking", feature = "default-collider"))]
+    pub use crate::picking::{
+        PhysicsPickable, PhysicsPickingFilter, PhysicsPickingPlugin, PhysicsPickingSettings,
+    };
     #[expect(deprecated, reason = "former names stay importable")]
     pub use crate::schedule::{PhysicsSet, PhysicsStepSet};
     pub use crate::{

@@ -25,6 +25,8 @@ impl Plugin for PhysicsTypeRegistrationPlugin {
         register_queries(app);
         #[cfg(feature = "debug-plugin")]
         register_drawing(app);
+        #[cfg(all(feature = "bevy_picking", feature = "default-collider"))]
+        register_picking(app);
         #[cfg(feature = "bevy_diagnostic")]
         register_diagnostics(app);
         register_collider_settings(app);
@@ -36,6 +38,15 @@ fn register_schedule(app: &mut App) {
     use bevy_time::Time;
 
     register!(app: Physics, Substeps, Time<Physics>, Time<Substeps>, LastPhysicsTick, StepTimes);
+}
+
+#[cfg(all(feature = "bevy_picking", feature = "default-collider"))]
+fn register_picking(app: &mut App) {
+    use crate::picking::{
+        PhysicsPickable, PhysicsPickingDiagnostics, PhysicsPickingFilter, PhysicsPickingSettings,
+    };
+
+    register!(app: PhysicsPickable, PhysicsPickingFilter, PhysicsPickingSettings, PhysicsPickingDiagnostics);
 }
 
 #[cfg(feature = "bevy_diagnostic")]

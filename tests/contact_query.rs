@@ -1,13 +1,12 @@
-//! Queries of two colliders, and of one, against parry's answers and closed forms.
+//! Queries of two colliders, and of one, against closed forms and proofs.
 
-use super::contact_query_dim::{pose, turned};
+use super::contact_query_dim::{corners_of, turned};
 use avian::{
     collision::{
         collider::contact_query::{self, ClosestPoints, TimeOfImpactStatus},
         contact_types::SingleContact,
     },
     math::{Scalar, Vector},
-    parry::{self, shape::SharedShape},
     prelude::*,
 };
 use proptest::prelude::*;
@@ -15,33 +14,28 @@ use proptest::prelude::*;
 const ZERO: Vector = Vector::ZERO;
 
 fn cube(half: Scalar) -> Collider {
-    let mut corners = vec![ZERO];
-    for axis in Vector::AXES {
-        corners = corners.iter().flat_map(|c| [*c - axis * half, *c + axis * half]).collect();
-    }
-    Collider::convex_hull(corners).expect("a box is convex")
+    Collider::convex_hull(corners(half)).expect("a box is convex")
 }
 
 fn turn() -> Rotation {
     Rotation::default()
 }
 
-/// A collider, and what it is made of: polytopes at places, each grown by a radius. Parry is exact for polytopes, and up to
-/// 6 mm off for round shapes.
+/// A collider, and the convex parts it is made of: the corners of each, and a radius around their hull.
 struct Sample {
     collider: Collider,
-    cores: Vec<(Vector, SharedShape, Scalar)>,
+    parts: Vec<(Vec<Vector>, Scalar)>,
 }
 
-fn sample(collider: Collider, cores: impl IntoIterator<Item = (Vector, Collider, Scalar)>) -> Sample {
-    let cores =
-        cores.into_iter().map(|(at, core, radius)| (at, core.shape_scaled().clone(), radius)).collect();
-    Sample { collider, cores }
+/// The corners of [`cube`].
+fn corners(half: Scalar) -> Vec<Vector> {
+    let along = |axis| move |corner: Vector| [corner - axis * half, corner + axis * half];
+    Vector::AXES.into_iter().fold(vec![ZERO], |all, axis| all.into_iter().flat_map(along(axis)).collect())
 }
 
-/// The axis of a capsule.
-fn axis(length: Scalar) -> Collider {
-    Collider::segment(Vector::Y * (-0.5 * length), Vector::Y * (0.5 * length))
+/// The ends of the axis of a capsule.
+fn ends(length: Scalar) -> Vec<Vector> {
+    vec![Vector::Y * (-0.5 * length), Vector::Y * (0.5 * length)]
 }
 
 /// The shapes that the random tests draw from.
@@ -58,12 +52,16 @@ fn samples() -> Vec<Sample> {
         (Vector::X, turn(), cube(0.4)),
         (-Vector::X, turn(), Collider::capsule(0.4, 0.5)),
     ]);
+    let moved = |points: Vec<Vector>, by: Vector| points.into_iter().map(|p| p + by).collect();
     vec![
-        sample(cube(0.5), [(ZERO, cube(0.5), 0.0)]),
-        sample(Collider::capsule(0.3, 1.0), [(ZERO, axis(1.0), 0.3)]),
-        sample(Collider::capsule(0.5, 1.0e-3), [(ZERO, axis(1.0e-3), 0.5)]),
-        sample(hull.clone(), [(ZERO, hull, 0.0)]),
-        sample(pair, [(Vector::X, cube(0.4), 0.0), (-Vector::X, axis(0.5), 0.4)]),
+        Sample { collider: cube(0.5), parts: vec![(corners(0.5), 0.0)] },
+        Sample { collider: Collider::capsule(0.3, 1.0), parts: vec![(ends(1.0), 0.3)] },
+        Sample { collider: Collider::capsule(0.5, 1.0e-3), parts: vec![(ends(1.0e-3), 0.5)] },
+        Sample { parts: vec![(corners_of(&hull), 0.0)], collider: hull },
+        Sample {
+            collider: pair,
+            parts: vec![(moved(corners(0.4), Vector::X), 0.0), (moved(ends(0.5), -Vector::X), 0.4)],
+        },
     ]
 }
 
@@ -71,17 +69,29 @@ fn shapes() -> Vec<Collider> {
     samples().into_iter().map(|sample| sample.collider).collect()
 }
 
-/// The distance of two samples, by that of their cores.
-fn expected_distance(a: &Sample, b: &Sample, at: Vector, rotation: Rotation) -> Scalar {
-    let mut least = Scalar::INFINITY;
-    for (place_a, core_a, radius_a) in &a.cores {
-        for (place_b, core_b, radius_b) in &b.cores {
-            let (pose_a, pose_b) = (pose(*place_a, turn()), pose(at + rotation * *place_b, rotation));
-            let apart = parry::query::distance(&pose_a, &**core_a, &pose_b, &**core_b).unwrap();
-            least = least.min(apart - radius_a - radius_b);
-        }
-    }
-    least.max(0.0)
+/// How far a part reaches along a unit vector.
+fn reach((points, radius): &(Vec<Vector>, Scalar), along: Vector) -> Scalar {
+    points.iter().map(|p| p.dot(along)).fold(Scalar::NEG_INFINITY, Scalar::max) + radius
+}
+
+/// How far a point lies outside of a part, in the direction of a set in which it lies farthest outside.
+fn outside(part: &(Vec<Vector>, Scalar), point: Vector, directions: &[Vector]) -> Scalar {
+    directions.iter().map(|n| point.dot(*n) - reach(part, *n)).fold(Scalar::NEG_INFINITY, Scalar::max)
+}
+
+/// The gap between two parts along a unit vector: no more than their distance, and equal to it in the direction of the
+/// nearest points.
+fn gap(a: &(Vec<Vector>, Scalar), b: &(Vec<Vector>, Scalar), n: Vector) -> Scalar {
+    -reach(b, -n) - reach(a, n)
+}
+
+/// Unit vectors that cover all directions.
+fn directions() -> Vec<Vector> {
+    let all = (1..400).map(|i| {
+        let axes = Vector::AXES.into_iter().enumerate();
+        axes.fold(ZERO, |at, (k, axis)| at + axis * (i as Scalar * (0.7 + 0.37 * k as Scalar)).sin())
+    });
+    all.filter(|v| v.length() > 0.1).map(|v| v / v.length()).collect()
 }
 
 #[test]
@@ -219,27 +229,45 @@ fn values_that_are_not_finite_are_no_hits() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2_000))]
 
-    /// Distances are those of the cores less the radii.
+    /// A distance is proved by two points of the shapes that are so far apart, and by a direction in which all of them is
+    /// so far apart. Both come with the contact.
     #[test]
-    fn distances_and_overlaps_are_those_of_the_cores(
+    fn distances_are_proved_by_points_and_directions(
         (i, j) in (0..5_usize, 0..5_usize),
         (x, y, angle) in (-3.0..3.0_f64, -3.0..3.0_f64, 0.0..6.0_f64),
     ) {
-        let (samples, x, y) = (samples(), x as Scalar, y as Scalar);
-        let (a, b) = (&samples[i].collider, &samples[j].collider);
-        let at = Vector::X * x + Vector::Y * y;
-        let rotation = turned(angle);
-        let expected = expected_distance(&samples[i], &samples[j], at, rotation);
-        let found = contact_query::distance(a, ZERO, turn(), b, at, rotation).unwrap();
-        prop_assert!((found - expected).abs() < 1.0e-4, "{found} for {expected}");
-        if found > 1.0e-3 {
-            prop_assert!(!contact_query::intersection_test(a, ZERO, turn(), b, at, rotation).unwrap());
-            let touch = contact_query::contact(a, ZERO, turn(), b, at, rotation, 100.0).unwrap().unwrap();
-            prop_assert!((touch.penetration + found).abs() < 1.0e-5);
-            // Both points are the nearest.
-            let p = touch.global_point1(&Position(ZERO), &turn());
-            let q = touch.global_point2(&Position(at), &rotation);
-            prop_assert!(((p - q).length() - found).abs() < 1.0e-4);
+        let (samples, at, directions) = (samples(), Vector::X * x as Scalar + Vector::Y * y as Scalar, directions());
+        let (a, b, rotation) = (&samples[i], &samples[j], turned(angle));
+        let moved: Vec<(Vec<Vector>, Scalar)> = b
+            .parts
+            .iter()
+            .map(|(points, radius)| (points.iter().map(|p| at + rotation * *p).collect(), *radius))
+            .collect();
+        let found = contact_query::distance(&a.collider, ZERO, turn(), &b.collider, at, rotation).unwrap();
+        let meet = contact_query::intersection_test(&a.collider, ZERO, turn(), &b.collider, at, rotation).unwrap();
+        prop_assert_eq!(meet, found == 0.0);
+        let touch = contact_query::contact(&a.collider, ZERO, turn(), &b.collider, at, rotation, 100.0);
+        let touch = touch.unwrap().expect("nearer than 100 m");
+        let least = |f: &dyn Fn(&(Vec<Vector>, Scalar), &(Vec<Vector>, Scalar)) -> Scalar| {
+            let pairs = a.parts.iter().flat_map(|a| moved.iter().map(move |b| f(a, b)));
+            pairs.fold(Scalar::INFINITY, Scalar::min)
+        };
+        let apart = least(&|a, b| directions.iter().map(|n| gap(a, b, *n)).fold(Scalar::NEG_INFINITY, Scalar::max));
+        prop_assert!(apart < found + 1.0e-5, "{apart} m apart, found {found}");
+        if found == 0.0 {
+            return Ok(());
+        }
+        prop_assert!((touch.penetration + found).abs() < 1.0e-5, "{} m in contact, {found}", -touch.penetration);
+        let p = touch.global_point1(&Position(ZERO), &turn());
+        let q = touch.global_point2(&Position(at), &rotation);
+        prop_assert!(((p - q).length() - found).abs() < 1.0e-5, "{p} and {q}, {found} m");
+        let [p_out, q_out] = [(&a.parts, p), (&moved, q)].map(|(parts, point)| {
+            parts.iter().map(|part| outside(part, point, &directions)).fold(Scalar::INFINITY, Scalar::min)
+        });
+        prop_assert!(p_out < 1.0e-5 && q_out < 1.0e-5, "{p_out} and {q_out} m outside");
+        if a.parts.len() * b.parts.len() == 1 {
+            let proved = gap(&a.parts[0], &moved[0], touch.global_normal1(&turn()));
+            prop_assert!((proved - found).abs() < 1.0e-5, "{proved} m along the normal, found {found}");
         }
     }
 }

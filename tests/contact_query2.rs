@@ -1,9 +1,8 @@
-//! Poses in 2D.
+//! Rotations and hulls in 2D.
 
 use avian::{
     math::{Scalar, Vector},
-    parry::math::{Pose, Rot2},
-    prelude::Rotation,
+    prelude::{Collider, Rotation},
 };
 
 /// A rotation by an angle.
@@ -11,7 +10,7 @@ pub fn turned(angle: f64) -> Rotation {
     Rotation::radians(angle as Scalar)
 }
 
-/// A pose of parry.
-pub fn pose(position: Vector, rotation: Rotation) -> Pose {
-    Pose::from_parts(position, Rot2::from_cos_sin_unchecked(rotation.cos, rotation.sin))
+/// The corners of a hull, of which parry leaves out those that lie nearly on a line.
+pub fn corners_of(hull: &Collider) -> Vec<Vector> {
+    hull.shape_scaled().as_convex_polygon().expect("a hull").points().to_vec()
 }

@@ -1,9 +1,8 @@
-//! Poses in 3D.
+//! Rotations and hulls in 3D.
 
 use avian::{
     math::{Quaternion, Scalar, Vector},
-    parry::math::Pose,
-    prelude::Rotation,
+    prelude::{Collider, Rotation},
 };
 
 /// A rotation by an angle, about an axis that is none of a shape's.
@@ -11,7 +10,7 @@ pub fn turned(angle: f64) -> Rotation {
     Rotation(Quaternion::from_axis_angle(Vector::new(1.0, 2.0, 3.0).normalize(), angle as Scalar))
 }
 
-/// A pose of parry.
-pub fn pose(position: Vector, rotation: Rotation) -> Pose {
-    Pose::from_parts(position, rotation.0)
+/// The corners of a hull.
+pub fn corners_of(hull: &Collider) -> Vec<Vector> {
+    hull.shape_scaled().as_convex_polyhedron().expect("a hull").points().to_vec()
 }

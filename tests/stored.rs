@@ -37,8 +37,12 @@ use scenes::dim::{ball, block, spin};
 use serde::{Serialize, de::DeserializeOwned, de::DeserializeSeed};
 
 /// Types that are not stored: measurements of a step, ticks of a world, and settings of what is shown.
-const NOT_STORED: [&str; 13] = [
+const NOT_STORED: [&str; 17] = [
     "PhysicsGizmos",
+    "PhysicsPickingSettings",
+    "PhysicsPickable",
+    "PhysicsPickingFilter",
+    "PhysicsPickingDiagnostics",
     "ContactGizmoScale",
     "DebugRender",
     "PhysicsDiagnosticsUiSettings",

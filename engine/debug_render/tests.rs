@@ -1,7 +1,10 @@
 //! The lines lie on the surfaces of shapes, and reach as far as these.
 
 use super::{
-    dim::{point, shapes::shapes},
+    dim::{
+        point,
+        shapes::{core_of, shapes},
+    },
     outline::outline,
 };
 use crate::{collision::collider::Collider, math::Vector, parry::math::IVector, physics_transform::Rotation};
@@ -13,7 +16,7 @@ fn points(collider: &Collider) -> Vec<Vec3> {
     outline(collider).points().iter().copied().filter(|point| !point.is_nan()).collect()
 }
 
-/// Checks an outline. It may end `open` metres before the box of the shape: a tilted round shape is drawn by few of its circles.
+/// Checks an outline, which may end `open` metres before the box of the shape.
 fn check(name: &str, collider: &Collider, tolerance: f32, open: f32) {
     let points = points(collider);
     assert!(!points.is_empty(), "{name} has no outline");
@@ -22,10 +25,11 @@ fn check(name: &str, collider: &Collider, tolerance: f32, open: f32) {
     let (min, max) = (point(aabb.mins), point(aabb.maxs));
     let apart = (low - min).abs().max((high - max).abs()).max_element();
     assert!(apart <= tolerance + open, "{name}: the outline ends {apart} m from the box of the shape");
+    let (core, radius) = core_of(collider);
     for p in points {
         let at = Vector::from_slice(&p.to_array().map(Into::into)[..DIM]);
-        let distance = collider.distance_to_point(Vector::ZERO, Rotation::default(), at, false).abs() as f32;
-        assert!(distance <= tolerance, "{name}: {p} is {distance} m from the surface");
+        let distance = core.distance_to_point(Vector::ZERO, Rotation::default(), at, false) - radius;
+        assert!(distance.abs() as f32 <= tolerance, "{name}: {p} is {distance} m from the surface");
     }
 }
 

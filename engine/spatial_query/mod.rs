@@ -27,6 +27,8 @@ mod recent;
 #[cfg(feature = "default-collider")]
 mod search;
 #[cfg(feature = "default-collider")]
+mod searches;
+#[cfg(feature = "default-collider")]
 mod shape_caster;
 #[cfg(feature = "default-collider")]
 mod system_param;

@@ -5,24 +5,21 @@ use bevy_reflect::prelude::*;
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use kernel::{
-    math::{WorldPose, WorldVector},
-    query::{CastConfig, Ray as KernelRay, ShapeCast, contains_point, overlaps, project_point},
-    shape::{Aabb, Shape},
+    query::{contains_point, overlaps},
+    shape::Aabb,
 };
 use std::sync::Arc;
 
 use super::{
     RayHitData, ShapeCastConfig, ShapeHitData, SpatialQueryFilter,
     recent::{Recent, World},
-    search::{Candidate, Found, Scene, Walk, all, nearest, some},
+    search::{all, nearest, some},
+    searches::{Search, is_foreign},
 };
 use crate::{
-    collision::collider::{Collider, ColliderAabb, ForeignCast, cast_foreign, overlaps_foreign},
-    math::{
-        AdjustPrecision, Dir, RotationValue, Scalar, Vector, VectorF32, to_f32, vector_from_kernel,
-        world_from_kernel, world_to_kernel,
-    },
-    physics_transform::{Position, Rotation, pose_from_kernel, world_pose},
+    collision::collider::{Collider, ColliderAabb, overlaps_foreign},
+    math::{Dir, RotationValue, Scalar, Vector, world_to_kernel},
+    physics_transform::{Position, Rotation, world_pose},
 };
 
 /// Rays, shape casts, nearest points and overlaps of all colliders, as a system parameter.
@@ -65,157 +62,6 @@ pub struct PointProjection {
     pub is_inside: bool,
 }
 
-/// What a query has of a search: the colliders as they are, and the filter.
-struct Search<'a> {
-    world: &'a World<'a, 'a>,
-    recent: &'a Recent,
-    filter: &'a SpatialQueryFilter,
-}
-
-impl Search<'_> {
-    fn scene(&self) -> Scene<'_> {
-        Scene { tables: &self.world.colliders, recent: self.recent }
-    }
-
-    /// The collider of a candidate, if it passes the filter. Only parry's shapes need it.
-    fn component(&self, candidate: &Candidate) -> Option<&Collider> {
-        self.world.component(candidate.entity)
-    }
-
-    fn passes(&self, candidate: &Candidate) -> bool {
-        self.filter.test(candidate.entity, candidate.layers)
-    }
-}
-
-fn is_foreign(shape: &Shape) -> bool {
-    matches!(shape, Shape::Foreign(_))
-}
-
-struct RaySearch<'a> {
-    search: Search<'a>,
-    ray: KernelRay,
-    origin: Vector,
-    direction: Vector,
-    solid: bool,
-}
-
-impl Walk<Vector> for RaySearch<'_> {
-    fn walk(&self, visit: &mut dyn FnMut(&Candidate, Scalar) -> Scalar) {
-        self.search.scene().along_ray(&self.ray, visit);
-    }
-
-    fn hit(&self, candidate: &Candidate, limit: Scalar) -> Option<Found<Vector>> {
-        if !self.search.passes(candidate) {
-            return None;
-        }
-        if is_foreign(candidate.shape) {
-            let (position, rotation) = candidate.components();
-            let collider = self.search.component(candidate)?;
-            let hit =
-                collider.cast_ray(position, rotation, self.origin, self.direction, limit, self.solid)?;
-            return Some(Found::new(candidate, hit.0, hit.1));
-        }
-        let hit = self.ray.hit(candidate.order, candidate.shape, &candidate.pose, limit)?;
-        Some(Found::new(candidate, hit.distance, vector_from_kernel(hit.normal)))
-    }
-}
-
-/// Points and normals of a hit of a cast shape: on the collider, then on the shape.
-#[derive(Clone, Copy)]
-struct Touch {
-    points: [Vector; 2],
-    normals: [Vector; 2],
-}
-
-struct CastSearch<'a> {
-    search: Search<'a>,
-    cast: ShapeCast<'a>,
-    shape: &'a Collider,
-    pose: (Position, Rotation),
-    direction: Vector,
-    config: &'a ShapeCastConfig,
-}
-
-impl Walk<Touch> for CastSearch<'_> {
-    fn walk(&self, visit: &mut dyn FnMut(&Candidate, Scalar) -> Scalar) {
-        self.search.scene().along_cast(&self.cast, visit);
-    }
-
-    fn hit(&self, candidate: &Candidate, limit: Scalar) -> Option<Found<Touch>> {
-        if !self.search.passes(candidate) {
-            return None;
-        }
-        if is_foreign(candidate.shape) || is_foreign(self.shape.native()) {
-            let cast = ForeignCast {
-                direction: self.direction,
-                max_distance: limit,
-                target_distance: self.config.target_distance,
-                compute_contact: self.config.compute_contact_on_penetration,
-                ignore_penetration: self.config.ignore_origin_penetration,
-            };
-            let collider = self.search.component(candidate)?;
-            let hit = cast_foreign((collider, candidate.components()), (self.shape, self.pose), &cast)?;
-            return Some(Found::new(
-                candidate,
-                hit.distance,
-                Touch { points: hit.points, normals: hit.normals },
-            ));
-        }
-        let hit = self.cast.hit(candidate.order, candidate.shape, &candidate.pose, limit)?;
-        let normal = vector_from_kernel(hit.normal);
-        let touch = Touch { points: hit.points.map(world_from_kernel), normals: [normal, -normal] };
-        Some(Found::new(candidate, hit.distance, touch))
-    }
-}
-
-struct NearSearch<'a> {
-    search: Search<'a>,
-    point: Vector,
-    solid: bool,
-}
-
-impl Walk<(Vector, bool)> for NearSearch<'_> {
-    fn walk(&self, visit: &mut dyn FnMut(&Candidate, Scalar) -> Scalar) {
-        self.search.scene().near(world_to_kernel(self.point), visit);
-    }
-
-    fn hit(&self, candidate: &Candidate, limit: Scalar) -> Option<Found<(Vector, bool)>> {
-        if !self.search.passes(candidate) {
-            return None;
-        }
-        if is_foreign(candidate.shape) {
-            let (position, rotation) = candidate.components();
-            let collider = self.search.component(candidate)?;
-            let (point, is_inside) = collider.project_point(position, rotation, self.point, self.solid);
-            let distance = (point - self.point).length();
-            return (distance <= limit).then(|| Found::new(candidate, distance, (point, is_inside)));
-        }
-        let local = candidate.pose.inverse_transform(world_to_kernel(self.point));
-        // Rounded up.
-        let limit = to_f32(limit).next_up();
-        let limit = if limit < f32::MAX { limit } else { f32::MAX };
-        let found = project_point(candidate.shape, local, self.solid, limit)?;
-        let is_given = found.is_inside && self.solid;
-        let point =
-            if is_given { self.point } else { world_from_kernel(candidate.pose.transform(found.point)) };
-        Some(Found::new(candidate, found.distance as Scalar, (point, found.is_inside)))
-    }
-}
-
-impl From<Found<Vector>> for RayHitData {
-    fn from(found: Found<Vector>) -> Self {
-        Self { entity: found.entity, distance: kernel::query::Hit::distance(&found), normal: found.data }
-    }
-}
-
-impl From<Found<Touch>> for ShapeHitData {
-    fn from(found: Found<Touch>) -> Self {
-        let Touch { points: [point1, point2], normals: [normal1, normal2] } = found.data;
-        let distance = kernel::query::Hit::distance(&found);
-        Self { entity: found.entity, distance, point1, point2, normal1, normal2 }
-    }
-}
-
 /// Searches for the first hits of the colliders as they are in one run of a system.
 pub(super) struct FirstHits<'a> {
     queries: &'a SpatialQuery<'a, 'a>,
@@ -232,7 +78,7 @@ impl FirstHits<'_> {
         filter: &SpatialQueryFilter,
         predicate: &dyn Fn(Entity) -> bool,
     ) -> Option<RayHitData> {
-        let search = self.queries.ray(&self.recent, origin, direction, max_distance, solid, filter)?;
+        let search = self.queries.search(&self.recent, filter).ray(origin, direction, max_distance, solid)?;
         nearest(&search, predicate).map(RayHitData::from)
     }
 
@@ -244,7 +90,7 @@ impl FirstHits<'_> {
         filter: &SpatialQueryFilter,
         predicate: &dyn Fn(Entity) -> bool,
     ) -> Option<ShapeHitData> {
-        let search = self.queries.shape(&self.recent, start, direction, config, filter)?;
+        let search = self.queries.search(&self.recent, filter).shape(start, direction, config)?;
         nearest(&search, predicate).map(ShapeHitData::from)
     }
 
@@ -255,16 +101,11 @@ impl FirstHits<'_> {
         filter: &SpatialQueryFilter,
         predicate: &dyn Fn(Entity) -> bool,
     ) -> Option<PointProjection> {
-        let search = NearSearch { search: self.queries.search(&self.recent, filter), point, solid };
+        let search = self.queries.search(&self.recent, filter).near(point, solid);
         let found = nearest(&search, predicate)?;
         let (point, is_inside) = found.data;
         Some(PointProjection { entity: found.entity, point, is_inside })
     }
-}
-
-/// A direction in the public precision.
-fn vector_of(direction: Dir) -> Vector {
-    VectorF32::from(direction).adjust_precision()
 }
 
 /// The pose of a shape in a query.
@@ -316,7 +157,7 @@ impl SpatialQuery<'_, '_> {
         filter: &SpatialQueryFilter,
     ) -> Vec<RayHitData> {
         let recent = self.world.recent();
-        let search = self.ray(&recent, origin, direction, max_distance, solid, filter);
+        let search = self.search(&recent, filter).ray(origin, direction, max_distance, solid);
         let hits = search.map(|search| some(&search, max_hits, EVERY)).unwrap_or_default();
         hits.into_iter().map(RayHitData::from).collect()
     }
@@ -332,7 +173,7 @@ impl SpatialQuery<'_, '_> {
         mut callback: impl FnMut(RayHitData) -> bool,
     ) {
         let recent = self.world.recent();
-        let search = self.ray(&recent, origin, direction, max_distance, solid, filter);
+        let search = self.search(&recent, filter).ray(origin, direction, max_distance, solid);
         let hits = search.map(|search| all(&search, EVERY)).unwrap_or_default();
         _ = hits.into_iter().all(|hit| callback(hit.into()));
     }
@@ -525,7 +366,7 @@ impl SpatialQuery<'_, '_> {
         predicate: &dyn Fn(Entity) -> bool,
     ) -> Vec<RayHitData> {
         let recent = self.world.recent();
-        let search = self.ray(&recent, origin, direction, max_distance, solid, filter);
+        let search = self.search(&recent, filter).ray(origin, direction, max_distance, solid);
         let hits = search.map(|search| some(&search, max_hits, predicate)).unwrap_or_default();
         hits.into_iter().map(RayHitData::from).collect()
     }
@@ -541,7 +382,7 @@ impl SpatialQuery<'_, '_> {
         predicate: &dyn Fn(Entity) -> bool,
     ) -> Vec<ShapeHitData> {
         let recent = self.world.recent();
-        let search = self.shape(&recent, start, direction, config, filter);
+        let search = self.search(&recent, filter).shape(start, direction, config);
         let hits = search.map(|search| some(&search, max_hits, predicate)).unwrap_or_default();
         hits.into_iter().map(ShapeHitData::from).collect()
     }
@@ -557,43 +398,7 @@ impl SpatialQuery<'_, '_> {
     }
 
     fn search<'a>(&'a self, recent: &'a Arc<Recent>, filter: &'a SpatialQueryFilter) -> Search<'a> {
-        Search { world: &self.world, recent, filter }
-    }
-
-    fn ray<'a>(
-        &'a self,
-        recent: &'a Arc<Recent>,
-        origin: Vector,
-        direction: Dir,
-        max_distance: Scalar,
-        solid: bool,
-        filter: &'a SpatialQueryFilter,
-    ) -> Option<RaySearch<'a>> {
-        let direction = vector_of(direction);
-        let ray = KernelRay::new(world_to_kernel(origin), world_to_kernel(direction), max_distance, solid)?;
-        Some(RaySearch { search: self.search(recent, filter), ray, origin, direction, solid })
-    }
-
-    fn shape<'a>(
-        &'a self,
-        recent: &'a Arc<Recent>,
-        (shape, pose): (&'a Collider, (Position, Rotation)),
-        direction: Dir,
-        config: &'a ShapeCastConfig,
-        filter: &'a SpatialQueryFilter,
-    ) -> Option<CastSearch<'a>> {
-        let direction = vector_of(direction);
-        let start: WorldPose = world_pose(&pose.0, &pose.1);
-        let along: WorldVector = world_to_kernel(direction);
-        let wanted = CastConfig {
-            target_distance: to_f32(config.target_distance),
-            ignore_origin_penetration: config.ignore_origin_penetration,
-            compute_contact_on_penetration: config.compute_contact_on_penetration,
-        };
-        let cast = ShapeCast::new(shape.native(), &start, along, config.max_distance, &wanted)?;
-        // Parry takes a unit rotation.
-        let pose = pose_from_kernel(start);
-        Some(CastSearch { search: self.search(recent, filter), cast, shape, pose, direction, config })
+        Search::new(&self.world, recent, filter)
     }
 }
 

@@ -4,9 +4,9 @@ extern crate avian2d as avian;
 
 #[path = "../../../tests/far.rs"]
 mod far;
-#[path = "../../../tests/forces.rs"]
+#[path = "../../../tests/forces/mod.rs"]
 mod forces;
-#[path = "../../../tests/forces2.rs"]
+#[path = "../../../tests/forces/dim2.rs"]
 mod forces_dim;
 
 use avian::prelude::Collider;

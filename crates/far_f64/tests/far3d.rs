@@ -4,9 +4,9 @@ extern crate avian3d as avian;
 
 #[path = "../../../tests/far.rs"]
 mod far;
-#[path = "../../../tests/forces.rs"]
+#[path = "../../../tests/forces/mod.rs"]
 mod forces;
-#[path = "../../../tests/forces3.rs"]
+#[path = "../../../tests/forces/dim3.rs"]
 mod forces_dim;
 
 use avian::prelude::Collider;

@@ -9,7 +9,7 @@ fn v(x: Scalar, y: Scalar) -> Vector {
     Vector::new(x, y)
 }
 
-/// Names, colliders, and how far their outlines may end before their boxes.
+/// Names, colliders, and how far their outlines may end before their boxes, in metres.
 pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider, f32)> {
     let hull = vec![v(0.0, 0.0), v(2.0, 0.2), v(2.5, 1.0), v(1.0, 2.0), v(-0.5, 1.0)];
     vec![
@@ -25,4 +25,9 @@ pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider, f32)> {
         ("polyline", Collider::polyline(vec![v(-1.0, 0.0), v(0.0, 0.4), v(1.0, 0.0)], None), 0.0),
         ("height field", Collider::heightfield(vec![0.0, 0.5, 0.2, 0.3], v(4.0, 1.0)), 0.0),
     ]
+}
+
+/// The shape that a collider is the rounded one of, and the radius, where it must be known.
+pub(in crate::debug_render) fn core_of(collider: &Collider) -> (Collider, Scalar) {
+    (collider.clone(), 0.0)
 }

@@ -2,7 +2,7 @@
 
 #[path = "../../../../tests/collision_hits.rs"]
 mod collision_hits;
-#[path = "../../../../tests/collisions.rs"]
+#[path = "../../../../tests/collisions/mod.rs"]
 mod collisions;
 #[path = "../../../../tests/contact_query.rs"]
 mod contact_query;
@@ -16,9 +16,9 @@ mod contract_dim;
 mod diagnostics;
 #[path = "../../../../tests/drawing.rs"]
 mod drawing;
-#[path = "../../../../tests/forces.rs"]
+#[path = "../../../../tests/forces/mod.rs"]
 mod forces;
-#[path = "../../../../tests/forces2.rs"]
+#[path = "../../../../tests/forces/dim2.rs"]
 mod forces_dim;
 #[path = "../../../../tests/hooks.rs"]
 mod hooks;
@@ -26,6 +26,10 @@ mod hooks;
 mod hooks_dim;
 #[path = "../../../../tests/marble2.rs"]
 mod marble;
+#[path = "../../../../tests/picking.rs"]
+mod picking;
+#[path = "../../../../tests/picking2.rs"]
+mod picking_dim;
 #[path = "../../../../tests/plugins.rs"]
 mod plugins;
 #[path = "../../../../tests/queries.rs"]

@@ -90,7 +90,8 @@ fn native_curved(shape: Result<Curved, ShapeError>) -> Option<NativeShape> {
     shape.ok().map(NativeShape::Curved)
 }
 
-/// The polyhedron of the kernel, if it takes it.
+/// The polyhedron of the kernel, if it takes it. Parry's hulls of scattered points have slightly concave edges where faces
+/// are nearly in one plane; the kernel then finds the hull of their corners.
 fn hull_of(polyhedron: &ConvexPolyhedron) -> Option<Hull> {
     let vertices: Vec<_> = polyhedron.points().iter().map(|v| vector_to_kernel(*v)).collect();
     let faces: Vec<Vec<u32>> = polyhedron
@@ -102,7 +103,7 @@ fn hull_of(polyhedron: &ConvexPolyhedron) -> Option<Hull> {
             polyhedron.vertices_adj_to_face()[range].to_vec()
         })
         .collect();
-    Hull::from_mesh(vertices, faces).ok()
+    Hull::from_mesh(vertices.clone(), faces).or_else(|_| Hull::convex_hull_of(&vertices)).ok()
 }
 
 /// A polyhedron of the kernel with a radius.

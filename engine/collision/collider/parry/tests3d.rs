@@ -155,6 +155,16 @@ fn native_shapes_of_space() {
     assert!(matches!(foreign.native(), kernel::shape::Shape::Foreign(_)));
 }
 
+/// Parry's hulls of scattered points are not quite convex.
+#[test]
+fn hulls_of_scattered_points_are_native() {
+    for cloud in 0..200 {
+        let part = |i: usize, k: usize| (i as Scalar * (1.3 + k as Scalar) + 0.7 * cloud as Scalar).sin();
+        let points = (1..=5 + cloud % 40).map(|i| Vector::new(part(i, 0), part(i, 1), part(i, 2)));
+        assert_native(&Collider::convex_hull(points.collect()).expect("a hull"));
+    }
+}
+
 /// A pose above the origin.
 fn at(x: f32, y: f32, z: f32) -> Pose {
     Pose::new(kernel::math::Vector { x, y, z }, Rot::IDENTITY)

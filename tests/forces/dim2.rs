@@ -1,4 +1,4 @@
-//! 2D parts of the tests of forces. `forces3.rs` has those of 3D.
+//! 2D parts of the tests of forces. `dim3.rs` has those of 3D.
 
 use avian::{math::Scalar, prelude::*};
 use bevy_ecs::prelude::*;

@@ -1,0 +1,42 @@
+//! Picking in space. `dim2.rs` exports the same names.
+
+use bevy_ecs::prelude::*;
+use bevy_math::Ray3d;
+use bevy_picking::backend::HitData;
+use bevy_reflect::prelude::*;
+
+use super::PickingTargets;
+use crate::{
+    math::{AdjustPrecision, AsF32, Scalar, to_f32},
+    spatial_query::{SpatialQuery, SpatialQueryFilter},
+};
+
+/// Settings of [`PhysicsPickingPlugin`](super::PhysicsPickingPlugin).
+#[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Resource, Debug, Default, PartialEq)]
+pub struct PhysicsPickingSettings {
+    /// Whether only cameras and entities with [`PhysicsPickable`](super::PhysicsPickable) take part. `false` by default.
+    pub require_markers: bool,
+}
+
+/// What the ray of a pointer meets: colliders up to the first that hides the others.
+pub(super) fn hits_along(
+    (camera, ray): (Entity, Ray3d),
+    settings: &PhysicsPickingSettings,
+    queries: &SpatialQuery,
+    filter: &SpatialQueryFilter,
+    targets: &PickingTargets,
+) -> Vec<(Entity, HitData)> {
+    let mut hits = Vec::new();
+    let origin = ray.origin.adjust_precision();
+    queries.ray_hits_callback(origin, ray.direction, Scalar::MAX, false, filter, |hit| {
+        if !targets.is_met(hit.entity, settings.require_markers) {
+            return true;
+        }
+        let depth = to_f32(hit.distance);
+        let data = HitData::new(camera, depth, Some(ray.get_point(depth)), Some(hit.normal.f32()));
+        hits.push((hit.entity, data));
+        !targets.is_opaque(hit.entity)
+    });
+    hits
+}

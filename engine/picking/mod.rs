@@ -1,0 +1,39 @@
+//! A backend for Bevy's picking: pointers hover, press and drag colliders.
+//!
+//! Add [`PhysicsPickingPlugin`], and observe `Pointer` events on entities with colliders. An entity with
+//! [`Pickable::IGNORE`] is passed over; one whose [`Pickable`] does not block what is below lets the next be picked too.
+//!
+//! | I want to | use |
+//! |---|---|
+//! | pick only what is marked | [`PhysicsPickingSettings::require_markers`] and [`PhysicsPickable`] |
+//! | choose layers, or exclude entities, per camera | [`PhysicsPickingFilter`] |
+//! | know where a collider was picked | `position`, `normal` and `depth` of Bevy's [`HitData`](bevy_picking::backend::HitData), in metres |
+//!
+//! In 2D the ray of the pointer is followed to the plane of the bodies, so that cameras may be in perspective or turned.
+//! Colliders that overlap are picked by the z of their `GlobalTransform`, the one nearest to the camera first. The normal
+//! is absent.
+//!
+//! In 3D a ray that begins inside of a collider hits its boundary from within: a camera in a large sensor picks what is in
+//! the sensor, too.
+//!
+//! ```
+//! # use avian::prelude::*;
+//! # use bevy_app::prelude::*;
+//! fn build(app: &mut App) {
+//!     // An app with Bevy's default features has `DefaultPickingPlugins` from `DefaultPlugins`.
+//!     app.add_plugins((PhysicsPlugins::default(), PhysicsPickingPlugin));
+//! }
+//! ```
+
+#[cfg_attr(feature = "2d", path = "dim2.rs")]
+#[cfg_attr(feature = "3d", path = "dim3.rs")]
+mod dim;
+mod plugin;
+mod targets;
+
+pub use dim::PhysicsPickingSettings;
+pub use plugin::{PhysicsPickingDiagnostics, PhysicsPickingPlugin, update_hits};
+pub use targets::{PhysicsPickable, PhysicsPickingFilter, PickingTargets};
+
+#[cfg(doc)]
+use bevy_picking::Pickable;

@@ -1,0 +1,69 @@
+//! What cameras pick, and what can be picked.
+
+use bevy_ecs::{prelude::*, system::SystemParam};
+use bevy_picking::Pickable;
+use bevy_reflect::prelude::*;
+use bevy_transform::components::GlobalTransform;
+
+use crate::{collision::collider::LayerMask, spatial_query::SpatialQueryFilter};
+
+/// Marks cameras and entities with colliders for picking. Needed only where
+/// [`PhysicsPickingSettings::require_markers`](super::PhysicsPickingSettings::require_markers) is set.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Debug, Default)]
+pub struct PhysicsPickable;
+
+/// Which colliders a camera picks. Without it all are picked.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Debug, Default)]
+pub struct PhysicsPickingFilter(pub SpatialQueryFilter);
+
+impl PhysicsPickingFilter {
+    /// Colliders in one of the given layers.
+    pub fn from_mask(mask: impl Into<LayerMask>) -> Self {
+        Self(SpatialQueryFilter::from_mask(mask))
+    }
+
+    /// All colliders but those of the given entities.
+    pub fn from_excluded_entities(entities: impl IntoIterator<Item = Entity>) -> Self {
+        Self(SpatialQueryFilter::from_excluded_entities(entities))
+    }
+
+    /// The same with other layers.
+    pub fn with_mask(self, masks: impl Into<LayerMask>) -> Self {
+        Self(self.0.with_mask(masks))
+    }
+
+    /// The same with other excluded entities.
+    pub fn with_excluded_entities(self, entities: impl IntoIterator<Item = Entity>) -> Self {
+        Self(self.0.with_excluded_entities(entities))
+    }
+}
+
+/// How entities with colliders may be picked.
+#[derive(SystemParam)]
+pub struct PickingTargets<'w, 's> {
+    states:
+        Query<'w, 's, (Option<&'static Pickable>, Has<PhysicsPickable>, Option<&'static GlobalTransform>)>,
+}
+
+impl PickingTargets<'_, '_> {
+    /// Whether a pointer can meet an entity: it is hoverable or hides what is below, and it has a marker if needed.
+    pub(super) fn is_met(&self, entity: Entity, require_markers: bool) -> bool {
+        self.states.get(entity).is_ok_and(|(pickable, marked, _)| {
+            pickable.is_none_or(|p| p.is_hoverable || p.should_block_lower) && (marked || !require_markers)
+        })
+    }
+
+    /// Whether an entity hides what is below it.
+    #[cfg_attr(feature = "2d", expect(dead_code, reason = "Bevy sorts the hits of a plane by depth"))]
+    pub(super) fn is_opaque(&self, entity: Entity) -> bool {
+        !self.states.get(entity).is_ok_and(|(pickable, ..)| pickable.is_some_and(|p| !p.should_block_lower))
+    }
+
+    /// The z of an entity in the world.
+    #[cfg_attr(feature = "3d", expect(dead_code, reason = "in space the hit itself has a depth"))]
+    pub(super) fn height(&self, entity: Entity) -> Option<f32> {
+        self.states.get(entity).ok()?.2.map(|transform| transform.translation().z)
+    }
+}
