@@ -15,6 +15,7 @@ use crate::{
         collision_hits::{find_hits, note_approaches, send_hits},
         contact_types::views::{ContactViews, forget_views},
         contacts::{link_contacts, update_contacts},
+        custom_contacts::CustomContacts,
         diagnostics::reset_collision,
         narrow_phase::{CollisionEventSystems, NarrowPhaseConfig, NarrowPhaseSystems},
         pairs::{FilterPairs, add_contacts, find_new_pairs, refit_awake, update_stale_boxes},
@@ -233,6 +234,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<Colliders>()
         .init_resource::<Contacts>()
         .init_resource::<ContactViews>()
+        .init_resource::<CustomContacts>()
         .init_resource::<StepSolver>()
         .init_resource::<WorkerCount>()
         .init_resource::<RowWidth>()

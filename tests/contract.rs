@@ -469,6 +469,8 @@ fn colliders_are_made_the_way_they_were() {
         fn(&Collider, Vector, Rotation, Vector, Vector, Scalar) -> bool = Collider::intersects_ray;
         fn(&Collider, Vector, Rotation) -> ColliderAabb = SimpleCollider::aabb;
         fn(&Collider, Vector, Rotation, Vector, Rotation) -> ColliderAabb = SimpleCollider::swept_aabb;
+        fn(&Collider, &Collider, Vector, Rotation, Vector, Rotation, Scalar, &mut Vec<avian::prelude::ContactManifold>) =
+            SimpleCollider::contact_manifolds;
     }
 }
 

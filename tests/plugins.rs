@@ -334,6 +334,21 @@ impl AnyCollider for Marble {
     ) -> ColliderAabb {
         self.0.aabb(position, rotation)
     }
+
+    fn contact_manifolds_with_context(
+        &self,
+        other: &Self,
+        position1: Vector,
+        rotation1: impl Into<Rotation>,
+        position2: Vector,
+        rotation2: impl Into<Rotation>,
+        prediction_distance: Scalar,
+        manifolds: &mut Vec<ContactManifold>,
+        _: ContactManifoldContext<()>,
+    ) {
+        let (a, b) = (&self.0, &other.0);
+        a.contact_manifolds(b, position1, rotation1, position2, rotation2, prediction_distance, manifolds);
+    }
 }
 
 impl ScalableCollider for Marble {

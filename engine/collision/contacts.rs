@@ -6,11 +6,14 @@ use kernel::{
     contact::{ManifoldSource, NarrowPhaseInput, WorkerBuffers},
     manifold::LocalManifold,
     math::{Pose, Vector},
+    table::{BodyTable, ColliderTable},
 };
 
 use crate::{
     collision::{
         collider::{Collider, Workspace, foreign_ball_manifolds, foreign_manifolds},
+        contact_types::views::ContactViews,
+        custom_contacts::CustomContacts,
         diagnostics::CollisionDiagnostics,
         narrow_phase::NarrowPhaseConfig,
     },
@@ -37,11 +40,12 @@ const RECYCLE: f32 = (10.0 * LINEAR_SLOP) as f32;
 #[derive(Resource, Default)]
 pub(crate) struct NarrowPhaseBuffers(Vec<WorkerBuffers<Workspace>>);
 
-/// Manifolds of shapes that the kernel does not have, by parry.
+/// Manifolds of shapes that the kernel does not have: by parry, or those of collider types of the app.
 pub(crate) struct Foreign<'a, 'w, 's, 'c> {
     pub(crate) colliders: &'a Query<'w, 's, &'c Collider>,
     /// The entity of each collider.
     pub(crate) entities: &'a [Entity],
+    pub(crate) custom: &'a CustomContacts,
 }
 
 impl ManifoldSource for Foreign<'_, '_, '_, '_> {
@@ -57,6 +61,8 @@ impl ManifoldSource for Foreign<'_, '_, '_, '_> {
     ) {
         if let Ok([a, b]) = self.colliders.get_many(colliders.map(|id| self.entities[id as usize])) {
             foreign_manifolds(a, b, pose, prediction, workspace, out);
+        } else {
+            self.custom.find(colliders, pose, out);
         }
     }
 
@@ -85,32 +91,48 @@ pub(crate) struct Settings<'w> {
     width: Res<'w, RowWidth>,
 }
 
+impl Settings<'_> {
+    /// The input of the narrow phase.
+    pub(super) fn input<'a, S>(
+        &self,
+        bodies: &'a BodyTable,
+        colliders: &'a ColliderTable,
+        source: &'a S,
+    ) -> NarrowPhaseInput<'a, S> {
+        let unit = self.unit.metres();
+        NarrowPhaseInput {
+            bodies,
+            colliders,
+            source,
+            dt: self.time.delta_secs(),
+            tolerance: to_f32(self.config.contact_tolerance).max(0.0) * unit,
+            speculative: SPECULATIVE * unit,
+            recycle_distance: RECYCLE * unit,
+            match_points: self.config.match_contacts,
+            narrow: *self.width == RowWidth::Four,
+        }
+    }
+}
+
 /// Updates the manifolds of all awake contacts.
 pub(crate) fn update_contacts(
     shapes: Query<&Collider>,
-    Settings { config, unit, time, workers, width }: Settings,
+    settings: Settings,
+    (custom, views): (Res<CustomContacts>, Res<ContactViews>),
     mut threads: ResMut<Threads>,
     mut buffers: ResMut<NarrowPhaseBuffers>,
     mut diagnostics: ResMut<CollisionDiagnostics>,
     mut tables: Tables,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let unit = unit.metres();
     let colliders = &tables.colliders;
-    let source = Foreign { colliders: &shapes, entities: &colliders.entities };
-    let input = NarrowPhaseInput {
-        bodies: &tables.bodies.table,
-        colliders: &colliders.table,
-        source: &source,
-        dt: time.delta_secs(),
-        tolerance: to_f32(config.contact_tolerance).max(0.0) * unit,
-        speculative: SPECULATIVE * unit,
-        recycle_distance: RECYCLE * unit,
-        match_points: config.match_contacts,
-        narrow: *width == RowWidth::Four,
-    };
+    let source = Foreign { colliders: &shapes, entities: &colliders.entities, custom: &custom };
+    let input = settings.input(&tables.bodies.table, &colliders.table, &source);
     let contacts = &mut *tables.contacts;
     contacts.changed.clear();
+    contacts.table.sum_impulses =
+        views.has_readers() || !colliders.reporting.is_empty() || !colliders.tracking.is_empty();
+    let workers = &settings.workers;
     threads.wake(contacts.table.active_len(), workers.0, || workers.resolve());
     contacts.table.update(&input, &threads.pool, &mut buffers.0, &mut contacts.changed);
     diagnostics.contact_count = contacts.table.len() as u32;

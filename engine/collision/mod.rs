@@ -8,8 +8,10 @@ pub mod collision_events;
 pub mod collision_hits;
 pub mod contact_types;
 pub(crate) mod contacts;
+pub(crate) mod custom_contacts;
 pub(crate) mod diagnostics;
 pub mod hooks;
+pub(crate) mod local_points;
 pub mod narrow_phase;
 pub(crate) mod pairs;
 
@@ -23,8 +25,8 @@ pub mod prelude {
         broad_phase::{BroadPhaseCorePlugin, BroadPhaseSystems, BvhBroadPhasePlugin},
         collider::{
             AabbContext, AnyCollider, ColliderAabb, ColliderBackendPlugin, ColliderDisabled, ColliderMarker,
-            CollidingEntities, CollisionLayers, CollisionMargin, IntoCollider, LayerMask, PhysicsLayer,
-            ScalableCollider, Sensor, SimpleCollider,
+            CollidingEntities, CollisionLayers, CollisionMargin, ContactManifoldContext, IntoCollider,
+            LayerMask, PhysicsLayer, ScalableCollider, Sensor, SimpleCollider,
             collider_hierarchy::{ColliderHierarchyPlugin, ColliderOf, RigidBodyColliders},
             collider_transform::{ColliderTransform, ColliderTransformPlugin},
         },

@@ -12,7 +12,7 @@ use crate::{
     collision::{
         collider::{
             Collider, ColliderDisabled, CollidingEntities, CollisionLayers, Sensor,
-            collider_hierarchy::ColliderOf, collider_transform::ColliderTransform,
+            collider_hierarchy::ColliderOf, collider_transform::ColliderTransform, custom::CustomShape,
         },
         collision_events::CollisionEventsEnabled,
         collision_hits::CollisionHitsEnabled,
@@ -45,7 +45,7 @@ type BodyState = (
 
 /// Components that define a collider's record.
 type ColliderState = (
-    &'static Collider,
+    AnyOf<(&'static Collider, &'static CustomShape)>,
     Option<&'static ColliderOf>,
     Option<&'static ColliderTransform>,
     Option<(&'static Position, &'static Rotation)>,
@@ -257,7 +257,10 @@ impl Census<'_, '_> {
         queue.detached.swap_remove(&entity);
         let id = self.collider_ids.get(entity).map_or(NONE, |id| id.0);
         let state = self.colliders.get(entity).ok().filter(|state| !state.6 && !state.7);
-        let Some((collider, of, transform, pose, layers, sensor, ..)) = state else {
+        let Some(((collider, custom), of, transform, pose, layers, sensor, ..)) = state else {
+            return self.dismiss_collider(entity, id, tables);
+        };
+        let Some(shape) = collider.map(Collider::native).or(custom.map(|custom| &custom.0)) else {
             return self.dismiss_collider(entity, id, tables);
         };
         let body_entity = of.map(|of| of.body);
@@ -268,7 +271,7 @@ impl Census<'_, '_> {
         let Surfaces { material, margin, speculative } = self.surfaces.of(entity, body_entity);
         let local = transform.filter(|_| body_entity != Some(entity)).map_or(Pose::IDENTITY, local_pose);
         let def = ColliderDef {
-            shape: collider.native().clone(),
+            shape: shape.clone(),
             body,
             local,
             material,

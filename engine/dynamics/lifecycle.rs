@@ -24,7 +24,7 @@ use crate::{
     collision::{
         collider::{
             Collider, ColliderDisabled, CollidingEntities, CollisionLayers, Sensor,
-            collider_hierarchy::ColliderOf, collider_transform::ColliderTransform,
+            collider_hierarchy::ColliderOf, collider_transform::ColliderTransform, custom::CustomShape,
         },
         collision_events::CollisionEventsEnabled,
         collision_hits::CollisionHitsEnabled,
@@ -106,6 +106,7 @@ pub(crate) fn watch(app: &mut App) {
     note_body::<RigidBodyDisabled>(app);
     note_body::<Disabled>(app);
     note_collider::<Collider>(app);
+    note_collider::<CustomShape>(app);
     note_collider::<ColliderOf>(app);
     note_collider::<ColliderDisabled>(app);
     note_collider::<CollisionLayers>(app);
@@ -127,7 +128,7 @@ pub(crate) fn watch(app: &mut App) {
 
     let world = app.world_mut();
     let mut bodies = world.query_filtered::<Entity, With<RigidBody>>();
-    let mut colliders = world.query_filtered::<Entity, With<Collider>>();
+    let mut colliders = world.query_filtered::<Entity, Or<(With<Collider>, With<CustomShape>)>>();
     let (bodies, colliders): (Vec<_>, Vec<_>) =
         (bodies.iter(world).collect(), colliders.iter(world).collect());
     let mut queue = world.resource_mut::<LifecycleQueue>();

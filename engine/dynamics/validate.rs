@@ -8,7 +8,7 @@ use kernel::{
 };
 
 use crate::{
-    collision::collider::{Collider, ColliderDisabled, collider_hierarchy::ColliderOf},
+    collision::collider::{Collider, ColliderDisabled, collider_hierarchy::ColliderOf, custom::CustomShape},
     dynamics::{
         drain::{kind_of, tree_of},
         ids::{BodyId, ColliderId},
@@ -34,7 +34,7 @@ type BodyWorld<'a> = (
 type ColliderWorld<'a> = (
     Entity,
     &'a ColliderId,
-    Has<Collider>,
+    (Has<Collider>, Has<CustomShape>),
     Option<&'a ColliderOf>,
     Has<ColliderDisabled>,
     Has<Disabled>,
@@ -111,7 +111,7 @@ impl Audit<'_, '_> {
     fn check_colliders(&self) {
         let colliders = &*self.tables.colliders;
         let mut found = 0;
-        for (entity, id, present, of, collider_disabled, disabled, pose) in &self.colliders {
+        for (entity, id, (is_default, is_custom), of, collider_disabled, disabled, pose) in &self.colliders {
             let id = id.0;
             if id != NONE {
                 found += 1;
@@ -125,7 +125,7 @@ impl Audit<'_, '_> {
             let placed = pose.is_some_and(|(p, _)| *p != Position::PLACEHOLDER)
                 || body.is_some_and(|(_, body, ..)| body.0 != NONE);
             let refused = self.queue.refused.contains(&entity);
-            let wanted = present && !collider_disabled && !disabled && placed && !refused;
+            let wanted = (is_default || is_custom) && !collider_disabled && !disabled && placed && !refused;
             assert_eq!(wanted, id != NONE, "{entity} with a collider takes part");
             if !wanted {
                 continue;

@@ -170,6 +170,14 @@ impl<S> NarrowPhaseInput<'_, S> {
         prediction + turning
     }
 
+    /// What a [`ManifoldSource`] is asked of a contact with a foreign shape: where B is in A's frame, and how far apart points
+    /// may be.
+    pub fn foreign_view(&self, contact: &Contact) -> (Pose, f32) {
+        let [a, b] = contact.colliders.map(|id| &self.colliders.poses[id as usize]);
+        let prediction = self.prediction(contact);
+        (a.relative(b), self.farthest(contact, prediction) + self.margin(contact))
+    }
+
     /// The gap between the tight boxes of both sides, margins not subtracted.
     #[inline(always)]
     pub(super) fn box_gap(&self, contact: &Contact) -> f32 {

@@ -164,7 +164,7 @@ impl ContactTable {
             if manifold.is_internal {
                 manifold.friction_impulse = Vector::ZERO;
                 manifold.twist_impulse = 0.0;
-                manifold.points.iter_mut().for_each(|p| p.impulse = 0.0);
+                manifold.points.iter_mut().for_each(|p| (p.impulse, p.total_impulse) = (0.0, 0.0));
             }
             self.points[id as usize] = PointCount::of(contact);
         }

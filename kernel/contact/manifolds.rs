@@ -134,6 +134,7 @@ fn to_world(local: &LocalManifold, rotation: Rot, to_shape: Vector, margin: f32)
             frozen_separation: separation,
             separation,
             impulse: 0.0,
+            total_impulse: 0.0,
             feature: p.feature,
         };
     }
@@ -175,6 +176,7 @@ fn inherit<'a>(m: &mut Manifold, old: impl Iterator<Item = &'a Manifold>) {
     for p in &mut m.points[..usize::from(m.count)] {
         if let Some(o) = old.points().iter().find(|o| o.feature == p.feature) {
             p.impulse = o.impulse;
+            p.total_impulse = o.total_impulse;
             any = true;
         }
     }

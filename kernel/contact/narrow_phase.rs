@@ -343,12 +343,9 @@ fn search_foreign<S: ManifoldSource>(
     contact: &Contact,
     buffers: &mut WorkerBuffers<S::Workspace>,
 ) -> Search {
-    let [a, b] = contact.colliders.map(|id| &input.colliders.poses[id as usize]);
-    let prediction = input.prediction(contact);
-    let farthest = input.farthest(contact, prediction) + input.margin(contact);
-    let pose = a.relative(b);
+    let (pose, farthest) = input.foreign_view(contact);
     input.source.manifolds(contact.colliders, &pose, farthest, &mut buffers.foreign, &mut buffers.local);
-    Search { prediction, meeting: None }
+    Search { prediction: input.prediction(contact), meeting: None }
 }
 
 /// Computes the manifolds of a pair with a composite shape: of the parts nearby, and of those that the step's motion meets.

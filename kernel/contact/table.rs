@@ -24,6 +24,9 @@ pub struct ContactTable {
     active_count: usize,
     /// Contacts that are active in this update only.
     pub(super) visited: Vec<u32>,
+    /// Whether the solver sums the impulses of each point over the substeps of a step, for apps that read them. Off by
+    /// default: it costs time.
+    pub sum_impulses: bool,
     /// Whether the last update found a deeply overlapping contact.
     pub(super) any_deep: bool,
     /// The dynamic bodies that overlapped others deeply when contacts were last updated.

@@ -1,7 +1,7 @@
 //! All rows of a step: the list of kinds, and how constraints are sorted into batches.
 
 use super::batch::Batch;
-use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, sort_contacts};
+use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, Room, sort_contacts};
 use super::distance::{
     DISTANCE_BATCHES, DistanceRows, DistanceTable, DistanceView, Records, distances, sort_distances,
 };
@@ -129,13 +129,13 @@ impl AllRows {
     pub(super) const BATCHES: usize = 2 * BATCHES;
 
     /// Resizes the rows of each batch. Their content is stale.
-    pub(super) fn make_room(&mut self, rows: &[u32], any_deep: bool) {
+    pub(super) fn make_room(&mut self, rows: &[u32], room: Room) {
         let (overflow, wide) = rows.split_at(BATCHES);
-        self.overflow.make_room(overflow, any_deep);
+        self.overflow.make_room(overflow, room);
         match self.width {
             #[cfg(target_arch = "x86_64")]
-            Width::Eight(_) => self.eight.make_room(wide, any_deep),
-            _ => self.four.make_room(wide, any_deep),
+            Width::Eight(_) => self.eight.make_room(wide, room),
+            _ => self.four.make_room(wide, room),
         }
     }
 
@@ -158,8 +158,8 @@ impl AllRows {
 }
 
 impl<N: Entry> KindRows<N> {
-    fn make_room(&mut self, rows: &[u32], any_deep: bool) {
-        self.contacts.make_room(rows, any_deep);
+    fn make_room(&mut self, rows: &[u32], room: Room) {
+        self.contacts.make_room(rows, room);
         self.distances.make_room(rows[DISTANCE]);
     }
 

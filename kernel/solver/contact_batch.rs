@@ -35,6 +35,8 @@ struct Rows<N: Lane, M, const P: usize> {
     bounces: Vec<RestitutionRow<N, P>>,
     /// Data of split impulses.
     splits: Vec<SplitImpulseRow<N, P>>,
+    /// Sums of impulses over the substeps; empty where they are not kept.
+    sums: Vec<[N; P]>,
 }
 
 impl<N: Lane, M: InvMass<N>> Default for ByPoints<N, M> {
@@ -45,8 +47,17 @@ impl<N: Lane, M: InvMass<N>> Default for ByPoints<N, M> {
 
 impl<N: Lane, M, const P: usize> Default for Rows<N, M, P> {
     fn default() -> Self {
-        Self { rows: Vec::new(), bounces: Vec::new(), splits: Vec::new() }
+        Self { rows: Vec::new(), bounces: Vec::new(), splits: Vec::new(), sums: Vec::new() }
     }
+}
+
+/// What rows have beside the data of every pass.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Room {
+    /// A body overlaps another deeply: split impulses.
+    pub(super) any_deep: bool,
+    /// Sums of impulses are kept.
+    pub(super) sums: bool,
 }
 
 /// Number of batches of contacts in one width.
@@ -89,11 +100,11 @@ pub(super) fn sort_contacts(contacts: &[u32], index: u32, sorter: &Sorter, layer
 
 impl<N: Entry> ContactRows<N> {
     /// Resizes the rows of each batch. Their content is stale.
-    pub(super) fn make_room(&mut self, rows: &[u32], any_deep: bool) {
+    pub(super) fn make_room(&mut self, rows: &[u32], room: Room) {
         let Self { held, free } = self;
         let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(|batch| rows[batch] as usize);
-        held.make_room([a, b, c], any_deep);
-        free.make_room([d, e, f], any_deep);
+        held.make_room([a, b, c], room);
+        free.make_room([d, e, f], room);
     }
 
     pub(super) fn view(&mut self, proof: N::Proof) -> ContactView<'_, N> {
@@ -102,10 +113,10 @@ impl<N: Entry> ContactRows<N> {
 }
 
 impl<N: Entry, M: InvMass<N>> ByPoints<N, M> {
-    fn make_room(&mut self, [four, two, one]: [usize; 3], any_deep: bool) {
-        self.four.make_room(four, any_deep);
-        self.two.make_room(two, any_deep);
-        self.one.make_room(one, any_deep);
+    fn make_room(&mut self, [four, two, one]: [usize; 3], room: Room) {
+        self.four.make_room(four, room);
+        self.two.make_room(two, room);
+        self.one.make_room(one, room);
     }
 
     fn view(&mut self, proof: N::Proof) -> ByPointsView<'_, N, M> {
@@ -114,13 +125,18 @@ impl<N: Entry, M: InvMass<N>> ByPoints<N, M> {
 }
 
 impl<N: Entry, M: InvMass<N>, const P: usize> Rows<N, M, P> {
-    fn make_room(&mut self, count: usize, any_deep: bool) {
+    fn make_room(&mut self, count: usize, room: Room) {
         if self.rows.len() < count {
             self.rows.resize(count, ContactRow::default());
             self.bounces.resize(count, RestitutionRow::default());
         }
-        if any_deep && self.splits.len() < count {
+        if room.any_deep && self.splits.len() < count {
             self.splits.resize(count, SplitImpulseRow::default());
+        }
+        if !room.sums {
+            self.sums.clear();
+        } else if self.sums.len() < count {
+            self.sums.resize(count, [N::ZERO; P]);
         }
     }
 
@@ -130,6 +146,7 @@ impl<N: Entry, M: InvMass<N>, const P: usize> Rows<N, M, P> {
             rows: Parts::of(&mut self.rows),
             bounces: Parts::of(&mut self.bounces),
             splits: Parts::of(&mut self.splits),
+            sums: Parts::of(&mut self.sums),
         }
     }
 }
@@ -161,6 +178,7 @@ struct RowsView<'a, N: Entry, M, const P: usize> {
     rows: Parts<'a, ContactRow<N, M, P>>,
     bounces: Parts<'a, RestitutionRow<N, P>>,
     splits: Parts<'a, SplitImpulseRow<N, P>>,
+    sums: Parts<'a, [N; P]>,
 }
 
 impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
@@ -170,12 +188,14 @@ impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
     unsafe fn take(&self, range: Range<usize>) -> BlockRows<'a, N, M, P> {
         debug_assert!(!range.is_empty() && range.end <= self.rows.len(), "block {range:?} has rows");
         let splits = if self.splits.len() < range.end { 0..0 } else { range.clone() };
+        let sums = if self.sums.len() < range.end { 0..0 } else { range.clone() };
         // SAFETY: by the contract.
         unsafe {
             BlockRows {
                 rows: self.rows.take(range.clone()),
                 bounces: self.bounces.take(range),
                 splits: self.splits.take(splits),
+                sums: self.sums.take(sums),
             }
         }
     }
@@ -292,9 +312,10 @@ impl ContactPass for Impact {
     #[inline(always)]
     unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
         let mut hit = false;
-        for (row, bounce) in all.block.rows.iter_mut().zip(all.block.bounces) {
+        for (i, (row, bounce)) in all.block.rows.iter_mut().zip(all.block.bounces).enumerate() {
+            let sum = all.block.sums.get_mut(i);
             // SAFETY: by the contract.
-            hit |= unsafe { row.impact(&all.bodies, bounce, &all.params) };
+            hit |= unsafe { row.impact(&all.bodies, bounce, sum, &all.params) };
         }
         hit
     }
@@ -363,6 +384,9 @@ impl ContactPass for Relax {
             // SAFETY: by the contract.
             unsafe { row.relax(&all.bodies, &all.params, None) };
         }
+        for (row, sum) in all.block.rows.iter().zip(all.block.sums) {
+            row.sum_impulses(sum);
+        }
         false
     }
 }
@@ -380,6 +404,9 @@ impl ContactPass for RelaxBouncing {
         for (row, bounce) in all.block.rows.iter().zip(all.block.bounces) {
             row.note_largest_impulses(bounce);
         }
+        for (row, sum) in all.block.rows.iter().zip(all.block.sums) {
+            row.sum_impulses(sum);
+        }
         false
     }
 }
@@ -389,9 +416,10 @@ struct Restitute;
 impl ContactPass for Restitute {
     #[inline(always)]
     unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
-        for (row, bounce) in all.block.rows.iter_mut().zip(all.block.bounces) {
+        for (i, (row, bounce)) in all.block.rows.iter_mut().zip(all.block.bounces).enumerate() {
+            let sum = all.block.sums.get_mut(i);
             // SAFETY: by the contract.
-            unsafe { row.restitute(&all.bodies, bounce, &all.params) };
+            unsafe { row.restitute(&all.bodies, bounce, sum, &all.params) };
         }
         false
     }
@@ -423,6 +451,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for StoreJob<'_, N, M, P> {
                 let count = usize::from(manifold.count);
                 for (p, point) in manifold.points[..count].iter_mut().zip(&row.points) {
                     p.impulse = point.impulse.get(lane);
+                }
+                if let Some(sum) = block.sums.get(i) {
+                    for (p, sum) in manifold.points[..count].iter_mut().zip(sum) {
+                        p.total_impulse = sum.get(lane);
+                    }
                 }
             }
         }

@@ -18,6 +18,8 @@ pub(super) struct BlockRows<'a, N: Lane, M, const P: usize> {
     pub(super) bounces: &'a mut [RestitutionRow<N, P>],
     /// Empty in steps without deep overlap.
     pub(super) splits: &'a mut [SplitImpulseRow<N, P>],
+    /// The sum of each point's impulses over the substeps, N·s. Empty where sums are not kept.
+    pub(super) sums: &'a mut [[N; P]],
 }
 
 /// Fills the rows of a block. Returns the passes that the rows need.
@@ -42,6 +44,9 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
         }
         fill.finish(row, bounce, from.masses, &from.bodies);
         can_bounce |= N::any(N::ZERO.lt(bounce.restitution));
+        if let Some(sum) = block.sums.get_mut(i) {
+            *sum = [N::ZERO; P];
+        }
         if from.deep.any() {
             let split = &mut block.splits[i];
             *split = SplitImpulseRow::default();

@@ -273,6 +273,14 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
     }
 
+    /// Adds the impulses of a substep to their sums.
+    #[inline(always)]
+    pub(super) fn sum_impulses(&self, sum: &mut [N; P]) {
+        for (sum, point) in sum.iter_mut().zip(&self.points) {
+            *sum += point.impulse;
+        }
+    }
+
     /// One normal row per point: λ' = max(λ − m (k_m (v_n + b)) − k_i λ, 0). b is s/h for a separated point (it may
     /// close exactly that far), the soft bias for an overlapping point if `soft` is given, else 0.
     ///
@@ -388,7 +396,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     }
 
     /// The impact pass: points that close within this substep, and faster than the threshold, rebound before any other
-    /// pass sees them, as if they had touched at the right time within the substep. Returns whether any rebounded.
+    /// pass sees them, as if they had touched at the right time within the substep. Their impulses are added to `sum`. Returns
+    /// whether any rebounded.
     ///
     /// # Safety
     /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
@@ -397,6 +406,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         &mut self,
         rows: &RowView<BodyRow>,
         bounce: &mut RestitutionRow<N, P>,
+        sum: Option<&mut [N; P]>,
         params: &SubstepParams,
     ) -> bool {
         // SAFETY: by the contract.
@@ -445,7 +455,10 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
         let hit = N::ZERO.lt(any);
         let before = pair;
-        self.collide(&mut pair, bounce, &targets, &moments);
+        let impulses = self.collide(&mut pair, bounce, &targets, &moments);
+        for (sum, impulse) in sum.into_iter().flatten().zip(impulses) {
+            *sum += impulse;
+        }
         // SAFETY: by the contract.
         unsafe { pair.or_where_not(hit, before).store(rows, &self.ids) };
 
@@ -463,7 +476,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     }
 
     /// Gives each point its target normal velocity, where that is not 0, by an impulse that only pushes, and then
-    /// friction.
+    /// friction. Returns the normal impulses.
     #[inline(always)]
     fn collide(
         &mut self,
@@ -471,7 +484,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         bounce: &mut RestitutionRow<N, P>,
         targets: &[N; P],
         moments: &[[Angular<N>; 2]; P],
-    ) {
+    ) -> [N; P] {
         let n = self.normal;
         let mut impulses = [N::ZERO; P];
         // A few sweeps in alternating order: points of one manifold share the impact, and none comes first.
@@ -495,10 +508,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let rubbed = frame.expand(wanted.clamp_length(self.friction * sum));
         let [ra, rb] = self.surface_arms();
         self.push(pair, rubbed, [ra.cross(rubbed), rb.cross(rubbed)]);
+        impulses
     }
 
     /// The restitution pass: points that approached faster than the threshold and had an impulse leave with e times the
-    /// approach speed. Points that the impact pass has handled are skipped.
+    /// approach speed. Points that the impact pass has handled are skipped. Impulses are added to `sum`.
     ///
     /// # Safety
     /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
@@ -507,6 +521,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         &mut self,
         rows: &RowView<BodyRow>,
         bounce: &mut RestitutionRow<N, P>,
+        mut sum: Option<&mut [N; P]>,
         params: &SubstepParams,
     ) {
         // SAFETY: by the contract.
@@ -526,6 +541,9 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             let delta = new - point.impulse;
             self.points[i].impulse = new;
             bounce.max_impulse[i] = bounce.max_impulse[i].max(new);
+            if let Some(sum) = &mut sum {
+                sum[i] += delta;
+            }
             self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
         }
         // SAFETY: by the contract.

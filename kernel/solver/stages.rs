@@ -3,6 +3,7 @@
 
 use super::batch::{Filling, Pass, Sweep};
 use super::batches::{AllRows, Layers};
+use super::contact_batch::Room;
 use super::distance::DistanceTable;
 use super::exclusive;
 use super::input::RowInput;
@@ -101,7 +102,7 @@ impl Solver {
         layers.sort(colors, sorter, pool);
         plan.begin(if workers > 1 { BLOCK_ROWS } else { u32::MAX }, workers, AllRows::BATCHES);
         layers.plan(rows.width, sorter, plan);
-        rows.make_room(plan.rows(), deep.any());
+        rows.make_room(plan.rows(), Room { any_deep: deep.any(), sums: input.contacts.sum_impulses });
         if plan.rows().iter().sum::<u32>() >= WORTH_WAKING {
             pool.wake();
         }

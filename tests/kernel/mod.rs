@@ -10,6 +10,7 @@ mod extreme;
 mod ghosts;
 mod golden;
 mod held;
+mod impulses;
 mod memory;
 mod passing;
 mod physics;

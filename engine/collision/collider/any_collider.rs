@@ -1,7 +1,8 @@
 //! The traits of collider types, for custom collider backends.
 
 use super::ColliderAabb;
-use crate::math::{ComputeMassProperties, Vector};
+use crate::collision::contact_types::ContactManifold;
+use crate::math::{ComputeMassProperties, Scalar, Vector};
 use crate::physics_transform::Rotation;
 use bevy_derive::Deref;
 use bevy_ecs::component::Mutable;
@@ -44,10 +45,41 @@ impl AabbContext<'_, '_, '_, ()> {
     }
 }
 
+/// The arguments of [`AnyCollider::contact_manifolds_with_context`] besides the colliders: their entities, and the system
+/// parameter of the collider type.
+#[derive(Deref)]
+pub struct ContactManifoldContext<'a, 'w, 's, T: ReadOnlySystemParam> {
+    /// The first collider's entity.
+    pub entity1: Entity,
+    /// The second collider's entity.
+    pub entity2: Entity,
+    #[deref]
+    item: &'a <T as SystemParam>::Item<'w, 's>,
+}
+
+impl<'a, 'w, 's, T: ReadOnlySystemParam> ContactManifoldContext<'a, 'w, 's, T> {
+    /// The context of the colliders of two entities.
+    pub fn new(entity1: Entity, entity2: Entity, item: &'a <T as SystemParam>::Item<'w, 's>) -> Self {
+        Self { entity1, entity2, item }
+    }
+}
+
+impl ContactManifoldContext<'_, '_, '_, ()> {
+    /// The context of a collider type that needs none.
+    fn fake() -> Self {
+        Self { entity1: Entity::PLACEHOLDER, entity2: Entity::PLACEHOLDER, item: &() }
+    }
+}
+
 /// A component that the engine can use as a collider.
 ///
 /// Collider types that need no other data set `Context = ()` and get [`SimpleCollider`]. Others name a read-only system
 /// parameter, for instance a query for components that their shape depends on.
+///
+/// A type of your own works with [`ColliderBackendPlugin`](super::ColliderBackendPlugin) and
+/// [`NarrowPhasePlugin`](crate::collision::narrow_phase::NarrowPhasePlugin) for it. Colliders of one type collide with each
+/// other, not with those of other types. Its manifolds are computed by one thread, once per step and pair; spatial queries and
+/// sweeps of fast bodies do not see it.
 pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
     /// The system parameter that the methods need.
     type Context: for<'w, 's> ReadOnlySystemParam<Item<'w, 's>: Send + Sync>;
@@ -72,6 +104,23 @@ pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
         self.aabb_with_context(start_position, start_rotation, context.clone())
             .merged(self.aabb_with_context(end_position, end_rotation, context))
     }
+
+    /// Replaces `manifolds` by those of this collider and another at poses in the world.
+    ///
+    /// Normals are from this collider to the other, points have [`point`](crate::prelude::ContactPoint::point) in the world.
+    /// Points up to `prediction_distance` metres apart are wanted, with negative penetration: they stop what moves fast.
+    #[expect(clippy::too_many_arguments, reason = "as in Avian")]
+    fn contact_manifolds_with_context(
+        &self,
+        other: &Self,
+        position1: Vector,
+        rotation1: impl Into<Rotation>,
+        position2: Vector,
+        rotation2: impl Into<Rotation>,
+        prediction_distance: Scalar,
+        manifolds: &mut Vec<ContactManifold>,
+        context: ContactManifoldContext<Self::Context>,
+    );
 }
 
 /// The methods of [`AnyCollider`] for colliders that need no context.
@@ -96,6 +145,31 @@ pub trait SimpleCollider: AnyCollider<Context = ()> {
             end_rotation,
             AabbContext::fake(),
         )
+    }
+
+    /// Replaces `manifolds` by those of this collider and another at poses in the world, with points up to
+    /// `prediction_distance` metres apart.
+    #[expect(clippy::too_many_arguments, reason = "as in Avian")]
+    fn contact_manifolds(
+        &self,
+        other: &Self,
+        position1: Vector,
+        rotation1: impl Into<Rotation>,
+        position2: Vector,
+        rotation2: impl Into<Rotation>,
+        prediction_distance: Scalar,
+        manifolds: &mut Vec<ContactManifold>,
+    ) {
+        self.contact_manifolds_with_context(
+            other,
+            position1,
+            rotation1,
+            position2,
+            rotation2,
+            prediction_distance,
+            manifolds,
+            ContactManifoldContext::fake(),
+        );
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{
     AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, ScalableCollider, Sensor,
     collider_hierarchy::ColliderOf,
+    custom::{is_custom, watch_shapes},
 };
 use crate::dynamics::ids::ColliderId;
 use crate::dynamics::rigid_body::mass_properties::{
@@ -58,6 +59,9 @@ impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
         let _ = app.try_register_required_components::<C, ColliderMassProperties>();
         let _ = app.try_register_required_components::<C, ColliderId>();
 
+        if is_custom::<C>() {
+            watch_shapes::<C>(app);
+        }
         app.add_observer(weigh_added::<C>)
             .add_observer(weigh_replaced::<C>)
             .add_observer(weigh_former_sensor::<C>)

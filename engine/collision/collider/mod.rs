@@ -9,6 +9,7 @@ mod any_collider;
 mod backend;
 pub mod collider_hierarchy;
 pub mod collider_transform;
+pub(crate) mod custom;
 mod layers;
 #[cfg(feature = "default-collider")]
 mod parry;
@@ -16,7 +17,9 @@ mod parry;
 pub use aabb::{ColliderAabb, EnlargedAabb};
 #[cfg(not(feature = "default-collider"))]
 pub(crate) use absent::{Collider, Workspace, foreign_ball_manifolds, foreign_manifolds};
-pub use any_collider::{AabbContext, AnyCollider, IntoCollider, ScalableCollider, SimpleCollider};
+pub use any_collider::{
+    AabbContext, AnyCollider, ContactManifoldContext, IntoCollider, ScalableCollider, SimpleCollider,
+};
 pub use backend::{ColliderBackendPlugin, update_collider_mass_properties};
 pub use layers::*;
 #[cfg(feature = "default-collider")]

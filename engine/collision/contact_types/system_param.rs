@@ -53,6 +53,7 @@ pub struct Collisions<'w> {
 
 impl Collisions<'_> {
     fn source(&self) -> Source<'_> {
+        self.views.note_reader();
         Source {
             bodies: &self.bodies,
             colliders: &self.colliders,

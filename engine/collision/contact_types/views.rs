@@ -1,6 +1,7 @@
 //! Contacts of the kernel as the app sees them, made when they are read.
 
 use bevy_ecs::prelude::*;
+use core::sync::atomic::{AtomicBool, Ordering};
 use kernel::{
     contact::{Contact, ContactFlags, Manifold, ManifoldPoint, ManifoldSurface},
     math as k,
@@ -29,13 +30,15 @@ pub(crate) struct ContactViews {
     /// By contact id.
     pairs: OnceLock<Box<[OnceLock<Box<ContactPair>>]>>,
     graph: OnceLock<Box<ContactGraph>>,
+    /// Whether any system ever asked for contacts.
+    asked: AtomicBool,
 }
 
 /// Forgets what was read. Piped behind each system that changes contacts, so that no system of the app reads in between.
 pub(crate) fn forget_views(mut views: ResMut<ContactViews>) {
     let views = views.bypass_change_detection();
     if views.pairs.get().is_some() || views.graph.get().is_some() {
-        *views = ContactViews::default();
+        (views.pairs, views.graph) = Default::default();
     }
 }
 
@@ -50,6 +53,18 @@ pub(crate) struct Source<'a> {
 }
 
 impl ContactViews {
+    /// Notes that a system asks for contacts: from the next step on, impulses are summed over the substeps.
+    pub(super) fn note_reader(&self) {
+        if !self.has_readers() {
+            self.asked.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Whether any system ever asked for contacts.
+    pub(crate) fn has_readers(&self) -> bool {
+        self.asked.load(Ordering::Relaxed)
+    }
+
     /// A contact in use.
     pub(super) fn pair(&self, id: u32, source: Source) -> &ContactPair {
         let capacity = source.contacts.table.capacity();
@@ -202,8 +217,14 @@ impl<'a> Source<'a> {
         let parting = b.linear + b.angular.cross(anchors[1]) - a.linear - a.angular.cross(anchors[0]);
         let [anchor1, anchor2] = anchors.map(vector_from_kernel);
         let impulse = p.impulse.adjust_precision();
+        // Before anything read contacts, no sums were kept.
+        let total = if p.total_impulse > 0.0 {
+            p.total_impulse.adjust_precision()
+        } else {
+            impulse * self.substeps as Scalar
+        };
         let point = ContactPoint {
-            normal_impulse: impulse * self.substeps as Scalar,
+            normal_impulse: total,
             normal_speed: normal.dot(parting).adjust_precision(),
             warm_start_normal_impulse: impulse,
             ..ContactPoint::new(
@@ -238,6 +259,7 @@ impl Source<'_> {
                     frozen_separation: separation,
                     separation,
                     impulse: to_f32(point.warm_start_normal_impulse),
+                    total_impulse: to_f32(point.normal_impulse),
                     feature: point.feature_id1.0,
                 };
                 to.count += 1;

@@ -7,10 +7,11 @@ use core::{any::TypeId, marker::PhantomData};
 use super::{CollisionEventSystems, ContactResponse, NarrowPhaseConfig, NarrowPhaseSystems};
 use crate::{
     collision::{
-        collider::AnyCollider,
+        collider::{AnyCollider, custom::is_custom},
         collision_events::{CollisionEnd, CollisionStart},
         collision_hits::CollisionHit,
         contacts::{NarrowPhaseBuffers, update_contacts},
+        custom_contacts::find_custom_contacts,
         diagnostics::CollisionDiagnostics,
         hooks::{CollisionHooks, modify_contacts},
     },
@@ -61,9 +62,25 @@ where
 {
     fn build(&self, app: &mut App) {
         step::add_once(app, self.shared);
+        if is_custom::<C>() && !app.is_plugin_added::<CustomPlugin<C>>() {
+            app.add_plugins(CustomPlugin::<C> { schedule: self.shared.schedule, collider: PhantomData });
+        }
         if TypeId::of::<H>() != TypeId::of::<()>() {
             step::add_once(app, HooksPlugin::<H> { schedule: self.shared.schedule, hooks: PhantomData });
         }
+    }
+}
+
+/// Computes the contacts of a collider type of the app, once for all instances of its plugin.
+struct CustomPlugin<C> {
+    schedule: Interned<dyn ScheduleLabel>,
+    collider: PhantomData<fn() -> C>,
+}
+
+impl<C: AnyCollider> Plugin for CustomPlugin<C> {
+    fn build(&self, app: &mut App) {
+        let find = find_custom_contacts::<C>.in_set(Stage::UpdateContacts).before(update_contacts);
+        step::add_systems(app, self.schedule, find);
     }
 }
 

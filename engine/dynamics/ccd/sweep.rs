@@ -12,6 +12,7 @@ use crate::{
     collision::{
         collider::{Collider, Workspace},
         contacts::Foreign,
+        custom_contacts::CustomContacts,
         narrow_phase::ContactResponse,
     },
     dynamics::{
@@ -49,7 +50,7 @@ pub(crate) fn sweep_bodies(
     swept: Query<(&BodyId, &SweptCcd)>,
     shapes: Query<&Collider>,
     settings: Settings,
-    (bodies, colliders): (Res<Bodies>, Res<Colliders>),
+    (bodies, colliders, custom): (Res<Bodies>, Res<Colliders>, Res<CustomContacts>),
     (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
     mut buffers: Local<Buffers>,
     mut diagnostics: ResMut<SolverDiagnostics>,
@@ -63,7 +64,7 @@ pub(crate) fn sweep_bodies(
         bodies: &bodies.table,
         colliders: &colliders.table,
         trees: &colliders.trees.trees,
-        source: &Foreign { colliders: &shapes, entities: &colliders.entities },
+        source: &Foreign { colliders: &shapes, entities: &colliders.entities, custom: &custom },
         tolerance: LINEAR_SLOP as f32 * settings.unit.metres(),
         dt: settings.time.delta_secs(),
     };

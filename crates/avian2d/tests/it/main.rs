@@ -12,6 +12,10 @@ mod contact_query_dim;
 mod contract;
 #[path = "../../../../tests/contract2.rs"]
 mod contract_dim;
+#[path = "../../../../tests/custom_colliders.rs"]
+mod custom_colliders;
+#[path = "../../../../tests/custom_colliders2.rs"]
+mod custom_colliders_dim;
 #[path = "../../../../tests/diagnostics.rs"]
 mod diagnostics;
 #[path = "../../../../tests/drawing.rs"]

@@ -1,6 +1,7 @@
 //! Contacts of shapes that the kernel does not have: parry's manifolds, converted to the kernel's convention.
 
 use super::{Collider, dim};
+use crate::collision::local_points::reduce;
 use crate::math::{Scalar, Vector, vector_to_kernel};
 use crate::parry::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
@@ -8,7 +9,7 @@ use crate::parry::query::{
 };
 use crate::parry::shape::SharedShape;
 use kernel::manifold::{LocalManifold, LocalPoint};
-use kernel::math::{MAX_POINTS, Pose};
+use kernel::math::Pose;
 
 /// Buffers for parry's manifolds, kept to save allocations.
 #[derive(Default)]
@@ -135,34 +136,4 @@ fn local_point(
 /// One round of a hash of words. Features must only differ, and be the same in the next step.
 fn mix(hash: u32, word: u32) -> u32 {
     (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9)
-}
-
-/// Keeps the deepest point and those that spread widest, at most `MAX_POINTS`, and no two at one place.
-///
-/// Parry adds the closest points to the clipped ones, so a corner may appear twice.
-fn reduce(points: &mut Vec<LocalPoint>) {
-    let deepest =
-        (0..points.len()).reduce(|a, b| if points[b].separation < points[a].separation { b } else { a });
-    let Some(deepest) = deepest else {
-        return;
-    };
-    points.swap(0, deepest);
-    let first = points[0].point;
-    let spread = points.iter().map(|p| (p.point - first).length_squared()).fold(0.0, kernel::math::max);
-    // Points closer than a thousandth of the spread are at one place.
-    let least = spread * 1.0e-6;
-    for chosen in 1..points.len() {
-        let to_chosen = |i: usize| {
-            let distances = points[..chosen].iter().map(|c| (c.point - points[i].point).length_squared());
-            distances.fold(f32::MAX, kernel::math::min)
-        };
-        let farthest = (chosen..points.len()).reduce(|a, b| if to_chosen(b) > to_chosen(a) { b } else { a });
-        match farthest {
-            Some(i) if chosen < MAX_POINTS && to_chosen(i) > least => points.swap(chosen, i),
-            _ => {
-                points.truncate(chosen);
-                return;
-            }
-        }
-    }
 }

@@ -36,12 +36,13 @@ pub(crate) use manifold::{Workspace, foreign_ball_manifolds, foreign_manifolds};
 pub(crate) use spatial::{ForeignCast, cast_foreign, overlaps_foreign};
 
 use super::{
-    AabbContext, AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, IntoCollider,
-    ScalableCollider,
+    AabbContext, AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, ContactManifoldContext,
+    EnlargedAabb, IntoCollider, ScalableCollider,
 };
+use crate::collision::contact_types::ContactManifold;
 use crate::dynamics::ids::ColliderId;
 use crate::dynamics::rigid_body::mass_properties::components::{ColliderDensity, ColliderMassProperties};
-use crate::math::Vector;
+use crate::math::{Scalar, Vector};
 use crate::parry::shape::SharedShape;
 use crate::physics_transform::Rotation;
 use bevy_ecs::prelude::Component;
@@ -228,6 +229,29 @@ impl AnyCollider for Collider {
     ) -> ColliderAabb {
         let aabb = self.shape_scaled().compute_aabb(&dim::pose(position, rotation.into()));
         ColliderAabb::from_min_max(aabb.mins, aabb.maxs)
+    }
+
+    fn contact_manifolds_with_context(
+        &self,
+        other: &Self,
+        position1: Vector,
+        rotation1: impl Into<Rotation>,
+        position2: Vector,
+        rotation2: impl Into<Rotation>,
+        prediction_distance: Scalar,
+        manifolds: &mut Vec<ContactManifold>,
+        _: ContactManifoldContext<()>,
+    ) {
+        contact_query::contact_manifolds(
+            self,
+            position1,
+            rotation1,
+            other,
+            position2,
+            rotation2,
+            prediction_distance,
+            manifolds,
+        );
     }
 }
 

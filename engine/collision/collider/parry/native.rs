@@ -1,6 +1,7 @@
 //! Conversion of parry's shapes to the kernel's: a native shape where the kernel has one, otherwise a box whose
 //! contacts parry computes.
 
+use super::super::custom::{round_down, round_up};
 use super::{dim, native_composite};
 use crate::math::{Scalar, Vector, vector_to_kernel};
 use crate::parry::shape::{Compound, SharedShape, TypedShape};
@@ -73,15 +74,4 @@ fn foreign(shape: &SharedShape) -> Foreign {
     let aabb = Aabb { min: outward(aabb.mins, round_down), max: outward(aabb.maxs, round_up) };
     // A custom shape may have an invalid box. It then touches nothing.
     Foreign { aabb: if aabb.is_valid() { aabb } else { Aabb::around([kernel::math::Vector::ZERO]) } }
-}
-
-/// The nearest `f32` not above `v`.
-fn round_down(v: Scalar) -> f32 {
-    let rounded = v as f32;
-    if Scalar::from(rounded) > v { rounded.next_down() } else { rounded }
-}
-
-/// The nearest `f32` not below `v`.
-fn round_up(v: Scalar) -> f32 {
-    -round_down(-v)
 }
