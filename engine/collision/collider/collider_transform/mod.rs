@@ -5,6 +5,7 @@ mod plugin;
 pub use plugin::ColliderTransformPlugin;
 #[cfg(test)]
 pub(crate) use plugin::Placement;
+pub(super) use plugin::update_collider_transforms;
 
 use bevy_ecs::{prelude::*, reflect::ReflectComponent};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -19,6 +20,9 @@ use crate::{
 
 /// The pose and scale of a collider relative to its body, derived from the transforms between them. On the body itself,
 /// and on colliders without a body, only the scale is used.
+///
+/// The engine gives the collider this scale, unless
+/// [`transform_to_collider_scale`](crate::physics_transform::PhysicsTransformConfig::transform_to_collider_scale) is off.
 #[derive(Reflect, Clone, Copy, Component, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -28,7 +32,11 @@ pub struct ColliderTransform {
     pub translation: Vector,
     /// From the body's axes to the collider's.
     pub rotation: Rotation,
-    /// The scale of the collider in the world, along its own axes.
+    /// The scale of the collider in the world, along its own axes. Negative factors mirror it.
+    ///
+    /// Below a turned and unevenly scaled ancestor an entity is sheared, which no collider is. Its scale is then the
+    /// diagonal of R, where Q R is its transform and Q its rotation: the x axis has its length, and each other axis what
+    /// is at right angles to those before it.
     pub scale: Vector,
 }
 
