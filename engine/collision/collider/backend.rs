@@ -3,7 +3,7 @@
 use super::{
     AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, ScalableCollider, Sensor,
     collider_hierarchy::ColliderOf,
-    collider_transform::update_collider_transforms,
+    collider_transform::UpdateColliderTransforms,
     scale::{TransformScale, scale_is_followed, update_collider_scale},
 };
 use crate::dynamics::ids::ColliderId;
@@ -71,7 +71,7 @@ impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
                     update_collider_scale::<C>
                         .run_if(scale_is_followed)
                         .in_set(PhysicsTransformSystems::TransformToPosition)
-                        .after(update_collider_transforms)
+                        .after(UpdateColliderTransforms)
                         .before(MassPropertySystems::UpdateColliderMassProperties),
                     update_collider_mass_properties::<C>
                         .in_set(MassPropertySystems::UpdateColliderMassProperties),

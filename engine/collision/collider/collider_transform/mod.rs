@@ -5,7 +5,6 @@ mod plugin;
 pub use plugin::ColliderTransformPlugin;
 #[cfg(test)]
 pub(crate) use plugin::Placement;
-pub(super) use plugin::update_collider_transforms;
 
 use bevy_ecs::{prelude::*, reflect::ReflectComponent};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -17,6 +16,10 @@ use crate::{
     math::{Vector, vector_from_xyz},
     physics_transform::{Rotation, frame::read_pose},
 };
+
+/// The system that updates [`ColliderTransform`]s.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct UpdateColliderTransforms;
 
 /// The pose and scale of a collider relative to its body, derived from the transforms between them. On the body itself,
 /// and on colliders without a body, only the scale is used.

@@ -10,7 +10,7 @@ use bevy_ecs::{
 };
 use bevy_transform::components::Transform;
 
-use super::ColliderTransform;
+use super::{ColliderTransform, UpdateColliderTransforms};
 use crate::{
     collision::collider::{
         ColliderMarker,
@@ -77,7 +77,7 @@ impl Plugin for ColliderTransformPlugin {
                         .after(find_changed_transforms)
                         .after(propagate_global_transforms)
                         .in_set(Propagate),
-                    (update_collider_transforms, place_child_colliders)
+                    (update_collider_transforms.in_set(UpdateColliderTransforms), place_child_colliders)
                         .chain()
                         .in_set(TransformToPosition)
                         .after(transform_to_position),
