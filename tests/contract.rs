@@ -524,6 +524,7 @@ fn the_rest_can_be_named() {
     named::<mass_properties::components::Mass>();
     named::<sleeping::SleepThreshold>();
     let _ = (IntoSystem::into_system(transform_to_position), IntoSystem::into_system(position_to_transform));
+    let _ = IntoSystem::into_system(avian::collision::collider::update_collider_scale::<Collider>);
     fn traits<
         C: AnyCollider + ScalableCollider,
         T: IntoCollider<C>,

@@ -335,3 +335,33 @@ fn values_that_are_not_finite_draw_nothing_and_harm_nothing() {
     frame(&mut app);
     frame(&mut app);
 }
+
+/// The outline has the scale once, and mirrors as the mesh does.
+#[test]
+fn a_scaled_and_mirrored_collider_is_drawn_where_its_points_are() {
+    let corners = [[0.2, 0.1, 0.0], [1.0, 0.3, 0.1], [0.4, 0.9, -0.2], [0.3, 0.4, 0.8]];
+    let hull = corners.map(|c| Vector::from_array(core::array::from_fn(|i| c[i] as Scalar)));
+    for sign in 0..8 {
+        let factor = |axis: i32, size: f32| if sign >> axis & 1 == 1 { -size } else { size };
+        let deep = if Vector::AXES.len() == 2 { 1.0 } else { factor(2, 0.5) };
+        let transform = Transform::from_xyz(3.0, -2.0, 0.0)
+            .with_scale(Vec3::new(factor(0, 2.0), factor(1, 3.0), deep))
+            .with_rotation(bevy_math::Quat::from_rotation_z(0.7));
+        let mut app = app(PhysicsGizmos::colliders(RED));
+        let collider = Collider::convex_hull(hull.to_vec()).expect("a hull");
+        app.world_mut().spawn((RigidBody::Static, collider, transform));
+        frame(&mut app);
+        frame(&mut app);
+        let drawn = drawn(&app);
+        let expected = hull.map(|corner| {
+            let mut local = [0.0; 3];
+            local.iter_mut().zip(corner.to_array()).for_each(|(to, from)| *to = from as f32);
+            transform.transform_point(Vec3::from_array(local))
+        });
+        let is_corner = |at: Vec3| expected.iter().any(|corner| corner.distance(at) < 1.0e-3);
+        assert!(
+            !drawn.is_empty() && drawn.iter().all(|(at, _)| is_corner(*at)),
+            "{sign}: {drawn:?} {expected:?}"
+        );
+    }
+}

@@ -4,7 +4,7 @@ use bevy_camera::visibility::InheritedVisibility;
 use bevy_color::{Color, Hsla};
 use bevy_ecs::{prelude::*, query::QueryData};
 use bevy_gizmos::{config::GizmoConfigStore, gizmos::Gizmos};
-use bevy_math::{Affine3A, Vec3};
+use bevy_math::{Affine3A, Mat3, Quat, Vec3, Vec3A};
 use bevy_transform::components::GlobalTransform;
 use kernel::{
     bvh::TreeKind,
@@ -21,6 +21,7 @@ use crate::{
     collision::collider::{
         ColliderAabb, ColliderDisabled,
         collider_hierarchy::{ColliderOf, RigidBodyColliders},
+        collider_transform::ColliderTransform,
     },
     dynamics::{
         rigid_body::{
@@ -45,6 +46,7 @@ pub(super) struct DrawnPose {
     entity: Entity,
     visibility: Option<&'static InheritedVisibility>,
     transform: Option<&'static GlobalTransform>,
+    place: Option<&'static ColliderTransform>,
     position: &'static Position,
     rotation: &'static Rotation,
 }
@@ -57,9 +59,26 @@ impl DrawnPoseItem<'_, '_> {
 
     pub(super) fn frame(&self) -> Affine3A {
         match self.transform {
-            Some(transform) => drawn_frame(transform),
+            Some(transform) => drawn_frame(transform, drawn_rotation(transform, self.place)),
             None => frame(self.position.0, *self.rotation),
         }
+    }
+}
+
+/// The rotation of an entity as it is drawn. Bevy's decomposition of a mirrored transform has the mirror at the x axis,
+/// and a turn for the rest. Colliders have the mirror where the scale has it.
+fn drawn_rotation(transform: &GlobalTransform, place: Option<&ColliderTransform>) -> Quat {
+    let scale = place.map_or(Vec3::ONE, |place| dim::point(place.scale));
+    if scale.cmpge(Vec3::ZERO).all() {
+        return transform.rotation();
+    }
+    let axes = transform.affine().matrix3;
+    let along = |axis: Vec3A, sign: f32| (Vec3::from(axis) * 1.0_f32.copysign(sign)).try_normalize();
+    let x = along(axes.x_axis, scale.x);
+    let y = x.and_then(|x| along(axes.y_axis.reject_from(x.into()), scale.y));
+    match (x, y) {
+        (Some(x), Some(y)) => Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y))),
+        _ => transform.rotation(),
     }
 }
 

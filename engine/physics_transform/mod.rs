@@ -70,7 +70,7 @@ pub struct PhysicsTransformConfig {
     pub transform_to_position: bool,
     /// Whether poses are written to transforms after a step.
     pub position_to_transform: bool,
-    /// Whether the scale of a `Transform` scales the collider. *Not yet*: it has no effect.
+    /// Whether colliders follow the scale of their `GlobalTransform`, before each step.
     pub transform_to_collider_scale: bool,
 }
 

@@ -4,8 +4,11 @@
 use avian::{
     math::{Scalar, Vector},
     parry::shape::SharedShape,
+    physics_transform::PhysicsTransformConfig,
     prelude::*,
 };
+use bevy_math::Vec3;
+use bevy_transform::components::Transform;
 
 use super::world::{WRONG_SIZES, Witness, at, ball, block, is_disabled, position, steps};
 
@@ -34,14 +37,20 @@ fn sizes_that_are_none_make_colliders_that_can_be_lived_with() {
 
 #[test]
 fn a_scale_that_is_none_is_ignored_or_tiny() {
-    for wrong in WRONG_SIZES {
+    for (wrong, by_transform) in WRONG_SIZES.into_iter().flat_map(|wrong| [(wrong, false), (wrong, true)]) {
         let mut witness = Witness::new();
+        let mut config = witness.app.world_mut().resource_mut::<PhysicsTransformConfig>();
+        config.transform_to_collider_scale = by_transform;
         let shapes = [(0.0, ball()), (3.0, block()), (6.0, Collider::capsule(0.2, 0.3))];
         let scaled = shapes.map(|(x, shape)| witness.spawn((RigidBody::Dynamic, shape, at(x, 1.0))));
         steps(&mut witness.app, 30);
         for body in scaled {
-            let mut collider = witness.app.world_mut().get_mut::<Collider>(body).expect("a collider");
-            collider.set_scale(Vector::splat(wrong), 8);
+            let mut body = witness.app.world_mut().entity_mut(body);
+            if by_transform {
+                body.get_mut::<Transform>().expect("a transform").scale = Vec3::splat(wrong as f32);
+            } else {
+                body.get_mut::<Collider>().expect("a collider").set_scale(Vector::splat(wrong), 8);
+            }
         }
         witness.is_undisturbed();
         for body in scaled {

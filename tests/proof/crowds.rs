@@ -5,6 +5,7 @@ use avian::{
     prelude::*,
 };
 use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
 use bevy_transform::components::Transform;
 use scenes::scene::at;
 
@@ -99,8 +100,8 @@ fn a_collider_grows_by_its_scale_too() {
     for step in 1..=60 {
         let world = lab.app.world_mut();
         let mut entity = world.entity_mut(body);
-        let mut collider = entity.get_mut::<Collider>().expect("a collider");
-        collider.set_scale(Vector::ONE * (1.0 + step as Scalar / 60.0), 8);
+        let mut transform = entity.get_mut::<Transform>().expect("a transform");
+        transform.scale = Vec3::splat(1.0 + step as f32 / 60.0);
         lab.steps(1);
     }
     lab.seconds(1.0);

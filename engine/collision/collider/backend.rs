@@ -3,14 +3,16 @@
 use super::{
     AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, ScalableCollider, Sensor,
     collider_hierarchy::ColliderOf,
+    collider_transform::UpdateColliderTransforms,
     custom::{is_custom, watch_shapes},
+    scale::{TransformScale, scale_is_followed, update_collider_scale},
 };
 use crate::dynamics::ids::ColliderId;
 use crate::dynamics::rigid_body::mass_properties::{
     MassPropertyQueue, MassPropertySystems,
     components::{ColliderDensity, ColliderMassProperties},
 };
-use crate::physics_transform::tree::FollowsBody;
+use crate::physics_transform::{PhysicsTransformSystems, tree::FollowsBody};
 use crate::scan::Since;
 use crate::schedule::OnThisThread;
 use bevy_app::{App, FixedPostUpdate, Plugin};
@@ -18,14 +20,15 @@ use bevy_ecs::change_detection::{DetectChanges, DetectChangesMut};
 use bevy_ecs::entity_disabling::Disabled;
 use bevy_ecs::intern::Interned;
 use bevy_ecs::prelude::{
-    Add, Allow, Commands, Discard, Entity, EntityRef, In, IntoScheduleConfigs, On, Query, Ref, Remove, With,
-    Without, World,
+    Add, Allow, Commands, Discard, Entity, EntityRef, In, IntoScheduleConfigs, On, ParamSet, Query, Ref,
+    Remove, With, Without, World,
 };
 use bevy_ecs::schedule::ScheduleLabel;
 use bevy_ecs::system::{SystemChangeTick, SystemParam};
 use core::marker::PhantomData;
 
-/// Makes components of type `C` colliders: adds the components that every collider has, and updates mass properties.
+/// Makes components of type `C` colliders: adds the components that every collider has, lets their scale follow the
+/// transform, and updates mass properties.
 ///
 /// The plugin for [`Collider`](super::Collider) is part of `PhysicsPlugins`. Add one for each collider type of your
 /// own.
@@ -62,21 +65,28 @@ impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
         if is_custom::<C>() {
             watch_shapes::<C>(app);
         }
-        app.add_observer(weigh_added::<C>)
-            .add_observer(weigh_replaced::<C>)
+        app.add_observer(enter_added::<C>)
+            .add_observer(enter_replaced::<C>)
             .add_observer(weigh_former_sensor::<C>)
             .add_observer(strip::<C>)
             .add_systems(
                 self.schedule,
-                update_collider_mass_properties::<C>
-                    .in_set(MassPropertySystems::UpdateColliderMassProperties),
+                (
+                    update_collider_scale::<C>
+                        .run_if(scale_is_followed)
+                        .in_set(PhysicsTransformSystems::TransformToPosition)
+                        .after(UpdateColliderTransforms)
+                        .before(MassPropertySystems::UpdateColliderMassProperties),
+                    update_collider_mass_properties::<C>
+                        .in_set(MassPropertySystems::UpdateColliderMassProperties),
+                ),
             );
     }
 }
 
 /// Computes mass properties of colliders, and queues their bodies to be recomputed.
 #[derive(SystemParam)]
-pub struct ColliderScales<'w, 's, C: AnyCollider> {
+pub struct Weigher<'w, 's, C: AnyCollider> {
     colliders: Query<
         'w,
         's,
@@ -86,7 +96,7 @@ pub struct ColliderScales<'w, 's, C: AnyCollider> {
     queue: MassPropertyQueue<'w, 's>,
 }
 
-impl<C: AnyCollider> ColliderScales<'_, '_, C> {
+impl<C: AnyCollider> Weigher<'_, '_, C> {
     /// Recomputes the mass of a collider, and that of its body when the command ends.
     fn weigh(&mut self, entity: Entity) {
         if self.update(entity) {
@@ -103,29 +113,40 @@ impl<C: AnyCollider> ColliderScales<'_, '_, C> {
     }
 }
 
-/// Computes the mass of a new collider before that of its body: observers of insertion run after all observers of
-/// addition.
-fn weigh_added<C: AnyCollider>(
-    added: On<Add, C>,
-    sensors: Query<(), With<Sensor>>,
-    mut scales: ColliderScales<C>,
-) {
-    if !sensors.contains(added.entity) {
-        scales.weigh(added.entity);
+/// Gives a new collider the scale of its transform, and then computes its mass.
+#[derive(SystemParam)]
+pub struct Entrance<'w, 's, C: ScalableCollider> {
+    scale: TransformScale<'w, 's>,
+    sensors: Query<'w, 's, (), (With<Sensor>, Allow<Disabled>)>,
+    queries: ParamSet<'w, 's, (Query<'w, 's, &'static mut C, Allow<Disabled>>, Weigher<'w, 's, C>)>,
+}
+
+impl<C: ScalableCollider> Entrance<'_, '_, C> {
+    fn enter(&mut self, entity: Entity) {
+        if let Ok(collider) = self.queries.p0().get_mut(entity) {
+            self.scale.apply_to(entity, collider);
+        }
+        if !self.sensors.contains(entity) {
+            self.queries.p1().weigh(entity);
+        }
     }
 }
 
-/// Recomputes the mass of a collider after its shape or density was replaced.
-fn weigh_replaced<C: AnyCollider>(replaced: On<Discard, (C, ColliderDensity)>, mut commands: Commands) {
+/// Computes scale and mass of a new collider before the mass of its body: observers of insertion run after all
+/// observers of addition.
+fn enter_added<C: ScalableCollider>(added: On<Add, C>, mut entrance: Entrance<C>) {
+    entrance.enter(added.entity);
+}
+
+/// Computes scale and mass of a collider after its shape or density was replaced.
+fn enter_replaced<C: ScalableCollider>(replaced: On<Discard, (C, ColliderDensity)>, mut commands: Commands) {
     let entity = replaced.entity;
     commands.queue(move |world: &mut World| {
-        let weighs = |entity: EntityRef| {
-            entity.contains::<C>() && entity.contains::<ColliderDensity>() && !entity.contains::<Sensor>()
-        };
-        if world.get_entity(entity).is_ok_and(weighs) {
-            let scales = |In(entity): In<Entity>, mut scales: ColliderScales<C>| scales.weigh(entity);
-            let weighed = world.run_system_cached_with(scales, entity);
-            debug_assert!(weighed.is_ok(), "the parameters are there");
+        let is_collider = |entity: EntityRef| entity.contains::<C>() && entity.contains::<ColliderDensity>();
+        if world.get_entity(entity).is_ok_and(is_collider) {
+            let enter = |In(entity): In<Entity>, mut entrance: Entrance<C>| entrance.enter(entity);
+            let entered = world.run_system_cached_with(enter, entity);
+            debug_assert!(entered.is_ok(), "the parameters are there");
         }
     });
 }
@@ -147,14 +168,14 @@ fn strip<C: AnyCollider>(removed: On<Remove, C>, mut commands: Commands, mut que
 }
 
 /// Computes the mass of a collider that is no longer a sensor.
-fn weigh_former_sensor<C: AnyCollider>(former: On<Remove, Sensor>, mut scales: ColliderScales<C>) {
-    scales.weigh(former.entity);
+fn weigh_former_sensor<C: AnyCollider>(former: On<Remove, Sensor>, mut weigher: Weigher<C>) {
+    weigher.weigh(former.entity);
 }
 
 /// Recomputes [`ColliderMassProperties`] where the collider or its density was mutated. Sensors keep theirs.
 pub fn update_collider_mass_properties<C: AnyCollider>(
     all: Query<(Entity, Ref<C>, Ref<ColliderDensity>), Without<Sensor>>,
-    mut scales: ColliderScales<C>,
+    mut weigher: Weigher<C>,
     system: SystemChangeTick,
     _: OnThisThread,
 ) {
@@ -173,8 +194,8 @@ pub fn update_collider_mass_properties<C: AnyCollider>(
         changed.extend(all.iter().filter(is_new).map(|(entity, ..)| entity));
     }
     for entity in changed {
-        if scales.update(entity) {
-            scales.queue.mark(entity);
+        if weigher.update(entity) {
+            weigher.queue.mark(entity);
         }
     }
 }

@@ -13,6 +13,7 @@ pub(crate) mod custom;
 mod layers;
 #[cfg(feature = "default-collider")]
 mod parry;
+mod scale;
 
 pub use aabb::{ColliderAabb, EnlargedAabb};
 #[cfg(not(feature = "default-collider"))]
@@ -24,6 +25,7 @@ pub use backend::{ColliderBackendPlugin, update_collider_mass_properties};
 pub use layers::*;
 #[cfg(feature = "default-collider")]
 pub use parry::*;
+pub use scale::update_collider_scale;
 
 use crate::math::Scalar;
 use bevy_derive::{Deref, DerefMut};

@@ -24,10 +24,9 @@ pub(in crate::debug_render) fn frame(position: Vector, rotation: Rotation) -> Af
     Affine3A::from_rotation_translation(Quat::from_rotation_z(rotation.as_radians() as f32), point(position))
 }
 
-/// The frame of an entity as it is drawn, without scale. Lines are drawn at z = 0, over all meshes.
-pub(in crate::debug_render) fn drawn_frame(transform: &GlobalTransform) -> Affine3A {
-    let (_, rotation, translation) = transform.to_scale_rotation_translation();
-    Affine3A::from_rotation_translation(rotation, translation.with_z(0.0))
+/// The frame of an entity as it is drawn, with a rotation of its own and without scale. Lines are drawn at z = 0, over all meshes.
+pub(in crate::debug_render) fn drawn_frame(transform: &GlobalTransform, rotation: Quat) -> Affine3A {
+    Affine3A::from_rotation_translation(rotation, transform.translation().with_z(0.0))
 }
 
 /// The edges of a box as one line.

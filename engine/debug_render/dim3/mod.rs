@@ -6,7 +6,7 @@ pub(super) mod outline;
 pub(super) mod shapes;
 
 use bevy_color::{Color, palettes::css};
-use bevy_math::{Affine3A, Vec3};
+use bevy_math::{Affine3A, Quat, Vec3};
 use bevy_transform::components::GlobalTransform;
 
 use crate::{
@@ -24,10 +24,9 @@ pub(in crate::debug_render) fn frame(position: Vector, rotation: Rotation) -> Af
     Affine3A::from_rotation_translation(rotation.0.f32(), point(position))
 }
 
-/// The frame of an entity as it is drawn, without scale.
-pub(in crate::debug_render) fn drawn_frame(transform: &GlobalTransform) -> Affine3A {
-    let (_, rotation, translation) = transform.to_scale_rotation_translation();
-    Affine3A::from_rotation_translation(rotation, translation)
+/// The frame of an entity as it is drawn, with a rotation of its own and without scale.
+pub(in crate::debug_render) fn drawn_frame(transform: &GlobalTransform, rotation: Quat) -> Affine3A {
+    Affine3A::from_rotation_translation(rotation, transform.translation())
 }
 
 /// The edges of a box as one line, four of them twice.

@@ -248,7 +248,12 @@ pub(crate) fn wake_changed(
     let mut wake = |entity: Entity| {
         let Ok(body) = states.get(entity) else { return };
         let id = body.id.0;
-        if id == NONE || tables.bodies.table[id].awake {
+        if id == NONE {
+            return;
+        }
+        // Awake bodies are read later, but a kinematic one may come to rest before.
+        let row = &tables.bodies.table[id];
+        if row.awake && row.kind != BodyKind::Kinematic {
             return;
         }
         let change = read_in(entity, &body, &mut tables, &mut commands);

@@ -40,6 +40,10 @@ mod plugins;
 mod queries;
 #[path = "../../../../tests/reflection.rs"]
 mod reflection;
+#[path = "../../../../tests/scale.rs"]
+mod scale;
+#[path = "../../../../tests/scale2.rs"]
+mod scale_dim;
 #[path = "../../../../tests/schedule.rs"]
 mod schedule;
 #[path = "../../../../tests/stored.rs"]

@@ -10,7 +10,7 @@ use bevy_ecs::{
 };
 use bevy_transform::components::Transform;
 
-use super::ColliderTransform;
+use super::{ColliderTransform, UpdateColliderTransforms};
 use crate::{
     collision::collider::{
         ColliderMarker,
@@ -77,7 +77,7 @@ impl Plugin for ColliderTransformPlugin {
                         .after(find_changed_transforms)
                         .after(propagate_global_transforms)
                         .in_set(Propagate),
-                    (update_collider_transforms, place_child_colliders)
+                    (update_collider_transforms.in_set(UpdateColliderTransforms), place_child_colliders)
                         .chain()
                         .in_set(TransformToPosition)
                         .after(transform_to_position),
@@ -137,11 +137,13 @@ type Offsets<'w, 's> = Query<
     (&'static mut ColliderTransform, Option<&'static ColliderOf>, Option<&'static FollowsBody>),
 >;
 
-/// Sets the transform of a collider on its body. Returns whether it changed. If the app attached the collider, the
-/// transforms between them are ignored.
+/// Sets the transform of a collider on its body. Returns whether it changed. If the app attached the collider, only the
+/// scale is that of the transforms.
 fn put_offset(colliders: &mut Offsets, entity: Entity, offset: ColliderTransform) -> bool {
     let Ok((mut held, of, follows)) = colliders.get_mut(entity) else { return false };
-    !of.is_some_and(|of| of.is_explicit(entity, follows)) && held.set_if_neq(offset)
+    let is_explicit = of.is_some_and(|of| of.is_explicit(entity, follows));
+    let offset = if is_explicit { ColliderTransform { scale: offset.scale, ..*held } } else { offset };
+    held.set_if_neq(offset)
 }
 
 /// Kept between calls, since building it takes longer than using it.

@@ -9,12 +9,14 @@ pub mod contact_query;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod handedness;
 mod input;
 mod manifold;
 mod native;
 mod native_composite;
 mod params;
 mod queries;
+mod scaled;
 #[cfg_attr(feature = "2d", path = "shapes2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "shapes3/mod.rs")]
 mod shapes;
@@ -106,14 +108,19 @@ struct Scaled {
 }
 
 impl Scaled {
-    fn new(shape: &SharedShape, scale: Vector, subdivisions: u32) -> Self {
-        let scaled = composite::scaled(shape, scale, subdivisions).unwrap_or_else(|| {
+    fn new(shape: SharedShape) -> Self {
+        let shape = usable(shape);
+        Self { native: native_shape(&shape), shape }
+    }
+
+    /// The shape with a scale. `None`, with a warning, if no shape is that.
+    fn by(shape: &SharedShape, scale: Vector, subdivisions: u32) -> Option<Self> {
+        let scaled = scaled::scaled(shape, scale, subdivisions);
+        if scaled.is_none() {
             let kind = shape.shape_type();
             bevy_log::warn_once!("a collider of type {kind:?} cannot be scaled by {scale}");
-            shape.clone()
-        });
-        let shape = usable(scaled);
-        Self { native: native_shape(&shape), shape }
+        }
+        scaled.map(Self::new)
     }
 }
 
@@ -162,7 +169,10 @@ impl Collider {
     }
 
     fn scaled(&self) -> &Scaled {
-        self.scaled.get_or_init(|| Scaled::new(&self.shape, self.scale, self.detail))
+        self.scaled.get_or_init(|| {
+            let scaled = Scaled::by(&self.shape, self.scale, self.detail);
+            scaled.unwrap_or_else(|| Scaled::new(self.shape.clone()))
+        })
     }
 
     /// Replaces the shape, and keeps the scale.
@@ -175,11 +185,20 @@ impl Collider {
         self.scale
     }
 
-    /// Sets the scale along each axis.
+    /// Sets the scale along each axis. A negative scale mirrors the shape.
+    ///
+    /// On an entity with a `Transform` the scale of its `GlobalTransform` replaces this one before the next step, unless
+    /// [`PhysicsTransformConfig::transform_to_collider_scale`] is off.
     ///
     /// A curved shape that is scaled unevenly becomes a convex hull, with about `num_subdivisions` points per quarter
-    /// turn. A scale that is not finite is ignored with a warning. An axis with a scale of almost zero keeps 1/100,000
-    /// of its length. If a shape cannot be scaled, a warning is given and the collider keeps its size.
+    /// turn. Rounded edges stay round, with a radius that follows the smallest scale. A turned part of a compound that is
+    /// scaled unevenly keeps its angles: no shape is sheared.
+    ///
+    /// A scale that is not finite is ignored with a warning. An axis with a scale of almost zero keeps 1/100,000 of its
+    /// length. If a shape cannot be scaled, a warning is given and the collider keeps its scale.
+    ///
+    /// [`PhysicsTransformConfig::transform_to_collider_scale`]:
+    ///     crate::physics_transform::PhysicsTransformConfig::transform_to_collider_scale
     pub fn set_scale(&mut self, scale: Vector, num_subdivisions: u32) {
         if !scale.is_finite() {
             bevy_log::warn_once!("a collider's scale of {scale} is not finite; it keeps its scale");
@@ -191,7 +210,8 @@ impl Collider {
                 .map(|s| if s.abs() < input::MIN_LENGTH { input::MIN_LENGTH.copysign(s) } else { s }),
         );
         if scale != self.scale || self.scaled.get().is_none() {
-            self.scaled = Scaled::new(&self.shape, scale, num_subdivisions).into();
+            let Some(scaled) = Scaled::by(&self.shape, scale, num_subdivisions) else { return };
+            self.scaled = scaled.into();
             self.scale = scale;
             self.detail = num_subdivisions;
         }

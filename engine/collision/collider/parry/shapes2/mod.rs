@@ -4,6 +4,7 @@ mod collider;
 pub(super) mod ellipse;
 mod primitives;
 pub(super) mod regular_polygon;
+pub(super) mod scaled;
 
 pub use ellipse::EllipseColliderShape;
 pub use regular_polygon::RegularPolygonColliderShape;

@@ -85,10 +85,12 @@ impl Shape for RegularPolygonColliderShape {
         Box::new(*self)
     }
 
-    /// With an even scale it stays regular. Otherwise it becomes a convex polygon, if it has few enough corners.
+    /// With an even scale it stays regular: it is symmetric about y and, if the number of corners is even, about x.
+    /// Otherwise it becomes a convex polygon, if it has few enough corners.
     fn scale_dyn(&self, scale: Vector, _: u32) -> Option<Box<dyn Shape>> {
-        if scale.x == scale.y && scale.x > 0.0 {
-            let radius = (self.radius() * scale.x) as f32;
+        let is_symmetric = scale.y > 0.0 || self.count().is_multiple_of(2);
+        if scale.x.abs() == scale.y.abs() && is_symmetric {
+            let radius = (self.radius() * scale.x.abs()) as f32;
             return Some(Box::new(Self(RegularPolygon::new(radius, self.count()))));
         }
         if self.count() > 1000 {

@@ -2,3 +2,4 @@
 
 mod collider;
 mod primitives;
+pub(super) mod scaled;
