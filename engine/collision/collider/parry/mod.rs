@@ -1,6 +1,7 @@
 //! [`Collider`], the default collider: a shape of parry with a scale.
 //!
-//! `constructors`, `shapes2` and `shapes3` make colliders, `native` converts their shapes for the kernel, and
+//! `constructors`, `shapes2` and `shapes3` make colliders, `from_constructor` and `from_mesh` those that are described by
+//! data and by meshes, `native` converts their shapes for the kernel, and
 //! `manifold` computes contacts of shapes that the kernel does not have.
 
 mod composite;
@@ -9,6 +10,9 @@ pub mod contact_query;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod from_constructor;
+#[cfg(feature = "collider-from-mesh")]
+mod from_mesh;
 mod input;
 mod manifold;
 mod native;
@@ -21,6 +25,7 @@ mod shapes;
 mod spatial;
 #[cfg(feature = "serialize")]
 mod stored;
+mod strict;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -32,8 +37,15 @@ pub use params::{FillMode, TrimeshFlags, VhacdParameters};
 #[allow(unused_imports, reason = "3D has no shapes of its own")]
 pub use shapes::*;
 
+/// Meshes, without feature `collider-from-mesh`: there are none.
+#[cfg(not(feature = "collider-from-mesh"))]
+mod mesh_type {
+    pub(crate) enum Mesh {}
+}
+
 pub(crate) use manifold::{Workspace, foreign_ball_manifolds, foreign_manifolds};
 pub(crate) use spatial::{ForeignCast, cast_foreign, overlaps_foreign};
+pub(crate) use strict::Fault;
 
 use super::{
     AabbContext, AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, IntoCollider,
@@ -45,6 +57,8 @@ use crate::math::Vector;
 use crate::parry::shape::SharedShape;
 use crate::physics_transform::Rotation;
 use bevy_ecs::prelude::Component;
+#[cfg(feature = "collider-from-mesh")]
+use bevy_mesh as mesh_type;
 use native::native_shape;
 use std::sync::OnceLock;
 
