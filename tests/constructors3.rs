@@ -30,7 +30,7 @@ pub fn describes() -> Vec<(C, Collider)> {
     let heights = vec![vec![0.0, 1.0, 0.5], vec![0.2, 0.1, 0.3]];
     let scale = Vector::new(3.0, 1.0, 2.0);
     let fill_mode = FillMode::FloodFill { detect_cavities: false };
-    let (at, turned) = (Position(Vector::Y), Rotation(Quat::from_rotation_x(0.5).into()));
+    let (at, turned) = (Position(Vector::Y), Rotation(Quat::from_rotation_x(0.5)));
     let mesh = || (vertices.clone(), indices.clone());
     vec![
         (C::Sphere { radius: 0.7 }, Collider::sphere(0.7)),
@@ -130,7 +130,7 @@ pub fn wrong() -> Vec<C> {
         C::Heightfield { heights: vec![vec![1.0; 5]; 5], scale: Vector::splat(nan) },
         C::compound(vec![(
             Vector::ZERO,
-            Rotation(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0).into()),
+            Rotation(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
             C::Sphere { radius: 1.0 },
         )]),
     ]
