@@ -41,6 +41,7 @@
 //! |---|---|
 //! | make something fall, stand or move on rails | [`RigidBody`](prelude::RigidBody) |
 //! | give it a shape | `Collider` and its constructors; child entities with a `Collider` for a body of several shapes |
+//! | make colliders from meshes, scenes and files | `ColliderConstructor`, `ColliderConstructorHierarchy` |
 //! | set its mass | `ColliderDensity`, [`Mass`](prelude::Mass), [`AngularInertia`](prelude::AngularInertia), [`CenterOfMass`](prelude::CenterOfMass) |
 //! | move it | [`LinearVelocity`](prelude::LinearVelocity), [`AngularVelocity`](prelude::AngularVelocity); [`Position`](prelude::Position) or `Transform` to teleport |
 //! | push it | [`Forces`](prelude::Forces), [`ConstantForce`](prelude::ConstantForce), [`forces`](dynamics::rigid_body::forces) |
@@ -76,7 +77,8 @@
 //! # Features
 //!
 //! `f32` (default) or `f64` is the precision of positions; `parry-f32` or `parry-f64` add the default `Collider`. One dimension
-//! and one precision must be enabled.
+//! and one precision must be enabled. `collider-from-mesh` makes colliders from Bevy's meshes, and with `bevy_scene` a
+//! `ColliderConstructorHierarchy` waits for scenes to be loaded.
 
 #[cfg(not(any(feature = "2d", feature = "3d")))]
 compile_error!("enable feature `2d` of avian2d or `3d` of avian3d: one dimension is needed");

@@ -8,7 +8,7 @@ use core::marker::PhantomData;
 use crate::{
     collider_tree::ColliderTreePlugin,
     collision::{
-        collider::{Collider, ColliderBackendPlugin},
+        collider::{Collider, ColliderBackendPlugin, ColliderConstructorPlugin},
         narrow_phase::NarrowPhasePlugin,
     },
 };
@@ -42,6 +42,8 @@ use crate::{
 /// | [`ForcePlugin`] | forces, torques and accelerations |
 /// | [`ColliderHierarchyPlugin`] | which colliders belong to which body |
 /// | [`ColliderTransformPlugin`] | where they are on it |
+/// | [`ColliderCachePlugin`](crate::collision::collider::ColliderCachePlugin) | colliders shared by entities with the same mesh |
+/// | [`ColliderConstructorPlugin`](crate::collision::collider::ColliderConstructorPlugin) | colliders from `ColliderConstructor`s |
 /// | [`ColliderBackendPlugin`](crate::collision::collider::ColliderBackendPlugin) | boxes, scale and mass of `Collider`s |
 /// | [`ColliderTreePlugin`](crate::collider_tree::ColliderTreePlugin) | the trees over them |
 /// | [`NarrowPhasePlugin`](crate::collision::narrow_phase::NarrowPhasePlugin) | contacts between them |
@@ -51,7 +53,7 @@ use crate::{
 /// | [`PhysicsTransformPlugin`] | `Transform` to `Position` and `Rotation`, and back |
 /// | [`PhysicsInterpolationPlugin`] | smooth transforms between steps, for those who ask |
 ///
-/// Those for `Collider` need feature `default-collider`.
+/// Those for `Collider` need feature `default-collider`, the cache `collider-from-mesh` too.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -104,8 +106,11 @@ impl PhysicsPlugins {
             .add(ColliderHierarchyPlugin)
             .add(ColliderTransformPlugin::new(self.schedule));
 
+        #[cfg(all(feature = "collider-from-mesh", feature = "default-collider"))]
+        let builder = builder.add(crate::collision::collider::ColliderCachePlugin);
         #[cfg(feature = "default-collider")]
         let builder = builder
+            .add(ColliderConstructorPlugin)
             .add(ColliderBackendPlugin::<Collider>::new(self.schedule))
             .add(ColliderTreePlugin::<Collider>::default())
             .add(NarrowPhasePlugin::<Collider, H>::default());

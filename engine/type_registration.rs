@@ -165,18 +165,23 @@ fn register_queries(app: &mut App) {
     register!(app: SpatialQueryFilter, SpatialQueryDiagnostics, RayCaster, RayHits, RayHitData);
 }
 
-/// The settings of colliders. Shapes themselves are not reflected yet.
+/// Constructors and settings of colliders. Shapes themselves are not reflected.
 #[cfg(feature = "default-collider")]
 fn register_collider_settings(app: &mut App) {
     use crate::{
-        collision::collider::{FillMode, TrimeshFlags, VhacdParameters, contact_query::ClosestPoints},
+        collision::collider::{
+            FillMode, TrimeshFlags, VhacdParameters,
+            constructor::{self, ColliderConstructorHierarchy, ColliderConstructorHierarchyConfig},
+            contact_query::ClosestPoints,
+        },
         spatial_query::{PointProjection, ShapeCastConfig, ShapeCaster, ShapeHitData, ShapeHits},
     };
 
     register!(app:
         VhacdParameters, FillMode, TrimeshFlags, ShapeCaster, ShapeHits, ShapeHitData, ShapeCastConfig, PointProjection,
-        ClosestPoints,
+        ClosestPoints, ColliderConstructorHierarchy, ColliderConstructorHierarchyConfig,
     );
+    constructor::register_types(app);
 }
 
 #[cfg(not(feature = "default-collider"))]

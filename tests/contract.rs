@@ -7,7 +7,7 @@ use avian::{
     collider_tree::{ColliderTreeDiagnostics, ColliderTreeSystems},
     collision::{
         CollisionDiagnostics,
-        collider::{EnlargedAabb, TrimeshBuilderError},
+        collider::{ColliderConstructorHierarchyConfig, EnlargedAabb, TrimeshBuilderError},
         narrow_phase::CollisionEventSystems,
     },
     dynamics::{
@@ -37,7 +37,8 @@ use avian::{
 use avian::prelude::{
     AabbContext, AngularDamping, AngularInertia, AngularInertiaTensor, AngularInertiaTensorError, AngularVelocity,
     AnyCollider, BroadPhaseCorePlugin, BroadPhaseSystems, BvhBroadPhasePlugin, CenterOfMass, CoefficientCombine,
-    Collider, ColliderAabb, ColliderBackendPlugin, ColliderDensity, ColliderDisabled, ColliderHierarchyPlugin,
+    Collider, ColliderAabb, ColliderBackendPlugin, ColliderCachePlugin, ColliderConstructor,
+    ColliderConstructorHierarchy, ColliderConstructorHierarchyReady, ColliderConstructorReady, ColliderDensity, ColliderDisabled, ColliderHierarchyPlugin,
     ColliderMarker, ColliderMassProperties, ColliderOf, ColliderTransform, ColliderTransformPlugin,
     ColliderTreeOptimization, ColliderTreePlugin, CollisionLayers, CollisionMargin, ComputeMassProperties2d,
     ComputeMassProperties3d, ComputedAngularInertia, ComputedCenterOfMass, ComputedMass, ConstantAngularAcceleration,
@@ -70,6 +71,7 @@ use bevy_ecs::{
     system::{Command, SystemParam},
 };
 use bevy_math::curve::Ease;
+use bevy_mesh::Mesh;
 use bevy_reflect::Reflect;
 use bevy_time::Time;
 use bevy_transform::components::{GlobalTransform, Transform};
@@ -122,6 +124,11 @@ fn components_derive_what_they_derive_in_avian() {
             ConstantForce, ConstantTorque, ConstantLocalForce, ConstantLinearAcceleration,
             ConstantAngularAcceleration, ConstantLocalLinearAcceleration, AccumulatedLocalAcceleration;
         Component, Reflect, Debug, Default, PartialEq => VelocityIntegrationData;
+        Component, Reflect, Clone, Debug, Default, PartialEq =>
+            ColliderConstructor, ColliderConstructorHierarchy;
+        Reflect, Clone, Debug, Default, PartialEq => ColliderConstructorHierarchyConfig;
+        EntityEvent, Clone, Copy, Debug, PartialEq =>
+            ColliderConstructorReady, ColliderConstructorHierarchyReady;
         Copy =>
             RigidBody, RigidBodyDisabled, LinearVelocity, AngularVelocity, GravityScale, Friction, Restitution,
             Position, Rotation, Mass, AngularInertia, CenterOfMass, ComputedMass, ComputedAngularInertia,
@@ -244,7 +251,7 @@ fn plugins_and_sets_are_where_they_were() {
             ColliderTreePlugin<Collider>, NarrowPhasePlugin<Collider>, SolverPlugin, SolverSchedulePlugin,
             IntegratorPlugin, BvhBroadPhasePlugin, PhysicsTransformPlugin, PhysicsInterpolationPlugin;
         Plugin =>
-            ForcePlugin, ColliderHierarchyPlugin, SolverBodyPlugin, IslandPlugin, IslandSleepingPlugin, BroadPhaseCorePlugin,
+            ForcePlugin, ColliderHierarchyPlugin, ColliderCachePlugin, SolverBodyPlugin, IslandPlugin, IslandSleepingPlugin, BroadPhaseCorePlugin,
             avian::PhysicsTypeRegistrationPlugin;
         PluginGroup, Default => PhysicsPlugins, SolverPlugins;
         SystemSet, Copy, Debug, Eq, Hash =>
@@ -365,6 +372,29 @@ fn methods_have_the_signatures_they_had() {
         fn(&LockedAxes) -> bool =
             LockedAxes::is_translation_x_locked, LockedAxes::is_translation_y_locked,
             LockedAxes::is_translation_locked, LockedAxes::is_rotation_locked;
+        fn(&Mesh) -> Option<Collider> =
+            Collider::trimesh_from_mesh, Collider::convex_hull_from_mesh,
+            Collider::convex_decomposition_from_mesh;
+        fn(&Mesh, TrimeshFlags) -> Option<Collider> = Collider::trimesh_from_mesh_with_config;
+        fn(&Mesh, &VhacdParameters) -> Option<Collider> = Collider::convex_decomposition_from_mesh_with_config;
+        fn(&Mesh, Scalar, FillMode) -> Option<Collider> = Collider::voxelized_trimesh_from_mesh;
+        fn(ColliderConstructor, Option<&Mesh>) -> Option<Collider> = Collider::try_from_constructor;
+        fn(&ColliderConstructor) -> bool = ColliderConstructor::requires_mesh;
+        fn(Vec<(Vector, Rotation, ColliderConstructor)>) -> ColliderConstructor = ColliderConstructor::compound;
+        fn(ColliderConstructor) -> ColliderConstructorHierarchy = ColliderConstructorHierarchy::new;
+        fn(Option<ColliderConstructor>) -> ColliderConstructorHierarchy = ColliderConstructorHierarchy::new;
+        fn(ColliderConstructorHierarchy, CollisionLayers) -> ColliderConstructorHierarchy =
+            ColliderConstructorHierarchy::with_default_layers;
+        fn(ColliderConstructorHierarchy, f32) -> ColliderConstructorHierarchy =
+            ColliderConstructorHierarchy::with_default_density;
+        fn(ColliderConstructorHierarchy, &str, ColliderConstructor) -> ColliderConstructorHierarchy =
+            ColliderConstructorHierarchy::with_constructor_for_name;
+        fn(ColliderConstructorHierarchy, &str, CollisionLayers) -> ColliderConstructorHierarchy =
+            ColliderConstructorHierarchy::with_layers_for_name;
+        fn(ColliderConstructorHierarchy, &str, f32) -> ColliderConstructorHierarchy =
+            ColliderConstructorHierarchy::with_density_for_name;
+        fn(ColliderConstructorHierarchy, &str) -> ColliderConstructorHierarchy =
+            ColliderConstructorHierarchy::without_constructor_for_name;
         fn(Scalar) -> ComputedMass = ComputedMass::new, ComputedMass::from_inverse;
         fn(Scalar) -> Result<ComputedMass, MassError> = ComputedMass::try_new, ComputedMass::try_from_inverse;
         fn(ComputedMass) -> Scalar = ComputedMass::value, ComputedMass::inverse;

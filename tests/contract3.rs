@@ -2,6 +2,7 @@
 #![allow(clippy::op_ref, reason = "the operators of references are what is asked for")]
 
 use avian::{
+    collision::collider::trimesh_builder::{Trimesh, TrimeshBuilder, TrimeshBuilderError},
     dynamics::rigid_body::mass_properties::components::AngularInertiaError,
     math::{
         Matrix3, Quaternion, Scalar, SymmetricMatrix, SymmetricMatrix3, Vector, Vector3, orthonormal_basis,
@@ -26,6 +27,11 @@ fn shapes_of_space_are_made_the_way_they_were() {
     let _: fn(Vec<Vec<Scalar>>, Vector) -> Collider = Collider::heightfield;
     let _: fn(Vector, &[IVec3]) -> Collider = Collider::voxels;
     let _ = FillMode::FloodFill { detect_cavities: true };
+    let _: fn(&Collider) -> TrimeshBuilder = Collider::trimesh_builder;
+    let _: fn(&TrimeshBuilder) -> Result<Trimesh, TrimeshBuilderError> = TrimeshBuilder::build;
+    let _: fn(&mut TrimeshBuilder, u32) -> &mut TrimeshBuilder = TrimeshBuilder::fallback_subdivisions;
+    let _: fn(&mut TrimeshBuilder, Vector) -> &mut TrimeshBuilder = TrimeshBuilder::translated;
+    let _: fn(Trimesh) -> bevy_mesh::Mesh = Into::into;
 }
 
 #[test]

@@ -169,6 +169,8 @@ without! {
     without_forces: ForcePlugin => moves, rests, is_attached;
     without_collider_hierarchy: ColliderHierarchyPlugin => moves, falls_through, is_detached;
     without_collider_transform: ColliderTransformPlugin => moves, falls_through, is_detached;
+    without_collider_constructors: ColliderConstructorPlugin => moves, rests, is_attached;
+    without_collider_cache: ColliderCachePlugin => moves, rests, is_attached;
     without_collider_backend: ColliderBackendPlugin<Collider> => moves, falls_through, is_massless, is_attached;
     without_collider_tree: ColliderTreePlugin<Collider> => moves, falls_through, is_attached, has_no_box;
     without_narrow_phase: NarrowPhasePlugin<Collider> => moves, falls_through, is_attached;

@@ -135,6 +135,14 @@ fn components_come_back() {
     comes_back(EnlargedAabb::default());
     comes_back((CollisionLayers::from_bits(5, 9), LayerMask(7)));
     comes_back((TrimeshFlags::FIX_INTERNAL_EDGES, VhacdParameters::default(), FillMode::SurfaceOnly));
+    let named = ColliderConstructorHierarchy::new(ColliderConstructor::TrimeshFromMesh)
+        .with_constructor_for_name(
+            "a",
+            ColliderConstructor::Segment { a: Vector::ZERO, b: Vector::ONE * 0.1 },
+        )
+        .without_constructor_for_name("a b");
+    comes_back(named.config["a"].clone());
+    comes_back((named.default_constructor, named.config["a b"].clone()));
     comes_back(MassPropertiesBundle::from_shape(&block(0.3, 0.7, 0.9), 0.1));
     comes_back((
         Mass(0.1),

@@ -1,12 +1,10 @@
 //! The narrow phase's systems: manifolds of awake contacts, then the effects of contacts that began or ended.
 
-use bevy_ecs::{prelude::*, system::SystemParam};
-use bevy_time::Time;
+use bevy_ecs::prelude::*;
 use kernel::{
-    contact::{ManifoldSource, NarrowPhaseInput, WorkerBuffers},
+    contact::{ManifoldSource, WorkerBuffers},
     manifold::LocalManifold,
     math::{Pose, Vector},
-    table::{BodyTable, ColliderTable},
 };
 
 use crate::{
@@ -15,26 +13,11 @@ use crate::{
         contact_types::views::ContactViews,
         custom_contacts::CustomContacts,
         diagnostics::CollisionDiagnostics,
-        narrow_phase::NarrowPhaseConfig,
+        narrow_phase::input::Settings,
     },
-    dynamics::{
-        solver::{
-            RowWidth, WorkerCount,
-            config::{LINEAR_SLOP, PhysicsLengthUnit},
-        },
-        tables::Tables,
-    },
-    math::to_f32,
-    schedule::Physics,
+    dynamics::tables::Tables,
     threads::Threads,
 };
-
-/// Prediction distance of contacts at rest, times the length unit. With less, stacks lose contact points. With more,
-/// contacts that never touch are computed.
-const SPECULATIVE: f32 = (4.0 * LINEAR_SLOP) as f32;
-/// Maximum relative motion of two surfaces for which a manifold is recycled, times the length unit. With more, contacts
-/// lag behind rolling bodies. With less, stacks jitter and steps take longer.
-const RECYCLE: f32 = (10.0 * LINEAR_SLOP) as f32;
 
 /// Buffers of the narrow phase.
 #[derive(Resource, Default)]
@@ -77,39 +60,6 @@ impl ManifoldSource for Foreign<'_, '_, '_, '_> {
     ) {
         if let Ok(collider) = self.colliders.get(self.entities[collider as usize]) {
             foreign_ball_manifolds(collider, center, radius, prediction, workspace, out);
-        }
-    }
-}
-
-/// Settings of the narrow phase.
-#[derive(SystemParam)]
-pub(crate) struct Settings<'w> {
-    config: Res<'w, NarrowPhaseConfig>,
-    unit: Res<'w, PhysicsLengthUnit>,
-    time: Res<'w, Time<Physics>>,
-    workers: Res<'w, WorkerCount>,
-    width: Res<'w, RowWidth>,
-}
-
-impl Settings<'_> {
-    /// The input of the narrow phase.
-    pub(super) fn input<'a, S>(
-        &self,
-        bodies: &'a BodyTable,
-        colliders: &'a ColliderTable,
-        source: &'a S,
-    ) -> NarrowPhaseInput<'a, S> {
-        let unit = self.unit.metres();
-        NarrowPhaseInput {
-            bodies,
-            colliders,
-            source,
-            dt: self.time.delta_secs(),
-            tolerance: to_f32(self.config.contact_tolerance).max(0.0) * unit,
-            speculative: SPECULATIVE * unit,
-            recycle_distance: RECYCLE * unit,
-            match_points: self.config.match_contacts,
-            narrow: *self.width == RowWidth::Four,
         }
     }
 }

@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 use super::{
     collider::{AnyCollider, ContactManifoldContext},
     contact_types::{ContactManifold, ContactPoint},
-    contacts::Settings,
     local_points::reduce,
+    narrow_phase::input::Settings,
 };
 use crate::{
     dynamics::tables::{Bodies, Colliders, Contacts},

@@ -19,8 +19,13 @@ pub use diagnostics::CollisionDiagnostics;
 
 /// The names of this module that most apps use.
 pub mod prelude {
+    #[cfg(all(feature = "collider-from-mesh", feature = "default-collider"))]
+    pub use super::collider::ColliderCachePlugin;
     #[cfg(feature = "default-collider")]
-    pub use super::collider::{Collider, FillMode, TrimeshFlags, VhacdParameters};
+    pub use super::collider::{
+        Collider, ColliderConstructor, ColliderConstructorHierarchy, ColliderConstructorHierarchyReady,
+        ColliderConstructorPlugin, ColliderConstructorReady, FillMode, TrimeshFlags, VhacdParameters,
+    };
     pub use super::{
         broad_phase::{BroadPhaseCorePlugin, BroadPhaseSystems, BvhBroadPhasePlugin},
         collider::{

@@ -25,14 +25,16 @@
 //! }
 //! ```
 
+mod diagnostics;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 mod plugin;
 mod targets;
 
+pub use diagnostics::PhysicsPickingDiagnostics;
 pub use dim::PhysicsPickingSettings;
-pub use plugin::{PhysicsPickingDiagnostics, PhysicsPickingPlugin, update_hits};
+pub use plugin::{PhysicsPickingPlugin, update_hits};
 pub use targets::{PhysicsPickable, PhysicsPickingFilter, PickingTargets};
 
 #[cfg(doc)]

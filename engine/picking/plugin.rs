@@ -7,13 +7,14 @@ use bevy_picking::{
     PickingSystems,
     backend::{PointerHits, ray::RayMap},
 };
-use bevy_reflect::{Reflect, std_traits::ReflectDefault};
-use core::time::Duration;
 use std::time::Instant;
 
-use super::{PhysicsPickable, PhysicsPickingFilter, PhysicsPickingSettings, PickingTargets, dim::hits_along};
+use super::{
+    PhysicsPickable, PhysicsPickingDiagnostics, PhysicsPickingFilter, PhysicsPickingSettings, PickingTargets,
+    dim::hits_along,
+};
 use crate::{
-    diagnostics::{Within, diagnostic_paths, list},
+    diagnostics::{Within, list},
     dynamics::tables::Colliders,
     spatial_query::{SpatialQuery, SpatialQueryFilter},
 };
@@ -35,24 +36,6 @@ impl Plugin for PhysicsPickingPlugin {
         );
     }
 }
-
-/// Time for picking in the last frame.
-#[derive(Resource, Debug, Default, Reflect)]
-#[reflect(Resource, Debug, Default)]
-pub struct PhysicsPickingDiagnostics {
-    /// Time for finding the colliders below all pointers.
-    pub update_hits: Duration,
-}
-
-diagnostic_paths! {
-    PhysicsPickingDiagnostics {
-        timer UPDATE_HITS: "avian/physics/update_hits" = update_hits,
-    }
-    reset keep
-}
-
-/// Picking runs once per frame, not per step: its time stays until it runs again.
-fn keep(_: ResMut<PhysicsPickingDiagnostics>) {}
 
 /// Finds the colliders below each pointer of each camera, and sends them as [`PointerHits`].
 pub fn update_hits(

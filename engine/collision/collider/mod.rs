@@ -7,8 +7,12 @@ mod aabb;
 mod absent;
 mod any_collider;
 mod backend;
+#[cfg(all(feature = "collider-from-mesh", feature = "default-collider"))]
+mod cache;
 pub mod collider_hierarchy;
 pub mod collider_transform;
+#[cfg(feature = "default-collider")]
+pub mod constructor;
 pub(crate) mod custom;
 mod layers;
 #[cfg(feature = "default-collider")]
@@ -22,6 +26,11 @@ pub use any_collider::{
     AabbContext, AnyCollider, ContactManifoldContext, IntoCollider, ScalableCollider, SimpleCollider,
 };
 pub use backend::{ColliderBackendPlugin, update_collider_mass_properties};
+#[cfg(all(feature = "collider-from-mesh", feature = "default-collider"))]
+pub use cache::ColliderCachePlugin;
+#[cfg(feature = "default-collider")]
+#[doc(inline)]
+pub use constructor::*;
 pub use layers::*;
 #[cfg(feature = "default-collider")]
 pub use parry::*;

@@ -1,5 +1,6 @@
 //! The narrow phase: contact points of pairs whose boxes overlap.
 
+pub(crate) mod input;
 mod plugin;
 
 pub use plugin::NarrowPhasePlugin;

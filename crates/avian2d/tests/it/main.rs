@@ -4,6 +4,10 @@
 mod collision_hits;
 #[path = "../../../../tests/collisions/mod.rs"]
 mod collisions;
+#[path = "../../../../tests/constructors.rs"]
+mod constructors;
+#[path = "../../../../tests/constructors2.rs"]
+mod constructors_dim;
 #[path = "../../../../tests/contact_query.rs"]
 mod contact_query;
 #[path = "../../../../tests/contact_query2.rs"]
@@ -28,6 +32,8 @@ mod forces_dim;
 mod hooks;
 #[path = "../../../../tests/hooks2.rs"]
 mod hooks_dim;
+#[path = "../../../../tests/levels.rs"]
+mod levels;
 #[path = "../../../../tests/marble2.rs"]
 mod marble;
 #[path = "../../../../tests/picking.rs"]

@@ -1,6 +1,6 @@
 //! Constructors of [`Collider`] that are the same in both dimensions.
 
-use super::input::{Input, MIN_LENGTH, checked, is_element_usable, is_usable, without_panic};
+use super::input::{Input, MIN_LENGTH, checked, is_element_usable, is_usable, voxels_fit, without_panic};
 use super::{Collider, FillMode, TrimeshBuilderError, TrimeshFlags, VhacdParameters, composite, dim};
 use crate::math::{DIM, Scalar, Vector};
 use crate::parry::math::IVector;
@@ -173,7 +173,7 @@ impl Collider {
     }
 
     /// The boxes that an outline (2D: segments) or surface (3D: triangles) passes through, and those inside of it by
-    /// `fill_mode`.
+    /// `fill_mode`. Boxes of which there would be too many are larger.
     pub(super) fn voxelized(
         vertices: &[Vector],
         indices: &[[u32; DIM]],
@@ -183,7 +183,10 @@ impl Collider {
     ) -> Self {
         let indices = input.elements(vertices, indices.to_vec());
         let usable = usable_vertices(vertices.to_vec());
-        let size = input.length(voxel_size);
+        let mut size = input.length(voxel_size);
+        while !voxels_fit(&usable, size) {
+            size = input.repair(size * 1.25);
+        }
         let shape = (!indices.is_empty()).then(|| {
             without_panic(|| SharedShape::voxelized_mesh(&usable, &indices, size, fill_mode.into()))
         });

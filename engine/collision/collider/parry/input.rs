@@ -102,6 +102,18 @@ impl Input {
     }
 }
 
+/// Maximum number of voxels around a shape that is voxelised. Each takes 12 bytes while it is done.
+const MAX_VOXELS: f64 = 8_388_608.0;
+
+/// Whether the box of some usable points has not too many voxels of a positive size.
+pub(super) fn voxels_fit(points: &[Vector], voxel_size: Scalar) -> bool {
+    let usable = || points.iter().copied().filter(|p| is_usable(*p));
+    let (low, high) = (usable().reduce(Vector::min), usable().reduce(Vector::max));
+    let extents = high.unwrap_or_default() - low.unwrap_or_default();
+    let count = |extent: Scalar| (extent as f64 / voxel_size as f64).ceil().max(2.0) + 1.0;
+    extents.to_array().into_iter().map(count).product::<f64>() <= MAX_VOXELS
+}
+
 /// Whether a point is finite and within the limits.
 pub(super) fn is_usable(point: Vector) -> bool {
     point.abs().cmple(Vector::splat(MAX_LENGTH)).all()

@@ -1,14 +1,19 @@
 //! [`Collider`], the default collider: a shape of parry with a scale.
 //!
-//! `constructors`, `shapes2` and `shapes3` make colliders, `native` converts their shapes for the kernel, and
+//! `constructors`, `shapes2` and `shapes3` make colliders, `from_constructor` and `from_mesh` those that are described by
+//! data and by meshes, `native` converts their shapes for the kernel, and
 //! `manifold` computes contacts of shapes that the kernel does not have.
 
+mod any_collider;
 mod composite;
 mod constructors;
 pub mod contact_query;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod from_constructor;
+#[cfg(feature = "collider-from-mesh")]
+mod from_mesh;
 mod handedness;
 mod input;
 mod manifold;
@@ -23,6 +28,7 @@ mod shapes;
 mod spatial;
 #[cfg(feature = "serialize")]
 mod stored;
+mod strict;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -34,20 +40,24 @@ pub use params::{FillMode, TrimeshFlags, VhacdParameters};
 #[allow(unused_imports, reason = "3D has no shapes of its own")]
 pub use shapes::*;
 
+/// Meshes, without feature `collider-from-mesh`: there are none.
+#[cfg(not(feature = "collider-from-mesh"))]
+mod mesh_type {
+    pub(crate) enum Mesh {}
+}
+
 pub(crate) use manifold::{Workspace, foreign_ball_manifolds, foreign_manifolds};
 pub(crate) use spatial::{ForeignCast, cast_foreign, overlaps_foreign};
+pub(crate) use strict::Fault;
 
-use super::{
-    AabbContext, AnyCollider, ColliderAabb, ColliderMarker, CollisionLayers, ContactManifoldContext,
-    EnlargedAabb, IntoCollider, ScalableCollider,
-};
-use crate::collision::contact_types::ContactManifold;
+use super::{ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, IntoCollider};
 use crate::dynamics::ids::ColliderId;
 use crate::dynamics::rigid_body::mass_properties::components::{ColliderDensity, ColliderMassProperties};
-use crate::math::{Scalar, Vector};
+use crate::math::Vector;
 use crate::parry::shape::SharedShape;
-use crate::physics_transform::Rotation;
 use bevy_ecs::prelude::Component;
+#[cfg(feature = "collider-from-mesh")]
+use bevy_mesh as mesh_type;
 use native::native_shape;
 use std::sync::OnceLock;
 
@@ -237,50 +247,3 @@ fn has_extent(shape: &SharedShape) -> bool {
 
 /// Number of subdivisions of curved shapes before a scale is set.
 const DEFAULT_SUBDIVISIONS: u32 = 10;
-
-impl AnyCollider for Collider {
-    type Context = ();
-
-    fn aabb_with_context(
-        &self,
-        position: Vector,
-        rotation: impl Into<Rotation>,
-        _: AabbContext<()>,
-    ) -> ColliderAabb {
-        let aabb = self.shape_scaled().compute_aabb(&dim::pose(position, rotation.into()));
-        ColliderAabb::from_min_max(aabb.mins, aabb.maxs)
-    }
-
-    fn contact_manifolds_with_context(
-        &self,
-        other: &Self,
-        position1: Vector,
-        rotation1: impl Into<Rotation>,
-        position2: Vector,
-        rotation2: impl Into<Rotation>,
-        prediction_distance: Scalar,
-        manifolds: &mut Vec<ContactManifold>,
-        _: ContactManifoldContext<()>,
-    ) {
-        contact_query::contact_manifolds(
-            self,
-            position1,
-            rotation1,
-            other,
-            position2,
-            rotation2,
-            prediction_distance,
-            manifolds,
-        );
-    }
-}
-
-impl ScalableCollider for Collider {
-    fn scale(&self) -> Vector {
-        self.scale()
-    }
-
-    fn set_scale(&mut self, scale: Vector, detail: u32) {
-        self.set_scale(scale, detail);
-    }
-}

@@ -2,6 +2,9 @@
 
 mod collider;
 pub(super) mod ellipse;
+pub(super) mod from_constructor;
+#[cfg(feature = "collider-from-mesh")]
+pub(super) mod from_mesh;
 mod primitives;
 pub(super) mod regular_polygon;
 pub(super) mod scaled;

@@ -1,5 +1,8 @@
 //! Constructors of 3D. `shapes2` has those of 2D, and its shapes.
 
 mod collider;
+pub(super) mod from_constructor;
+#[cfg(feature = "collider-from-mesh")]
+pub(super) mod from_mesh;
 mod primitives;
 pub(super) mod scaled;

@@ -1,5 +1,9 @@
 //! Stored formats of 2D shapes. `dim3.rs` exports the same names.
 
+#[cfg(test)]
+#[path = "tests2d.rs"]
+pub(super) mod tests;
+
 use bevy_math::primitives::{Ellipse, RegularPolygon};
 use serde::{Deserialize, Serialize};
 

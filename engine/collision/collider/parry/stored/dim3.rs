@@ -1,5 +1,9 @@
 //! Stored formats of 3D shapes. `dim2.rs` exports the same names.
 
+#[cfg(test)]
+#[path = "tests3d.rs"]
+pub(super) mod tests;
+
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{

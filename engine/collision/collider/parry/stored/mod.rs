@@ -12,10 +12,6 @@ mod part;
 mod piece;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-#[cfg_attr(feature = "2d", path = "tests2d.rs")]
-#[cfg_attr(feature = "3d", path = "tests3d.rs")]
-mod tests_dim;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
 

@@ -14,7 +14,7 @@ use crate::{
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use super::tests_dim::{shapes_of_dimension, turned};
+use super::dim::tests::{shapes_of_dimension, turned};
 
 /// Pseudo-random numbers between 0.05 and 1.
 pub(super) struct Numbers(pub u64);
@@ -270,7 +270,7 @@ fn what_is_no_shape_is_an_error() {
     let read = |shape: Value, scale: Value, detail: Value| {
         serde_json::from_value::<Collider>(json!({ "shape": shape, "scale": scale, "detail": detail }))
     };
-    for shape in shapeless().into_iter().chain(super::tests_dim::shapeless()) {
+    for shape in shapeless().into_iter().chain(super::dim::tests::shapeless()) {
         let result = read(shape.clone(), json!(Vector::ONE), json!(10));
         assert!(result.is_err(), "{shape} became {result:?}");
     }

@@ -1,4 +1,4 @@
-use super::tests::Numbers;
+use super::super::tests::Numbers;
 use crate::{
     collision::collider::Collider,
     math::Vector,
@@ -8,12 +8,12 @@ use crate::{
 use serde_json::{Value, json};
 
 /// A pseudo-random rotation.
-pub(super) fn turned(n: &mut Numbers) -> Rotation {
+pub(in super::super) fn turned(n: &mut Numbers) -> Rotation {
     Rotation::radians(3.0 * n.next())
 }
 
 /// One collider of each kind that only 2D has.
-pub(super) fn shapes_of_dimension(n: &mut Numbers) -> Vec<Collider> {
+pub(in super::super) fn shapes_of_dimension(n: &mut Numbers) -> Vec<Collider> {
     let mut holes = HeightField::new((0..6).map(|_| n.next()).collect(), n.point().abs() + 0.1);
     holes.set_segment_removed(2, true);
     let oriented = Polyline::with_flags(n.points(6), None, PolylineFlags::ORIENTED);
@@ -37,7 +37,7 @@ pub(super) fn shapes_of_dimension(n: &mut Numbers) -> Vec<Collider> {
 }
 
 /// Documents that describe no shape.
-pub(super) fn shapeless() -> Vec<Value> {
+pub(in super::super) fn shapeless() -> Vec<Value> {
     let points = json!([Vector::ZERO, Vector::X, Vector::Y]);
     let special = |value: Value| json!({ "Single": { "OfDimension": value } });
     let polygon = |points: Value, normals: Value| {

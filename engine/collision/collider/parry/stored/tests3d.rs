@@ -1,4 +1,4 @@
-use super::tests::Numbers;
+use super::super::tests::Numbers;
 use crate::{
     collision::collider::Collider,
     math::{Quaternion, Scalar, Vector},
@@ -11,12 +11,12 @@ use crate::{
 use serde_json::{Value, json};
 
 /// A pseudo-random rotation.
-pub(super) fn turned(n: &mut Numbers) -> Rotation {
+pub(in super::super) fn turned(n: &mut Numbers) -> Rotation {
     Rotation(Quaternion::from_xyzw(n.next(), -n.next(), n.next(), n.next()).normalize())
 }
 
 /// One collider of each kind that only 3D has.
-pub(super) fn shapes_of_dimension(n: &mut Numbers) -> Vec<Collider> {
+pub(in super::super) fn shapes_of_dimension(n: &mut Numbers) -> Vec<Collider> {
     let heights = |n: &mut Numbers| (0..4).map(|_| (0..5).map(|_| n.next()).collect()).collect();
     let mut holes = HeightField::with_flags(
         Array2::from_fn(3, 4, |i, j| (i * j) as Scalar * 0.1),
@@ -49,7 +49,7 @@ fn box_corners(half: Vector) -> Vec<Vector> {
 }
 
 /// Documents that describe no shape.
-pub(super) fn shapeless() -> Vec<Value> {
+pub(in super::super) fn shapeless() -> Vec<Value> {
     let hull = Collider::convex_hull(box_corners(Vector::ONE)).expect("a box is convex");
     let stored = serde_json::to_value(&hull).expect("can be stored")["shape"].clone();
     let with = |field: &str, value: Value| {

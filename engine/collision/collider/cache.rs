@@ -1,0 +1,127 @@
+//! Colliders that were made from meshes, kept for other entities with the same mesh.
+
+use bevy_app::{App, Plugin, Update};
+use bevy_asset::{AssetEvent, AssetId};
+use bevy_ecs::{
+    message::{MessageReader, Messages},
+    prelude::{IntoScheduleConfigs, ResMut, Resource, resource_exists},
+};
+use bevy_mesh::Mesh;
+use bevy_platform::collections::HashMap;
+
+use super::{
+    Collider,
+    constructor::{ColliderConstructor, ConstructorSystems},
+};
+
+/// Keeps the colliders that [`ColliderConstructor`]s make from meshes, so that entities with the same mesh and the same
+/// constructor share one shape.
+///
+/// A collider is forgotten when its mesh is changed or removed. Without assets in the app, the plugin does nothing.
+#[derive(Default)]
+pub struct ColliderCachePlugin;
+
+impl Plugin for ColliderCachePlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<ColliderCache>().add_systems(
+            Update,
+            forget_changed_meshes
+                .run_if(resource_exists::<Messages<AssetEvent<Mesh>>>)
+                .before(ConstructorSystems),
+        );
+    }
+}
+
+/// Colliders by their mesh.
+///
+/// Changes of assets are told at the end of a frame. A collider that was made before is not used in the frame in which
+/// assets changed: it may be of the mesh as it was.
+#[derive(Resource, Default)]
+pub(crate) struct ColliderCache {
+    colliders: HashMap<AssetId<Mesh>, Vec<Kept>>,
+    /// Number of rounds begun.
+    round: u64,
+    /// The first round whose colliders may be used.
+    trusted: u64,
+}
+
+/// A collider with the constructor that made it.
+struct Kept {
+    constructor: ColliderConstructor,
+    collider: Collider,
+    round: u64,
+}
+
+impl ColliderCache {
+    /// Begins a round of constructors. `is_changed` is whether a mesh may have changed since the last round.
+    pub(crate) fn begin(&mut self, is_changed: bool) {
+        self.round += 1;
+        self.trusted = if is_changed { self.round } else { 0 };
+    }
+
+    /// The collider that was made of a mesh by an equal constructor.
+    pub(crate) fn get(&self, mesh: AssetId<Mesh>, constructor: &ColliderConstructor) -> Option<Collider> {
+        let kept = self.colliders.get(&mesh)?.iter();
+        let mut usable = kept.filter(|kept| kept.round >= self.trusted && kept.constructor == *constructor);
+        usable.next().map(|kept| kept.collider.clone())
+    }
+
+    /// Keeps a collider that was made in this round.
+    pub(crate) fn insert(&mut self, mesh: AssetId<Mesh>, constructor: &ColliderConstructor, made: &Collider) {
+        let of_mesh = self.colliders.entry(mesh).or_default();
+        // Those of former rounds are made anew when they are next needed, or are outdated. One with NaN equals none.
+        of_mesh.retain(|kept| kept.round >= self.trusted && kept.constructor != *constructor);
+        if of_mesh.len() < MOST_OF_MESH {
+            let (constructor, collider) = (constructor.clone(), made.clone());
+            of_mesh.push(Kept { constructor, collider, round: self.round });
+        }
+    }
+}
+
+/// Maximum number of constructors of one mesh that are kept. More are made each time. Usual are one or two.
+const MOST_OF_MESH: usize = 16;
+
+/// Forgets the colliders of meshes that are changed or gone.
+fn forget_changed_meshes(mut events: MessageReader<AssetEvent<Mesh>>, mut cache: ResMut<ColliderCache>) {
+    for event in events.read() {
+        if let AssetEvent::Modified { id } | AssetEvent::Removed { id } | AssetEvent::Unused { id } = event {
+            cache.colliders.remove(id);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_collider_of_a_former_round_is_not_used_while_meshes_change() {
+        let (mesh, constructor) = (AssetId::<Mesh>::invalid(), ColliderConstructor::ConvexHullFromMesh);
+        let mut cache = ColliderCache::default();
+        cache.begin(true);
+        assert!(cache.get(mesh, &constructor).is_none());
+        cache.insert(mesh, &constructor, &Collider::capsule(0.5, 1.0));
+        assert!(cache.get(mesh, &constructor).is_some(), "made in this round");
+        assert!(cache.get(mesh, &ColliderConstructor::TrimeshFromMesh).is_none(), "made otherwise");
+        cache.begin(false);
+        assert!(cache.get(mesh, &constructor).is_some(), "nothing changed");
+        cache.begin(true);
+        assert!(cache.get(mesh, &constructor).is_none(), "it may be of the mesh as it was");
+        cache.insert(mesh, &constructor, &Collider::capsule(0.7, 1.0));
+        assert_eq!(cache.colliders[&mesh].len(), 1, "it took the place of the former one");
+    }
+
+    #[test]
+    fn a_constructor_with_nan_does_not_fill_the_memory() {
+        let mesh = AssetId::<Mesh>::invalid();
+        let mut cache = ColliderCache::default();
+        cache.begin(false);
+        let fill_mode = super::super::FillMode::SurfaceOnly;
+        let constructor =
+            ColliderConstructor::VoxelizedTrimeshFromMesh { voxel_size: crate::math::Scalar::NAN, fill_mode };
+        for _ in 0..100 {
+            cache.insert(mesh, &constructor, &Collider::default());
+        }
+        assert!(cache.colliders[&mesh].len() <= MOST_OF_MESH);
+    }
+}

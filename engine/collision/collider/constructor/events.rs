@@ -1,0 +1,33 @@
+//! The events of constructors that are done.
+
+use bevy_ecs::{entity::Entity, event::EntityEvent};
+
+/// Triggered on an entity after its [`ColliderConstructor`](super::ColliderConstructor) inserted the collider.
+///
+/// The constructor is already removed.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// fn setup(mut commands: Commands) {
+///     commands
+///         .spawn(ColliderConstructor::Capsule { radius: 0.4, height: 1.0 })
+///         .observe(|ready: On<ColliderConstructorReady>| println!("{} collides now", ready.entity));
+/// }
+/// ```
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq)]
+pub struct ColliderConstructorReady {
+    /// The entity with the collider.
+    pub entity: Entity,
+}
+
+/// Triggered on an entity when its [`ColliderConstructorHierarchy`](super::ColliderConstructorHierarchy) is done: all
+/// colliders below it are inserted, those from meshes that had to be loaded too.
+///
+/// The events of the single colliders come before. The hierarchy component is already removed. Constructors that failed,
+/// with a warning each, do not hold it up.
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq)]
+pub struct ColliderConstructorHierarchyReady {
+    /// The entity that had the hierarchy component.
+    pub entity: Entity,
+}
