@@ -5,7 +5,7 @@ use super::*;
 use crate::collision::collider::SimpleCollider;
 use crate::math::{ComputeMassProperties, DIM, Scalar};
 use crate::parry::math::IVector;
-use crate::physics_transform::Position;
+use crate::physics_transform::{Position, Rotation};
 use kernel::{manifold::LocalManifold, math::Pose};
 
 /// Appends the manifolds of two colliders.

@@ -3,6 +3,7 @@
 use super::tests::{assert_native, assert_usable, close, collide, half_size};
 use super::*;
 use crate::math::{PI, Scalar};
+use crate::physics_transform::Rotation;
 use bevy_heavy::ComputeMassProperties2d;
 use bevy_math::primitives::*;
 use bevy_math::{Dir2, Vec2};

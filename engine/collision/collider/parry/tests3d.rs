@@ -3,7 +3,7 @@
 use super::tests::{assert_native, assert_usable, close, collide, half_size};
 use super::*;
 use crate::math::{AdjustPrecision, PI, Scalar};
-use crate::physics_transform::Position;
+use crate::physics_transform::{Position, Rotation};
 use bevy_heavy::ComputeMassProperties3d;
 use bevy_math::primitives::*;
 use bevy_math::{Dir3, Vec2, Vec3};
