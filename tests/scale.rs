@@ -170,7 +170,9 @@ fn issue_471_a_replaced_collider_keeps_the_scale_of_the_transform() {
     let mut app = app();
     let bodies = [Some(RigidBody::Dynamic), Some(RigidBody::Static), None].map(|body| {
         let entity = app.world_mut().spawn((lopsided(), scaled(uneven()))).id();
-        body.map(|body| _ = app.world_mut().entity_mut(entity).insert(body));
+        if let Some(body) = body {
+            app.world_mut().entity_mut(entity).insert(body);
+        }
         entity
     });
     step(&mut app);
