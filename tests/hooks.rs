@@ -341,6 +341,43 @@ fn a_contact_without_constraints_touches_and_pushes_nothing() {
     assert!(app.world().get::<CollidingEntities>(body).unwrap().contains(&floor));
 }
 
+/// What a hook saw last.
+#[derive(Resource, Default)]
+struct Load(std::sync::Mutex<Scalar>);
+
+#[derive(SystemParam)]
+struct Scales<'w> {
+    load: Res<'w, Load>,
+}
+
+impl CollisionHooks for Scales<'_> {
+    fn modify_contacts(&self, contacts: &mut ContactPair, _: &mut Commands) -> bool {
+        *self.load.0.lock().unwrap() = contacts.total_normal_impulse_magnitude();
+        true
+    }
+}
+
+/// An app that listens by hooks only sees impulses grow.
+#[test]
+fn a_hook_reads_the_impulses_of_the_last_step() {
+    let mut app = app::<Scales>();
+    app.init_resource::<Load>();
+    spawn_floor(&mut app);
+    let body = spawn_box(&mut app, 0.0, 0.5);
+    app.world_mut().entity_mut(body).insert((
+        Mass(1.0),
+        SleepingDisabled,
+        ActiveCollisionHooks::MODIFY_CONTACTS,
+    ));
+    for mass in [1.0, 10.0, 3.0] {
+        app.world_mut().entity_mut(body).insert(Mass(mass));
+        steps(&mut app, 64);
+        let load = *app.world().resource::<Load>().0.lock().unwrap();
+        let expected = mass as Scalar * 10.0 / 64.0;
+        assert!((load - expected).abs() < 0.02 * expected, "{load} N·s for {expected}");
+    }
+}
+
 #[test]
 fn hooked_contacts_have_the_same_bits_for_any_number_of_workers() {
     let run = |workers| {

@@ -36,6 +36,16 @@ fn the_ray_is_followed_to_the_plane() {
 }
 
 #[test]
+fn what_is_behind_the_camera_is_not_picked() {
+    let mut app = app();
+    spawn_camera(&mut app);
+    let body = app.world_mut().spawn((RigidBody::Static, shape(), Transform::default())).id();
+    app.world_mut().spawn((RigidBody::Static, shape(), at(0.0, 0.0, 15.0)));
+    frame(&mut app);
+    assert_eq!(entities(&mut app), [body]);
+}
+
+#[test]
 fn a_camera_may_be_turned() {
     let mut app = app();
     // It looks at the origin from the side, at 45 degrees.

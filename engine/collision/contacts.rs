@@ -80,8 +80,8 @@ pub(crate) fn update_contacts(
     let input = settings.input(&tables.bodies.table, &colliders.table, &source);
     let contacts = &mut *tables.contacts;
     contacts.changed.clear();
-    contacts.table.sum_impulses =
-        views.has_readers() || !colliders.reporting.is_empty() || !colliders.tracking.is_empty();
+    let listeners = [&colliders.reporting, &colliders.tracking, &colliders.modifying];
+    contacts.table.sum_impulses = views.has_readers() || listeners.iter().any(|set| !set.is_empty());
     let workers = &settings.workers;
     threads.wake(contacts.table.active_len(), workers.0, || workers.resolve());
     contacts.table.update(&input, &threads.pool, &mut buffers.0, &mut contacts.changed);

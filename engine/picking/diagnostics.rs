@@ -8,11 +8,13 @@ use crate::diagnostics::diagnostic_paths;
 
 /// Time for picking in the last frame.
 #[derive(Resource, Debug, Default, Reflect)]
-#[reflect(Resource, Debug, Default)]
+#[reflect(type_path = false, Resource, Debug, Default)]
 pub struct PhysicsPickingDiagnostics {
     /// Time for finding the colliders below all pointers.
     pub update_hits: Duration,
 }
+
+crate::type_path::type_path!(PhysicsPickingDiagnostics, "picking");
 
 diagnostic_paths! {
     PhysicsPickingDiagnostics {

@@ -13,7 +13,7 @@ use crate::{
 
 /// Settings of [`PhysicsPickingPlugin`](super::PhysicsPickingPlugin).
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
-#[reflect(Resource, Debug, Default, PartialEq)]
+#[reflect(type_path = false, Resource, Debug, Default, PartialEq)]
 pub struct PhysicsPickingSettings {
     /// Whether only cameras and entities with [`PhysicsPickable`](super::PhysicsPickable) take part. `false` by default.
     pub require_markers: bool,
@@ -21,6 +21,8 @@ pub struct PhysicsPickingSettings {
     /// camera is in perspective or turned.
     pub z_plane: f32,
 }
+
+crate::type_path::type_path!(PhysicsPickingSettings, "picking");
 
 /// What the ray of a pointer meets: all colliders where it crosses the plane.
 pub(super) fn hits_along(
@@ -39,8 +41,9 @@ pub(super) fn hits_along(
     }
     let mut hits = Vec::new();
     queries.point_intersections_callback(point.truncate().adjust_precision(), filter, |entity| {
-        if targets.is_met(entity, settings.require_markers) {
-            let depth = targets.height(entity).map_or(depth, depth_of);
+        let depth = targets.height(entity).map_or(depth, depth_of);
+        // What lies behind the camera is not seen.
+        if depth >= 0.0 && targets.is_met(entity, settings.require_markers) {
             hits.push((entity, HitData::new(camera, depth, Some(point), None)));
         }
         true

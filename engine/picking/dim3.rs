@@ -13,11 +13,13 @@ use crate::{
 
 /// Settings of [`PhysicsPickingPlugin`](super::PhysicsPickingPlugin).
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
-#[reflect(Resource, Debug, Default, PartialEq)]
+#[reflect(type_path = false, Resource, Debug, Default, PartialEq)]
 pub struct PhysicsPickingSettings {
     /// Whether only cameras and entities with [`PhysicsPickable`](super::PhysicsPickable) take part. `false` by default.
     pub require_markers: bool,
 }
+
+crate::type_path::type_path!(PhysicsPickingSettings, "picking");
 
 /// What the ray of a pointer meets: colliders up to the first that hides the others.
 pub(super) fn hits_along(

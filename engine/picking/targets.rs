@@ -10,13 +10,17 @@ use crate::{collision::collider::LayerMask, spatial_query::SpatialQueryFilter};
 /// Marks cameras and entities with colliders for picking. Needed only where
 /// [`PhysicsPickingSettings::require_markers`](super::PhysicsPickingSettings::require_markers) is set.
 #[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(Component, Debug, Default)]
+#[reflect(type_path = false, Component, Debug, Default)]
 pub struct PhysicsPickable;
+
+crate::type_path::type_path!(PhysicsPickable, "picking");
 
 /// Which colliders a camera picks. Without it all are picked.
 #[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(Component, Debug, Default)]
+#[reflect(type_path = false, Component, Debug, Default)]
 pub struct PhysicsPickingFilter(pub SpatialQueryFilter);
+
+crate::type_path::type_path!(PhysicsPickingFilter, "picking");
 
 impl PhysicsPickingFilter {
     /// Colliders in one of the given layers.

@@ -68,8 +68,8 @@ pub struct ManifoldPoint {
     pub separation: f32,
     /// The normal impulse of the last substep, N·s; the next step starts from it.
     pub impulse: f32,
-    /// The sum of the normal impulses of all substeps of the last step, N·s, if the
-    /// [table](super::ContactTable::sum_impulses) keeps sums.
+    /// The sum of the normal impulses of all substeps of the last step, N·s; 0 if the
+    /// [table](super::ContactTable::sum_impulses) keeps no sums.
     pub total_impulse: f32,
     /// The features of both shapes that make this point.
     pub feature: u32,

@@ -449,13 +449,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for StoreJob<'_, N, M, P> {
                 manifold.friction_impulse = friction.get(lane);
                 manifold.twist_impulse = row.twist.impulse(lane);
                 let count = usize::from(manifold.count);
-                for (p, point) in manifold.points[..count].iter_mut().zip(&row.points) {
+                // Without sums an old one must not stay.
+                let sum = block.sums.get(i).copied().unwrap_or([N::ZERO; P]);
+                for ((p, point), sum) in manifold.points[..count].iter_mut().zip(&row.points).zip(sum) {
                     p.impulse = point.impulse.get(lane);
-                }
-                if let Some(sum) = block.sums.get(i) {
-                    for (p, sum) in manifold.points[..count].iter_mut().zip(sum) {
-                        p.total_impulse = sum.get(lane);
-                    }
+                    p.total_impulse = sum.get(lane);
                 }
             }
         }

@@ -79,7 +79,8 @@ impl ContactManifoldContext<'_, '_, '_, ()> {
 /// A type of your own works with [`ColliderBackendPlugin`](super::ColliderBackendPlugin) and
 /// [`NarrowPhasePlugin`](crate::collision::narrow_phase::NarrowPhasePlugin) for it. Colliders of one type collide with each
 /// other, not with those of other types. Its manifolds are computed by one thread, once per step and pair; spatial queries and
-/// sweeps of fast bodies do not see it.
+/// sweeps of fast bodies do not see it. Where its shape depends on a context, the box is looked at before each step; a change that
+/// leaves the box as it is must be told by `set_changed` on the collider, or bodies sleep on.
 pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
     /// The system parameter that the methods need.
     type Context: for<'w, 's> ReadOnlySystemParam<Item<'w, 's>: Send + Sync>;

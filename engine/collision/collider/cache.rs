@@ -3,8 +3,10 @@
 use bevy_app::{App, Plugin, Update};
 use bevy_asset::{AssetEvent, AssetId};
 use bevy_ecs::{
+    change_detection::Tick,
     message::{MessageReader, Messages},
     prelude::{IntoScheduleConfigs, ResMut, Resource, resource_exists},
+    system::SystemChangeTick,
 };
 use bevy_mesh::Mesh;
 use bevy_platform::collections::HashMap;
@@ -43,6 +45,8 @@ pub(crate) struct ColliderCache {
     round: u64,
     /// The first round whose colliders may be used.
     trusted: u64,
+    /// Changes up to here have been told.
+    told: Tick,
 }
 
 /// A collider with the constructor that made it.
@@ -53,7 +57,12 @@ struct Kept {
 }
 
 impl ColliderCache {
-    /// Begins a round of constructors. `is_changed` is whether a mesh may have changed since the last round.
+    /// Whether a change of meshes has not been told yet.
+    pub(crate) fn is_untold(&self, changed: Tick, now: Tick) -> bool {
+        changed.is_newer_than(self.told, now)
+    }
+
+    /// Begins a round of constructors. `is_changed` is whether a mesh may have changed, and that was not told yet.
     pub(crate) fn begin(&mut self, is_changed: bool) {
         self.round += 1;
         self.trusted = if is_changed { self.round } else { 0 };
@@ -82,7 +91,13 @@ impl ColliderCache {
 const MOST_OF_MESH: usize = 16;
 
 /// Forgets the colliders of meshes that are changed or gone.
-fn forget_changed_meshes(mut events: MessageReader<AssetEvent<Mesh>>, mut cache: ResMut<ColliderCache>) {
+fn forget_changed_meshes(
+    mut events: MessageReader<AssetEvent<Mesh>>,
+    mut cache: ResMut<ColliderCache>,
+    system: SystemChangeTick,
+) {
+    // Bevy sends events at the end of a frame: those read here are of changes before the last frame's end.
+    cache.told = system.last_run();
     for event in events.read() {
         if let AssetEvent::Modified { id } | AssetEvent::Removed { id } | AssetEvent::Unused { id } = event {
             cache.colliders.remove(id);

@@ -29,14 +29,19 @@ pub(crate) fn is_custom<C: AnyCollider>() -> bool {
 
 /// Keeps the shapes of a collider type of the app up to date: of new colliders at once, of changed ones before each step.
 pub(super) fn watch_shapes<C: AnyCollider>(app: &mut App) {
-    app.add_observer(shape_added::<C>)
-        .add_observer(|on: On<Remove, C>, mut commands: Commands| {
-            commands.entity(on.entity).try_remove::<CustomShape>();
-        })
-        .add_systems(
-            PhysicsSchedule,
-            update_shapes::<C>.before(PhysicsStepSystems::First).ambiguous_with_all(),
-        );
+    app.add_observer(shape_added::<C>).add_observer(shape_removed::<C>).add_systems(
+        PhysicsSchedule,
+        update_shapes::<C>.before(PhysicsStepSystems::First).ambiguous_with_all(),
+    );
+}
+
+fn shape_removed<C: AnyCollider>(on: On<Remove, C>, mut commands: Commands) {
+    commands.entity(on.entity).queue_silenced(|mut entity: EntityWorldMut| {
+        // Another one may have been inserted meanwhile.
+        if !entity.contains::<C>() {
+            entity.remove::<CustomShape>();
+        }
+    });
 }
 
 fn shape_added<C: AnyCollider>(
@@ -46,46 +51,57 @@ fn shape_added<C: AnyCollider>(
     mut commands: Commands,
 ) {
     if let Ok(collider) = colliders.get(on.entity) {
-        let shape = box_of::<C>(on.entity, collider, &context);
-        commands.entity(on.entity).try_insert(CustomShape(Shape::Foreign(shape)));
+        set_box(on.entity, box_of::<C>(on.entity, collider, &context), &mut commands);
     }
 }
 
 /// Shapes that depend on a context may change without their component, so all of them are looked at.
 fn update_shapes<C: AnyCollider>(
-    colliders: Query<(Entity, Ref<C>, &CustomShape), Allow<Disabled>>,
+    colliders: Query<(Entity, Ref<C>, Option<&CustomShape>), Allow<Disabled>>,
     context: StaticSystemParam<C::Context>,
     mut commands: Commands,
 ) {
     let is_alone = TypeId::of::<C::Context>() == TypeId::of::<()>();
-    for (entity, collider, CustomShape(old)) in &colliders {
-        if is_alone && !collider.is_changed() {
+    for (entity, collider, old) in &colliders {
+        if is_alone && !collider.is_changed() && old.is_some() {
             continue;
         }
-        let new = Shape::Foreign(box_of::<C>(entity, &collider, &context));
-        let is_new = match (old, &new) {
-            (Shape::Foreign(old), Shape::Foreign(new)) => old.aabb != new.aabb,
-            _ => true,
+        let new = box_of::<C>(entity, &collider, &context);
+        let is_same = match old {
+            Some(CustomShape(Shape::Foreign(old))) => old.aabb == new.unwrap_or(POINT),
+            _ => false,
         };
-        if is_new || collider.is_changed() {
-            commands.entity(entity).try_insert(CustomShape(new));
+        if !is_same || collider.is_changed() {
+            set_box(entity, new, &mut commands);
         }
     }
 }
 
-/// The box of a collider in its own frame, rounded outward. An invalid one is warned of, and becomes a point.
-fn box_of<C: AnyCollider>(entity: Entity, collider: &C, context: &SystemParamItem<C::Context>) -> Foreign {
+/// What an invalid box is taken for.
+const POINT: Aabb = Aabb { min: kernel::math::Vector::ZERO, max: kernel::math::Vector::ZERO };
+
+/// Gives a collider its box. An invalid one is warned of, and becomes a point.
+fn set_box(entity: Entity, aabb: Option<Aabb>, commands: &mut Commands) {
+    if aabb.is_none() {
+        warn!("the box of the collider {entity} is not valid; it is taken for a point");
+    }
+    let shape = Foreign { aabb: aabb.unwrap_or(POINT) };
+    commands.entity(entity).try_insert(CustomShape(Shape::Foreign(shape)));
+}
+
+/// The box of a collider in its own frame, rounded outward, if it is valid.
+fn box_of<C: AnyCollider>(
+    entity: Entity,
+    collider: &C,
+    context: &SystemParamItem<C::Context>,
+) -> Option<Aabb> {
     let context = AabbContext::new(entity, context);
     let ColliderAabb { min, max } = collider.aabb_with_context(Vector::ZERO, Rotation::default(), context);
     let outward = |corner: Vector, rounded: fn(Scalar) -> f32| {
         kernel::math::Vector::from_array(corner.to_array().map(rounded))
     };
     let aabb = Aabb { min: outward(min, round_down), max: outward(max, round_up) };
-    if aabb.is_valid() {
-        return Foreign { aabb };
-    }
-    warn!("the box of the collider {entity} is not valid: {min} to {max}; it touches nothing");
-    Foreign { aabb: Aabb::around([kernel::math::Vector::ZERO]) }
+    aabb.is_valid().then_some(aabb)
 }
 
 /// The nearest `f32` not above `v`.

@@ -59,6 +59,8 @@ fn fit<C: ScalableCollider>(mut collider: impl DerefMut<Target = C>, scale: Vect
     }
     if !is_same(scale, collider.scale()) {
         collider.set_scale(without_noise(scale), SUBDIVISIONS);
+        // A shape may refuse it.
+        return is_same(scale, collider.scale());
     }
     true
 }

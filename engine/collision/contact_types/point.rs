@@ -16,9 +16,10 @@ pub struct ContactPoint {
     pub penetration: Scalar,
     /// The impulse along the normal over the whole step, N·s. Under a resting body it is weight times the length of the step.
     ///
-    /// Sums over the substeps are kept while a collider has [`CollisionEventsEnabled`](crate::prelude::CollisionEventsEnabled)
-    /// or [`CollidingEntities`](crate::prelude::CollidingEntities), and from the first step on after a system asked
-    /// [`Collisions`](crate::prelude::Collisions). Without sums this is the impulse of the last substep times their number.
+    /// Sums over the substeps are kept while a collider has [`CollisionEventsEnabled`](crate::prelude::CollisionEventsEnabled),
+    /// [`CollidingEntities`](crate::prelude::CollidingEntities) or hooks that change contacts, and from the step after a system
+    /// first asked [`Collisions`](crate::prelude::Collisions). Without sums this is the impulse of the last substep times their
+    /// number.
     pub normal_impulse: Scalar,
     /// The speed at which the surfaces part along the normal, m/s; negative if they approach. Before the solver it is
     /// that of the impact, after it what is left.

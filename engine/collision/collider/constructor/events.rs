@@ -25,7 +25,8 @@ pub struct ColliderConstructorReady {
 /// colliders below it are inserted, those from meshes that had to be loaded too.
 ///
 /// The events of the single colliders come before. The hierarchy component is already removed. Constructors that failed,
-/// with a warning each, do not hold it up.
+/// with a warning each, do not hold it up. One whose mesh was taken away, or is not being loaded, does, until it gets a mesh or is
+/// removed.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq)]
 pub struct ColliderConstructorHierarchyReady {
     /// The entity that had the hierarchy component.

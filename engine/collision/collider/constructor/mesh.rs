@@ -4,7 +4,7 @@ use bevy_asset::{AssetId, AssetServer, Assets, LoadState};
 use bevy_ecs::{
     change_detection::DetectChanges,
     prelude::{Entity, Query, Res, ResMut},
-    system::SystemParam,
+    system::{SystemChangeTick, SystemParam},
 };
 use bevy_mesh::Mesh;
 
@@ -18,13 +18,15 @@ pub(super) struct Meshes<'w, 's> {
     assets: Option<Res<'w, Assets<Mesh>>>,
     server: Option<Res<'w, AssetServer>>,
     cache: Option<ResMut<'w, ColliderCache>>,
+    ticks: SystemChangeTick,
 }
 
 impl Meshes<'_, '_> {
     /// Begins a round of constructors.
     pub(super) fn begin(&mut self) {
-        let is_changed = self.assets.as_ref().is_some_and(|assets| assets.is_changed());
+        let changed = self.assets.as_ref().map(|assets| assets.last_changed());
         if let Some(cache) = &mut self.cache {
+            let is_changed = changed.is_some_and(|changed| cache.is_untold(changed, self.ticks.this_run()));
             cache.begin(is_changed);
         }
     }
