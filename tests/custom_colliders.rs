@@ -162,7 +162,8 @@ fn a_type_of_the_app_moves_as_the_engines_does() {
         let mut app = app();
         let mut spawn = |body: RigidBody, radius: Scalar, x: f32, y: f32| {
             let globe = Globe::<0>::new(radius);
-            let mut entity = app.world_mut().spawn((body, place(x, y), Restitution::new(0.5)));
+            let mut entity =
+                app.world_mut().spawn((body, place(x, y), Restitution::new(0.5), Friction::ZERO));
             if custom {
                 entity.insert(globe)
             } else {
@@ -171,16 +172,15 @@ fn a_type_of_the_app_moves_as_the_engines_does() {
             entity.id()
         };
         spawn(RigidBody::Static, 50.0, 0.0, -50.0);
-        // One falls and rebounds, one rolls downhill.
-        let balls = [(0.0, 2.0), (10.0, 50.5_f32.mul_add(50.5, -100.0).sqrt() - 50.0)]
-            .map(|(x, y)| spawn(RigidBody::Dynamic, 0.5, x, y));
+        // One falls and rebounds, one slides downhill.
+        let balls = [(0.0, 2.0), (10.0, 0.1)].map(|(x, y)| spawn(RigidBody::Dynamic, 0.5, x, y));
         steps(&mut app, 90);
         let mass = app.world().get::<ComputedMass>(balls[0]).expect("a body").value();
         (mass, balls.map(|ball| at(&app, ball)))
     };
     let ((mass, custom), (expected_mass, expected)) = (run(true), run(false));
     assert_eq!(mass, expected_mass);
-    assert!(expected[1].x > 11.0, "it rolls: {expected:?}");
+    assert!(expected[1].x > 11.0, "it slides: {expected:?}");
     for (a, b) in custom.iter().zip(&expected) {
         assert!(a.distance(*b) < 0.02, "{custom:?} for {expected:?}");
     }

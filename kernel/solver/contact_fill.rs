@@ -273,7 +273,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         }
         // More points have levers of their own.
         let patch = if P == 1 {
-            (row.rough_radius() * N::splat(SPIN_LEVER)).max(row.rolling_arm() * N::splat(CORNER_SPIN_LEVER))
+            (row.radius * N::splat(SPIN_LEVER)).max(row.rolling_arm() * N::splat(CORNER_SPIN_LEVER))
         } else {
             N::ZERO
         };

@@ -25,10 +25,6 @@ const CORNER_ROLL_LEVER: f32 = 0.002;
 /// them still have to roll down a slope.
 const ROLL_FRICTION: f32 = 1.0;
 
-/// Resistance counts both radii up to this many arms: those of equal balls are two. A large round ground is hardly rougher
-/// than a flat one; without the limit no ball would roll down a planet.
-const MAX_RADII: f32 = 2.5;
-
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
@@ -356,12 +352,6 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         N::select(shorter.lt(far), shorter, N::ZERO)
     }
 
-    /// The sum of both radii of which levers of resistance are shares, in metres.
-    #[inline(always)]
-    pub(super) fn rough_radius(&self) -> N {
-        self.radius.min(self.rolling_arm() * N::splat(MAX_RADII))
-    }
-
     /// Sliding velocity of B's surface over A's at the friction centre, less the target velocity.
     #[inline(always)]
     fn slip(&self, pair: &Pair<N>, frame: &TangentFrame<N>) -> Tangent<N> {
@@ -398,8 +388,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         // Contacts with more points bear on a face, which does not roll.
         if P < DIM && params.roll_speed > 0.0 {
             let reach = self.rolling_arm();
-            let radius = self.rough_radius();
-            let lever = (radius * N::splat(ROLL_LEVER)).max(reach * N::splat(CORNER_ROLL_LEVER));
+            let lever = (self.radius * N::splat(ROLL_LEVER)).max(reach * N::splat(CORNER_ROLL_LEVER));
             let scale = reach * N::splat(1.0 / max(params.roll_speed, 1.0e-9));
             let friction = self.friction.min(N::splat(ROLL_FRICTION));
             resist_rolling(n, scale, friction * sum * lever, self.inv_inertia, &mut pair.w);

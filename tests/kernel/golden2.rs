@@ -8,20 +8,20 @@ use std::sync::Arc;
 pub const GOLDEN: [(&str, u64, u64); 16] = [
     ("pyramid", 0x3e759d240f18a04d, 0x5dc22ffb4a22d159),
     ("towers", 0x336a6131c7c43b87, 0x3c93bfeb35fb9f0a),
-    ("pairs", 0xc492094986dbc7bf, 0x69ee77d8a25d5996),
-    ("heap", 0xb0d72309ca948f1e, 0xe4982e710726e337),
-    ("terrain", 0xdd094027d3a219f1, 0xc06fe0b11f762ebb),
+    ("pairs", 0xcbdcc27340e9c232, 0xcd79de4482c1cafe),
+    ("heap", 0xe870297355e5c5e2, 0x070bcc1b02b7f062),
+    ("terrain", 0xaa916521f21434cd, 0x9df68ca2c64abe06),
     ("slopes", 0x91d4e892977478c8, 0x49bb2e51e924c161),
     ("composites", 0xd2c7d5b6c1c2a59e, 0x0916d9a08dcc2317),
-    ("bounces", 0x47c92733d6c5161a, 0xd3c45bdbdfcdf674),
-    ("crowd", 0x3979330f504c2b1c, 0xfb687694e2fefe64),
+    ("bounces", 0x4dc01ed152587853, 0xd1f87301bd2499e3),
+    ("crowd", 0xfe081d6933445d8d, 0xee020b000406ccc6),
     ("sleepers", 0xa5e7442ed1b1a9ad, 0x533b356073f70c23),
-    ("held", 0x76c916adc1a74dfe, 0xcb7563e469ca2e3f),
-    ("dominance", 0x7005bdb98bafe966, 0xc49d084b6eb4e268),
+    ("held", 0xca5b2fccb7750088, 0x6e4e49fd733e99da),
+    ("dominance", 0xe9347ad63c572c20, 0x7acc7e76f934c542),
     ("spin", 0x2582868313faa98a, 0x722dbf796588edb6),
     ("mixer", 0xe1d6ffe697ba75f1, 0xfa6a65aa155288af),
     ("changes", 0x214b490d76b112da, 0x3d9aef4b222b40f9),
-    ("wall", 0x84f0f22a8d3668a7, 0x935e4c3b733d39fd),
+    ("wall", 0x0ea15e411f136317, 0xb211a24eea482915),
 ];
 
 /// Every native shape with bounds, each about a metre across.
