@@ -42,7 +42,7 @@ use crate::{
 /// | [`ForcePlugin`] | forces, torques and accelerations |
 /// | [`ColliderHierarchyPlugin`] | which colliders belong to which body |
 /// | [`ColliderTransformPlugin`] | where they are on it |
-/// | [`ColliderCachePlugin`](crate::collision::collider::ColliderCachePlugin) | colliders shared by entities with the same mesh |
+/// | `ColliderCachePlugin` | colliders shared by entities with the same mesh |
 /// | [`ColliderConstructorPlugin`](crate::collision::collider::ColliderConstructorPlugin) | colliders from `ColliderConstructor`s |
 /// | [`ColliderBackendPlugin`](crate::collision::collider::ColliderBackendPlugin) | boxes, scale and mass of `Collider`s |
 /// | [`ColliderTreePlugin`](crate::collider_tree::ColliderTreePlugin) | the trees over them |
