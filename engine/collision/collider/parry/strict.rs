@@ -124,7 +124,8 @@ pub(super) fn convex_hull(points: &[Vector]) -> Result<Collider, Fault> {
 
 pub(super) fn voxels(voxel_size: Vector, cells: &[IVector]) -> Result<Collider, Fault> {
     sizes(&voxel_size.to_array())?;
-    let in_range = |cell: &IVector| cell.to_array().iter().all(|v| v.unsigned_abs() <= MAX_VOXEL as u32);
+    let in_range =
+        |cell: &IVector| cell.to_array().iter().all(|v| v.unsigned_abs() as u64 <= MAX_VOXEL as u64);
     if cells.iter().any(in_range) {
         made(Collider::voxels(voxel_size, cells))
     } else {
