@@ -25,7 +25,7 @@ fn push(click: On<Pointer<Click>>, mut bodies: Query<Forces>, cameras: Query<&Gl
     if let Ok(mut body) = bodies.get_mut(click.entity)
         && let Ok(camera) = cameras.get(click.hit.camera)
     {
-        let away = (camera.forward() - normal).normalize();
+        let away = (*camera.forward() - normal).normalize();
         body.apply_linear_impulse_at_point(away * IMPULSE, point);
     }
 }
