@@ -1,4 +1,4 @@
-//! Colliders from constructors: their shapes, when they come, what is told, and what goes wrong.
+//! Colliders from constructors: shapes, frames in which they appear, events, and errors.
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
 use avian::{

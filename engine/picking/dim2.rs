@@ -41,7 +41,7 @@ pub(super) fn hits_along(
     }
     let mut hits = Vec::new();
     queries.point_intersections_callback(point.truncate().adjust_precision(), filter, |entity| {
-        let depth = targets.height(entity).map_or(depth, depth_of);
+        let depth = height(targets, entity).map_or(depth, depth_of);
         // What lies behind the camera is not seen.
         if depth >= 0.0 && targets.is_met(entity, settings.require_markers) {
             hits.push((entity, HitData::new(camera, depth, Some(point), None)));
@@ -49,4 +49,9 @@ pub(super) fn hits_along(
         true
     });
     hits
+}
+
+/// The z of an entity in the world.
+fn height(targets: &PickingTargets, entity: Entity) -> Option<f32> {
+    targets.states.get(entity).ok()?.2.map(|transform| transform.translation().z)
 }

@@ -38,7 +38,12 @@ pub(super) fn hits_along(
         let depth = to_f32(hit.distance);
         let data = HitData::new(camera, depth, Some(ray.get_point(depth)), Some(hit.normal.f32()));
         hits.push((hit.entity, data));
-        !targets.is_opaque(hit.entity)
+        !is_opaque(targets, hit.entity)
     });
     hits
+}
+
+/// Whether an entity hides what is behind it. In the plane Bevy decides that, by depth.
+fn is_opaque(targets: &PickingTargets, entity: Entity) -> bool {
+    !targets.states.get(entity).is_ok_and(|(pickable, ..)| pickable.is_some_and(|p| !p.should_block_lower))
 }

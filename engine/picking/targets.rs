@@ -47,7 +47,7 @@ impl PhysicsPickingFilter {
 /// How entities with colliders may be picked.
 #[derive(SystemParam)]
 pub struct PickingTargets<'w, 's> {
-    states:
+    pub(super) states:
         Query<'w, 's, (Option<&'static Pickable>, Has<PhysicsPickable>, Option<&'static GlobalTransform>)>,
 }
 
@@ -57,17 +57,5 @@ impl PickingTargets<'_, '_> {
         self.states.get(entity).is_ok_and(|(pickable, marked, _)| {
             pickable.is_none_or(|p| p.is_hoverable || p.should_block_lower) && (marked || !require_markers)
         })
-    }
-
-    /// Whether an entity hides what is below it.
-    #[cfg_attr(feature = "2d", expect(dead_code, reason = "Bevy sorts the hits of a plane by depth"))]
-    pub(super) fn is_opaque(&self, entity: Entity) -> bool {
-        !self.states.get(entity).is_ok_and(|(pickable, ..)| pickable.is_some_and(|p| !p.should_block_lower))
-    }
-
-    /// The z of an entity in the world.
-    #[cfg_attr(feature = "3d", expect(dead_code, reason = "in space the hit itself has a depth"))]
-    pub(super) fn height(&self, entity: Entity) -> Option<f32> {
-        self.states.get(entity).ok()?.2.map(|transform| transform.translation().z)
     }
 }

@@ -46,9 +46,9 @@ mod plugins;
 mod queries;
 #[path = "../../../../tests/reflection.rs"]
 mod reflection;
-#[path = "../../../../tests/scale.rs"]
+#[path = "../../../../tests/scale/mod.rs"]
 mod scale;
-#[path = "../../../../tests/scale3.rs"]
+#[path = "../../../../tests/scale/dim3.rs"]
 mod scale_dim;
 #[path = "../../../../tests/schedule.rs"]
 mod schedule;

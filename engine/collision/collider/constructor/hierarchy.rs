@@ -26,7 +26,7 @@ use crate::{
 ///
 /// The component is processed in `Update`. Where it, or a descendant, spawns a scene (`WorldAssetRoot` or
 /// `DynamicWorldRoot`), it waits until the scene is there. That needs feature `bevy_scene`; without the feature it waits
-/// until the entity has children, and says so once. When all colliders are inserted the component is removed, and
+/// until the entity has children, and warns once. When all colliders are inserted the component is removed, and
 /// [`ColliderConstructorHierarchyReady`](super::ColliderConstructorHierarchyReady) is triggered. Descendants that are
 /// spawned later get no colliders. If the component is removed before, there is no event, and constructors that
 /// descendants already have stay.

@@ -1,5 +1,9 @@
 //! 2D parts of the default collider: poses, boxes, the kernel's polygons. `dim3.rs` exports the same names.
 
+#[cfg(test)]
+#[path = "tests2d.rs"]
+mod tests;
+
 use super::native_composite::{surface, surface_of_facets, unmoved};
 use super::shapes::ellipse::EllipseColliderShape;
 use super::shapes::regular_polygon::RegularPolygonColliderShape;

@@ -1,5 +1,9 @@
 //! 3D parts of the default collider: poses, boxes, the kernel's polyhedra. `dim2.rs` exports the same names.
 
+#[cfg(test)]
+#[path = "tests3d.rs"]
+mod tests;
+
 use super::native_composite::{surface, surface_of_facets, unmoved};
 use crate::math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to_kernel};
 use crate::parry::math::{Pose, Rotation as ParryRotation};

@@ -31,10 +31,6 @@ mod stored;
 mod strict;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-#[cfg_attr(feature = "2d", path = "tests2d.rs")]
-#[cfg_attr(feature = "3d", path = "tests3d.rs")]
-mod tests_dim;
 
 pub use params::{FillMode, TrimeshFlags, VhacdParameters};
 #[allow(unused_imports, reason = "3D has no shapes of its own")]

@@ -1,7 +1,7 @@
 //! Closed forms of 3D shapes, primitives, and contacts of shapes that only parry has.
 
-use super::tests::{assert_native, assert_usable, close, collide, half_size};
-use super::*;
+use super::super::tests::{assert_native, assert_usable, close, collide, half_size};
+use super::super::*;
 use crate::math::{AdjustPrecision, PI, Scalar};
 use crate::physics_transform::{Position, Rotation};
 use bevy_heavy::ComputeMassProperties3d;
