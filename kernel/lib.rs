@@ -16,11 +16,17 @@
 //! | [`query`] | rays, shape casts, nearest points, overlaps: of two shapes, and of all colliders |
 //! | [`thread_pool`] | the threads |
 //!
-//! `cargo run -p avian_kernel3d --example falling_box` is a whole step in 40 lines.
-//!
 //! Lengths are metres, times seconds, masses kilograms, angles radians. The same input gives the same
 //! bits on every machine, for every lane width and number of threads: no fused multiply-add, no approximate reciprocal, no
 //! libm, no sum across lanes.
+#![cfg_attr(
+    feature = "3d",
+    doc = concat!(
+        "\nA whole step, in the example `falling_box`:\n```\n",
+        include_str!("../crates/avian_kernel3d/examples/falling_box.rs"),
+        "```",
+    )
+)]
 
 #[cfg(not(any(feature = "2d", feature = "3d")))]
 compile_error!("choose a dimension: the feature `2d` or `3d`");

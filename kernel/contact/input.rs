@@ -65,6 +65,24 @@ pub struct NarrowPhaseInput<'a, S> {
     pub narrow: bool,
 }
 
+impl<'a, S> NarrowPhaseInput<'a, S> {
+    /// Input with the usual lengths for shapes of about a metre: a tolerance of 5 mm, prediction up to 2 cm, recycling up
+    /// to 5 cm. `source` is `&()` if no shape is [foreign](crate::shape::Shape::Foreign), `dt` is in seconds.
+    pub fn new(bodies: &'a BodyTable, colliders: &'a ColliderTable, source: &'a S, dt: f32) -> Self {
+        Self {
+            bodies,
+            colliders,
+            source,
+            dt,
+            tolerance: 0.005,
+            speculative: 0.02,
+            recycle_distance: 0.05,
+            match_points: true,
+            narrow: false,
+        }
+    }
+}
+
 impl<S> NarrowPhaseInput<'_, S> {
     /// The poses of both sides' bodies; of a collider without one, its own, kept in `fixed`. By reference: a copy is
     /// written in other pieces than it is read in, which a processor waits for.

@@ -78,9 +78,9 @@ mod tests {
     use super::super::{Contact, ManifoldPoint};
     use super::*;
     use crate::math::Vector;
-    use crate::math::{Pose, WorldPose};
+    use crate::math::WorldPose;
     use crate::shape::{Ball, Shape};
-    use crate::table::{BodyTable, ColliderDef, ColliderFlags, ColliderTable, Layers, Material};
+    use crate::table::{BodyTable, ColliderDef, ColliderTable};
 
     /// A manifold with one point on a normal of length `length`.
     fn manifold(length: f32) -> (Manifold, ManifoldSurface) {
@@ -94,16 +94,7 @@ mod tests {
     fn table(touched: bool, touches: bool) -> (ContactTable, BitSet) {
         let (mut bodies, mut colliders) = (BodyTable::default(), ColliderTable::default());
         for _ in 0..2 {
-            let def = ColliderDef {
-                shape: Shape::Ball(Ball { radius: 1.0 }),
-                body: NONE,
-                local: Pose::IDENTITY,
-                material: Material::default(),
-                layers: Layers { memberships: 1, filters: 1 },
-                flags: ColliderFlags::default(),
-                margin: 0.0,
-                speculative: 0.0,
-            };
+            let def = ColliderDef::new(Shape::Ball(Ball { radius: 1.0 }), NONE);
             colliders.add(def, WorldPose::IDENTITY, &mut bodies);
         }
         let mut table = ContactTable::default();

@@ -7,9 +7,7 @@ use crate::graph::{ColorGraph, IslandId, Islands, SleepScan, VISITS};
 use crate::manifold::LocalManifold;
 use crate::math::{Pose, Vector, WorldPose};
 use crate::shape::{Aabb, Ball, Foreign, Shape};
-use crate::table::{
-    BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Fattening, Layers, Material,
-};
+use crate::table::{BodyKind, BodyTable, ColliderDef, ColliderTable, Fattening};
 use crate::thread_pool::ThreadPool;
 use proptest::prelude::*;
 
@@ -34,16 +32,7 @@ impl World {
         for kind in kinds {
             let body = world.bodies.add(kind, Vector::ZERO, WorldPose::IDENTITY);
             world.link().enter(body);
-            let def = ColliderDef {
-                shape: shape.clone(),
-                body,
-                local: Pose::IDENTITY,
-                material: Material::default(),
-                layers: Layers { memberships: 1, filters: u32::MAX },
-                flags: ColliderFlags::default(),
-                margin: 0.0,
-                speculative: f32::MAX,
-            };
+            let def = ColliderDef::new(shape.clone(), body);
             assert_eq!(world.colliders.add(def, WorldPose::IDENTITY, &mut world.bodies), body);
         }
         world
@@ -283,17 +272,8 @@ fn the_table_is_the_same_to_the_byte_whatever_pool_updated_it() {
         let mut buffers = Vec::new();
         for round in 0..4 {
             pool.wake();
-            let input = NarrowPhaseInput {
-                bodies: &world.bodies,
-                colliders: &world.colliders,
-                source: &Rounds(round),
-                dt: 0.01,
-                tolerance: 0.005,
-                speculative: 0.02,
-                recycle_distance: 0.05,
-                match_points: true,
-                narrow: false,
-            };
+            let source = Rounds(round);
+            let input = NarrowPhaseInput::new(&world.bodies, &world.colliders, &source, 0.01);
             let mut changed = BitSet::new();
             world.contacts.update(&input, &pool, &mut buffers, &mut changed);
             world.link().apply(&changed, |_, _, _| {});
@@ -331,17 +311,7 @@ fn a_visited_sensor_at_rest_is_updated_once() {
         let id = world.link().create(0, 1);
         let pool = ThreadPool::new(1);
         let update = |world: &mut World| {
-            let input = NarrowPhaseInput {
-                bodies: &world.bodies,
-                colliders: &world.colliders,
-                source: &(),
-                dt: 0.01,
-                tolerance: 0.005,
-                speculative: 0.02,
-                recycle_distance: 0.05,
-                match_points: true,
-                narrow: false,
-            };
+            let input = NarrowPhaseInput::new(&world.bodies, &world.colliders, &(), 0.01);
             let mut changed = BitSet::new();
             world.contacts.update(&input, &pool, &mut Vec::new(), &mut changed);
             let mut began = 0;

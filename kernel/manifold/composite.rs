@@ -23,6 +23,12 @@ const ON_BORDER: f32 = 0.02;
 /// Points closer than this share of a manifold's size are one.
 const SAME_POINT: f32 = 0.01;
 
+/// The maximum number of rounds of a cast. A pair that needs more meets where the last round placed it.
+const MAX_ROUNDS: usize = 16;
+
+/// Parts meet at a gap of this share of the prediction. More stops bodies that pass by; less takes more rounds.
+const MET: f32 = 0.1;
+
 /// Buffers for the manifolds of composite shapes, kept between calls.
 #[derive(Clone, Debug, Default)]
 pub struct CompositeBuffers {
@@ -42,12 +48,6 @@ pub struct Look {
     /// where they meet.
     pub motion: Vector,
 }
-
-/// The maximum number of rounds of a cast. A pair that needs more meets where the last round placed it.
-const MAX_ROUNDS: usize = 16;
-
-/// Parts meet at a gap of this share of the prediction. More stops bodies that pass by; less takes more rounds.
-const MET: f32 = 0.1;
 
 /// A composite shape against a convex one, or against a part of another composite.
 #[derive(Clone, Copy)]

@@ -16,6 +16,15 @@ const BLOCK: usize = 128;
 /// Less hides too little latency, more evicts lines before their use.
 const PREFETCH_DISTANCE: usize = 8;
 
+/// Maximum turn per step that prediction assumes, in radians. Bodies that turn further are treated as if they turned by
+/// this.
+pub(crate) const MOST_TURN: f32 = 1.5;
+
+/// Maximum growth of a fat box, as a share of the shape's extent and its displacement by turning. A larger share
+/// enlarges boxes less often but finds more pairs that never touch: with twice the share in 3D, a step of a pile of
+/// boxes takes a quarter longer.
+const FAT_SHARE: f32 = 0.5 / (1 << DIM) as f32;
+
 /// How two coefficients combine. Of two different rules the greater is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
@@ -112,6 +121,21 @@ pub struct ColliderDef {
 }
 
 impl ColliderDef {
+    /// A collider of a shape in the frame of its body, or without a body for [`NONE`]: without friction and restitution,
+    /// in layer 1, which interacts with all, without margin, and with unlimited prediction.
+    pub fn new(shape: Shape, body: u32) -> Self {
+        Self {
+            shape,
+            body,
+            local: Pose::IDENTITY,
+            material: Material::default(),
+            layers: Layers { memberships: 1, filters: u32::MAX },
+            flags: ColliderFlags::default(),
+            margin: 0.0,
+            speculative: f32::MAX,
+        }
+    }
+
     /// Whether two definitions are equal. Hulls are equal only if they are the same allocation.
     pub fn is_same(&self, other: &Self) -> bool {
         self.body == other.body
@@ -167,10 +191,6 @@ impl BodySize {
     const NONE: Self = Self { core: f32::INFINITY, arm: 0.0 };
 }
 
-/// Maximum turn per step that prediction assumes, in radians. Bodies that turn further are treated as if they turned by
-/// this.
-pub(crate) const MOST_TURN: f32 = 1.5;
-
 /// Turn in `dt` seconds at an angular speed of `spin` rad/s, clamped to [`MOST_TURN`], in radians.
 #[inline(always)]
 pub(crate) fn turn(spin: f32, dt: f32) -> f32 {
@@ -211,11 +231,6 @@ pub struct Fattening {
     /// The time for which boxes are swept along their body's velocity, in seconds.
     pub dt: f32,
 }
-
-/// Maximum growth of a fat box, as a share of the shape's extent and its displacement by turning. A larger share
-/// enlarges boxes less often but finds more pairs that never touch: with twice the share in 3D, a step of a pile of
-/// boxes takes a quarter longer.
-const FAT_SHARE: f32 = 0.5 / (1 << DIM) as f32;
 
 impl ColliderTable {
     /// Bytes of memory per collider, besides one bit, and besides the geometry of hulls, which colliders share.

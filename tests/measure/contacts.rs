@@ -6,9 +6,7 @@ use kernel::contact::{ContactTable, Link, NarrowPhaseInput, WorkerBuffers};
 use kernel::data::BitSet;
 use kernel::graph::ColorGraph;
 use kernel::math::{Pose, Vector, WorldPose};
-use kernel::table::{
-    BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Fattening, Layers, Material,
-};
+use kernel::table::{BodyKind, BodyTable, ColliderDef, ColliderTable, Fattening};
 use kernel::thread_pool::ThreadPool;
 
 /// Bodies in pairs, and what updates their contacts.
@@ -34,16 +32,7 @@ impl Contacts {
                 let place = frame.then(&pose);
                 let center = shape.mass_properties(1.0).center;
                 let body = bodies.add(BodyKind::Dynamic, center, place);
-                let def = ColliderDef {
-                    shape: shape.clone(),
-                    body,
-                    local: Pose::IDENTITY,
-                    material: Material::default(),
-                    layers: Layers { memberships: 1, filters: 1 },
-                    flags: ColliderFlags::default(),
-                    margin: 0.0,
-                    speculative: f32::MAX,
-                };
+                let def = ColliderDef::new(shape.clone(), body);
                 let id = colliders.add(def, place, &mut bodies);
                 colliders.refresh(id, &bodies, Fattening { margin: 0.1, dt: 1.0 / 60.0 });
             }
@@ -71,15 +60,9 @@ impl Contacts {
     /// Updates all contacts, with recycling if `recycle`.
     pub fn update(&mut self, recycle: bool) {
         let input = NarrowPhaseInput {
-            bodies: &self.bodies,
-            colliders: &self.colliders,
-            source: &(),
-            dt: 1.0 / 60.0,
-            tolerance: 0.005,
             speculative: PREDICTION,
             recycle_distance: if recycle { 0.05 } else { 0.0 },
-            match_points: true,
-            narrow: false,
+            ..NarrowPhaseInput::new(&self.bodies, &self.colliders, &(), 1.0 / 60.0)
         };
         self.changed.clear();
         self.contacts.update(&input, &self.pool, &mut self.buffers, &mut self.changed);

@@ -50,14 +50,17 @@ impl IslandLink {
 /// Absent: no island, no index in the awake list, no body.
 const NONE: u32 = u32::MAX;
 
+const NOWHERE: Place = Place { island: NONE, index: NONE };
+
+/// Message of a broken invariant of the lists.
+const LISTED: &str = "a body's links are in its island";
+
 /// Place of a body or link: an island and the index in its list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place {
     island: u32,
     index: u32,
 }
-
-const NOWHERE: Place = Place { island: NONE, index: NONE };
 
 /// Record of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -453,9 +456,6 @@ fn remove_link(island: &mut Island, places: &mut [Place], index: u32) -> IslandL
     }
     link
 }
-
-/// Message of a broken invariant of the lists.
-const LISTED: &str = "a body's links are in its island";
 
 #[cfg(test)]
 std::thread_local! {

@@ -102,6 +102,12 @@ fn edge(polygon: &Polygonal, i: usize) -> Edge {
 /// Up to this number of vertices, testing all of them for every edge is faster than walking: it has no branches.
 const FEW: usize = 16;
 
+/// [`FeatureCache::kind`] while the reference edge is one of A.
+const EDGE_OF_A: u8 = 1;
+
+/// [`FeatureCache::kind`] while the reference edge is one of B.
+const EDGE_OF_B: u8 = 2;
+
 /// The edge of `own` with the largest separation of `other`, given the pose of `own` in `other`'s frame. The first one above
 /// `reach` ends the search.
 ///
@@ -162,11 +168,6 @@ fn lowest(polygon: &Polygonal, normal: Vector) -> (usize, f32) {
     }
     best
 }
-
-/// [`FeatureCache::kind`] while the reference edge is one of A.
-const EDGE_OF_A: u8 = 1;
-/// [`FeatureCache::kind`] while the reference edge is one of B.
-const EDGE_OF_B: u8 = 2;
 
 /// The cached reference with its present separation.
 fn cached(

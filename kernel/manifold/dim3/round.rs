@@ -18,6 +18,13 @@ const LINE_SINE: f32 = 0.2;
 /// Capsules touch along a line if they are side by side over more than this share of the shorter one.
 const LINE_SHARE: f32 = 0.01;
 
+/// A hundred times the rounding of a point, as a share of the largest number it was computed from. The direction between
+/// points that are farther apart is accurate to a hundredth.
+const ROUNDING: f32 = 2.0e-5;
+
+/// Triangles with a corner of a smaller sine count as segments.
+const SLIVER: f32 = 1.0e-5;
+
 /// The closest points of both cores, and the radii.
 #[derive(Clone, Copy)]
 struct Cores {
@@ -51,10 +58,6 @@ impl Cores {
         if between.abs().max_element() > rounding { unit_or(between, fallback) } else { fallback }
     }
 }
-
-/// A hundred times the rounding of a point, as a share of the largest number it was computed from. The direction between
-/// points that are farther apart is accurate to a hundredth.
-const ROUNDING: f32 = 2.0e-5;
 
 /// The distance below which points computed from these have no direction.
 fn rounding_of(points: &[Vector]) -> f32 {
@@ -148,9 +151,6 @@ pub(super) fn triangle_ball(
     let cores = Cores { a: nearest, b: center, radius_a: 0.0, radius_b: radius };
     cores.contact(normal, rounding_of(&[t.a, t.b, t.c]), prediction, out);
 }
-
-/// Triangles with a corner of a smaller sine count as segments.
-const SLIVER: f32 = 1.0e-5;
 
 /// A triangle's unit normal; `None` if its corners are on a line, or in one place.
 fn face(t: &Triangle) -> Option<Vector> {

@@ -14,6 +14,9 @@ use crate::shape::{EdgeBlock, largest};
 /// Edges with a smaller sine between them count as parallel: the direction of their product is rounding.
 const PARALLEL: f32 = 0.005;
 
+/// The number of blocks of A's edges that are tested beforehand. Of hulls with more, all other blocks are searched.
+const LISTED: usize = 64;
+
 /// A face of one polyhedron with its separation.
 #[derive(Clone, Copy)]
 pub(super) struct FaceAxis {
@@ -144,9 +147,6 @@ impl EdgeTest {
         Some((F32x4::select(usable, separation, F32x4::splat(f32::NEG_INFINITY)), sign))
     }
 }
-
-/// The number of blocks of A's edges that are tested beforehand. Of hulls with more, all other blocks are searched.
-const LISTED: usize = 64;
 
 /// The input of the search over edges: a point of each polyhedron in the frame of the other, and the separation that edges
 /// have to exceed.

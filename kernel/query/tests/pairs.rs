@@ -193,7 +193,8 @@ proptest! {
                 // Not by the depth, whose normal is that of a face if one is about as good.
                 let low = -height(&b, &moved(end), -hit.normal);
                 let between = low - height(&a, &Pose::IDENTITY, hit.normal) - target;
-                prop_assert!(between > -2.0e-5, "not met before: {between}");
+                // The normal of two edges is accurate to 1e-4 rad, and edges are up to a metre long.
+                prop_assert!(between > -1.0e-4, "not met before: {between}");
                 prop_assert!((hit.normal.length() - 1.0).abs() < 1.0e-5);
                 prop_assert!(hit.normal.dot(direction) <= 0.0, "the normal is against the way");
                 let [on_a, on_b] = hit.points;

@@ -60,6 +60,18 @@ const END: u32 = 6 << 16;
 const CUT: u32 = 7 << 16;
 const CROSSING: u32 = 8 << 16;
 
+/// Lines with a smaller sine between them are side by side.
+const SIDE_BY_SIDE: f32 = 0.02;
+
+/// Lines run side by side if they do over more than this share of the shorter one.
+const LINE_SHARE: f32 = 0.01;
+
+/// Lines side by side may pass each other by this share of the smaller shape's extent.
+const ASIDE: f32 = 2.0e-3;
+
+/// Polygons with more corners are thinned to every second, third, … corner.
+const MAX_CORNERS: usize = 32;
+
 /// The region under construction.
 pub(super) struct Region {
     /// The unit normal from A to B, in A's frame.
@@ -354,16 +366,6 @@ impl Region {
         true
     }
 }
-
-/// Lines with a smaller sine between them are side by side.
-const SIDE_BY_SIDE: f32 = 0.02;
-/// Lines run side by side if they do over more than this share of the shorter one.
-const LINE_SHARE: f32 = 0.01;
-/// Lines side by side may pass each other by this share of the smaller shape's extent.
-const ASIDE: f32 = 2.0e-3;
-
-/// Polygons with more corners are thinned to every second, third, … corner.
-const MAX_CORNERS: usize = 32;
 
 /// A direction of the plane, and it turned by one, two and three quarters.
 fn quarter_turns([x, y]: [f32; 2]) -> [[f32; 2]; 4] {
