@@ -10,10 +10,14 @@ use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel, system::Sc
 use crate::{
     collider_tree::{ColliderTreeSystems, diagnostics::reset_trees},
     collision::{
+        app_pairs::{apply_app_pairs, fill_graph},
         broad_phase::BroadPhaseSystems,
         collision_events::send_collision_events,
         collision_hits::{find_hits, note_approaches, send_hits},
-        contact_types::views::{ContactViews, forget_views},
+        contact_types::{
+            ContactGraph,
+            views::{ContactViews, forget_views},
+        },
         contacts::{link_contacts, update_contacts},
         custom_contacts::CustomContacts,
         diagnostics::reset_collision,
@@ -154,11 +158,16 @@ stages! {
     FindPairs.in_set(BroadPhaseSystems::CollectCollisions) => {
         BroadPhase: (find_new_pairs, add_contacts.pipe(forget_views).after(FilterPairs)).chain(),
     }
+    /// Adds and removes pairs for the app.
+    AppPairs
+        .in_set(PhysicsStepSystems::BroadPhase)
+        .after(BroadPhaseSystems::CollectCollisions)
+        .before(BroadPhaseSystems::Last) => { Step: apply_app_pairs.pipe(forget_views) }
     /// Updates the manifolds of awake contacts.
     UpdateContacts.in_set(NarrowPhaseSystems::Update) => { NarrowPhase: update_contacts }
     /// Applies contacts that began or ended: colours, islands, waking.
     LinkContacts.in_set(NarrowPhaseSystems::Update) => {
-        NarrowPhase: (link_contacts.pipe(forget_views), note_approaches).chain(),
+        NarrowPhase: (link_contacts.pipe(forget_views), fill_graph, note_approaches).chain(),
     }
     /// Computes the softness of contacts from the length of the substeps.
     UpdateSoftness.after(PhysicsStepSystems::NarrowPhase).before(PhysicsStepSystems::Solver) => {
@@ -188,7 +197,7 @@ stages! {
     }
     /// Stores impulses in the manifolds.
     StoreImpulses.in_set(SolverSystems::StoreContactImpulses) => {
-        Solver: (store_impulses.pipe(forget_views), find_hits).chain(),
+        Solver: (store_impulses.pipe(forget_views), fill_graph, find_hits).chain(),
     }
     /// Puts islands at rest to sleep.
     Sleep.in_set(PhysicsStepSystems::Sleeping) => { Sleeping: sleep_islands }
@@ -196,7 +205,7 @@ stages! {
     Refit.in_set(PhysicsStepSystems::Finalize) => { Trees: refit_awake }
     /// Removes bodies and colliders that were despawned during the step.
     RemoveLost.in_set(PhysicsStepSystems::Finalize) => {
-        Step: remove_lost_late.pipe(forget_views),
+        Step: (remove_lost_late.pipe(forget_views), fill_graph).chain(),
     }
     /// Sends collision events.
     SendEvents.in_set(CollisionEventSystems) => {
@@ -234,6 +243,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<Colliders>()
         .init_resource::<Contacts>()
         .init_resource::<ContactViews>()
+        .init_resource::<ContactGraph>()
         .init_resource::<CustomContacts>()
         .init_resource::<StepSolver>()
         .init_resource::<WorkerCount>()

@@ -392,6 +392,36 @@ fn issue_what_was_spawned_disabled_never_took_part() {
     assert!(height(&app, body) < 1.5);
 }
 
+/// Searches for changed components do not see disabled entities, so changes made then have to be found afterwards.
+#[test]
+fn issue_what_moved_while_disabled_came_back_where_it_had_been() {
+    let mut app = app();
+    app.insert_resource(Gravity(Vector::ZERO));
+    let arm = app.world_mut().spawn(at(0.0, 0.0)).id();
+    let mut spawn = |bundle: (RigidBody, Collider, Transform)| app.world_mut().spawn(bundle).id();
+    let [moved, posed, below] = [0.0, 10.0, 20.0].map(|x| spawn((RigidBody::Kinematic, block(), at(x, 0.0))));
+    let child = app.world_mut().spawn((block(), at(1.0, 0.0), ChildOf(moved))).id();
+    app.world_mut().entity_mut(below).insert(ChildOf(arm));
+    steps(&mut app, 3);
+    let all = [moved, posed, child, arm];
+    all.iter().for_each(|entity| _ = app.world_mut().entity_mut(*entity).insert(Disabled));
+    steps(&mut app, 3);
+    app.world_mut().entity_mut(moved).insert(at(0.0, 5.0).with_scale(bevy_math::Vec3::splat(2.0)));
+    app.world_mut().get_mut::<Transform>(child).expect("it has one").translation.y = 1.0;
+    app.world_mut().get_mut::<Transform>(arm).expect("it has one").translation.y = 7.0;
+    app.world_mut().get_mut::<Transform>(posed).expect("it has one").translation.y = 1.0;
+    steps(&mut app, 3);
+    app.world_mut().get_mut::<Position>(posed).expect("it has one").y = 6.0;
+    steps(&mut app, 3);
+    all.iter().for_each(|entity| _ = app.world_mut().entity_mut(*entity).remove::<Disabled>());
+    steps(&mut app, 3);
+    let height = |entity: Entity| app.world().get::<Position>(entity).expect("it has one").y;
+    assert_eq!([moved, posed, child, below].map(height), [5.0, 6.0, 7.0, 7.0]);
+    let scale = |entity: Entity| app.world().get::<Collider>(entity).expect("it has one").scale();
+    assert_eq!([moved, child].map(scale), [Vector::splat(2.0); 2]);
+    assert_eq!(app.world().get::<Transform>(posed).expect("it has one").translation.y, 6.0);
+}
+
 #[test]
 fn issue_a_body_without_a_position_haunted_the_tables() {
     let mut app = app();

@@ -474,7 +474,7 @@ fn defaults_are_avians() {
     let cast = ShapeCaster::default();
     assert!(cast.enabled && cast.ignore_self && cast.compute_contact_on_penetration);
     assert!(!cast.ignore_origin_penetration);
-    assert_eq!((cast.max_hits, cast.max_distance, cast.target_distance), (u32::MAX, Scalar::MAX, 0.0));
+    assert_eq!((cast.max_hits, cast.max_distance, cast.target_distance), (1, Scalar::MAX, 0.0));
     assert_eq!(ShapeCastConfig::default(), ShapeCastConfig::DEFAULT);
     assert_eq!(SpatialQueryFilter::default(), SpatialQueryFilter::from_mask(LayerMask::ALL));
 }

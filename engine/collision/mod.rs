@@ -2,6 +2,7 @@
 //! and the [narrow phase](narrow_phase) that computes contacts. [`Collisions`](contact_types::Collisions) gives
 //! contacts, [collision events](collision_events) tell of changes.
 
+pub(crate) mod app_pairs;
 pub mod broad_phase;
 pub mod collider;
 pub mod collision_events;

@@ -4,6 +4,7 @@ use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
 use kernel::{
     bvh::{FoundPairs, Known, Movers},
+    contact::ContactFlags,
     data::{BitSet, PairSet},
     table::{BodyTable, ColliderTable, Fattening, NONE},
 };
@@ -255,14 +256,20 @@ pub(crate) fn add_contacts(
         if may_collide(&tables.bodies.table, &tables.colliders.table, [a, b])
             && !search.rejected.contains(place as u32)
         {
-            let mut link = tables.link();
-            let id = link.create(a, b);
-            sleepers.extend(link.unseen_sleeper(id));
-            link.visit(id);
+            sleepers.extend(add_contact(&mut tables, [a, b], ContactFlags::default()));
         }
     }
     wake_beset(&sleepers, &mut tables);
     diagnostics.broad_phase += start.elapsed();
+}
+
+/// Adds the contact of a pair that has none, with bits besides those that follow from the colliders. Returns a sleeping
+/// body for [`wake_beset`].
+pub(crate) fn add_contact(tables: &mut Tables, [a, b]: [u32; 2], flags: ContactFlags) -> Option<u32> {
+    let mut link = tables.link();
+    let id = link.create_with(a, b, flags);
+    link.visit(id);
+    link.unseen_sleeper(id)
 }
 
 /// The hooks that filter pairs, between the search and [`add_contacts`].
@@ -271,7 +278,7 @@ pub(crate) struct FilterPairs;
 
 /// Wakes sleeping bodies beside which something static, or kinematic at rest, appeared. Bodies that were put to sleep
 /// in this step stay asleep: a level may be spawned asleep.
-fn wake_beset(sleepers: &[u32], tables: &mut Tables) {
+pub(crate) fn wake_beset(sleepers: &[u32], tables: &mut Tables) {
     if sleepers.is_empty() {
         return;
     }

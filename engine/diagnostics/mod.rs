@@ -4,7 +4,8 @@
 //! [`SolverDiagnostics`], [`ColliderTreeDiagnostics`], [`SpatialQueryDiagnostics`]. They are always there.
 //!
 //! With feature `bevy_diagnostic`, `PhysicsDiagnosticsPlugin` writes them to Bevy's `DiagnosticsStore` after each step, with
-//! totals and numbers of entities. With feature `diagnostic_ui`, `PhysicsDiagnosticsUiPlugin` shows them in the window.
+//! totals and numbers of entities. With Bevy's feature `trace` every part of a step is a span: each is a system of
+//! [`PhysicsSchedule`](crate::schedule::PhysicsSchedule). With feature `diagnostic_ui`, `PhysicsDiagnosticsUiPlugin` shows them in the window.
 //!
 //! ```
 //! # use avian::{diagnostics::AppDiagnosticsExt, prelude::*};

@@ -10,7 +10,9 @@ use super::{
         SpawnQueue, SyncTicks, find_changed_transforms, initialise_added, initialise_poses, note_rotation,
         position_to_transform, propagate_global_transforms, transform_to_position,
     },
-    tree::{HierarchyQueue, TransformTree, TreeChanges, enqueue, enqueue_parented, update_tree},
+    tree::{
+        HierarchyQueue, TransformTree, TreeChanges, enqueue, enqueue_enabled, enqueue_parented, update_tree,
+    },
 };
 use crate::{dynamics::rigid_body::RigidBody, schedule::PhysicsSystems, threads::Threads};
 
@@ -92,6 +94,7 @@ impl Plugin for TransformTreePlugin {
             .add_observer(enqueue::<Remove, (Position, RigidBody, ApplyPosToTransform)>)
             .add_observer(enqueue_parented::<Insert>)
             .add_observer(enqueue_parented::<Remove>)
+            .add_observer(enqueue_enabled)
             .add_observer(|check: On<CheckChangeTicks>, mut ticks: ResMut<SyncTicks>| ticks.clamp(*check))
             .configure_sets(
                 self.0,

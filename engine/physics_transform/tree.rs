@@ -9,9 +9,13 @@
 //! Each node counts the poses below it that are written to transforms: a body with only its colliders below is written
 //! like one without children.
 
-use bevy_ecs::{entity::EntityHashMap, entity_disabling::Disabled, prelude::*, query::Allow};
+use bevy_ecs::{
+    change_detection::Tick, entity::EntityHashMap, entity_disabling::Disabled, prelude::*, query::Allow,
+    system::SystemChangeTick,
+};
+use bevy_transform::components::Transform;
 
-use super::{ApplyPosToTransform, Position};
+use super::{ApplyPosToTransform, Position, Rotation};
 use crate::{dynamics::rigid_body::RigidBody, noted::Noted, schedule::OnThisThread};
 
 /// On a collider on another entity than its body: its pose follows from the body.
@@ -28,6 +32,8 @@ pub(crate) struct HierarchyQueue {
     noted: Noted,
     /// Despawned entities that are still in the tree.
     gone: Vec<Entity>,
+    /// Entities that lost Bevy's `Disabled`. Searches for changes have not seen them.
+    enabled: Noted,
 }
 
 impl HierarchyQueue {
@@ -37,7 +43,7 @@ impl HierarchyQueue {
 
     /// Whether the tree is up to date.
     pub(crate) fn is_empty(&self) -> bool {
-        self.noted.is_empty() && self.gone.is_empty()
+        self.noted.is_empty() && self.gone.is_empty() && self.enabled.is_empty()
     }
 
     /// The queued entities.
@@ -57,7 +63,7 @@ impl HierarchyQueue {
 pub(crate) struct TreeChanges {
     /// The queue of this step, each entity once, in order.
     pub(crate) queued: Vec<Entity>,
-    /// Entities whose parent changed.
+    /// Entities whose parent changed, or that were enabled.
     pub(crate) reparented: Vec<Entity>,
     /// Entities that the last step's write-back has handled. They are still in the queue.
     pub(crate) early: Vec<Entity>,
@@ -308,6 +314,7 @@ pub(crate) fn update_tree(
     queued.append(&mut queue.gone);
     queued.extend(queue.noted.drain().map(|(entity, ())| entity));
     reparented.append(early);
+    reparented.extend(queue.enabled.drain().map(|(entity, ())| entity));
     tree.follow(queued, &parents, &physical, reparented);
 }
 
@@ -318,6 +325,31 @@ pub(crate) fn enqueue<E: EntityEvent, B: Bundle>(
     tree: Res<TransformTree>,
 ) {
     queue.note(event.event_target(), &tree);
+}
+
+/// Appends an entity that loses Bevy's `Disabled`, if there is physics in it or below. If the app set the pose after the
+/// transform, the pose counts as changed instead, so that the next write-back finds it.
+pub(super) fn enqueue_enabled(
+    event: On<Remove, Disabled>,
+    mut queue: ResMut<HierarchyQueue>,
+    tree: Res<TransformTree>,
+    mut poses: Query<(Ref<Transform>, Mut<Position>, Option<Ref<Rotation>>), Allow<Disabled>>,
+    system: SystemChangeTick,
+) {
+    let entity = event.event_target();
+    let Ok((transform, mut position, rotation)) = poses.get_mut(entity) else {
+        if tree.contains(entity) {
+            queue.enabled.note(entity);
+        }
+        return;
+    };
+    let is_newer = |tick: Tick| tick.is_newer_than(transform.last_changed(), system.this_run());
+    if is_newer(position.last_changed()) || rotation.is_some_and(|rotation| is_newer(rotation.last_changed()))
+    {
+        position.set_changed();
+    } else {
+        queue.enabled.note(entity);
+    }
 }
 
 /// Appends an entity whose parent changed, if there is physics in it or below.

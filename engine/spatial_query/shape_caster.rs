@@ -55,7 +55,7 @@ pub struct ShapeCaster {
     pub shape_rotation: RotationValue,
     /// The direction of its way, in the entity's frame. Along x by default.
     pub direction: Dir,
-    /// The most hits. If there are more the nearest are kept. No limit by default.
+    /// The most hits. If there are more the nearest are kept. 1 by default.
     pub max_hits: u32,
     /// The length of the way in metres. No limit by default.
     pub max_distance: Scalar,
@@ -96,7 +96,7 @@ impl ShapeCaster {
             origin,
             shape_rotation,
             direction,
-            max_hits: u32::MAX,
+            max_hits: 1,
             max_distance: Scalar::MAX,
             target_distance: 0.0,
             compute_contact_on_penetration: true,

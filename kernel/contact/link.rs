@@ -37,9 +37,14 @@ pub struct Link<'a> {
 impl Link<'_> {
     /// Adds the contact of a pair that has none. Its colliders must be live and of different bodies.
     pub fn create(&mut self, a: u32, b: u32) -> u32 {
+        self.create_with(a, b, ContactFlags::default())
+    }
+
+    /// The same, with bits besides those that follow from the colliders, such as [`ContactFlags::QUIET`].
+    pub fn create_with(&mut self, a: u32, b: u32, extra: ContactFlags) -> u32 {
         let colliders = [a.min(b), a.max(b)];
         let bodies = colliders.map(|c| self.colliders[c].def.body);
-        let flags = self.flags(colliders, bodies);
+        let flags = self.flags(colliders, bodies).union(extra);
         let surface = self.mixed(colliders);
         let contact = Contact { surface, ..Contact::new(colliders, bodies, flags) };
         let id = self.contacts.add(contact, self.colliders);
@@ -363,7 +368,9 @@ impl Link<'_> {
     fn fresh_flags(&self, id: u32) -> ContactFlags {
         let contact = self.contacts.get(id);
         let mut flags = self.flags(contact.colliders, contact.bodies);
-        flags.set(ContactFlags::TOUCHING, contact.flags.has(ContactFlags::TOUCHING));
+        for kept in [ContactFlags::TOUCHING, ContactFlags::QUIET] {
+            flags.set(kept, contact.flags.has(kept));
+        }
         flags
     }
 

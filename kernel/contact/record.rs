@@ -36,6 +36,9 @@ impl ContactFlags {
     /// The embedder changed the manifolds in this step; their surfaces are not the contact's.
     pub const CHANGED: Self = Self(1 << 10);
 
+    /// The embedder wants no response for this pair: no rows, no colour, no island.
+    pub const QUIET: Self = Self(1 << 11);
+
     /// Whether all bits of `other` are set.
     #[inline(always)]
     pub fn has(self, other: Self) -> bool {
@@ -195,6 +198,6 @@ impl Contact {
     /// Whether the solver ignores it even if it has points.
     #[inline(always)]
     pub fn is_inert(&self) -> bool {
-        self.flags.any(ContactFlags::SENSOR.union(ContactFlags::IMMOVABLE))
+        self.flags.any(ContactFlags::SENSOR.union(ContactFlags::IMMOVABLE).union(ContactFlags::QUIET))
     }
 }

@@ -13,6 +13,7 @@ use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
 use scenes::dim::{ball, block};
 
+mod app_pairs;
 mod contacts;
 
 const DT: Duration = Duration::from_micros(15_625);

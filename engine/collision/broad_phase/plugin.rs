@@ -17,7 +17,8 @@ use crate::{
 
 /// The system sets that every broad phase shares.
 ///
-/// To use your own, disable [`BvhBroadPhasePlugin`] and add contacts in [`BroadPhaseSystems::CollectCollisions`].
+/// To use your own, disable [`BvhBroadPhasePlugin`] and add pairs to
+/// [`ContactGraph`](crate::collision::contact_types::ContactGraph) in [`BroadPhaseSystems::CollectCollisions`].
 pub struct BroadPhaseCorePlugin;
 
 impl Plugin for BroadPhaseCorePlugin {

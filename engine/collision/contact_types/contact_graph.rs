@@ -1,21 +1,31 @@
-//! [`ContactGraph`]: all contacts at one time.
+//! [`ContactGraph`]: all contacts at one time, and pairs that the app adds.
 
 use bevy_ecs::{
     entity::{Entity, EntityHashMap},
     resource::Resource,
 };
 use bevy_platform::collections::HashMap;
+use core::sync::atomic::{AtomicBool, Ordering};
 
-use super::pair::{ContactEdge, ContactId, ContactPair};
+use super::pair::{ContactEdge, ContactId, ContactPair, ContactPairFlags};
 use crate::data_structures::pair_key::PairKey;
 
 /// All pairs of colliders whose boxes overlap, touching or not, awake or asleep, in the order of ids.
 ///
-/// [`Collisions::graph`](super::Collisions::graph) makes it when it is called. The engine does not keep one as a
-/// resource: filling it in every step would cost time where nothing reads it. An app that wants a copy of one step as a
-/// resource inserts it.
+/// The resource is filled after the narrow phase and after the solver, from the step after it was first read on: an app
+/// that never reads it pays nothing. [`Collisions::graph`](super::Collisions::graph) is filled at once.
+///
+/// A broad phase of the app adds pairs to the resource with [`add_edge`](Self::add_edge), in
+/// [`BroadPhaseSystems::CollectCollisions`](crate::prelude::BroadPhaseSystems::CollectCollisions). They become contacts
+/// after that set. To change manifolds, use [`CollisionHooks`](crate::prelude::CollisionHooks).
 #[derive(Resource, Clone, Debug, Default)]
 pub struct ContactGraph {
+    /// Whether it was ever read.
+    is_read: Flag,
+    /// Pairs to be added.
+    added: Vec<AddedPair>,
+    /// Pairs to be removed.
+    removed: Vec<[Entity; 2]>,
     edges: Vec<ContactEdge>,
     active: Vec<ContactPair>,
     sleeping: Vec<ContactPair>,
@@ -27,7 +37,117 @@ pub struct ContactGraph {
     by_collider: EntityHashMap<Vec<usize>>,
 }
 
+/// A pair that the app adds.
+#[derive(Clone, Debug)]
+pub(crate) struct AddedPair {
+    pub(crate) colliders: [Entity; 2],
+    /// Whether the pair is to be pushed apart.
+    pub(crate) pushes: bool,
+}
+
+/// A flag that readers set.
+#[derive(Debug, Default)]
+struct Flag(AtomicBool);
+
+impl Flag {
+    fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    fn set(&self) {
+        if !self.is_set() {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+impl Clone for Flag {
+    fn clone(&self) -> Self {
+        Self(AtomicBool::new(self.is_set()))
+    }
+}
+
 impl ContactGraph {
+    /// Whether the app ever read it.
+    pub(crate) fn is_read(&self) -> bool {
+        self.is_read.is_set()
+    }
+
+    /// Takes the contacts of another graph.
+    pub(crate) fn refill(&mut self, with: &Self) {
+        let Self { edges, active, sleeping, by_id, by_key, by_collider, .. } = with;
+        self.edges.clone_from(edges);
+        self.active.clone_from(active);
+        self.sleeping.clone_from(sleeping);
+        self.by_id.clone_from(by_id);
+        self.by_key.clone_from(by_key);
+        self.by_collider.clone_from(by_collider);
+    }
+
+    /// Takes the pairs that the app added and removed since the last call.
+    pub(crate) fn take_changes(&mut self) -> (Vec<AddedPair>, Vec<[Entity; 2]>) {
+        (core::mem::take(&mut self.added), core::mem::take(&mut self.removed))
+    }
+
+    /// Adds a pair of colliders, which becomes a contact after the broad phase of this step, or of the next one if that is
+    /// over. The contact lasts until the enlarged boxes of the colliders come apart.
+    ///
+    /// Returns `None` if the pair has a contact or was added already. The id is [`ContactId::PLACEHOLDER`], as the
+    /// contact gets its own when it is made. Bodies and flags of `contact_edge` are not used: they follow from the
+    /// colliders. No contact is made of a collider with itself or one of the same body, of layers that do not interact,
+    /// and of two that cannot move unless one is a sensor.
+    pub fn add_edge(&mut self, contact_edge: ContactEdge) -> Option<ContactId> {
+        self.add_edge_with(contact_edge, |_| ())
+    }
+
+    /// The same. If `pair_callback` clears [`ContactPairFlags::GENERATE_CONSTRAINTS`], the colliders are not pushed apart.
+    /// Nothing else of the pair is used.
+    pub fn add_edge_with<F>(&mut self, contact_edge: ContactEdge, pair_callback: F) -> Option<ContactId>
+    where
+        F: FnMut(&mut ContactPair),
+    {
+        let ContactEdge { collider1, collider2, .. } = contact_edge;
+        let key = PairKey::new(collider1.index_u32(), collider2.index_u32());
+        self.add_edge_and_key_with(contact_edge, key, pair_callback)
+    }
+
+    /// The same, with the key of the pair if it is known.
+    pub fn add_edge_and_key_with<F>(
+        &mut self,
+        contact_edge: ContactEdge,
+        pair_key: PairKey,
+        mut pair_callback: F,
+    ) -> Option<ContactId>
+    where
+        F: FnMut(&mut ContactPair),
+    {
+        let ContactEdge { collider1, collider2, .. } = contact_edge;
+        let colliders = [collider1, collider2];
+        if self.contains_key(&pair_key) && self.get_edge(collider1, collider2).is_some() {
+            return None;
+        }
+        let mut pair = ContactPair::new(collider1, collider2, ContactId::PLACEHOLDER);
+        pair.flags = ContactPairFlags::GENERATE_CONSTRAINTS;
+        pair_callback(&mut pair);
+        self.added.push(AddedPair { colliders, pushes: pair.generates_constraints() });
+        Some(ContactId::PLACEHOLDER)
+    }
+
+    /// Removes the contact of two colliders after the broad phase of this step, or of the next one. Returns what it was.
+    /// A collision that ends is reported.
+    ///
+    /// The broad phase finds the pair again when one of the colliders moves.
+    pub fn remove_edge(&mut self, entity1: Entity, entity2: Entity) -> Option<ContactEdge> {
+        self.removed.push([entity1, entity2]);
+        self.get_edge(entity1, entity2).cloned()
+    }
+
+    /// The same, by the id of the contact.
+    pub fn remove_edge_by_id(&mut self, _pair_key: &PairKey, id: ContactId) -> Option<ContactEdge> {
+        let &ContactEdge { collider1, collider2, .. } = self.get_edge_by_id(id)?;
+        self.remove_edge(collider1, collider2)
+    }
+
     /// Adds a contact.
     pub(super) fn push(&mut self, mut edge: ContactEdge, pair: ContactPair) {
         let place = self.edges.len();
@@ -45,6 +165,7 @@ impl ContactGraph {
 
     /// The contact of two colliders, in either order.
     pub fn get_edge(&self, entity1: Entity, entity2: Entity) -> Option<&ContactEdge> {
+        self.is_read.set();
         let key = PairKey::new(entity1.index_u32(), entity2.index_u32());
         let edge = &self.edges[*self.by_key.get(&key.0)?];
         let colliders = [edge.collider1, edge.collider2];
@@ -53,6 +174,7 @@ impl ContactGraph {
 
     /// The contact with an id.
     pub fn get_edge_by_id(&self, id: ContactId) -> Option<&ContactEdge> {
+        self.is_read.set();
         self.by_id.get(&id.0).map(|place| &self.edges[*place])
     }
 
@@ -81,41 +203,45 @@ impl ContactGraph {
 
     /// Whether the boxes of two colliders overlap, by the indices of their entities.
     pub fn contains_key(&self, pair_key: &PairKey) -> bool {
+        self.is_read.set();
         self.by_key.contains_key(&pair_key.0)
     }
 
     /// The pairs of which a body is awake, or none can sleep.
     pub fn active_pairs(&self) -> &[ContactPair] {
+        self.is_read.set();
         &self.active
     }
 
     /// The pairs of sleeping bodies.
     pub fn sleeping_pairs(&self) -> &[ContactPair] {
+        self.is_read.set();
         &self.sleeping
     }
 
     /// The pairs of which a body is awake, or none can sleep.
     pub fn iter_active(&self) -> impl Iterator<Item = &ContactPair> {
-        self.active.iter()
+        self.active_pairs().iter()
     }
 
     /// The pairs that touch, and of which a body is awake or none can sleep.
     pub fn iter_active_touching(&self) -> impl Iterator<Item = &ContactPair> {
-        self.active.iter().filter(|pair| pair.is_touching())
+        self.active_pairs().iter().filter(|pair| pair.is_touching())
     }
 
     /// The pairs of sleeping bodies.
     pub fn iter_sleeping(&self) -> impl Iterator<Item = &ContactPair> {
-        self.sleeping.iter()
+        self.sleeping_pairs().iter()
     }
 
     /// The pairs of sleeping bodies that touch.
     pub fn iter_sleeping_touching(&self) -> impl Iterator<Item = &ContactPair> {
-        self.sleeping.iter().filter(|pair| pair.is_touching())
+        self.sleeping_pairs().iter().filter(|pair| pair.is_touching())
     }
 
     /// The contacts of a collider.
     pub fn contact_edges_with(&self, entity: Entity) -> impl Iterator<Item = &ContactEdge> {
+        self.is_read.set();
         let places = self.by_collider.get(&entity).map_or(&[][..], Vec::as_slice);
         places.iter().map(|place| &self.edges[*place])
     }

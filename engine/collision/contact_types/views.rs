@@ -54,7 +54,7 @@ pub(crate) struct Source<'a> {
 
 impl ContactViews {
     /// Notes that a system asks for contacts: from the next step on, impulses are summed over the substeps.
-    pub(super) fn note_reader(&self) {
+    pub(crate) fn note_reader(&self) {
         if !self.has_readers() {
             self.asked.store(true, Ordering::Relaxed);
         }
@@ -73,7 +73,7 @@ impl ContactViews {
     }
 
     /// All contacts.
-    pub(super) fn graph(&self, source: Source) -> &ContactGraph {
+    pub(crate) fn graph(&self, source: Source) -> &ContactGraph {
         self.graph.get_or_init(|| {
             let mut graph = ContactGraph::default();
             for (id, _) in source.contacts.table.iter() {

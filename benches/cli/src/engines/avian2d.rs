@@ -154,6 +154,14 @@ impl Engine<D2> for Sim {
         let state = self.spatial.get_or_insert_with(|| Spatial::new(world));
         let spatial = state.get(world).expect("the spatial query is there");
         let filter = SpatialQueryFilter::default();
+        #[cfg(feature = "batches")]
+        if self.settings.threads > 1 {
+            let way = |r: &Ray2| (Vec2::from(r.origin), Dir2::new_unchecked(Vec2::from(r.dir).normalize()));
+            let (ways, mut hits) = (rays.iter().map(way).collect::<Vec<_>>(), vec![None; rays.len()]);
+            spatial.cast_rays(&ways, rays[0].length, true, &filter, &mut hits);
+            out.extend(hits.iter().map(|hit| hit.map_or(f32::INFINITY, |h| h.distance)));
+            return;
+        }
         out.extend(rays.iter().map(|r| {
             let dir = Dir2::new_unchecked(Vec2::from(r.dir).normalize());
             spatial

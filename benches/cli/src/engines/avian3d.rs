@@ -160,6 +160,14 @@ impl Engine<D3> for Sim {
         let state = self.spatial.get_or_insert_with(|| Spatial::new(world));
         let spatial = state.get(world).expect("the spatial query is there");
         let filter = SpatialQueryFilter::default();
+        #[cfg(feature = "batches")]
+        if self.settings.threads > 1 {
+            let way = |r: &Ray3| (Vec3::from(r.origin), Dir3::new_unchecked(Vec3::from(r.dir).normalize()));
+            let (ways, mut hits) = (rays.iter().map(way).collect::<Vec<_>>(), vec![None; rays.len()]);
+            spatial.cast_rays(&ways, rays[0].length, true, &filter, &mut hits);
+            out.extend(hits.iter().map(|hit| hit.map_or(f32::INFINITY, |h| h.distance)));
+            return;
+        }
         out.extend(rays.iter().map(|r| {
             let dir = Dir3::new_unchecked(Vec3::from(r.dir).normalize());
             spatial
@@ -176,6 +184,17 @@ impl Engine<D3> for Sim {
         let spatial = state.get(world).expect("the spatial query is there");
         let filter = SpatialQueryFilter::default();
         let ball = Collider::sphere(radius);
+        #[cfg(feature = "batches")]
+        if self.settings.threads > 1 {
+            let way = |r: &Ray3| {
+                (Vec3::from(r.origin), Quat::IDENTITY, Dir3::new_unchecked(Vec3::from(r.dir).normalize()))
+            };
+            let (ways, mut hits) = (rays.iter().map(way).collect::<Vec<_>>(), vec![None; rays.len()]);
+            let config = ShapeCastConfig::from_max_distance(rays[0].length);
+            spatial.cast_shapes(&ball, &ways, &config, &filter, &mut hits);
+            out.extend(hits.iter().map(|hit| hit.map_or(f32::INFINITY, |h| h.distance)));
+            return;
+        }
         out.extend(rays.iter().map(|r| {
             let dir = Dir3::new_unchecked(Vec3::from(r.dir).normalize());
             let config = ShapeCastConfig::from_max_distance(r.length);
