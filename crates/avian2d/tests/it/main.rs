@@ -54,5 +54,7 @@ mod scale_dim;
 mod schedule;
 #[path = "../../../../tests/stored.rs"]
 mod stored;
+#[path = "../../../../tests/switching.rs"]
+mod switching;
 #[path = "../../../../tests/type_paths.rs"]
 mod type_paths;
