@@ -89,8 +89,8 @@ fn register_bodies(app: &mut App) {
     use crate::{
         dynamics::rigid_body::{
             AngularDamping, AngularVelocity, CoefficientCombine, DefaultFriction, DefaultRestitution,
-            Dominance, Friction, GravityScale, LinearDamping, LinearVelocity, LockedAxes, MaxAngularSpeed,
-            MaxLinearSpeed, Restitution, RigidBody, RigidBodyDisabled,
+            Dominance, FacetMaterials, Friction, GravityScale, LinearDamping, LinearVelocity, LockedAxes,
+            MaxAngularSpeed, MaxLinearSpeed, Restitution, RigidBody, RigidBodyDisabled,
             forces::{
                 self, ConstantAngularAcceleration, ConstantForce, ConstantLinearAcceleration,
                 ConstantLocalForce, ConstantLocalLinearAcceleration, ConstantTorque,
@@ -103,7 +103,7 @@ fn register_bodies(app: &mut App) {
     register!(app:
         RigidBody, RigidBodyDisabled, Position, Rotation, LinearVelocity, AngularVelocity, MaxLinearSpeed,
         MaxAngularSpeed, GravityScale, LinearDamping, AngularDamping, Dominance, LockedAxes,
-        Friction, Restitution, CoefficientCombine, DefaultFriction, DefaultRestitution,
+        Friction, Restitution, CoefficientCombine, DefaultFriction, DefaultRestitution, FacetMaterials,
         Sleeping, SleepingDisabled, SleepThreshold, SleepTimer,
         ConstantForce, ConstantTorque, ConstantLocalForce, ConstantLinearAcceleration, ConstantAngularAcceleration,
         ConstantLocalLinearAcceleration,

@@ -25,7 +25,8 @@ pub mod prelude {
     #[cfg(feature = "default-collider")]
     pub use super::collider::{
         Collider, ColliderConstructor, ColliderConstructorHierarchy, ColliderConstructorHierarchyReady,
-        ColliderConstructorPlugin, ColliderConstructorReady, FillMode, TrimeshFlags, VhacdParameters,
+        ColliderConstructorPlugin, ColliderConstructorReady, ColliderError, FillMode, TrimeshFlags,
+        VhacdParameters,
     };
     pub use super::{
         broad_phase::{BroadPhaseCorePlugin, BroadPhaseSystems, BvhBroadPhasePlugin},

@@ -275,6 +275,7 @@ impl Census<'_, '_> {
             body,
             local,
             material,
+            facets: self.surfaces.facets_of(entity),
             layers: layers_of(layers.copied().unwrap_or_default()),
             flags: ColliderFlags { sensor },
             margin,

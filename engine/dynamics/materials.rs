@@ -8,7 +8,8 @@ use bevy_ecs::{
     prelude::*,
     system::{SystemChangeTick, SystemParam},
 };
-use kernel::table::{Combine, Material, NONE, Surface};
+use kernel::table::{self as table, Combine, Material, NONE, Surface};
+use std::sync::Arc;
 
 use crate::{
     collision::{
@@ -21,10 +22,13 @@ use crate::{
     dynamics::{
         ccd::SpeculativeMargin,
         ids::ColliderId,
-        rigid_body::{CoefficientCombine, DefaultFriction, DefaultRestitution, Friction, Restitution},
+        rigid_body::{
+            CoefficientCombine, DefaultFriction, DefaultRestitution, FacetMaterial, FacetMaterials, Friction,
+            Restitution,
+        },
         tables::Tables,
     },
-    math::{Scalar, to_f32},
+    math::{Scalar, Vector, to_f32, vector_to_kernel},
     scan::{IN_TABLES, Since},
 };
 
@@ -47,6 +51,8 @@ type SurfaceComponents = (
 #[derive(SystemParam)]
 pub(crate) struct SurfaceQuery<'w, 's> {
     surfaces: Query<'w, 's, SurfaceComponents, Allow<Disabled>>,
+    facets: Query<'w, 's, &'static FacetMaterials, Allow<Disabled>>,
+    changed_facets: Query<'w, 's, Entity, (Changed<FacetMaterials>, Allow<Disabled>)>,
     colliders: Query<'w, 's, &'static RigidBodyColliders, Allow<Disabled>>,
     friction: Res<'w, DefaultFriction>,
     restitution: Res<'w, DefaultRestitution>,
@@ -63,13 +69,17 @@ impl SurfaceQuery<'_, '_> {
         let margin = own.2.or(from_body.2).map_or(0.0, |m| m.0);
         let speculative = own.3.or(from_body.3).map_or(self.config.default_speculative_margin, |m| m.0);
         Surfaces {
-            material: Material {
-                friction: surface(friction.dynamic_coefficient, friction.combine_rule, MAX_FRICTION),
-                restitution: surface(restitution.coefficient, restitution.combine_rule, 1.0),
-            },
+            material: material(friction, restitution),
             margin: length(margin),
             speculative: length(speculative),
         }
+    }
+
+    /// The materials of a collider's facets.
+    pub(crate) fn facets_of(&self, collider: Entity) -> Option<Arc<table::FacetMaterials>> {
+        let own = self.facets.get(collider).ok()?;
+        let materials = own.materials.iter().map(facet_material).collect();
+        Some(Arc::new(table::FacetMaterials::new(materials, &own.facets)))
     }
 
     /// The colliders of a body.
@@ -81,6 +91,20 @@ impl SurfaceQuery<'_, '_> {
 /// Maximum friction coefficient, which stops any sliding. Larger ones could overflow to NaN when combined, or
 /// multiplied by an impulse of 0.
 const MAX_FRICTION: f32 = 1.0e9;
+
+fn material(friction: &Friction, restitution: &Restitution) -> Material {
+    Material {
+        friction: surface(friction.dynamic_coefficient, friction.combine_rule, MAX_FRICTION),
+        restitution: surface(restitution.coefficient, restitution.combine_rule, 1.0),
+    }
+}
+
+/// The material of facets. A velocity that is not finite becomes 0.
+fn facet_material(facet: &FacetMaterial) -> table::FacetMaterial {
+    let velocity = vector_to_kernel(facet.tangent_velocity);
+    let velocity = if velocity.is_finite() { velocity } else { vector_to_kernel(Vector::ZERO) };
+    table::FacetMaterial { material: material(&facet.friction, &facet.restitution), velocity }
+}
 
 /// A surface with its coefficient clamped to the valid range.
 fn surface(coefficient: Scalar, rule: CoefficientCombine, max: f32) -> Surface {
@@ -126,7 +150,7 @@ pub(crate) fn watch_surfaces(app: &mut App) {
 
 /// Records only entities in the tables. Others are read when they enter.
 fn note_lost_surface(
-    lost: On<Remove, (Friction, Restitution, CollisionMargin, SpeculativeMargin)>,
+    lost: On<Remove, (Friction, Restitution, CollisionMargin, SpeculativeMargin, FacetMaterials)>,
     ids: Query<&ColliderId, Allow<Disabled>>,
     colliders: Query<&RigidBodyColliders, Allow<Disabled>>,
     mut noted: ResMut<LostSurfaces>,
@@ -162,6 +186,7 @@ pub(crate) fn refresh_surfaces(
             since.rows(parts.map(|part| part.unwrap_or(any)), |row| entities.push(all[row]));
         }
     }
+    entities.extend(query.changed_facets.iter());
     entities.extend(lost.0.drain(..));
     if defaults {
         entities.extend(tables.colliders.entities.iter().copied());
@@ -174,7 +199,9 @@ pub(crate) fn refresh_surfaces(
                 continue;
             }
             let surfaces = query.of(collider, of.map(|of| of.body));
-            tables.link().set_material(id.0, surfaces.material);
+            let mut link = tables.link();
+            link.set_material(id.0, surfaces.material);
+            link.set_facets(id.0, query.facets_of(collider));
             let Tables { bodies, colliders, .. } = &mut tables;
             let colliders = &mut **colliders;
             let entry = &mut colliders.table[id.0];

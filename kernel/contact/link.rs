@@ -9,7 +9,8 @@ use super::table::ContactTable;
 use crate::data::BitSet;
 use crate::graph::{ColorGraph, ConstraintId, ConstraintKind, IslandId, Islands};
 use crate::shape::Shape;
-use crate::table::{BodyKind, BodyTable, ColliderTable, Material, NONE};
+use crate::table::{BodyKind, BodyTable, ColliderTable, FacetMaterials, Material, NONE};
+use std::sync::Arc;
 
 /// A change of a contact, for reports to the app.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -332,6 +333,14 @@ impl Link<'_> {
     pub fn set_material(&mut self, collider: u32, material: Material) {
         if core::mem::replace(&mut self.colliders[collider].def.material, material) != material {
             self.mix_of_collider(collider);
+        }
+    }
+
+    /// Gives the facets of a collider other materials. Its contacts are computed anew.
+    pub fn set_facets(&mut self, collider: u32, facets: Option<Arc<FacetMaterials>>) {
+        if self.colliders[collider].def.facets != facets {
+            self.colliders[collider].def.facets = facets;
+            self.colliders.update_reach(collider, self.bodies);
         }
     }
 

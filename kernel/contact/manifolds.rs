@@ -41,7 +41,11 @@ pub(super) fn collide_parts<S: ManifoldSource>(
     let shapes = [&input.colliders[a].def.shape, &input.colliders[b].def.shape];
     let [pose_a, pose_b] = [&input.colliders.poses[a as usize], &input.colliders.poses[b as usize]];
     let relative = pose_a.relative(pose_b);
-    let look = Look { prediction, motion: pose_a.rotation.inverse_rotate(motion) };
+    let groups = [a, b].map(|id| {
+        let facets = input.colliders[id].def.facets.as_ref();
+        facets.map_or(&[][..], |facets| facets.groups())
+    });
+    let look = Look { prediction, motion: pose_a.rotation.inverse_rotate(motion), groups };
     let WorkerBuffers { composite, local, .. } = buffers;
     manifold::collide_composite(shapes[0], shapes[1], &relative, look, composite, local)
 }
@@ -125,8 +129,12 @@ pub(super) fn replace<S: ManifoldSource>(
 
 /// A manifold in world axes, with anchors from body A's centre of mass.
 fn to_world(local: &LocalManifold, rotation: Rot, to_shape: Vector, margin: f32) -> Manifold {
-    let mut m =
-        Manifold { normal: rotation.rotate(local.normal), count: local.count as u16, ..Manifold::default() };
+    let mut m = Manifold {
+        normal: rotation.rotate(local.normal),
+        count: local.count as u8,
+        groups: local.groups,
+        ..Manifold::default()
+    };
     for (out, p) in m.points.iter_mut().zip(local.points()) {
         let separation = p.separation - margin;
         *out = ManifoldPoint {
@@ -161,11 +169,11 @@ fn vary_first(m: &mut Manifold, [a, b]: [u32; 2]) {
     }
 }
 
-/// Copies the impulses of the old manifold that this one continues, the one with the nearest normal. Points are matched by
+/// Copies the impulses of the old manifold that this one continues, of the same facets' material with the nearest normal. Points are matched by
 /// feature id.
 fn inherit<'a>(m: &mut Manifold, old: impl Iterator<Item = &'a Manifold>) {
     let mut best: Option<(&Manifold, f32)> = None;
-    for o in old.filter(|o| o.count > 0) {
+    for o in old.filter(|o| o.count > 0 && o.groups == m.groups) {
         let cos = o.normal.dot(m.normal);
         if cos > SAME_FACE && best.is_none_or(|(_, c)| cos > c) {
             best = Some((o, cos));

@@ -15,6 +15,7 @@ mod modify;
 mod narrow_phase;
 mod record;
 mod recycle;
+mod surface;
 mod sweep;
 mod table;
 mod view;

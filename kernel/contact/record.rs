@@ -86,9 +86,12 @@ pub struct Manifold {
     /// The points; the first `count` are valid.
     pub points: [ManifoldPoint; MAX_POINTS],
     /// The number of points.
-    pub count: u16,
+    pub count: u8,
     /// Whether an edge inside a surface made it: another manifold holds what it would stop, so it is not solved.
     pub is_internal: bool,
+    /// The groups of the facets of A and B that made it, 0 for the materials of the colliders; see
+    /// [`FacetMaterials`](crate::table::FacetMaterials).
+    pub groups: [u8; 2],
     /// The radii of A and B around their cores (centre, axis, polygon), in metres. Anchors are of the cores: as a round shape
     /// turns, its contact keeps its place relative to the core, not on the surface.
     pub radii: [f32; 2],

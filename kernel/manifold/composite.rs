@@ -41,12 +41,24 @@ pub struct CompositeBuffers {
 
 /// How far two shapes are looked at.
 #[derive(Clone, Copy, Debug)]
-pub struct Look {
+pub struct Look<'a> {
     /// Points up to this distance are found, in metres.
     pub prediction: f32,
     /// How far B moves against A until the end of the step, in A's frame. Parts farther away than the prediction are followed to
     /// where they meet.
     pub motion: Vector,
+    /// The group of each facet of A and of B; facets beyond the list have 0. Manifolds of different groups are not merged.
+    pub groups: [&'a [u8]; 2],
+}
+
+impl Look<'_> {
+    /// All facets of both shapes in one group.
+    pub const ALIKE: [&'static [u8]; 2] = [&[]; 2];
+
+    /// The group of a part of one side.
+    fn group(&self, side: usize, part: u32) -> u8 {
+        self.groups[side].get(part as usize).copied().unwrap_or(0)
+    }
 }
 
 /// A composite shape against a convex one, or against a part of another composite.
@@ -57,7 +69,9 @@ struct Pass<'a> {
     /// The other shape in the composite's frame.
     pose: &'a Pose,
     /// How far to look; the motion is that of the other shape.
-    look: Look,
+    look: Look<'a>,
+    /// The group of the other shape.
+    other_group: u8,
     /// Tells the features of several passes apart.
     name: u32,
     /// Whether each part is collided as if it were the only one, up to the end of the motion.
@@ -70,7 +84,7 @@ pub fn collide_composite(
     a: &Shape,
     b: &Shape,
     pose_b_in_a: &Pose,
-    look: Look,
+    look: Look<'_>,
     buffers: &mut CompositeBuffers,
     out: &mut Vec<LocalManifold>,
 ) -> f32 {
@@ -85,7 +99,7 @@ pub fn collide_each_part(
     a: &Shape,
     b: &Shape,
     pose_b_in_a: &Pose,
-    look: Look,
+    look: Look<'_>,
     buffers: &mut CompositeBuffers,
     out: &mut Vec<LocalManifold>,
 ) {
@@ -98,7 +112,7 @@ fn collide_parts(
     a: &Shape,
     b: &Shape,
     pose_b_in_a: &Pose,
-    look: Look,
+    look: Look<'_>,
     alone: bool,
     buffers: &mut CompositeBuffers,
 ) -> f32 {
@@ -110,13 +124,15 @@ fn collide_parts(
     match (a, b) {
         (Shape::Composite(a), Shape::Composite(b)) => collide_both([a, b], pose_b_in_a, look, alone, buffers),
         (Shape::Composite(composite), other) => {
-            Pass { composite, other, pose: pose_b_in_a, look, name: 0, alone }.collide(buffers)
+            let pass = Pass { composite, other, pose: pose_b_in_a, look, other_group: 0, name: 0, alone };
+            pass.collide(buffers)
         }
         (other, Shape::Composite(composite)) => {
             let pose = pose_b_in_a.inverse();
             let motion = pose_b_in_a.rotation.inverse_rotate(-look.motion);
-            let look = Look { motion, ..look };
-            let gap = Pass { composite, other, pose: &pose, look, name: 0, alone }.collide(buffers);
+            let look = Look { motion, groups: [look.groups[1], look.groups[0]], ..look };
+            let gap =
+                Pass { composite, other, pose: &pose, look, other_group: 0, name: 0, alone }.collide(buffers);
             buffers.found.iter_mut().for_each(|m| *m = m.flipped(&pose));
             gap
         }
@@ -131,7 +147,7 @@ fn collide_parts(
 fn collide_both(
     [a, b]: [&Composite<Shape>; 2],
     pose: &Pose,
-    look: Look,
+    look: Look<'_>,
     alone: bool,
     buffers: &mut CompositeBuffers,
 ) -> f32 {
@@ -142,7 +158,8 @@ fn collide_both(
     b.tree().query(&near.grown(look.prediction + look.motion.length()), |part| parts.push(part));
     parts.iter().fold(f32::INFINITY, |gap, part| {
         let pass = |other: &Shape, pose: &Pose, buffers: &mut CompositeBuffers| {
-            Pass { composite: a, other, pose, look, name: part + 1, alone }.collide(buffers)
+            let other_group = look.group(1, *part);
+            Pass { composite: a, other, pose, look, other_group, name: part + 1, alone }.collide(buffers)
         };
         let here = match b.part(*part) {
             Part::Facet(facet) => pass(&Shape::from(facet), pose, buffers),
@@ -175,6 +192,7 @@ impl Pass<'_> {
                 }
             }
             let count = local.count;
+            local.groups = [self.look.group(0, *part), self.other_group];
             local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, *part, p.feature]));
             buffers.found.push(local);
         }
@@ -293,7 +311,7 @@ impl Border {
     }
 }
 
-/// Merges the manifolds in `buffers.found` with about the same normal, the deepest first, and adds the results to `out`.
+/// Merges the manifolds in `buffers.found` with the same groups and about the same normal, the deepest first, and adds the results to `out`.
 fn merge(buffers: &mut CompositeBuffers, out: &mut Vec<LocalManifold>) {
     let CompositeBuffers { found, groups, points, .. } = buffers;
     if let [only] = &found[..] {
@@ -308,7 +326,9 @@ fn merge(buffers: &mut CompositeBuffers, out: &mut Vec<LocalManifold>) {
         let is_round_alike = |o: &LocalManifold| {
             o.radii.iter().zip(m.radii).all(|(r, q)| (r - q).abs() <= SAME_RADIUS * max(*r, q))
         };
-        let is_same = |o: &LocalManifold| o.normal.dot(m.normal) > SAME_NORMAL && is_round_alike(o);
+        let is_same = |o: &LocalManifold| {
+            o.normal.dot(m.normal) > SAME_NORMAL && is_round_alike(o) && o.groups == m.groups
+        };
         let group = out[start..].iter().position(is_same);
         groups.push(group.unwrap_or(out.len() - start));
         if group.is_none() {

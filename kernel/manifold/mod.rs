@@ -9,6 +9,8 @@ mod composite;
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
 mod dim;
+#[cfg(test)]
+mod tests_pairs;
 
 pub use cache::FeatureCache;
 pub use composite::{CompositeBuffers, Look, collide_composite, collide_each_part};
@@ -40,6 +42,8 @@ pub struct LocalManifold {
     pub gap: f32,
     /// How far the core that each surface turns about is behind it, in metres: a centre, an axis, a centre of curvature.
     pub radii: [f32; 2],
+    /// The groups of the facets of A and B, see [`Look::groups`]; 0 without.
+    pub groups: [u8; 2],
 }
 
 impl LocalManifold {
@@ -71,6 +75,7 @@ impl LocalManifold {
         let mut out = *self;
         out.normal = pose.rotation.inverse_rotate(-self.normal);
         out.radii = [self.radii[1], self.radii[0]];
+        out.groups = [self.groups[1], self.groups[0]];
         for p in &mut out.points[..self.count] {
             p.point = pose.inverse_transform(p.point);
         }

@@ -39,6 +39,13 @@ impl Curved {
         })
     }
 
+    /// The frustum itself, or if it has no height the larger of its circles, which holds the other.
+    #[inline]
+    pub(crate) fn with_equal_discs(&self) -> Self {
+        let radius = max(self.lower, self.upper);
+        if self.half_height > 0.0 { *self } else { Self { lower: radius, upper: radius, ..*self } }
+    }
+
     /// The radius of an end: 0 is the lower one, 1 the upper one.
     #[inline(always)]
     pub(crate) fn radius_of(&self, end: usize) -> f32 {
@@ -204,7 +211,7 @@ impl Curved {
     /// Mass, centre and inertia at 1 kg/m³.
     ///
     /// With the radius m + d y/h for |y| ≤ h: V = 2πh (m² + d²/3), ∫ y dV = 4/3 π h² m d, ∫ y² dV = 2πh³ (m²/3 + d²/5), and
-    /// the moment about the axis is ½ π ∫ ρ⁴ dy = πh (m⁴ + 2 m² d² + d⁴/5).
+    /// the moment about the axis is ½ π ∫ ρ⁴ dy = πh (m⁴ + 2 m² d² + d⁴/5). What overflows is infinite.
     pub fn unit_mass(&self) -> MassProperties {
         let (m, d, h) = (0.5 * (self.lower + self.upper), 0.5 * (self.upper - self.lower), self.half_height);
         let (mm, dd) = (m * m, d * d);
@@ -214,13 +221,30 @@ impl Curved {
         }
         let center = 4.0 / 3.0 * PI * h * h * m * d / mass;
         let axial = PI * h * (mm * mm + 2.0 * mm * dd + dd * dd / 5.0);
+        if !(axial < f32::INFINITY && mass * h * h < f32::INFINITY) {
+            return self.huge_unit_mass();
+        }
         let along = 2.0 * PI * h * h * h * (mm / 3.0 + dd / 5.0) - mass * center * center;
         let across = 0.5 * axial + max(along, 0.0);
         let inertia = Inertia::from_diagonal(Vector { x: across, y: axial, z: across });
         MassProperties { mass, center: Vector::Y * center, inertia }
     }
 
-    /// Where the surface is nearest to a point.
+    /// As [`unit_mass`](Self::unit_mass), of sizes whose products overflow: their quotients and differences are no numbers.
+    fn huge_unit_mass(&self) -> MassProperties {
+        let [lower, upper, h] = [self.lower, self.upper, self.half_height].map(f64::from);
+        let (m, d, pi) = (0.5 * (lower + upper), 0.5 * (upper - lower), f64::from(PI));
+        let (mm, dd) = (m * m, d * d);
+        let mass = 2.0 * pi * h * (mm + dd / 3.0);
+        let center = 4.0 / 3.0 * pi * h * h * m * d / mass;
+        let axial = pi * h * (mm * mm + 2.0 * mm * dd + dd * dd / 5.0);
+        let along = 2.0 * pi * h * h * h * (mm / 3.0 + dd / 5.0) - mass * center * center;
+        let (across, axial) = ((0.5 * axial + along.max(0.0)) as f32, axial as f32);
+        let inertia = Inertia::from_diagonal(Vector { x: across, y: axial, z: across });
+        MassProperties { mass: mass as f32, center: Vector::Y * center as f32, inertia }
+    }
+
+    /// Where the surface is nearest to a point. The circles of a disc have to be [equal](Self::with_equal_discs).
     ///
     /// The nearest point is in the plane through the axis, where the outline has three sides.
     pub(crate) fn nearest(&self, point: Vector) -> Nearest {
@@ -316,6 +340,25 @@ mod tests {
         assert!((cone.mass - PI / 6.0).abs() < 1e-6 && (cone.center.y + 0.5).abs() < 1e-6);
         assert!((cone.inertia.yy - 0.3 * 0.25 * cone.mass).abs() < 1e-6);
         assert!((cone.inertia.xx - (0.15 * 0.25 + 0.0375 * 4.0) * cone.mass).abs() < 1e-6);
+    }
+
+    /// Quotients and differences of overflowing products were no numbers.
+    #[test]
+    fn issue_the_centre_of_a_huge_frustum_was_no_number() {
+        for size in [1.0e7, 1.0e13, 1.0e18, f32::MAX] {
+            let small = Curved::frustum(0.5, 1.0, 0.25).expect("good sizes").unit_mass();
+            let large = Curved::frustum(0.5 * size, size, 0.25 * size).expect("good sizes").unit_mass();
+            assert!(
+                (large.center.y / size - small.center.y).abs() < 1e-6 && large.center.x == 0.0,
+                "{large:?}"
+            );
+            let wanted =
+                [small.mass * size * size * size, small.inertia.yy * size * size * size * size * size];
+            for (found, wanted) in [large.mass, large.inertia.yy].into_iter().zip(wanted) {
+                assert!(found == wanted || (found / wanted - 1.0).abs() < 1e-5, "{found} of {wanted}");
+            }
+            assert!(large.inertia.xx > 0.0 && large.inertia.xy == 0.0, "{large:?}");
+        }
     }
 
     #[test]

@@ -151,12 +151,16 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             self.dominate(input.bodies, contact, lane);
         }
         let [mut friction, mut restitution] = contact.surface;
+        if manifold.has_own_surface() {
+            let surface = manifold.surface(contact, input.colliders);
+            [friction, restitution] = [surface.friction, surface.restitution];
+            self.drive(lane, surface.velocity);
+        }
         if contact.flags.has(ContactFlags::CHANGED)
             && let Some(surface) = input.contacts.changed_surface(item.id, item.index)
         {
             [friction, restitution] = [surface.friction, surface.restitution];
-            self.surface_velocity.set(lane, surface.velocity);
-            self.is_driven = true;
+            self.drive(lane, surface.velocity);
         }
         debug_assert!(friction >= 0.0 && restitution >= 0.0, "a surface: {friction}, {restitution}");
         row.friction.set(lane, friction);
@@ -169,6 +173,13 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         debug_assert!(share > 0.0 && share <= 1.0, "a share: {share}");
         row.push_speed.set(lane, from.params.max_push_speed * share);
         self.copy(manifold, contact.frozen.offset, from.params, lane, row);
+    }
+
+    /// Sets the velocity that friction gives the surfaces of a lane.
+    #[inline(always)]
+    fn drive(&mut self, lane: usize, velocity: Vector) {
+        self.surface_velocity.set(lane, velocity);
+        self.is_driven |= velocity != Vector::ZERO;
     }
 
     /// Makes the side with higher dominance immovable for this contact.

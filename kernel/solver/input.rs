@@ -2,7 +2,7 @@
 
 use crate::contact::ContactTable;
 use crate::graph::ConstraintKind;
-use crate::table::{BodyTable, NONE};
+use crate::table::{BodyTable, ColliderTable, NONE};
 
 /// Inputs for building rows.
 pub struct RowInput<'a> {
@@ -10,6 +10,8 @@ pub struct RowInput<'a> {
     pub contacts: &'a ContactTable,
     /// The bodies, with their rows.
     pub bodies: &'a BodyTable,
+    /// The colliders, whose facets may have materials.
+    pub colliders: &'a ColliderTable,
 }
 
 impl RowInput<'_> {

@@ -1,13 +1,13 @@
 //! Colliders by id: shape, world pose, boxes, surface, layers and revision.
 #![expect(unsafe_code, reason = "colliders are changed by several threads, each its own")]
 
-use super::{BodyKind, BodyTable, NONE};
+use super::{BodyKind, BodyTable, FacetMaterials, Material, NONE};
 use crate::data::{BitSet, IdPool, Parts, prefetch};
 use crate::math::{DIM, Pose, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Aabb, Shape};
 use crate::thread_pool::ThreadPool;
 use core::ops::{Index, IndexMut};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Number of bodies in a block of the job that refreshes their colliders.
 const BLOCK: usize = 128;
@@ -24,56 +24,6 @@ pub(crate) const MOST_TURN: f32 = 1.5;
 /// enlarges boxes less often but finds more pairs that never touch: with twice the share in 3D, a step of a pile of
 /// boxes takes a quarter longer.
 const FAT_SHARE: f32 = 0.5 / (1 << DIM) as f32;
-
-/// How two coefficients combine. Of two different rules the greater is used.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-#[repr(u8)]
-pub enum Combine {
-    /// (a + b) / 2.
-    #[default]
-    Average = 1,
-    /// √(a b).
-    GeometricMean = 2,
-    /// The smaller one.
-    Min = 3,
-    /// a b.
-    Multiply = 4,
-    /// The larger one.
-    Max = 5,
-}
-
-/// A coefficient and how it is combined with another.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Surface {
-    /// The coefficient, at least 0.
-    pub coefficient: f32,
-    /// The combine rule.
-    pub rule: Combine,
-}
-
-impl Surface {
-    /// The combined coefficient of two surfaces.
-    #[inline]
-    pub fn mix(self, other: Self) -> f32 {
-        let (a, b) = (self.coefficient, other.coefficient);
-        match self.rule.max(other.rule) {
-            Combine::Average => 0.5 * (a + b),
-            Combine::GeometricMean => (a * b).sqrt(),
-            Combine::Min => crate::math::min(a, b),
-            Combine::Multiply => a * b,
-            Combine::Max => crate::math::max(a, b),
-        }
-    }
-}
-
-/// Surface of a collider.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Material {
-    /// Coefficient of friction.
-    pub friction: Surface,
-    /// Coefficient of restitution, 0 to 1.
-    pub restitution: Surface,
-}
 
 /// Collision layers as bit masks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,6 +60,8 @@ pub struct ColliderDef {
     pub local: Pose,
     /// Friction and restitution.
     pub material: Material,
+    /// Materials of single facets, which replace `material` there.
+    pub facets: Option<Arc<FacetMaterials>>,
     /// Collision layers.
     pub layers: Layers,
     /// Flags.
@@ -129,6 +81,7 @@ impl ColliderDef {
             body,
             local: Pose::IDENTITY,
             material: Material::default(),
+            facets: None,
             layers: Layers { memberships: 1, filters: u32::MAX },
             flags: ColliderFlags::default(),
             margin: 0.0,
@@ -141,6 +94,7 @@ impl ColliderDef {
         self.body == other.body
             && self.local == other.local
             && self.material == other.material
+            && self.facets == other.facets
             && self.layers == other.layers
             && self.flags == other.flags
             && self.margin == other.margin

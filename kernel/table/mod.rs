@@ -3,15 +3,16 @@
 mod body;
 mod collider;
 mod constraint;
+mod facets;
+mod material;
 
 pub(crate) use body::BodyParts;
 pub use body::{Body, BodyKind, BodyPose, BodyTable, RestSpeed, Velocity};
-pub use collider::{
-    BodySize, Collider, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
-    Reach, Surface,
-};
+pub use collider::{BodySize, Collider, ColliderDef, ColliderFlags, ColliderTable, Fattening, Layers, Reach};
 pub(crate) use collider::{MOST_TURN, is_swinging, turn};
 pub use constraint::{Constraint, ConstraintTable};
+pub use facets::{FacetMaterial, FacetMaterials, MAX_FACET_MATERIALS};
+pub use material::{Combine, Material, Surface};
 
 /// The absent id: no body, collider, contact or row.
 pub const NONE: u32 = u32::MAX;

@@ -7,6 +7,7 @@ mod crowds;
 mod dim;
 mod distance;
 mod extreme;
+mod facets;
 mod ghosts;
 mod golden;
 mod held;

@@ -176,6 +176,7 @@ impl Sim {
             body: id,
             local: Pose::IDENTITY,
             material: Material { friction: surface(friction), restitution: surface(restitution) },
+            facets: None,
             layers: Layers { memberships: 1, filters: u32::MAX },
             flags: ColliderFlags::default(),
             margin: 0.0,
@@ -280,7 +281,7 @@ impl Sim {
     pub fn solve_colors_of(&mut self, other: &Self) -> usize {
         self.gather();
         let params = self.params();
-        let input = RowInput { contacts: &self.contacts, bodies: &self.bodies };
+        let input = RowInput { contacts: &self.contacts, bodies: &self.bodies, colliders: &self.colliders };
         // SAFETY: debug builds panic for colours that do not match.
         unsafe { self.solver.build_rows(&input, &other.colors, &params, &self.pool) };
         self.solver.shared_stages()
@@ -314,7 +315,7 @@ impl Sim {
         }
         self.narrow();
         let params = self.params();
-        let input = RowInput { contacts: &self.contacts, bodies: &self.bodies };
+        let input = RowInput { contacts: &self.contacts, bodies: &self.bodies, colliders: &self.colliders };
         self.pool.wake();
         if self.builds_rows {
             // SAFETY: contacts, colours and kinds of bodies are changed through one link.

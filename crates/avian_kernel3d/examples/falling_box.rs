@@ -53,7 +53,7 @@ fn main() {
         let input = NarrowPhaseInput::new(link.bodies, link.colliders, &(), dt);
         link.contacts.update(&input, &pool, &mut buffers, &mut changed);
         link.apply(&changed, |_, _, _| {});
-        let input = RowInput { contacts: &contacts, bodies: &bodies };
+        let input = RowInput { contacts: &contacts, bodies: &bodies, colliders: &colliders };
         // SAFETY: contacts, colours and bodies belong together: only `link` has changed them.
         unsafe { solver.build_rows(&input, &colors, &params, &pool) };
         (0..4).for_each(|_| solver.substep(&params, &pool));

@@ -188,12 +188,12 @@ impl<'a> Source<'a> {
             warm_start_tangent_impulse: friction,
             ..self.point(a, offset, velocities, manifold.normal, p)
         });
-        let [friction, restitution] = contact.surface.map(|coefficient| coefficient.adjust_precision());
-        ContactManifold {
-            friction,
-            restitution,
-            ..ContactManifold::new(points, vector_from_kernel(manifold.normal))
-        }
+        let surface = manifold.surface(contact, &self.colliders.table);
+        let mut shown = ContactManifold::new(points, vector_from_kernel(manifold.normal));
+        shown.friction = surface.friction.adjust_precision();
+        shown.restitution = surface.restitution.adjust_precision();
+        shown.set_surface_velocity(vector_from_kernel(surface.velocity));
+        shown
     }
 
     /// The centre of mass of a side's body, or the place of a collider without one.

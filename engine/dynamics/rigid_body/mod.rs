@@ -3,6 +3,7 @@
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod facet_materials;
 pub mod forces;
 mod locked_axes;
 pub mod mass_properties;
@@ -11,6 +12,7 @@ pub mod sleeping;
 mod world_query;
 
 pub use dim::AngularVelocity;
+pub use facet_materials::{FacetMaterial, FacetMaterials};
 pub use locked_axes::LockedAxes;
 pub use physics_material::{CoefficientCombine, DefaultFriction, DefaultRestitution, Friction, Restitution};
 pub use world_query::{

@@ -18,7 +18,7 @@ use crate::{
             softness_parameters::SoftnessCoefficients,
             workers::{RowWidth, WorkerCount},
         },
-        tables::{Bodies, Contacts},
+        tables::{Bodies, Colliders, Contacts},
     },
     math::{Scalar, to_f32},
     schedule::{Physics, Substeps},
@@ -142,14 +142,14 @@ pub(crate) fn prepare_params(
 /// Builds the rows of all touching contacts.
 #[expect(unsafe_code, reason = "the caller of `build_rows` answers for contacts and colours")]
 pub(crate) fn prepare_rows(
-    bodies: Res<Bodies>,
+    (bodies, colliders): (Res<Bodies>, Res<Colliders>),
     contacts: Res<Contacts>,
     (response, width): (Option<Res<ContactResponse>>, Res<RowWidth>),
     (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
     mut diagnostics: ResMut<SolverDiagnostics>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let input = RowInput { contacts: &contacts.table, bodies: &bodies.table };
+    let input = RowInput { contacts: &contacts.table, bodies: &bodies.table, colliders: &colliders.table };
     let StepSolver { kernel, params, .. } = &mut *solver;
     kernel.set_narrow(*width == RowWidth::Four);
     let none;

@@ -18,12 +18,17 @@ mod segments;
 mod tests;
 #[cfg(test)]
 mod tests_curved;
+#[cfg(test)]
+pub(super) mod tests_pairs;
 
 use super::{FeatureCache, LocalManifold};
 use crate::math::Pose;
 use crate::shape::Shape;
 pub(super) use facet::{Border, borders, collide_face, face_normal, few_points};
 use polygonal::{Buffer, Polygonal};
+
+/// Centres farther apart than this, in metres, have no contact: their squares would overflow.
+const FARTHEST: f32 = 1.0e15;
 
 /// The contact of shape `a` and shape `b`, given the pose of `b` in `a`'s frame; the result is in `a`'s
 /// frame with the normal from `a` to `b`.
@@ -38,7 +43,7 @@ use polygonal::{Buffer, Polygonal};
 /// ids pair a vertex of `a` (upper 16 bits) with a vertex of `b` (lower 16 bits), whichever polygon has the reference edge.
 /// Contacts of one point at most have id 0.
 ///
-/// Poses that are not finite give no points.
+/// Poses that are not finite give no points, nor do numbers that overflow.
 pub fn collide(
     a: &Shape,
     b: &Shape,
@@ -48,7 +53,7 @@ pub fn collide(
     out: &mut LocalManifold,
 ) {
     *out = LocalManifold::default();
-    if !(pose_b_in_a.position.is_finite() && pose_b_in_a.rotation.is_finite()) {
+    if !(pose_b_in_a.position.abs().max_element() < FARTHEST) || !pose_b_in_a.rotation.is_finite() {
         return;
     }
     use Shape::{Ball, Capsule, Composite, Cuboid, Curved, Foreign, HalfSpace, Hull, Segment, Triangle};
@@ -111,6 +116,23 @@ pub fn collide(
     }
     if !matches!((a, b), (Curved(_), _) | (_, Curved(_))) {
         out.radii = [a.radius(), b.radius()];
+    }
+    drop_unusable(out);
+}
+
+/// Drops a contact whose numbers overflowed, as they do with sizes out of all proportion.
+#[inline]
+fn drop_unusable(out: &mut LocalManifold) {
+    if out.count == 0 {
+        return;
+    }
+    // `x * 0.0` is 0 unless x is infinite or NaN.
+    let mut zero = 0.0;
+    for p in out.points() {
+        zero += p.point.x * 0.0 + p.point.y * 0.0 + p.separation * 0.0;
+    }
+    if !((out.normal.length_squared() - 1.0).abs() < 1.0e-3 && zero == 0.0) {
+        out.count = 0;
     }
 }
 

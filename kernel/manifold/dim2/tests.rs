@@ -3,7 +3,7 @@
 use super::super::{FeatureCache, LocalManifold, LocalPoint};
 use super::collide;
 use crate::math::{Pose, Rot, Vector};
-use crate::shape::{Ball, Capsule, Cuboid, Foreign, HalfSpace, Hull, Segment, Shape, Triangle};
+use crate::shape::{Ball, Capsule, Cuboid, Curved, Foreign, HalfSpace, Hull, Segment, Shape, Triangle};
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -97,7 +97,7 @@ impl Core {
 
 /// The signed distance of two shapes' surfaces by brute force: to the nearest vertex or edge of disjoint cores, minus the least
 /// penetration along an edge normal of overlapping ones.
-fn oracle(a: &Shape, b: &Shape, pose: &Pose, shift: P) -> f64 {
+pub(super) fn oracle(a: &Shape, b: &Shape, pose: &Pose, shift: P) -> f64 {
     let (core_a, core_b) = (Core::new(a, &Pose::IDENTITY, [0.0; 2]), Core::new(b, pose, shift));
     match (core_a, core_b, a, b) {
         (Some(a), Some(b), ..) => {
@@ -497,6 +497,33 @@ fn foreign_shapes_half_spaces_and_nan_give_nothing() {
             let pose = Pose::new(Vector { x: bad, y: 0.0 }, Rot::IDENTITY);
             assert_eq!(contact(&b, shape, &pose).count, 0);
             assert_eq!(contact(shape, &b, &Pose::new(Vector::ZERO, Rot { cos: bad, sin: 0.0 })).count, 0);
+        }
+    }
+}
+
+/// Squares of sizes overflowed, and the contact had a normal that was no number.
+#[test]
+fn issue_sizes_that_overflow_gave_contacts_that_were_no_numbers() {
+    let around = |size: f32| {
+        let v = |x: f32, y: f32| Vector { x, y } * size;
+        [
+            Shape::Ball(Ball { radius: size }),
+            Shape::Capsule(Capsule { a: v(-0.5, 0.0), b: v(0.5, 0.1), radius: 0.5 * size }),
+            Shape::Segment(Segment { a: v(-0.5, -0.2), b: v(0.5, 0.1) }),
+            Shape::Cuboid(Cuboid { half: v(0.7, 0.4) }),
+            Shape::Triangle(Triangle { a: v(-0.5, -0.5), b: v(0.5, -0.5), c: v(0.0, 0.5) }),
+            Shape::Curved(Curved { half: v(0.7, 0.4) }),
+            Shape::HalfSpace(HalfSpace { normal: Vector::Y }),
+        ]
+    };
+    let sizes = [1.0e-38, 1.0, 1.0e12, 1.0e19, 1.0e30, 1.0e38, f32::MAX];
+    for (a, b) in sizes.into_iter().flat_map(|a| sizes.map(|b| (around(a), around(b)))) {
+        for (a, b) in a.iter().flat_map(|a| b.iter().map(move |b| (a, b))) {
+            for (x, angle) in [(0.0, 0.0), (0.3, 0.7), (1.0e14, 2.0), (1.0e19, 1.0), (f32::MAX, 3.0)] {
+                let m = contact(a, b, &Pose::new(Vector { x, y: -0.2 * x }, Rot::from_angle(angle)));
+                assert!(m.count == 0 || (m.normal.length() - 1.0).abs() < 1e-3, "{a:?} {b:?} {m:?}");
+                assert!(m.points().iter().all(|p| p.point.is_finite() && p.separation.is_finite()), "{m:?}");
+            }
         }
     }
 }

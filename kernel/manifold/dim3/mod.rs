@@ -19,6 +19,8 @@ mod round;
 mod sat;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+pub(super) mod tests_pairs;
 mod view;
 
 use super::{FeatureCache, LocalManifold};

@@ -24,6 +24,10 @@ mod custom_colliders_dim;
 mod diagnostics;
 #[path = "../../../../tests/drawing.rs"]
 mod drawing;
+#[path = "../../../../tests/facets.rs"]
+mod facets;
+#[path = "../../../../tests/facets2.rs"]
+mod facets_dim;
 #[path = "../../../../tests/forces/mod.rs"]
 mod forces;
 #[path = "../../../../tests/forces/dim2.rs"]

@@ -1,13 +1,13 @@
 //! What becomes of a constructor.
 
-use crate::collision::collider::{Collider, Fault};
+use crate::collision::collider::{Collider, ColliderError};
 
 /// The result of an attempt to make a collider.
 pub(super) enum Made {
     /// It is made.
     Collider(Collider),
     /// It cannot be made: why, to be told, and the constructor is given up.
-    Never(Fault),
+    Never(String),
     /// Its mesh is being loaded.
     #[cfg(feature = "collider-from-mesh")]
     Later,
@@ -16,11 +16,11 @@ pub(super) enum Made {
     Lacks(&'static str),
 }
 
-impl From<Result<Collider, Fault>> for Made {
-    fn from(result: Result<Collider, Fault>) -> Self {
+impl From<Result<Collider, ColliderError>> for Made {
+    fn from(result: Result<Collider, ColliderError>) -> Self {
         match result {
             Ok(collider) => Self::Collider(collider),
-            Err(fault) => Self::Never(fault),
+            Err(error) => Self::Never(error.to_string()),
         }
     }
 }

@@ -46,7 +46,7 @@ impl Meshes<'_, '_> {
         };
         let id = component.id();
         let Some(assets) = &self.assets else {
-            return Made::Never("has a mesh, but the app has no meshes: add `AssetPlugin` and `MeshPlugin`");
+            return Made::Never("the app has no meshes: add `AssetPlugin` and `MeshPlugin`".into());
         };
         let Some(mesh) = assets.get(id) else { return self.without_asset(id) };
         if let Some(collider) = self.cache.as_ref().and_then(|cache| cache.get(id, constructor)) {
@@ -62,7 +62,7 @@ impl Meshes<'_, '_> {
     /// What a constructor whose mesh is not there waits for.
     fn without_asset(&self, id: AssetId<Mesh>) -> Made {
         match self.server.as_ref().and_then(|server| server.get_load_state(id)) {
-            Some(LoadState::Failed(_)) => Made::Never("has a mesh that failed to load"),
+            Some(LoadState::Failed(_)) => Made::Never("its mesh failed to load".into()),
             Some(_) => Made::Later,
             None => Made::Lacks(
                 "has a mesh that is not in `Assets<Mesh>` and is not being loaded: it waits for it",

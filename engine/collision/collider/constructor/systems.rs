@@ -111,7 +111,7 @@ fn make_colliders(
         let collider = match meshes.make(entity, constructor) {
             Made::Collider(collider) => Some(collider),
             Made::Never(fault) => {
-                warn!("{name} gets no collider: its ColliderConstructor {fault}");
+                warn!("{name} gets no collider from its ColliderConstructor: {fault}");
                 None
             }
             #[cfg(feature = "collider-from-mesh")]

@@ -272,7 +272,7 @@ pub(super) fn usable_vertices(mut vertices: Vec<Vector>) -> Vec<Vector> {
 }
 
 /// Clamps parameters to ranges for which the decomposition ends.
-fn usable_parameters(parameters: &VhacdParameters, input: &mut Input) -> VhacdParameters {
+pub(super) fn usable_parameters(parameters: &VhacdParameters, input: &mut Input) -> VhacdParameters {
     let mut unit = |v: Scalar, fallback: Scalar| {
         if (0.0..=1.0).contains(&v) {
             v

@@ -42,6 +42,11 @@ pub(super) fn pose_to_kernel(pose: &Pose) -> kernel::math::Pose {
     }
 }
 
+/// The rotation of a pose of parry.
+pub(super) fn rotation(pose: Pose) -> Rotation {
+    Rotation { cos: pose.rotation.re, sin: pose.rotation.im }
+}
+
 /// The shape of the default collider.
 pub(super) fn default_shape() -> SharedShape {
     cuboid_shape(Vector::splat(0.25))

@@ -36,6 +36,11 @@ pub(super) fn pose_to_kernel(pose: &Pose) -> kernel::math::Pose {
     }
 }
 
+/// The rotation of a pose of parry.
+pub(super) fn rotation(pose: Pose) -> Rotation {
+    Rotation(pose.rotation)
+}
+
 /// The shape of the default collider.
 pub(super) fn default_shape() -> SharedShape {
     cuboid_shape(Vector::splat(0.25))

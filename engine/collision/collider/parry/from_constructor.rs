@@ -3,7 +3,7 @@
 #[cfg(feature = "collider-from-mesh")]
 use bevy_mesh::Mesh;
 
-use super::{Collider, shapes::from_constructor::build, strict::Fault};
+use super::{Collider, ColliderError, shapes::from_constructor::build};
 use crate::collision::collider::constructor::ColliderConstructor;
 
 impl Collider {
@@ -34,7 +34,7 @@ impl Collider {
     pub(crate) fn from_constructor(
         constructor: &ColliderConstructor,
         mesh: Option<&super::mesh_type::Mesh>,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, ColliderError> {
         build(constructor, mesh)
     }
 }

@@ -3,11 +3,11 @@
 use bevy_mesh::{Mesh, PrimitiveTopology, VertexAttributeValues};
 
 use super::{
-    Collider, FillMode, TrimeshFlags, VhacdParameters,
+    Collider, ColliderError, FillMode, TrimeshFlags, VhacdParameters,
     constructors::usable_vertices,
     input::{is_element_usable, is_usable},
     shapes::from_mesh::{decomposed, point, surface, voxelized},
-    strict::{self, Fault, made},
+    strict::{self, Made, made},
 };
 use crate::math::{Scalar, Vector};
 
@@ -65,51 +65,46 @@ impl Collider {
     }
 }
 
-pub(super) fn trimesh(mesh: &Mesh, flags: TrimeshFlags) -> Result<Collider, Fault> {
+pub(super) fn trimesh(mesh: &Mesh, flags: TrimeshFlags) -> Made {
     let (vertices, indices) = triangles(mesh)?;
     let made = Collider::try_trimesh_with_config(vertices, indices, flags);
-    made.map_err(|_| "has a mesh without triangles that can be used")
+    made.map_err(|_| ColliderError::NoMeshTriangles)
 }
 
-pub(super) fn convex_hull(mesh: &Mesh) -> Result<Collider, Fault> {
+pub(super) fn convex_hull(mesh: &Mesh) -> Made {
     let points: Vec<_> = corners(mesh)?.into_iter().filter(|p| is_usable(*p)).collect();
-    strict::convex_hull(&points).map_err(|_| "has a mesh whose corners span no hull")
+    Collider::try_convex_hull(points)
 }
 
-pub(super) fn convex_decomposition(mesh: &Mesh, parameters: &VhacdParameters) -> Result<Collider, Fault> {
+pub(super) fn convex_decomposition(mesh: &Mesh, parameters: &VhacdParameters) -> Made {
     let (vertices, indices) = triangles(mesh)?;
     let (vertices, indices) = surface(vertices, indices);
     strict::elements(&vertices, &indices)?;
     made(decomposed(vertices, indices, parameters))
 }
 
-pub(super) fn voxelized_trimesh(
-    mesh: &Mesh,
-    voxel_size: Scalar,
-    fill_mode: FillMode,
-) -> Result<Collider, Fault> {
+pub(super) fn voxelized_trimesh(mesh: &Mesh, voxel_size: Scalar, fill_mode: FillMode) -> Made {
     let (vertices, indices) = triangles(mesh)?;
     let (vertices, indices) = surface(vertices, indices);
-    strict::voxel_grid(&vertices, &indices, voxel_size)?;
+    strict::voxel_size(&vertices, voxel_size)?;
+    strict::elements(&vertices, &indices)?;
     made(voxelized(&vertices, &indices, voxel_size, fill_mode))
 }
 
 /// The corners of a mesh. Some may not be finite.
-fn corners(mesh: &Mesh) -> Result<Vec<Vector>, Fault> {
+fn corners(mesh: &Mesh) -> Made<Vec<Vector>> {
     let positions = mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION);
     match positions {
         Ok(Some(VertexAttributeValues::Float32x3(positions))) => {
             Ok(positions.iter().copied().map(point).collect())
         }
-        Ok(_) => Err("has a mesh without positions"),
-        Err(_) => {
-            Err("has a mesh whose data is in the render world only: keep it with `RenderAssetUsages::all()`")
-        }
+        Ok(_) => Err(ColliderError::NoMeshPositions),
+        Err(_) => Err(ColliderError::MeshNotReadable),
     }
 }
 
 /// The corners and triangles of a mesh. Triangles that cannot be used are left out; there is at least one.
-fn triangles(mesh: &Mesh) -> Result<(Vec<Vector>, Vec<[u32; 3]>), Fault> {
+fn triangles(mesh: &Mesh) -> Made<(Vec<Vector>, Vec<[u32; 3]>)> {
     let corners = corners(mesh)?;
     let order: Vec<u32> = match mesh.try_indices_option() {
         Ok(Some(indices)) => indices.iter().map(|i| i as u32).collect(),
@@ -123,11 +118,11 @@ fn triangles(mesh: &Mesh) -> Result<(Vec<Vector>, Vec<[u32; 3]>), Fault> {
                 |(i, t): (usize, &[u32])| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
             order.windows(3).enumerate().map(turned).collect()
         }
-        _ => return Err("has a mesh of points or lines, not of triangles"),
+        _ => return Err(ColliderError::NotTriangles),
     };
     triangles.retain(|triangle| is_element_usable(&corners, triangle));
     if triangles.is_empty() {
-        return Err("has a mesh without triangles that can be used");
+        return Err(ColliderError::NoMeshTriangles);
     }
     // Parry reads corners that no triangle has.
     Ok((usable_vertices(corners), triangles))

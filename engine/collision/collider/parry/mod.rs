@@ -11,6 +11,7 @@ pub mod contact_query;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod error;
 mod from_constructor;
 #[cfg(feature = "collider-from-mesh")]
 mod from_mesh;
@@ -20,6 +21,7 @@ mod manifold;
 mod native;
 mod native_composite;
 mod params;
+mod parts;
 mod queries;
 mod scaled;
 #[cfg_attr(feature = "2d", path = "shapes2/mod.rs")]
@@ -31,7 +33,10 @@ mod stored;
 mod strict;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_strict;
 
+pub use error::ColliderError;
 pub use params::{FillMode, TrimeshFlags, VhacdParameters};
 #[allow(unused_imports, reason = "3D has no shapes of its own")]
 pub use shapes::*;
@@ -44,7 +49,6 @@ mod mesh_type {
 
 pub(crate) use manifold::{Workspace, foreign_ball_manifolds, foreign_manifolds};
 pub(crate) use spatial::{ForeignCast, cast_foreign, overlaps_foreign};
-pub(crate) use strict::Fault;
 
 use super::{ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, IntoCollider};
 use crate::dynamics::ids::ColliderId;
@@ -78,7 +82,8 @@ pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
 ///
 /// Constructors without a `Result` or `Option` never fail: invalid values (NaN, negative or zero sizes, indices out of
 /// range) are repaired, with one warning per constructor. Sizes become positive and at least 10 µm. If nothing is left,
-/// the collider is a ball of that size.
+/// the collider is a ball of that size. Each has a twin whose name starts with `try_`, which returns a [`ColliderError`]
+/// instead.
 ///
 /// With feature `serialize` a collider is stored as the definition of its shape and its scale, and is read back with
 /// the same bits. A definition that makes no shape is an error. Custom shape types cannot be stored.
@@ -119,14 +124,9 @@ impl Scaled {
         Self { native: native_shape(&shape), shape }
     }
 
-    /// The shape with a scale. `None`, with a warning, if no shape is that.
+    /// The shape with a scale. `None` if no shape is that.
     fn by(shape: &SharedShape, scale: Vector, subdivisions: u32) -> Option<Self> {
-        let scaled = scaled::scaled(shape, scale, subdivisions);
-        if scaled.is_none() {
-            let kind = shape.shape_type();
-            bevy_log::warn_once!("a collider of type {kind:?} cannot be scaled by {scale}");
-        }
-        scaled.map(Self::new)
+        scaled::scaled(shape, scale, subdivisions).map(Self::new)
     }
 }
 
@@ -176,8 +176,10 @@ impl Collider {
 
     fn scaled(&self) -> &Scaled {
         self.scaled.get_or_init(|| {
-            let scaled = Scaled::by(&self.shape, self.scale, self.detail);
-            scaled.unwrap_or_else(|| Scaled::new(self.shape.clone()))
+            Scaled::by(&self.shape, self.scale, self.detail).unwrap_or_else(|| {
+                self.warn_unscalable(self.scale);
+                Scaled::new(self.shape.clone())
+            })
         })
     }
 
@@ -215,12 +217,33 @@ impl Collider {
                 .to_array()
                 .map(|s| if s.abs() < input::MIN_LENGTH { input::MIN_LENGTH.copysign(s) } else { s }),
         );
+        if self.try_set_scale(scale, num_subdivisions).is_err() {
+            self.warn_unscalable(scale);
+        }
+    }
+
+    /// Sets the scale along each axis as [`set_scale`](Self::set_scale) does, or keeps it and returns an error.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidScale`](ColliderError::InvalidScale) if the scale is not finite or an axis has less than 1/100,000;
+    /// [`UnscalableShape`](ColliderError::UnscalableShape).
+    pub fn try_set_scale(&mut self, scale: Vector, num_subdivisions: u32) -> Result<(), ColliderError> {
+        if !(scale.is_finite() && scale.abs().min_element() >= input::MIN_LENGTH) {
+            return Err(ColliderError::InvalidScale);
+        }
         if scale != self.scale || self.scaled.get().is_none() {
-            let Some(scaled) = Scaled::by(&self.shape, scale, num_subdivisions) else { return };
-            self.scaled = scaled.into();
+            let scaled = Scaled::by(&self.shape, scale, num_subdivisions);
+            self.scaled = scaled.ok_or(ColliderError::UnscalableShape)?.into();
             self.scale = scale;
             self.detail = num_subdivisions;
         }
+        Ok(())
+    }
+
+    fn warn_unscalable(&self, scale: Vector) {
+        let kind = self.shape.shape_type();
+        bevy_log::warn_once!("a collider of type {kind:?} cannot be scaled by {scale}");
     }
 }
 

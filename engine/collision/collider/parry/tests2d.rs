@@ -221,3 +221,35 @@ fn a_box_on_a_polyline_has_a_manifold_per_segment() {
     collide(&line, &square, &nan, 0.02, &mut none);
     assert!(none.is_empty());
 }
+
+#[test]
+fn constructors_of_the_plane_return_errors() {
+    use super::super::tests_strict::{BAD, fails};
+    use ColliderError as Error;
+    let outline = [Vector::ZERO, Vector::X, Vector::ONE];
+    let (sides, mode) = ([[0, 1], [1, 2], [2, 0]], FillMode::SurfaceOnly);
+    for bad in BAD {
+        fails(Collider::try_circle(bad), Error::InvalidSize);
+        fails(Collider::try_ellipse(1.0, bad), Error::InvalidSize);
+        fails(Collider::try_rectangle(bad, 1.0), Error::InvalidSize);
+        fails(Collider::try_round_rectangle(1.0, bad, 0.1), Error::InvalidSize);
+        fails(Collider::try_regular_polygon(bad as f32, 5), Error::InvalidSize);
+        fails(Collider::try_voxelized_polyline(&outline, &sides, bad, mode), Error::InvalidSize);
+        fails(Collider::try_heightfield(vec![0.0; 3], Vector::new(bad, 1.0)), Error::InvalidSize);
+        if !(0.0..1.0).contains(&bad) {
+            fails(Collider::try_round_rectangle(1.0, 1.0, bad), Error::NegativeSize);
+        }
+    }
+    for sides in [0, 2, u32::MAX] {
+        fails(Collider::try_regular_polygon(1.0, sides), Error::InvalidSides);
+    }
+    let star = vec![Vector::ZERO, Vector::ONE, Vector::X, Vector::Y];
+    fails(Collider::try_convex_polyline(star), Error::NotConvex);
+    fails(Collider::try_convex_polyline(vec![Vector::splat(Scalar::NAN); 3]), Error::InvalidPoint);
+    fails(Collider::try_voxelized_polyline(&outline, &sides, 2.0e-5, mode), Error::TooManyVoxels);
+    fails(Collider::try_voxelized_polyline(&outline, &[[0, 3]], 0.1, mode), Error::InvalidElement(0));
+    fails(Collider::try_heightfield(vec![0.0], Vector::ONE), Error::TooFewHeights);
+    fails(Collider::try_heightfield(vec![0.0, Scalar::NAN], Vector::ONE), Error::InvalidPoint);
+    assert!(Collider::try_heightfield(vec![0.0, -1.0], Vector::ONE).is_ok());
+    assert!(Collider::try_voxelized_polyline(&outline, &sides, 0.1, mode).is_ok());
+}

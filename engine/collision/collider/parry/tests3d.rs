@@ -226,3 +226,32 @@ fn a_cuboid_on_a_mesh_has_a_manifold_per_triangle() {
         assert!(out.is_empty());
     }
 }
+
+#[test]
+fn constructors_of_space_return_errors() {
+    use super::super::tests_strict::{BAD, fails};
+    use ColliderError as Error;
+    let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
+    let (faces, mode) = ([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], FillMode::SurfaceOnly);
+    let heights = || vec![vec![0.0, -1.0], vec![1.0, 2.0]];
+    for bad in BAD {
+        fails(Collider::try_sphere(bad), Error::InvalidSize);
+        fails(Collider::try_cuboid(1.0, bad, 1.0), Error::InvalidSize);
+        fails(Collider::try_round_cuboid(1.0, 1.0, bad, 0.1), Error::InvalidSize);
+        fails(Collider::try_cylinder(bad, 1.0), Error::InvalidSize);
+        fails(Collider::try_cone(1.0, bad), Error::InvalidSize);
+        fails(Collider::try_voxelized_trimesh(&corners, &faces, bad, mode), Error::InvalidSize);
+        fails(Collider::try_heightfield(heights(), Vector::new(1.0, 1.0, bad)), Error::InvalidSize);
+        if !(0.0..1.0).contains(&bad) {
+            fails(Collider::try_round_cuboid(1.0, 1.0, 1.0, bad), Error::NegativeSize);
+        }
+    }
+    fails(Collider::try_voxelized_trimesh(&corners, &faces, 2.0e-5, mode), Error::TooManyVoxels);
+    fails(Collider::try_voxelized_trimesh(&corners, &[[0, 1, 4]], 0.1, mode), Error::InvalidElement(0));
+    fails(Collider::try_voxelized_trimesh(&corners, &[], 0.1, mode), Error::NoElements);
+    fails(Collider::try_heightfield(vec![], Vector::ONE), Error::TooFewHeights);
+    fails(Collider::try_heightfield(vec![vec![0.0; 2], vec![0.0; 3]], Vector::ONE), Error::UnevenHeights);
+    fails(Collider::try_heightfield(vec![vec![Scalar::NAN; 2]; 2], Vector::ONE), Error::InvalidPoint);
+    assert!(Collider::try_heightfield(heights(), Vector::ONE).is_ok());
+    assert!(Collider::try_voxelized_trimesh(&corners, &faces, 0.1, mode).is_ok());
+}

@@ -102,7 +102,7 @@ pub(super) fn frusta(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    collide(a, b, pose, prediction, cache, out);
+    collide(&a.with_equal_discs(), b, pose, prediction, cache, out);
 }
 
 fn collide<A: Party>(
@@ -113,6 +113,7 @@ fn collide<A: Party>(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
+    let b = &b.with_equal_discs();
     let pair = Pair::new(a, b, pose, prediction);
     if !pair.try_cached(cache, out) {
         pair.search(cache, out);
@@ -129,6 +130,7 @@ pub(super) fn collide_face(
     out: &mut LocalManifold,
 ) {
     let Some(face) = (0..a.faces.len()).find(|i| a.faces[*i].normal.dot(normal) > 0.5) else { return };
+    let b = &b.with_equal_discs();
     let pair = Pair::new(a, b, pose, prediction);
     let found = pair.plane_a(face);
     if found.separation > pair.limit() {
@@ -151,7 +153,7 @@ pub(super) fn half_space(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    let frame = MatrixPose::new(pose);
+    let (b, frame) = (&b.with_equal_discs(), MatrixPose::new(pose));
     let down = -frame.direction_in(normal);
     out.normal = normal;
     out.gap = normal.dot(frame.point(b.support(down)));
@@ -168,6 +170,7 @@ pub(super) fn half_space(
 
 /// The contact of a frustum and a ball.
 pub(super) fn ball(a: &Curved, center: Vector, radius: f32, prediction: f32, out: &mut LocalManifold) {
+    let a = &a.with_equal_discs();
     let nearest = a.nearest(center);
     let separation = nearest.distance - radius;
     if !(separation <= prediction) {

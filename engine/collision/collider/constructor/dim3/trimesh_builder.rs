@@ -271,6 +271,21 @@ impl Collider {
     pub fn trimesh_builder(&self) -> TrimeshBuilder {
         TrimeshBuilder::new(self.shape_scaled().clone())
     }
+
+    /// The triangles of the collider's surface, with its scale and the default subdivisions of curved shapes.
+    ///
+    /// # Errors
+    ///
+    /// As [`TrimeshBuilder::build`].
+    ///
+    /// ```
+    /// # use avian::prelude::*;
+    /// let mesh = Collider::cuboid(1.0, 2.0, 3.0).to_trimesh().expect("it has a surface");
+    /// assert_eq!((mesh.vertices.len(), mesh.indices.len()), (8, 12));
+    /// ```
+    pub fn to_trimesh(&self) -> Result<Trimesh, TrimeshBuilderError> {
+        self.trimesh_builder().build()
+    }
 }
 
 #[cfg(feature = "collider-from-mesh")]

@@ -1,44 +1,32 @@
 //! Colliders from constructors of 2D. `shapes3` has those of 3D.
 
 use super::super::{
-    Collider, TrimeshFlags, VhacdParameters,
+    Collider, ColliderError, TrimeshFlags, VhacdParameters,
     mesh_type::Mesh,
-    strict::{self, Fault, elements, made, points, sizes, sizes_or_zero},
+    strict::{self, Made, elements, made, points, sizes},
 };
 use crate::{
     collision::collider::constructor::ColliderConstructor as C,
-    math::{AdjustPrecision, Vector},
+    math::Vector,
     physics_transform::{Position, Rotation},
 };
 
 /// The collider that a constructor describes. Constructors from meshes need `mesh`.
-pub(in super::super) fn build(constructor: &C, mesh: Option<&Mesh>) -> Result<Collider, Fault> {
+pub(in super::super) fn build(constructor: &C, mesh: Option<&Mesh>) -> Made {
     match constructor {
-        C::Circle { radius } => {
-            sizes(&[*radius])?;
-            Ok(Collider::circle(*radius))
-        }
-        C::Ellipse { half_width, half_height } => {
-            sizes(&[*half_width, *half_height])?;
-            Ok(Collider::ellipse(*half_width, *half_height))
-        }
-        C::Rectangle { x_length, y_length } => {
-            sizes(&[*x_length, *y_length])?;
-            Ok(Collider::rectangle(*x_length, *y_length))
-        }
+        C::Circle { radius } => Collider::try_circle(*radius),
+        C::Ellipse { half_width, half_height } => Collider::try_ellipse(*half_width, *half_height),
+        C::Rectangle { x_length, y_length } => Collider::try_rectangle(*x_length, *y_length),
         C::RoundRectangle { x_length, y_length, border_radius } => {
-            sizes(&[*x_length, *y_length])?;
-            sizes_or_zero(&[*border_radius])?;
-            Ok(Collider::round_rectangle(*x_length, *y_length, *border_radius))
+            Collider::try_round_rectangle(*x_length, *y_length, *border_radius)
         }
-        C::RegularPolygon { circumradius, sides } => regular_polygon(*circumradius, *sides),
-        C::ConvexPolyline { points } => Collider::convex_polyline(points.clone())
-            .ok_or("has points that are not the corners of a convex polygon in order"),
-        C::Capsule { radius, height } => strict::capsule(*radius, *height),
-        C::CapsuleEndpoints { radius, a, b } => strict::capsule_endpoints(*radius, *a, *b),
-        C::HalfSpace { outward_normal } => strict::half_space(*outward_normal),
-        C::Segment { a, b } => strict::segment(*a, *b),
-        C::Triangle { a, b, c } => strict::triangle(*a, *b, *c),
+        C::RegularPolygon { circumradius, sides } => Collider::try_regular_polygon(*circumradius, *sides),
+        C::ConvexPolyline { points } => Collider::try_convex_polyline(points.clone()),
+        C::Capsule { radius, height } => Collider::try_capsule(*radius, *height),
+        C::CapsuleEndpoints { radius, a, b } => Collider::try_capsule_endpoints(*radius, *a, *b),
+        C::HalfSpace { outward_normal } => Collider::try_half_space(*outward_normal),
+        C::Segment { a, b } => Collider::try_segment(*a, *b),
+        C::Triangle { a, b, c } => Collider::try_triangle(*a, *b, *c),
         C::Polyline { vertices, indices } => strict::polyline(vertices, indices.as_deref()),
         C::Trimesh { vertices, indices } => strict::trimesh(vertices, indices, TrimeshFlags::empty()),
         C::TrimeshWithConfig { vertices, indices, flags } => strict::trimesh(vertices, indices, *flags),
@@ -48,15 +36,16 @@ pub(in super::super) fn build(constructor: &C, mesh: Option<&Mesh>) -> Result<Co
         C::ConvexDecompositionWithConfig { vertices, indices, params } => {
             decomposition(vertices, indices, params)
         }
-        C::ConvexHull { points } => strict::convex_hull(points),
+        C::ConvexHull { points } => Collider::try_convex_hull(points.clone()),
         C::Voxels { voxel_size, grid_coordinates } => strict::voxels(*voxel_size, grid_coordinates),
         C::VoxelizedPolyline { vertices, indices, voxel_size, fill_mode } => {
-            strict::voxel_grid(vertices, indices, *voxel_size)?;
+            strict::voxel_size(vertices, *voxel_size)?;
+            elements(vertices, indices)?;
             made(Collider::voxelized_polyline(vertices, indices, *voxel_size, *fill_mode))
         }
         C::Heightfield { heights, scale } => {
             if heights.len() < 2 {
-                return Err("has less than two heights");
+                return Err(ColliderError::TooFewHeights);
             }
             sizes(&[scale.x])?;
             points(&[*scale])?;
@@ -71,36 +60,21 @@ pub(in super::super) fn build(constructor: &C, mesh: Option<&Mesh>) -> Result<Co
             let part = |(position, rotation, shape): &(Position, Rotation, C)| {
                 Ok((*position, *rotation, build(shape, mesh)?))
             };
-            strict::compound(parts.iter().map(part).collect::<Result<_, Fault>>()?)
+            Collider::try_compound(parts.iter().map(part).collect::<Made<Vec<_>>>()?)
         }
     }
 }
 
-fn decomposition(
-    vertices: &[Vector],
-    indices: &[[u32; 2]],
-    params: &VhacdParameters,
-) -> Result<Collider, Fault> {
+fn decomposition(vertices: &[Vector], indices: &[[u32; 2]], params: &VhacdParameters) -> Made {
     elements(vertices, indices)?;
     made(Collider::convex_decomposition_with_config(vertices.to_vec(), indices.to_vec(), params))
 }
 
-/// Maximum number of sides of a regular polygon from a file.
-const MOST_SIDES: u32 = 10_000;
-
-fn regular_polygon(circumradius: f32, sides: u32) -> Result<Collider, Fault> {
-    strict::sizes(&[circumradius.adjust_precision()])?;
-    match sides {
-        3..=MOST_SIDES => Ok(Collider::regular_polygon(circumradius, sides)),
-        _ => Err("is a polygon with less than three sides or too many"),
-    }
-}
-
 #[cfg(feature = "collider-from-mesh")]
-fn from_mesh(constructor: &C, mesh: Option<&Mesh>) -> Result<Collider, Fault> {
+fn from_mesh(constructor: &C, mesh: Option<&Mesh>) -> Made {
     use super::super::from_mesh;
 
-    let mesh = mesh.ok_or("needs a mesh")?;
+    let mesh = mesh.ok_or(ColliderError::NoMesh)?;
     match constructor {
         C::ConvexHullFromMesh => from_mesh::convex_hull(mesh),
         C::ConvexDecompositionFromMesh => from_mesh::convex_decomposition(mesh, &VhacdParameters::default()),

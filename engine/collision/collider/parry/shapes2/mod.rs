@@ -8,6 +8,7 @@ pub(super) mod from_mesh;
 mod primitives;
 pub(super) mod regular_polygon;
 pub(super) mod scaled;
+mod strict;
 
 pub use ellipse::EllipseColliderShape;
 pub use regular_polygon::RegularPolygonColliderShape;

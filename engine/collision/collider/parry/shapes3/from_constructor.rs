@@ -1,9 +1,9 @@
 //! Colliders from constructors of 3D. `shapes2` has those of 2D.
 
 use super::super::{
-    Collider, TrimeshFlags, VhacdParameters,
+    Collider, ColliderError, TrimeshFlags, VhacdParameters,
     mesh_type::Mesh,
-    strict::{self, Fault, elements, made, points, sizes, sizes_or_zero},
+    strict::{self, Made, elements, made, points, sizes},
 };
 use crate::{
     collision::collider::constructor::ColliderConstructor as C,
@@ -12,34 +12,20 @@ use crate::{
 };
 
 /// The collider that a constructor describes. Constructors from meshes need `mesh`.
-pub(in super::super) fn build(constructor: &C, mesh: Option<&Mesh>) -> Result<Collider, Fault> {
+pub(in super::super) fn build(constructor: &C, mesh: Option<&Mesh>) -> Made {
     match constructor {
-        C::Sphere { radius } => {
-            sizes(&[*radius])?;
-            Ok(Collider::sphere(*radius))
-        }
-        C::Cuboid { x_length, y_length, z_length } => {
-            sizes(&[*x_length, *y_length, *z_length])?;
-            Ok(Collider::cuboid(*x_length, *y_length, *z_length))
-        }
+        C::Sphere { radius } => Collider::try_sphere(*radius),
+        C::Cuboid { x_length, y_length, z_length } => Collider::try_cuboid(*x_length, *y_length, *z_length),
         C::RoundCuboid { x_length, y_length, z_length, border_radius } => {
-            sizes(&[*x_length, *y_length, *z_length])?;
-            sizes_or_zero(&[*border_radius])?;
-            Ok(Collider::round_cuboid(*x_length, *y_length, *z_length, *border_radius))
+            Collider::try_round_cuboid(*x_length, *y_length, *z_length, *border_radius)
         }
-        C::Cylinder { radius, height } => {
-            sizes(&[*radius, *height])?;
-            Ok(Collider::cylinder(*radius, *height))
-        }
-        C::Cone { radius, height } => {
-            sizes(&[*radius, *height])?;
-            Ok(Collider::cone(*radius, *height))
-        }
-        C::Capsule { radius, height } => strict::capsule(*radius, *height),
-        C::CapsuleEndpoints { radius, a, b } => strict::capsule_endpoints(*radius, *a, *b),
-        C::HalfSpace { outward_normal } => strict::half_space(*outward_normal),
-        C::Segment { a, b } => strict::segment(*a, *b),
-        C::Triangle { a, b, c } => strict::triangle(*a, *b, *c),
+        C::Cylinder { radius, height } => Collider::try_cylinder(*radius, *height),
+        C::Cone { radius, height } => Collider::try_cone(*radius, *height),
+        C::Capsule { radius, height } => Collider::try_capsule(*radius, *height),
+        C::CapsuleEndpoints { radius, a, b } => Collider::try_capsule_endpoints(*radius, *a, *b),
+        C::HalfSpace { outward_normal } => Collider::try_half_space(*outward_normal),
+        C::Segment { a, b } => Collider::try_segment(*a, *b),
+        C::Triangle { a, b, c } => Collider::try_triangle(*a, *b, *c),
         C::Polyline { vertices, indices } => strict::polyline(vertices, indices.as_deref()),
         C::Trimesh { vertices, indices } => strict::trimesh(vertices, indices, TrimeshFlags::empty()),
         C::TrimeshWithConfig { vertices, indices, flags } => strict::trimesh(vertices, indices, *flags),
@@ -49,15 +35,16 @@ pub(in super::super) fn build(constructor: &C, mesh: Option<&Mesh>) -> Result<Co
         C::ConvexDecompositionWithConfig { vertices, indices, params } => {
             decomposition(vertices, indices, params)
         }
-        C::ConvexHull { points } => strict::convex_hull(points),
+        C::ConvexHull { points } => Collider::try_convex_hull(points.clone()),
         C::Voxels { voxel_size, grid_coordinates } => strict::voxels(*voxel_size, grid_coordinates),
         C::VoxelizedTrimesh { vertices, indices, voxel_size, fill_mode } => {
-            strict::voxel_grid(vertices, indices, *voxel_size)?;
+            strict::voxel_size(vertices, *voxel_size)?;
+            elements(vertices, indices)?;
             made(Collider::voxelized_trimesh(vertices, indices, *voxel_size, *fill_mode))
         }
         C::Heightfield { heights, scale } => {
             if heights.len() < 2 || heights.iter().any(|line| line.len() < 2) {
-                return Err("has less than two heights in a row");
+                return Err(ColliderError::TooFewHeights);
             }
             sizes(&[scale.x, scale.z])?;
             points(&[*scale])?;
@@ -74,25 +61,21 @@ pub(in super::super) fn build(constructor: &C, mesh: Option<&Mesh>) -> Result<Co
             let part = |(position, rotation, shape): &(Position, Rotation, C)| {
                 Ok((*position, *rotation, build(shape, mesh)?))
             };
-            strict::compound(parts.iter().map(part).collect::<Result<_, Fault>>()?)
+            Collider::try_compound(parts.iter().map(part).collect::<Made<Vec<_>>>()?)
         }
     }
 }
 
-fn decomposition(
-    vertices: &[Vector],
-    indices: &[[u32; 3]],
-    params: &VhacdParameters,
-) -> Result<Collider, Fault> {
+fn decomposition(vertices: &[Vector], indices: &[[u32; 3]], params: &VhacdParameters) -> Made {
     elements(vertices, indices)?;
     made(Collider::convex_decomposition_with_config(vertices.to_vec(), indices.to_vec(), params.clone()))
 }
 
 #[cfg(feature = "collider-from-mesh")]
-fn from_mesh(constructor: &C, mesh: Option<&Mesh>) -> Result<Collider, Fault> {
+fn from_mesh(constructor: &C, mesh: Option<&Mesh>) -> Made {
     use super::super::from_mesh;
 
-    let mesh = mesh.ok_or("needs a mesh")?;
+    let mesh = mesh.ok_or(ColliderError::NoMesh)?;
     match constructor {
         C::TrimeshFromMeshWithConfig(flags) => from_mesh::trimesh(mesh, *flags),
         C::ConvexDecompositionFromMeshWithConfig(params) => from_mesh::convex_decomposition(mesh, params),

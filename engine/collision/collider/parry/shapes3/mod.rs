@@ -6,3 +6,4 @@ pub(super) mod from_constructor;
 pub(super) mod from_mesh;
 mod primitives;
 pub(super) mod scaled;
+mod strict;
