@@ -22,7 +22,7 @@ mod tests_curved;
 use super::{FeatureCache, LocalManifold};
 use crate::math::Pose;
 use crate::shape::Shape;
-pub(super) use facet::{Border, borders, collide_face, face_normal, few_points};
+pub(super) use facet::{Border, borders, collide_face, face_normal, facing, few_points};
 use polygonal::{Buffer, Polygonal};
 
 /// The contact of shape `a` and shape `b`, given the pose of `b` in `a`'s frame; the result is in `a`'s
