@@ -82,7 +82,7 @@ impl Screen {
                 corner.set(lane, at);
             }
         }
-        corners.iter_mut().for_each(|corner| *corner = *corner - self.origin);
+        corners.iter_mut().for_each(|corner| *corner -= self.origin);
         let mut gaps = self.gaps_of_planes(&corners);
         for slab in &self.slabs {
             let heights = corners.map(|corner| slab.axis.dot(corner));
