@@ -4,8 +4,9 @@
 //! replaced by the facet's own: there the neighbour is nearer (convex edges keep the normals between both facets).
 
 use super::dim::{Border, borders, collide_face, face_normal, few_points};
+use super::screen::{Gaps, LANES, Screen};
 use super::{FeatureCache, LocalManifold, LocalPoint, collide};
-use crate::math::{Pose, Vector, max, min};
+use crate::math::{Lane, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Part, Shape, Surface};
 
 /// Manifolds with normals closer than this are merged: cos 2°. More merges slopes; less solves a plane several times.
@@ -173,30 +174,61 @@ impl Pass<'_> {
     /// Adds the manifolds of all parts to `buffers.found`, in the composite's frame. Returns a lower bound of the distance to
     /// those without.
     fn collide(&self, buffers: &mut CompositeBuffers) -> f32 {
-        let near = self.other.local_box(self.pose).swept(self.look.motion).grown(self.look.prediction);
+        let around = self.other.local_box(self.pose);
         let mut parts = core::mem::take(&mut buffers.parts);
         parts.clear();
+        let near = around.swept(self.look.motion).grown(self.look.prediction);
         self.composite.tree().query(&near, |part| parts.push(part));
         let mut gap = f32::INFINITY;
-        let mut local = LocalManifold::default();
-        for part in &parts {
-            if self.alone {
-                self.collide_alone(*part, self.look.prediction + self.look.motion.length(), &mut local);
-            } else {
-                self.collide_part(*part, self.look.prediction, &mut local);
-            }
-            if local.count == 0 {
-                gap = min(gap, local.gap);
-                if self.alone || !(self.look.motion != Vector::ZERO && self.cast(*part, &mut local)) {
-                    continue;
+        match self.composite.surface() {
+            Some(surface) if !parts.is_empty() => {
+                let screen = Screen::new(self.other, self.pose, &around, self.look.motion);
+                for few in parts.chunks(LANES) {
+                    let Gaps { now, ever } = screen.gaps(surface, few);
+                    for (lane, part) in few.iter().enumerate() {
+                        let screened = Some([now.get(lane), ever.get(lane)]);
+                        gap = min(gap, self.add_part(*part, screened, buffers));
+                    }
                 }
             }
-            let count = local.count;
-            local.groups = [self.look.group(0, *part), self.other_group];
-            local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, *part, p.feature]));
-            buffers.found.push(local);
+            _ => {
+                for part in &parts {
+                    gap = min(gap, self.add_part(*part, None, buffers));
+                }
+            }
         }
         buffers.parts = parts;
+        gap
+    }
+
+    /// Adds the manifold of one part, if it has one. `screened` are lower bounds of its distance, now and during the motion.
+    /// Returns a lower bound of the distance if the part has no manifold, else infinity.
+    fn add_part(&self, part: u32, screened: Option<[f32; 2]>, buffers: &mut CompositeBuffers) -> f32 {
+        let Look { prediction, motion, .. } = self.look;
+        let [now, ever] = screened.unwrap_or([-1.0; 2]);
+        let (is_moving, mut local) = (motion != Vector::ZERO, LocalManifold::default());
+        let mut gap = f32::INFINITY;
+        if self.alone {
+            if ever > prediction {
+                return now;
+            }
+            self.collide_alone(part, prediction + motion.length(), &mut local);
+        } else if now > prediction {
+            local.gap = now;
+        } else {
+            self.collide_part(part, prediction, &mut local);
+        }
+        if local.count == 0 {
+            gap = local.gap;
+            let may_meet = !self.alone && is_moving && !(ever > MET * prediction);
+            if !(may_meet && self.cast(part, &mut local)) {
+                return gap;
+            }
+        }
+        let count = local.count;
+        local.groups = [self.look.group(0, part), self.other_group];
+        local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, part, p.feature]));
+        buffers.found.push(local);
         gap
     }
 

@@ -9,6 +9,7 @@ mod composite;
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
 mod dim;
+mod screen;
 #[cfg(test)]
 mod tests_pairs;
 

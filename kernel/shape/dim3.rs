@@ -10,7 +10,7 @@ mod rays;
 pub use super::Triangle as Facet;
 pub use curved3::Curved;
 pub use hull3::{Edge, Face, Hull};
-pub(crate) use hull3::{EdgeBlock, FaceBlock, farthest, largest, pack};
+pub(crate) use hull3::{EdgeBlock, FaceBlock, farthest, largest};
 
 use super::{Ball, Capsule, Cuboid, RayHit, Segment, Triangle};
 use crate::math::{Inertia, Pose, Vector};

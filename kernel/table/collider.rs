@@ -413,10 +413,10 @@ impl ColliderTable {
 
 impl Collider {
     /// Maximum distance between the surface normals' lines and the body's centre of mass, in metres: speed of the
-    /// surface along its normals per rad/s.
+    /// surface along its normals per rad/s. 0 if the body does not turn: a mesh of the world has many vertices to go through.
     pub(crate) fn arm(&self, bodies: &BodyTable) -> f32 {
         let def = &self.def;
-        if def.body == NONE {
+        if def.body == NONE || bodies[def.body].kind == BodyKind::Static {
             return 0.0;
         }
         def.shape.arm(def.local.inverse_transform(bodies[def.body].local_center))

@@ -47,6 +47,8 @@ pub enum Shape3 {
     Box(f32, f32, f32),
     /// Along y: half length of the segment, radius.
     Capsule(f32, f32),
+    /// Along y: half height, radius.
+    Cylinder(f32, f32),
     /// The convex hull of some points.
     Hull(Arc<Vec<V3>>),
     /// A triangle mesh.
@@ -102,6 +104,7 @@ impl Dimension for D3 {
             Shape3::Sphere(r) => SharedShape::ball(*r),
             Shape3::Box(x, y, z) => SharedShape::cuboid(*x, *y, *z),
             Shape3::Capsule(h, r) => SharedShape::capsule_y(*h, *r),
+            Shape3::Cylinder(h, r) => SharedShape::cylinder(*h, *r),
             Shape3::Hull(points) => SharedShape::convex_hull(&vectors(points)).expect("a convex hull"),
             Shape3::Mesh(m) => {
                 SharedShape::trimesh(vectors(&m.points), m.triangles.clone()).expect("a triangle mesh")

@@ -5,7 +5,7 @@ use super::collide;
 use super::points::Limits;
 use super::polygonal::{Buffer, view};
 use crate::manifold::{FeatureCache, LocalManifold, LocalPoint};
-use crate::math::{Pose, Vector};
+use crate::math::{F32x4, Pose, Vector};
 use crate::shape::{Curved, Segment, Shape, direction};
 
 /// A single point may lie beyond an end by this share of the segment.
@@ -28,6 +28,13 @@ pub(in crate::manifold) struct Border {
 /// The unit normal on the left of a segment; `None` if it has no length.
 pub(in crate::manifold) fn face_normal([a, b]: [Vector; 2]) -> Option<Vector> {
     direction(b - a).map(|(axis, _)| axis.perp())
+}
+
+/// Vectors across four segments, of any length; 0 without length.
+#[inline(always)]
+pub(in crate::manifold) fn facing([a, b]: &[Vector<F32x4>; 2]) -> Vector<F32x4> {
+    let along = *b - *a;
+    Vector { x: -along.y, y: along.x }
 }
 
 /// The ends of a segment with the given normal.

@@ -6,7 +6,7 @@ use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce};
 use super::view::Small;
 use super::with_view;
 use crate::manifold::{LocalManifold, LocalPoint};
-use crate::math::{Pose, Vector, max};
+use crate::math::{F32x4, Pose, Vector, max};
 use crate::shape::Shape;
 
 /// A single point may lie outside of a face by this share of its height over the border.
@@ -31,6 +31,12 @@ pub(in crate::manifold) fn face_normal([a, b, c]: [Vector; 3]) -> Option<Vector>
     let length = normal.length();
     let size = max(ab.length_squared(), ac.length_squared());
     (length > 1.0e-6 * size).then(|| normal * (1.0 / length))
+}
+
+/// Vectors across four triangles, of any length; 0 without area.
+#[inline(always)]
+pub(in crate::manifold) fn facing([a, b, c]: &[Vector<F32x4>; 3]) -> Vector<F32x4> {
+    (*b - *a).cross(*c - *a)
 }
 
 /// The sides of a triangle with the given normal.

@@ -26,7 +26,7 @@ mod view;
 use super::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector};
 use crate::shape::{Capsule, Curved, Segment, Shape};
-pub(super) use facet::{Border, borders, collide_face, face_normal, few_points};
+pub(super) use facet::{Border, borders, collide_face, face_normal, facing, few_points};
 use view::{Small, View};
 
 /// Centres farther apart than this, in metres, have no contact: their squares would overflow.

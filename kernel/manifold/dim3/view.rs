@@ -2,7 +2,7 @@
 //! The same code collides all of them.
 
 use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
-use crate::shape::{Capsule, Edge, EdgeBlock, Face, FaceBlock, Hull, farthest, pack};
+use crate::shape::{Capsule, Edge, EdgeBlock, Face, FaceBlock, Hull, farthest};
 
 /// The convex polyhedron, possibly flat, that a shape is without its radius.
 #[derive(Clone, Copy)]
@@ -101,6 +101,12 @@ const fn wide(x: [f32; 4], y: [f32; 4], z: [f32; 4]) -> Vector<F32x4> {
     Vector { x: F32x4::new(x), y: F32x4::new(y), z: F32x4::new(z) }
 }
 
+/// Four vectors side by side.
+#[inline(always)]
+fn four(v: [Vector; 4]) -> Vector<F32x4> {
+    wide(v.map(|v| v.x), v.map(|v| v.y), v.map(|v| v.z))
+}
+
 /// The corners of the box of half extents 1.
 const CUBE_CORNERS: [Vector<F32x4>; 2] = [
     wide([-1.0, 1.0, -1.0, 1.0], [-1.0, -1.0, 1.0, 1.0], [-1.0, -1.0, -1.0, -1.0]),
@@ -162,7 +168,15 @@ pub(super) struct Small {
 impl Small {
     /// One point: the core of a ball.
     pub fn point(at: Vector, radius: f32) -> Self {
-        let mut small = Self {
+        let mut small = Self::bare(at, radius);
+        small.fill_block();
+        small
+    }
+
+    /// One point, whose block is not filled.
+    #[inline(always)]
+    fn bare(at: Vector, radius: f32) -> Self {
+        Self {
             vertices: [at; 8],
             blocks: [Vector::ZERO; 2],
             faces: [NO_FACE; 6],
@@ -177,9 +191,7 @@ impl Small {
             center: at,
             extent: radius,
             radius,
-        };
-        small.fill_blocks();
-        small
+        }
     }
 
     /// A box: a copy of that of half extents 1 with other corners and offsets.
@@ -237,7 +249,7 @@ impl Small {
             return Self::segment(corners[longest], corners[(longest + 1) % 3], 0.0);
         }
         let normal = area * (1.0 / twice_area);
-        let mut small = Self::point(a, 0.0);
+        let mut small = Self::bare(a, 0.0);
         (small.vertices[1], small.vertices[2]) = (b, c);
         small.vertices[3] = c;
         small.vertex_count = 3;
@@ -254,9 +266,8 @@ impl Small {
         small.face_blocks[0] =
             FaceBlock { normal: both, offset: F32x4::new([offset, -offset, -offset, -offset]) };
         let unit = sides.map(|s| (s * k) * (1.0 / max((s * k).length(), f32::MIN_POSITIVE)));
-        let directions = core::array::from_fn(|i| unit[i.min(2)]);
-        small.fill_edges(&directions, &[[normal; 12], [-normal; 12]]);
-        small.fill_blocks();
+        small.fill_edges(unit, [[normal; 3], [-normal; 3]]);
+        small.fill_block();
         small
     }
 
@@ -270,7 +281,7 @@ impl Small {
         }
         let unit = along * (1.0 / size);
         let unit = unit * (1.0 / unit.length());
-        let mut small = Self::point(a, radius);
+        let mut small = Self::bare(a, radius);
         for v in &mut small.vertices[1..] {
             *v = b;
         }
@@ -282,9 +293,8 @@ impl Small {
         let v = unit.cross(u);
         // cos 120° and sin 120°.
         let spokes = [u, u * -0.5 + v * 0.866_025_4, u * -0.5 - v * 0.866_025_4];
-        let spoke = |i: usize| core::array::from_fn(|k| spokes[(k.min(2) + i) % 3]);
-        small.fill_edges(&[unit; 12], &[spoke(0), spoke(1)]);
-        small.fill_blocks();
+        small.fill_edges([unit; 3], [spokes, [spokes[1], spokes[2], spokes[0]]]);
+        small.fill_block();
         small
     }
 
@@ -293,20 +303,19 @@ impl Small {
         Self::segment(capsule.a, capsule.b, capsule.radius)
     }
 
-    fn fill_blocks(&mut self) {
-        for (block, packed) in self.blocks.iter_mut().zip(pack(&self.vertices)) {
-            *block = packed;
-        }
+    /// Packs the vertices of a polyhedron of up to four. The vertices after the last repeat it.
+    #[inline(always)]
+    fn fill_block(&mut self) {
+        self.blocks[0] = four([self.vertices[0], self.vertices[1], self.vertices[2], self.vertices[3]]);
     }
 
-    fn fill_edges(&mut self, directions: &[Vector; 12], sides: &[[Vector; 12]; 2]) {
-        let last = self.edges.len() - 1;
-        let tails: [Vector; 12] =
-            core::array::from_fn(|i| self.vertices[self.edges[i.min(last)].tail as usize]);
-        let columns = pack(directions).zip(pack(&sides[0])).zip(pack(&sides[1]).zip(pack(&tails)));
-        for (block, ((direction, left), (right, tail))) in self.edge_blocks.iter_mut().zip(columns) {
-            *block = EdgeBlock { direction, left, right, tail };
-        }
+    /// Packs the edges of a polyhedron of three: their directions, and the normals on both sides.
+    #[inline(always)]
+    fn fill_edges(&mut self, directions: [Vector; 3], sides: [[Vector; 3]; 2]) {
+        let tails = [0, 1, 2].map(|i: usize| self.vertices[self.edges[i].tail as usize]);
+        let padded = |[a, b, c]: [Vector; 3]| four([a, b, c, c]);
+        let [left, right] = sides.map(padded);
+        self.edge_blocks[0] = EdgeBlock { direction: padded(directions), left, right, tail: padded(tails) };
     }
 
     /// The view of it.

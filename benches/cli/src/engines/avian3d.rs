@@ -53,6 +53,7 @@ fn collider(shape: &Shape3) -> Collider {
         Shape3::Sphere(r) => Collider::sphere(*r),
         Shape3::Box(x, y, z) => Collider::cuboid(2.0 * x, 2.0 * y, 2.0 * z),
         Shape3::Capsule(h, r) => Collider::capsule(*r, 2.0 * h),
+        Shape3::Cylinder(h, r) => Collider::cylinder(*r, 2.0 * h),
         Shape3::Hull(points) => {
             let points = points.iter().map(|p| Vec3::from(*p)).collect();
             Collider::convex_hull(points).expect("a convex hull")

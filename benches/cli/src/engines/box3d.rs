@@ -59,6 +59,29 @@ fn make_mesh(mesh: &Mesh) -> *mut b3MeshData {
     mesh
 }
 
+/// A prism of 16 sides in place of a cylinder, which Box3D does not have.
+fn prism(half_height: f32, radius: f32) -> Vec<V3> {
+    let corners = (0..16).map(|i| (i as f32 * std::f32::consts::TAU / 16.0).sin_cos());
+    corners
+        .flat_map(|(sin, cos)| [-half_height, half_height].map(|y| [radius * cos, y, radius * sin]))
+        .collect()
+}
+
+/// Adds the convex hull of some points to a body.
+///
+/// # Safety
+/// The body must be alive.
+unsafe fn add_hull(body: b3BodyId, def: &b3ShapeDef, points: &[V3]) {
+    let points: Vec<b3Vec3> = points.iter().map(|p| v(*p)).collect();
+    // SAFETY: the body is alive by the contract. Box3D copies the points into the hull, and the hull into the shape.
+    unsafe {
+        let hull = b3CreateHull(points.as_ptr(), points.len() as _, points.len() as _);
+        assert!(!hull.is_null(), "Box3D takes the hull");
+        b3CreateHullShape(body, def, hull);
+        b3DestroyHull(hull);
+    }
+}
+
 impl World {
     fn add_shape(&mut self, body: b3BodyId, def: &b3ShapeDef, part: &Part3) {
         let place = b3Transform { p: v(part.pos), q: q(part.turn) };
@@ -80,11 +103,11 @@ impl World {
                 }
                 Shape3::Hull(points) => {
                     assert!(part.is_centred(), "a part's hull has its points in the body's frame");
-                    let points: Vec<b3Vec3> = points.iter().map(|p| v(*p)).collect();
-                    let hull = b3CreateHull(points.as_ptr(), points.len() as _, points.len() as _);
-                    assert!(!hull.is_null(), "Box3D takes the hull");
-                    b3CreateHullShape(body, def, hull);
-                    b3DestroyHull(hull);
+                    add_hull(body, def, points);
+                }
+                Shape3::Cylinder(h, r) => {
+                    assert!(part.is_centred(), "no scene has a cylinder as a part");
+                    add_hull(body, def, &prism(*h, *r));
                 }
                 Shape3::Mesh(mesh) => {
                     let mesh = make_mesh(mesh);

@@ -39,6 +39,7 @@ fn shape(shape: &Shape3) -> ColliderBuilder {
         Shape3::Sphere(r) => ColliderBuilder::ball(*r),
         Shape3::Box(x, y, z) => ColliderBuilder::cuboid(*x, *y, *z),
         Shape3::Capsule(h, r) => ColliderBuilder::capsule_y(*h, *r),
+        Shape3::Cylinder(h, r) => ColliderBuilder::cylinder(*h, *r),
         Shape3::Hull(points) => {
             let points: Vec<Vector> = points.iter().map(|p| v(*p)).collect();
             ColliderBuilder::convex_hull(&points).expect("a convex hull")

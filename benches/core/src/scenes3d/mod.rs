@@ -13,6 +13,7 @@ mod convex_pile;
 mod joint_grid;
 mod junkyard;
 mod mesh_terrain;
+mod pile;
 mod pyramids;
 mod queries;
 mod still;
@@ -24,6 +25,8 @@ impl Scenes for D3 {
         speed("many_pyramids", pyramids::many),
         speed("box_pile", box_pile::scene),
         speed("mesh_terrain", mesh_terrain::scene),
+        speed("pile", pile::mixed),
+        speed("cylinders", pile::cylinders),
         speed("joint_grid", joint_grid::scene),
         speed("convex_pile", convex_pile::scene),
         speed("junkyard", junkyard::scene),

@@ -118,13 +118,13 @@ impl Polytope {
 
     /// The face nearest to the origin; of faces that the origin is outside of, the farthest.
     fn nearest(&self) -> Face {
-        let mut nearest = self.faces[0];
-        for face in &self.faces[1..self.face_count] {
-            if face.offset < nearest.offset {
-                nearest = *face;
+        let mut nearest = 0;
+        for (i, face) in self.faces[..self.face_count].iter().enumerate() {
+            if face.offset < self.faces[nearest].offset {
+                nearest = i;
             }
         }
-        nearest
+        self.faces[nearest]
     }
 
     /// Adds a corner: the faces that it sees give way to a fan from it to their outline. Returns whether there was room, and
@@ -147,13 +147,13 @@ impl Polytope {
                 }
             }
         };
-        let faces = self.faces;
-        for face in &faces[..self.face_count] {
+        for i in 0..self.face_count {
+            let face = self.faces[i];
             if face.normal.dot(corner) - face.offset > margin {
                 let [i, j, k] = face.corners;
                 [[i, j], [j, k], [k, i]].into_iter().for_each(&mut put);
             } else {
-                self.faces[kept] = *face;
+                self.faces[kept] = face;
                 kept += 1;
             }
         }

@@ -474,6 +474,20 @@ impl<'a, A: Party> Pair<'a, A> {
             })
     }
 
+    /// Whether the point of one core that is farthest along an axis lies within the other core. Then they overlap, and need
+    /// not be looked at for a distance.
+    fn surely_overlaps(&self, along: &Found) -> bool {
+        if !(along.separation < 0.0) {
+            return false;
+        }
+        let of_b = self.b.support(-self.b_in_a.direction_in(along.normal));
+        let is_in_b = || {
+            let of_a = self.a.farthest_point(along.normal).0;
+            self.b.nearest(self.b_in_a.direction_in(of_a - self.b_in_a.position)).distance < 0.0
+        };
+        self.a.depth_of(self.b_in_a.point(of_b)) > 0.0 || is_in_b()
+    }
+
     /// The axis that separates the cores best, and the nearest points. Where cores overlap, there may be several that are the
     /// best near themselves.
     fn refine_all(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
@@ -490,7 +504,8 @@ impl<'a, A: Party> Pair<'a, A> {
     /// The axis that separates the cores best, near a given one, and the nearest points.
     fn refine(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
         let apart = APART * self.smaller;
-        if let Some(c) = gjk::closest(self.a, self.b, &self.b_in_a)
+        if !self.surely_overlaps(start)
+            && let Some(c) = gjk::closest_along(self.a, self.b, &self.b_in_a, start.normal)
             && c.distance > gjk::resolution(self.larger, self.smaller)
         {
             let found = Found { axis: Axis::Line, normal: c.normal, separation: self.separation(c.normal) };
@@ -503,7 +518,7 @@ impl<'a, A: Party> Pair<'a, A> {
             let push = max(apart - separation, 0.0);
             let mut frame = self.b_in_a;
             frame.position += normal * push;
-            let Some(closest) = gjk::closest(self.a, self.b, &frame) else { break };
+            let Some(closest) = gjk::closest_along(self.a, self.b, &frame, normal) else { break };
             let found = self.separation(closest.normal);
             let gain = found - best.0.separation;
             // Moved along another direction, the nearest points are not across from each other.
