@@ -2,28 +2,9 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::pair::{Pair, SoftLanes};
+use super::resistance::ROLL_FRICTION;
 use super::{BodyRow, InvMass, RowView, SubstepParams, Twist, resist_rolling};
 use crate::math::{Angular, DIM, Ids, InvInertia, Lane, Tangent, TangentFrame, TangentMass, Vector, max};
-
-// Levers of resistance times the normal force and the coefficient of friction are the greatest torques.
-
-/// Lever of torsional friction of a contact in one point, as a share of both radii. Less lets balls spin on the spot for
-/// longer and keeps piles awake.
-pub(super) const SPIN_LEVER: f32 = 0.02;
-
-/// The same for a corner, as a share of its distance from the nearer centre of mass of a body that can turn.
-pub(super) const CORNER_SPIN_LEVER: f32 = 0.002;
-
-/// Lever of rolling resistance, as a share of both radii: at friction 0.6 a ball rolls as if up a slope of 0.6 %. Less
-/// keeps round bodies rocking in a pile, more holds them on steeper slopes.
-const ROLL_LEVER: f32 = 0.01;
-
-/// The same for corners and edges, as a share of their distance from the nearer centre of mass of a body that can turn.
-const CORNER_ROLL_LEVER: f32 = 0.002;
-
-/// Rolling resistance takes friction coefficients for at most this. Apps set high ones against sliding, and balls with
-/// them still have to roll down a slope.
-const ROLL_FRICTION: f32 = 1.0;
 
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,6 +40,8 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
     pub offset: Vector<N>,
     /// Sum of both bodies' radii: the distances of their surfaces from their cores, in metres.
     pub radius: N,
+    /// Lever of rolling resistance, in metres.
+    pub roll_lever: N,
     /// The mixed friction coefficient.
     pub friction: N,
     /// Maximum speed at which overlap is pushed out, m/s.
@@ -125,6 +108,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Default for ContactRow<N, M, P> {
             normal: Vector::ZERO,
             offset: Vector::ZERO,
             radius: N::ZERO,
+            roll_lever: N::ZERO,
             friction: N::ZERO,
             push_speed: N::ZERO,
             surface_velocity: Tangent::ZERO,
@@ -150,6 +134,24 @@ impl<N: Lane, const P: usize> Default for SplitImpulseRow<N, P> {
 }
 
 impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
+    /// Whether the arms of the normal turn with the bodies within the step. On the flat side of an ellipse, whose core is far
+    /// above its centre of mass, the contact runs ahead of the body, and an arm that lags behind feeds its rocking. In 3D
+    /// only rims have such a side, and their points are moved ahead (`lead_rims`).
+    const TURNS_ARMS: bool = P == 1 && DIM == 2;
+
+    /// Arms turned with the bodies.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread writes the bodies of the row.
+    #[inline(always)]
+    unsafe fn turned(&self, rows: &RowView<BodyRow>, [ra, rb]: [Vector<N>; 2]) -> [Vector<N>; 2] {
+        let [a, b] = &self.ids;
+        // SAFETY: by the contract.
+        let [(_, qa), (_, qb)] =
+            unsafe { [BodyRow::gather_delta::<N>(rows, a), BodyRow::gather_delta::<N>(rows, b)] };
+        [qa.rotate(ra), qb.rotate(rb)]
+    }
+
     /// Applies `impulse` at the arms whose moments with it are `moments`.
     #[inline(always)]
     fn push(&self, pair: &mut Pair<N>, impulse: Vector<N>, moments: [Angular<N>; 2]) {
@@ -173,9 +175,14 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let mut moments = [ra.cross(impulse), rb.cross(impulse)];
         for point in &self.points {
             let p = self.normal * point.impulse;
+            let mut arms = [point.anchor, point.anchor - self.offset];
+            if Self::TURNS_ARMS {
+                // SAFETY: by the contract.
+                arms = unsafe { self.turned(rows, arms) };
+            }
             impulse += p;
-            moments[0] += point.anchor.cross(p);
-            moments[1] += (point.anchor - self.offset).cross(p);
+            moments[0] += arms[0].cross(p);
+            moments[1] += arms[1].cross(p);
         }
         self.push(&mut pair, impulse, moments);
         self.twist.warm_start(self.normal, self.inv_inertia, &mut pair.w);
@@ -312,6 +319,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             let (ma, mb) = (ra.cross(n), rb.cross(n));
             let moved = shift + qb.shift_along(rb, mb, n) - qa.shift_along(ra, ma, n);
             let s = point.separation + moved;
+            let (ma, mb) =
+                if Self::TURNS_ARMS { (qa.rotate(ra).cross(n), qb.rotate(rb).cross(n)) } else { (ma, mb) };
             let apart = N::ZERO.lt(s);
             let (bias, mass_scale, impulse_scale) = match soft {
                 Some(k) => (
@@ -388,10 +397,9 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         // Contacts with more points bear on a face, which does not roll.
         if P < DIM && params.roll_speed > 0.0 {
             let reach = self.rolling_arm();
-            let lever = (self.radius * N::splat(ROLL_LEVER)).max(reach * N::splat(CORNER_ROLL_LEVER));
             let scale = reach * N::splat(1.0 / max(params.roll_speed, 1.0e-9));
             let friction = self.friction.min(N::splat(ROLL_FRICTION));
-            resist_rolling(n, scale, friction * sum * lever, self.inv_inertia, &mut pair.w);
+            resist_rolling(n, scale, friction * sum * self.roll_lever, self.inv_inertia, &mut pair.w);
         }
     }
 
