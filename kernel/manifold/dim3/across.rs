@@ -53,3 +53,44 @@ pub(super) fn far_end(
     let (first, last) = (end(low), end(high));
     Some(if first.1 > last.1 { first } else { last })
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::manifold::{FeatureCache, LocalManifold, collide};
+    use crate::math::{Pose, Rot, Vector};
+    use crate::shape::{Cuboid, Hull, Shape};
+    use std::sync::Arc;
+
+    /// The distance of a point from the nearest face of a rod, of those along it; 0 on the surface.
+    fn above(half: Vector, p: Vector) -> f32 {
+        (p.x.abs() - half.x).max(p.y.abs() - half.y)
+    }
+
+    /// One rod along z on another along x, which it overlaps by a millimetre, inclined by 0.1 and rolled by 0.02: it lies on
+    /// an edge of that with its width of 6 cm, not only with one of its own edges.
+    #[test]
+    fn issue_a_rod_across_an_edge_stood_on_one_of_its_own_edges() {
+        let half = Vector { x: 0.03, y: 0.03, z: 0.5 };
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
+            Vector { x: sign(1), y: sign(2), z: sign(4) }.scale(half)
+        };
+        let corners: Vec<_> = (0..8).map(corner).collect();
+        let hull = Shape::Hull(Arc::new(Hull::convex_hull_of(&corners).expect("a box is solid")));
+        let rolled = Rot::from_axis_angle(Vector::Z, 0.02);
+        let inclined = Rot::from_axis_angle(Vector::X, 0.1);
+        let across = Rot::from_axis_angle(Vector::Y, core::f32::consts::FRAC_PI_2);
+        let pose = Pose::new(Vector { x: 0.0, y: 0.062, z: 0.0 }, across.mul(inclined).mul(rolled));
+        for rod in [Shape::Cuboid(Cuboid { half }), hull] {
+            let mut out = LocalManifold::default();
+            collide(&rod, &rod, &pose, 0.02, &mut FeatureCache::NONE.clone(), &mut out);
+            assert!(out.count > 1, "{:?}", out.points());
+            for p in out.points() {
+                let on_a = p.point - out.normal * (0.5 * p.separation);
+                let on_b = pose.inverse_transform(p.point + out.normal * (0.5 * p.separation));
+                let off = above(half, on_a).abs().max(above(half, on_b).abs());
+                assert!(off < 1.0e-4, "{p:?} is {off} m off a surface");
+            }
+        }
+    }
+}
