@@ -134,24 +134,6 @@ impl<N: Lane, const P: usize> Default for SplitImpulseRow<N, P> {
 }
 
 impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
-    /// Whether the arms of the normal turn with the bodies within the step. On the flat side of an ellipse, whose core is far
-    /// above its centre of mass, the contact runs ahead of the body, and an arm that lags behind feeds its rocking. In 3D
-    /// only rims have such a side, and their points are moved ahead (`lead_rims`).
-    const TURNS_ARMS: bool = P == 1 && DIM == 2;
-
-    /// Arms turned with the bodies.
-    ///
-    /// # Safety
-    /// Until it returns, no other thread writes the bodies of the row.
-    #[inline(always)]
-    unsafe fn turned(&self, rows: &RowView<BodyRow>, [ra, rb]: [Vector<N>; 2]) -> [Vector<N>; 2] {
-        let [a, b] = &self.ids;
-        // SAFETY: by the contract.
-        let [(_, qa), (_, qb)] =
-            unsafe { [BodyRow::gather_delta::<N>(rows, a), BodyRow::gather_delta::<N>(rows, b)] };
-        [qa.rotate(ra), qb.rotate(rb)]
-    }
-
     /// Applies `impulse` at the arms whose moments with it are `moments`.
     #[inline(always)]
     fn push(&self, pair: &mut Pair<N>, impulse: Vector<N>, moments: [Angular<N>; 2]) {
@@ -175,14 +157,9 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let mut moments = [ra.cross(impulse), rb.cross(impulse)];
         for point in &self.points {
             let p = self.normal * point.impulse;
-            let mut arms = [point.anchor, point.anchor - self.offset];
-            if Self::TURNS_ARMS {
-                // SAFETY: by the contract.
-                arms = unsafe { self.turned(rows, arms) };
-            }
             impulse += p;
-            moments[0] += arms[0].cross(p);
-            moments[1] += arms[1].cross(p);
+            moments[0] += point.anchor.cross(p);
+            moments[1] += (point.anchor - self.offset).cross(p);
         }
         self.push(&mut pair, impulse, moments);
         self.twist.warm_start(self.normal, self.inv_inertia, &mut pair.w);
@@ -319,8 +296,6 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             let (ma, mb) = (ra.cross(n), rb.cross(n));
             let moved = shift + qb.shift_along(rb, mb, n) - qa.shift_along(ra, ma, n);
             let s = point.separation + moved;
-            let (ma, mb) =
-                if Self::TURNS_ARMS { (qa.rotate(ra).cross(n), qb.rotate(rb).cross(n)) } else { (ma, mb) };
             let apart = N::ZERO.lt(s);
             let (bias, mass_scale, impulse_scale) = match soft {
                 Some(k) => (

@@ -39,7 +39,7 @@ pub const BALL_INERTIA: f32 = 0.5;
 /// Piles that fall asleep: width in bodies, number of bodies, number of seeds, seconds.
 pub const PILES: [(usize, usize, u64, usize); 2] = [(10, 100, 4, 8), (21, 441, 2, 12)];
 
-/// Shapes that are hard to bring to rest, about a metre wide: a flat ellipse, a coin, a needle, a triangle, a round box, and an
+/// Shapes that are hard to bring to rest, about a metre wide: a coin, a needle, a triangle, a round box, and an
 /// octagon.
 pub fn restless() -> Vec<(&'static str, Shape)> {
     let hull = |points: &[Vector], radius: f32| {
@@ -51,7 +51,6 @@ pub fn restless() -> Vec<(&'static str, Shape)> {
         [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(x, y)| sized(x, y, 0.0) * 0.4).into();
     let triangle = [sized(-0.5, -0.4, 0.0), sized(0.5, -0.4, 0.0), sized(0.0, 0.6, 0.0)];
     vec![
-        ("flat ellipse", Shape::Curved(Curved { half: sized(0.5, 0.05, 0.0) })),
         ("coin", Shape::Cuboid(Cuboid { half: sized(0.5, 0.05, 0.0) })),
         ("needle", Shape::Cuboid(Cuboid { half: sized(0.5, 0.03, 0.0) })),
         ("triangle", hull(&triangle, 0.0)),

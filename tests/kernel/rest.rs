@@ -84,13 +84,15 @@ fn late(shapes: &[Shape], wide: usize, count: usize, seeds: u64, limit: usize) -
     (0..seeds).filter_map(late).collect()
 }
 
-/// Of the large piles of a kind, one may take longer: now and then a body swings for some seconds between others.
+/// Of the large piles of a kind, and of mixed ones, one may take longer: now and then a body swings or shakes for some
+/// seconds between others.
 #[test]
 fn piles_of_each_shape_fall_asleep() {
     for (name, shapes) in shapes() {
         for (wide, count, seeds, limit) in PILES {
             let late = late(&shapes, wide, count, seeds, limit);
-            assert!(late.len() <= count / 400, "{count} of {name}: {late:?}");
+            let allowed = usize::from(count > 100 || name == "mixed");
+            assert!(late.len() <= allowed, "{count} of {name}: {late:?}");
         }
     }
 }
