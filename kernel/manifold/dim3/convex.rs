@@ -12,6 +12,8 @@ use super::view::{MatrixPose, View, extents};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector, clamp, max, min};
 
+/// The number of faces of a triangle, which no solid has.
+const TRIANGLE_FACES: usize = 2;
 /// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of a face of A.
 pub(super) const FACE_A: u8 = 1;
 /// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of a face of B.
@@ -327,6 +329,10 @@ impl<'a> Pair<'a> {
 
     /// Adds the other ends of the lines along which the edges pass over each other's faces, where these are near.
     fn push_far_ends(&self, axis: &EdgeAxis, [ends_a, ends_b]: [[Vector; 2]; 2], out: &mut LocalManifold) {
+        // The edges of a triangle may be inside a surface, which looks at each facet's points.
+        if self.a.faces.len() == TRIANGLE_FACES || self.b.faces.len() == TRIANGLE_FACES {
+            return;
+        }
         let normal = axis.normal;
         let mut push = |on_a: Vector, on_b: Vector, gap: f32, feature: u32| {
             if gap > axis.separation && gap - self.radius <= self.prediction {
