@@ -6,6 +6,7 @@ use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint};
 use super::sweep::Meeting;
 use crate::manifold::{self, LocalManifold, Look};
 use crate::math::{Rot, Vector, min};
+use crate::shape::Shape;
 use crate::table::BodyPose;
 
 /// A manifold continues an old one if the cosine between their normals is above this: 25°. More loses impulses of bodies
@@ -13,19 +14,26 @@ use crate::table::BodyPose;
 const SAME_FACE: f32 = 0.9;
 
 /// Computes the manifold of two native shapes where they are now, with points up to `prediction` apart, margins not
-/// subtracted.
+/// subtracted. Points on rims are where they will be in the middle of the step; returns how far the surfaces may move until
+/// these lag behind.
 #[inline(always)]
 pub(super) fn collide<S>(
     input: &NarrowPhaseInput<S>,
     contact: &mut Contact,
     prediction: f32,
     local: &mut LocalManifold,
-) {
+) -> f32 {
     let [a, b] = contact.colliders;
     let shapes = [&input.colliders[a].def.shape, &input.colliders[b].def.shape];
     let [pose_a, pose_b] = [&input.colliders.poses[a as usize], &input.colliders.poses[b as usize]];
     let relative = pose_a.relative(pose_b);
     manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, local);
+    let is_curved = |id: u32| matches!(input.colliders[id].def.shape, Shape::Curved(_));
+    if local.count == 0 || !(is_curved(a) || is_curved(b)) {
+        return f32::INFINITY;
+    }
+    let spin = input.velocity(contact, 1).angular - input.velocity(contact, 0).angular;
+    manifold::lead_rims(shapes, pose_a.rotation, &relative, spin * (0.5 * input.dt), local)
 }
 
 /// Adds the manifolds of two shapes of which one is composite, margins not subtracted. The motion is that of B against A in

@@ -385,10 +385,11 @@ fn search_native<S>(
     let mut local = LocalManifold::default();
     let mut meeting = None;
     let mut looked_up_to = prediction;
+    let mut until_lag = f32::INFINITY;
     let with_margin = prediction + margin;
     // Negated, so that a NaN is not taken for a gap.
     if !(gap > with_margin) || !(gap - margin > input.farthest(contact, prediction)) {
-        manifolds::collide(input, contact, with_margin, &mut local);
+        until_lag = manifolds::collide(input, contact, with_margin, &mut local);
         if local.count == 0 {
             // Shapes that turn are often much farther apart than their boxes.
             gap = max(gap, local.gap);
@@ -408,7 +409,7 @@ fn search_native<S>(
     }
     flags::set_platform(input, contact);
     found.push(local);
-    Search { prediction, meeting }
+    Search { prediction: min(prediction, until_lag), meeting }
 }
 
 /// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is not recycled,

@@ -27,7 +27,8 @@ use core::mem::MaybeUninit;
 const RECYCLE_SHARE: f32 = 0.25;
 
 /// Bodies that touch with round cores may move at most this share of both radii. A frozen normal lags behind a rolling body,
-/// and its hysteresis keeps capsules rocking in a pile.
+/// and its hysteresis keeps capsules rocking in a pile. On the flat side of an ellipse, whose radius of curvature exceeds its
+/// extent, the contact runs ahead of the body by their ratio, and the share is of the extent divided by that.
 const ROUND_SHARE: f32 = 0.005;
 
 /// The least cosine of a body's turn since the manifold was computed: 10°. Beyond it the small-angle bounds below fail.
@@ -322,7 +323,12 @@ impl<N: Lane> RecycleRow<N> {
         let errors = N::splat(settings.recycle_distance).min(N::splat(RECYCLE_SHARE) * smaller(extents));
         let radius = self.radii[0] + self.radii[1];
         let is_round = N::and(N::ZERO.lt(count), N::ZERO.lt(radius));
-        let errors = N::select(is_round, errors.min(radius * N::splat(ROUND_SHARE)), errors);
+        let mut curved = radius;
+        for (extent, radius) in extents.into_iter().zip(self.radii) {
+            let is_flat = N::and(extent.lt(radius), N::ZERO.lt(extent));
+            curved = N::select(is_flat, curved.min(extent * extent / radius), curved);
+        }
+        let errors = N::select(is_round, errors.min(curved * N::splat(ROUND_SHARE)), errors);
         // A manifold that is not full may lack points that were too far apart. None of these may close in this step.
         let is_full = count.eq(N::splat(MAX_POINTS as f32));
         let with_points = N::select(is_full, errors, errors.min(prediction - closing));

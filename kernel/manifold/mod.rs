@@ -15,7 +15,7 @@ mod tests_pairs;
 
 pub use cache::FeatureCache;
 pub use composite::{CompositeBuffers, Look, collide_composite, collide_each_part};
-pub use dim::collide;
+pub use dim::{collide, lead_rims};
 
 use crate::math::{MAX_POINTS, Vector, min};
 

@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::batch::{Filling, Item, Pass, Passes};
-use super::row::{CORNER_SPIN_LEVER, SPIN_LEVER};
+use super::resistance::levers;
 use super::split::DeepCounts;
 use super::{BodyRow, ContactRow, InvMass, MassRow, RestitutionRow, RowView, SplitImpulseRow, SubstepParams};
 use crate::contact::{Contact, ContactFlags, Manifold};
@@ -282,12 +282,10 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             let there = N::select(N::ZERO.lt(self.weights[i]), N::ONE, N::ZERO);
             anchors[i] += (row.points[i].anchor - core) * there;
         }
+        let [spin_lever, roll_lever] = levers(self.radii, row.rolling_arm());
+        row.roll_lever = roll_lever;
         // More points have levers of their own.
-        let patch = if P == 1 {
-            (row.radius * N::splat(SPIN_LEVER)).max(row.rolling_arm() * N::splat(CORNER_SPIN_LEVER))
-        } else {
-            N::ZERO
-        };
+        let patch = if P == 1 { spin_lever } else { N::ZERO };
         row.twist.prepare(n, core, anchors, patch, row.inv_inertia);
     }
 }

@@ -88,7 +88,8 @@ impl Finish<'_> {
         };
         let rotation = turn.mul(before).renormalized();
         let (speed, displacement_squared) = (v.length(), displacement.length_squared());
-        let angle_squared = turn.small_turn().length_squared();
+        let turn = turn.small_turn();
+        let angle_squared = turn.length_squared();
         for (i, id) in ids.iter().enumerate() {
             let (row, id) = (first + i as u32, *id as usize);
             // SAFETY: as above.
@@ -113,7 +114,10 @@ impl Finish<'_> {
                 // SAFETY: as above.
                 *unsafe { self.frames.one(id) } = pose.frame(body.local_center);
             }
-            let rests = body.rest_speed.admits(displacement_squared.get(i), angle_squared.get(i), dt);
+            let mut rests = body.rest_speed.admits(displacement_squared.get(i), angle_squared.get(i), dt);
+            if row >= self.first_dynamic {
+                rests |= body.rests_on_average(Vector::get(&displacement, i), turn.get(i), dt);
+            }
             body.sleep_timer = if rests { body.sleep_timer + dt } else { 0.0 };
         }
     }

@@ -34,6 +34,7 @@ mod inv_mass;
 mod layer;
 mod pair;
 mod plan;
+mod resistance;
 mod row;
 mod shares;
 mod softness;

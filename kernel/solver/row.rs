@@ -2,28 +2,9 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::pair::{Pair, SoftLanes};
+use super::resistance::ROLL_FRICTION;
 use super::{BodyRow, InvMass, RowView, SubstepParams, Twist, resist_rolling};
 use crate::math::{Angular, DIM, Ids, InvInertia, Lane, Tangent, TangentFrame, TangentMass, Vector, max};
-
-// Levers of resistance times the normal force and the coefficient of friction are the greatest torques.
-
-/// Lever of torsional friction of a contact in one point, as a share of both radii. Less lets balls spin on the spot for
-/// longer and keeps piles awake.
-pub(super) const SPIN_LEVER: f32 = 0.02;
-
-/// The same for a corner, as a share of its distance from the nearer centre of mass of a body that can turn.
-pub(super) const CORNER_SPIN_LEVER: f32 = 0.002;
-
-/// Lever of rolling resistance, as a share of both radii: at friction 0.6 a ball rolls as if up a slope of 0.6 %. Less
-/// keeps round bodies rocking in a pile, more holds them on steeper slopes.
-const ROLL_LEVER: f32 = 0.01;
-
-/// The same for corners and edges, as a share of their distance from the nearer centre of mass of a body that can turn.
-const CORNER_ROLL_LEVER: f32 = 0.002;
-
-/// Rolling resistance takes friction coefficients for at most this. Apps set high ones against sliding, and balls with
-/// them still have to roll down a slope.
-const ROLL_FRICTION: f32 = 1.0;
 
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,6 +40,8 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
     pub offset: Vector<N>,
     /// Sum of both bodies' radii: the distances of their surfaces from their cores, in metres.
     pub radius: N,
+    /// Lever of rolling resistance, in metres.
+    pub roll_lever: N,
     /// The mixed friction coefficient.
     pub friction: N,
     /// Maximum speed at which overlap is pushed out, m/s.
@@ -125,6 +108,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Default for ContactRow<N, M, P> {
             normal: Vector::ZERO,
             offset: Vector::ZERO,
             radius: N::ZERO,
+            roll_lever: N::ZERO,
             friction: N::ZERO,
             push_speed: N::ZERO,
             surface_velocity: Tangent::ZERO,
@@ -388,10 +372,9 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         // Contacts with more points bear on a face, which does not roll.
         if P < DIM && params.roll_speed > 0.0 {
             let reach = self.rolling_arm();
-            let lever = (self.radius * N::splat(ROLL_LEVER)).max(reach * N::splat(CORNER_ROLL_LEVER));
             let scale = reach * N::splat(1.0 / max(params.roll_speed, 1.0e-9));
             let friction = self.friction.min(N::splat(ROLL_FRICTION));
-            resist_rolling(n, scale, friction * sum * lever, self.inv_inertia, &mut pair.w);
+            resist_rolling(n, scale, friction * sum * self.roll_lever, self.inv_inertia, &mut pair.w);
         }
     }
 

@@ -18,7 +18,8 @@ pub enum BodyKind {
 }
 
 /// The speed below which a body counts as at rest. It is measured by displacement and angle over a whole step, not by
-/// velocity, so that a body that jitters in place rests. With a negative value or NaN the body never rests.
+/// velocity, so that a body that jitters in place rests. A dynamic body also rests if the average of the last steps is below
+/// it. With a negative value or NaN the body never rests.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RestSpeed {
     /// Speed of the centre of mass, m/s.
@@ -56,9 +57,26 @@ pub struct Body {
     pub rest_speed: RestSpeed,
     /// Seconds for which the body has been at rest; 0 while it moves.
     pub sleep_timer: f32,
+    /// The velocity of the last steps on average, measured by displacement.
+    pub mean_velocity: Velocity,
 }
 
+/// The time over which velocities are averaged, in seconds. More lets bodies sleep that shake in longer cycles, but also
+/// those that have only begun to roll: at 0.1 s, below 0.4 m/s² with the usual rest speed and time.
+const MEAN_TIME: f32 = 0.1;
+
 impl Body {
+    /// Adds a step of `dt` seconds to the average velocity, and returns whether the body rests by that. So a body that shakes
+    /// in a cycle of a few steps rests, and one that rolls slowly does not. `turn` is the step's rotation vector.
+    #[inline(always)]
+    pub(crate) fn rests_on_average(&mut self, displacement: Vector, turn: Angular, dt: f32) -> bool {
+        let share = 1.0 / (MEAN_TIME + dt);
+        let mean = &mut self.mean_velocity;
+        mean.linear += (displacement - mean.linear * dt) * share;
+        mean.angular += (turn - mean.angular * dt) * share;
+        self.rest_speed.admits(mean.linear.length_squared(), mean.angular.length_squared(), 1.0)
+    }
+
     /// The dominance, with static and kinematic bodies above all dynamic ones.
     pub fn effective_dominance(&self) -> i16 {
         if self.kind == BodyKind::Dynamic { i16::from(self.dominance) } else { i16::from(i8::MAX) + 1 }
@@ -138,6 +156,7 @@ impl BodyTable {
             first_collider: NONE,
             rest_speed: RestSpeed::NEVER,
             sleep_timer: 0.0,
+            mean_velocity: Velocity::default(),
         };
         let mut placed = BodyPose {
             center: pose.transform(local_center),
@@ -320,5 +339,37 @@ impl core::ops::IndexMut<u32> for BodyTable {
     #[inline(always)]
     fn index_mut(&mut self, id: u32) -> &mut Body {
         &mut self.bodies[id as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The longest time of rest in two seconds at the given speeds, in seconds.
+    fn rest_time(speed: impl Fn(f32) -> f32) -> f32 {
+        let mut table = BodyTable::default();
+        let id = table.add(BodyKind::Dynamic, Vector::ZERO, WorldPose::IDENTITY);
+        let body = &mut table[id];
+        body.rest_speed = RestSpeed { linear: 0.15, angular: 0.15 };
+        let dt = 1.0 / 60.0;
+        let (mut time, mut longest) = (0.0f32, 0.0f32);
+        for step in 0..120 {
+            let way = Vector::X * (speed(step as f32 * dt) * dt);
+            let rests = body.rest_speed.admits(way.length_squared(), 0.0, dt);
+            let rests = body.rests_on_average(way, Angular::ZERO, dt) | rests;
+            time = if rests { time + dt } else { 0.0 };
+            longest = longest.max(time);
+        }
+        longest
+    }
+
+    #[test]
+    fn what_shakes_in_place_rests_and_what_moves_on_does_not() {
+        let shaking = |t: f32| if (t * 60.0 + 0.5) as i32 % 2 == 0 { 0.8 } else { -0.8 };
+        assert!(rest_time(shaking) > 1.9, "it is in one place");
+        assert!(rest_time(|_| 0.17) < 0.5, "it moves on");
+        assert!(rest_time(|t| 0.4 * t) < 0.5, "it begins to roll");
+        assert!(rest_time(|t| shaking(t) + 0.3) < 0.5, "it shakes and moves on");
     }
 }

@@ -37,7 +37,27 @@ pub fn spin(z: f32) -> Angular {
 pub const BALL_INERTIA: f32 = 0.5;
 
 /// Piles that fall asleep: width in bodies, number of bodies, number of seeds, seconds.
-pub const PILES: [(usize, usize, u64, usize); 2] = [(10, 100, 6, 12), (21, 441, 2, 12)];
+pub const PILES: [(usize, usize, u64, usize); 2] = [(10, 100, 4, 8), (21, 441, 2, 12)];
+
+/// Shapes that are hard to bring to rest, about a metre wide: a coin, a needle, a triangle, a round box, and an
+/// octagon.
+pub fn restless() -> Vec<(&'static str, Shape)> {
+    let hull = |points: &[Vector], radius: f32| {
+        Shape::Hull(Arc::new(Hull::convex_hull_of(points, radius).expect("they span an area")))
+    };
+    let corner = |i: i32| turned(i as f32 * core::f32::consts::FRAC_PI_4).rotate(Vector::X) * 0.5;
+    let octagon: Vec<_> = (0..8).map(corner).collect();
+    let square: Vec<_> =
+        [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(x, y)| sized(x, y, 0.0) * 0.4).into();
+    let triangle = [sized(-0.5, -0.4, 0.0), sized(0.5, -0.4, 0.0), sized(0.0, 0.6, 0.0)];
+    vec![
+        ("coin", Shape::Cuboid(Cuboid { half: sized(0.5, 0.05, 0.0) })),
+        ("needle", Shape::Cuboid(Cuboid { half: sized(0.5, 0.03, 0.0) })),
+        ("triangle", hull(&triangle, 0.0)),
+        ("round box", hull(&square, 0.1)),
+        ("octagon", hull(&octagon, 0.0)),
+    ]
+}
 
 /// The kinetic energy of rotation.
 pub fn spin_energy(inverse: InvInertia, _rotation: Rot, w: Angular) -> f64 {

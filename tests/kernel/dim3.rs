@@ -41,7 +41,32 @@ pub fn sized(x: f32, y: f32, depth: f32) -> Vector {
 pub const BALL_INERTIA: f32 = 0.4;
 
 /// Piles that fall asleep: width in bodies, number of bodies, number of seeds, seconds.
-pub const PILES: [(usize, usize, u64, usize); 2] = [(5, 100, 6, 8), (7, 441, 2, 12)];
+pub const PILES: [(usize, usize, u64, usize); 2] = [(5, 100, 4, 8), (7, 441, 2, 12)];
+
+/// Shapes that are hard to bring to rest, about a metre wide: a coin, a needle, an icosahedron, and a hull of twelve corners
+/// by chance.
+pub fn restless() -> Vec<(&'static str, Shape)> {
+    let hull =
+        |points: &[Vector]| Shape::Hull(Arc::new(Hull::convex_hull_of(points).expect("they span a solid")));
+    let golden = 0.5 * (1.0 + 5.0f32.sqrt());
+    let signs = [(-1.0, -golden), (-1.0, golden), (1.0, -golden), (1.0, golden)];
+    let icosahedron: Vec<_> = signs
+        .into_iter()
+        .flat_map(|(a, b)| [sized(0.0, a, b), sized(a, b, 0.0), sized(b, 0.0, a)])
+        .map(|corner| corner * (0.5 / corner.length()))
+        .collect();
+    let mut dice = Dice::new(77);
+    let twelve: Vec<_> = (0..12)
+        .map(|_| sized(dice.signed(), dice.signed(), dice.signed()))
+        .map(|corner| corner * (0.5 / corner.length()))
+        .collect();
+    vec![
+        ("coin", Shape::Curved(Curved { lower: 0.5, upper: 0.5, half_height: 0.05 })),
+        ("needle", Shape::Cuboid(Cuboid { half: sized(0.03, 0.5, 0.03) })),
+        ("icosahedron", hull(&icosahedron)),
+        ("hull of 12", hull(&twelve)),
+    ]
+}
 
 /// The kinetic energy of rotation.
 pub fn spin_energy(inverse: InvInertia, rotation: Rot, w: Angular) -> f64 {

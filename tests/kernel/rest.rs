@@ -1,6 +1,6 @@
 //! Piles of every shape come to rest.
 
-use super::dim::{BALL_INERTIA, PILES, bullets, hull_of, sized, spin, upright};
+use super::dim::{BALL_INERTIA, PILES, bullets, hull_of, restless, sized, spin, turned, upright};
 use super::extreme::Dice;
 use super::sim::Sim;
 use crate::kernel;
@@ -9,11 +9,15 @@ use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::table::BodyKind;
 
 fn shapes() -> Vec<(&'static str, Vec<Shape>)> {
-    let mut list: Vec<_> = bullets(1.0).into_iter().map(|(name, shape)| (name, vec![shape])).collect();
-    let all = list.iter().flat_map(|(_, shapes)| shapes.clone()).collect();
-    list.push(("mixed", all));
+    let slab = Shape::Cuboid(Cuboid { half: sized(0.5, 0.1, 0.3) });
+    let kinds = bullets(1.0).into_iter().chain(restless());
+    let mut list: Vec<_> = kinds.map(|(name, shape)| (name, vec![shape])).collect();
     list.push(("pointed hull", vec![hull_of(Vector::ONE * 0.5)]));
-    list.push(("slab", vec![Shape::Cuboid(Cuboid { half: sized(0.5, 0.1, 0.3) })]));
+    list.push(("slab", vec![slab]));
+    // A needle at the bottom, with a hundredth of the mass of others, shakes under their load.
+    let heavy = list.iter().filter(|(name, _)| *name != "needle");
+    let all = heavy.flat_map(|(_, shapes)| shapes.clone()).collect();
+    list.push(("mixed", all));
     list
 }
 
@@ -52,9 +56,12 @@ fn awake(sim: &Sim) -> usize {
     sim.bodies.awake_dynamic().count()
 }
 
+/// Step and substeps, of which a seed takes one.
+const RATES: [(f32, u32); 2] = [(1.0 / 60.0, 4), (1.0 / 64.0, 6)];
+
 /// Whether all fall asleep within `limit` seconds; else the fastest speeds.
 fn rests(sim: &mut Sim, limit: usize) -> Result<(), String> {
-    for _ in 0..limit * 60 {
+    while (sim.dt * sim.steps_done as f32) < limit as f32 {
         sim.step();
         if awake(sim) == 0 {
             return Ok(());
@@ -67,21 +74,66 @@ fn rests(sim: &mut Sim, limit: usize) -> Result<(), String> {
     Err(format!("{} awake after {limit} s, up to {fastest:?} m/s and rad/s", awake(sim)))
 }
 
-/// Of the seeds of a pile, one may take longer: now and then a body jams between others and shakes for some seconds.
+/// The seeds of a pile that does not fall asleep in time.
+fn late(shapes: &[Shape], wide: usize, count: usize, seeds: u64, limit: usize) -> Vec<(u64, String)> {
+    let late = |seed: u64| {
+        let mut sim = pile(shapes, wide, count, seed);
+        (sim.dt, sim.substeps) = RATES[(seed % 2) as usize];
+        rests(&mut sim, limit).err().map(|why| (seed, why))
+    };
+    (0..seeds).filter_map(late).collect()
+}
+
+/// Of the large piles of a kind, and of mixed ones, one may take longer: now and then a body swings or shakes for some
+/// seconds between others.
 #[test]
 fn piles_of_each_shape_fall_asleep() {
     for (name, shapes) in shapes() {
         for (wide, count, seeds, limit) in PILES {
-            // Large piles of cones do not rest yet: the rim of a leaning cone rocks on two others for longer.
-            if name == "cone" && count > 100 {
-                continue;
-            }
-            let late: Vec<_> = (0..seeds)
-                .filter_map(|seed| rests(&mut pile(&shapes, wide, count, seed), limit).err())
-                .collect();
-            assert!(late.len() <= 1, "{count} of {name}: {late:?}");
+            let late = late(&shapes, wide, count, seeds, limit);
+            let allowed = usize::from(count > 100 || name == "mixed");
+            assert!(late.len() <= allowed, "{count} of {name}: {late:?}");
         }
     }
+}
+
+#[test]
+fn four_balls_in_a_box_fall_asleep() {
+    let ball = [Shape::Ball(Ball { radius: 0.5 })];
+    let late = late(&ball, 2, 4, 40, 8);
+    assert!(late.is_empty(), "{late:?}");
+}
+
+#[test]
+fn a_body_that_slides_slowly_stays_awake() {
+    let mut sim = Sim::new();
+    sim.sleeping = true;
+    let ground = Shape::Cuboid(Cuboid { half: Vector::ONE * 50.0 });
+    sim.add_with(BodyKind::Static, ground, Vector::Y * -50.0, Rot::IDENTITY, 0.0, 0.0);
+    let ball = Shape::Ball(Ball { radius: 0.5 });
+    let ball = sim.add_with(BodyKind::Dynamic, ball, Vector::Y * 0.5, Rot::IDENTITY, 0.0, 0.0);
+    sim.bodies.velocities[ball as usize].linear = Vector::X * 0.17;
+    sim.steps(600);
+    assert!(sim.bodies[ball].awake, "it moves at 0.17 m/s");
+    let way = sim.position(ball).to_local().x;
+    assert!((way - 1.7).abs() < 0.01, "{way} m in 10 s");
+}
+
+/// The limit of rolling resistance had grown with the radius of the ground.
+#[test]
+fn issue_a_ball_stuck_to_the_slope_of_a_boulder() {
+    let (boulder, radius, slope) = (50.0, 0.5, 11.0f32.to_radians());
+    let mut sim = Sim::new();
+    let center = Vector::Y * -boulder;
+    sim.add(BodyKind::Static, Shape::Ball(Ball { radius: boulder }), center, Rot::IDENTITY);
+    let start = center + turned(-slope).rotate(Vector::Y) * (boulder + radius);
+    let ball = sim.ball(radius, start);
+    sim.steps(60);
+    let drop = start.y - sim.position(ball).to_local().y;
+    let v = sim.bodies.velocities[ball as usize].linear.length();
+    // m g drop = ½ m v² (1 + I / m r²), but for what is lost while the ball is slower than 0.4 m/s.
+    let expected = (2.0 * 10.0 * drop / (1.0 + BALL_INERTIA)).sqrt();
+    assert!(v > 1.0 && (v - expected).abs() < 0.02 * expected, "{v} m/s of {expected} after 1 s");
 }
 
 #[test]

@@ -70,6 +70,8 @@ pub struct Sim {
     /// Whether fast bodies are swept after the substeps.
     pub sweeps: bool,
     pub locks: Vec<AxisLocks>,
+    /// Number of steps so far.
+    pub steps_done: usize,
     /// Number of stages that several workers shared in the last step.
     pub shared: usize,
     trees: Trees,
@@ -108,6 +110,7 @@ impl Sim {
             builds_rows: true,
             sweeps: true,
             locks: Vec::new(),
+            steps_done: 0,
             shared: 0,
             trees: Trees::default(),
             proxies: Vec::new(),
@@ -300,6 +303,7 @@ impl Sim {
     }
 
     pub fn step(&mut self) {
+        self.steps_done += 1;
         self.recycle_ids();
         self.gather();
         // Threads are woken although that does not pay here.

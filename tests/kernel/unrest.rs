@@ -3,7 +3,7 @@
 use super::dim::{across, sized};
 use super::sim::Sim;
 use crate::kernel;
-use kernel::math::{Rot, Vector};
+use kernel::math::{DIM, Rot, Vector};
 use kernel::shape::{Cuboid, Shape};
 use kernel::table::BodyKind;
 
@@ -47,6 +47,18 @@ fn a_pyramid_of_base_64_stands_for_a_minute() {
         farthest = farthest.max((sim.position(top).to_local() - settled).length());
     }
     assert!(farthest < 0.01, "in 50 s the top moved by up to {farthest} m");
+}
+
+/// Box2D's pyramid moves at 0.042 m/s on average then.
+#[test]
+fn a_large_pyramid_has_calmed_down_after_8_s() {
+    let mut sim = Sim::new();
+    sim.checked = false;
+    large_pyramid(&mut sim, if DIM == 2 { 100 } else { 30 });
+    sim.steps(480);
+    let speeds = sim.bodies.awake_dynamic().map(|id| sim.bodies.velocities[id as usize].linear.length());
+    let mean = speeds.sum::<f32>() / sim.bodies.awake_dynamic().count() as f32;
+    assert!(mean < 0.042, "it moves at {mean} m/s on average");
 }
 
 #[test]

@@ -22,13 +22,18 @@ mod tests_curved;
 pub(super) mod tests_pairs;
 
 use super::{FeatureCache, LocalManifold};
-use crate::math::Pose;
+use crate::math::{Angular, Pose, Rot};
 use crate::shape::Shape;
 pub(super) use facet::{Border, borders, collide_face, face_normal, facing, few_points};
 use polygonal::{Buffer, Polygonal};
 
 /// Centres farther apart than this, in metres, have no contact: their squares would overflow.
 const FARTHEST: f32 = 1.0e15;
+
+/// Does nothing, and returns infinity: shapes in the plane have no rims. `dim3` has the function for those in space.
+pub fn lead_rims(_: [&Shape; 2], _: Rot, _: &Pose, _: Angular, _: &mut LocalManifold) -> f32 {
+    f32::INFINITY
+}
 
 /// The contact of shape `a` and shape `b`, given the pose of `b` in `a`'s frame; the result is in `a`'s
 /// frame with the normal from `a` to `b`.

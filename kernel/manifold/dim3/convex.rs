@@ -3,6 +3,7 @@
 //! The axis of the last step is tested first (after Gregorius, "Robust Contact Creation for Physics Simulations", GDC 2015).
 //! Faces are preferred to edges unless edges are clearly better, so that the choice of points is the same from step to step.
 
+use super::across;
 use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, clip};
 use super::gjk;
 use super::reduce::{Candidate, Candidates, reduce};
@@ -11,6 +12,8 @@ use super::view::{MatrixPose, View, extents};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector, clamp, max, min};
 
+/// The number of faces of a triangle, which no solid has.
+const TRIANGLE_FACES: usize = 2;
 /// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of a face of A.
 pub(super) const FACE_A: u8 = 1;
 /// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of a face of B.
@@ -319,8 +322,33 @@ impl<'a> Pair<'a> {
         (out.count, out.normal) = (0, normal);
         if axis.separation - self.radius <= self.prediction {
             out.push(between, axis.separation - self.radius, feature);
+            self.push_far_ends(axis, [ends_a, ends_b], out);
         }
         inside
+    }
+
+    /// Adds the other ends of the lines along which the edges pass over each other's faces, where these are near.
+    fn push_far_ends(&self, axis: &EdgeAxis, [ends_a, ends_b]: [[Vector; 2]; 2], out: &mut LocalManifold) {
+        // The edges of a triangle may be inside a surface, which looks at each facet's points.
+        if self.a.faces.len() == TRIANGLE_FACES || self.b.faces.len() == TRIANGLE_FACES {
+            return;
+        }
+        let normal = axis.normal;
+        let mut push = |on_a: Vector, on_b: Vector, gap: f32, feature: u32| {
+            if gap > axis.separation && gap - self.radius <= self.prediction {
+                let point = (on_a + normal * self.a.radius + on_b - normal * self.b.radius) * 0.5;
+                out.push(point, gap - self.radius, 7 << 29 | feature);
+            }
+        };
+        if let Some((on_b, gap)) = across::far_end(self.a, &self.a.edges[axis.a], ends_b, normal) {
+            push(on_b - normal * gap, on_b, gap, axis.b as u32 & 0x7fff);
+        }
+        let ends_a = ends_a.map(|end| self.a_in_b.point(end));
+        let out_of_b = self.b_in_a.direction_in(-normal);
+        if let Some((on_a, gap)) = across::far_end(self.b, &self.b.edges[axis.b], ends_a, out_of_b) {
+            let on_a = self.b_in_a.point(on_a);
+            push(on_a, on_a + normal * gap, gap, 1 << 28 | axis.a as u32 & 0x7fff);
+        }
     }
 
     /// Two cores without faces: a triangle without area is a segment or a point.

@@ -312,17 +312,43 @@ impl Pair {
         }
         let (on_a, on_b) = (Vector::from_array(on_a), self.frame.point(Vector::from_array(on_b)));
         // The closest points of the lines on_a + s e_i and on_b + t b_j.
-        let between = on_b - on_a;
-        let (cos, u, v) = (direction.to_array()[i], between.to_array()[i], between.dot(direction));
-        let (s, t) = ((u - cos * v) / square, (cos * u - v) / square);
-        let inside = s.abs() <= ha[i] + EXACT * self.smaller && t.abs() <= hb[j] + EXACT * self.smaller;
-        let on_a = on_a + Vector::AXES[i] * clamp(s, -ha[i], ha[i]);
-        let on_b = on_b + direction * clamp(t, -hb[j], hb[j]);
+        let cross = |on_a: Vector, on_b: Vector| {
+            let between = on_b - on_a;
+            let (cos, u, v) = (direction.to_array()[i], between.to_array()[i], between.dot(direction));
+            let (s, t) = ((u - cos * v) / square, (cos * u - v) / square);
+            let beyond = max(s.abs() - ha[i], t.abs() - hb[j]);
+            let on_a = on_a + Vector::AXES[i] * clamp(s, -ha[i], ha[i]);
+            (on_a, on_b + direction * clamp(t, -hb[j], hb[j]), beyond)
+        };
+        let (first_a, first_b, beyond) = cross(on_a, on_b);
         (out.count, out.normal) = (0, normal);
         let feature = 1 << 16 | ((i * 3 + j) as u32) << 8 | name;
-        out.push((on_a + on_b) * 0.5, separation, feature);
-        inside
+        out.push((first_a + first_b) * 0.5, separation, feature);
+        let (next_a, next_b) = (next_edge(&n, &ha, i), next_edge(&m, &hb, j));
+        let from_a = Vector::AXES[next_a.0] * next_a.1;
+        let from_b = self.frame.axes[next_b.0] * next_b.1;
+        for (a, b) in [(1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+            let separation = separation + a * next_a.2 + b * next_b.2;
+            if separation > self.prediction {
+                continue;
+            }
+            let (on_a, on_b, beyond) = cross(on_a + from_a * a, on_b + from_b * b);
+            if beyond <= 0.0 {
+                let flips = ((a as u32) << next_a.0) | ((b as u32) << (3 + next_b.0));
+                out.push((on_a + on_b) * 0.5, separation, feature ^ flips);
+            }
+        }
+        beyond <= EXACT * self.smaller
     }
+}
+
+/// The next edge of a box along axis `edge`, on the face that is most across `normal`: the axis along which it is away, how
+/// far, and how much farther along the normal.
+fn next_edge(normal: &[f32; 3], half: &[f32; 3], edge: usize) -> (usize, f32, f32) {
+    let (k, l) = (NEXT[edge], NEXT[NEXT[edge]]);
+    let rise = |k: usize| 2.0 * half[k] * normal[k].abs();
+    let k = if rise(k) < rise(l) { k } else { l };
+    (k, if normal[k] < 0.0 { 2.0 } else { -2.0 } * half[k], rise(k))
 }
 
 /// The incident face: a parallelogram, in coordinates across the reference face and over it.

@@ -3,6 +3,7 @@
 //! Balls and capsules have closed forms where they exist, two boxes have a function of their own, and all other pairs of
 //! polyhedra (with radii) share [`convex`]. What is round about an axis is in [`curved`].
 
+mod across;
 mod clip;
 mod convex;
 mod cuboids;
@@ -26,6 +27,7 @@ mod view;
 use super::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector};
 use crate::shape::{Capsule, Curved, Segment, Shape};
+pub use curved::lead_rims;
 pub(super) use facet::{Border, borders, collide_face, face_normal, facing, few_points};
 use view::{Small, View};
 

@@ -8,6 +8,7 @@
 mod deep;
 mod party;
 mod patch;
+mod rim;
 #[cfg(test)]
 mod tests;
 
@@ -20,6 +21,7 @@ use crate::math::{Pose, Vector, max, min};
 use crate::shape::Curved;
 use party::Party;
 use patch::{Phase, Region};
+pub use rim::lead_rims;
 
 /// [`FeatureCache::kind`] of a plane of A; `a` is the plane, `b` the phase of its circles.
 const PLANE_A: u8 = 1;

@@ -10,7 +10,7 @@ use crate::shape::Curved;
 /// A line is across a normal if the cosine between them is smaller.
 const ACROSS: f32 = 0.02;
 /// A frustum rolls on its side or edge if the sine between its axis and the normal is larger, else it stands.
-const ROLLING: f32 = 0.3;
+pub(super) const ROLLING: f32 = 0.3;
 
 /// The first shape of a pair, in its own frame.
 pub(super) trait Party: Core {
@@ -132,7 +132,7 @@ fn is_across(ends: &[Vector; 2], direction: Vector) -> bool {
 }
 
 /// The part of a direction across the axis, and its unit vector.
-fn across(direction: Vector) -> (f32, Vector) {
+pub(super) fn across(direction: Vector) -> (f32, Vector) {
     let length = (direction.x * direction.x + direction.z * direction.z).sqrt();
     if length > 1.0e-15 {
         (length, Vector { x: direction.x / length, y: 0.0, z: direction.z / length })

@@ -1,0 +1,95 @@
+//! Where the rim of a rocking disc will touch.
+//!
+//! A disc that leans by a small angle α stands on one point of its rim, which runs along the rim much faster than the disc
+//! rocks: by 1/α times the angle. Solver rows keep the arms of a contact for a step, and an arm that lags behind feeds the
+//! rocking: a heap of coins rocked for ever. So the point is placed where it will be in the middle of the step.
+
+use super::party::{ROLLING, across};
+use crate::manifold::LocalManifold;
+use crate::math::{Angular, Pose, Rot, Vector, min};
+use crate::shape::{Curved, Shape};
+
+/// A point counts as the lowest one of a rim if it is within this share of the radius.
+const AT_RIM: f32 = 0.05;
+
+/// The lowest point of a rim may lag by this share of the radius before a contact is computed anew.
+const LAG: f32 = 0.02;
+
+/// A disc that leans less than this, as a sine, has no lowest point.
+const LEVEL: f32 = 1.0e-4;
+
+/// Moves points on the lowest place of a rim to where that will be once B has turned by `turn` against A, a rotation vector
+/// in world axes. `out` is the contact of the shapes, `rotation_a` that of A in the world, `pose_b_in_a` where B is in A's
+/// frame.
+///
+/// Returns how far the surfaces may move against each other, in metres, until the points lag behind; infinity if there is no
+/// such point.
+pub fn lead_rims(
+    shapes: [&Shape; 2],
+    rotation_a: Rot,
+    pose_b_in_a: &Pose,
+    turn: Angular,
+    out: &mut LocalManifold,
+) -> f32 {
+    let turn = rotation_a.inverse_rotate(turn);
+    let mut allowed = f32::INFINITY;
+    if let Shape::Curved(a) = shapes[0] {
+        let rim = Rim::new(a, out.normal, -turn);
+        allowed = min(allowed, rim.lead(out, |point| point, |shift| shift));
+    }
+    if let Shape::Curved(b) = shapes[1] {
+        let rotation = pose_b_in_a.rotation;
+        let rim = Rim::new(b, rotation.inverse_rotate(-out.normal), rotation.inverse_rotate(turn));
+        let to_b = |point| pose_b_in_a.inverse_transform(point);
+        allowed = min(allowed, rim.lead(out, to_b, |shift| rotation.rotate(shift)));
+    }
+    allowed
+}
+
+/// The rim on which a shape stands, in the shape's frame.
+struct Rim {
+    /// The lowest point.
+    lowest: Vector,
+    /// How far the lowest place runs in half a step.
+    shift: Vector,
+    /// How much higher the new place is now.
+    rise: f32,
+    /// The radius, or 0 if the shape does not lean on its rim.
+    radius: f32,
+    /// The sine of the angle by which the shape leans.
+    lean: f32,
+}
+
+impl Rim {
+    /// `down` is the unit normal out of the shape, `turn` the rotation vector of the shape.
+    fn new(shape: &Curved, down: Vector, turn: Vector) -> Self {
+        // Seen from the shape, the other surface turns the other way.
+        let ((lean, around), (lean_then, around_then)) = (across(down), across(down + down.cross(turn)));
+        let end = shape.end_along(lean, down.y);
+        let leans = lean > LEVEL && lean < ROLLING;
+        let radius = if leans { shape.radius_of(end) } else { 0.0 };
+        let lowest = around * radius + Vector::Y * shape.height_of(end);
+        let shift = if lean_then > LEVEL { (around_then - around) * radius } else { Vector::ZERO };
+        Self { lowest, shift, rise: -shift.dot(down), radius, lean }
+    }
+
+    fn lead(
+        &self,
+        out: &mut LocalManifold,
+        to_shape: impl Fn(Vector) -> Vector,
+        from_shape: impl Fn(Vector) -> Vector,
+    ) -> f32 {
+        let is_full = out.count == out.points.len();
+        let mut allowed = f32::INFINITY;
+        for p in &mut out.points[..out.count] {
+            if (to_shape(p.point) - self.lowest).length() < AT_RIM * self.radius {
+                p.point += from_shape(self.shift);
+                p.separation += self.rise;
+                if !is_full {
+                    allowed = LAG * self.lean * self.radius;
+                }
+            }
+        }
+        allowed
+    }
+}
