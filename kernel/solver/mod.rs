@@ -28,6 +28,7 @@ mod finish;
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]
 #[cfg_attr(feature = "3d", path = "gyro3.rs")]
 mod gyro;
+mod impact;
 mod input;
 mod integrate;
 mod inv_mass;
