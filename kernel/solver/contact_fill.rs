@@ -2,6 +2,7 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::batch::{Filling, Item, Pass, Passes};
+use super::pair::lanes_of_body;
 use super::row::{CORNER_SPIN_LEVER, SPIN_LEVER};
 use super::split::DeepCounts;
 use super::{BodyRow, ContactRow, InvMass, MassRow, RestitutionRow, RowView, SplitImpulseRow, SubstepParams};
@@ -227,7 +228,10 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let mut unheld = N::ZERO;
         for side in 0..2 {
             let (inv_mass, inertia) = MassRow::gather::<N>(masses, &row.ids[side]);
-            let movable = N::select(N::ZERO.lt(self.dominated[side]), N::ZERO, N::ONE);
+            let mut movable = N::select(N::ZERO.lt(self.dominated[side]), N::ZERO, N::ONE);
+            if N::SHARES {
+                movable = movable * lanes_of_body(&row.ids, side);
+            }
             let inv_mass = inv_mass * movable;
             row.inv_mass[side] = M::new(inv_mass, self.free[side]);
             row.inv_inertia[side] = inertia.scaled(movable);

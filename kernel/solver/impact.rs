@@ -22,6 +22,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     ) -> bool {
         // SAFETY: by the contract.
         let mut pair = unsafe { Pair::load(rows, &self.ids) };
+        debug_assert!(!N::SHARES, "rows that share bodies have no restitution");
         let n = self.normal;
         let threshold = N::splat(-params.restitution_threshold);
         let mut moments = [[Angular::ZERO; 2]; P];

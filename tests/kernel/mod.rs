@@ -11,6 +11,7 @@ mod extreme;
 mod ghosts;
 mod golden;
 mod held;
+mod hubs;
 mod impulses;
 mod memory;
 mod passing;
