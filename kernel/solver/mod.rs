@@ -15,6 +15,7 @@
 
 mod batch;
 mod batches;
+mod bearing;
 mod body;
 mod contact_batch;
 mod contact_fill;

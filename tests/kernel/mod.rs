@@ -10,6 +10,7 @@ mod distance;
 mod extreme;
 mod ghosts;
 mod golden;
+mod heavy;
 mod held;
 mod hubs;
 mod impulses;
