@@ -37,6 +37,8 @@ pub struct ContactTable {
     pub(super) stored: Vec<Stored>,
     /// The surfaces of changed manifolds, by contact and index.
     pub(super) surfaces: BTreeMap<(u32, u32), ManifoldSurface>,
+    /// Bodies to which the solver gave more mass in the last step, by id, and how long it lasts.
+    raised_masses: Vec<(u32, u8)>,
     /// Contacts that may be of internal edges; empty between updates.
     pub(super) sliding: Vec<u32>,
 }
@@ -181,6 +183,18 @@ impl ContactTable {
             NONE => &[],
             slot => &self.extra[slot as usize][..usize::from(contact.extra_count)],
         }
+    }
+
+    /// Bodies to which the solver gave more mass in the last step, by id, and how long it lasts.
+    pub(crate) fn raised_masses(&self) -> &[(u32, u8)] {
+        &self.raised_masses
+    }
+
+    /// Sets the bodies to which the solver gave more mass in this step, in the order of ids.
+    pub(crate) fn set_raised_masses(&mut self, raised: &[(u32, u8)]) {
+        debug_assert!(raised.is_sorted(), "bodies are in the order of ids");
+        self.raised_masses.clear();
+        self.raised_masses.extend_from_slice(raised);
     }
 
     /// Makes ids that were freed before this usable again.

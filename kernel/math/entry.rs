@@ -2,9 +2,9 @@
 #![expect(unsafe_code, reason = "an entry point has a CPU feature that its caller may not have")]
 
 use super::F32x4;
-use super::Lane;
 #[cfg(target_arch = "x86_64")]
 use super::{Avx2, F32x8};
+use super::{Lane, Shared};
 
 /// Work of an entry point.
 ///
@@ -45,6 +45,16 @@ impl Entry for f32 {
 }
 
 impl Entry for F32x4 {
+    type Proof = ();
+
+    #[inline(never)]
+    unsafe fn enter<J: Job>((): (), job: J) -> J::Output {
+        // SAFETY: by the contract.
+        unsafe { job.run() }
+    }
+}
+
+impl Entry for Shared<F32x4> {
     type Proof = ();
 
     #[inline(never)]

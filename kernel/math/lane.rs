@@ -8,6 +8,15 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[repr(C, align(16))]
 pub struct Quad(pub [f32; 4]);
 
+impl AddAssign for Quad {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a += b;
+        }
+    }
+}
+
 /// Proof that the CPU has AVX2. Only [`find`](Self::find) makes one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Avx2(());
@@ -101,6 +110,8 @@ impl<const W: usize> Ids for [u32; W] {
 pub trait Lane: Num {
     /// The number of floats side by side.
     const WIDTH: usize;
+    /// Whether lanes of one row may have bodies in common.
+    const SHARES: bool = false;
     /// The result of a comparison, lane by lane.
     type Mask: Copy;
     /// The index of a row for each lane.

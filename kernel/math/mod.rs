@@ -69,6 +69,7 @@ mod lane;
 mod lane_avx;
 #[cfg(not(target_arch = "x86_64"))]
 mod lane_portable;
+mod lane_shared;
 #[cfg(target_arch = "x86_64")]
 mod lane_sse;
 #[cfg(feature = "3d")]
@@ -86,6 +87,7 @@ pub use lane::{Avx2, Ids, Lane, Num, Quad, Width, clamp, max, min};
 pub(crate) use lane_avx::F32x8;
 #[cfg(not(target_arch = "x86_64"))]
 pub use lane_portable::F32x4;
+pub(crate) use lane_shared::Shared;
 #[cfg(target_arch = "x86_64")]
 pub use lane_sse::F32x4;
 #[cfg(feature = "3d")]

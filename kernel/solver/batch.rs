@@ -1,6 +1,7 @@
 //! The interface of constraints: a batch of rows of one kind is filled, swept and stored block by block.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
+use super::bearing::Bearing;
 use super::input::RowInput;
 use super::split::DeepCounts;
 use super::{BodyRow, MassRow, Motion, RowView, SubstepParams};
@@ -25,13 +26,15 @@ pub(super) enum Pass {
     Restitute,
 }
 
-/// A set of passes, as bits.
+/// A set of passes, as bits, and whether the rows may have an overloaded body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Passes(u8);
 
 impl Passes {
     /// The passes of every constraint: warm start, solve, relax.
     pub(super) const BASIC: Self = Self::of(Pass::WarmStart).with(Pass::Solve).with(Pass::Relax);
+
+    const OVERLOADED: u8 = 1 << 7;
 
     const fn of(pass: Pass) -> Self {
         Self(1 << pass as u8)
@@ -40,6 +43,17 @@ impl Passes {
     /// This set and one more pass.
     pub(super) const fn with(self, pass: Pass) -> Self {
         Self(self.0 | Self::of(pass).0)
+    }
+
+    /// This set, marked as of rows with an overloaded body.
+    pub(super) const fn overloaded(self) -> Self {
+        Self(self.0 | Self::OVERLOADED)
+    }
+
+    /// Whether the rows may have an overloaded body.
+    #[inline(always)]
+    pub(super) fn are_overloaded(self) -> bool {
+        self.0 & Self::OVERLOADED != 0
     }
 
     /// Whether a pass is in the set.
@@ -68,6 +82,7 @@ pub(super) struct Filling<'a> {
     pub(super) first_dynamic: u32,
     pub(super) params: &'a SubstepParams,
     pub(super) deep: &'a DeepCounts,
+    pub(super) bearing: &'a Bearing,
     /// Locked axes by body row. Empty if no body has locked axes.
     pub(super) locks: &'a [AxisLocks],
 }
@@ -81,7 +96,8 @@ pub(super) struct Sweep<'a> {
 
 /// Rows of one kind and shape. A batch is chosen once per block, so that the indirect call costs nothing.
 pub(super) trait Batch: Sync {
-    /// Fills rows from items: one item per lane, fewer in the last row. Returns the passes that the rows need.
+    /// Fills rows from items: one item per lane, fewer in the last row. Returns the passes that the rows need. May be called
+    /// again after masses have changed.
     ///
     /// # Safety
     /// Until it returns, no other thread uses these rows, or writes a body or contact of theirs.

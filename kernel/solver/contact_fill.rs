@@ -2,6 +2,8 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::batch::{Filling, Item, Pass, Passes};
+use super::bearing::{HEAVY, PRESSED, sag_rate};
+use super::pair::lanes_of_body;
 use super::resistance::levers;
 use super::split::DeepCounts;
 use super::{BodyRow, ContactRow, InvMass, MassRow, RestitutionRow, RowView, SplitImpulseRow, SubstepParams};
@@ -29,7 +31,9 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
     items: &[Item],
     from: &Filling,
 ) -> Passes {
-    let (mut can_bounce, mut any_deep) = (false, false);
+    let (mut can_bounce, mut any_deep, mut overloaded) = (false, false, false);
+    let sag_rate = N::splat(sag_rate(from.params));
+    let pressed = N::splat(PRESSED * from.params.max_sag);
     for (i, lanes) in items.chunks(N::WIDTH).enumerate() {
         let next = (i + PREFETCH_DISTANCE) * N::WIDTH;
         for item in items.iter().skip(next).take(N::WIDTH) {
@@ -43,6 +47,7 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
             fill.lane(from, *item, lane, row, bounce);
         }
         fill.finish(row, bounce, from.masses, &from.bodies);
+        overloaded |= N::any(pressed.lt(row.heavy_push() * sag_rate));
         can_bounce |= N::any(N::ZERO.lt(bounce.restitution));
         if let Some(sum) = block.sums.get_mut(i) {
             *sum = [N::ZERO; P];
@@ -60,7 +65,25 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
     if any_deep {
         passes = passes.with(Pass::UndoSplit);
     }
+    if overloaded {
+        passes = passes.overloaded();
+    }
     passes
+}
+
+impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
+    /// The velocity that the normal impulses would give the lighter body, m/s, if the other is heavy. Else 0.
+    #[inline(always)]
+    fn heavy_push(&self) -> N {
+        let mut impulse = N::ZERO;
+        for point in &self.points {
+            impulse += point.impulse;
+        }
+        let [a, b] = self.inv_mass.map(|inv_mass| inv_mass.apply(self.normal).dot(self.normal));
+        let (larger, smaller) = (a.max(b), a.min(b));
+        let is_heavy = N::and((smaller * N::splat(HEAVY)).lt(larger), N::ZERO.lt(smaller));
+        N::select(is_heavy, impulse * larger, N::ZERO)
+    }
 }
 
 impl<N: Lane, const P: usize> SplitImpulseRow<N, P> {
@@ -171,7 +194,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         }
         let share = from.deep.share(ids, from.first_dynamic);
         debug_assert!(share > 0.0 && share <= 1.0, "a share: {share}");
-        row.push_speed.set(lane, from.params.max_push_speed * share);
+        row.push_speed.set(lane, from.params.max_push_speed * share * from.bearing.push_share(ids));
         self.copy(manifold, contact.frozen.offset, from.params, lane, row);
     }
 
@@ -238,7 +261,10 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let mut unheld = N::ZERO;
         for side in 0..2 {
             let (inv_mass, inertia) = MassRow::gather::<N>(masses, &row.ids[side]);
-            let movable = N::select(N::ZERO.lt(self.dominated[side]), N::ZERO, N::ONE);
+            let mut movable = N::select(N::ZERO.lt(self.dominated[side]), N::ZERO, N::ONE);
+            if N::SHARES {
+                movable = movable * lanes_of_body(&row.ids, side);
+            }
             let inv_mass = inv_mass * movable;
             row.inv_mass[side] = M::new(inv_mass, self.free[side]);
             row.inv_inertia[side] = inertia.scaled(movable);

@@ -100,6 +100,22 @@ impl BodyRow {
             rows.put(id, |row| row.velocity = quad);
         });
     }
+    /// Adds to the velocities of one body for each lane, where the body may be written. A body may be in several lanes.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    #[inline(always)]
+    pub(super) unsafe fn add_velocity<N: Lane>(
+        rows: &RowView<Self>,
+        ids: &N::Ids,
+        v: Vector<N>,
+        w: Angular<N>,
+    ) {
+        // SAFETY: by the contract.
+        N::scatter([v.x, v.y, w.z, N::ZERO], ids, |id, quad| unsafe {
+            rows.put(id, |row| row.velocity += quad);
+        });
+    }
     /// Stores displacement and rotation in this step, of one body for each lane, where the body may be written.
     ///
     /// # Safety

@@ -15,6 +15,7 @@
 
 mod batch;
 mod batches;
+mod bearing;
 mod body;
 mod contact_batch;
 mod contact_fill;
@@ -28,6 +29,7 @@ mod finish;
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]
 #[cfg_attr(feature = "3d", path = "gyro3.rs")]
 mod gyro;
+mod impact;
 mod input;
 mod integrate;
 mod inv_mass;

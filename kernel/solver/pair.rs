@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::{BodyRow, RowView, Softness};
-use crate::math::{Angular, Lane, Vector};
+use crate::math::{Angular, Ids, Lane, Vector};
 
 /// The velocities of a row's two bodies.
 #[derive(Clone, Copy)]
@@ -42,12 +42,48 @@ impl<N: Lane> Pair<N> {
     /// Until it returns, no other thread reads or writes those of these rows that may be written.
     #[inline(always)]
     pub(super) unsafe fn store(&self, rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) {
+        if N::SHARES {
+            // SAFETY: by the contract.
+            unsafe { self.store_shared(rows, ids) };
+            return;
+        }
         // SAFETY: by the contract.
         unsafe {
             BodyRow::scatter_velocity::<N>(rows, &ids[0], self.v[0], self.w[0]);
             BodyRow::scatter_velocity::<N>(rows, &ids[1], self.v[1], self.w[1]);
         }
     }
+}
+
+impl<N: Lane> Pair<N> {
+    /// Adds the mean change of a body's lanes to its velocity, in the order of sides and lanes.
+    ///
+    /// # Safety
+    /// As [`store`](Self::store).
+    #[inline(always)]
+    unsafe fn store_shared(&self, rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) {
+        // SAFETY: by the contract.
+        let before = unsafe { Self::load(rows, ids) };
+        for side in 0..2 {
+            let share = N::ONE / lanes_of_body(ids, side);
+            let (v, w) = (self.v[side] - before.v[side], self.w[side] - before.w[side]);
+            // SAFETY: by the contract.
+            unsafe { BodyRow::add_velocity::<N>(rows, &ids[side], v * share, w * share) };
+        }
+    }
+}
+
+/// For each lane, the number of lanes that its body is in, on either side.
+#[inline(always)]
+pub(super) fn lanes_of_body<N: Lane>(ids: &[N::Ids; 2], side: usize) -> N {
+    let [a, b] = [ids[0].lanes(), ids[1].lanes()];
+    let mut counts = N::ZERO;
+    for lane in 0..N::WIDTH {
+        let body = ids[side].lanes()[lane];
+        let count = (0..N::WIDTH).map(|i| u8::from(a[i] == body) + u8::from(b[i] == body)).sum::<u8>();
+        counts.set(lane, f32::from(count));
+    }
+    counts
 }
 
 /// [`Softness`] per lane.

@@ -106,7 +106,8 @@ impl Plan {
         self.end_stage(parts > 1);
     }
 
-    /// Plans a stage for each item of a layer, in the order of adding.
+    /// Plans the items of a layer in the order of adding, one per row. Consecutive items of a batch are one stage, which is not
+    /// shared.
     pub(super) fn add_singly(&mut self, planned: &Planned) {
         let layer = planned.layer;
         let mut next = core::mem::take(&mut self.next);
@@ -117,10 +118,11 @@ impl Plan {
             let Planned { color, number, .. } = *planned;
             self.lists.push(ListPlace { color, layer: number, part: 0, batch });
         }
-        for &batch in layer.order() {
-            let (list, batch) = (first_list + u32::from(batch), usize::from(batch));
-            self.add_block(planned.first_batch + batch, list, next[batch], 1, 1);
-            next[batch] += 1;
+        for run in layer.order().chunk_by(|a, b| a == b) {
+            let (list, batch, items) =
+                (first_list + u32::from(run[0]), usize::from(run[0]), run.len() as u32);
+            self.add_block(planned.first_batch + batch, list, next[batch], items, 1);
+            next[batch] += items;
             (0..self.workers).for_each(|_| self.end_part());
             self.end_stage(false);
         }

@@ -136,7 +136,7 @@ impl<N: Lane, const P: usize> Default for SplitImpulseRow<N, P> {
 impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// Applies `impulse` at the arms whose moments with it are `moments`.
     #[inline(always)]
-    fn push(&self, pair: &mut Pair<N>, impulse: Vector<N>, moments: [Angular<N>; 2]) {
+    pub(super) fn push(&self, pair: &mut Pair<N>, impulse: Vector<N>, moments: [Angular<N>; 2]) {
         pair.v[0] -= self.inv_mass[0].apply(impulse);
         pair.w[0] -= self.inv_inertia[0].apply(moments[0]);
         pair.v[1] += self.inv_mass[1].apply(impulse);
@@ -338,7 +338,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
 
     /// Sliding velocity of B's surface over A's at the friction centre, less the target velocity.
     #[inline(always)]
-    fn slip(&self, pair: &Pair<N>, frame: &TangentFrame<N>) -> Tangent<N> {
+    pub(super) fn slip(&self, pair: &Pair<N>, frame: &TangentFrame<N>) -> Tangent<N> {
         let [ra, rb] = self.surface_arms();
         let relative = pair.v[1] + pair.w[1].cross(rb) - pair.v[0] - pair.w[0].cross(ra);
         frame.project(relative) - self.surface_velocity
@@ -376,182 +376,5 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             let friction = self.friction.min(N::splat(ROLL_FRICTION));
             resist_rolling(n, scale, friction * sum * self.roll_lever, self.inv_inertia, &mut pair.w);
         }
-    }
-
-    /// The impact pass: points that close within this substep, and faster than the threshold, rebound before any other
-    /// pass sees them, as if they had touched at the right time within the substep. Their impulses are added to `sum`. Returns
-    /// whether any rebounded.
-    ///
-    /// # Safety
-    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
-    #[inline(always)]
-    pub(super) unsafe fn impact(
-        &mut self,
-        rows: &RowView<BodyRow>,
-        bounce: &mut RestitutionRow<N, P>,
-        sum: Option<&mut [N; P]>,
-        params: &SubstepParams,
-    ) -> bool {
-        // SAFETY: by the contract.
-        let mut pair = unsafe { Pair::load(rows, &self.ids) };
-        let n = self.normal;
-        let threshold = N::splat(-params.restitution_threshold);
-        let mut moments = [[Angular::ZERO; 2]; P];
-        let mut speeds = [N::ZERO; P];
-        let mut fastest = N::ZERO;
-        for i in 0..P {
-            let anchor = self.points[i].anchor;
-            moments[i] = [anchor.cross(n), (anchor - self.offset).cross(n)];
-            speeds[i] = pair.along(n, moments[i]);
-            fastest = fastest.min(speeds[i] + bounce.gained);
-        }
-        let fast = N::and(fastest.lt(threshold), N::ZERO.lt(bounce.restitution));
-        if !N::any(fast) {
-            return false;
-        }
-        // SAFETY: by the contract.
-        let [(mut pa, qa), (mut pb, qb)] = unsafe {
-            [BodyRow::gather_delta::<N>(rows, &self.ids[0]), BodyRow::gather_delta::<N>(rows, &self.ids[1])]
-        };
-        let shift = (pb - pa).dot(n);
-        let mut targets = [N::ZERO; P];
-        let mut early = N::splat(f32::MAX);
-        for i in 0..P {
-            let (ra, rb) = (self.points[i].anchor, self.points[i].anchor - self.offset);
-            let [ma, mb] = moments[i];
-            let moved = shift + qb.shift_along(rb, mb, n) - qa.shift_along(ra, ma, n);
-            let s = self.points[i].separation + moved;
-            let approach = speeds[i] + bounce.gained;
-            let soon = (s + speeds[i] * N::splat(params.h)).lt(N::ZERO);
-            let closing = N::and(approach.lt(threshold), speeds[i].lt(N::ZERO));
-            let hit = N::and(N::and(fast, closing), soon);
-            let hit = N::and(hit, N::ZERO.lt(self.points[i].mass));
-            let (speed, ahead) =
-                bounce.rebound(s.max(N::ZERO), -approach, -speeds[i], N::splat(params.inv_h));
-            targets[i] = N::select(hit, speed, N::ZERO);
-            early = N::select(hit, early.min(ahead), early);
-            bounce.approach[i] = N::select(hit, N::ZERO, bounce.approach[i]);
-        }
-        let mut any = N::ZERO;
-        for target in targets {
-            any = any.max(target);
-        }
-        let hit = N::ZERO.lt(any);
-        let before = pair;
-        let impulses = self.collide(&mut pair, bounce, &targets, &moments);
-        for (sum, impulse) in sum.into_iter().flatten().zip(impulses) {
-            *sum += impulse;
-        }
-        // SAFETY: by the contract.
-        unsafe { pair.or_where_not(hit, before).store(rows, &self.ids) };
-
-        let [ma, mb] = [self.inv_mass[0].apply(n), self.inv_mass[1].apply(n)];
-        let k = (ma + mb).dot(n);
-        let lag = N::select(N::and(hit, N::ZERO.lt(k)), early / k, N::ZERO);
-        pa += ma * lag;
-        pb -= mb * lag;
-        // SAFETY: by the contract.
-        unsafe {
-            BodyRow::scatter_delta::<N>(rows, &self.ids[0], pa, qa);
-            BodyRow::scatter_delta::<N>(rows, &self.ids[1], pb, qb);
-        }
-        N::any(hit)
-    }
-
-    /// Gives each point its target normal velocity, where that is not 0, by an impulse that only pushes, and then
-    /// friction. Returns the normal impulses.
-    #[inline(always)]
-    fn collide(
-        &mut self,
-        pair: &mut Pair<N>,
-        bounce: &mut RestitutionRow<N, P>,
-        targets: &[N; P],
-        moments: &[[Angular<N>; 2]; P],
-    ) -> [N; P] {
-        let n = self.normal;
-        let mut impulses = [N::ZERO; P];
-        // A few sweeps in alternating order: points of one manifold share the impact, and none comes first.
-        for sweep in 0..if P == 1 { 1 } else { 4 } {
-            for k in 0..P {
-                let i = if sweep % 2 == 0 { k } else { P - 1 - k };
-                let change = self.points[i].mass * (pair.along(n, moments[i]) - targets[i]);
-                let new = N::select(N::ZERO.lt(targets[i]), (impulses[i] - change).max(N::ZERO), N::ZERO);
-                let delta = new - impulses[i];
-                impulses[i] = new;
-                self.push(pair, n * delta, [moments[i][0] * delta, moments[i][1] * delta]);
-            }
-        }
-        let mut sum = N::ZERO;
-        for i in 0..P {
-            bounce.max_impulse[i] = bounce.max_impulse[i].max(impulses[i]);
-            sum += impulses[i];
-        }
-        let frame = TangentFrame::new(n);
-        let wanted = Tangent::ZERO - self.tangent_mass.apply(self.slip(pair, &frame));
-        let rubbed = frame.expand(wanted.clamp_length(self.friction * sum));
-        let [ra, rb] = self.surface_arms();
-        self.push(pair, rubbed, [ra.cross(rubbed), rb.cross(rubbed)]);
-        impulses
-    }
-
-    /// The restitution pass: points that approached faster than the threshold and had an impulse leave with e times the
-    /// approach speed. Points that the impact pass has handled are skipped. Impulses are added to `sum`.
-    ///
-    /// # Safety
-    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
-    #[inline(always)]
-    pub(super) unsafe fn restitute(
-        &mut self,
-        rows: &RowView<BodyRow>,
-        bounce: &mut RestitutionRow<N, P>,
-        mut sum: Option<&mut [N; P]>,
-        params: &SubstepParams,
-    ) {
-        // SAFETY: by the contract.
-        let before = unsafe { Pair::load(rows, &self.ids) };
-        let mut pair = before;
-        let n = self.normal;
-        let threshold = N::splat(-params.restitution_threshold);
-        for i in 0..P {
-            let point = self.points[i];
-            let (ma, mb) = (point.anchor.cross(n), (point.anchor - self.offset).cross(n));
-            let vn = pair.along(n, [ma, mb]);
-            let target = bounce.restitution * bounce.approach[i];
-            let new = (point.impulse - point.mass * (vn + target)).max(N::ZERO);
-            let hit = N::and(bounce.approach[i].lt(threshold), N::ZERO.lt(bounce.max_impulse[i]));
-            let hit = N::and(hit, N::ZERO.lt(bounce.restitution));
-            let new = N::select(hit, new, point.impulse);
-            let delta = new - point.impulse;
-            self.points[i].impulse = new;
-            bounce.max_impulse[i] = bounce.max_impulse[i].max(new);
-            if let Some(sum) = &mut sum {
-                sum[i] += delta;
-            }
-            self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
-        }
-        // SAFETY: by the contract.
-        unsafe { pair.or_where_not(N::ZERO.lt(bounce.restitution), before).store(rows, &self.ids) };
-    }
-}
-
-impl<N: Lane, const P: usize> RestitutionRow<N, P> {
-    /// The rebound of a point that touches within a substep: the speed at which it leaves, and its displacement at the
-    /// end of the substep that this speed does not account for, because the point touches only after `gap` / `speed`.
-    /// `approach` is the speed before the substep's accelerations, `speed` the one after.
-    ///
-    /// Symplectic Euler conserves E = ½ v² + g y − ½ g h v of a free fall exactly (v upward). The speed w makes E after
-    /// the substep, at y = w (h − t), e² times the E before. The rebound height is e² of the fall height at any step
-    /// length, and no energy is gained.
-    #[inline(always)]
-    fn rebound(&self, gap: N, approach: N, speed: N, inv_h: N) -> (N, N) {
-        let half = N::splat(0.5);
-        let time = gap / speed;
-        // g h and g t, with t = gap / speed.
-        let (gh, gt) = (self.gained, self.gained * inv_h * time);
-        let kept = half * approach * approach + speed * gt + half * gh * approach;
-        let b = half * gh - gt;
-        let e2 = self.restitution * self.restitution;
-        let parting = (b * b + (e2 + e2) * kept.max(N::ZERO)).sqrt() - b;
-        (parting, gap + parting * time)
     }
 }

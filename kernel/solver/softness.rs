@@ -28,6 +28,13 @@ impl Softness {
         self.bias_rate.is_finite() && share.contains(&self.mass_scale) && share.contains(&self.impulse_scale)
     }
 
+    /// Overlap at rest per metre per second by which the impulse of a substep would change the velocity, in seconds. 0 if the
+    /// constraint has no spring.
+    pub(super) fn sag_rate(&self) -> f32 {
+        let spring = self.mass_scale * self.bias_rate;
+        if spring > 0.0 { self.impulse_scale / spring } else { 0.0 }
+    }
+
     /// Coefficients for a frequency in Hz, a damping ratio and a time step in seconds. Rigid if the frequency or the
     /// time step is not positive.
     pub fn new(frequency: f32, damping_ratio: f32, h: f32) -> Self {
@@ -61,6 +68,8 @@ pub struct SubstepParams {
     pub restitution_threshold: f32,
     /// Separation over which the weight of a point in the friction centre fades, in metres.
     pub friction_fade: f32,
+    /// Overlap to which a heavy body may press light ones into each other, in metres, before they get more mass. Positive.
+    pub max_sag: f32,
     /// Rolling speed up to which rolling resistance is full, m/s. It is gone at twice that speed. 0 turns it off.
     pub roll_speed: f32,
 }
@@ -82,6 +91,7 @@ impl SubstepParams {
             warm_start: 1.0,
             restitution_threshold: 1.0,
             friction_fade: 0.02,
+            max_sag: 0.005,
             roll_speed: 0.2,
         }
     }
@@ -92,6 +102,7 @@ impl SubstepParams {
         let is_step = h.is_finite() && h >= 0.0 && inv_h.is_finite() && inv_h >= 0.0;
         let limits = [self.max_push_speed, self.restitution_threshold, self.friction_fade, self.roll_speed];
         is_step
+            && self.max_sag > 0.0
             && self.soft.is_valid()
             && self.stiff.is_valid()
             && (0.0..=1.0).contains(&self.warm_start)

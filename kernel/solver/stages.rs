@@ -3,6 +3,7 @@
 
 use super::batch::{Filling, Pass, Sweep};
 use super::batches::{AllRows, Layers};
+use super::bearing::Bearing;
 use super::contact_batch::Room;
 use super::distance::DistanceTable;
 use super::exclusive;
@@ -44,6 +45,7 @@ pub struct Solver {
     plan: Plan,
     shares: Shares,
     deep: DeepCounts,
+    bearing: Bearing,
     /// The first body row that constraint rows may write, kept from when they were built.
     first_dynamic: u32,
 }
@@ -86,7 +88,7 @@ impl Solver {
         params: &SubstepParams,
         pool: &ThreadPool,
     ) {
-        let Self { bodies, distances, rows, layers, plan, shares, deep, first_dynamic, seen } = self;
+        let Self { bodies, rows, layers, plan, shares, deep, first_dynamic, seen, .. } = self;
         debug_assert!(params.is_valid(), "{params:?}");
         debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
         if cfg!(debug_assertions) {
@@ -97,8 +99,7 @@ impl Solver {
         bodies.limit_inertia_ratios(params.h);
         let workers = pool.workers();
         shares.divide(workers, *first_dynamic, input, colors);
-        let BodyRows { rows: body_rows, masses, motions, locks, .. } = bodies;
-        let sorter = &Sorter { input, locks, shares };
+        let sorter = &Sorter { input, locks: &bodies.locks, shares };
         layers.sort(colors, sorter, pool);
         plan.begin(if workers > 1 { BLOCK_ROWS } else { u32::MAX }, workers, AllRows::BATCHES);
         layers.plan(rows.width, sorter, plan);
@@ -106,6 +107,20 @@ impl Solver {
         if plan.rows().iter().sum::<u32>() >= WORTH_WAKING {
             pool.wake();
         }
+        self.bearing.clear();
+        self.fill_rows(input, params, pool);
+        let Self { bodies, plan, bearing, .. } = self;
+        let any_overloaded = plan.blocks.iter().any(|block| block.passes.are_overloaded());
+        let was_any = !input.contacts.raised_masses().is_empty();
+        if (any_overloaded || was_any) && bearing.raise_masses(input, bodies, params) {
+            self.fill_rows(input, params, pool);
+        }
+    }
+
+    /// Fills the rows of all blocks.
+    fn fill_rows(&mut self, input: &RowInput, params: &SubstepParams, pool: &ThreadPool) {
+        let Self { bodies, distances, rows, layers, plan, deep, bearing, .. } = self;
+        let BodyRows { rows: body_rows, masses, motions, locks, first_dynamic, .. } = bodies;
         let filling = &Filling {
             input,
             bodies: RowView::over(body_rows, *first_dynamic),
@@ -114,6 +129,7 @@ impl Solver {
             first_dynamic: *first_dynamic,
             params,
             deep,
+            bearing,
             locks,
         };
         let mut blocks = core::mem::take(&mut plan.blocks);
@@ -216,6 +232,7 @@ impl Solver {
                 }
             }
         });
+        self.bearing.store(contacts);
         self.plan.begin(0, 1, 0);
     }
 

@@ -1,5 +1,6 @@
 //! Tests of the kernel's parts working together, written once for both dimensions.
 
+mod bounce;
 mod carried;
 mod crowds;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
@@ -10,7 +11,9 @@ mod extreme;
 mod facets;
 mod ghosts;
 mod golden;
+mod heavy;
 mod held;
+mod hubs;
 mod impulses;
 mod memory;
 mod passing;

@@ -233,6 +233,12 @@ impl Sim {
         self.masses[id as usize] = (1.0 / mass.mass, inverse_inertia(&mass));
     }
 
+    /// Multiplies mass and inertia of a body.
+    pub fn load(&mut self, id: u32, factor: f32) {
+        let (inverse, inertia) = self.masses[id as usize];
+        self.masses[id as usize] = (inverse / factor, inertia.scaled(1.0 / factor));
+    }
+
     /// Sets the shape of a body, and its mass.
     pub fn reshape(&mut self, id: u32, shape: Shape) {
         self.weigh(id, &shape);

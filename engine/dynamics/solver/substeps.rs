@@ -51,6 +51,7 @@ impl Default for StepSolver {
                 warm_start: 1.0,
                 restitution_threshold: 1.0,
                 friction_fade: 0.02,
+                max_sag: 0.005,
                 roll_speed: 0.2,
             },
             substeps: 1,
@@ -92,6 +93,10 @@ impl OwnSubstepSystems {
 /// The friction centre fades out a separated point over this distance, times the length unit. Less makes friction jump as
 /// points open and close.
 const FRICTION_FADE: f32 = (4.0 * LINEAR_SLOP) as f32;
+
+/// Light bodies that a heavy one presses into each other by more than this, times the length unit, get more mass in the
+/// solver. Less adds more mass, more lets heavy bodies sink into light ones.
+const MAX_SAG: f32 = LINEAR_SLOP as f32;
 
 /// Round bodies that roll no faster than this, times the length unit, in m/s, meet full rolling resistance; at twice this
 /// speed none. Less keeps piles of balls and capsules awake, more slows down what a game rolls on purpose.
@@ -135,6 +140,7 @@ pub(crate) fn prepare_params(
         warm_start: setting(config.warm_start_coefficient, default.warm_start_coefficient).min(1.0),
         restitution_threshold: setting(config.restitution_threshold, default.restitution_threshold) * unit,
         friction_fade: FRICTION_FADE * unit,
+        max_sag: MAX_SAG * unit,
         roll_speed: ROLL_SPEED * unit,
     };
 }
