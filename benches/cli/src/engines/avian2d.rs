@@ -162,6 +162,20 @@ impl Engine<D2> for Sim {
         }));
     }
 
+    #[cfg(feature = "batches")]
+    fn raycast_batch(&mut self, rays: &[Ray2], out: &mut Vec<f32>) {
+        out.clear();
+        let world = self.app.world_mut();
+        let state = self.spatial.get_or_insert_with(|| Spatial::new(world));
+        let spatial = state.get(world).expect("the spatial query is there");
+        let length = rays.first().map_or(0.0, |r| r.length);
+        let aimed = |r: &Ray2| (Vec2::from(r.origin), Dir2::new_unchecked(Vec2::from(r.dir).normalize()));
+        let aimed: Vec<_> = rays.iter().map(aimed).collect();
+        let mut hits = vec![None; rays.len()];
+        spatial.cast_rays(&aimed, length, true, &SpatialQueryFilter::default(), &mut hits);
+        out.extend(hits.iter().map(|hit| hit.as_ref().map_or(f32::INFINITY, |h| h.distance)));
+    }
+
     fn stages(&mut self) -> Vec<Stage> {
         let world = self.app.world();
         #[cfg_attr(not(feature = "diagnostics"), expect(unused_mut))]
