@@ -1,8 +1,8 @@
 //! Queries of one tree: by a box, a point, a ray, a swept box, or distance.
 
 use super::stack::Stack;
-use super::tree::{LEAF, NONE, Tree};
-use crate::math::{DIM, Vector, max, min};
+use super::tree::{Branch, LEAF, NONE, Tree};
+use crate::math::{DIM, F32x4, Lane, Vector, max, min};
 use crate::shape::Aabb;
 
 impl Tree {
@@ -43,12 +43,37 @@ impl Tree {
         origin: Vector,
         direction: Vector,
         max_distance: f32,
-        hit: impl FnMut(u32, f32) -> f32,
+        mut hit: impl FnMut(u32, f32) -> f32,
     ) {
         if half.is_finite() && origin.is_finite() && direction.is_finite() {
-            let sweep = Sweep::new(half, origin, direction);
-            self.walk_ordered(max_distance, |b, limit| sweep.entry(b, limit), hit);
+            self.cast_sweep(&Sweep::new(half, origin, direction), max_distance, &mut hit);
         }
+    }
+
+    /// One walk for each combination of signs of the direction.
+    fn cast_sweep(&self, sweep: &Sweep, limit: f32, hit: &mut dyn FnMut(u32, f32) -> f32) {
+        match sweep.backward {
+            0 => self.cast_towards::<0>(sweep, limit, hit),
+            1 => self.cast_towards::<1>(sweep, limit, hit),
+            2 => self.cast_towards::<2>(sweep, limit, hit),
+            3 => self.cast_towards::<3>(sweep, limit, hit),
+            4 => self.cast_towards::<4>(sweep, limit, hit),
+            5 => self.cast_towards::<5>(sweep, limit, hit),
+            6 => self.cast_towards::<6>(sweep, limit, hit),
+            _ => self.cast_towards::<7>(sweep, limit, hit),
+        }
+    }
+
+    #[inline(never)]
+    fn cast_towards<const BACKWARD: usize>(
+        &self,
+        sweep: &Sweep,
+        limit: f32,
+        hit: &mut dyn FnMut(u32, f32) -> f32,
+    ) {
+        let root = |limit: f32| sweep.entry(&self.root_box, limit);
+        let below = |branch: &Branch, limit: f32| sweep.entries::<BACKWARD>(&branch.boxes, limit);
+        self.walk_ordered(limit, root, below, hit);
     }
 
     /// Visits leaves by the distance of their boxes from a point, nearer branches first, with their ids and the present
@@ -56,9 +81,9 @@ impl Tree {
     /// distance overflows are not found.
     pub fn query_nearest(&self, point: Vector, max_squared: f32, hit: impl FnMut(u32, f32) -> f32) {
         if point.is_finite() {
-            let distance =
-                |b: &Aabb, _| (b.min - point).max(point - b.max).max(Vector::ZERO).length_squared();
-            self.walk_ordered(max_squared, distance, hit);
+            let distance = |b: &Aabb| (b.min - point).max(point - b.max).max(Vector::ZERO).length_squared();
+            let below = |branch: &Branch, _| [distance(&branch.boxes[0]), distance(&branch.boxes[1])];
+            self.walk_ordered(max_squared, |_| distance(&self.root_box), below, hit);
         }
     }
 
@@ -98,19 +123,20 @@ impl Tree {
         }
     }
 
-    /// Depth first, the nearer child first, through all boxes whose `entry` is at most the limit. The limit is finite, so that
-    /// infinity is always a miss.
+    /// Depth first, the nearer child first, through all boxes whose entry is at most the limit. `root` gives the entry of
+    /// the box around all, `below` those of a branch's children. The limit is finite, so that infinity is always a miss.
     #[inline(always)]
     fn walk_ordered(
         &self,
         mut limit: f32,
-        entry: impl Fn(&Aabb, f32) -> f32,
+        root: impl Fn(f32) -> f32,
+        below: impl Fn(&Branch, f32) -> [f32; 2],
         mut hit: impl FnMut(u32, f32) -> f32,
     ) {
         if limit > f32::MAX {
             limit = f32::MAX;
         }
-        let is_met = self.root != NONE && entry(&self.root_box, limit) <= limit;
+        let is_met = self.root != NONE && root(limit) <= limit;
         if !is_met {
             return;
         }
@@ -125,17 +151,13 @@ impl Tree {
                 limit = min(answer, limit);
             } else {
                 let branch = &self.branches[node as usize];
-                let [mut near, mut far] = branch.children;
-                let [mut near_at, mut far_at] = [0, 1].map(|i| entry(&branch.boxes[i], limit));
-                if far_at < near_at {
-                    (near, far) = (far, near);
-                    (near_at, far_at) = (far_at, near_at);
-                }
+                let [first, second] = below(branch, limit);
+                // Which child is nearer is a matter of chance: neither choice is a jump.
+                let far = usize::from(first <= second);
+                let (near_at, far_at) = (min(first, second), if second < first { first } else { second });
+                stack.push_if((branch.children[far], far_at), far_at <= limit);
                 if near_at <= limit {
-                    if far_at <= limit {
-                        stack.push((far, far_at));
-                    }
-                    node = near;
+                    node = branch.children[far ^ 1];
                     continue;
                 }
             }
@@ -156,13 +178,16 @@ impl Tree {
 /// far chosen by the sign of d (Williams et al., "An Efficient and Robust Ray–Box Intersection
 /// Algorithm", 2005); the swept box's half size moves the planes outward. Rounding is monotonic, so a box around a hit box is
 /// hit.
+///
+/// Both children of a branch are tested at once, in the lanes `[near, near, far, far]`. Distances to far planes are
+/// negated, so that all four are maxima.
 pub(super) struct Sweep {
-    /// The origin, shifted by the half size for the near planes.
-    near_origin: [f32; DIM],
-    /// The origin, shifted by the half size for the far planes.
-    far_origin: [f32; DIM],
-    inverse: [f32; DIM],
-    backward: [bool; DIM],
+    /// The origin, shifted by the half size for the near and for the far planes.
+    origins: [F32x4; DIM],
+    /// 1 / d for the near planes, -(1 + 2 γ₃) / d for the far ones.
+    inverses: [F32x4; DIM],
+    /// A bit for each axis: whether the ray goes backward, so that the upper plane is the near one.
+    backward: usize,
 }
 
 /// 1 + 2 γ₃: covers the rounding of the distances (Ize, "Robust BVH Ray Traversal", 2013).
@@ -173,27 +198,41 @@ impl Sweep {
     pub fn new(half: Vector, origin: Vector, direction: Vector) -> Self {
         let (o, h, d) = (origin.to_array(), half.abs().to_array(), direction.to_array());
         let inverse = d.map(|d| 1.0 / d);
-        let backward = inverse.map(|i| i < 0.0);
-        let signed = |i: usize| if backward[i] { -h[i] } else { h[i] };
+        let pairs = |near: f32, far: f32| F32x4::new([near, near, far, far]);
+        let signed = |i: usize| if inverse[i] < 0.0 { -h[i] } else { h[i] };
         Self {
-            near_origin: core::array::from_fn(|i| o[i] + signed(i)),
-            far_origin: core::array::from_fn(|i| o[i] - signed(i)),
-            inverse,
-            backward,
+            origins: core::array::from_fn(|i| pairs(o[i] + signed(i), o[i] - signed(i))),
+            inverses: core::array::from_fn(|i| pairs(inverse[i], -(inverse[i] * OUTWARD))),
+            backward: (0..DIM).fold(0, |bits, i| bits | usize::from(inverse[i] < 0.0) << i),
         }
     }
 
     /// The distance at which the box is first touched, 0 if from the start; infinity if beyond the finite `limit`.
-    #[inline(always)]
+    #[inline]
     pub fn entry(&self, aabb: &Aabb, limit: f32) -> f32 {
         let (low, high) = (aabb.min.to_array(), aabb.max.to_array());
-        let (mut enter, mut exit) = (0.0, limit);
+        let (mut enter, mut exit) = (0.0, -limit);
         for i in 0..DIM {
-            let (near, far) = if self.backward[i] { (high[i], low[i]) } else { (low[i], high[i]) };
-            // For a ray along a plane 0 · ∞ is NaN, which the min/max rule drops.
-            enter = max((near - self.near_origin[i]) * self.inverse[i], enter);
-            exit = min((far - self.far_origin[i]) * self.inverse[i] * OUTWARD, exit);
+            let is_backward = self.backward >> i & 1 == 1;
+            let (near, far) = if is_backward { (high[i], low[i]) } else { (low[i], high[i]) };
+            enter = max((near - self.origins[i].get(0)) * self.inverses[i].get(0), enter);
+            exit = max((far - self.origins[i].get(2)) * self.inverses[i].get(2), exit);
         }
-        if enter <= exit { enter } else { f32::INFINITY }
+        if enter <= -exit { enter } else { f32::INFINITY }
+    }
+
+    /// The distance at which each of two boxes is first touched, 0 if from the start; infinity if beyond the finite
+    /// `limit`. `BACKWARD` is that of the sweep.
+    #[inline(always)]
+    fn entries<const BACKWARD: usize>(&self, boxes: &[Aabb; 2], limit: f32) -> [f32; 2] {
+        let [low, high] = [boxes.map(|b| b.min.to_array()), boxes.map(|b| b.max.to_array())];
+        let mut most = F32x4::new([0.0, 0.0, -limit, -limit]);
+        for i in 0..DIM {
+            let (near, far) = if BACKWARD >> i & 1 == 1 { (&high, &low) } else { (&low, &high) };
+            let planes = F32x4::new([near[0][i], near[1][i], far[0][i], far[1][i]]);
+            // For a ray along a plane 0 · ∞ is NaN, which the maximum drops.
+            most = ((planes - self.origins[i]) * self.inverses[i]).max(most);
+        }
+        [0, 1].map(|i| if most.get(i) <= -most.get(2 + i) { most.get(i) } else { f32::INFINITY })
     }
 }

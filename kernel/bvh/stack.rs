@@ -26,6 +26,17 @@ impl<T: Copy + Default> Stack<T> {
         }
     }
 
+    /// Pushes a value if `wanted`, without a jump while there is room.
+    #[inline(always)]
+    pub fn push_if(&mut self, value: T, wanted: bool) {
+        if self.len < FIXED {
+            self.fixed[self.len] = value;
+            self.len += usize::from(wanted);
+        } else if wanted {
+            self.spill(value);
+        }
+    }
+
     #[inline(always)]
     pub fn pop(&mut self) -> Option<T> {
         // Entries spill only while the inline part is full.

@@ -40,6 +40,12 @@ impl<'a> Convex<'a> {
         matches!(self.core, Core::Whole(Shape::Curved(_)))
     }
 
+    /// Whether the core is the point at the origin of the shape's frame.
+    #[inline]
+    pub(crate) fn is_point(&self) -> bool {
+        matches!(self.core, Core::Point)
+    }
+
     /// The point of the core farthest along a direction of any length.
     #[inline]
     pub(crate) fn farthest(&self, direction: Vector) -> Vector {

@@ -59,21 +59,26 @@ struct Vertex {
     weight: f64,
 }
 
-struct Difference<'a> {
+/// A search for the closest points of core A and core B. It keeps its simplex, so that the search after a small motion of
+/// B is short.
+pub(crate) struct Search<'a> {
     a: &'a Convex<'a>,
     b: &'a Convex<'a>,
-    frame: &'a Frame,
+    /// The pose of B in A's frame.
+    frame: Frame,
+    simplex: [Vertex; DIM + 1],
+    count: usize,
+    /// The point of the simplex that is nearest to the origin.
+    nearest: Wide,
 }
 
-impl Difference<'_> {
-    /// The vertex farthest along a direction of about unit length.
-    #[inline]
-    fn vertex(&self, direction: Wide) -> Vertex {
-        let a = self.a.farthest(direction.narrow()).widen();
-        let inner = self.frame.rotation.inverse_rotate(-direction);
-        let b = self.frame.position + self.frame.rotation.rotate(self.b.farthest(inner.narrow()).widen());
-        Vertex { a, b, w: a - b, weight: 1.0 }
-    }
+/// A way of B along a line that meets nothing.
+#[derive(Clone, Copy)]
+pub(crate) struct FreeWay {
+    /// In metres.
+    pub(crate) length: f64,
+    /// The normal of the last plane between A and B that B was moved up to; zero if there was none.
+    pub(crate) normal: Wide,
 }
 
 /// The closest points of core A and core B, `frame` being where B is in A's. `guess` is a direction from A to B, of
@@ -85,47 +90,177 @@ pub(crate) fn closest_cores(
     guess: Wide,
     accuracy: Accuracy,
 ) -> Option<Cores> {
-    let difference = Difference { a, b, frame };
-    let mut simplex = [Vertex::default(); DIM + 1];
-    simplex[0] = difference.vertex(guess);
-    let mut count = 1;
-    let mut nearest = simplex[0].w;
-    let mut gap = f64::NEG_INFINITY;
-    for _ in 0..MAX_ITERATIONS {
-        let square = nearest.length_squared();
-        let scale = simplex[..count].iter().fold(0.0, |most: f64, v| most.max(v.w.length_squared()));
-        if square <= TOUCHING * TOUCHING * scale {
-            return Some(touching(&simplex[..count]));
-        }
-        if !(square < f64::INFINITY) {
-            return None;
-        }
-        let distance = square.sqrt();
-        let new = difference.vertex(nearest * (-1.0 / distance));
-        gap = nearest.dot(new.w) / distance;
-        let known = simplex[..count].iter().any(|v| v.w == new.w);
-        let near = distance - gap <= accuracy.tolerance + RELATIVE * distance;
-        if known || near || gap > accuracy.beyond || count > DIM {
-            break;
-        }
-        let mut next = simplex;
-        next[count] = new;
-        let Some((next_count, point)) = reduced(&mut next, count + 1) else {
-            return Some(touching(&next[..count + 1]));
+    Search::new(a, b, *frame, guess).closest(accuracy)
+}
+
+impl<'a> Search<'a> {
+    /// `guess` as in [`closest_cores`].
+    pub(crate) fn new(a: &'a Convex<'a>, b: &'a Convex<'a>, frame: Frame, guess: Wide) -> Self {
+        let mut search =
+            Self { a, b, frame, simplex: [Vertex::default(); DIM + 1], count: 1, nearest: Wide::ZERO };
+        search.simplex[0] = search.vertex(guess);
+        search.nearest = search.simplex[0].w;
+        search
+    }
+
+    /// The pose of B in A's frame.
+    pub(crate) fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    /// The vertex of A − B farthest along a direction of about unit length.
+    #[inline]
+    fn vertex(&self, direction: Wide) -> Vertex {
+        let a = self.a.farthest(direction.narrow()).widen();
+        let b = if self.b.is_point() {
+            self.frame.position
+        } else {
+            let inner = self.frame.rotation.inverse_rotate(-direction);
+            self.frame.position + self.frame.rotation.rotate(self.b.farthest(inner.narrow()).widen())
         };
-        if !(point.length_squared() < square) {
-            break;
+        Vertex { a, b, w: a - b, weight: 1.0 }
+    }
+
+    /// Moves B, and finds the nearest point of the simplex again.
+    pub(crate) fn move_by(&mut self, offset: Wide) {
+        self.shift(offset);
+        self.renew();
+    }
+
+    fn shift(&mut self, offset: Wide) {
+        self.frame.position += offset;
+        for vertex in &mut self.simplex[..self.count] {
+            vertex.b += offset;
+            vertex.w = vertex.a - vertex.b;
         }
-        (simplex, count, nearest) = (next, next_count, point);
-        gap = f64::NEG_INFINITY;
     }
-    let distance = nearest.length();
-    let normal = nearest * (-1.0 / distance);
-    if gap == f64::NEG_INFINITY {
-        gap = -normal.dot(difference.vertex(normal).w);
+
+    /// Reduces the simplex; one around the origin becomes its first vertex.
+    fn renew(&mut self) {
+        match reduced(&mut self.simplex, self.count) {
+            Some((count, point)) => (self.count, self.nearest) = (count, point),
+            None => {
+                self.simplex[0].weight = 1.0;
+                (self.count, self.nearest) = (1, self.simplex[0].w);
+            }
+        }
     }
-    let [a, b] = witness(&simplex[..count]);
-    Some(Cores { a, b, normal, distance, gap })
+
+    /// The closest points. `None` if a number is not finite.
+    pub(crate) fn closest(&mut self, accuracy: Accuracy) -> Option<Cores> {
+        let mut gap = f64::NEG_INFINITY;
+        for _ in 0..MAX_ITERATIONS {
+            let square = self.nearest.length_squared();
+            if self.touches(square) {
+                return Some(touching(&self.simplex[..self.count]));
+            }
+            if !(square < f64::INFINITY) {
+                return None;
+            }
+            let distance = square.sqrt();
+            let new = self.vertex(self.nearest * (-1.0 / distance));
+            gap = self.nearest.dot(new.w) / distance;
+            let near = distance - gap <= accuracy.tolerance + RELATIVE * distance;
+            if self.has(&new) || near || gap > accuracy.beyond || self.count > DIM {
+                break;
+            }
+            let before = (self.simplex, self.count);
+            self.simplex[self.count] = new;
+            let Some((count, point)) = reduced(&mut self.simplex, self.count + 1) else {
+                return Some(touching(&self.simplex[..self.count + 1]));
+            };
+            if !(point.length_squared() < square) {
+                (self.simplex, self.count) = before;
+                break;
+            }
+            (self.count, self.nearest) = (count, point);
+            gap = f64::NEG_INFINITY;
+        }
+        let distance = self.nearest.length();
+        let normal = self.nearest * (-1.0 / distance);
+        if gap == f64::NEG_INFINITY {
+            gap = -normal.dot(self.vertex(normal).w);
+        }
+        let [a, b] = witness(&self.simplex[..self.count]);
+        Some(Cores { a, b, normal, distance, gap })
+    }
+
+    /// Moves B along the unit vector `direction` while planes are known to be farther than `target` between it and A, up
+    /// to `tolerance`. `None` if B meets nothing within `limit`. The search for planes is that for the closest points,
+    /// but goes on while B moves (G. van den Bergen, "Ray Casting against General Convex Objects with Application to
+    /// Continuous Collision Detection", 2004). All lengths are in metres.
+    pub(crate) fn advance(
+        &mut self,
+        direction: Wide,
+        target: f64,
+        tolerance: f64,
+        limit: f64,
+    ) -> Option<FreeWay> {
+        let mut free = FreeWay { length: 0.0, normal: Wide::ZERO };
+        for _ in 0..MAX_ITERATIONS {
+            let square = self.nearest.length_squared();
+            if !(square < f64::INFINITY) || square <= target * target || self.touches(square) {
+                break;
+            }
+            let distance = square.sqrt();
+            let normal = self.nearest * (-1.0 / distance);
+            let mut new = self.vertex(normal);
+            let gap = -normal.dot(new.w);
+            let is_apart = gap > target + tolerance;
+            if is_apart {
+                let rate = -direction.dot(normal);
+                // A NaN is a miss.
+                if !(rate > 0.0) {
+                    return None;
+                }
+                let length = (gap - target - 0.5 * tolerance) / rate;
+                let step = direction * length;
+                free.length += length;
+                free.normal = normal;
+                if !(free.length <= limit) {
+                    return None;
+                }
+                let is_known = self.has(&new);
+                self.shift(step);
+                new.b += step;
+                new.w = new.a - new.b;
+                if is_known {
+                    self.renew();
+                    continue;
+                }
+            } else if self.has(&new) || distance - gap <= tolerance + RELATIVE * distance {
+                break;
+            }
+            if self.count > DIM {
+                self.renew();
+                break;
+            }
+            self.simplex[self.count] = new;
+            self.count += 1;
+            let inside = reduced(&mut self.simplex, self.count);
+            let Some((count, point)) = inside else {
+                self.count -= 1;
+                self.renew();
+                break;
+            };
+            (self.count, self.nearest) = (count, point);
+            if !is_apart && !(point.length_squared() < square) {
+                break;
+            }
+        }
+        Some(free)
+    }
+
+    /// Whether the simplex, whose nearest point has that squared distance, touches the origin.
+    fn touches(&self, square: f64) -> bool {
+        let vertices = &self.simplex[..self.count];
+        let scale = vertices.iter().fold(0.0, |most: f64, v| most.max(v.w.length_squared()));
+        square <= TOUCHING * TOUCHING * scale
+    }
+
+    fn has(&self, new: &Vertex) -> bool {
+        self.simplex[..self.count].iter().any(|v| v.w == new.w)
+    }
 }
 
 /// Reduces the simplex to its face nearest to the origin and returns the face's size and nearest point. `None` if the

@@ -12,4 +12,4 @@ mod simplex;
 
 pub(crate) use convex::Convex;
 pub(crate) use dim::nearest_weights;
-pub(crate) use gjk::{Accuracy, Cores, Frame, closest_cores};
+pub(crate) use gjk::{Accuracy, Cores, Frame, Search, closest_cores};

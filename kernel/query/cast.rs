@@ -7,7 +7,7 @@
 //! on curves.
 
 use super::closest::{Closest, closest};
-use crate::distance::{Accuracy, Convex, Frame, closest_cores};
+use crate::distance::{Accuracy, Convex, Cores, Frame, Search, closest_cores};
 use crate::math::{Pose, Vector, max};
 use crate::shape::{Aabb, Composite, HalfSpace, Part, Shape};
 
@@ -159,7 +159,7 @@ fn at_start(a: &Shape, b: &Shape, pose: &Pose, way: &Way) -> Option<CastHit> {
 }
 
 fn size_of(shape: &Shape) -> f64 {
-    f64::from(shape.local_aabb(Pose::IDENTITY.rotation).half().length())
+    f64::from(shape.ball_around().1)
 }
 
 /// The distance at which shapes meet, in metres.
@@ -169,21 +169,20 @@ fn met_distance(shapes: [(&Shape, &Convex); 2]) -> f64 {
     MET * (size(0, a) + size(1, b)) + MET_OF_LARGER * a.max(b)
 }
 
+/// Two bounded convex shapes: B moves as far as planes of a first search allow, then by Newton's method.
 fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, way: &Way, limit: f32) -> Option<CastHit> {
     let (a, b) = (Convex::of(shape_a)?, Convex::of(shape_b)?);
     let direction = way.direction.widen();
-    let radii = [a.radius, b.radius].map(f64::from);
-    let target = radii[0] + radii[1] + f64::from(max(way.config.target_distance, 0.0));
+    let target = f64::from(a.radius) + f64::from(b.radius) + f64::from(max(way.config.target_distance, 0.0));
     let met = met_distance([(shape_a, &a), (shape_b, &b)]);
     let accuracy = Accuracy { tolerance: 0.1 * met, beyond: f64::INFINITY };
-    let start = Frame::from(pose);
-    let (mut way_done, mut normal) = (0.0, Vector::<f64>::ZERO);
-    for round in 0..MAX_ROUNDS {
-        let frame = Frame { position: start.position + direction * way_done, rotation: start.rotation };
-        let guess = if round == 0 { direction * -1.0 } else { normal };
-        let cores = closest_cores(&a, &b, &frame, guess, accuracy)?;
+    let mut search = Search::new(&a, &b, Frame::from(pose), direction * -1.0);
+    let free = search.advance(direction, target, met, f64::from(limit))?;
+    let (mut way_done, mut normal) = (free.length, free.normal);
+    for _ in 0..MAX_ROUNDS {
+        let cores = search.closest(accuracy)?;
         let gap = cores.distance - target;
-        if round == 0 && gap <= 0.0 {
+        if way_done == 0.0 && gap <= 0.0 {
             return at_start(shape_a, shape_b, pose, way);
         }
         // Where cores touch the normal is that of the plane which was crossed.
@@ -194,42 +193,61 @@ fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, way: &Way, limit: f3
         if gap <= met {
             // Those that already part, or slide along each other, do not meet.
             let parting = !(rate > 1.0e-7);
-            if parting && round == 0 {
+            if parting && way_done == 0.0 {
                 return None;
             }
             // The rest of the way is short, so that the points stay what they are.
             let rest = if parting { 0.0 } else { (gap / rate).clamp(0.0, 16.0 * met) };
             let distance = (way_done + rest).min(f64::from(limit).max(way_done));
-            let cores = if cores.distance > 0.0 {
-                cores
-            } else {
-                let back = Frame { position: frame.position - direction * (4.0 * met), ..frame };
-                closest_cores(&a, &b, &back, normal, accuracy)?
-            };
-            let mut normal = if cores.distance > 0.0 { cores.normal } else { normal };
-            if (a.is_curved() || b.is_curved()) && cores.distance < FAR_ENOUGH * met {
-                // Points on curves are rounded to f32, and so is the direction between near ones.
-                let back = Frame { position: frame.position - direction * (FAR_ENOUGH * met), ..frame };
-                let apart = closest_cores(&a, &b, &back, normal, accuracy)?;
-                normal = if apart.distance > 0.0 { apart.normal } else { normal };
-            }
-            let on_a = cores.a + normal * radii[0];
-            let on_b = on_a + normal * (target - radii[0] - radii[1]);
-            let points = [on_a.narrow(), on_b.narrow()];
-            return Some(CastHit { distance: distance as f32, points, normal: normal.narrow() });
+            let meeting = Meeting { shapes: [&a, &b], frame: search.frame(), direction, met, target };
+            let (normal, points) = meeting.contact(cores, normal)?;
+            return Some(CastHit { distance: distance as f32, points, normal });
         }
         // A NaN is a miss.
         if !(rate > 0.0) {
             return None;
         }
         // The plane's gap may be less than the distance by the tolerance.
-        let left = (cores.gap - target - 0.5 * met).max(0.25 * met);
-        way_done += left / rate;
+        let left = (cores.gap - target - 0.5 * met).max(0.25 * met) / rate;
+        way_done += left;
         if !(way_done <= f64::from(limit)) {
             return None;
         }
+        search.move_by(direction * left);
     }
     None
+}
+
+/// Two convex shapes, a little before they meet.
+struct Meeting<'a> {
+    shapes: [&'a Convex<'a>; 2],
+    frame: Frame,
+    direction: Vector<f64>,
+    met: f64,
+    target: f64,
+}
+
+impl Meeting<'_> {
+    /// The normal and the points on both, given the closest points of the cores and the normal of a plane between them.
+    fn contact(&self, cores: Cores, normal: Vector<f64>) -> Option<(Vector, [Vector; 2])> {
+        let [a, b] = self.shapes;
+        let accuracy = Accuracy { tolerance: 0.1 * self.met, beyond: f64::INFINITY };
+        let earlier = |way: f64| {
+            let back = Frame { position: self.frame.position - self.direction * way, ..self.frame };
+            closest_cores(a, b, &back, normal, accuracy)
+        };
+        let cores = if cores.distance > 0.0 { cores } else { earlier(4.0 * self.met)? };
+        let mut normal = if cores.distance > 0.0 { cores.normal } else { normal };
+        if (a.is_curved() || b.is_curved()) && cores.distance < FAR_ENOUGH * self.met {
+            // Points on curves are rounded to f32, and so is the direction between near ones.
+            let apart = earlier(FAR_ENOUGH * self.met)?;
+            normal = if apart.distance > 0.0 { apart.normal } else { normal };
+        }
+        let radii = [a.radius, b.radius].map(f64::from);
+        let on_a = cores.a + normal * radii[0];
+        let on_b = on_a + normal * (self.target - radii[0] - radii[1]);
+        Some((normal.narrow(), [on_a.narrow(), on_b.narrow()]))
+    }
 }
 
 /// A bounded convex shape that moves onto a half-space.

@@ -59,11 +59,18 @@ impl Line {
     /// `None` if a number is not finite, or the direction zero.
     pub(super) fn new(origin: WorldVector, direction: WorldVector) -> Option<Self> {
         let (origin, direction) = (wide_position(origin), wide_position(direction));
-        let largest = direction.largest();
-        if !(origin.largest() < f64::INFINITY && largest > 0.0 && largest < f64::INFINITY) {
+        if !(origin.largest() < f64::INFINITY) {
             return None;
         }
-        // Scaled first: the square of a length may overflow.
+        let square = direction.length_squared();
+        if square > 1.0e-200 && square < 1.0e200 {
+            return Some(Self { origin, direction: direction * (1.0 / square.sqrt()) });
+        }
+        let largest = direction.largest();
+        if !(largest > 0.0 && largest < f64::INFINITY) {
+            return None;
+        }
+        // Scaled first: the square of the length is no normal number.
         let scaled = direction * (1.0 / largest);
         let direction = scaled * (1.0 / scaled.length());
         (direction.largest() < f64::INFINITY).then_some(Self { origin, direction })
@@ -85,6 +92,9 @@ impl Line {
                 return;
             }
             let tree = &trees[kind];
+            if tree.is_empty() {
+                continue;
+            }
             let bounds = tree.bounds();
             let reach = (bounds.max - origin).abs().max((bounds.min - origin).abs()).length();
             let reach = if reach < 1.0e9 { reach } else { ENDLESS };

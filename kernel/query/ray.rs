@@ -9,6 +9,9 @@ use crate::shape::Shape;
 /// Rays that begin farther than this from a shape, in metres, are cast from a nearer point: `f32` is too coarse there.
 const FAR: f64 = 8.0;
 
+/// Added to balls around shapes, in metres: what rounding to `f32` takes aside where rays are not cast from nearer.
+const LEAST_ROOM: f64 = 1.0e-5;
+
 /// A ray in the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
@@ -69,11 +72,13 @@ impl Ray {
 
     /// The first hit of a collider's shape at a pose, within `limit` metres. Foreign shapes are never hit.
     pub fn hit(&self, collider: u32, shape: &Shape, pose: &WorldPose, limit: Scalar) -> Option<RayCastHit> {
+        let offset = self.line.origin - wide_position(pose.position);
+        let approach = approach(shape, pose.rotation, offset, self.line.direction, 0.0)?;
+        let before = if offset.length_squared() > FAR * FAR { approach } else { 0.0 };
         let rotation: Rot<f64> = pose.rotation.widen();
-        let origin = rotation.inverse_rotate(self.line.origin - wide_position(pose.position));
+        let origin = rotation.inverse_rotate(offset + self.line.direction * before);
         let direction = rotation.inverse_rotate(self.line.direction);
-        let before = lead(shape, origin, direction);
-        let from = (origin + direction * before).narrow();
+        let from = origin.narrow();
         let rest = f64::from(limit) - before;
         if !(rest >= 0.0) || !from.is_finite() {
             return None;
@@ -96,18 +101,24 @@ impl Ray {
     }
 }
 
-/// A way along a line, in metres, after which a shape around the frame's origin is not met yet. 0 where it is near.
-fn lead(shape: &Shape, origin: Vector<f64>, direction: Vector<f64>) -> f64 {
-    if !(origin.length_squared() > FAR * FAR) {
-        return 0.0;
+/// The way along a line until it is within `room` metres of the ball around a shape, or less, in metres. `None` if the
+/// line passes the ball. `offset` is from the shape's position to the origin of the line, in world axes.
+pub(super) fn approach(
+    shape: &Shape,
+    rotation: Rot,
+    offset: Vector<f64>,
+    direction: Vector<f64>,
+    room: f64,
+) -> Option<f64> {
+    let (center, radius) = shape.ball_around();
+    let to_center = rotation.rotate(center).widen() - offset;
+    let radius =
+        1.001 * f64::from(radius) + 1.0e-6 * f64::from(center.abs().max_element()) + LEAST_ROOM + room;
+    let nearest = to_center.dot(direction);
+    let aside = to_center - direction * nearest;
+    if aside.length_squared() > radius * radius || nearest + radius < 0.0 {
+        return None;
     }
-    way_to_ball(shape, 0.0, origin, direction)
-}
-
-/// The way along a line until it may be within `room` metres of the ball around a shape.
-pub(super) fn way_to_ball(shape: &Shape, room: f64, origin: Vector<f64>, direction: Vector<f64>) -> f64 {
-    let aabb = shape.local_aabb(Rot::IDENTITY);
-    let radius = 1.001 * f64::from(aabb.half().length()) + room;
-    let way = (aabb.center().widen() - origin).dot(direction) - radius;
-    if way > 0.0 && radius < 1.0e9 { way } else { 0.0 }
+    let way = nearest - radius;
+    Some(if way > 0.0 && radius < 1.0e9 { way } else { 0.0 })
 }

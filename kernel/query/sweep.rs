@@ -3,7 +3,7 @@
 use super::cast::{CastConfig, cast_shape};
 use super::hits::Hit;
 use super::near::Line;
-use super::ray::way_to_ball;
+use super::ray::approach;
 use crate::bvh::Trees;
 use crate::math::{Pose, Rot, Scalar, Vector, WorldPose, WorldVector, max, wide_position, world_position};
 use crate::shape::Shape;
@@ -89,14 +89,14 @@ impl<'a> ShapeCast<'a> {
 
     /// The first hit on a collider's shape at a pose, within `limit` metres. Foreign shapes are never hit.
     pub fn hit(&self, collider: u32, shape: &Shape, pose: &WorldPose, limit: Scalar) -> Option<ShapeCastHit> {
-        let rotation: Rot<f64> = pose.rotation.widen();
-        let offset = rotation.inverse_rotate(self.line.origin - wide_position(pose.position));
-        let direction = rotation.inverse_rotate(self.line.direction);
-        let center = offset + rotation.inverse_rotate(self.center.widen());
+        let offset = self.line.origin - wide_position(pose.position);
+        let along = self.line.direction;
         let room = 1.001 * f64::from(self.half.length() + max(self.config.target_distance, 0.0));
-        let before = way_to_ball(shape, room, center, direction);
+        let before = approach(shape, pose.rotation, offset + self.center.widen(), along, room)?;
+        let rotation: Rot<f64> = pose.rotation.widen();
+        let direction = rotation.inverse_rotate(along);
         let turn = pose.rotation.inverse().mul(self.rotation);
-        let start = Pose::new((offset + direction * before).narrow(), turn);
+        let start = Pose::new(rotation.inverse_rotate(offset + along * before).narrow(), turn);
         let rest = f64::from(limit) - before;
         if !(rest >= 0.0) || !start.position.is_finite() {
             return None;

@@ -143,6 +143,24 @@ impl Shape {
         }
     }
 
+    /// A ball around the shape: its centre and its radius in metres. Very large around what has no end.
+    pub(crate) fn ball_around(&self) -> (Vector, f32) {
+        let around = |a: Vector, b: Vector, radius: f32| ((a + b) * 0.5, 0.5 * (b - a).length() + radius);
+        let around_box = |aabb: Aabb| (aabb.center(), aabb.half().length());
+        match self {
+            Self::Ball(s) => (Vector::ZERO, s.radius),
+            Self::Capsule(s) => around(s.a, s.b, s.radius),
+            Self::Cuboid(s) => (Vector::ZERO, s.half.length()),
+            Self::Hull(s) => s.ball_around(),
+            Self::Segment(s) => around(s.a, s.b, 0.0),
+            Self::Composite(s) => around_box(s.tree().bounds()),
+            Self::Foreign(s) => around_box(s.aabb),
+            Self::Triangle(_) | Self::Curved(_) | Self::HalfSpace(_) => {
+                around_box(self.local_aabb(crate::math::Rot::IDENTITY))
+            }
+        }
+    }
+
     /// The point of the shape farthest along `direction` (any length), radius included. `None` for
     /// half-spaces, composites and foreign shapes.
     pub fn support(&self, direction: Vector) -> Option<Vector> {

@@ -63,7 +63,7 @@ impl Stage {
 pub trait Engine<D: Dimension> {
     /// Features that this build does not support. Their methods are never called.
     fn lacks(&self) -> &'static [Need] {
-        &[]
+        &[Need::Batches]
     }
     /// Adds a body with all its shapes.
     fn add_body(&mut self, body: &Body<D>);
@@ -86,6 +86,10 @@ pub trait Engine<D: Dimension> {
     /// The distance to the closest hit of each ray, or infinity.
     fn raycast(&mut self, _rays: &[Ray<D>], _out: &mut Vec<f32>) {
         unreachable!("an engine without queries is given none");
+    }
+    /// As [`raycast`](Self::raycast), by one call for all rays.
+    fn raycast_batch(&mut self, _rays: &[Ray<D>], _out: &mut Vec<f32>) {
+        unreachable!("an engine without batches is given none");
     }
     /// The distance that a ball of a radius moves along each ray, or infinity.
     fn ballcast(&mut self, _radius: f32, _rays: &[Ray<D>], _out: &mut Vec<f32>) {

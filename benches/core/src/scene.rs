@@ -35,6 +35,8 @@ pub enum Work {
     Steps,
     /// Batches of rays against a world at rest.
     Raycasts,
+    /// The same rays in one call each batch, which threads may share.
+    RaycastBatches,
     /// Batches of sweeps of a ball against a world at rest.
     Ballcasts,
     /// Adding all bodies to an empty world, and the step after it.
@@ -52,6 +54,8 @@ pub enum Need {
     Joints,
     /// Rays and shape casts.
     Queries,
+    /// Many rays in one call.
+    Batches,
     /// Triangle meshes.
     Meshes,
     /// Bodies with several shapes, or with one that is not at the body's origin.
@@ -171,6 +175,7 @@ impl<D: Dimension> Entry<D> {
             Need::Physics => !self.family.is_mostly_still(),
             Need::Joints => !scene.joints.is_empty(),
             Need::Queries => self.family == Family::Queries,
+            Need::Batches => scene.plan.work == Work::RaycastBatches,
             Need::Meshes => scene.bodies.iter().flat_map(|b| &b.parts).any(|p| D::is_mesh(&p.shape)),
             Need::Children => scene.bodies.iter().any(|b| b.only_shape().is_none()),
         }

@@ -153,6 +153,7 @@ impl<D: Dimension> Bench<'_, D> {
         for steps in settle..settle + timed {
             match scene.plan.work {
                 Work::Raycasts => clock.time(|| engine.raycast(&scene.rays, out)),
+                Work::RaycastBatches => clock.time(|| engine.raycast_batch(&scene.rays, out)),
                 Work::Ballcasts => clock.time(|| engine.ballcast(scene.cast_radius, &scene.rays, out)),
                 _ => clock.time(|| step(&mut **engine, scene, steps)),
             }
@@ -190,7 +191,7 @@ impl<D: Dimension> Bench<'_, D> {
         let mut states = Vec::new();
         self.engine.states(&mut states);
         let mut quality = judge(&self.scene, &states, self.engine.awake());
-        if matches!(self.scene.plan.work, Work::Raycasts | Work::Ballcasts) {
+        if matches!(self.scene.plan.work, Work::Raycasts | Work::RaycastBatches | Work::Ballcasts) {
             let hits: Vec<f64> = self.out.iter().filter(|t| t.is_finite()).map(|t| *t as f64).collect();
             quality.hits = Some(hits.len());
             quality.mean_hit = Some(hits.iter().sum::<f64>() / hits.len().max(1) as f64);

@@ -6,6 +6,7 @@
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod many;
 mod pairs;
 mod world;
 

@@ -151,6 +151,11 @@ impl Hull {
         })
     }
 
+    /// A circle around the shape: its centre and its radius in metres.
+    pub(crate) fn ball_around(&self) -> (Vector, f32) {
+        (self.aabb.center(), self.aabb.half().length())
+    }
+
     /// Area, centroid and polar moment of the area about it.
     #[inline]
     pub fn unit_mass(&self) -> MassProperties {

@@ -10,7 +10,7 @@ mod wide;
 
 use super::MassProperties;
 use crate::math::{F32x4, Lane, Num, Vector, max, min};
-use crate::shape::primitives::direction_or;
+use crate::shape::primitives::{direction_or, hit_of_stretch};
 use crate::shape::{RayHit, ShapeError};
 
 /// A face of a hull: its plane and the range of its vertices in the list of loops.
@@ -289,33 +289,32 @@ impl Hull {
         if self.radius > 0.0 {
             return self.cast_ray_rounded(origin, direction, max_distance, solid);
         }
-        let (mut enter, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
-        let (mut enter_normal, mut exit_normal) = (Vector::ZERO, Vector::ZERO);
-        for face in &self.faces {
-            let height = face.normal.dot(origin) - face.offset;
-            let slope = face.normal.dot(direction);
-            if slope == 0.0 {
-                if height > 0.0 {
-                    return None;
-                }
-                continue;
+        let (from, along) = (Vector::<F32x4>::splat(origin), Vector::<F32x4>::splat(direction));
+        let (mut enter, mut exit) = (F32x4::splat(f32::NEG_INFINITY), F32x4::splat(f32::INFINITY));
+        let (mut enter_at, mut exit_at, mut number) = (F32x4::ZERO, F32x4::ZERO, F32x4::ZERO);
+        for block in &self.face_blocks {
+            let height = block.normal.dot(from) - block.offset;
+            let slope = block.normal.dot(along);
+            if F32x4::any(F32x4::and(slope.eq(F32x4::ZERO), F32x4::ZERO.lt(height))) {
+                return None;
             }
-            let t = -height / slope;
-            if slope < 0.0 && t > enter {
-                (enter, enter_normal) = (t, face.normal);
-            } else if slope > 0.0 && t < exit {
-                (exit, exit_normal) = (t, face.normal);
-            }
+            let at = -height / slope;
+            let enters = F32x4::and(slope.lt(F32x4::ZERO), enter.lt(at));
+            let leaves = F32x4::and(F32x4::ZERO.lt(slope), at.lt(exit));
+            (enter, enter_at) = (F32x4::select(enters, at, enter), F32x4::select(enters, number, enter_at));
+            (exit, exit_at) = (F32x4::select(leaves, at, exit), F32x4::select(leaves, number, exit_at));
+            number += F32x4::ONE;
         }
-        if !(enter <= exit) || exit < 0.0 {
-            return None;
-        }
-        let hit = match (enter >= 0.0, solid) {
-            (true, _) => RayHit { distance: enter, normal: enter_normal },
-            (false, true) => RayHit { distance: 0.0, normal: Vector::ZERO },
-            (false, false) => RayHit { distance: exit, normal: exit_normal },
-        };
-        (hit.distance <= max_distance).then_some(hit)
+        let (first, enter) = largest(enter, enter_at);
+        let (last, exit) = largest(-exit, exit_at);
+        let normal_of = |face: usize| self.faces[face.min(self.faces.len() - 1)].normal;
+        let normal_at = |entering: bool, _| normal_of(if entering { first } else { last });
+        hit_of_stretch((enter, -exit), max_distance, solid, normal_at)
+    }
+
+    /// A ball around the shape: its centre and its radius in metres.
+    pub(crate) fn ball_around(&self) -> (Vector, f32) {
+        (self.centroid, self.extent + self.radius)
     }
 }
 

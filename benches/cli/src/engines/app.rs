@@ -19,6 +19,8 @@ pub const LACKS: &[Need] = &[
     Need::Joints,
     #[cfg(not(feature = "queries"))]
     Need::Queries,
+    #[cfg(not(feature = "batches"))]
+    Need::Batches,
     #[cfg(not(feature = "meshes"))]
     Need::Meshes,
     #[cfg(not(feature = "children"))]

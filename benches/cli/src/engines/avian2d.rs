@@ -154,20 +154,26 @@ impl Engine<D2> for Sim {
         let state = self.spatial.get_or_insert_with(|| Spatial::new(world));
         let spatial = state.get(world).expect("the spatial query is there");
         let filter = SpatialQueryFilter::default();
-        #[cfg(feature = "batches")]
-        if self.settings.threads > 1 {
-            let way = |r: &Ray2| (Vec2::from(r.origin), Dir2::new_unchecked(Vec2::from(r.dir).normalize()));
-            let (ways, mut hits) = (rays.iter().map(way).collect::<Vec<_>>(), vec![None; rays.len()]);
-            spatial.cast_rays(&ways, rays[0].length, true, &filter, &mut hits);
-            out.extend(hits.iter().map(|hit| hit.map_or(f32::INFINITY, |h| h.distance)));
-            return;
-        }
         out.extend(rays.iter().map(|r| {
             let dir = Dir2::new_unchecked(Vec2::from(r.dir).normalize());
             spatial
                 .cast_ray(Vec2::from(r.origin), dir, r.length, true, &filter)
                 .map_or(f32::INFINITY, |h| h.distance)
         }));
+    }
+
+    #[cfg(feature = "batches")]
+    fn raycast_batch(&mut self, rays: &[Ray2], out: &mut Vec<f32>) {
+        out.clear();
+        let world = self.app.world_mut();
+        let state = self.spatial.get_or_insert_with(|| Spatial::new(world));
+        let spatial = state.get(world).expect("the spatial query is there");
+        let length = rays.first().map_or(0.0, |r| r.length);
+        let aimed = |r: &Ray2| (Vec2::from(r.origin), Dir2::new_unchecked(Vec2::from(r.dir).normalize()));
+        let aimed: Vec<_> = rays.iter().map(aimed).collect();
+        let mut hits = vec![None; rays.len()];
+        spatial.cast_rays(&aimed, length, true, &SpatialQueryFilter::default(), &mut hits);
+        out.extend(hits.iter().map(|hit| hit.as_ref().map_or(f32::INFINITY, |h| h.distance)));
     }
 
     fn stages(&mut self) -> Vec<Stage> {

@@ -161,14 +161,6 @@ impl Engine<D3> for Sim {
         let state = self.spatial.get_or_insert_with(|| Spatial::new(world));
         let spatial = state.get(world).expect("the spatial query is there");
         let filter = SpatialQueryFilter::default();
-        #[cfg(feature = "batches")]
-        if self.settings.threads > 1 {
-            let way = |r: &Ray3| (Vec3::from(r.origin), Dir3::new_unchecked(Vec3::from(r.dir).normalize()));
-            let (ways, mut hits) = (rays.iter().map(way).collect::<Vec<_>>(), vec![None; rays.len()]);
-            spatial.cast_rays(&ways, rays[0].length, true, &filter, &mut hits);
-            out.extend(hits.iter().map(|hit| hit.map_or(f32::INFINITY, |h| h.distance)));
-            return;
-        }
         out.extend(rays.iter().map(|r| {
             let dir = Dir3::new_unchecked(Vec3::from(r.dir).normalize());
             spatial
@@ -185,17 +177,6 @@ impl Engine<D3> for Sim {
         let spatial = state.get(world).expect("the spatial query is there");
         let filter = SpatialQueryFilter::default();
         let ball = Collider::sphere(radius);
-        #[cfg(feature = "batches")]
-        if self.settings.threads > 1 {
-            let way = |r: &Ray3| {
-                (Vec3::from(r.origin), Quat::IDENTITY, Dir3::new_unchecked(Vec3::from(r.dir).normalize()))
-            };
-            let (ways, mut hits) = (rays.iter().map(way).collect::<Vec<_>>(), vec![None; rays.len()]);
-            let config = ShapeCastConfig::from_max_distance(rays[0].length);
-            spatial.cast_shapes(&ball, &ways, &config, &filter, &mut hits);
-            out.extend(hits.iter().map(|hit| hit.map_or(f32::INFINITY, |h| h.distance)));
-            return;
-        }
         out.extend(rays.iter().map(|r| {
             let dir = Dir3::new_unchecked(Vec3::from(r.dir).normalize());
             let config = ShapeCastConfig::from_max_distance(r.length);
@@ -203,6 +184,20 @@ impl Engine<D3> for Sim {
                 .cast_shape(&ball, Vec3::from(r.origin), Quat::IDENTITY, dir, &config, &filter)
                 .map_or(f32::INFINITY, |h| h.distance)
         }));
+    }
+
+    #[cfg(feature = "batches")]
+    fn raycast_batch(&mut self, rays: &[Ray3], out: &mut Vec<f32>) {
+        out.clear();
+        let world = self.app.world_mut();
+        let state = self.spatial.get_or_insert_with(|| Spatial::new(world));
+        let spatial = state.get(world).expect("the spatial query is there");
+        let length = rays.first().map_or(0.0, |r| r.length);
+        let aimed = |r: &Ray3| (Vec3::from(r.origin), Dir3::new_unchecked(Vec3::from(r.dir).normalize()));
+        let aimed: Vec<_> = rays.iter().map(aimed).collect();
+        let mut hits = vec![None; rays.len()];
+        spatial.cast_rays(&aimed, length, true, &SpatialQueryFilter::default(), &mut hits);
+        out.extend(hits.iter().map(|hit| hit.as_ref().map_or(f32::INFINITY, |h| h.distance)));
     }
 
     fn stages(&mut self) -> Vec<Stage> {

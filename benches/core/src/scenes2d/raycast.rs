@@ -9,9 +9,16 @@ use crate::{
 /// Shapes per side of the field, one about every three metres.
 const SIDE: i32 = 100;
 
-pub(super) fn scene() -> Scene<D2> {
-    let about = "batches of 100,000 closest-hit rays of 50 m against 10,000 static shapes";
-    let mut scene = Scene::new(about, Plan::batches(Work::Raycasts, 7));
+pub(super) fn raycast() -> Scene<D2> {
+    field("batches of 100,000 closest-hit rays of 50 m against 10,000 static shapes", Work::Raycasts)
+}
+
+pub(super) fn raycast_batch() -> Scene<D2> {
+    field("the rays of raycast in one call per batch", Work::RaycastBatches)
+}
+
+fn field(about: &str, work: Work) -> Scene<D2> {
+    let mut scene = Scene::new(about, Plan::batches(work, 7));
     let mut random = Random::new(11);
     for i in 0..SIDE {
         for j in 0..SIDE {

@@ -32,6 +32,7 @@ impl Scenes for D3 {
         speed("junkyard", junkyard::scene),
         speed("washer", washer::scene),
         Entry { name: "raycast", family: Family::Queries, build: queries::raycast },
+        Entry { name: "raycast_batch", family: Family::Queries, build: queries::raycast_batch },
         Entry { name: "ballcast", family: Family::Queries, build: queries::ballcast },
         idle("empty", still::empty),
         idle("sleeping", still::sleeping),

@@ -16,6 +16,13 @@ pub(super) fn raycast() -> Scene<D3> {
     scene
 }
 
+pub(super) fn raycast_batch() -> Scene<D3> {
+    let about = "the rays of raycast in one call per batch";
+    let mut scene = Scene::new(about, Plan::batches(Work::RaycastBatches, 7));
+    add_field(&mut scene, 100_000);
+    scene
+}
+
 pub(super) fn ballcast() -> Scene<D3> {
     let about = "batches of 10,000 closest-hit sweeps of a sphere (0.25 m) over 30 m, same shapes";
     let mut scene = Scene::new(about, Plan::batches(Work::Ballcasts, 7));
