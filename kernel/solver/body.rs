@@ -301,6 +301,21 @@ impl BodyRows {
         debug_assert!(is_first, "body row {} spins twice", spin.row);
     }
 
+    /// Lists the bodies that turn far within a step of substeps of `h` seconds. Those that cannot turn about each axis are left
+    /// out.
+    pub(super) fn find_fast_turns(&mut self, h: f32) {
+        let Self { spins, fast_turns, rows, turn_locked, .. } = self;
+        fast_turns.clear();
+        for (row, spin) in spins.list() {
+            let w = rows[*row as usize].velocity().1;
+            if let Some(fast) = FastTurn::of(&spin.gyro, w, spin.rotation, h)
+                && !turn_locked.contains(*row)
+            {
+                fast_turns.push(*row as usize, fast);
+            }
+        }
+    }
+
     /// Resets the displacement and rotation of a body in this step.
     pub fn reset_delta(&mut self, row: u32) {
         self.rows[row as usize].set_delta(Vector::ZERO, Rot::IDENTITY);

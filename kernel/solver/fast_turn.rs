@@ -13,9 +13,8 @@
 //! rows are. A body of revolution has c = 1, and on its axis the velocity is exact: ω₀ × r₀ = S⁻¹ (ω × S r₀). Impulses
 //! are off by the angle θ, as without it.
 
-use super::{BodyRow, BodyRows, gyro::*};
+use super::{BodyRow, gyro::*};
 use crate::math::{Angular, Rot};
-use crate::thread_pool::ThreadPool;
 
 /// A body that turns far within this step.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +40,7 @@ impl FastTurn {
     }
 
     /// Sets the angular velocity to the one that rows see.
-    fn enter(&mut self, row: &mut BodyRow) {
+    pub(super) fn enter(&mut self, row: &mut BodyRow) {
         let ((v, w), turn) = (row.velocity(), row.delta().1);
         let mut start = w;
         if turn != Rot::IDENTITY {
@@ -53,7 +52,7 @@ impl FastTurn {
     }
 
     /// Sets the angular velocity back to the true one. Without an impulse it has the same bits as before.
-    fn leave(&mut self, row: &mut BodyRow) {
+    pub(super) fn leave(&mut self, row: &mut BodyRow) {
         let ((v, start), turn) = (row.velocity(), row.delta().1);
         let mut w = start;
         if start == self.seen[0] {
@@ -69,34 +68,5 @@ impl FastTurn {
     fn share(&self, from: Angular, from_rotation: Rot, to: Angular, to_rotation: Rot) -> f32 {
         let share = self.gyro.energy(from_rotation, from) / self.gyro.energy(to_rotation, to);
         if share > 0.0 && share.is_finite() { share.sqrt() } else { 1.0 }
-    }
-}
-
-impl BodyRows {
-    /// Lists the bodies that turn far within a step of substeps of `h` seconds. Those that cannot turn about each axis are left
-    /// out.
-    pub(super) fn find_fast_turns(&mut self, h: f32) {
-        let Self { spins, fast_turns, rows, turn_locked, .. } = self;
-        fast_turns.clear();
-        for (row, spin) in spins.list() {
-            let w = rows[*row as usize].velocity().1;
-            if let Some(fast) = FastTurn::of(&spin.gyro, w, spin.rotation, h)
-                && !turn_locked.contains(*row)
-            {
-                fast_turns.push(*row as usize, fast);
-            }
-        }
-    }
-
-    /// Before a sweep: fast bodies have the angular velocity that rows see.
-    pub(super) fn enter_rows(&mut self, pool: &ThreadPool) {
-        let Self { fast_turns, rows, .. } = self;
-        fast_turns.each(rows, pool, |fast, row| fast.enter(row));
-    }
-
-    /// After a sweep: fast bodies have their true angular velocity.
-    pub(super) fn leave_rows(&mut self, pool: &ThreadPool) {
-        let Self { fast_turns, rows, .. } = self;
-        fast_turns.each(rows, pool, |fast, row| fast.leave(row));
     }
 }

@@ -91,6 +91,16 @@ impl BodyRows {
         self.hold_back(pool);
     }
 
+    /// Before a sweep: bodies that turn far have the angular velocity that rows see.
+    pub(super) fn enter_rows(&mut self, pool: &ThreadPool) {
+        self.fast_turns.each(&mut self.rows, pool, |fast, row| fast.enter(row));
+    }
+
+    /// After a sweep: bodies that turn far have their true angular velocity.
+    pub(super) fn leave_rows(&mut self, pool: &ThreadPool) {
+        self.fast_turns.each(&mut self.rows, pool, |fast, row| fast.leave(row));
+    }
+
     /// Clamps velocities to their limits.
     fn hold_back(&mut self, pool: &ThreadPool) {
         self.limits.each(&mut self.rows, pool, |limits, row| {
