@@ -201,6 +201,13 @@ impl<S: ManifoldSource> Pair<'_, S> {
         f32::INFINITY
     }
 
+    /// Whether the shapes are within a distance when the step begins.
+    pub(super) fn begins_within(&self, distance: f32, buffers: &mut CastBuffers<S::Workspace>) -> bool {
+        let rest = Rest { way: Vector::ZERO, turning: distance };
+        self.look(Caster::Whole, &self.other.pose(0.0), 0.0, rest, buffers);
+        buffers.found.iter().any(|local| local.lower_bound() - self.margin < distance)
+    }
+
     /// How far the shapes overlap when the step ends; 0 if they do not.
     pub(super) fn depth_at_end(&self, buffers: &mut CastBuffers<S::Workspace>) -> f32 {
         let rest = Rest { way: Vector::ZERO, turning: 0.0 };

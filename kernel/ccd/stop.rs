@@ -201,10 +201,15 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             target: TARGET * size,
             extent: reaches[0].extent,
         };
-        if pair.depth_at_end(buffers) > DEEP * core
-            && let Cast::Hit(fraction) = pair.cast(Caster::Whole, buffers)
-        {
-            return fraction;
+        if pair.depth_at_end(buffers) > DEEP * core {
+            // What touches already, as a rod that falls over on its foot, goes on to the overlap at which it would be put
+            // back: stopped where it touches, it would hang there for many steps and gain their speed.
+            if pair.begins_within(self.tolerance, buffers) {
+                pair.margin -= DEEP * core;
+            }
+            if let Cast::Hit(fraction) = pair.cast(Caster::Whole, buffers) {
+                return fraction;
+            }
         }
         // What touches may slide, roll, and run over the seams of a floor. It must not pass.
         pair.margin = 0.0;

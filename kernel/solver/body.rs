@@ -1,6 +1,6 @@
 //! The dense body rows of one step, which constraint rows refer to by index.
 
-use super::{BodyRow, MassRow, RowView, gyro::*};
+use super::{BodyRow, MassRow, RowView, fast_turn::FastTurn, gyro::*};
 use crate::data::{BitSet, Parts};
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
 use core::sync::atomic::AtomicBool;
@@ -145,14 +145,14 @@ impl<T> Default for OnceEach<T> {
 }
 
 impl<T> OnceEach<T> {
-    fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.list.clear();
         self.rows.clear();
     }
 
     /// Adds an item, unless the row has one. Returns whether it was added.
     #[inline]
-    fn push(&mut self, row: usize, item: T) -> bool {
+    pub(super) fn push(&mut self, row: usize, item: T) -> bool {
         let row = u32::try_from(row).expect("a row is many bytes of memory");
         let is_first = self.rows.insert(row);
         if is_first {
@@ -210,6 +210,10 @@ pub struct BodyRows {
     pub(super) spins: OnceEach<Spin>,
     /// Bodies with accelerations in their own frame.
     pub(super) thrusts: OnceEach<LocalThrust>,
+    /// Bodies that turn far within the step. None in 2D.
+    pub(super) fast_turns: OnceEach<FastTurn>,
+    /// Rows of bodies that cannot turn about each axis.
+    pub(super) turn_locked: BitSet,
     /// Locked axes by row. Empty if no body has locked axes of translation.
     pub(super) locks: Vec<AxisLocks>,
     pub(super) claims: Claims,
@@ -228,6 +232,8 @@ impl BodyRows {
         self.motions.resize(count, Motion::FREE);
         self.limits.clear();
         self.spins.clear();
+        self.fast_turns.clear();
+        self.turn_locked.clear();
         self.thrusts.clear();
         self.locks.clear();
         self.first_dynamic = 1 + kinematic as u32;
@@ -249,6 +255,9 @@ impl BodyRows {
         }
         let is_first = self.limits.push(row, limits);
         debug_assert!(is_first, "body row {row} is limited twice");
+        if is_first && limits.locks.rotation() != 0 {
+            self.turn_locked.insert(row as u32);
+        }
         if is_first && limits.locks.is_translation_held() {
             self.locks.resize(self.rows.len(), AxisLocks::NONE);
             self.locks[row] = limits.locks;
@@ -292,13 +301,17 @@ impl BodyRows {
         debug_assert!(is_first, "body row {} spins twice", spin.row);
     }
 
-    /// Raises the inertia of fast-swinging thin bodies, as contacts see it, so that they gain no energy (see
-    /// `Gyro::in_step`). `h` is the length of a substep.
-    pub(super) fn limit_inertia_ratios(&mut self, h: f32) {
-        for (_, spin) in self.spins.list() {
-            let (mass, w) = (self.masses[spin.row as usize], self.rows[spin.row as usize].velocity().1);
-            if let Some(inertia) = spin.gyro.in_step(mass.inv_inertia(), w, spin.rotation, h) {
-                self.masses[spin.row as usize] = MassRow::new(mass.inv_mass(), inertia);
+    /// Lists the bodies that turn far within a step of substeps of `h` seconds. Those that cannot turn about each axis are left
+    /// out.
+    pub(super) fn find_fast_turns(&mut self, h: f32) {
+        let Self { spins, fast_turns, rows, turn_locked, .. } = self;
+        fast_turns.clear();
+        for (row, spin) in spins.list() {
+            let w = rows[*row as usize].velocity().1;
+            if let Some(fast) = FastTurn::of(&spin.gyro, w, spin.rotation, h)
+                && !turn_locked.contains(*row)
+            {
+                fast_turns.push(*row as usize, fast);
             }
         }
     }

@@ -12,14 +12,18 @@ impl Gyro {
         None
     }
 
-    /// The inverse inertia for the contacts of a step, if it differs from the body's.
-    pub(super) fn in_step(
-        &self,
-        _world: InvInertia,
-        _w: Angular,
-        _rotation: Rot,
-        _h: f32,
-    ) -> Option<InvInertia> {
+    /// Whether a body turns so far in a step that constraints must know of it.
+    pub(super) fn turns_far(&self, _w: Angular, _h: f32) -> bool {
+        match *self {}
+    }
+
+    /// The axis of the smallest moment.
+    pub(super) fn thin_axis(&self, _rotation: Rot) -> Angular {
+        match *self {}
+    }
+
+    /// The energy of rotation.
+    pub(super) fn energy(&self, _rotation: Rot, _w: Angular) -> f32 {
         match *self {}
     }
 
@@ -47,6 +51,11 @@ pub(super) fn to_world(_rotation: Rot, w: Angular) -> Angular {
 /// A body's rotation now.
 pub(super) fn world_rotation(delta: Rot, start: Rot) -> Rot {
     delta.mul(start)
+}
+
+/// The swing of an axis: none in the plane.
+pub(super) fn swing_of(_axis: Angular, _turn: Rot) -> Rot {
+    Rot::IDENTITY
 }
 
 /// The rotation by an angle in radians, as a vector.

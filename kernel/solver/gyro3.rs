@@ -1,7 +1,7 @@
 //! Gyroscopic torque, which conserves the angular momentum of spinning bodies other than balls. `gyro2.rs` exports the
 //! same names.
 
-use crate::math::{Angular, InvInertia, MAX_RATIO, Rot, Vector, max};
+use crate::math::{Angular, InvInertia, MAX_RATIO, Rot, Vector};
 
 /// Maximum turn within a substep, in rad, for which precession is integrated. Bodies that turn further precess as if
 /// they turned by this: three Newton steps of [`Gyro::spun`] converge up to here for any inertia.
@@ -28,15 +28,16 @@ pub(super) struct Gyro {
     inv_inertia: InvInertia,
 }
 
-/// Number of substeps per step that [`Gyro::in_step`] assumes.
+/// Minimum of 1 + cos θ for which the swing by θ is known from both directions of the axis. Below it is rounding.
+const MIN_SWING: f32 = 1.0e-3;
+
+/// Number of substeps per step that [`Gyro::turns_far`] assumes.
 const STEP_SUBSTEPS: f32 = 4.0;
 
-/// Maximum product r θ² of a rod's ratio of moments r and the squared angle θ that it swings in a step. Larger values
-/// let fast rods gain energy in contacts.
-const MAX_LEAK: f32 = 25.0;
-
-/// Minimum ratio of moments to which a swing may reduce r: that of a box 4 times as long as thick.
-const MIN_RATIO: f32 = 10.0;
+/// Minimum product r φ² of the ratio of moments r and the squared angle φ of a step, in rad², for which a body turns far. A
+/// box, whose r is 6 to 10, turns far from about 10 rad/s on at 60 Hz, a rod 10 times as long as thick from 3 rad/s on. More lets
+/// such bodies gain energy in contacts, less slows down piles that tumble.
+const FAR_TURN: f32 = 0.2;
 
 impl Gyro {
     /// `None` if the three moments are equal (within 1 ‰) and the tensor is diagonal, so that ω × I ω vanishes, or if
@@ -57,23 +58,22 @@ impl Gyro {
         Some(Self { inertia: inertia.scaled(1.0 / size), inv_inertia: i.scaled(size) })
     }
 
-    /// The inverse inertia, in world axes, for the contacts of a step, if it differs from the body's. `w` is the
-    /// angular velocity at the start of the step, `h` the length of a substep.
-    ///
-    /// The inertia in contact rows is constant over the step, but the thin axis of a rod that swings by the angle θ
-    /// moves. An impulse that turns the rod easily about the old axis then turns it about an axis whose moment is r
-    /// times larger, and gives up to 1 + r θ² times the energy. A larger moment about the thin axis keeps r θ² below
-    /// [`MAX_LEAK`]. Bodies that spin about their thin axis keep their inertia.
-    pub(super) fn in_step(&self, world: InvInertia, w: Angular, rotation: Rot, h: f32) -> Option<InvInertia> {
-        let angle = STEP_SUBSTEPS * h;
-        let allowed = |w: Angular| max(MAX_LEAK / (w.length_squared() * angle * angle), MIN_RATIO);
-        let ratio = self.inv_inertia.needle_ratio();
-        if !(allowed(w) < ratio) {
-            return None;
-        }
-        let axis = rotation.rotate(self.inv_inertia.thin_axis());
-        let allowed = allowed(w - axis * w.dot(axis));
-        (allowed < ratio).then(|| world.cut(axis, allowed / ratio))
+    /// Whether a body turns so far in a step of substeps of `h` seconds that constraints must know of it.
+    pub(super) fn turns_far(&self, w: Angular, h: f32) -> bool {
+        let step = STEP_SUBSTEPS * h;
+        let square = w.length_squared() * step * step;
+        square * MAX_RATIO > FAR_TURN && square * self.inv_inertia.needle_ratio() > FAR_TURN
+    }
+
+    /// The axis of the smallest moment of a body with this rotation, in world axes. Of two equal ones it is either.
+    pub(super) fn thin_axis(&self, rotation: Rot) -> Angular {
+        rotation.rotate(self.inv_inertia.thin_axis())
+    }
+
+    /// The energy of rotation, as a multiple of a unit that depends on the body.
+    pub(super) fn energy(&self, rotation: Rot, w: Angular) -> f32 {
+        let local = rotation.inverse_rotate(w);
+        local.dot(self.inertia.apply(local))
     }
 
     /// The angular velocity in the middle and at the end of `h` seconds of free spin, all in the body's frame.
@@ -158,6 +158,14 @@ pub(super) fn to_world(rotation: Rot, w: Angular) -> Angular {
 /// The current rotation of a body, of unit length: a deviation, kept over the steps, would change the spin.
 pub(super) fn world_rotation(delta: Rot, start: Rot) -> Rot {
     delta.mul(start).renormalized()
+}
+
+/// The smallest rotation that brings the unit vector `axis` to where `turn` brings it. That is `turn` itself where `axis` ends
+/// opposite to itself.
+pub(super) fn swing_of(axis: Angular, turn: Rot) -> Rot {
+    let end = turn.rotate(axis);
+    let (cross, w) = (axis.cross(end), 1.0 + axis.dot(end));
+    if w < MIN_SWING { turn } else { Rot { x: cross.x, y: cross.y, z: cross.z, w }.normalized() }
 }
 
 /// The rotation about x by an angle in radians, as a vector.

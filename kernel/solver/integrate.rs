@@ -10,22 +10,24 @@ use crate::thread_pool::ThreadPool;
 /// more claims.
 const BLOCK: usize = 256;
 
-/// Changes rows of bodies that have an item in a list.
-fn each_of<T: Send>(
-    listed: &mut OnceEach<T>,
-    rows: &mut [BodyRow],
-    pool: &ThreadPool,
-    change: impl Fn(&mut T, &mut BodyRow) + Sync,
-) {
-    let (count, items, view) = (listed.list().len(), listed.parts(), RowView::over(rows, 0));
-    pool.run(count.div_ceil(BLOCK), |block, _| {
-        // SAFETY: an item is in one block.
-        let items = unsafe { items.take(block * BLOCK..count.min((block + 1) * BLOCK)) };
-        for (row, item) in items {
-            // SAFETY: no row is listed twice, and an item is in one block.
-            unsafe { view.put(*row, |row| change(item, row)) };
-        }
-    });
+impl<T: Send> OnceEach<T> {
+    /// Changes rows of bodies that have an item in the list.
+    pub(super) fn each(
+        &mut self,
+        rows: &mut [BodyRow],
+        pool: &ThreadPool,
+        change: impl Fn(&mut T, &mut BodyRow) + Sync,
+    ) {
+        let (count, items, view) = (self.list().len(), self.parts(), RowView::over(rows, 0));
+        pool.run(count.div_ceil(BLOCK), |block, _| {
+            // SAFETY: an item is in one block.
+            let items = unsafe { items.take(block * BLOCK..count.min((block + 1) * BLOCK)) };
+            for (row, item) in items {
+                // SAFETY: no row is listed twice, and an item is in one block.
+                unsafe { view.put(*row, |row| change(item, row)) };
+            }
+        });
+    }
 }
 
 fn limit_factor(speed: f32, max: f32) -> f32 {
@@ -57,7 +59,7 @@ impl BodyRows {
                 unsafe { view.put(id as u32, change) };
             }
         });
-        each_of(&mut self.thrusts, &mut self.rows, pool, |thrust, row| thrust.accelerate(row, h));
+        self.thrusts.each(&mut self.rows, pool, |thrust, row| thrust.accelerate(row, h));
         self.hold_back(pool);
     }
 
@@ -68,7 +70,7 @@ impl BodyRows {
     /// would have moved, and contacts would throw it back.
     pub(super) fn integrate_positions(&mut self, h: f32, pool: &ThreadPool) {
         self.hold_back(pool);
-        each_of(&mut self.spins, &mut self.rows, pool, |spin, row| spin.begin_turn(row, h));
+        self.spins.each(&mut self.rows, pool, |spin, row| spin.begin_turn(row, h));
         self.hold_back(pool);
         let count = self.rows.len();
         let view = self.view_all();
@@ -85,13 +87,23 @@ impl BodyRows {
                 unsafe { move_bodies::<f32>(&view, &[id as u32], h) };
             }
         });
-        each_of(&mut self.spins, &mut self.rows, pool, |spin, row| spin.end_turn(row));
+        self.spins.each(&mut self.rows, pool, |spin, row| spin.end_turn(row));
         self.hold_back(pool);
+    }
+
+    /// Before a sweep: bodies that turn far have the angular velocity that rows see.
+    pub(super) fn enter_rows(&mut self, pool: &ThreadPool) {
+        self.fast_turns.each(&mut self.rows, pool, |fast, row| fast.enter(row));
+    }
+
+    /// After a sweep: bodies that turn far have their true angular velocity.
+    pub(super) fn leave_rows(&mut self, pool: &ThreadPool) {
+        self.fast_turns.each(&mut self.rows, pool, |fast, row| fast.leave(row));
     }
 
     /// Clamps velocities to their limits.
     fn hold_back(&mut self, pool: &ThreadPool) {
-        each_of(&mut self.limits, &mut self.rows, pool, |limits, row| {
+        self.limits.each(&mut self.rows, pool, |limits, row| {
             let (v, w) = row.velocity();
             let v = v.scale(limits.locks.translation_factors());
             let w = scale_angular(w, limits.locks.rotation_factors());

@@ -24,6 +24,7 @@ mod contact_fill;
 mod dim;
 mod distance;
 mod exclusive;
+mod fast_turn;
 mod fill;
 mod finish;
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]

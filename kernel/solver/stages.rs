@@ -96,7 +96,7 @@ impl Solver {
         }
         *first_dynamic = bodies.first_dynamic;
         deep.count(input, bodies);
-        bodies.limit_inertia_ratios(params.h);
+        bodies.find_fast_turns(params.h);
         let workers = pool.workers();
         shares.divide(workers, *first_dynamic, input, colors);
         let sorter = &Sorter { input, locks: &bodies.locks, shares };
@@ -167,6 +167,7 @@ impl Solver {
     ///
     /// An impact runs on through a row of bodies, as in Newton's cradle: two bodies further per sweep.
     pub fn warm_start(&mut self, params: &SubstepParams, pool: &ThreadPool) {
+        self.bodies.enter_rows(pool);
         if self.plan.blocks.iter().any(|block| block.passes.has(Pass::Impact)) {
             let mut sweeps = 0;
             while sweeps < IMPACT_SWEEPS && self.sweep(Pass::Impact, params, pool) {
@@ -174,11 +175,14 @@ impl Solver {
             }
         }
         self.sweep(Pass::WarmStart, params, pool);
+        self.bodies.leave_rows(pool);
     }
 
     /// Solves constraints with soft bias.
     pub fn solve(&mut self, params: &SubstepParams, pool: &ThreadPool) {
+        self.bodies.enter_rows(pool);
         self.sweep(Pass::Solve, params, pool);
+        self.bodies.leave_rows(pool);
     }
 
     /// Integrates positions.
@@ -189,10 +193,12 @@ impl Solver {
 
     /// Removes split impulses from the velocities, then solves constraints without bias, and applies friction.
     pub fn relax(&mut self, params: &SubstepParams, pool: &ThreadPool) {
+        self.bodies.enter_rows(pool);
         if self.plan.blocks.iter().any(|block| block.passes.has(Pass::UndoSplit)) {
             self.sweep(Pass::UndoSplit, params, pool);
         }
         self.sweep(Pass::Relax, params, pool);
+        self.bodies.leave_rows(pool);
     }
 
     /// Runs one substep.
@@ -206,7 +212,9 @@ impl Solver {
 
     /// Applies restitution, once after the last substep.
     pub fn restitute(&mut self, params: &SubstepParams, pool: &ThreadPool) {
+        self.bodies.enter_rows(pool);
         self.sweep(Pass::Restitute, params, pool);
+        self.bodies.leave_rows(pool);
     }
 
     /// Stores the impulses in manifolds and distances, for the warm start of the next step.

@@ -1,10 +1,10 @@
 //! Bodies that moved far stop where they meet something; see [`ccd`](crate::ccd).
 #![expect(unsafe_code, reason = "rows of bodies are changed by several threads, each its own")]
 
-use super::{BodyRow, RowView, Solver};
+use super::{BodyRow, RowView, Solver, gyro::*};
 use crate::ccd::{Path, SweepBuffers, SweepInput, Swept};
 use crate::contact::ManifoldSource;
-use crate::math::max;
+use crate::math::{Vector, max};
 use crate::thread_pool::ThreadPool;
 
 /// Number of bodies in a block of the job. More leaves workers idle at the end, fewer cost more claims.
@@ -25,6 +25,7 @@ impl Solver {
     ) {
         let first_dynamic = self.bodies.first_dynamic();
         let listed = &listed[..listed.len().min(self.bodies.rows.len().saturating_sub(1))];
+        let motions = &self.bodies.motions;
         let rows = &RowView::over(&mut self.bodies.rows, first_dynamic);
         pool.each_into(workers, listed.chunks(BLOCK).enumerate(), |buffers, (block, ids)| {
             for (i, &body) in ids.iter().enumerate() {
@@ -43,9 +44,9 @@ impl Solver {
                 let path = path(input, body, &moved);
                 let fraction = input.stop(body, &path, buffers);
                 if fraction < 1.0 {
-                    let (way, turn) = path.delta(fraction);
+                    let acceleration = motions[row as usize].acceleration;
                     // SAFETY: as above; the copy is no reference.
-                    unsafe { rows.put(row, |row| row.set_delta(way, turn)) };
+                    unsafe { rows.put(row, |row| put_back(row, &path, fraction, acceleration)) };
                 }
             }
         });
@@ -77,11 +78,25 @@ impl Solver {
         let paths: Vec<_> = stops.iter().map(|(body, _)| path_of(*body)).collect();
         for ((body, fraction), path) in stops.into_iter().zip(paths) {
             if let Some(path) = path {
-                let (way, turn) = path.delta(fraction);
-                self.bodies.rows[input.bodies.row(body) as usize].set_delta(way, turn);
+                let row = input.bodies.row(body) as usize;
+                let acceleration = self.bodies.motions[row].acceleration;
+                put_back(&mut self.bodies.rows[row], &path, fraction, acceleration);
             }
         }
     }
+}
+
+/// Puts a body back to a fraction of its path, without a gain of energy.
+///
+/// What it gains of potential energy, its speed loses: a body that is stopped on its way down would fall the same way
+/// twice. Its angular velocity is turned back with it: a rod that spins about its own axis goes on spinning about that axis.
+fn put_back(row: &mut BodyRow, path: &Path, fraction: f32, acceleration: Vector) {
+    let ((v, w), (_, end)) = (row.velocity(), row.delta());
+    let (way, turn) = path.delta(fraction);
+    row.set_delta(way, turn);
+    let (square, gained) = (v.length_squared(), 2.0 * acceleration.dot(path.way - way));
+    let kept = if gained > 0.0 && square > 0.0 { max(1.0 - gained / square, 0.0).sqrt() } else { 1.0 };
+    row.set_velocity(v * kept, to_world(turn, to_body(end, w)));
 }
 
 /// The path of a body in this step.

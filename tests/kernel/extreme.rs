@@ -127,10 +127,8 @@ fn is_calm(seed: u64) -> bool {
     })
 }
 
-/// Up to 1 % of the worlds throw a body. Contacts keep the arms of the start of the step, so a splinter that is wedged
-/// between two walls and turns by several radians in a step can gain energy.
 #[test]
-fn in_random_extreme_worlds_no_body_is_lost_and_hardly_one_is_thrown() {
-    let thrown: Vec<u64> = (1..=300).filter(|seed| !is_calm(*seed)).collect();
-    assert!(thrown.len() <= 3, "bodies are thrown in the worlds {thrown:?}");
+fn in_random_extreme_worlds_no_body_is_lost_or_thrown() {
+    let thrown: Vec<u64> = (1..=400).filter(|seed| !is_calm(*seed)).collect();
+    assert!(thrown.is_empty(), "bodies are thrown in the worlds {thrown:?}");
 }

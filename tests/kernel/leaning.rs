@@ -1,9 +1,9 @@
-//! Bodies that lean at a wall slide down, and none of them gains energy.
+//! Bodies that lean at a wall slide down or spin in the corner, and none of them gains energy.
 
 use super::super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Rot, Vector};
-use kernel::shape::{Capsule, Cuboid, Hull, Shape};
+use kernel::shape::{Capsule, Cuboid, Curved, Hull, Shape};
 use kernel::table::BodyKind;
 use std::sync::Arc;
 
@@ -19,13 +19,38 @@ fn prism(corners: usize, radius: f32, half: f32) -> Shape {
     Shape::Hull(Arc::new(Hull::convex_hull_of(&points).expect("a prism is solid")))
 }
 
-fn shapes() -> [(&'static str, Shape); 5] {
+fn capsule(radius: f32) -> Shape {
+    let end = Vector::Y * (HALF - radius);
+    Shape::Capsule(Capsule { a: -end, b: end, radius })
+}
+
+/// A cylinder or cone by the radii of both ends.
+fn curved(lower: f32, upper: f32, half_height: f32) -> Shape {
+    Shape::Curved(Curved { lower, upper, half_height })
+}
+
+fn angular() -> [(&'static str, Shape); 6] {
     [
         ("coin", prism(16, HALF, 0.04)),
         ("rod", Shape::Cuboid(Cuboid { half: Vector { x: 0.05, y: HALF, z: 0.05 } })),
+        ("thin rod", Shape::Cuboid(Cuboid { half: Vector { x: 0.02, y: HALF, z: 0.01 } })),
         ("plate", Shape::Cuboid(Cuboid { half: Vector { x: HALF, y: 0.05, z: 0.3 } })),
         ("box", Shape::Cuboid(Cuboid { half: Vector { x: 0.3, y: HALF, z: 0.2 } })),
         ("pencil", prism(6, 0.05, HALF)),
+    ]
+}
+
+fn round() -> [(&'static str, Shape); 9] {
+    [
+        ("capsule of 1 cm", capsule(0.01)),
+        ("capsule of 2 cm", capsule(0.02)),
+        ("capsule of 5 cm", capsule(0.05)),
+        ("capsule of 20 cm", capsule(0.2)),
+        ("thin cylinder", curved(0.05, 0.05, HALF)),
+        ("cylinder", curved(0.2, 0.2, HALF)),
+        ("disc", curved(HALF, HALF, 0.04)),
+        ("cone", curved(0.2, 0.0, HALF)),
+        ("frustum", curved(0.1, 0.05, HALF)),
     ]
 }
 
@@ -39,8 +64,12 @@ fn reach(shape: &Shape, rotation: Rot, direction: Vector) -> f32 {
     }
 }
 
-/// Maximum rise of a body's energy above its initial one. Energies are the maximum of each quarter second.
-fn rise(shape: &Shape, tilt: f32, friction: f32, seconds: usize) -> f64 {
+/// Duration of each run, in quarter seconds.
+const QUARTERS: usize = 80;
+
+/// Maximum rise of a body's energy, as a share of its initial energy. The body begins with a spin about its y axis, in rad/s.
+/// Energies are the maximum of each quarter second.
+fn rise(shape: &Shape, tilt: f32, friction: f32, spin: f32) -> f64 {
     let mut sim = Sim::new();
     sim.checked = false;
     let wall = Shape::Cuboid(Cuboid { half: Vector::ONE * 10.0 });
@@ -50,10 +79,11 @@ fn rise(shape: &Shape, tilt: f32, friction: f32, seconds: usize) -> f64 {
     let rotation = Rot::from_axis_angle(Vector::Z, -tilt).mul(Rot::from_axis_angle(Vector::X, 0.02)).mul(yaw);
     let (x, y) = (reach(shape, rotation, Vector::X), reach(shape, rotation, -Vector::Y));
     let position = Vector { x: -x - 0.001, y: y + 0.001, z: 0.0 };
-    sim.add_with(BodyKind::Dynamic, shape.clone(), position, rotation, friction, 0.0);
+    let id = sim.add_with(BodyKind::Dynamic, shape.clone(), position, rotation, friction, 0.0);
+    sim.bodies.velocities[id as usize].angular = rotation.rotate(Vector::Y) * spin;
     let start = sim.energy();
     let (mut least, mut rise) = (start, 0.0f64);
-    for _ in 0..4 * seconds {
+    for _ in 0..QUARTERS {
         let mut most = f64::MIN;
         for _ in 0..15 {
             sim.step();
@@ -65,31 +95,33 @@ fn rise(shape: &Shape, tilt: f32, friction: f32, seconds: usize) -> f64 {
     rise / start
 }
 
-/// The largest rise of a shape's energy over 30 angles at which it leans.
-fn worst(shape: &Shape, friction: f32) -> f64 {
-    (1..=30).map(|i| rise(shape, i as f32 * 0.05, friction, 20)).fold(0.0, f64::max)
+/// The largest rise of a shape's energy over 30 angles at which it leans. Every second angle has the opposite spin.
+fn worst(shape: &Shape, friction: f32, spin: f32) -> f64 {
+    let rise = |i: i32| rise(shape, i as f32 * 0.05, friction, if i % 2 == 0 { spin } else { -spin });
+    (1..=30).map(rise).fold(0.0, f64::max)
 }
 
 #[test]
 fn what_leans_at_a_wall_gains_no_energy() {
-    for (name, shape) in shapes() {
+    for (name, shape) in angular().into_iter().chain(round()) {
         for friction in [0.0, 0.3, 0.6, 1.0] {
-            let worst = worst(&shape, friction);
+            let worst = worst(&shape, friction, 0.0);
             assert!(worst < 5.0e-4, "{name} with friction {friction}: {worst}");
         }
     }
 }
 
-/// A thin capsule rolls in the corner of floor and wall, ever faster: to 100 rad/s and more about its own axis, while
-/// the axis swings. Contacts keep the arms of the start of the step, so friction acts beside the current axis: the
-/// capsule gains up to half of its initial energy before it falls. With a step of the gyroscopic torque between
-/// contacts and integration it gained six times as much.
+/// The axis of a body that rolls in a corner swings within a step, while the body turns by 1.7 rad about it. With the arms and
+/// the inertia of the start of the step for the spin of its end, thin capsules gained up to 400 times their energy, and
+/// cylinders doubled it. The rim of a cylinder or cone goes on with its spin within the step: what it overlaps then is
+/// pushed out, which lifts the body by some tenths of a millimetre.
 #[test]
-fn a_capsule_that_rolls_in_a_corner_gains_at_most_half_of_its_energy() {
-    let end = Vector::Y * (HALF - 0.05);
-    let shape = Shape::Capsule(Capsule { a: -end, b: end, radius: 0.05 });
-    for friction in [0.0, 0.3, 0.6, 1.0] {
-        let (worst, allowed) = (worst(&shape, friction), if friction < 0.5 { 0.01 } else { 0.6 });
-        assert!(worst < allowed, "friction {friction}: {worst}");
+fn what_spins_in_a_corner_gains_no_energy() {
+    for (name, shape) in round() {
+        let allowed = if matches!(shape, Shape::Capsule(_)) { 5.0e-4 } else { 5.0e-3 };
+        for friction in [0.0, 0.3, 0.6, 1.0] {
+            let worst = worst(&shape, friction, 100.0);
+            assert!(worst < allowed, "{name} with friction {friction}: {worst}");
+        }
     }
 }
