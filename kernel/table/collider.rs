@@ -170,6 +170,8 @@ pub struct Reach {
     pub extent: f32,
     /// As `extent`, but 0 on a static body: displacement of the surface per radian of turning, at most.
     pub turning: f32,
+    /// How far normals of the surface pass from the body's centre of mass at most, in metres; 0 without a body.
+    pub arm: f32,
     /// Maximum distance at which contacts are predicted, in metres.
     pub speculative: f32,
     /// Distance from the shape at which others are kept, in metres.
@@ -294,16 +296,18 @@ impl ColliderTable {
             def.local.inverse_transform(bodies[def.body].local_center)
         };
         let extent = def.shape.extent(center);
+        let arm = if def.body == NONE { 0.0 } else { def.shape.arm(center) };
         let fixed = def.body == NONE || bodies[def.body].kind == BodyKind::Static;
         if def.body != NONE {
             let size = &mut self.sizes[def.body as usize];
             size.core = min(size.core, def.shape.core().1);
-            size.arm = max(size.arm, self.colliders[id as usize].arm(bodies));
+            size.arm = max(size.arm, arm);
         }
         let reach = &mut self.reaches[id as usize];
         *reach = Reach {
             extent,
             turning: if fixed { 0.0 } else { extent },
+            arm,
             speculative: def.speculative,
             margin: def.margin,
             revision: reach.revision.wrapping_add(1),
@@ -458,21 +462,11 @@ impl ColliderTable {
 }
 
 impl Collider {
-    /// Maximum distance between the surface normals' lines and the body's centre of mass, in metres: speed of the
-    /// surface along its normals per rad/s.
-    pub(crate) fn arm(&self, bodies: &BodyTable) -> f32 {
-        let def = &self.def;
-        if def.body == NONE {
-            return 0.0;
-        }
-        def.shape.arm(def.local.inverse_transform(bodies[def.body].local_center))
-    }
-
     /// The box swept by the shape in a step while its body turns. `tight` is the box now.
     #[inline(never)]
     fn swung(&self, bodies: &BodyTable, fattening: Fattening, reach: &Reach, tight: &Aabb) -> Aabb {
         let def = &self.def;
-        let arm = self.arm(bodies);
+        let arm = reach.arm;
         if arm == 0.0 {
             return *tight;
         }
