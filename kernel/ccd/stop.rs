@@ -6,7 +6,7 @@ use crate::bvh::{TreeKind, Trees};
 use crate::contact::ManifoldSource;
 use crate::math::{Vector, WorldPose, max, min};
 use crate::shape::Aabb;
-use crate::table::{BodyPose, BodyTable, ColliderTable, NONE};
+use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach};
 
 /// Bodies that move by less than this share of the ball within them stay on their side of a wall: it then pushes them back.
 const FAR: f32 = 0.5;
@@ -21,6 +21,9 @@ const DEEP: f32 = 0.5;
 /// The radii of the balls that are cast where shapes touch already, as shares of that within them. The first that is free when
 /// the step begins counts.
 const BALLS: [f32; 3] = [0.5, 0.1, 0.0];
+
+/// The trees of what does not move.
+const FIXED: [TreeKind; 2] = [TreeKind::Static, TreeKind::Standalone];
 
 /// What sweeps read; constant while they run.
 pub struct SweepInput<'a, S> {
@@ -74,19 +77,29 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         way + size.arm * angle > max(FAR * size.core, TARGET * self.tolerance)
     }
 
+    /// Whether there is anything that does not move, and that a body may meet on a way of the step however it turns. Most fast
+    /// bodies are far from all that.
+    pub fn may_meet(&self, body: u32, way: Vector) -> bool {
+        let colliders = self.colliders.of_body(body, self.bodies);
+        let reach = colliders.fold(0.0, |reach, id| {
+            let Reach { extent, margin, .. } = self.colliders.reaches[id as usize];
+            max(reach, extent + margin)
+        });
+        let around = self.ball(body, reach).swept(way).grown(self.tolerance);
+        FIXED.iter().any(|kind| !self.trees[*kind].query(&around, |_| false))
+    }
+
+    /// The box of a ball about the centre of mass of a body where the step begins.
+    fn ball(&self, body: u32, radius: f32) -> Aabb {
+        Aabb::new(Vector::ZERO, Vector::ZERO).at(self.bodies.poses[body as usize].center).grown(radius)
+    }
+
     /// The fraction of the step after which a body stops at what does not move; 1 if it does not.
     pub fn stop(&self, body: u32, path: &Path, buffers: &mut SweepBuffers<S::Workspace>) -> f32 {
         let mut first = 1.0;
-        self.each_candidate(
-            body,
-            path,
-            &[TreeKind::Static, TreeKind::Standalone],
-            buffers,
-            |pair, buffers| {
-                let [collider, other] = pair;
-                first = min(first, self.impact(collider, path, self.side(other, None), &mut buffers.cast));
-            },
-        );
+        self.each_candidate(body, path, &FIXED, buffers, |[collider, other], buffers| {
+            first = min(first, self.impact(collider, path, self.side(other, None), &mut buffers.cast));
+        });
         first
     }
 
@@ -178,7 +191,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
                 (Path::still(self.bodies.poses[body as usize], self.bodies[body].local_center), def.local)
             }
         };
-        Side { collider, shape: &def.shape, local, path, arm: entry.arm(self.bodies) }
+        Side { collider, shape: &def.shape, local, path, arm: self.colliders.reaches[collider as usize].arm }
     }
 
     /// The fraction of the step after which a collider meets another, 1 if it does not.

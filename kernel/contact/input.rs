@@ -182,7 +182,7 @@ impl<S> NarrowPhaseInput<'_, S> {
             let turn = turn(velocity.angular.length(), self.dt);
             if is_swinging(reach, turn, self.speculative) {
                 let left = max(reach.speculative - velocity.linear.length() * self.dt, 0.0);
-                turning += min(self.arm(contact, side) * turn, left);
+                turning += min(reach.arm * turn, left);
             }
         }
         prediction + turning
@@ -201,11 +201,6 @@ impl<S> NarrowPhaseInput<'_, S> {
     pub(super) fn box_gap(&self, contact: &Contact) -> f32 {
         let [a, b] = contact.colliders;
         self.colliders.tight[a as usize].gap(&self.colliders.tight[b as usize])
-    }
-
-    /// How far normals of a side's surface pass from its body's centre of mass at most, in metres.
-    pub(super) fn arm(&self, contact: &Contact, side: usize) -> f32 {
-        self.colliders[contact.colliders[side]].arm(self.bodies)
     }
 }
 

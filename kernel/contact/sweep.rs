@@ -169,12 +169,13 @@ struct Motion {
 
 impl Motion {
     fn new<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> Self {
-        let extents = input.reaches(contact).map(|reach| reach.extent);
+        let reaches = input.reaches(contact);
+        let extents = reaches.map(|reach| reach.extent);
         let [a, b] = [input.velocity(contact, 0), input.velocity(contact, 1)];
         Self {
             linear: b.linear - a.linear,
             spins: [a.angular.length(), b.angular.length()],
-            arms: [input.arm(contact, 0), input.arm(contact, 1)],
+            arms: reaches.map(|reach| reach.arm),
             extents,
             met: min(input.tolerance, MET * smaller(extents)),
         }

@@ -38,7 +38,7 @@ impl Solver {
                 let (way, turn) = moved.delta();
                 // What turns by more than half a turn seems to turn less.
                 let angle = max(turn.small_turn().length(), moved.velocity().1.length() * input.dt);
-                if !input.is_far(body, way.length(), angle) {
+                if !input.is_far(body, way.length(), angle) || !input.may_meet(body, way) {
                     continue;
                 }
                 let path = path(input, body, &moved);

@@ -124,6 +124,8 @@ pub struct Reach {
     pub extent: f32,
     /// As `extent`, but 0 on a static body: displacement of the surface per radian of turning, at most.
     pub turning: f32,
+    /// How far normals of the surface pass from the body's centre of mass at most, in metres; 0 if that does not turn.
+    pub arm: f32,
     /// Maximum distance at which contacts are predicted, in metres.
     pub speculative: f32,
     /// Distance from the shape at which others are kept, in metres.
@@ -249,15 +251,17 @@ impl ColliderTable {
         };
         let extent = def.shape.extent(center);
         let fixed = def.body == NONE || bodies[def.body].kind == BodyKind::Static;
+        let arm = if fixed { 0.0 } else { def.shape.arm(center) };
         if def.body != NONE {
             let size = &mut self.sizes[def.body as usize];
             size.core = min(size.core, def.shape.core().1);
-            size.arm = max(size.arm, self.colliders[id as usize].arm(bodies));
+            size.arm = max(size.arm, arm);
         }
         let reach = &mut self.reaches[id as usize];
         *reach = Reach {
             extent,
             turning: if fixed { 0.0 } else { extent },
+            arm,
             speculative: def.speculative,
             margin: def.margin,
             revision: reach.revision.wrapping_add(1),
@@ -412,21 +416,11 @@ impl ColliderTable {
 }
 
 impl Collider {
-    /// Maximum distance between the surface normals' lines and the body's centre of mass, in metres: speed of the
-    /// surface along its normals per rad/s. 0 if the body does not turn: a mesh of the world has many vertices to go through.
-    pub(crate) fn arm(&self, bodies: &BodyTable) -> f32 {
-        let def = &self.def;
-        if def.body == NONE || bodies[def.body].kind == BodyKind::Static {
-            return 0.0;
-        }
-        def.shape.arm(def.local.inverse_transform(bodies[def.body].local_center))
-    }
-
     /// The box swept by the shape in a step while its body turns. `tight` is the box now.
     #[inline(never)]
     fn swung(&self, bodies: &BodyTable, fattening: Fattening, reach: &Reach, tight: &Aabb) -> Aabb {
         let def = &self.def;
-        let arm = self.arm(bodies);
+        let arm = reach.arm;
         if arm == 0.0 {
             return *tight;
         }
