@@ -146,7 +146,7 @@ fn a_hundred_bodies_in_one_place_come_apart_gently() {
         let mut fastest: Scalar = 0.0;
         let apart = (0..150).find(|_| {
             fastest = (0..10).fold(fastest, |most, _| most.max(fastest_in_step(&mut lab, &bodies)));
-            nearest_two(&lab, &bodies) > 0.95
+            nearest_two(&lab, &bodies) > 0.9
         });
         let seconds = apart.map(|tenths| (tenths + 1) as f64 * 10.0 * lab.dt);
         println!("kind {kind}: at up to {fastest} m/s of {push_out}, apart after {seconds:?} s");
