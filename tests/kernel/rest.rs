@@ -1,6 +1,6 @@
 //! Piles of every shape come to rest.
 
-use super::dim::{BALL_INERTIA, PILES, bullets, hull_of, restless, sized, spin, turned, upright};
+use super::dim::{BALL_INERTIA, PILES, ROCKING, bullets, hull_of, restless, sized, spin, turned, upright};
 use super::extreme::Dice;
 use super::sim::Sim;
 use crate::kernel;
@@ -14,8 +14,7 @@ fn shapes() -> Vec<(&'static str, Vec<Shape>)> {
     let mut list: Vec<_> = kinds.map(|(name, shape)| (name, vec![shape])).collect();
     list.push(("pointed hull", vec![hull_of(Vector::ONE * 0.5)]));
     list.push(("slab", vec![slab]));
-    // A needle at the bottom, with a hundredth of the mass of others, shakes under their load.
-    let heavy = list.iter().filter(|(name, _)| *name != "needle");
+    let heavy = list.iter().filter(|(name, _)| !ROCKING.contains(name));
     let all = heavy.flat_map(|(_, shapes)| shapes.clone()).collect();
     list.push(("mixed", all));
     list
