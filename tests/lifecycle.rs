@@ -332,7 +332,6 @@ fn any_order_of_changes_leaves_tables_and_world_agreeing_2() {
 }
 
 #[test]
-#[ignore = "fails in 3D: a collider that is to leave the simulation stays in the tables"]
 fn any_order_of_changes_in_observers_leaves_tables_and_world_agreeing_1() {
     run(0x2545_F491_4F6C_DD1D, true);
 }
