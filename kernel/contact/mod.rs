@@ -9,6 +9,7 @@ mod constraint;
 mod flags;
 mod input;
 mod internal;
+mod lead;
 mod link;
 mod manifolds;
 mod modify;

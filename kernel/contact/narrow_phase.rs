@@ -8,6 +8,7 @@
 use super::buffers::WorkerBuffers;
 use super::flags;
 use super::input::{ManifoldSource, NarrowPhaseInput};
+use super::lead;
 use super::manifolds;
 use super::record::{Contact, ContactFlags, Frozen, Manifold};
 use super::recycle::RecycleBatch;
@@ -333,7 +334,7 @@ fn recompute<S: ManifoldSource>(
 struct Search {
     /// Points were looked for up to this distance, or there are none up to it; margins subtracted.
     prediction: f32,
-    /// When the shapes meet, if the points are those of swept shapes.
+    /// The time of the points, if they are those of swept shapes or of the middle of the step.
     meeting: Option<Meeting>,
 }
 
@@ -402,6 +403,9 @@ fn search_native<S>(
             if meeting.is_none() && !sweep::pushes(input, contact, poses, &present) {
                 local = present;
             }
+        }
+        if meeting.is_none() && until_lag == f32::INFINITY {
+            meeting = lead::lead(input, contact, poses, with_margin, &mut local);
         }
     }
     if local.count == 0 {

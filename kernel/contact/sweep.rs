@@ -27,7 +27,7 @@ const MOST_STRAIGHT_TURN: f32 = 0.75;
 /// as pushing that close within this many steps, the most that can be.
 const AHEAD: f32 = 2.0;
 
-/// The poses at the time within the step when the shapes meet.
+/// The poses at a time within the step: when the shapes meet, or in its middle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
     /// The pose of A's collider.
@@ -43,10 +43,10 @@ pub(super) struct Meeting {
 }
 
 /// One side of a contact at some time within the step.
-struct Placed {
+pub(super) struct Placed {
     body: BodyPose,
     turn: Rot,
-    shape: WorldPose,
+    pub(super) shape: WorldPose,
 }
 
 /// Follows two native shapes, `gap` apart without margins, to the time when they meet in this step. `local` has their
@@ -85,8 +85,7 @@ pub(super) fn find_meeting<S>(
         if !(rate > 0.0 && time < end) {
             break;
         }
-        let placed: [Placed; 2] =
-            core::array::from_fn(|side| place_at(input, contact, side, poses[side], time));
+        let placed = place_at(input, contact, poses, time);
         offset = (placed[1].body.center - placed[0].body.center).to_local();
         rotation = placed[0].shape.rotation;
         let relative = placed[0].shape.relative(&placed[1].shape);
@@ -101,14 +100,7 @@ pub(super) fn find_meeting<S>(
             if local.count == 0 {
                 return None;
             }
-            let before = (poses[1].center - poses[0].center).to_local();
-            return Some(Meeting {
-                pose_a: placed[0].shape,
-                body_a: placed[0].body,
-                offset,
-                turns: [placed[0].turn, placed[1].turn],
-                shift: offset - before,
-            });
+            return Some(Meeting::new(&placed, poses));
         }
     }
     local.count = 0;
@@ -203,31 +195,44 @@ impl Motion {
     }
 }
 
-/// One side of the contact, `time` seconds after the step's start.
-fn place_at<S>(
+/// Both sides of the contact, `time` seconds after the step's start.
+pub(super) fn place_at<S>(
     input: &NarrowPhaseInput<S>,
     contact: &Contact,
-    side: usize,
-    pose: &BodyPose,
+    poses: [&BodyPose; 2],
     time: f32,
-) -> Placed {
-    let (body, collider) = (contact.bodies[side], contact.colliders[side]);
-    let mut placed =
-        Placed { body: *pose, turn: Rot::IDENTITY, shape: input.colliders.poses[collider as usize] };
-    if body != NONE {
-        let velocity = input.bodies.velocities[body as usize];
-        placed.turn = Rot::IDENTITY.turned_by(velocity.angular * time);
-        placed.body.center += (velocity.linear * time).to_world();
-        placed.body.rotation = placed.turn.mul(pose.rotation);
-        let frame = placed.body.frame(input.bodies[body].local_center);
-        placed.shape = frame.then(&input.colliders[collider].def.local);
-    }
-    placed
+) -> [Placed; 2] {
+    core::array::from_fn(|side| {
+        let (body, collider) = (contact.bodies[side], contact.colliders[side]);
+        let shape = input.colliders.poses[collider as usize];
+        let mut placed = Placed { body: *poses[side], turn: Rot::IDENTITY, shape };
+        if body != NONE {
+            let velocity = input.bodies.velocities[body as usize];
+            placed.turn = Rot::IDENTITY.turned_by(velocity.angular * time);
+            placed.body.center += (velocity.linear * time).to_world();
+            placed.body.rotation = placed.turn.mul(poses[side].rotation);
+            let frame = placed.body.frame(input.bodies[body].local_center);
+            placed.shape = frame.then(&input.colliders[collider].def.local);
+        }
+        placed
+    })
 }
 
 impl Meeting {
+    /// From both sides at that time, and the poses of their bodies at the step's start.
+    pub(super) fn new(placed: &[Placed; 2], poses: [&BodyPose; 2]) -> Self {
+        let offset = (placed[1].body.center - placed[0].body.center).to_local();
+        Self {
+            pose_a: placed[0].shape,
+            body_a: placed[0].body,
+            offset,
+            turns: [placed[0].turn, placed[1].turn],
+            shift: offset - (poses[1].center - poses[0].center).to_local(),
+        }
+    }
+
     /// Changes the separations of a manifold to those at the step's start. The solver moves the bodies with these arms, and
-    /// so reaches the given separations at the time of the meeting.
+    /// so reaches the given separations at that time.
     pub(super) fn rewind(&self, m: &mut Manifold) {
         let n = m.normal;
         let cores = [n * m.radii[0], self.offset - n * m.radii[1]];

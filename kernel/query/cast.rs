@@ -159,7 +159,7 @@ fn at_start(a: &Shape, b: &Shape, pose: &Pose, way: &Way) -> Option<CastHit> {
 }
 
 fn size_of(shape: &Shape) -> f64 {
-    f64::from(shape.ball_around().1)
+    f64::from(max(shape.ball_around().1, 0.0))
 }
 
 /// The distance at which shapes meet, in metres.

@@ -36,10 +36,6 @@ pub fn spin(z: f32) -> Angular {
 /// The moment of inertia of a solid ball, divided by m r².
 pub const BALL_INERTIA: f32 = 0.5;
 
-/// Shapes that mixed piles do without: with a tenth of the mass of others they rock under their load, see
-/// docs/design/solver.md.
-pub const ROCKING: &[&str] = &["coin", "needle"];
-
 /// Piles that fall asleep: width in bodies, number of bodies, number of seeds, seconds.
 pub const PILES: [(usize, usize, u64, usize); 2] = [(10, 100, 4, 8), (21, 441, 2, 12)];
 

@@ -40,10 +40,6 @@ pub fn sized(x: f32, y: f32, depth: f32) -> Vector {
 /// The moment of inertia of a solid ball, divided by m r².
 pub const BALL_INERTIA: f32 = 0.4;
 
-/// Shapes that mixed piles do without: with a tenth of the mass of others they rock under their load, see
-/// docs/design/solver.md.
-pub const ROCKING: &[&str] = &["needle"];
-
 /// Piles that fall asleep: width in bodies, number of bodies, number of seeds, seconds.
 pub const PILES: [(usize, usize, u64, usize); 2] = [(5, 100, 4, 8), (7, 441, 2, 12)];
 

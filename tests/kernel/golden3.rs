@@ -6,22 +6,22 @@ use std::sync::Arc;
 
 /// For each scene the hash with world positions in `f32`, and in `f64`.
 pub const GOLDEN: [(&str, u64, u64); 16] = [
-    ("pyramid", 0x6b1d593d1d833b90, 0x2506e634dab0dedc),
+    ("pyramid", 0x5979f73f2408cce4, 0x5adcada0bb510b32),
     ("towers", 0x3a9ff86f9ee73c38, 0xe867d70b3fec41d6),
-    ("pairs", 0x1f10d8092ff907eb, 0x3779883f060c093c),
-    ("heap", 0x4bc1f614da48edc4, 0xd585ef396a297486),
-    ("terrain", 0x130adc5ecd9b5279, 0xbb9cc5d70d5c61c0),
+    ("pairs", 0x71898834fefbcc52, 0x97ae8ab723cab52b),
+    ("heap", 0x30c107569dbe2354, 0xec5c82fdc13c10b6),
+    ("terrain", 0x14725b215725e0b1, 0x5047c79080a89fc5),
     ("slopes", 0xad93809bcfaefbb0, 0x7eac44562432015c),
-    ("composites", 0x4a0b155c61c9f635, 0x1e97427286123002),
-    ("bounces", 0xc25a0993f30aa818, 0x699163d268c7d097),
-    ("crowd", 0xd45fbcc8ff2e0629, 0xf1edf9d6e8f4b448),
+    ("composites", 0x43ea779bc9e75a6e, 0xc1d2fb7c6d701035),
+    ("bounces", 0x1294ed8f09fe1cdd, 0x8359c1b85beeeeb2),
+    ("crowd", 0x359068c48f8c6f6d, 0xfaad4bf5c167356a),
     ("sleepers", 0x058482f76e21eba2, 0x6ae715252efa0c40),
-    ("held", 0x8b686a7138426110, 0x6587eb4e6b44f787),
-    ("dominance", 0x55afa5027d104fc8, 0x81b89dfec260e3c0),
+    ("held", 0xfe3bd4aec0c8a7bc, 0x8bffcc8a2c47992d),
+    ("dominance", 0x92e01b1b5794bde6, 0x204246fd7cc7ca92),
     ("spin", 0x055374a91d201127, 0xcdb9f70dbe20c0fb),
-    ("mixer", 0xcee17a68f7792f6e, 0x0255df6c5846b91d),
-    ("changes", 0x20328d198e9bc529, 0x061eb177d0662302),
-    ("wall", 0x1abd6a966b01043e, 0xb058f8c673f62b3c),
+    ("mixer", 0x596f258e0271f70b, 0x0c92ed521ab7f6cb),
+    ("changes", 0xcd1af96df265f439, 0x10c1358927377ff2),
+    ("wall", 0xf7e61d107d19d706, 0xb17df5f15b211205),
 ];
 
 /// Every native shape with bounds, each about a metre across.

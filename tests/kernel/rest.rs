@@ -1,6 +1,6 @@
 //! Piles of every shape come to rest.
 
-use super::dim::{BALL_INERTIA, PILES, ROCKING, bullets, hull_of, restless, sized, spin, turned, upright};
+use super::dim::{BALL_INERTIA, PILES, bullets, hull_of, restless, sized, spin, turned, upright};
 use super::extreme::Dice;
 use super::sim::Sim;
 use crate::kernel;
@@ -14,7 +14,8 @@ fn shapes() -> Vec<(&'static str, Vec<Shape>)> {
     let mut list: Vec<_> = kinds.map(|(name, shape)| (name, vec![shape])).collect();
     list.push(("pointed hull", vec![hull_of(Vector::ONE * 0.5)]));
     list.push(("slab", vec![slab]));
-    let heavy = list.iter().filter(|(name, _)| !ROCKING.contains(name));
+    // A needle at the bottom, with a hundredth of the mass of others, shakes under their load.
+    let heavy = list.iter().filter(|(name, _)| *name != "needle");
     let all = heavy.flat_map(|(_, shapes)| shapes.clone()).collect();
     list.push(("mixed", all));
     list
@@ -88,10 +89,6 @@ fn late(shapes: &[Shape], wide: usize, count: usize, seeds: u64, limit: usize) -
 fn piles_of_each_shape_fall_asleep() {
     for (name, shapes) in shapes() {
         for (wide, count, seeds, limit) in PILES {
-            // Large piles of ellipses rest later in f64: they roll in the troughs between others.
-            if name == "ellipse" && count > 100 {
-                continue;
-            }
             let late = late(&shapes, wide, count, seeds, limit);
             assert!(late.len() <= 1, "{count} of {name}: {late:?}");
         }

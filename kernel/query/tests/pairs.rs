@@ -202,7 +202,9 @@ proptest! {
                 prop_assert!(is_in(&a, &Pose::IDENTITY, on_a, &planes, 5.0e-5), "a point of A");
                 prop_assert!(is_in(&b, &moved(end), on_b, &planes, 5.0e-5), "a point of B");
                 let sharp = height(&a, &Pose::IDENTITY, hit.normal) - on_a.dot(hit.normal);
-                prop_assert!(sharp.abs() < 1.0e-4, "the normal is that of a plane between: {sharp}");
+                // Of a shape thinner than a millimetre it may be any point.
+                let thin = height(&a, &Pose::IDENTITY, hit.normal) + height(&a, &Pose::IDENTITY, -hit.normal) < 1.0e-3;
+                prop_assert!(thin || sharp.abs() < 1.0e-4, "the normal is that of a plane between: {sharp}");
             } else {
                 prop_assert!(gap(0.0) < 2.0e-5);
             }

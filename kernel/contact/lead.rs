@@ -1,0 +1,56 @@
+//! Contacts of round bodies that rock on each other, in the middle of the step.
+//!
+//! The solver keeps normals and arms for a step. The point where a round body rocks on another runs along both, and an arm
+//! that lags behind it feeds the rocking like a negative damper: a light body between heavy ones never came to rest. So the
+//! contact is computed where the bodies will be in the middle of the step, as for shapes that [meet](super::sweep) then.
+
+use super::input::{NarrowPhaseInput, smaller};
+use super::record::Contact;
+use super::sweep::{Meeting, place_at};
+use crate::manifold::{self, LocalManifold};
+use crate::math::max;
+use crate::table::{BodyKind, BodyPose, NONE};
+
+/// Bodies that turn by less than this against each other in the step, in radians, keep the contact of its start, which can
+/// be recycled. More leaves rocking without damping, less computes more contacts anew.
+const LEAST_TURN: f32 = 2.0e-3;
+
+/// Bodies that turn by more, in radians, do not rock: what they hit comes first.
+const MOST_TURN: f32 = 0.25;
+
+/// Nor do those that move by more than this share of the smaller one's reach.
+const MOST_WAY: f32 = 0.5;
+
+/// Moves the only point of `local`, with a round surface that presses another body, to where it is in the middle of the step,
+/// up to `prediction` apart. Does nothing to other contacts.
+pub(super) fn lead<S>(
+    input: &NarrowPhaseInput<S>,
+    contact: &mut Contact,
+    poses: [&BodyPose; 2],
+    prediction: f32,
+    local: &mut LocalManifold,
+) -> Option<Meeting> {
+    let is_round = |local: &LocalManifold| local.count == 1 && max(local.radii[0], local.radii[1]) > 0.0;
+    let is_dynamic = |body: &u32| *body != NONE && input.bodies[*body].kind == BodyKind::Dynamic;
+    if !(is_round(local) && local.points[0].separation <= input.margin(contact)) {
+        return None;
+    }
+    let [va, vb] = [input.velocity(contact, 0), input.velocity(contact, 1)];
+    let turn = (vb.angular - va.angular).length() * input.dt;
+    let way = (vb.linear - va.linear).length() * input.dt;
+    let reach = smaller(input.reaches(contact).map(|reach| reach.extent));
+    let rocks = turn > LEAST_TURN && turn < MOST_TURN && way < MOST_WAY * reach;
+    if !(rocks && contact.bodies.iter().all(is_dynamic)) {
+        return None;
+    }
+    let placed = place_at(input, contact, poses, 0.5 * input.dt);
+    let relative = placed[0].shape.relative(&placed[1].shape);
+    let shapes = contact.colliders.map(|id| &input.colliders[id].def.shape);
+    let mut then = LocalManifold::default();
+    manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, &mut then);
+    if !is_round(&then) {
+        return None;
+    }
+    *local = then;
+    Some(Meeting::new(&placed, poses))
+}
