@@ -11,12 +11,22 @@ use crate::shape::{Aabb, Composite, NO_FACET, Part, Shape, Surface};
 
 /// Manifolds with normals closer than this are merged: cos 2°. More merges slopes; less solves a plane several times.
 const SAME_NORMAL: f32 = 0.9994;
+/// The same for round shapes, squared, in radians: their points move with the normal, and a point beside the lowest one
+/// brakes what rolls.
+const SAME_ROUND_NORMAL: f32 = 1.0e-8;
 /// Manifolds of curved shapes are merged if their radii differ by less than this share, as they do by less than 2°.
 const SAME_RADIUS: f32 = 0.02;
 
 /// Normals that lean over a border by less than this are the facet's own, in radians. More brakes sliding bodies; rounding is
 /// a tenth of it.
 const LEAN: f32 = 1.0e-3;
+
+/// Normals whose cosine to a face is below this do not tell on which side of it the other shape is.
+const SIDEWAYS: f32 = 0.05;
+
+/// A shape is on one side of a face if it reaches to the other side by less than this share of its extent. More turns
+/// bodies over that reach under a facet from aside; less pulls cones into faces that they stand on.
+const ON_ONE_SIDE: f32 = 0.25;
 
 /// Contacts up to this share of a facet's size inside of a border are on the border.
 const ON_BORDER: f32 = 0.02;
@@ -291,13 +301,30 @@ impl Pass<'_> {
         false
     }
 
+    /// A facet's face on the side where the other shape is. The normal of a contact with a border tells little of it: under the
+    /// leaning side of a cone that stands on the face it points into the face.
+    fn toward_other(&self, corner: Vector, face: Vector, normal: Vector) -> Vector {
+        let height = |direction: Vector| {
+            let lowest = self.other.support(self.pose.rotation.inverse_rotate(-direction))?;
+            Some((self.pose.transform(lowest) - corner).dot(direction))
+        };
+        // How far the shape may stay behind either side of the face.
+        let (Some(over), Some(under)) = (height(face), height(-face)) else {
+            return if normal.dot(face) < 0.0 { -face } else { face };
+        };
+        let along = normal.dot(face);
+        let is_under = match along.abs() > SIDEWAYS {
+            false => over < under,
+            true if along < 0.0 => !(over > ON_ONE_SIDE * under),
+            true => under > ON_ONE_SIDE * over,
+        };
+        if is_under { -face } else { face }
+    }
+
     /// Replaces a facet's manifold by that of its face if its normal leans over a border where the surface goes on.
     fn keep_on_surface(&self, surface: &Surface, facet: u32, prediction: f32, local: &mut LocalManifold) {
         let corners = surface.corners(facet);
         let Some(face) = face_normal(corners) else { return };
-        let along = local.normal.dot(face);
-        let toward = if along.abs() > 0.05 { along } else { (self.pose.position - corners[0]).dot(face) };
-        let own = if toward < 0.0 { -face } else { face };
         let borders = borders(corners, face);
         let (mut leans, mut is_free) = (false, true);
         for (border, neighbor) in borders.iter().zip(surface.neighbors(facet)) {
@@ -315,6 +342,7 @@ impl Pass<'_> {
         // A normal that leans over a border without points there belongs to no feature of the facet.
         let is_met = || borders.iter().any(|b| local.normal.dot(b.outward) > LEAN && b.is_met_by(local));
         if leans && !(is_free && is_met()) {
+            let own = self.toward_other(corners[0], face, local.normal);
             collide_face(corners, own, self.other, self.pose, prediction, local);
         }
     }
@@ -358,9 +386,12 @@ fn merge(buffers: &mut CompositeBuffers, out: &mut Vec<LocalManifold>) {
         let is_round_alike = |o: &LocalManifold| {
             o.radii.iter().zip(m.radii).all(|(r, q)| (r - q).abs() <= SAME_RADIUS * max(*r, q))
         };
-        let is_same = |o: &LocalManifold| {
-            o.normal.dot(m.normal) > SAME_NORMAL && is_round_alike(o) && o.groups == m.groups
+        let is_flat = m.radii == [0.0; 2];
+        let is_parallel = |o: &LocalManifold| match is_flat {
+            true => o.radii == m.radii && o.normal.dot(m.normal) > SAME_NORMAL,
+            false => (o.normal - m.normal).length_squared() < SAME_ROUND_NORMAL && is_round_alike(o),
         };
+        let is_same = |o: &LocalManifold| o.groups == m.groups && is_parallel(o);
         let group = out[start..].iter().position(is_same);
         groups.push(group.unwrap_or(out.len() - start));
         if group.is_none() {
