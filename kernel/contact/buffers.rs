@@ -1,6 +1,6 @@
 //! What one worker of the narrow phase computes with, and what it leaves for the table.
 
-use super::record::Manifold;
+use super::record::{Lost, Manifold};
 use super::recycle::RecycleBatch;
 use crate::manifold::{CompositeBuffers, LocalManifold};
 
@@ -27,6 +27,8 @@ pub struct WorkerBuffers<W = ()> {
     pub(super) sliding: Vec<u32>,
     /// Contacts, and the numbers of those of their manifolds, whose [`is_internal`](Manifold::is_internal) changes.
     pub(super) internal: Vec<(u32, u32)>,
+    /// Points under load that sliding colliders lost.
+    pub(super) lost: Vec<Lost>,
     /// Whether any contact overlaps deeply.
     pub(super) any_deep: bool,
 }
@@ -39,6 +41,7 @@ impl<W> WorkerBuffers<W> {
         self.pool.clear();
         self.sliding.clear();
         self.internal.clear();
+        self.lost.clear();
         self.any_deep = false;
     }
 }

@@ -10,6 +10,7 @@
 
 use super::buffers::WorkerBuffers;
 use super::input::{ManifoldSource, NarrowPhaseInput, smaller};
+use super::load;
 use super::record::{Contact, ContactFlags, Manifold};
 use super::table::{ContactTable, PointCount};
 use crate::math::{Vector, max, min};
@@ -28,8 +29,11 @@ const CLIPPED: f32 = 1.0e-3;
 /// down is another part of a concave collider, which a pit may hold.
 const BELOW: f32 = 0.005;
 
-/// Planes whose normals differ by less than this hold the same: 1 − cos 0.2°.
-const PARALLEL: f32 = 6.1e-6;
+/// Planes whose normals differ by less than this hold the same, squared, in radians: 0.2°.
+const PARALLEL: f32 = 1.2e-5;
+
+/// The same if both are of round shapes, whose point moves with the normal.
+const ROUND_PARALLEL: f32 = 1.0e-8;
 
 /// Bodies slower than this against ground that does not move slide over nothing, in m/s.
 const MOVING: f32 = 0.02;
@@ -88,11 +92,8 @@ impl<'a> Seen<'a> {
         other.points().fold(f32::NEG_INFINITY, |top, [p, _]| max(top, p.dot(self.normal))) - self.plane()
     }
 
-    /// Whether another manifold holds what this one would stop.
+    /// Whether another manifold, which is not parallel, holds what this one would stop.
     fn is_held_by(&self, other: &Seen) -> bool {
-        if other.normal.dot(self.normal) > 1.0 - PARALLEL {
-            return false;
-        }
         let highest = other.highest(self);
         if !(highest <= self.flush && highest < self.highest(other)) {
             return false;
@@ -101,6 +102,14 @@ impl<'a> Seen<'a> {
         let deepest = other.manifold.points().iter().fold(0.0, |deep, p| min(deep, p.separation));
         lowest - other.plane() >= deepest - BELOW
     }
+}
+
+/// Whether two manifolds, seen from the same collider, hold the same. `is_flipped` tells that one is of side A, the other of B.
+fn are_parallel(a: &Manifold, b: &Manifold, is_flipped: bool) -> bool {
+    let are_round = a.radii != [0.0; 2] && b.radii != [0.0; 2];
+    let parallel = if are_round { ROUND_PARALLEL } else { PARALLEL };
+    let apart = if is_flipped { a.normal + b.normal } else { a.normal - b.normal };
+    apart.length_squared() < parallel
 }
 
 impl<S> NarrowPhaseInput<'_, S> {
@@ -139,7 +148,9 @@ impl<S> NarrowPhaseInput<'_, S> {
 }
 
 impl ContactTable {
-    /// Marks the manifolds of internal edges among the contacts that the workers noted, so that they are not solved.
+    /// Marks the manifolds of internal edges among the contacts that the workers noted, so that they are not solved, and hands
+    /// on the load of points that were lost.
+    #[inline(never)]
     pub(super) fn mark_internal<S: ManifoldSource>(
         &mut self,
         input: &NarrowPhaseInput<S>,
@@ -154,13 +165,21 @@ impl ContactTable {
         });
         sliding.clear();
         self.sliding = sliding;
+        let mut lost = core::mem::take(&mut self.lost);
+        workers.iter().for_each(|worker| lost.extend_from_slice(&worker.lost));
         for (id, index) in workers.iter_mut().flat_map(|worker| worker.internal.drain(..)) {
+            let contact = &self.contacts[id as usize];
+            let side = usize::from(!input.slides(contact, 0));
+            let was = *self.manifold(contact, index).expect("the manifold was looked at");
+            if !was.is_internal {
+                load::note_internal((id, index), side, contact, &was, &mut lost);
+            }
             let contact = &mut self.contacts[id as usize];
             let manifold = match index {
                 0 => &mut contact.manifold,
                 _ => &mut self.extra[contact.extra as usize][index as usize - 1],
             };
-            manifold.is_internal = !manifold.is_internal;
+            manifold.is_internal = !was.is_internal;
             if manifold.is_internal {
                 manifold.friction_impulse = Vector::ZERO;
                 manifold.twist_impulse = 0.0;
@@ -168,6 +187,8 @@ impl ContactTable {
             }
             self.points[id as usize] = PointCount::of(contact);
         }
+        self.hand_on(input, &mut lost);
+        self.lost = lost;
     }
 
     /// Adds the manifolds of a contact whose mark is to change.
@@ -175,9 +196,8 @@ impl ContactTable {
         let contact = self.get(id);
         for index in 0..=u32::from(contact.extra_count) {
             let Some(manifold) = self.manifold(contact, index).filter(|m| m.count > 0) else { continue };
-            let is_internal = (0..2).any(|side| {
-                input.slides(contact, side) && self.is_internal(input, (id, index), side, manifold)
-            });
+            let is_internal =
+                (0..2).any(|side| input.slides(contact, side) && self.is_internal(input, id, side, manifold));
             if is_internal != manifold.is_internal {
                 changes.push((id, index));
             }
@@ -185,30 +205,26 @@ impl ContactTable {
     }
 
     /// Whether another manifold of the collider on a side of a contact holds what this one would stop.
-    fn is_internal<S>(
-        &self,
-        input: &NarrowPhaseInput<S>,
-        (id, index): (u32, u32),
-        side: usize,
-        manifold: &Manifold,
-    ) -> bool {
+    fn is_internal<S>(&self, input: &NarrowPhaseInput<S>, id: u32, side: usize, manifold: &Manifold) -> bool {
         let contact = self.get(id);
         let (collider, ground) = (contact.colliders[side], contact.colliders[1 - side]);
-        let seen = Seen::new(input, contact, side, manifold);
+        let mut seen = None;
         self.of_collider(collider, input.colliders).any(|other_id| {
             let other = self.get(other_id);
             let other_side = usize::from(other.colliders[1] == collider);
-            if !other.is_solved() || !(other_id == id || input.slides(other, other_side)) {
-                return false;
-            }
             (0..=u32::from(other.extra_count)).any(|other_index| {
-                (other_id, other_index) != (id, index)
-                    && self.manifold(other, other_index).is_some_and(|m| {
-                        let holding = Seen::new(input, other, other_side, m);
-                        m.count > 0
-                            && seen.is_held_by(&holding)
-                            && !self.stands_on([ground, other.colliders[1 - other_side]], holding.normal)
-                    })
+                let Some(m) = self.manifold(other, other_index).filter(|m| m.count > 0) else { return false };
+                // Most are of the same plane, or this one itself. All else is looked at only if not.
+                if are_parallel(manifold, m, side != other_side)
+                    || !other.is_solved()
+                    || !(other_id == id || input.slides(other, other_side))
+                {
+                    return false;
+                }
+                let seen = seen.get_or_insert_with(|| Seen::new(input, contact, side, manifold));
+                let holding = Seen::new(input, other, other_side, m);
+                seen.is_held_by(&holding)
+                    && !self.stands_on([ground, other.colliders[1 - other_side]], holding.normal)
             })
         })
     }

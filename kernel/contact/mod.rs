@@ -1,8 +1,8 @@
 //! Pairs of colliders that are near each other: their records, the narrow phase that keeps manifolds up to date, and
 //! [`Link`], which alone changes contacts, colours and islands.
 //!
-//! `narrow_phase` is read top to bottom; `input`, `recycle`, `manifolds`, `sweep`, `flags` and `internal` are its
-//! helpers and do not know it. `modify` takes what the embedder makes of its results.
+//! `narrow_phase` is read top to bottom; `input`, `recycle`, `manifolds`, `sweep`, `flags`, `internal` and `load` are
+//! its helpers and do not know it. `modify` takes what the embedder makes of its results.
 
 mod buffers;
 mod constraint;
@@ -11,6 +11,7 @@ mod input;
 mod internal;
 mod lead;
 mod link;
+mod load;
 mod manifolds;
 mod modify;
 mod narrow_phase;

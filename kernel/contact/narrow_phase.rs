@@ -9,6 +9,7 @@ use super::buffers::WorkerBuffers;
 use super::flags;
 use super::input::{ManifoldSource, NarrowPhaseInput};
 use super::lead;
+use super::load::Before;
 use super::manifolds;
 use super::record::{Contact, ContactFlags, Frozen, Manifold};
 use super::recycle::RecycleBatch;
@@ -151,7 +152,8 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
             // SAFETY: by the contract the contact is this thread's, and no reference to it is in use.
             let contact = unsafe { self.contacts.one(id as usize) };
             match classify(self.input, id, contact, &mut worker.batch) {
-                Class::Separated => separate(id, contact, worker),
+                // SAFETY: as above.
+                Class::Separated => unsafe { self.separate(id, contact, worker) },
                 Class::Recyclable => {}
                 // SAFETY: as above.
                 Class::Stale => self.recompute(id, contact, unsafe { self.points.one(id as usize) }, worker),
@@ -203,6 +205,21 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
         }
     }
 
+    /// Notes that the boxes of a contact came apart.
+    ///
+    /// # Safety
+    /// While it runs no other thread may have the contact.
+    unsafe fn separate(&self, id: u32, contact: &mut Contact, worker: &mut WorkerBuffers<S::Workspace>) {
+        if let Some(before) = Before::of(self.input, contact) {
+            // SAFETY: by the contract.
+            let extra = unsafe { self.extra(contact) };
+            before.note_lost(id, contact, extra, core::iter::empty(), &mut worker.lost);
+        }
+        contact.flags.set(ContactFlags::SEPARATED, true);
+        worker.changed.push(id);
+        worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
+    }
+
     /// Recomputes a contact, and notes what is to be committed.
     fn recompute(
         &self,
@@ -216,7 +233,12 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
         let touched = contact.flags.has(ContactFlags::TOUCHING);
         // SAFETY: by the contract the contact is this thread's, and its slot belongs to no other.
         let old_extra = unsafe { self.extra(contact) };
+        let before = Before::of(self.input, contact);
         recompute(self.input, contact, old_extra, is_crowded, worker);
+        if let Some(before) = before {
+            let new = core::iter::once(&contact.manifold).chain(&worker.extra);
+            before.note_lost(id, contact, old_extra, new, &mut worker.lost);
+        }
         if touched != contact.flags.has(ContactFlags::TOUCHING) {
             worker.changed.push(id);
         }
@@ -269,13 +291,6 @@ fn classify<S>(input: &NarrowPhaseInput<S>, id: u32, contact: &Contact, batch: &
     }
     let is_waiting = batch.push(input, id, contact, input.poses(contact, &mut [None; 2]));
     if is_waiting { Class::Recyclable } else { Class::Stale }
-}
-
-/// Notes that the boxes of a contact came apart.
-fn separate<W>(id: u32, contact: &mut Contact, worker: &mut WorkerBuffers<W>) {
-    contact.flags.set(ContactFlags::SEPARATED, true);
-    worker.changed.push(id);
-    worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
 }
 
 /// Recycles a contact of an evaluated batch; `false` if its bodies moved too far.

@@ -126,6 +126,21 @@ pub struct ManifoldSurface {
     pub velocity: Vector,
 }
 
+/// The impulse of a point that a sliding collider lost, to be handed on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lost {
+    pub(super) contact: u32,
+    /// Its number among those of the contact.
+    pub(super) number: u32,
+    /// The collider that slides.
+    pub(super) collider: u32,
+    /// From the centre of mass of the collider's body.
+    pub(super) place: Vector,
+    /// From the ground to the collider.
+    pub(super) normal: Vector,
+    pub(super) impulse: f32,
+}
+
 /// The relative pose of the bodies at which the manifold was computed, turned since then with a platform.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Frozen {

@@ -1,6 +1,6 @@
 //! All contacts by id, the map from pairs to contacts, and the set of awake contacts.
 
-use super::record::{Contact, Manifold, ManifoldSurface};
+use super::record::{Contact, Lost, Manifold, ManifoldSurface};
 use crate::data::{BitSet, IdPool, PairSet, prefetch};
 use crate::table::{ColliderTable, NONE};
 use std::collections::BTreeMap;
@@ -41,6 +41,8 @@ pub struct ContactTable {
     raised_masses: Vec<(u32, u8)>,
     /// Contacts that may be of internal edges; empty between updates.
     pub(super) sliding: Vec<u32>,
+    /// Points under load that sliding colliders lost; empty between updates.
+    pub(super) lost: Vec<Lost>,
 }
 
 /// Manifolds after the first that a worker computed.
