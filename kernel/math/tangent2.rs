@@ -85,6 +85,15 @@ impl<N: Lane> TangentFrame<N> {
     }
 }
 
+impl<N: Lane> TangentMass<N> {
+    /// The friction impulse that follows `impulse` at a slip of `v`, no longer than `limit`: one that stops the slip, else one
+    /// against it.
+    #[inline(always)]
+    pub fn rub(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
+        (impulse - self.apply(v)).clamp_length(limit)
+    }
+}
+
 impl<N: Num> TangentMass<N> {
     /// Minus the impulse that stops the tangent velocity `v`.
     #[inline(always)]

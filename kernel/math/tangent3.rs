@@ -116,6 +116,32 @@ impl<N: Lane> TangentFrame<N> {
     }
 }
 
+impl<N: Lane> TangentMass<N> {
+    /// The friction impulse that follows `impulse` at a slip of `v`, no longer than `limit`: one that stops the slip, else one
+    /// against it.
+    ///
+    /// The impulse that stops the slip, λ = −M u, is not along it where bodies turn more easily about one axis than another (u is
+    /// the slip without `impulse`). So an impulse beyond the limit is replaced by one against u, no longer than stops the slip
+    /// along u: |u| / (û · K û). It never gains energy. All of it is computed from w = adj(M) λ, which is against u.
+    #[inline(always)]
+    pub fn rub(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
+        let stick = impulse - self.apply(v);
+        let slides = (limit * limit).lt(stick.x * stick.x + stick.y * stick.y);
+        let (determinant, trace) = (self.xx * self.yy - self.xy * self.xy, self.xx + self.yy);
+        let regular = (trace * trace * N::splat(SINGULAR)).lt(determinant);
+        let adjugate = Self { xx: self.yy, yy: self.xx, xy: -self.xy };
+        let against = adjugate.apply(stick);
+        let bent = adjugate.apply(against);
+        let square = against.x * against.x + against.y * against.y;
+        let along = against.x * bent.x + against.y * bent.y;
+        let tiny = N::splat(f32::MIN_POSITIVE);
+        // Lengths are divided by that of w: |w|³ / (w · adj(M) w) is the one that stops the slip.
+        let factor = (limit / square.sqrt().max(tiny)).min(square / along.max(tiny));
+        let slide = Tangent::select(regular, against * factor, stick.clamp_length(limit));
+        Tangent::select(slides, slide, stick)
+    }
+}
+
 impl<N: Num> TangentMass<N> {
     /// Minus the impulse that stops the tangent velocity `v`.
     #[inline(always)]

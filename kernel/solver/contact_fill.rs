@@ -299,6 +299,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let [m0, m1] = row.inv_mass;
         row.tangent_mass = frame.mass(m0.diagonal() + m1.diagonal(), arms);
         row.tangent_impulse = frame.project(self.friction_impulse);
+        row.load = row.pressure();
         if self.is_driven {
             row.surface_velocity = frame.project(self.surface_velocity);
         }

@@ -15,6 +15,12 @@ pub struct BodyRow {
     delta: Quad,
 }
 
+/// The part of an angular velocity about a contact's normal: none in the plane.
+#[inline(always)]
+pub(super) fn about<N: Lane>(_: Vector<N>, _: Angular<N>) -> Angular<N> {
+    Angular::ZERO
+}
+
 /// Inverse mass and inverse inertia of a body, in world axes.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(16))]

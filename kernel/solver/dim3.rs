@@ -20,6 +20,12 @@ pub struct BodyRow {
     rotation: Quad,
 }
 
+/// The part of an angular velocity about a contact's normal.
+#[inline(always)]
+pub(super) fn about<N: Lane>(normal: Vector<N>, w: Angular<N>) -> Angular<N> {
+    normal * normal.dot(w)
+}
+
 /// Inverse mass and inverse inertia of a body, in world axes.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]

@@ -27,6 +27,7 @@ mod exclusive;
 mod fast_turn;
 mod fill;
 mod finish;
+mod friction;
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]
 #[cfg_attr(feature = "3d", path = "gyro3.rs")]
 mod gyro;
@@ -47,8 +48,8 @@ mod sweep;
 mod view;
 
 pub use body::{BodyRows, Limits, Motion, Thrust};
-use dim::resist_rolling;
 pub use dim::{BodyRow, MassRow, Twist};
+use dim::{about, resist_rolling};
 pub use distance::{Distance, DistanceError, DistanceTable, Spring};
 pub use fill::{BodyFiller, FilledBody, SpecialBodies};
 pub use input::RowInput;

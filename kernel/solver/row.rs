@@ -2,9 +2,8 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::pair::{Pair, SoftLanes};
-use super::resistance::ROLL_FRICTION;
-use super::{BodyRow, InvMass, RowView, SubstepParams, Twist, resist_rolling};
-use crate::math::{Angular, DIM, Ids, InvInertia, Lane, Tangent, TangentFrame, TangentMass, Vector, max};
+use super::{BodyRow, InvMass, RowView, SubstepParams, Twist};
+use crate::math::{Angular, DIM, Ids, InvInertia, Lane, Tangent, TangentFrame, TangentMass, Vector};
 
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, Default)]
@@ -54,6 +53,8 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
     pub tangent_mass: TangentMass<N>,
     /// The accumulated friction impulse, N·s.
     pub tangent_impulse: Tangent<N>,
+    /// The sum of the normal impulses that the substep begins with, N·s.
+    pub load: N,
     /// Torsional friction about the normal.
     pub twist: Twist<N, P>,
     /// The points.
@@ -115,6 +116,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Default for ContactRow<N, M, P> {
             center: Vector::ZERO,
             tangent_mass: TangentMass::default(),
             tangent_impulse: Tangent::ZERO,
+            load: N::ZERO,
             twist: Twist::default(),
             points: [PointRow::default(); P],
         }
@@ -204,11 +206,24 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     ) {
         // SAFETY: by the contract.
         let mut pair = unsafe { Pair::load(rows, &self.ids) };
-        self.solve_friction(&mut pair, params);
+        // SAFETY: by the contract.
+        let carried = unsafe { self.carried(rows, &pair, params) };
+        self.solve_friction(&mut pair, carried, params);
         // SAFETY: by the contract.
         unsafe { self.solve_normals(rows, &mut pair, params, None, restitution) };
+        self.load = self.pressure();
         // SAFETY: by the contract.
         unsafe { pair.store(rows, &self.ids) };
+    }
+
+    /// The sum of the normal impulses, N·s.
+    #[inline(always)]
+    pub(super) fn pressure(&self) -> N {
+        let mut sum = N::ZERO;
+        for point in &self.points {
+            sum += point.impulse;
+        }
+        sum
     }
 
     /// Scales the impulses to the row's share for the warm start.
@@ -342,39 +357,5 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let [ra, rb] = self.surface_arms();
         let relative = pair.v[1] + pair.w[1].cross(rb) - pair.v[0] - pair.w[0].cross(ra);
         frame.project(relative) - self.surface_velocity
-    }
-
-    /// Central friction, limited by μ times the sum of normal impulses, torsional friction, and the rolling resistance of
-    /// round cores that move slowly.
-    ///
-    /// The impulses of the solve pass contain the push-out of overlap. The part of each that would undo the separating
-    /// velocity of its point is left out of the limit. The relax pass removes about the same part.
-    #[inline(always)]
-    fn solve_friction(&mut self, pair: &mut Pair<N>, params: &SubstepParams) {
-        let n = self.normal;
-        let frame = TangentFrame::new(n);
-        let mut impulses = [N::ZERO; P];
-        for i in 0..P {
-            impulses[i] = self.points[i].impulse;
-        }
-        self.twist.solve(n, self.friction, impulses, self.inv_inertia, &mut pair.w);
-
-        let mut sum = N::ZERO;
-        for impulse in impulses {
-            sum += impulse;
-        }
-        let [ra, rb] = self.surface_arms();
-        let slip = self.slip(pair, &frame);
-        let new = (self.tangent_impulse - self.tangent_mass.apply(slip)).clamp_length(self.friction * sum);
-        let impulse = frame.expand(new - self.tangent_impulse);
-        self.tangent_impulse = new;
-        self.push(pair, impulse, [ra.cross(impulse), rb.cross(impulse)]);
-        // Contacts with more points bear on a face, which does not roll.
-        if P < DIM && params.roll_speed > 0.0 {
-            let reach = self.rolling_arm();
-            let scale = reach * N::splat(1.0 / max(params.roll_speed, 1.0e-9));
-            let friction = self.friction.min(N::splat(ROLL_FRICTION));
-            resist_rolling(n, scale, friction * sum * self.roll_lever, self.inv_inertia, &mut pair.w);
-        }
     }
 }
