@@ -1,11 +1,15 @@
 //! 2D parts of the tests.
 
+#[path = "floors2.rs"]
+pub mod floors;
 #[path = "golden2.rs"]
 pub mod golden_dim;
 
 use super::extreme::Dice;
-use crate::kernel::math::{Angular, InvInertia, Pose, Rot, Vector};
-use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape, Surface};
+pub use floors::{more_riders, terrain, tiles};
+
+use crate::kernel::math::{Angular, InvInertia, Rot, Vector};
+use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape};
 use std::sync::Arc;
 
 /// The inverse inertia of a body.
@@ -138,32 +142,4 @@ pub fn bullets(size: f32) -> Vec<(&'static str, Shape)> {
         ("rhombus", hull_of(Vector { x: half, y: 0.6 * half })),
         ("ellipse", Shape::Curved(Curved { half: Vector { x: half, y: 0.6 * half } })),
     ]
-}
-
-/// Floors of flush pieces, with their top at y = 0, from x = -3 to 14.
-pub fn tiles() -> Vec<(&'static str, Vec<(Shape, Vector)>)> {
-    let cuboid = |half| Shape::Cuboid(Cuboid { half });
-    let row = |make: &dyn Fn(f32) -> (Shape, Vector)| (0..17).map(|i| make(i as f32 - 2.5)).collect();
-    let segment = crate::kernel::shape::Segment { a: Vector::X * 0.5, b: Vector::X * -0.5 };
-    let boxes: Vec<_> = row(&|x| (cuboid(Vector { x: 0.5, y: 0.5 }), Vector { x, y: -0.5 }));
-    let compound =
-        boxes.iter().map(|(shape, place)| (Pose::new(*place, Rot::IDENTITY), shape.clone())).collect();
-    let compound = Shape::compound(compound).expect("boxes are solid");
-    vec![
-        ("one box", vec![(cuboid(Vector { x: 20.0, y: 0.5 }), Vector::Y * -0.5)]),
-        ("boxes", boxes),
-        ("segments", row(&|x| (Shape::Segment(segment), Vector { x, y: 0.0 }))),
-        ("compound", vec![(compound, Vector::ZERO)]),
-        ("polyline", vec![(terrain(1.0, |_, _| 0.0), Vector::ZERO)]),
-        ("fine polyline", vec![(terrain(0.17, |_, _| 0.0), Vector::ZERO)]),
-    ]
-}
-
-/// A line over x = -3 to 14 of segments of one length along x.
-pub fn terrain(size: f32, height: impl Fn(f32, f32) -> f32) -> Shape {
-    let count = (17.0 / size) as u32 + 1;
-    let vertices =
-        (0..=count).map(|i| -3.0 + size * i as f32).map(|x| Vector { x, y: height(x, 0.0) }).collect();
-    let facets = (0..count).map(|i| [i, i + 1]).collect();
-    Shape::surface(Surface::new(vertices, facets).expect("a line"))
 }

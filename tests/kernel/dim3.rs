@@ -4,12 +4,16 @@ mod leaning;
 mod round;
 mod spin;
 
+#[path = "floors3.rs"]
+pub mod floors;
 #[path = "golden3.rs"]
 pub mod golden_dim;
 
 use super::extreme::Dice;
-use crate::kernel::math::{Angular, InvInertia, Pose, Rot, Vector};
-use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape, Surface};
+pub use floors::{more_riders, terrain, tiles};
+
+use crate::kernel::math::{Angular, InvInertia, Rot, Vector};
+use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape};
 use std::sync::Arc;
 
 /// The inverse inertia of a body.
@@ -162,63 +166,4 @@ pub fn bullets(size: f32) -> Vec<(&'static str, Shape)> {
         ("cylinder", Shape::Curved(Curved { lower: half, upper: half, half_height: half })),
         ("cone", Shape::Curved(Curved { lower: half, upper: 0.0, half_height: half })),
     ]
-}
-
-/// Floors of flush pieces, with their top at y = 0, from x = -3 to 14.
-pub fn tiles() -> Vec<(&'static str, Vec<(Shape, Vector)>)> {
-    let cuboid = |half| Shape::Cuboid(Cuboid { half });
-    let grid = |size: f32, make: &dyn Fn(Vector) -> Shape| {
-        let mut pieces = Vec::new();
-        let (columns, rows) = ((17.0 / size) as i32, (4.0 / size) as i32);
-        for i in 0..columns {
-            for j in 0..rows {
-                let place =
-                    Vector { x: -3.0 + size * (i as f32 + 0.5), y: -0.5, z: size * (j as f32 + 0.5) - 2.13 };
-                pieces.push((make(Vector { x: 0.5 * size, y: 0.5, z: 0.5 * size }), place));
-            }
-        }
-        pieces
-    };
-    let hull = |half: Vector| {
-        let corner = |i: u32| {
-            let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
-            Vector { x: sign(1) * half.x, y: sign(2) * half.y, z: sign(4) * half.z }
-        };
-        let corners: Vec<_> = (0..8).map(corner).collect();
-        Shape::Hull(Arc::new(Hull::convex_hull_of(&corners).expect("a box is solid")))
-    };
-    let boxes: Vec<_> = grid(1.0, &cuboid);
-    let compound =
-        boxes.iter().map(|(shape, place)| (Pose::new(*place, Rot::IDENTITY), shape.clone())).collect();
-    let compound = Shape::compound(compound).expect("boxes are solid");
-    vec![
-        ("one box", vec![(cuboid(Vector { x: 20.0, y: 0.5, z: 20.0 }), Vector::Y * -0.5)]),
-        ("boxes", boxes),
-        ("hulls", grid(1.0, &hull)),
-        ("compound", vec![(compound, Vector::ZERO)]),
-        ("mesh", vec![(terrain(1.0, |_, _| 0.0), Vector::ZERO)]),
-        ("fine mesh", vec![(terrain(0.17, |_, _| 0.0), Vector::ZERO)]),
-    ]
-}
-
-/// A surface over x = -3 to 14 and z = -2.13 to 1.87 of squares of two triangles, cut along either diagonal.
-pub fn terrain(size: f32, height: impl Fn(f32, f32) -> f32) -> Shape {
-    let (columns, rows) = ((17.0 / size) as u32 + 1, (4.0 / size) as u32 + 1);
-    let mut vertices = Vec::new();
-    for i in 0..=columns {
-        for j in 0..=rows {
-            let (x, z) = (-3.0 + size * i as f32, size * j as f32 - 2.13);
-            vertices.push(Vector { x, y: height(x, z), z });
-        }
-    }
-    let mut facets = Vec::new();
-    for i in 0..columns {
-        for j in 0..rows {
-            let at = |i: u32, j: u32| i * (rows + 1) + j;
-            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
-            let halves = if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
-            facets.extend(halves);
-        }
-    }
-    Shape::surface(Surface::new(vertices, facets).expect("a surface"))
 }

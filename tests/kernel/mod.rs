@@ -26,5 +26,6 @@ mod sim;
 mod sound;
 mod surfaces;
 mod swept_spin;
+mod tiles;
 mod tunnel;
 mod unrest;

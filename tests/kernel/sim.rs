@@ -187,6 +187,33 @@ impl Sim {
         };
         let collider = self.colliders.add(def, pose, &mut self.bodies);
         assert_eq!(collider, id, "one collider a body");
+        self.enter_tree(id, kind);
+        id
+    }
+
+    /// Adds a body whose colliders are pieces at places. Each piece after the first takes the id of a body without colliders,
+    /// so that ids of bodies stay those of their colliders.
+    pub fn add_children(&mut self, kind: BodyKind, pieces: &[(Shape, Vector)], friction: f32) -> u32 {
+        let (first, place) = &pieces[0];
+        let id = self.add_with(kind, first.clone(), *place, Rot::IDENTITY, friction, 0.0);
+        let pose = self.bodies.frame(id);
+        for (shape, at) in &pieces[1..] {
+            let unused = self.bodies.add(BodyKind::Static, Vector::ZERO, pose);
+            put(&mut self.frames, unused, pose);
+            self.link().enter(unused);
+            let mass = self.masses[id as usize];
+            put(&mut self.masses, unused, mass);
+            put(&mut self.locks, unused, AxisLocks::NONE);
+            let local = Pose::new(*at - *place, Rot::IDENTITY);
+            let def = ColliderDef { shape: shape.clone(), local, ..self.colliders[id].def.clone() };
+            let collider = self.colliders.add(def, pose.then(&local), &mut self.bodies);
+            assert_eq!(collider, unused, "one collider an id");
+            self.enter_tree(collider, kind);
+        }
+        id
+    }
+
+    fn enter_tree(&mut self, id: u32, kind: BodyKind) {
         let tree = match kind {
             BodyKind::Static => TreeKind::Static,
             BodyKind::Kinematic => TreeKind::Kinematic,
@@ -197,7 +224,6 @@ impl Sim {
         let proxy = self.trees[tree].insert(id, aabb);
         put(&mut self.proxies, id, (tree, proxy));
         self.movers.insert(Mover { id, kind: tree, mask: PairMask::solid(tree), aabb });
-        id
     }
 
     pub fn ball(&mut self, radius: f32, position: Vector) -> u32 {

@@ -1,0 +1,183 @@
+//! Floors of pieces in 3D, and bodies that slide or roll over them.
+
+use super::super::extreme::Dice;
+use crate::kernel::math::{Pose, Rot, Vector};
+use crate::kernel::shape::{Capsule, Cuboid, Curved, HalfSpace, Hull, Shape, Surface};
+use core::f32::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+/// A floor: its name, and its pieces with their places.
+pub type Floor = (&'static str, Vec<(Shape, Vector)>);
+
+fn cuboid(half: Vector) -> Shape {
+    Shape::Cuboid(Cuboid { half })
+}
+
+fn hull(half: Vector) -> Shape {
+    Shape::Hull(Arc::new(Hull::cuboid(half).expect("a box is solid")))
+}
+
+/// Flush tiles from x = -3 to 14.
+fn grid(size: f32, make: impl Fn(Vector) -> Shape) -> Vec<(Shape, Vector)> {
+    let mut pieces = Vec::new();
+    let (columns, rows) = ((17.0 / size) as i32, (4.0 / size) as i32);
+    for i in 0..columns {
+        for j in 0..rows {
+            let place =
+                Vector { x: -3.0 + size * (i as f32 + 0.5), y: -0.5, z: size * (j as f32 + 0.5) - 2.13 };
+            pieces.push((make(Vector { x: 0.5 * size, y: 0.5, z: 0.5 * size }), place));
+        }
+    }
+    pieces
+}
+
+/// Boxes of several sizes and depths whose joints are not in line, as voxels are joined.
+fn bricks() -> Vec<(Shape, Vector)> {
+    let mut pieces = Vec::new();
+    for row in 0..8 {
+        let (mut x, mut k) = (-3.0, row);
+        while x < 14.0 {
+            let length = [0.5, 1.5, 1.0, 2.0, 0.5][k % 5];
+            let depth = [0.5, 1.0, 1.5][k % 3];
+            let z = 0.5 * row as f32 - 1.88;
+            let half = Vector { x: 0.5 * length, y: 0.5 * depth, z: 0.25 };
+            pieces.push((cuboid(half), Vector { x: x + half.x, y: -half.y, z }));
+            (x, k) = (x + length, k + 1);
+        }
+    }
+    pieces
+}
+
+fn compound(pieces: &[(Shape, Vector)]) -> Shape {
+    let solids = pieces.iter().map(|(shape, place)| (Pose::new(*place, Rot::IDENTITY), shape.clone()));
+    Shape::compound(solids.collect()).expect("boxes are solid")
+}
+
+/// Floors of flush pieces, with their top at y = 0, from x = -3 to 14.
+pub fn tiles() -> Vec<Floor> {
+    let boxes = grid(1.0, cuboid);
+    let alone = |shape: Shape| vec![(shape, Vector::ZERO)];
+    vec![
+        ("one box", vec![(cuboid(Vector { x: 20.0, y: 0.5, z: 20.0 }), Vector::Y * -0.5)]),
+        ("half-space", alone(Shape::HalfSpace(HalfSpace { normal: Vector::Y }))),
+        ("compound", alone(compound(&boxes))),
+        ("boxes", boxes),
+        ("small boxes", grid(0.31, cuboid)),
+        ("hulls", grid(1.0, hull)),
+        ("bricks", bricks()),
+        ("voxels", alone(compound(&bricks()))),
+        ("mesh", alone(terrain(1.0, |_, _| 0.0))),
+        ("fine mesh", alone(terrain(0.17, |_, _| 0.0))),
+        ("irregular mesh", alone(irregular(0.4))),
+        ("height field", alone(surface(0.5, |_, _| 0.0, |_, _| true))),
+    ]
+}
+
+/// A surface over x = -3 to 14 and z = -2.13 to 1.87 of squares of two triangles, cut along either diagonal.
+pub fn terrain(size: f32, height: impl Fn(f32, f32) -> f32) -> Shape {
+    surface(size, height, |i, j| (i + j) % 2 == 0)
+}
+
+/// The same with a rule for which diagonal cuts a square.
+fn surface(size: f32, height: impl Fn(f32, f32) -> f32, is_first: impl Fn(u32, u32) -> bool) -> Shape {
+    let vertex = |i: u32, j: u32| {
+        let (x, z) = (-3.0 + size * i as f32, size * j as f32 - 2.13);
+        Vector { x, y: height(x, z), z }
+    };
+    mesh(size, vertex, is_first)
+}
+
+/// A flat mesh of triangles of any shape.
+fn irregular(size: f32) -> Shape {
+    let place = |i: u32, j: u32| {
+        let mut dice = Dice::new(u64::from(1000 * i + j));
+        let shift = Vector { x: dice.signed(), y: 0.0, z: dice.signed() } * (0.35 * size);
+        Vector { x: -3.0 + size * i as f32, y: 0.0, z: size * j as f32 - 2.13 } + shift
+    };
+    mesh(size, place, |i, j| Dice::new(u64::from(7 * i + 31 * j)).unit() < 0.5)
+}
+
+fn mesh(size: f32, vertex: impl Fn(u32, u32) -> Vector, is_first: impl Fn(u32, u32) -> bool) -> Shape {
+    let (columns, rows) = ((17.0 / size) as u32 + 1, (4.0 / size) as u32 + 1);
+    let mut vertices = Vec::new();
+    for i in 0..=columns {
+        (0..=rows).for_each(|j| vertices.push(vertex(i, j)));
+    }
+    let mut facets = Vec::new();
+    for i in 0..columns {
+        for j in 0..rows {
+            let at = |i: u32, j: u32| i * (rows + 1) + j;
+            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+            let halves = if is_first(i, j) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+            facets.extend(halves);
+        }
+    }
+    Shape::surface(Surface::new(vertices, facets).expect("a surface"))
+}
+
+/// More shapes that slide over floors, with their rotations.
+pub fn more_riders() -> Vec<(&'static str, Shape, Rot)> {
+    let lying = Rot::from_axis_angle(Vector::X, FRAC_PI_2);
+    let along = Rot::from_axis_angle(Vector::Z, FRAC_PI_2);
+    let cylinder = Shape::Curved(Curved { lower: 0.25, upper: 0.25, half_height: 0.3 });
+    let cone = Shape::Curved(Curved { lower: 0.3, upper: 0.0, half_height: 0.25 });
+    let round = Hull::cuboid(Vector { x: 0.2, y: 0.2, z: 0.2 }).and_then(|h| h.rounded(0.05));
+    let yaw = Rot::from_axis_angle(Vector::Y, 0.4);
+    vec![
+        ("cylinder lying across", cylinder.clone(), lying),
+        ("cylinder lying along", cylinder, along),
+        ("cone", cone, Rot::IDENTITY),
+        ("round box", Shape::Hull(Arc::new(round.expect("good sizes"))), Rot::IDENTITY),
+        ("turned box", cuboid(Vector { x: 0.25, y: 0.25, z: 0.25 }), yaw),
+    ]
+}
+
+/// Shapes that roll along x, with their rotations and radii.
+pub fn rollers() -> Vec<(&'static str, Shape, Rot, f32)> {
+    let lying = Rot::from_axis_angle(Vector::X, FRAC_PI_2);
+    let across = Vector::Z * 0.3;
+    let cylinder = Shape::Curved(Curved { lower: 0.25, upper: 0.25, half_height: 0.3 });
+    vec![
+        ("ball", Shape::Ball(crate::kernel::shape::Ball { radius: 0.25 }), Rot::IDENTITY, 0.25),
+        ("capsule", Shape::Capsule(Capsule { a: -across, b: across, radius: 0.2 }), Rot::IDENTITY, 0.2),
+        ("cylinder", cylinder, lying, 0.25),
+    ]
+}
+
+/// The rotation about the vertical that turns x to a level direction.
+pub fn heading(direction: Vector) -> Rot {
+    let half = (0.5 * (1.0 + direction.x)).sqrt();
+    Rot { x: 0.0, y: -0.5 * direction.z / half, z: 0.0, w: half }
+}
+
+/// The angular velocity of what rolls in a level direction.
+pub fn roll(direction: Vector, rate: f32) -> Vector {
+    Vector { x: direction.z, y: 0.0, z: -direction.x } * rate
+}
+
+/// Larger floors for a hundred bodies [`apart`], which move by up to 25 m along x.
+pub fn laid() -> Vec<Floor> {
+    let (columns, rows) = (48, 24);
+    let at = |i: u32, j: u32| Vector { x: i as f32 - 2.13, y: 0.0, z: j as f32 - 2.29 };
+    let middle = Vector { x: 0.5, y: -0.5, z: 0.5 };
+    let tiles = (0..columns * rows).map(|k| (cuboid(Vector::ONE * 0.5), at(k / rows, k % rows) + middle));
+    let vertices = (0..=columns).flat_map(|i| (0..=rows).map(move |j| at(i, j))).collect();
+    let facets = (0..columns * rows).flat_map(|k| {
+        let corner = |i: u32, j: u32| (k / rows + i) * (rows + 1) + k % rows + j;
+        let [a, b, c, d] = [corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0)];
+        [[a, b, c], [a, c, d]]
+    });
+    let mesh = Shape::surface(Surface::new(vertices, facets.collect()).expect("a surface"));
+    let one = vec![(cuboid(Vector { x: 100.0, y: 0.5, z: 100.0 }), Vector::Y * -0.5)];
+    vec![("one box", one), ("tiles", tiles.collect()), ("mesh", vec![(mesh, Vector::ZERO)])]
+}
+
+/// Places of bodies 2 m apart.
+pub fn apart(count: usize) -> Vec<Vector> {
+    (0..count).map(|k| Vector { x: (k / 10) as f32, y: 0.0, z: (k % 10) as f32 } * 2.0).collect()
+}
+
+/// A random rotation about the vertical.
+pub fn yawed(dice: &mut Dice) -> Rot {
+    Rot::from_axis_angle(Vector::Y, 4.0 * dice.signed())
+}
