@@ -33,7 +33,9 @@ pub(super) fn collide<S>(
         return f32::INFINITY;
     }
     let spin = input.velocity(contact, 1).angular - input.velocity(contact, 0).angular;
-    manifold::lead_rims(shapes, pose_a.rotation, &relative, spin * (0.5 * input.dt), local)
+    // Points ahead, in front of a seam of the ground, would no longer be known as such.
+    let near = input.margin(contact);
+    manifold::lead_rims(shapes, pose_a.rotation, &relative, spin * (0.5 * input.dt), near, local)
 }
 
 /// Adds the manifolds of two shapes of which one is composite, margins not subtracted. The motion is that of B against A in

@@ -31,7 +31,7 @@ use polygonal::{Buffer, Polygonal};
 const FARTHEST: f32 = 1.0e15;
 
 /// Does nothing, and returns infinity: shapes in the plane have no rims. `dim3` has the function for those in space.
-pub fn lead_rims(_: [&Shape; 2], _: Rot, _: &Pose, _: Angular, _: &mut LocalManifold) -> f32 {
+pub fn lead_rims(_: [&Shape; 2], _: Rot, _: &Pose, _: Angular, _: f32, _: &mut LocalManifold) -> f32 {
     f32::INFINITY
 }
 

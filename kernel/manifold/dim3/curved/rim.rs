@@ -18,9 +18,9 @@ const LAG: f32 = 0.02;
 /// A disc that leans less than this, as a sine, has no lowest point.
 const LEVEL: f32 = 1.0e-4;
 
-/// Moves points on the lowest place of a rim to where that will be once B has turned by `turn` against A, a rotation vector
-/// in world axes. `out` is the contact of the shapes, `rotation_a` that of A in the world, `pose_b_in_a` where B is in A's
-/// frame.
+/// Moves points on the lowest place of a rim, up to `near` apart, to where that will be once B has turned by `turn` against A,
+/// a rotation vector in world axes. `out` is the contact of the shapes, `rotation_a` that of A in the world, `pose_b_in_a`
+/// where B is in A's frame.
 ///
 /// Returns how far the surfaces may move against each other, in metres, until the points lag behind; infinity if there is no
 /// such point.
@@ -29,19 +29,20 @@ pub fn lead_rims(
     rotation_a: Rot,
     pose_b_in_a: &Pose,
     turn: Angular,
+    near: f32,
     out: &mut LocalManifold,
 ) -> f32 {
     let turn = rotation_a.inverse_rotate(turn);
     let mut allowed = f32::INFINITY;
     if let Shape::Curved(a) = shapes[0] {
         let rim = Rim::new(a, out.normal, -turn);
-        allowed = min(allowed, rim.lead(out, |point| point, |shift| shift));
+        allowed = min(allowed, rim.lead(out, near, |point| point, |shift| shift));
     }
     if let Shape::Curved(b) = shapes[1] {
         let rotation = pose_b_in_a.rotation;
         let rim = Rim::new(b, rotation.inverse_rotate(-out.normal), rotation.inverse_rotate(turn));
         let to_b = |point| pose_b_in_a.inverse_transform(point);
-        allowed = min(allowed, rim.lead(out, to_b, |shift| rotation.rotate(shift)));
+        allowed = min(allowed, rim.lead(out, near, to_b, |shift| rotation.rotate(shift)));
     }
     allowed
 }
@@ -76,13 +77,14 @@ impl Rim {
     fn lead(
         &self,
         out: &mut LocalManifold,
+        near: f32,
         to_shape: impl Fn(Vector) -> Vector,
         from_shape: impl Fn(Vector) -> Vector,
     ) -> f32 {
         let is_full = out.count == out.points.len();
         let mut allowed = f32::INFINITY;
         for p in &mut out.points[..out.count] {
-            if (to_shape(p.point) - self.lowest).length() < AT_RIM * self.radius {
+            if p.separation <= near && (to_shape(p.point) - self.lowest).length() < AT_RIM * self.radius {
                 p.point += from_shape(self.shift);
                 p.separation += self.rise;
                 if !is_full {
