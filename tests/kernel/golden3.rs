@@ -6,22 +6,22 @@ use std::sync::Arc;
 
 /// For each scene the hash with world positions in `f32`, and in `f64`.
 pub const GOLDEN: [(&str, u64, u64); 16] = [
-    ("pyramid", 0x5979f73f2408cce4, 0x5adcada0bb510b32),
-    ("towers", 0x3a9ff86f9ee73c38, 0xe867d70b3fec41d6),
-    ("pairs", 0x71898834fefbcc52, 0x97ae8ab723cab52b),
-    ("heap", 0x30c107569dbe2354, 0xec5c82fdc13c10b6),
-    ("terrain", 0x14725b215725e0b1, 0x5047c79080a89fc5),
-    ("slopes", 0xad93809bcfaefbb0, 0x7eac44562432015c),
-    ("composites", 0x43ea779bc9e75a6e, 0xc1d2fb7c6d701035),
-    ("bounces", 0x1294ed8f09fe1cdd, 0x8359c1b85beeeeb2),
-    ("crowd", 0x359068c48f8c6f6d, 0xfaad4bf5c167356a),
-    ("sleepers", 0x058482f76e21eba2, 0x6ae715252efa0c40),
-    ("held", 0xfe3bd4aec0c8a7bc, 0x8bffcc8a2c47992d),
-    ("dominance", 0x92e01b1b5794bde6, 0x204246fd7cc7ca92),
-    ("spin", 0x055374a91d201127, 0xcdb9f70dbe20c0fb),
-    ("mixer", 0x596f258e0271f70b, 0x0c92ed521ab7f6cb),
-    ("changes", 0xcd1af96df265f439, 0x10c1358927377ff2),
-    ("wall", 0xf7e61d107d19d706, 0xb17df5f15b211205),
+    ("pyramid", 0x333833886b7339c0, 0xf9ade9eee6dd1582),
+    ("towers", 0x7f620009233a6fbc, 0x3a97fc5b3ba0b802),
+    ("pairs", 0x091e871bada0579a, 0xa15b0b1af9aaa818),
+    ("heap", 0x5fdaabae4d9c22cb, 0xa99513d20d082246),
+    ("terrain", 0x8cbfd1c080c31f18, 0xd6f296a8d1ecb124),
+    ("slopes", 0xd6e4f1ee41de6f8e, 0xb114a784484e31c1),
+    ("composites", 0x64f33dd0154cf11e, 0x78254b3436bc7673),
+    ("bounces", 0x747b83c12ce946dc, 0xa4a95cf905b53029),
+    ("crowd", 0x877e6a1eab9e4fce, 0x348bb1cbd847b35b),
+    ("sleepers", 0x8fb8ae44c64dfbcb, 0x7330668fa8341f0e),
+    ("held", 0xec19575c47e85fc1, 0xd1e329f79e764512),
+    ("dominance", 0x2c75a5132aa4dfb1, 0x8120847053575a23),
+    ("spin", 0x612b5b8add5704c6, 0x7822855a93a648a6),
+    ("mixer", 0xb14533ba421d2fdb, 0xbb79336006c5004e),
+    ("changes", 0xd44b18e2374782b4, 0x9d42884b2727cb01),
+    ("wall", 0xba1f75a1d636afcb, 0xa379885ebebe7825),
 ];
 
 /// Every native shape with bounds, each about a metre across.

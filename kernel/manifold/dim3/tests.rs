@@ -93,6 +93,17 @@ pub(super) fn deepest(m: &LocalManifold) -> f32 {
 /// to 0.2 % of the extent better, and an axis counts as exact within 0.1 %.
 const TOLERANCE: f64 = 0.006;
 
+/// How much farther shapes may reach into each other along a contact's normal than along the best one. Capsules that touch
+/// along a line have the normal of its middle, which is up to a tenth (`LINE_TURN`) from that of their closest points.
+fn slack(a: &Shape, b: &Shape, m: &LocalManifold) -> f64 {
+    match (a, b) {
+        (Shape::Capsule(a), Shape::Capsule(b)) if m.count == 2 => {
+            TOLERANCE + 0.1 * f64::from((a.b - a.a).length() + (b.b - b.a).length())
+        }
+        _ => TOLERANCE,
+    }
+}
+
 fn check_against_oracle(a: &Shape, b: &Shape, pose: &Pose) -> Result<(), TestCaseError> {
     let (of_a, of_b) = (Solid::new(a), Solid::new(b).at(pose));
     let m = fresh(a, b, pose, 100.0);
@@ -105,10 +116,8 @@ fn check_against_oracle(a: &Shape, b: &Shape, pose: &Pose) -> Result<(), TestCas
     prop_assert!(got >= along - TOLERANCE, "reported {got}, along its normal only {along}");
     if best > 0.01 {
         prop_assert!((got - best).abs() < TOLERANCE, "apart by {best}, reported {got}");
-        prop_assert!(along > best - TOLERANCE, "the normal separates by {along} of {best}");
-    } else {
-        prop_assert!(along > best - TOLERANCE, "the normal separates by {along}, the best axis by {best}");
     }
+    prop_assert!(along > best - slack(a, b, &m), "the normal separates by {along}, the best axis by {best}");
     Ok(())
 }
 
@@ -206,7 +215,8 @@ proptest! {
             prop_assert!(out.count > 0);
             let (of_a, of_b) = (Solid::new(&a), Solid::new(&b).at(&moved));
             let along = of_a.separation_along(&of_b, out.normal);
-            prop_assert!(along > of_a.signed_distance(&of_b) - 0.012);
+            let best = of_a.signed_distance(&of_b);
+            prop_assert!(along > best - TOLERANCE - slack(&a, &b, &out), "{along} of {best}");
         }
     }
 
