@@ -148,9 +148,8 @@ impl<S> NarrowPhaseInput<'_, S> {
 }
 
 impl ContactTable {
-    /// Marks the manifolds of internal edges among the contacts that the workers noted, so that they are not solved, and hands
-    /// on the load of points that were lost.
-    #[inline(never)]
+    /// Marks the manifolds of internal edges among the contacts that the workers noted, so that they are not solved. Adds their
+    /// points to those that were lost.
     pub(super) fn mark_internal<S: ManifoldSource>(
         &mut self,
         input: &NarrowPhaseInput<S>,
@@ -166,12 +165,11 @@ impl ContactTable {
         sliding.clear();
         self.sliding = sliding;
         let mut lost = core::mem::take(&mut self.lost);
-        workers.iter().for_each(|worker| lost.extend_from_slice(&worker.lost));
         for (id, index) in workers.iter_mut().flat_map(|worker| worker.internal.drain(..)) {
             let contact = &self.contacts[id as usize];
             let side = usize::from(!input.slides(contact, 0));
             let was = *self.manifold(contact, index).expect("the manifold was looked at");
-            if !was.is_internal {
+            if !was.is_internal && input.match_points {
                 load::note_internal((id, index), side, contact, &was, &mut lost);
             }
             let contact = &mut self.contacts[id as usize];
@@ -187,7 +185,6 @@ impl ContactTable {
             }
             self.points[id as usize] = PointCount::of(contact);
         }
-        self.hand_on(input, &mut lost);
         self.lost = lost;
     }
 

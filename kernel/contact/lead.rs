@@ -5,24 +5,25 @@
 //! contact is computed where the bodies will be in the middle of the step, as for shapes that [meet](super::sweep) then.
 
 use super::input::{NarrowPhaseInput, smaller};
+use super::manifolds::SAME_FACE;
 use super::record::Contact;
 use super::sweep::{Meeting, place_at};
 use crate::manifold::{self, LocalManifold};
-use crate::math::max;
-use crate::table::{BodyKind, BodyPose, NONE};
+use crate::math::{max, min};
+use crate::table::{BodyKind, BodyPose, MOST_TURN, NONE};
 
 /// Bodies that turn by less than this against each other in the step, in radians, keep the contact of its start, which can
 /// be recycled. More leaves rocking without damping, less computes more contacts anew.
 const LEAST_TURN: f32 = 2.0e-3;
 
-/// Bodies that turn by more, in radians, do not rock: what they hit comes first.
-const MOST_TURN: f32 = 0.25;
+/// Bodies that turn by more against each other, in radians, do not rock: what they hit comes first.
+const MOST_ROCKING: f32 = 0.25;
 
-/// Nor do those that move by more than this share of the smaller one's reach.
+/// Nor do those that move by more than this share of the smaller one's reach or radius.
 const MOST_WAY: f32 = 0.5;
 
 /// Moves the only point of `local`, with a round surface that presses another body, to where it is in the middle of the step,
-/// up to `prediction` apart. Does nothing to other contacts.
+/// up to `prediction` apart. Leaves all other points as they are.
 pub(super) fn lead<S>(
     input: &NarrowPhaseInput<S>,
     contact: &mut Contact,
@@ -32,14 +33,16 @@ pub(super) fn lead<S>(
 ) -> Option<Meeting> {
     let is_round = |local: &LocalManifold| local.count == 1 && max(local.radii[0], local.radii[1]) > 0.0;
     let is_dynamic = |body: &u32| *body != NONE && input.bodies[*body].kind == BodyKind::Dynamic;
-    if !(is_round(local) && local.points[0].separation <= input.margin(contact)) {
+    let presses = is_round(local) && local.points[0].separation <= input.margin(contact);
+    if !presses || contact.is_inert() {
         return None;
     }
     let [va, vb] = [input.velocity(contact, 0), input.velocity(contact, 1)];
     let turn = (vb.angular - va.angular).length() * input.dt;
+    let fastest = max(va.angular.length(), vb.angular.length()) * input.dt;
     let way = (vb.linear - va.linear).length() * input.dt;
-    let reach = smaller(input.reaches(contact).map(|reach| reach.extent));
-    let rocks = turn > LEAST_TURN && turn < MOST_TURN && way < MOST_WAY * reach;
+    let size = min(smaller(input.reaches(contact).map(|reach| reach.extent)), smaller(local.radii));
+    let rocks = turn > LEAST_TURN && turn < MOST_ROCKING && fastest < MOST_TURN && way < MOST_WAY * size;
     if !(rocks && contact.bodies.iter().all(is_dynamic)) {
         return None;
     }
@@ -48,7 +51,9 @@ pub(super) fn lead<S>(
     let shapes = contact.colliders.map(|id| &input.colliders[id].def.shape);
     let mut then = LocalManifold::default();
     manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, &mut then);
-    if !is_round(&then) {
+    let normal = input.colliders.poses[contact.colliders[0] as usize].rotation.rotate(local.normal);
+    let continues = placed[0].shape.rotation.rotate(then.normal).dot(normal) > SAME_FACE;
+    if !(is_round(&then) && continues) {
         return None;
     }
     *local = then;

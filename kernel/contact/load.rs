@@ -7,7 +7,7 @@
 //!
 //! Points are lost in parallel, and handed on by one thread in the order of contacts.
 
-use super::input::{ManifoldSource, NarrowPhaseInput};
+use super::input::NarrowPhaseInput;
 use super::record::{Contact, ContactFlags, Lost, Manifold, ManifoldPoint};
 use super::table::ContactTable;
 use crate::math::Vector;
@@ -37,7 +37,7 @@ impl Before {
     /// The manifolds of a contact, if it slides under load.
     #[inline(always)]
     pub(super) fn of<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> Option<Self> {
-        if contact.manifold.count == 0 || !contact.is_solved() {
+        if contact.manifold.count == 0 || !contact.is_solved() || !input.match_points {
             return None;
         }
         let side = (0..2).find(|side| input.slides(contact, *side))?;
@@ -82,7 +82,7 @@ pub(super) fn note_internal(
     lost: &mut Vec<Lost>,
 ) {
     // After those that were lost before.
-    let first = (1 << 16) + index * m.points.len() as u32;
+    let first = (1 << 31) + index * m.points.len() as u32;
     for (i, p) in m.points().iter().enumerate().filter(|(_, p)| p.impulse > 0.0) {
         lost.push(Lost {
             contact: id,
@@ -97,7 +97,8 @@ pub(super) fn note_internal(
 
 impl ContactTable {
     /// Gives the impulses of lost points to the nearest ones, and empties the list.
-    pub(super) fn hand_on<S: ManifoldSource>(&mut self, input: &NarrowPhaseInput<S>, lost: &mut Vec<Lost>) {
+    pub(super) fn hand_on<S>(&mut self, input: &NarrowPhaseInput<S>) {
+        let mut lost = core::mem::take(&mut self.lost);
         lost.sort_unstable_by_key(|lost| (lost.contact, lost.number));
         for lost in lost.drain(..) {
             let Some((id, index, point)) = self.nearest(input, &lost) else { continue };
@@ -108,6 +109,7 @@ impl ContactTable {
             };
             manifold.points[point].impulse += lost.impulse;
         }
+        self.lost = lost;
     }
 
     /// The nearest point with the same normal: its contact, manifold and number.

@@ -11,7 +11,7 @@ use crate::table::BodyPose;
 
 /// A manifold continues an old one if the cosine between their normals is above this: 25°. More loses impulses of bodies
 /// that turn; less hands them to another face.
-const SAME_FACE: f32 = 0.9;
+pub(super) const SAME_FACE: f32 = 0.9;
 
 /// Computes the manifold of two native shapes where they are now, with points up to `prediction` apart, margins not
 /// subtracted. Points on rims are where they will be in the middle of the step; returns how far the surfaces may move until
@@ -33,7 +33,7 @@ pub(super) fn collide<S>(
         return f32::INFINITY;
     }
     let spin = input.velocity(contact, 1).angular - input.velocity(contact, 0).angular;
-    // Points ahead, in front of a seam of the ground, would no longer be known as such.
+    // A point that does not touch, moved past a seam of the ground, would not be recognised as one of an inner edge.
     let near = input.margin(contact);
     manifold::lead_rims(shapes, pose_a.rotation, &relative, spin * (0.5 * input.dt), near, local)
 }

@@ -1,7 +1,7 @@
 //! Pairs of colliders that are near each other: their records, the narrow phase that keeps manifolds up to date, and
 //! [`Link`], which alone changes contacts, colours and islands.
 //!
-//! `narrow_phase` is read top to bottom; `input`, `recycle`, `manifolds`, `sweep`, `flags`, `internal` and `load` are
+//! `narrow_phase` is read top to bottom; `input`, `recycle`, `manifolds`, `sweep`, `lead`, `flags`, `internal` and `load` are
 //! its helpers and do not know it. `modify` takes what the embedder makes of its results.
 
 mod buffers;

@@ -1,8 +1,8 @@
 //! The narrow phase, top to bottom: awake contacts are classified by their boxes and motion, then recycled or recomputed,
 //! and what only the table can store is committed at the end.
 //!
-//! Helpers are called from here and do not call back: [`recycle`](super::recycle) keeps manifolds, [`manifolds`] and
-//! [`sweep`] compute them, [`flags`] holds what follows from them.
+//! Helpers are called from here and do not call back: [`recycle`](super::recycle) keeps manifolds, [`manifolds`], [`sweep`]
+//! and [`lead`] compute them, [`load`](super::load) hands on their impulses, [`flags`] holds what follows from them.
 #![expect(unsafe_code, reason = "several threads change contacts, each other ones")]
 
 use super::buffers::WorkerBuffers;
@@ -87,6 +87,7 @@ impl ContactTable {
         });
         self.commit(workers, changed);
         self.mark_internal(input, pool, workers);
+        self.hand_on(input);
     }
 
     /// Finds the dynamic bodies that overlap others deeply.
@@ -111,6 +112,7 @@ impl ContactTable {
         let mut stored = core::mem::take(&mut self.stored);
         for (worker, found) in workers.iter().enumerate() {
             found.changed.iter().for_each(|id| _ = changed.insert(*id));
+            self.lost.extend_from_slice(&found.lost);
             let mut start = 0;
             for &(contact, count) in &found.stored {
                 stored.push(Stored { contact, worker, range: start..start + count });

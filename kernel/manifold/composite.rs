@@ -308,15 +308,17 @@ impl Pass<'_> {
             let lowest = self.other.support(self.pose.rotation.inverse_rotate(-direction))?;
             Some((self.pose.transform(lowest) - corner).dot(direction))
         };
-        // How far the shape may stay behind either side of the face.
+        // The lowest height of the shape over the face, and over its back: negative where it reaches through.
         let (Some(over), Some(under)) = (height(face), height(-face)) else {
             return if normal.dot(face) < 0.0 { -face } else { face };
         };
         let along = normal.dot(face);
-        let is_under = match along.abs() > SIDEWAYS {
-            false => over < under,
-            true if along < 0.0 => !(over > ON_ONE_SIDE * under),
-            true => under > ON_ONE_SIDE * over,
+        let is_under = if along.abs() <= SIDEWAYS {
+            over < under
+        } else if along < 0.0 {
+            over <= ON_ONE_SIDE * under
+        } else {
+            under > ON_ONE_SIDE * over
         };
         if is_under { -face } else { face }
     }

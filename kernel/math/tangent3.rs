@@ -120,22 +120,24 @@ impl<N: Lane> TangentMass<N> {
     /// The friction impulse that follows `impulse` at a slip of `v`, no longer than `limit`: one that stops the slip, else one
     /// against it.
     ///
-    /// The impulse that stops the slip, λ = −M u, is not along it where bodies turn more easily about one axis than another (u is
-    /// the slip without `impulse`). So an impulse beyond the limit is replaced by one against u, no longer than stops the slip
-    /// along u: |u| / (û · K û). It never gains energy. All of it is computed from w = adj(M) λ, which is against u.
+    /// Let u be the slip without `impulse`. The impulse that stops it, λ = −M u, is not along u where bodies turn more easily about
+    /// one axis than another. So an impulse beyond the limit is replaced by one against u, no longer than stops the slip along u:
+    /// |u| / (û · M⁻¹ û). It never gains energy. All of it is computed from w = A λ, which is against u, where A is adj(M)
+    /// divided by the trace of M, so that w is about as large as λ.
     #[inline(always)]
     pub fn rub(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
         let stick = impulse - self.apply(v);
         let slides = (limit * limit).lt(stick.x * stick.x + stick.y * stick.y);
-        let (determinant, trace) = (self.xx * self.yy - self.xy * self.xy, self.xx + self.yy);
-        let regular = (trace * trace * N::splat(SINGULAR)).lt(determinant);
-        let adjugate = Self { xx: self.yy, yy: self.xx, xy: -self.xy };
+        let tiny = N::splat(f32::MIN_POSITIVE);
+        let share = N::ONE / (self.xx + self.yy).max(tiny);
+        let adjugate = Self { xx: self.yy * share, yy: self.xx * share, xy: -self.xy * share };
+        let determinant = adjugate.xx * adjugate.yy - adjugate.xy * adjugate.xy;
+        let regular = N::splat(SINGULAR).lt(determinant);
         let against = adjugate.apply(stick);
         let bent = adjugate.apply(against);
         let square = against.x * against.x + against.y * against.y;
         let along = against.x * bent.x + against.y * bent.y;
-        let tiny = N::splat(f32::MIN_POSITIVE);
-        // Lengths are divided by that of w: |w|³ / (w · adj(M) w) is the one that stops the slip.
+        // Lengths are divided by that of w: |w|³ / (w · A w) is the one that stops the slip.
         let factor = (limit / square.sqrt().max(tiny)).min(square / along.max(tiny));
         let slide = Tangent::select(regular, against * factor, stick.clamp_length(limit));
         Tangent::select(slides, slide, stick)
@@ -151,3 +153,50 @@ impl<N: Num> TangentMass<N> {
 }
 
 componentwise! { Tangent { x, y } }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn length(t: [f64; 2]) -> f64 {
+        t[0].hypot(t[1])
+    }
+
+    proptest! {
+        /// Against the closed form in f64, for masses of a speck to those of a planet.
+        #[test]
+        fn friction_is_against_the_slip_and_gains_no_energy(
+            (a, b, turn) in (0.1f64..10.0, 0.1f64..10.0, 0.0f64..3.2),
+            slip in [-3.0f64..3.0, -3.0f64..3.0], limit in 0.0f64..3.0, scale in -9i32..12,
+        ) {
+            // The masses along two axes, and the mass of a slip along x and y.
+            let scale = 10.0f64.powi(scale);
+            let (sin, cos) = turn.sin_cos();
+            let (xx, yy, xy) = (a * cos * cos + b * sin * sin, a * sin * sin + b * cos * cos, (a - b) * sin * cos);
+            let lane = |x: f64| x as f32;
+            let mass = TangentMass { xx: lane(xx * scale), yy: lane(yy * scale), xy: lane(xy * scale) };
+            let u = Tangent { x: lane(slip[0]), y: lane(slip[1]) };
+            let found = mass.rub(Tangent::ZERO, u, lane(limit * scale));
+            let found = [found.x, found.y].map(|lane| f64::from(lane) / scale);
+            let stop = [-(xx * slip[0] + xy * slip[1]), -(xy * slip[0] + yy * slip[1])];
+            if length(stop) <= limit {
+                prop_assert!(length([found[0] - stop[0], found[1] - stop[1]]) < 1e-5 * (1.0 + length(stop)));
+                return Ok(());
+            }
+            prop_assert!(length(found) <= limit * (1.0 + 1e-5));
+            let (dot, across) =
+                (found[0] * slip[0] + found[1] * slip[1], found[0] * slip[1] - found[1] * slip[0]);
+            prop_assert!(dot <= 0.0 && across.abs() <= 1e-3 * length(found) * length(slip), "{found:?} for {slip:?}");
+            // The energy gained: the impulse times the mean of the slips before and after.
+            let determinant = a * b;
+            let after = [(yy * found[0] - xy * found[1]) / determinant, (xx * found[1] - xy * found[0]) / determinant];
+            let gained = dot + 0.5 * (found[0] * after[0] + found[1] * after[1]);
+            prop_assert!(gained <= 1e-5 * dot.abs(), "{gained} J");
+            // It is as long as it may be.
+            let stops = length(slip) * length(slip) * length(slip) * determinant
+                / (slip[0] * (yy * slip[0] - xy * slip[1]) + slip[1] * (xx * slip[1] - xy * slip[0]));
+            prop_assert!((length(found) - limit.min(stops)).abs() < 1e-3 * limit.min(stops));
+        }
+    }
+}

@@ -232,6 +232,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         for point in &mut self.points {
             point.impulse = point.impulse * split.warm;
         }
+        self.load = self.load * split.warm;
     }
 
     /// Saves the impulses that [`undo_split`](Self::undo_split) returns to.

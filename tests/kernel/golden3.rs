@@ -6,22 +6,22 @@ use std::sync::Arc;
 
 /// For each scene the hash with world positions in `f32`, and in `f64`.
 pub const GOLDEN: [(&str, u64, u64); 16] = [
-    ("pyramid", 0x333833886b7339c0, 0xf9ade9eee6dd1582),
-    ("towers", 0x7f620009233a6fbc, 0x3a97fc5b3ba0b802),
-    ("pairs", 0x091e871bada0579a, 0xa15b0b1af9aaa818),
-    ("heap", 0x5fdaabae4d9c22cb, 0xa99513d20d082246),
-    ("terrain", 0x8cbfd1c080c31f18, 0xd6f296a8d1ecb124),
-    ("slopes", 0xd6e4f1ee41de6f8e, 0xb114a784484e31c1),
-    ("composites", 0x64f33dd0154cf11e, 0x78254b3436bc7673),
-    ("bounces", 0x747b83c12ce946dc, 0xa4a95cf905b53029),
-    ("crowd", 0x877e6a1eab9e4fce, 0x348bb1cbd847b35b),
-    ("sleepers", 0x8fb8ae44c64dfbcb, 0x7330668fa8341f0e),
-    ("held", 0xec19575c47e85fc1, 0xd1e329f79e764512),
-    ("dominance", 0x2c75a5132aa4dfb1, 0x8120847053575a23),
-    ("spin", 0x612b5b8add5704c6, 0x7822855a93a648a6),
-    ("mixer", 0xb14533ba421d2fdb, 0xbb79336006c5004e),
-    ("changes", 0xd44b18e2374782b4, 0x9d42884b2727cb01),
-    ("wall", 0xba1f75a1d636afcb, 0xa379885ebebe7825),
+    ("pyramid", 0x23864759e2228f22, 0xe3556a548d77e0d1),
+    ("towers", 0x77227f15c0f2b7a4, 0x1fb527836b9446be),
+    ("pairs", 0x0f62304b6d01af19, 0x8e18fe8b71a567d7),
+    ("heap", 0x1f45de908382fa76, 0x9bd4f5d62f7c7ca2),
+    ("terrain", 0xf0dc9ca7d490acd1, 0x2857e23a5efe744c),
+    ("slopes", 0x1f18a4b6d4bc2909, 0x3f48a38a08b25efc),
+    ("composites", 0xbb2c7ad89882497c, 0x89a35e4550a54cac),
+    ("bounces", 0x869b86c7aee83ba7, 0x4424602a4292ad41),
+    ("crowd", 0xa63d70d1c6923f20, 0x21888bbdcb046685),
+    ("sleepers", 0xeb7bffc14e493bc7, 0x494a14e3532e46d8),
+    ("held", 0x541c896feac8d83e, 0x6c8c06d9ee9d91d7),
+    ("dominance", 0x2abe6ac2ef97546e, 0x58a53f4e4473f979),
+    ("spin", 0xc52f5f24bf1135ed, 0x8e452ed4fc3979c7),
+    ("mixer", 0x2b145e38585c9740, 0x3c69501387b9da6c),
+    ("changes", 0x1a0fc734b9f44ab7, 0x223dee0418a6c31d),
+    ("wall", 0x9a7220d9f74d5114, 0x67720d145684cb2e),
 ];
 
 /// Every native shape with bounds, each about a metre across.
