@@ -88,7 +88,7 @@ fn bodies_that_grow_in_a_full_container_neither_explode_nor_leave() {
     }
     println!("crammed: at most {later} m/s");
     let end = greatest_speed_inside(&lab, half, &bodies);
-    // What is pressed to two thirds of its size jostles for good; a body that falls from lid to floor has 10 m/s or more.
+    // Bodies for which there is no room jostle for good.
     assert!(end < 1.0, "it does not calm down: {end} m/s");
 }
 
