@@ -74,14 +74,37 @@ fn rests(sim: &mut Sim, limit: usize) -> Result<(), String> {
     Err(format!("{} awake after {limit} s, up to {fastest:?} m/s and rad/s", awake(sim)))
 }
 
+/// A pile of a seed, with the step and substeps of that.
+fn seeded(shapes: &[Shape], wide: usize, count: usize, seed: u64) -> Sim {
+    let mut sim = pile(shapes, wide, count, seed);
+    (sim.dt, sim.substeps) = RATES[(seed % 2) as usize];
+    sim
+}
+
 /// The seeds of a pile that does not fall asleep in time.
 fn late(shapes: &[Shape], wide: usize, count: usize, seeds: u64, limit: usize) -> Vec<(u64, String)> {
-    let late = |seed: u64| {
-        let mut sim = pile(shapes, wide, count, seed);
-        (sim.dt, sim.substeps) = RATES[(seed % 2) as usize];
-        rests(&mut sim, limit).err().map(|why| (seed, why))
-    };
+    let late = |seed: u64| rests(&mut seeded(shapes, wide, count, seed), limit).err().map(|why| (seed, why));
     (0..seeds).filter_map(late).collect()
+}
+
+/// Prints for docs/design/solver.md when piles of many seeds fall asleep, with infinity for those that take half a minute:
+/// `cargo test -p avian_kernel2d --test it survey -- --ignored --nocapture`.
+#[test]
+#[ignore = "a survey"]
+fn survey_of_piles() {
+    for (name, shapes) in shapes() {
+        for ((wide, count, ..), seeds) in PILES.into_iter().zip([40, 20]) {
+            let time = |seed| {
+                let mut sim = seeded(&shapes, wide, count, seed);
+                let rested = rests(&mut sim, 30).is_ok();
+                if rested { sim.dt * sim.steps_done as f32 } else { f32::INFINITY }
+            };
+            let mut times: Vec<f32> = (0..seeds).map(time).collect();
+            times.sort_by(f32::total_cmp);
+            let [middle, last] = [times.len() / 2, times.len() - 1].map(|i| times[i]);
+            println!("{count} of {name}: half after {middle:.1} s, all {seeds} seeds after {last:.1} s");
+        }
+    }
 }
 
 /// Of the seeds of a pile, one may take longer: now and then a body swings or shakes for some seconds between others.
