@@ -81,15 +81,17 @@ fn bodies_that_grow_in_a_full_container_neither_explode_nor_leave() {
     println!("while growing: at most {fastest} m/s");
     // A body that falls from lid to floor is faster.
     assert!(fastest < (2.0 * G * 2.0 * half).sqrt(), "flung at {fastest} m/s");
-    let mut later: Scalar = 0.0;
-    for _ in 0..300 {
-        lab.steps(1);
-        later = later.max(greatest_speed_inside(&lab, half, &bodies));
-    }
-    println!("crammed: at most {later} m/s");
-    let end = greatest_speed_inside(&lab, half, &bodies);
-    // Bodies for which there is no room jostle for good.
-    assert!(end < 1.0, "it does not calm down: {end} m/s");
+    let mut later: Vec<Scalar> = (0..300)
+        .map(|_| {
+            lab.steps(1);
+            greatest_speed_inside(&lab, half, &bodies)
+        })
+        .collect();
+    let last_second = &mut later[240..];
+    last_second.sort_by(Scalar::total_cmp);
+    println!("crammed: {last_second:?} m/s");
+    // Bodies for which there is no room jostle for good, and now and then one of them jumps.
+    assert!(last_second[30] < 0.5, "it does not calm down: {} m/s", last_second[30]);
 }
 
 #[test]
@@ -137,6 +139,8 @@ fn a_hundred_bodies_in_one_place_come_apart_gently() {
                 lab.spawn((
                     RigidBody::Dynamic,
                     growing(kind, 0.5),
+                    // What parts more slowly than the threshold falls asleep with some overlap left.
+                    SleepingDisabled,
                     dim::turned(0.01 * i as f32),
                     Position::default(),
                 ))
@@ -147,7 +151,7 @@ fn a_hundred_bodies_in_one_place_come_apart_gently() {
         let mut fastest: Scalar = 0.0;
         let apart = (0..150).find(|_| {
             fastest = (0..10).fold(fastest, |most, _| most.max(fastest_in_step(&mut lab, &bodies)));
-            nearest_two(&lab, &bodies) > 0.9
+            nearest_two(&lab, &bodies) > 0.95
         });
         let seconds = apart.map(|tenths| (tenths + 1) as f64 * 10.0 * lab.dt);
         println!("kind {kind}: at up to {fastest} m/s of {push_out}, apart after {seconds:?} s");
