@@ -128,7 +128,7 @@ impl<S> NarrowPhaseInput<'_, S> {
         if !self.is_dynamic(body) || contact.flags.has(ContactFlags::DEEP) {
             return false;
         }
-        let relative = (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length_squared();
+        let relative = self.relative_speed_squared(contact);
         if self.is_dynamic(ground) {
             relative > SLIDING * SLIDING && self.speed_squared(ground) < RESTING * RESTING
         } else {
@@ -142,8 +142,18 @@ impl<S> NarrowPhaseInput<'_, S> {
         contact.is_solved()
             && (contact.manifold.is_internal
                 || contact.extra_count > 0
-                || self.slides(contact, 0)
-                || self.slides(contact, 1))
+                || self.moves(contact) && (self.slides(contact, 0) || self.slides(contact, 1)))
+    }
+
+    /// Whether a contact's bodies move against each other fast enough to [slide](Self::slides). Most do not.
+    #[inline(always)]
+    fn moves(&self, contact: &Contact) -> bool {
+        self.relative_speed_squared(contact) > min(SLIDING, MOVING) * min(SLIDING, MOVING)
+    }
+
+    #[inline(always)]
+    fn relative_speed_squared(&self, contact: &Contact) -> f32 {
+        (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length_squared()
     }
 }
 
