@@ -25,6 +25,9 @@ const MET_OF_LARGER: f64 = 1.0e-9;
 /// the radius of curvature.
 const FAR_ENOUGH: f64 = 300.0;
 
+/// How far shapes that overlap where they met are moved back, times how near they meet.
+const BACK: [f64; 5] = [4.0, 32.0, 256.0, 2048.0, 16384.0];
+
 /// What counts as a hit of a cast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CastConfig {
@@ -236,7 +239,10 @@ impl Meeting<'_> {
             let back = Frame { position: self.frame.position - self.direction * way, ..self.frame };
             closest_cores(a, b, &back, normal, accuracy)
         };
-        let cores = if cores.distance > 0.0 { cores } else { earlier(4.0 * self.met)? };
+        // Cores that overlap by a rounding error have no closest points.
+        let apart = |k: f64| earlier(k * self.met).filter(|cores| cores.distance > 0.0);
+        let cores =
+            if cores.distance > 0.0 { cores } else { BACK.into_iter().find_map(apart).unwrap_or(cores) };
         let mut normal = if cores.distance > 0.0 { cores.normal } else { normal };
         if (a.is_curved() || b.is_curved()) && cores.distance < FAR_ENOUGH * self.met {
             // Points on curves are rounded to f32, and so is the direction between near ones.
