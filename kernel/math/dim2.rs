@@ -244,10 +244,10 @@ impl<N: Num> Angular<N> {
 }
 
 impl<N: Lane> Angular<N> {
-    /// The magnitude.
+    /// The magnitude. That of -0 is 0: what is divided by it may not become -∞.
     #[inline(always)]
     pub fn length(self) -> N {
-        (-self.z).max(self.z)
+        (-self.z).max(self.z) + N::ZERO
     }
     /// Reads lane `i`.
     #[inline(always)]

@@ -175,3 +175,18 @@ fn balls_rebound_from_a_thin_wall_at_any_speed() {
         }
     }
 }
+
+/// A spin of -0 is no spin: what met a body with one passed through it.
+#[test]
+fn a_spin_of_minus_zero_lets_nothing_through() {
+    for x in [-0.4, -0.6, -0.8] {
+        let mut sim = free();
+        let ids = [x, 0.0].map(|x| sim.ball(BALL, Vector::X * x));
+        let none = Velocity { linear: Vector::ZERO, angular: kernel::math::Angular::ZERO * -1.0 };
+        sim.bodies.set_velocity(ids[0], Velocity { linear: Vector::X * 60.0, ..none });
+        sim.bodies.set_velocity(ids[1], none);
+        sim.step();
+        let [a, b] = ids.map(|id| sim.bodies.velocities[id as usize].linear.x);
+        assert!(a < 31.0 && b > 29.0, "from {x} m it goes on at {a} m/s, the other at {b} m/s");
+    }
+}
