@@ -4,10 +4,15 @@
 //! turning body moves along an arc. So the pair is followed to when it meets (conservative advancement, after B. Mirtich).
 //! The solver gets the contact of that time, with separations that bring it there. A pair that does not meet has none.
 
+#[cfg(test)]
+#[path = "sweep_tests.rs"]
+mod tests;
+
 use super::input::{NarrowPhaseInput, smaller};
 use super::record::{Contact, Manifold};
 use crate::manifold::{self, LocalManifold};
-use crate::math::{Rot, Vector, WorldPose, max, min};
+use crate::math::{Angular, Rot, Vector, WorldPose, max, min};
+use crate::shape::Shape;
 use crate::table::{BodyPose, MOST_TURN, NONE};
 
 /// Most steps of conservative advancement. A pair that takes more meets where it then is.
@@ -22,6 +27,9 @@ const MET_STRAIGHT: f32 = 0.1;
 
 /// Bodies that turn by more than this in the step, in radians, are not cast past what they are near to.
 const MOST_STRAIGHT_TURN: f32 = 0.75;
+
+/// Chords of a slab's width that are drawn for one advance. More advance farther, fewer cost less.
+const CHORDS: usize = 3;
 
 /// The solver lets points close no further than they may by the end of the first substep after the step. So points count
 /// as pushing that close within this many steps, the most that can be.
@@ -73,21 +81,24 @@ pub(super) fn find_meeting<S>(
     let margin = input.margin(contact);
     let mut offset = (poses[1].center - poses[0].center).to_local();
     let end = min(input.dt, MOST_TURN / max(motion.spins[0], motion.spins[1]));
-    let mut rotation = input.colliders.poses[a as usize].rotation;
+    let mut placed: [Placed; 2] = core::array::from_fn(|side| Placed {
+        body: *poses[side],
+        turn: Rot::IDENTITY,
+        shape: input.colliders.poses[contact.colliders[side] as usize],
+    });
     let mut time = 0.0;
     for round in 1..=MAX_ROUNDS {
-        let rate = match local.count {
-            0 => motion.fastest(offset),
-            _ => motion.closing(rotation.rotate(local.normal), offset),
+        let slab = Slab { shapes, placed: &placed, motion: &motion, offset, margin };
+        time += match local.count {
+            0 => max(gap, 0.5 * motion.met) / motion.fastest(offset),
+            _ => slab.time_to_cross(placed[0].shape.rotation.rotate(local.normal), gap, end - time),
         };
-        // A smallest step, so that the advance does not slow down without end.
-        time += max(gap, 0.5 * motion.met) / rate;
-        if !(rate > 0.0 && time < end) {
+        // A NaN ends it as well.
+        if !(time >= 0.0 && time < end) {
             break;
         }
-        let placed = place_at(input, contact, poses, time);
+        placed = place_at(input, contact, poses, time);
         offset = (placed[1].body.center - placed[0].body.center).to_local();
-        rotation = placed[0].shape.rotation;
         let relative = placed[0].shape.relative(&placed[1].shape);
         // What is farther away than the rest of the motion does not meet.
         let rest = max(farthest * (1.0 - time / input.dt), input.near(contact)) + margin;
@@ -152,6 +163,7 @@ pub(super) fn pushes<S>(
 struct Motion {
     /// The velocity of B against A.
     linear: Vector,
+    angular: [Angular; 2],
     spins: [f32; 2],
     arms: [f32; 2],
     extents: [f32; 2],
@@ -166,6 +178,7 @@ impl Motion {
         let [a, b] = [input.velocity(contact, 0), input.velocity(contact, 1)];
         Self {
             linear: b.linear - a.linear,
+            angular: [a.angular, b.angular],
             spins: [a.angular.length(), b.angular.length()],
             arms: reaches.map(|reach| reach.arm),
             extents,
@@ -192,6 +205,121 @@ impl Motion {
     /// The same along a normal from A to B: the slab between the shapes is not crossed sooner.
     fn closing(&self, normal: Vector, offset: Vector) -> f32 {
         self.turning(offset) - self.linear.dot(normal)
+    }
+}
+
+/// Two shapes that move evenly, each about its own centre of mass, and a plane between them.
+struct Slab<'a> {
+    shapes: [&'a Shape; 2],
+    placed: &'a [Placed; 2],
+    motion: &'a Motion,
+    /// From A's to B's centre of mass.
+    offset: Vector,
+    margin: f32,
+}
+
+/// The slab between two shapes as one body sees it: its normal turns with that body, whose face may make it.
+struct View<'a> {
+    slab: &'a Slab<'a>,
+    /// The side that moves in this view.
+    moving: usize,
+    /// From the moving shape to the other one.
+    normal: Vector,
+    /// The slab's width now.
+    width: f32,
+    /// How fast the moving body's centre of mass approaches, in m/s.
+    speed: f32,
+    angular: Angular,
+    /// An upper bound of the acceleration of any point in this view, in m/s².
+    acceleration: f32,
+    /// The distance of the moving shape's farthest point along the normal from its centre of mass.
+    height: f32,
+}
+
+impl<'a> Slab<'a> {
+    /// How long the shapes take at least until the slab between them, `gap` wide along a normal from A to B, is half as wide as
+    /// what counts as having met; infinite if they take longer than `end`.
+    fn time_to_cross(&self, normal: Vector, gap: f32, end: f32) -> f32 {
+        let goal = 0.5 * self.motion.met;
+        let rate = self.motion.closing(normal, self.offset);
+        // A smallest step, so that the advance does not slow down without end.
+        let least = if rate > 0.0 { goal / rate } else { f32::INFINITY };
+        let coarse = max(gap / rate, least);
+        let Some(views) = self.views(normal, end) else { return coarse };
+        // Points that are cut off by an edge may be within the slab.
+        if !(views[0].width > goal) {
+            return coarse;
+        }
+        let last = [views[0].width_after(end), views[1].width_after(end)];
+        let better = usize::from(last[1] > last[0]);
+        max(views[better].time_to(goal, end, last[better]), least)
+    }
+
+    /// The views of both bodies; `None` if a shape has no farthest points.
+    fn views(&'a self, normal: Vector, end: f32) -> Option<[View<'a>; 2]> {
+        let heights = [self.height(0, normal)?, self.height(1, -normal)?];
+        let Motion { linear, angular, spins, extents, .. } = self.motion;
+        let width = self.offset.dot(normal) - heights[0] - heights[1] - self.margin;
+        let view = |moving: usize| {
+            let still = 1 - moving;
+            let normal = if moving == 0 { normal } else { -normal };
+            let [offset, linear] = [self.offset, *linear].map(|v| if moving == 1 { v } else { -v });
+            let speed = linear.length();
+            // A point r of the moving body, seen from the other centre of mass, is at x = Q⁻¹ (d + t v + P r), where Q and P turn
+            // by the angular velocities ω and ψ: x'' is at most ω² |d + t v| + 2 ω |v| + (ω + ψ)² |r|.
+            let both = spins[0] + spins[1];
+            let away = offset.length() + speed * end;
+            View {
+                slab: self,
+                moving,
+                normal,
+                width,
+                speed: (linear - angular[still].cross(offset)).dot(normal),
+                angular: angular[moving] - angular[still],
+                acceleration: spins[still] * (spins[still] * away + 2.0 * speed)
+                    + both * both * extents[moving],
+                height: heights[moving],
+            }
+        };
+        Some([view(0), view(1)])
+    }
+
+    /// How far a side reaches along a direction from its centre of mass, times the direction's length.
+    fn height(&self, side: usize, direction: Vector) -> Option<f32> {
+        let Placed { body, shape, .. } = &self.placed[side];
+        let farthest = self.shapes[side].support(shape.rotation.inverse_rotate(direction))?;
+        let arm = (shape.position - body.center).to_local() + shape.rotation.rotate(farthest);
+        Some(arm.dot(direction))
+    }
+}
+
+impl View<'_> {
+    /// A lower bound of the slab's width after a time.
+    ///
+    /// n · (ω × r) = r · (n × ω): the highest point after the time t is the farthest one along n + t n × ω.
+    fn width_after(&self, time: f32) -> f32 {
+        let direction = self.normal - self.angular.cross(self.normal) * time;
+        let height = self.slab.height(self.moving, direction).unwrap_or(f32::INFINITY);
+        let closed = self.speed * time + (height - self.height) + 0.5 * self.acceleration * time * time;
+        self.width - closed
+    }
+
+    /// A lower bound of the time until the width falls to `goal`; infinite if it does not by the `end`, when it is `last`.
+    ///
+    /// The width's bound is concave over time. So a chord of it is below it, and is no later at the goal.
+    fn time_to(&self, goal: f32, end: f32, last: f32) -> f32 {
+        if last >= goal {
+            return f32::INFINITY;
+        }
+        let (mut time, mut width) = (0.0, self.width);
+        for _ in 0..CHORDS {
+            time += (end - time) * (width - goal) / (width - last);
+            width = self.width_after(time);
+            if !(width > 2.0 * goal) {
+                break;
+            }
+        }
+        time
     }
 }
 

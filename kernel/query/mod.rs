@@ -13,7 +13,7 @@ mod point;
 mod ray;
 mod sweep;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use cast::{CastConfig, CastHit, cast_shape};
 pub use closest::{Closest, closest, overlaps};

@@ -127,11 +127,40 @@ fn what_spins_in_a_corner_gains_no_energy() {
     assert_no_gain(capsules(), 100.0, 5.0e-4);
 }
 
-/// The rim of a cylinder goes on with its spin within the step. What it overlaps then is pushed out, which lifts the body by
-/// some tenths of a millimetre: these shapes are not as exact as the others.
 #[test]
-fn what_leans_or_spins_on_a_rim_gains_little() {
-    for spin in [0.0, 100.0] {
-        assert_no_gain(rimmed(), spin, 2.0e-2);
+fn what_leans_on_a_rim_gains_no_energy() {
+    assert_no_gain(rimmed(), 0.0, 5.0e-4);
+}
+
+/// The rim of a cylinder goes on with its spin within the step. What it overlaps then is pushed out, which lifts a cone without
+/// friction by some tenths of a millimetre: it is not as exact as the others.
+#[test]
+fn what_spins_on_a_rim_gains_little() {
+    assert_no_gain(rimmed(), 100.0, 4.0e-3);
+}
+
+/// A disc that falls flat rests on two points for a moment, and tips over them. Its lowest point was led to the other side then:
+/// it sank by 46 mm.
+#[test]
+fn a_disc_that_comes_to_lie_does_not_sink() {
+    for i in 0..60 {
+        let mut sim = Sim::new();
+        sim.floor();
+        let (lean, way) = (0.02 * (i % 6) as f32, 0.4 * i as f32);
+        let axis = Vector { x: way.cos(), y: 0.0, z: way.sin() };
+        let rotation = Rot::from_axis_angle(axis, lean);
+        let disc = curved(HALF, HALF, 0.04);
+        let height = reach(&disc, rotation, -Vector::Y) + 0.05 * (i % 5) as f32;
+        let id = sim.add_with(BodyKind::Dynamic, disc.clone(), Vector::Y * height, rotation, 1.0, 0.0);
+        sim.bodies.velocities[id as usize].angular =
+            Vector { x: -axis.z, y: 0.3, z: axis.x } * (0.07 * (i % 7) as f32);
+        for step in 0..240 {
+            sim.step();
+            let rotation = sim.bodies.poses[id as usize].rotation;
+            let low = sim.position(id).to_local().y - reach(&disc, rotation, -Vector::Y);
+            // It lands with one side first, and the other one follows by 6 cm in a step.
+            assert!(low > if step < 60 { -0.012 } else { -0.001 }, "disc {i}: {low} m in step {step}");
+        }
+        assert!(sim.bodies.velocities[id as usize].angular.length() < 0.05, "disc {i} does not come to lie");
     }
 }

@@ -93,13 +93,17 @@ pub(super) fn deepest(m: &LocalManifold) -> f32 {
 /// to 0.2 % of the extent better, and an axis counts as exact within 0.1 %.
 const TOLERANCE: f64 = 0.006;
 
-/// How much farther shapes may reach into each other along a contact's normal than along the best one. Capsules that touch
-/// along a line have the normal of its middle, which is up to a tenth (`LINE_TURN`) from that of their closest points.
+/// How much farther shapes may reach into each other along a contact's normal than along the best one. Capsules and segments
+/// that touch along a line have the normal of its middle, which is up to a tenth (`LINE_TURN`) from that of their closest
+/// points.
 fn slack(a: &Shape, b: &Shape, m: &LocalManifold) -> f64 {
-    match (a, b) {
-        (Shape::Capsule(a), Shape::Capsule(b)) if m.count == 2 => {
-            TOLERANCE + 0.1 * f64::from((a.b - a.a).length() + (b.b - b.a).length())
-        }
+    let length = |shape: &Shape| match shape {
+        Shape::Capsule(s) => Some((s.b - s.a).length()),
+        Shape::Segment(s) => Some((s.b - s.a).length()),
+        _ => None,
+    };
+    match (length(a), length(b)) {
+        (Some(a), Some(b)) if m.count == 2 => TOLERANCE + 0.1 * f64::from(a + b),
         _ => TOLERANCE,
     }
 }

@@ -14,7 +14,7 @@ use crate::math::{DIM, Pose, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, HalfSpace, Part, Segment, Shape, Surface, Triangle};
 use proptest::prelude::*;
 
-fn vector(range: f32) -> impl Strategy<Value = Vector> {
+pub(crate) fn vector(range: f32) -> impl Strategy<Value = Vector> {
     prop::array::uniform3(-range..range).prop_map(|v| Vector::from_array(core::array::from_fn(|i| v[i])))
 }
 
@@ -34,12 +34,12 @@ fn turn() -> impl Strategy<Value = Rot> {
     })
 }
 
-fn pose(range: f32) -> impl Strategy<Value = Pose> {
+pub(crate) fn pose(range: f32) -> impl Strategy<Value = Pose> {
     (vector(range), turn()).prop_map(|(position, rotation)| Pose { position, rotation })
 }
 
 /// Bounded convex shapes, some of them flat, small or rounded.
-fn convex() -> impl Strategy<Value = Shape> {
+pub(crate) fn convex() -> impl Strategy<Value = Shape> {
     prop_oneof![
         (0.0f32..1.0).prop_map(|radius| Shape::Ball(Ball { radius })),
         (vector(1.0), vector(1.0), 0.0f32..0.5).prop_map(|(a, b, radius)| Shape::Capsule(Capsule {

@@ -18,6 +18,10 @@ const LAG: f32 = 0.02;
 /// A disc that leans less than this, as a sine, has no lowest point.
 const LEVEL: f32 = 1.0e-4;
 
+/// Nor has one whose lowest point runs farther in half a step than this share of the radius. It tips over: led to the other
+/// side, the point would be missing where the disc goes down.
+const MOST_RUN: f32 = 0.5;
+
 /// Moves points on the lowest place of a rim, up to `near` apart, to where that will be once B has turned by `turn` against A,
 /// a rotation vector in world axes. `out` is the contact of the shapes, `rotation_a` that of A in the world, `pose_b_in_a`
 /// where B is in A's frame.
@@ -70,7 +74,9 @@ impl Rim {
         let leans = lean > LEVEL && lean < ROLLING;
         let radius = if leans { shape.radius_of(end) } else { 0.0 };
         let lowest = around * radius + Vector::Y * shape.height_of(end);
-        let shift = if lean_then > LEVEL { (around_then - around) * radius } else { Vector::ZERO };
+        let run = around_then - around;
+        let runs = lean_then > LEVEL && run.length_squared() < MOST_RUN * MOST_RUN;
+        let shift = if runs { run * radius } else { Vector::ZERO };
         Self { lowest, shift, rise: -shift.dot(down), radius, lean }
     }
 
