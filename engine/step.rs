@@ -42,7 +42,7 @@ use crate::{
         solver::{
             config::update_contact_softness,
             diagnostics::{SolverDiagnostics, reset_solver},
-            gather::{gather_bodies, read_awake, rest_kinematic, wake_changed},
+            gather::{gather_bodies, read_awake, rest_kinematic, wake_changed, wake_kinematic_late},
             scatter::{finish_bodies, keep_moved_within, note_moved_late, note_moved_within, scatter_bodies},
             schedule::{SolverSystems, SubstepSchedule, SubstepSolverSystems, start_substep_clock},
             substeps::{
@@ -174,7 +174,9 @@ stages! {
         Solver: update_contact_softness,
     }
     /// Fills the rows of awake bodies.
-    Gather.in_set(SolverSystems::PrepareSolverBodies) => { SolverBodies: gather_bodies }
+    Gather.in_set(SolverSystems::PrepareSolverBodies) => {
+        SolverBodies: (wake_kinematic_late, gather_bodies).chain(),
+    }
     /// Adds forces to the rows of awake bodies.
     ApplyForces.in_set(ForceSystems::ApplyConstantForces) => { Forces: apply_forces }
     /// Computes the parameters of the substeps, also for bodies without contacts.

@@ -109,6 +109,7 @@ fn components_derive_what_they_derive_in_avian() {
     immutable::<RigidBody>();
     immutable::<CollisionLayers>();
     immutable::<ColliderOf>();
+    immutable::<avian::prelude::ActiveCollisionHooks>();
     mutable::<Collider>();
     mutable::<Position>();
     have! {

@@ -12,7 +12,7 @@ use bevy_ecs::prelude::*;
 use bevy_gizmos::{GizmoHandles, prelude::*};
 use bevy_math::Vec3;
 use bevy_mesh::Mesh3d;
-use bevy_time::Time;
+use bevy_time::{Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::{TransformPlugin, components::Transform};
 use core::{any::TypeId, time::Duration};
 
@@ -364,4 +364,36 @@ fn a_scaled_and_mirrored_collider_is_drawn_where_its_points_are() {
             "{sign}: {drawn:?} {expected:?}"
         );
     }
+}
+
+/// As in Avian's example `bvh`: neither narrow phase nor solver.
+#[test]
+fn trees_are_drawn_where_plugins_are_added_one_by_one() {
+    fn by_default<P: Plugin + Default>() -> P {
+        P::default()
+    }
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin)).add_plugins((
+        PhysicsSchedulePlugin::default(),
+        PhysicsTransformPlugin::default(),
+        MassPropertyPlugin::default(),
+        ColliderHierarchyPlugin,
+        ColliderTransformPlugin::default(),
+        ColliderBackendPlugin::<Collider>::default(),
+        ColliderTreePlugin::<Collider>::default(),
+        BroadPhaseCorePlugin,
+        BvhBroadPhasePlugin::<()>::default(),
+        SpatialQueryPlugin::default(),
+        by_default::<PhysicsDebugPlugin>(),
+    ));
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs(1) / 64));
+    let gizmos = PhysicsGizmos { collider_tree_color: Some(RED), ..PhysicsGizmos::none() };
+    app.insert_gizmo_config(gizmos, GizmoConfig::default());
+    app.finish();
+    app.cleanup();
+    for x in [3.0, 5.0] {
+        app.world_mut().spawn((RigidBody::Kinematic, cube(0.5), Transform::from_xyz(x, 2.0, 0.0)));
+    }
+    (0..4).for_each(|_| app.update());
+    assert!(!drawn(&app).is_empty());
 }

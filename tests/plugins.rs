@@ -184,6 +184,19 @@ without! {
     without_broad_phase: BvhBroadPhasePlugin => moves, falls_through, is_attached;
     without_transforms: PhysicsTransformPlugin => moves_unseen, rests, is_attached;
     without_interpolation: PhysicsInterpolationPlugin => moves, rests, is_attached;
+    without_sweeps: CcdPlugin => moves, rests, is_attached;
+    without_casters: SpatialQueryPlugin => moves, rests, is_attached;
+}
+
+/// As games do for speed, and crates for networking that keep poses and sleep to themselves.
+#[test]
+fn without_many_of_them_at_once_bodies_move_and_touch() {
+    let group = PhysicsPlugins::new(Update).build();
+    let group = group.disable::<PhysicsTransformPlugin>().disable::<PhysicsInterpolationPlugin>();
+    let group = group.disable::<IslandPlugin>().disable::<IslandSleepingPlugin>();
+    let group = group.disable::<ForcePlugin>().disable::<ColliderCachePlugin>();
+    let seen = watch(group.disable::<CcdPlugin>().disable::<SpatialQueryPlugin>());
+    assert!(moves_unseen(&seen) && lies_awake(&seen) && is_attached(&seen), "{seen:?}");
 }
 
 #[test]

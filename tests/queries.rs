@@ -12,9 +12,9 @@ use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
 use proptest::prelude::*;
 
-const ALL: SpatialQueryFilter = SpatialQueryFilter::DEFAULT;
+pub const ALL: SpatialQueryFilter = SpatialQueryFilter::DEFAULT;
 
-fn app() -> App {
+pub fn app() -> App {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, PhysicsPlugins::new(Update)));
     app.finish();
@@ -22,13 +22,13 @@ fn app() -> App {
     app
 }
 
-fn step(app: &mut App) {
+pub fn step(app: &mut App) {
     app.world_mut().resource_mut::<Time>().advance_by(Duration::from_millis(16));
     app.update();
 }
 
 /// A box with sides of 1 m.
-fn cube() -> Collider {
+pub fn cube() -> Collider {
     let mut corners = vec![Vector::ZERO];
     for axis in Vector::AXES {
         corners = corners.iter().flat_map(|c| [*c - axis * 0.5, *c + axis * 0.5]).collect();
@@ -36,12 +36,12 @@ fn cube() -> Collider {
     Collider::convex_hull(corners).expect("a box is convex")
 }
 
-fn at(x: f32) -> Transform {
+pub fn at(x: f32) -> Transform {
     Transform::from_xyz(x, 0.0, 0.0)
 }
 
 /// What a query gives, asked by a system of its own.
-fn ask<R: Send + Sync + 'static>(
+pub fn ask<R: Send + Sync + 'static>(
     app: &mut App,
     question: impl Fn(&SpatialQuery) -> R + Send + Sync + 'static,
 ) -> R {
@@ -129,7 +129,7 @@ fn changes_are_seen_before_the_next_step() {
 }
 
 /// A box, a capsule, a compound, or a shape that only parry has.
-fn shape(kind: u8) -> Collider {
+pub fn shape(kind: u8) -> Collider {
     let (a, b) = (Vector::X * 0.8, Vector::Y * 0.6);
     match kind % 4 {
         0 => cube(),

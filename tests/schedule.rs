@@ -287,6 +287,7 @@ fn the_stages_of_the_host_are_in_order_and_before_transforms_are_propagated() {
         ],
     );
     expected.extend(note_sets(&mut app, Update, &[TransformSystems::Propagate]));
+    expected.extend(note_sets(&mut app, Update, &[SpatialQuerySystems]));
     app.configure_sets(Update, PhysicsSystems::First.ambiguous_with(PhysicsSystems::Last));
     tick(&mut app, 10);
     assert_eq!(app.world().resource::<Order>().0, expected);

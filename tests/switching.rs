@@ -123,12 +123,15 @@ fn components_bring_what_they_require_and_apps_add_to_it() {
 }
 
 /// How far a body moves in the step in which a system gives it a velocity of 1 m/s.
-fn moved_in_the_same_step<M>(system: impl IntoScheduleConfigs<ScheduleSystem, M>) -> avian::math::Scalar {
+fn moved_in_the_same_step<M>(
+    kind: RigidBody,
+    system: impl IntoScheduleConfigs<ScheduleSystem, M>,
+) -> avian::math::Scalar {
     let mut app = app();
     app.add_systems(PhysicsSchedule, system);
     app.finish();
     app.cleanup();
-    let body = app.world_mut().spawn((RigidBody::Dynamic, unit_box())).id();
+    let body = app.world_mut().spawn((kind, unit_box())).id();
     step(&mut app);
     app.world().get::<Position>(body).expect("bodies have one").dot(Vector::X)
 }
@@ -137,18 +140,54 @@ fn push(mut bodies: Query<&mut LinearVelocity>) {
     bodies.iter_mut().for_each(|mut velocity| velocity.0 = Vector::X);
 }
 
+/// A kinematic body rests when the step begins.
 #[test]
 fn velocities_written_before_the_solver_count_in_the_same_step() {
-    let moved = [
-        moved_in_the_same_step(push.before(PhysicsStepSystems::First)),
-        moved_in_the_same_step(push.in_set(NarrowPhaseSystems::Last)),
-        moved_in_the_same_step(
-            push.after(PhysicsStepSystems::NarrowPhase).before(PhysicsStepSystems::Solver),
-        ),
-    ];
-    for moved in moved {
-        assert!((moved - 0.016).abs() < 1.0e-6, "{moved}");
+    for kind in [RigidBody::Dynamic, RigidBody::Kinematic] {
+        let between = push.after(PhysicsStepSystems::NarrowPhase).before(PhysicsStepSystems::Solver);
+        let moved = [
+            moved_in_the_same_step(kind, push.before(PhysicsStepSystems::First)),
+            moved_in_the_same_step(kind, push.in_set(NarrowPhaseSystems::Last)),
+            moved_in_the_same_step(kind, between),
+        ];
+        assert!(moved.iter().all(|moved| (moved - 0.016).abs() < 1.0e-6), "{kind:?}: {moved:?}");
     }
+}
+
+/// What stands on such a platform is carried, asleep or not.
+#[test]
+fn a_platform_that_is_pushed_within_each_step_carries_what_sleeps_on_it() {
+    #[derive(Resource, Default)]
+    struct Speed(Vector);
+    let mut app = app();
+    app.insert_resource(Gravity(Vector::Y * -9.81)).init_resource::<Speed>();
+    let drive = |speed: Res<Speed>, mut bodies: Query<(&RigidBody, &mut LinearVelocity)>| {
+        for (kind, mut velocity) in &mut bodies {
+            if kind.is_kinematic() {
+                velocity.0 = speed.0;
+            }
+        }
+    };
+    let stop = |mut bodies: Query<(&RigidBody, &mut LinearVelocity)>| {
+        for (kind, mut velocity) in &mut bodies {
+            if kind.is_kinematic() {
+                velocity.0 = Vector::ZERO;
+            }
+        }
+    };
+    app.add_systems(PhysicsSchedule, drive.in_set(NarrowPhaseSystems::Last));
+    app.add_systems(PhysicsSchedule, stop.in_set(PhysicsStepSystems::Last));
+    let platform = app.world_mut().spawn((RigidBody::Kinematic, unit_box())).id();
+    let rider = (RigidBody::Dynamic, unit_box(), Transform::from_xyz(0.0, 1.0, 0.0));
+    let rider = app.world_mut().spawn(rider).id();
+    (0..120).for_each(|_| step(&mut app));
+    assert!(app.world().entity(rider).contains::<Sleeping>());
+    app.world_mut().resource_mut::<Speed>().0 = Vector::X * 0.5;
+    (0..125).for_each(|_| step(&mut app));
+    let x = |body: Entity| app.world().get::<Position>(body).expect("bodies have one").dot(Vector::X);
+    assert!((x(platform) - 1.0).abs() < 1.0e-4, "the platform is at {}", x(platform));
+    // Friction takes v² / (2 μ g) = 26 mm to bring it to the platform's speed.
+    assert!((x(rider) - 0.9745).abs() < 0.003, "the rider is at {}", x(rider));
 }
 
 #[test]
@@ -156,8 +195,33 @@ fn a_pose_written_before_the_first_set_counts_in_the_same_step() {
     let place = |mut bodies: Query<&mut Position>| {
         bodies.iter_mut().for_each(|mut position| position.0 = Vector::X * 2.0);
     };
-    let moved = moved_in_the_same_step(place.before(PhysicsStepSystems::First));
+    let moved = moved_in_the_same_step(RigidBody::Dynamic, place.before(PhysicsStepSystems::First));
     assert!((moved - 2.0).abs() < 1.0e-6, "{moved}");
+}
+
+#[test]
+fn forces_before_the_first_set_count_in_the_same_step() {
+    fn accelerate(mut bodies: Query<Forces>) {
+        bodies.iter_mut().for_each(|mut forces| forces.apply_linear_acceleration(Vector::X * 60.0));
+    }
+    let moved = moved_in_the_same_step(RigidBody::Dynamic, accelerate.before(PhysicsStepSystems::First));
+    // a t²/2, and a little more, as velocities change at the start of each substep.
+    assert!(moved > 0.5 * 60.0 * 0.016 * 0.016 && moved < 60.0 * 0.016 * 0.016, "{moved}");
+}
+
+#[test]
+fn a_transform_written_before_physics_counts_in_the_same_step() {
+    let mut app = app();
+    let shift = |mut bodies: Query<&mut Transform, With<RigidBody>>| {
+        bodies.iter_mut().for_each(|mut transform| transform.translation.x += 2.0);
+    };
+    app.add_systems(Update, shift.before(PhysicsSystems::First));
+    let body = app.world_mut().spawn((RigidBody::Dynamic, unit_box())).id();
+    for expected in [2.0, 4.0] {
+        step(&mut app);
+        let x = app.world().get::<Position>(body).expect("bodies have one").dot(Vector::X);
+        assert!((x - expected).abs() < 1.0e-6, "{x}, not {expected}");
+    }
 }
 
 #[derive(Resource, Default)]
@@ -192,4 +256,32 @@ fn casters_are_updated_in_the_schedule_of_the_group() {
     step(&mut app);
     step(&mut app);
     assert_eq!(app.world().resource::<Runs>().0, 1);
+}
+
+#[test]
+fn what_the_prelude_has_is_at_its_path_too() {
+    use avian::{
+        collision::{
+            collider::constructor::{ColliderConstructor, ColliderConstructorHierarchy},
+            contact_types::ContactGraph,
+            hooks::CollisionHooks,
+        },
+        debug_render::{DebugRender, PhysicsDebugPlugin, PhysicsGizmoExt, PhysicsGizmos},
+        dynamics::rigid_body::sleeping::{SleepThreshold, Sleeping, SleepingDisabled, TimeToSleep},
+        schedule::PhysicsTime,
+    };
+    fn named<T>() {}
+    named::<(ContactGraph, ColliderConstructor, ColliderConstructorHierarchy)>();
+    named::<(DebugRender, PhysicsDebugPlugin, PhysicsGizmos)>();
+    named::<(SleepThreshold, Sleeping, SleepingDisabled, TimeToSleep)>();
+    fn draws<G: PhysicsGizmoExt>() {}
+    let _ = draws::<bevy_gizmos::prelude::Gizmos<'static, 'static, PhysicsGizmos>>;
+    fn is_clock<C: PhysicsTime>() {}
+    is_clock::<Time<Physics>>();
+    // Hooks only read.
+    fn reads<P: bevy_ecs::system::ReadOnlySystemParam>() {}
+    fn hooks_read<H: CollisionHooks>() {
+        reads::<H>();
+    }
+    hooks_read::<()>();
 }

@@ -480,3 +480,53 @@ fn observers_may_despawn_all_colliders() {
     steps(&mut app, 3);
     assert_eq!(said(&mut app), [SawEnd(wall, body), Ended(wall, body)]);
 }
+
+#[test]
+fn an_observer_on_a_collider_hears_of_it_first_and_one_on_its_body_nothing() {
+    #[derive(Resource, Default)]
+    struct Heard(Vec<[Entity; 3]>);
+    fn hear(on: On<CollisionStart>, mut heard: ResMut<Heard>) {
+        heard.0.push([on.event_target(), on.collider1, on.collider2]);
+    }
+    let mut app = app();
+    app.init_resource::<Heard>();
+    let world = app.world_mut();
+    let wall = world.spawn((RigidBody::Static, ball(0.5), CollisionEventsEnabled)).observe(hear).id();
+    let body = world.spawn((RigidBody::Dynamic, at(0.9, 0.0), SleepingDisabled)).observe(hear).id();
+    let part = world.spawn((ball(0.5), CollisionEventsEnabled, ChildOf(body))).observe(hear).id();
+    step(&mut app);
+    let heard = &app.world().resource::<Heard>().0;
+    assert_eq!(heard.len(), 2, "{heard:?}");
+    assert!(heard.contains(&[wall, wall, part]) && heard.contains(&[part, part, wall]), "{heard:?}");
+}
+
+#[test]
+fn all_starts_of_a_step_are_told_before_its_ends() {
+    let mut app = app();
+    let [wall, body] = touching(&mut app);
+    let other = app.world_mut().spawn((RigidBody::Static, ball(0.5), at(5.0, 0.0))).id();
+    app.world_mut().entity_mut(body).insert(at(4.005, 0.0));
+    step(&mut app);
+    let told = [SawStart(body, other), SawEnd(wall, body), SawEnd(body, wall)];
+    assert_eq!(said(&mut app)[..3], told);
+}
+
+#[test]
+fn events_are_sent_in_their_set_at_the_end_of_the_step() {
+    use avian::collision::narrow_phase::CollisionEventSystems;
+    #[derive(Resource, Default)]
+    struct Sent([usize; 2]);
+    fn count<const I: usize>(messages: Res<Messages<CollisionStart>>, mut sent: ResMut<Sent>) {
+        sent.0[I] = messages.len();
+    }
+    let mut app = app();
+    app.init_resource::<Sent>().add_systems(
+        PhysicsSchedule,
+        (
+            count::<0>.after(PhysicsStepSystems::Sleeping).before(CollisionEventSystems),
+            count::<1>.after(CollisionEventSystems).before(PhysicsStepSystems::Last),
+        ),
+    );
+    touching(&mut app);
+    assert_eq!(app.world().resource::<Sent>().0, [0, 1]);
+}

@@ -315,6 +315,42 @@ pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
     tables.bodies.ids = ids;
 }
 
+/// Kinematic bodies that rested when the step began, and got a velocity since: they move in this step. Dynamic ones that
+/// sleep wake in the next.
+pub(crate) fn wake_kinematic_late(
+    query: Query<(Ref<BodyId>, Ref<LinearVelocity>, Ref<AngularVelocity>)>,
+    mut tables: Tables,
+    system: SystemChangeTick,
+) {
+    let (written, since) = (tables.bodies.written, Since::last_run(system));
+    let mut woken = core::mem::take(&mut tables.bodies.ids);
+    woken.clear();
+    for (ids, linear, angular) in query.contiguous_iter().expect(IN_TABLES) {
+        let columns = [linear.changed_ticks_slice(), angular.changed_ticks_slice()];
+        since.rows(columns, |row| {
+            let id = ids[row].0;
+            let is_new = columns.iter().any(|column| since.is_new(column[row]) && column[row] != written);
+            if !is_new || id == NONE {
+                return;
+            }
+            let body = &tables.bodies.table[id];
+            let velocity = velocity(&linear[row], &angular[row]);
+            let is_pushed =
+                body.kind == BodyKind::Kinematic && !body.awake && velocity != Velocity::default();
+            if is_pushed && velocity.linear.is_finite() && velocity.angular.is_finite() {
+                tables.bodies.table.set_velocity(id, velocity);
+                woken.push(id);
+            }
+        });
+    }
+    // The order of entities does not matter.
+    woken.sort_unstable();
+    for &id in &woken {
+        tables.link().wake_body(id);
+    }
+    tables.bodies.ids = woken;
+}
+
 /// Components that define when a body counts as at rest, and for how long it has rested.
 type RestInput = (Option<&'static SleepThreshold>, Has<SleepingDisabled>, Option<Ref<'static, SleepTimer>>);
 

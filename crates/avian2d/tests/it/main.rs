@@ -48,6 +48,8 @@ mod picking_dim;
 mod plugins;
 #[path = "../../../../tests/queries.rs"]
 mod queries;
+#[path = "../../../../tests/query_contract.rs"]
+mod query_contract;
 #[path = "../../../../tests/reflection.rs"]
 mod reflection;
 #[path = "../../../../tests/scale/mod.rs"]

@@ -91,7 +91,9 @@ impl Collider {
         }
         let (pose, ray) = usable_ray(translation, rotation, ray_origin, ray_direction)?;
         let hit = self.shape_scaled().cast_ray_and_get_normal(&pose, &ray, max_distance, solid)?;
-        hit.normal.is_finite().then_some((hit.time_of_impact, hit.normal))
+        // parry gives normals to rays from inside.
+        let normal = if solid && hit.time_of_impact == 0.0 { Vector::ZERO } else { hit.normal };
+        normal.is_finite().then_some((hit.time_of_impact, normal))
     }
 
     /// Whether a ray meets the collider; inside counts. `max_distance` as in [`cast_ray`](Self::cast_ray).
