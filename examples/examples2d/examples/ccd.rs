@@ -8,14 +8,16 @@ use bevy::prelude::*;
 use examples2d::Scenery;
 
 fn main() {
-    App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default()))
+    App::new().add_plugins((DefaultPlugins, plugin)).run();
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_plugins((PhysicsPlugins::default(), Scenery::default()))
         .insert_resource(Gravity(Vec2::ZERO))
         .insert_resource(Speeds { ball: 100.0, bar: 25.0 })
         .add_systems(Startup, setup)
         .add_systems(Update, change_speeds)
-        .add_systems(FixedUpdate, (shoot, remove_far))
-        .run();
+        .add_systems(FixedUpdate, (shoot, remove_far));
 }
 
 /// Speed of new balls in m/s, and of the bars in rad/s.
@@ -30,6 +32,7 @@ struct Bar;
 
 #[derive(Component)]
 struct Bullet;
+
 #[derive(Resource)]
 struct Look(Handle<Mesh>, Handle<ColorMaterial>);
 

@@ -8,14 +8,16 @@ use bevy::prelude::*;
 use examples3d::Scenery;
 
 fn main() {
+    App::new().add_plugins((DefaultPlugins, plugin)).run();
+}
+
+pub(crate) fn plugin(app: &mut App) {
     let scenery = Scenery::new(Vec3::new(7.0, 6.0, 13.0), Vec3::new(0.0, 0.5, -1.0)).with_floor();
-    App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
+    app.add_plugins((PhysicsPlugins::default(), scenery))
         .insert_resource(Speed(100.0))
         .add_systems(Startup, setup)
         .add_systems(Update, change_speed)
-        .add_systems(FixedUpdate, (shoot, remove_fallen))
-        .run();
+        .add_systems(FixedUpdate, (shoot, remove_fallen));
 }
 
 /// Of new cubes, in m/s.
@@ -23,7 +25,7 @@ fn main() {
 struct Speed(f32);
 
 #[derive(Component)]
-struct Bullet;
+pub(crate) struct Bullet;
 
 #[derive(Resource)]
 struct Look(Handle<Mesh>, [Handle<StandardMaterial>; 3]);

@@ -8,9 +8,12 @@ use bevy::prelude::*;
 use examples3d::Scenery;
 
 fn main() {
+    App::new().add_plugins((DefaultPlugins, plugin)).run();
+}
+
+pub(crate) fn plugin(app: &mut App) {
     let scenery = Scenery::new(Vec3::new(0.0, 5.0, 10.0), Vec3::new(0.0, 1.0, 0.0)).with_floor();
-    App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), PhysicsDebugPlugin, scenery))
+    app.add_plugins((PhysicsPlugins::default(), PhysicsDebugPlugin, scenery))
         .insert_gizmo_config(
             PhysicsGizmos::default()
                 .with_contact_point_color(Color::WHITE)
@@ -18,8 +21,7 @@ fn main() {
             GizmoConfig::default(),
         )
         .add_systems(Startup, setup)
-        .add_systems(Update, toggle)
-        .run();
+        .add_systems(Update, toggle);
 }
 
 fn toggle(keys: Res<ButtonInput<KeyCode>>, mut store: ResMut<GizmoConfigStore>) {
