@@ -7,7 +7,7 @@ Everything a change has to pass, from the quickest to the slowest. Fails at the 
 
     tools/check.sh            all of it, which is what CI runs
     tools/check.sh --fast     formatting, rules of the source tree, lints and tests of the kernel in f32, golden hashes
-                              among them: no Bevy, a few minutes
+                              among them, but for the longest: no Bevy, three minutes
     tools/check.sh --hunt [N] the kernel's tests N times (10 if not told) with other random input each time
     tools/check.sh --help     this
 
@@ -179,7 +179,8 @@ main() {
             formatting
             rules
             kernel_lints
-            kernel_tests
+            # Without the modules of tests/kernel that look at many runs of many seconds.
+            kernel_tests -- --skip leaning --skip rest:: --skip tiles --skip ghosts
             ;;
         hunt)
             for round in $(seq "$rounds"); do
