@@ -5,7 +5,7 @@
 //! The solver gets the contact of that time, with separations that bring it there. A pair that does not meet has none.
 
 #[cfg(test)]
-#[path = "sweep_tests.rs"]
+#[path = "tests_sweep.rs"]
 mod tests;
 
 use super::input::{NarrowPhaseInput, smaller};
