@@ -252,6 +252,10 @@ impl<'a> Slab<'a> {
         }
         let last = [views[0].width_after(end), views[1].width_after(end)];
         let better = usize::from(last[1] > last[0]);
+        // Speeds near the limits of floats have no square.
+        if !last[better].is_finite() {
+            return coarse;
+        }
         max(views[better].time_to(goal, end, last[better]), least)
     }
 
