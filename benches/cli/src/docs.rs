@@ -154,9 +154,9 @@ fn quality(page: &mut String, cells: &[Cell], dim: u32) {
     let _ = writeln!(
         page,
         "How the worlds stood at the end, judged by one ruler: deepest and mean overlap in millimetres, and, where it \
-         applies, how far the top of the last pyramid had moved, the widest gap of a joint, and how many bodies had escaped \
-         or were not finite. The last column: deepest overlap and way of the top against the least of any peer's; up to 1 \
-         this engine's worlds stand no worse than the best of the others'.\n"
+         applies, how far the top of the last pyramid had moved, the widest gap of a joint, and how many bodies had escaped, \
+         had passed through something static, or were not finite. The last column: deepest overlap and way of the top against \
+         the least of any peer's; up to 1 this engine's worlds stand no worse than the best of the others'.\n"
     );
     table(page, &chosen, &["this / best peer"], |beside, columns| {
         let said = |engine: &&str| engine_cell(beside.iter().copied(), engine).map_or("–".to_owned(), judged);
@@ -187,6 +187,9 @@ fn judged(cell: &Cell) -> String {
     }
     if q.escaped > 0 {
         let _ = write!(text, ", **{} escaped**", q.escaped);
+    }
+    if let Some(passed) = q.passed.filter(|passed| *passed > 0) {
+        let _ = write!(text, ", **{passed} passed**");
     }
     if q.not_finite > 0 {
         let _ = write!(text, ", **{} not finite**", q.not_finite);

@@ -5,6 +5,8 @@ mod backend {
     //! The crates that the Avian adapters are compiled against.
     pub use up_avian2d as d2;
     pub use up_avian3d as d3;
+    /// Whether no body passes what is static. Here only bodies with `SweptCcd` are swept.
+    pub const SWEEPS_ALL: bool = false;
 }
 mod args;
 mod docs;

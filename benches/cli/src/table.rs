@@ -97,8 +97,8 @@ pub fn markdown(reports: &[Report], baseline: Option<&str>) -> String {
     let all: Vec<Cell> = plain.into_iter().chain(staged).collect();
     let base = baseline.unwrap_or("first");
     let mut out = format!(
-        "| scene | threads | engine | runs | mean ms | median | p95 | / {base} | drift | overlap max / mean | joint error | awake / dynamic | speed max / mean | escaped | NaN | others |\n\
-         |---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
+        "| scene | threads | engine | runs | mean ms | median | p95 | / {base} | drift | overlap max / mean | joint error | awake / dynamic | speed max / mean | escaped | passed | NaN | others |\n\
+         |---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
     );
     for cell in &all {
         let beside = all.iter().filter(|other| other.is_beside(cell.first));
@@ -126,6 +126,7 @@ fn row(out: &mut String, cell: &Cell, ratio: f64) {
 fn quality(report: &Report, mean: f64) -> String {
     let q = &report.quality;
     let drift = q.drift.map_or("–".to_owned(), |drift| format!("{drift:.3}"));
+    let passed = q.passed.map_or("–".to_owned(), |passed| passed.to_string());
     let (awake, speed) = match (q.hits, q.mean_hit) {
         (Some(hits), Some(far)) => {
             let rate = report.batch as f64 / mean / 1e3;
@@ -134,7 +135,7 @@ fn quality(report: &Report, mean: f64) -> String {
         _ => (format!("{} / {}", q.awake, q.dynamic), format!("{:.2} / {:.3}", q.max_speed, q.mean_speed)),
     };
     format!(
-        "{drift} | {:.4} / {:.4} | {:.4} | {awake} | {speed} | {} | {}",
+        "{drift} | {:.4} / {:.4} | {:.4} | {awake} | {speed} | {} | {passed} | {}",
         q.max_overlap, q.mean_overlap, q.max_joint_error, q.escaped, q.not_finite
     )
 }

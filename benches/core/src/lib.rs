@@ -8,6 +8,7 @@ pub mod dim3;
 pub mod engine;
 pub mod machine;
 pub mod measure;
+mod passed;
 mod random;
 mod ruler;
 pub mod scene;

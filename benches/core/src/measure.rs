@@ -20,6 +20,8 @@ pub struct Quality {
     pub not_finite: usize,
     /// How many dynamic bodies are outside of the scene's bounds.
     pub escaped: usize,
+    /// Scenes with bullets only: how many of them went through something static in any step.
+    pub passed: Option<usize>,
     /// The fastest dynamic body, in m/s.
     pub max_speed: f32,
     /// The mean speed of dynamic bodies, in m/s.

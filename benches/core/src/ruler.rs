@@ -18,7 +18,7 @@ struct Item<D: Dimension> {
 }
 
 /// Shapes wider than this, in metres, would make a plain sweep quadratic: they are swept against everything once.
-const WIDE: f32 = 5.0;
+const WIDE: f32 = 10.0;
 
 /// Measures the final state.
 pub(crate) fn judge<D: Dimension>(scene: &Scene<D>, states: &[State<D>], awake: usize) -> Quality {

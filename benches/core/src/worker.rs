@@ -7,6 +7,7 @@ use crate::{
     engine::{DT, Engine, Engines, Make, Settings},
     machine::{Usage, pin},
     measure::{Clock, Quality, Report, StageSums, time_of},
+    passed::Passed,
     ruler::judge,
     scene::{Need, Plan, Scene, Scenes, Work, find},
     world::Dimension,
@@ -95,8 +96,12 @@ fn run<D: Scenes>(engines: &[(&str, Make<D>)], job: &Job) -> Result<Report, Stri
         bench.time_steps(timed);
     }
     let peak_mb = Usage::own().peak_mb;
-    let quality = bench.quality();
-    let Bench { scene, clock, stages, .. } = bench;
+    let mut quality = bench.quality();
+    let Bench { engine, scene, clock, stages, .. } = bench;
+    drop(engine);
+    if scene.bodies.iter().any(|body| body.bullet) {
+        quality.passed = Some(count_passed(make(scene.gravity, &settings), &scene, timed));
+    }
     let times = clock.times();
     Ok(Report {
         engine: job.engine.clone(),
@@ -117,6 +122,21 @@ fn run<D: Scenes>(engines: &[(&str, Make<D>)], job: &Job) -> Result<Report, Stri
         foreign: 0.0,
         peak_mb,
     })
+}
+
+/// Runs the scene once more, without a clock, and looks after each step at what went through a wall.
+fn count_passed<D: Dimension>(mut engine: Box<dyn Engine<D>>, scene: &Scene<D>, timed: usize) -> usize {
+    let mut passed = Passed::new(scene);
+    let mut states = Vec::new();
+    fill(&mut *engine, scene);
+    engine.ready();
+    for steps in 0..scene.plan.settle + timed {
+        step(&mut *engine, scene, steps);
+        states.clear();
+        engine.states(&mut states);
+        passed.look(&states);
+    }
+    passed.count()
 }
 
 /// Refuses a scene that needs a feature that the engine's build lacks.

@@ -108,6 +108,10 @@ pub struct Body<D: Dimension> {
     pub density: f32,
     /// Friction of every shape.
     pub friction: f32,
+    /// Restitution of every shape.
+    pub restitution: f32,
+    /// Whether it must not pass static bodies, however fast. Engines that sweep only on request are asked to.
+    pub bullet: bool,
     /// The collision group.
     pub group: Group,
     /// Its shapes.
@@ -130,6 +134,8 @@ impl<D: Dimension> Body<D> {
             spin: D::STILL,
             density: 1.0,
             friction: 0.6,
+            restitution: 0.0,
+            bullet: false,
             group: Group::All,
             parts,
         }

@@ -4,6 +4,8 @@
 mod backend {
     pub use avian2d as d2;
     pub use avian3d as d3;
+    /// Whether no body passes what is static.
+    pub const SWEEPS_ALL: bool = true;
 }
 mod engines;
 

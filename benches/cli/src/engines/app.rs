@@ -126,6 +126,7 @@ macro_rules! own_timers {
             add("relax", solver.relax_velocities);
             add("restitution", solver.apply_restitution);
             add("store", solver.store_impulses);
+            add("sweeps", solver.swept_ccd);
             add("finalize", solver.finalize);
         }
         out

@@ -14,7 +14,7 @@ use bench_core::{
 use bevy::prelude::*;
 
 use super::app;
-use crate::backend::d2 as avian;
+use crate::backend::{SWEEPS_ALL, d2 as avian};
 use avian::prelude::*;
 
 #[cfg(feature = "queries")]
@@ -79,13 +79,17 @@ impl Engine<D2> for Sim {
             Group::All => CollisionLayers::default(),
             Group::NotEachOther => CollisionLayers::from_bits(2, !2),
         };
-        let surface = (Friction::new(b.friction), Restitution::new(0.0), ColliderDensity(b.density), layers);
+        let (friction, restitution) = (Friction::new(b.friction), Restitution::new(b.restitution));
+        let surface = (friction, restitution, ColliderDensity(b.density), layers);
         let world = self.app.world_mut();
         let mut entity = world.spawn((kind, transform(b.pos, b.turn)));
         if b.kind != Kind::Static {
             entity.insert((LinearVelocity(Vec2::from(b.vel)), AngularVelocity(b.spin)));
             if !self.settings.sleeping {
                 entity.insert(SleepingDisabled);
+            }
+            if b.bullet && !SWEEPS_ALL {
+                entity.insert(SweptCcd::default());
             }
         }
         let id = entity.id();

@@ -90,7 +90,7 @@ impl Engine<D2> for World {
             let mut shape = b2DefaultShapeDef();
             shape.density = b.density;
             shape.material.friction = b.friction;
-            shape.material.restitution = 0.0;
+            shape.material.restitution = b.restitution;
             if b.group == Group::NotEachOther {
                 shape.filter.categoryBits = 2;
                 shape.filter.maskBits = !2;

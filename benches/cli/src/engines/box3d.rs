@@ -137,7 +137,7 @@ impl Engine<D3> for World {
             let mut shape = b3DefaultShapeDef();
             shape.density = b.density;
             shape.baseMaterial.friction = b.friction;
-            shape.baseMaterial.restitution = 0.0;
+            shape.baseMaterial.restitution = b.restitution;
             if b.group == Group::NotEachOther {
                 shape.filter.categoryBits = 2;
                 shape.filter.maskBits = !2;

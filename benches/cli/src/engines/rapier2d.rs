@@ -54,6 +54,7 @@ impl Engine<D2> for World {
             .pose(Pose::new(v(b.pos), b.turn))
             .linvel(v(b.vel))
             .angvel(b.spin)
+            .ccd_enabled(b.bullet)
             .can_sleep(self.sleeping);
         let id = self.w.insert_body(body);
         for part in &b.parts {
@@ -61,7 +62,7 @@ impl Engine<D2> for World {
                 .position(Pose::new(v(part.pos), part.turn))
                 .density(b.density)
                 .friction(b.friction)
-                .restitution(0.0);
+                .restitution(b.restitution);
             if b.group == Set::NotEachOther {
                 let (own, others) = (Group::GROUP_2, !Group::GROUP_2);
                 shape = shape.collision_groups(InteractionGroups::new(own, others, InteractionTestMode::And));

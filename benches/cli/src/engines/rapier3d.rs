@@ -66,6 +66,7 @@ impl Engine<D3> for World {
             .pose(Pose::from_parts(v(b.pos), quat(b.turn)))
             .linvel(v(b.vel))
             .angvel(v(b.spin))
+            .ccd_enabled(b.bullet)
             .can_sleep(self.sleeping);
         let id = self.w.insert_body(body);
         for part in &b.parts {
@@ -73,7 +74,7 @@ impl Engine<D3> for World {
                 .position(Pose::from_parts(v(part.pos), quat(part.turn)))
                 .density(b.density)
                 .friction(b.friction)
-                .restitution(0.0);
+                .restitution(b.restitution);
             if b.group == Set::NotEachOther {
                 let (own, others) = (Group::GROUP_2, !Group::GROUP_2);
                 shape = shape.collision_groups(InteractionGroups::new(own, others, InteractionTestMode::And));

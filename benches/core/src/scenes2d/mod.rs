@@ -6,6 +6,7 @@ use crate::{
     scene::{Entry, Family, Scene, Scenes, Work},
 };
 
+mod bullets;
 mod compounds;
 mod joint_grid;
 mod junkyard;
@@ -28,6 +29,7 @@ impl Scenes for D2 {
         speed("compounds", compounds::scene),
         speed("junkyard", junkyard::scene),
         speed("washer", washer::scene),
+        speed("bullets", bullets::scene),
         Entry { name: "raycast", family: Family::Queries, build: raycast::raycast },
         Entry { name: "raycast_batch", family: Family::Queries, build: raycast::raycast_batch },
         idle("empty", still::empty),

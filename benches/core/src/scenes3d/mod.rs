@@ -9,6 +9,7 @@ use crate::{
 };
 
 mod box_pile;
+mod bullets;
 mod convex_pile;
 mod joint_grid;
 mod junkyard;
@@ -31,6 +32,7 @@ impl Scenes for D3 {
         speed("convex_pile", convex_pile::scene),
         speed("junkyard", junkyard::scene),
         speed("washer", washer::scene),
+        speed("bullets", bullets::scene),
         Entry { name: "raycast", family: Family::Queries, build: queries::raycast },
         Entry { name: "raycast_batch", family: Family::Queries, build: queries::raycast_batch },
         Entry { name: "ballcast", family: Family::Queries, build: queries::ballcast },

@@ -12,13 +12,8 @@ const CYLINDER: Shape3 = Shape3::Cylinder(0.4, 0.4);
 /// Balls, boxes, capsules, rocks and cylinders, a fifth each.
 pub(super) fn mixed() -> Scene<D3> {
     let about = "2,000 balls, boxes, capsules, rocks and cylinders, a fifth each, fall between walls";
-    let kinds = [
-        Shape3::Sphere(0.4),
-        Shape3::Box(0.4, 0.35, 0.4),
-        Shape3::Capsule(0.25, 0.25),
-        rock(0.5),
-        CYLINDER,
-    ];
+    let kinds =
+        [Shape3::Sphere(0.4), Shape3::Box(0.4, 0.35, 0.4), Shape3::Capsule(0.25, 0.25), rock(0.5), CYLINDER];
     pile(about, &kinds)
 }
 
