@@ -353,6 +353,8 @@ struct Search {
     prediction: f32,
     /// The time of the points, if they are those of swept shapes or of the middle of the step.
     meeting: Option<Meeting>,
+    /// There are points farther away than that, which turning may bring together in this step.
+    has_far: bool,
 }
 
 /// Computes the manifolds of a pair with a foreign shape. It is not swept, but looked at as far as turning may close.
@@ -363,7 +365,7 @@ fn search_foreign<S: ManifoldSource>(
 ) -> Search {
     let (pose, farthest) = input.foreign_view(contact);
     input.source.manifolds(contact.colliders, &pose, farthest, &mut buffers.foreign, &mut buffers.local);
-    Search { prediction: input.prediction(contact), meeting: None }
+    Search { prediction: input.prediction(contact), meeting: None, has_far: false }
 }
 
 /// Computes the manifolds of a pair with a composite shape: of the parts nearby, and of those that the step's motion meets.
@@ -378,7 +380,7 @@ fn search_parts<S: ManifoldSource>(
     flags::set_platform(input, contact);
     let gap = input.box_gap(contact) - margin;
     if gap > farthest {
-        return Search { prediction: gap, meeting: None };
+        return Search { prediction: gap, meeting: None, has_far: false };
     }
     let near = input.near(contact);
     let motion = if prediction > near { input.predicted_motion(contact) } else { Vector::ZERO };
@@ -386,7 +388,7 @@ fn search_parts<S: ManifoldSource>(
     let gap = manifolds::collide_parts(input, contact, near + margin, motion, buffers);
     // Without a part nearby the gap is infinite.
     let known = if buffers.local.is_empty() && gap.is_finite() { max(gap - margin, near) } else { near };
-    Search { prediction: known, meeting: None }
+    Search { prediction: known, meeting: None, has_far: false }
 }
 
 /// Computes the manifold of two native shapes where they are now. If they do not touch, that of when the step's motion
@@ -404,10 +406,19 @@ fn search_native<S>(
     let mut meeting = None;
     let mut looked_up_to = prediction;
     let mut until_lag = f32::INFINITY;
+    let mut has_far = false;
     let with_margin = prediction + margin;
     // Negated, so that a NaN is not taken for a gap.
-    if !(gap > with_margin) || !(gap - margin > input.farthest(contact, prediction)) {
-        until_lag = manifolds::collide(input, contact, with_margin, &mut local);
+    let farthest = input.farthest(contact, prediction);
+    if !(gap > with_margin) || !(gap - margin > farthest) {
+        // What touches may slap down within the step with points that are far yet.
+        let slaps = farthest > prediction && sweep::is_straight(input, contact);
+        let up_to = if slaps { farthest + margin } else { with_margin };
+        until_lag = manifolds::collide(input, contact, up_to, &mut local);
+        if local.lower_bound() > with_margin {
+            local = LocalManifold { gap: local.lower_bound(), ..LocalManifold::default() };
+        }
+        has_far = local.points().iter().any(|p| p.separation > with_margin);
         if local.count == 0 {
             // Shapes that turn are often much farther apart than their boxes.
             gap = max(gap, local.gap);
@@ -426,11 +437,11 @@ fn search_native<S>(
         }
     }
     if local.count == 0 {
-        return Search { prediction: max(gap - margin, looked_up_to), meeting: None };
+        return Search { prediction: max(gap - margin, looked_up_to), meeting: None, has_far: false };
     }
     flags::set_platform(input, contact);
     found.push(local);
-    Search { prediction: min(prediction, until_lag), meeting }
+    Search { prediction: min(prediction, until_lag), meeting, has_far }
 }
 
 /// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is not recycled,
@@ -450,7 +461,8 @@ fn freeze<S>(
         prediction: search.prediction,
     };
     let is_native = !contact.flags.has(ContactFlags::FOREIGN);
-    let is_recyclable = input.recycle_distance > 0.0 && is_native && search.meeting.is_none();
+    let is_lasting = search.meeting.is_none() && !search.has_far;
+    let is_recyclable = input.recycle_distance > 0.0 && is_native && is_lasting;
     let is_kept = is_empty || !contact.flags.has(ContactFlags::SENSOR);
     contact.flags.set(ContactFlags::FROZEN, is_recyclable && is_kept);
 }

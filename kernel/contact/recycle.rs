@@ -319,7 +319,8 @@ impl<N: Lane> RecycleRow<N> {
         let moved = shift.length() + N::splat(CHORD) * reach * angle.length();
 
         let closing = self.closing(N::splat(settings.dt));
-        let without_points = prediction - closing.max(N::splat(settings.tolerance));
+        // The tolerance is for what forces add to the velocities within the step.
+        let without_points = prediction - (closing + N::splat(settings.tolerance));
         let errors = N::splat(settings.recycle_distance).min(N::splat(RECYCLE_SHARE) * smaller(extents));
         let radius = self.radii[0] + self.radii[1];
         let is_round = N::and(N::ZERO.lt(count), N::ZERO.lt(radius));

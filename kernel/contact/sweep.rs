@@ -131,12 +131,17 @@ pub(super) fn may_pass_by<S>(
     let gap = local.lower_bound() - input.margin(contact);
     let normal = input.colliders.poses[contact.colliders[0] as usize].rotation.rotate(local.normal);
     let offset = (poses[1].center - poses[0].center).to_local();
-    // The solver keeps the arms of the step's start. What turns farther gains energy if it is pushed where it comes to.
-    let turn = |side: usize| if motion.arms[side] > 0.0 { motion.spins[side] * input.dt } else { 0.0 };
-    let is_straight = max(turn(0), turn(1)) < MOST_STRAIGHT_TURN;
-    is_straight
+    is_straight(input, contact)
         && gap > MET_STRAIGHT * motion.met
         && motion.closing(normal, offset) * (AHEAD * input.dt) > gap
+}
+
+/// Whether the bodies turn little in this step. The solver keeps the arms of the step's start. What turns farther gains energy
+/// if it is pushed where it comes to.
+pub(super) fn is_straight<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> bool {
+    input.reaches(contact).into_iter().enumerate().all(|(side, reach)| {
+        reach.arm == 0.0 || input.velocity(contact, side).angular.length() * input.dt < MOST_STRAIGHT_TURN
+    })
 }
 
 /// Whether the solver would push at some point if the bodies kept their velocities.
