@@ -141,7 +141,7 @@ fn a_gltf_level_has_the_triangles_of_its_meshes() {
     );
     let root = app.world_mut().spawn(root).id();
     let mut told = Vec::new();
-    for _ in 0..500 {
+    for _ in 0..3000 {
         frames(&mut app, 1);
         told.extend(said(&mut app));
         if told.contains(&AllMade(root)) {
