@@ -32,6 +32,8 @@ mod facets_dim;
 mod forces;
 #[path = "../../../../tests/forces/dim3.rs"]
 mod forces_dim;
+#[path = "../../../../tests/gltf.rs"]
+mod gltf;
 #[path = "../../../../tests/hooks.rs"]
 mod hooks;
 #[path = "../../../../tests/hooks3.rs"]
