@@ -1,6 +1,7 @@
-//! Many queries in one call, shared by the threads of Bevy's compute task pool.
+//! Many queries in one call, shared by the caller and the threads of Bevy's compute task pool.
 
-use bevy_tasks::{ComputeTaskPool, TaskPool};
+use bevy_tasks::ComputeTaskPool;
+use std::sync::{Mutex, PoisonError};
 
 use super::{
     PointProjection, RayHitData, ShapeCastConfig, ShapeHitData, SpatialQueryFilter,
@@ -11,7 +12,7 @@ use crate::{
     math::{Dir, RotationValue, Scalar, Vector},
 };
 
-/// Number of queries that one task takes. Fewer balance better, more cost less to hand out.
+/// Number of queries that a thread takes at once. Fewer balance better, more cost less to hand out.
 const CHUNK: usize = 256;
 
 /// Many queries at once. Results are those of the single queries, for any number of threads, and in the order of the
@@ -82,18 +83,23 @@ fn answer<Q: Sync, A: Send>(
     let count = questions.len().min(answers.len());
     let (asked, rest) = answers.split_at_mut(count);
     rest.iter_mut().for_each(|answer| *answer = None);
-    let fill = |questions: &[Q], answers: &mut [Option<A>]| {
-        for (question, answer) in questions.iter().zip(answers) {
-            *answer = ask(question);
+    let chunks = Mutex::new(questions.chunks(CHUNK).zip(asked.chunks_mut(CHUNK)));
+    let next_chunk = || chunks.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let work = &|| {
+        while let Some((questions, answers)) = next_chunk() {
+            for (question, answer) in questions.iter().zip(answers) {
+                *answer = ask(question);
+            }
         }
     };
-    let pool = ComputeTaskPool::try_get().filter(|pool| count > CHUNK && pool.thread_num() > 1);
-    let Some(pool) = pool else { return fill(questions, asked) };
-    let pool: &TaskPool = pool;
+    let Some(pool) = ComputeTaskPool::try_get().filter(|_| count > CHUNK) else { return work() };
+    // One task per thread, since the end of each task wakes the caller.
+    let helpers = pool.thread_num().min(count.div_ceil(CHUNK) - 1);
     pool.scope(|scope| {
-        for (questions, answers) in questions.chunks(CHUNK).zip(asked.chunks_mut(CHUNK)) {
-            let fill = &fill;
-            scope.spawn(async move { fill(questions, answers) });
+        for _ in 0..helpers {
+            scope.spawn(async move { work() });
         }
+        // The caller may be a thread of the pool, which would be missing otherwise.
+        scope.spawn_on_scope(async move { work() });
     });
 }
