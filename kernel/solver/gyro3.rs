@@ -96,6 +96,9 @@ impl<N: Lane> Gyro<N> {
     pub(super) fn spun(&self, w: Angular<N>, h: N) -> (Angular<N>, Angular<N>) {
         let turn = w.length() * h;
         let rests = N::lt(turn, N::splat(MIN_TURN));
+        if N::bits(rests) == (1 << N::WIDTH) - 1 {
+            return (w, w);
+        }
         let half = N::splat(0.5) * h;
         let k = N::select(N::lt(N::splat(MAX_TURN), turn), half * (N::splat(MAX_TURN) / turn), half);
         let momentum = self.inertia.apply(w);
