@@ -7,23 +7,38 @@ use kernel::thread_pool::ThreadPool;
 /// contacts.
 const MANY_CONTACTS: usize = 1024;
 
+/// Minimum number of colliders that left their boxes for which waking threads pays: their pairs are searched, and their bodies
+/// swept.
+const MANY_MOVERS: usize = 256;
+
 /// The thread pool, and the [`WorkerCount`](crate::dynamics::solver::workers::WorkerCount) it was made for.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Threads {
     pub(crate) pool: ThreadPool,
     setting: Option<usize>,
+    /// Number of colliders of the last search for pairs.
+    movers: usize,
 }
 
 impl Threads {
-    /// Wakes the threads if there are many contacts. `workers` returns the number of workers that `setting` stands for. It
-    /// is called only when the setting changed, since it asks the operating system.
+    /// Wakes the threads if there are many contacts, or the last search for pairs was for many colliders. `workers` returns the
+    /// number of workers that `setting` stands for. It is called only when the setting changed, since it asks the operating
+    /// system.
     pub(crate) fn wake(&mut self, contacts: usize, setting: usize, workers: impl FnOnce() -> usize) {
-        let many = contacts >= MANY_CONTACTS;
-        // There is no pool before there are many contacts for the first time.
+        let many = contacts >= MANY_CONTACTS || self.movers >= MANY_MOVERS;
+        // There is no pool before there is much to do for the first time.
         if self.setting != Some(setting) && (many || self.setting.is_some()) {
-            *self = Self { pool: ThreadPool::new(workers()), setting: Some(setting) };
+            *self = Self { pool: ThreadPool::new(workers()), setting: Some(setting), movers: self.movers };
         }
         if many {
+            self.pool.wake();
+        }
+    }
+
+    /// Wakes the threads if pairs of many colliders are to be searched.
+    pub(crate) fn wake_for_pairs(&mut self, movers: usize) {
+        self.movers = movers;
+        if movers >= MANY_MOVERS {
             self.pool.wake();
         }
     }

@@ -169,9 +169,6 @@ fn to_public(aabb: &kernel::shape::Aabb) -> ColliderAabb {
     ColliderAabb { min: vector_from_kernel(aabb.min), max: vector_from_kernel(aabb.max) }
 }
 
-/// Minimum number of movers for which waking threads pays.
-const MANY_MOVERS: usize = 256;
-
 /// Pairs found in a step. Kept for its buffers.
 #[derive(Resource, Default)]
 pub(crate) struct PairSearch {
@@ -220,7 +217,7 @@ impl Known for Contacted<'_> {
 /// Finds pairs of moved boxes that have no contact yet.
 pub(crate) fn find_new_pairs(
     mut search: ResMut<PairSearch>,
-    threads: Res<Threads>,
+    mut threads: ResMut<Threads>,
     mut colliders: ResMut<Colliders>,
     contacts: Res<Contacts>,
     mut diagnostics: ResMut<CollisionDiagnostics>,
@@ -231,15 +228,13 @@ pub(crate) fn find_new_pairs(
     let Colliders { table, trees, moved, .. } = &mut *colliders;
     if moved.is_empty() {
         found.clear();
+        threads.wake_for_pairs(0);
     } else {
         trees.movers(moved, &table.fat, movers);
         moved.clear();
         let known = Contacted { colliders: table, pairs: contacts.table.pairs() };
-        let pool = &threads.pool;
-        if movers.list().len() >= MANY_MOVERS {
-            pool.wake();
-        }
-        found.find(&trees.trees, movers, &known, pool);
+        threads.wake_for_pairs(movers.list().len());
+        found.find(&trees.trees, movers, &known, &threads.pool);
     }
     diagnostics.broad_phase = start.elapsed();
 }

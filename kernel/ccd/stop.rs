@@ -3,10 +3,10 @@
 use super::cast::{Cast, CastBuffers, Caster, Pair, Side};
 use super::path::Path;
 use crate::bvh::{TreeKind, Trees};
-use crate::contact::ManifoldSource;
+use crate::contact::{ContactTable, ManifoldSource};
 use crate::math::{Vector, WorldPose, max, min};
 use crate::shape::Aabb;
-use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach};
+use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach};
 
 /// Bodies that move by less than this share of the ball within them stay on their side of a wall: it then pushes them back.
 const FAR: f32 = 0.5;
@@ -33,6 +33,8 @@ pub struct SweepInput<'a, S> {
     pub colliders: &'a ColliderTable,
     /// The trees of the colliders.
     pub trees: &'a Trees,
+    /// The contacts: of all pairs whose fat boxes overlap and that may collide.
+    pub contacts: &'a ContactTable,
     /// For pairs with a foreign shape.
     pub source: &'a S,
     /// Shapes this far apart count as touching, in metres.
@@ -80,13 +82,29 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
     /// Whether there is anything that does not move, and that a body may meet on a way of the step however it turns. Most fast
     /// bodies are far from all that.
     pub fn may_meet(&self, body: u32, way: Vector) -> bool {
-        let colliders = self.colliders.of_body(body, self.bodies);
-        let reach = colliders.fold(0.0, |reach, id| {
+        let (mut reach, mut is_known) = (0.0, true);
+        for id in self.colliders.of_body(body, self.bodies) {
             let Reach { extent, margin, .. } = self.colliders.reaches[id as usize];
-            max(reach, extent + margin)
-        });
+            reach = max(reach, extent + margin);
+            // Casts stop this far before shapes touch.
+            let around = self.ball(body, extent + margin).swept(way).grown(TARGET * self.tolerance);
+            is_known &= self.colliders.fat[id as usize].contains(&around);
+        }
+        if is_known {
+            // Within its fat boxes a body meets only what has contacts with it.
+            return self.colliders.of_body(body, self.bodies).any(|id| {
+                let mut contacts = self.contacts.of_collider(id, self.colliders);
+                contacts
+                    .any(|contact| self.contacts.bodies_of(contact).into_iter().any(|id| self.is_fixed(id)))
+            });
+        }
         let around = self.ball(body, reach).swept(way).grown(self.tolerance);
         FIXED.iter().any(|kind| !self.trees[*kind].query(&around, |_| false))
+    }
+
+    /// Whether colliders of a body are in the trees of what does not move.
+    fn is_fixed(&self, body: u32) -> bool {
+        body == NONE || self.bodies[body].kind == BodyKind::Static
     }
 
     /// The box of a ball about the centre of mass of a body where the step begins.

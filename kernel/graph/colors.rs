@@ -134,6 +134,11 @@ impl ColorGraph {
         self.used.get(body as usize).copied().unwrap_or(0)
     }
 
+    /// The bodies with a constraint of any colour but the overflow, in ascending order.
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = u32> {
+        self.used.iter().enumerate().filter(|(_, used)| **used != 0).map(|(body, _)| body as u32)
+    }
+
     /// Chooses a colour for a constraint between these bodies, and marks it used.
     fn take_color(&mut self, bodies: [Option<u32>; 2]) -> u8 {
         let color = match bodies {

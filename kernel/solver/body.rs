@@ -1,7 +1,8 @@
 //! The dense body rows of one step, which constraint rows refer to by index.
 
-use super::{BodyRow, MassRow, RowView, fast_turn::FastTurn, gyro::*};
+use super::{BodyRow, MassRow, RowView, fast_turn::FastTurn, gyro::*, input::RowInput, spin::Spin};
 use crate::data::{BitSet, Parts};
+use crate::graph::{ColorGraph, ConstraintKind, OVERFLOW};
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
 use core::sync::atomic::AtomicBool;
 
@@ -96,41 +97,6 @@ impl Limits {
     }
 }
 
-/// A body with free spin: the gyroscopic torque turns its spin axis.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Spin {
-    pub(super) row: u32,
-    pub(super) gyro: Gyro,
-    /// Rotation at the start of the step.
-    pub(super) rotation: Rot,
-    /// Angular velocity after the last substep, in the body's frame and in world axes.
-    after: [Angular; 2],
-}
-
-impl Spin {
-    pub(super) fn new(row: u32, gyro: Gyro, rotation: Rot) -> Self {
-        Self { row, gyro, rotation, after: [Angular::ZERO; 2] }
-    }
-
-    /// Sets the angular velocity to that in the middle of the substep, by which the body is turned.
-    pub(super) fn begin_turn(&mut self, row: &mut BodyRow, h: f32) {
-        let (v, w) = row.velocity();
-        let rotation = world_rotation(row.delta().1, self.rotation);
-        // Only the change since the last substep is rotated into the body's frame, so that free spin is not rounded.
-        let local = self.after[0] + to_body(rotation, w - self.after[1]);
-        let (middle, after) = self.gyro.spun(local, h);
-        self.after[0] = after;
-        row.set_velocity(v, to_world(rotation, middle));
-    }
-
-    /// Sets the angular velocity of the turned body to that at the end of the substep.
-    pub(super) fn end_turn(&mut self, row: &mut BodyRow) {
-        let (v, _) = row.velocity();
-        self.after[1] = to_world(world_rotation(row.delta().1, self.rotation), self.after[0]);
-        row.set_velocity(v, self.after[1]);
-    }
-}
-
 /// Items of some body rows, at most one per row, so that threads write different rows.
 #[derive(Clone, Debug)]
 pub(super) struct OnceEach<T> {
@@ -210,8 +176,10 @@ pub struct BodyRows {
     pub(super) spins: OnceEach<Spin>,
     /// Bodies with accelerations in their own frame.
     pub(super) thrusts: OnceEach<LocalThrust>,
-    /// Bodies that turn far within the step. None in 2D.
+    /// Bodies with constraints that turn far within the step. None in 2D.
     pub(super) fast_turns: OnceEach<FastTurn>,
+    /// Rows of bodies with constraints. Filled only if a body turns far.
+    pub(super) constrained: BitSet,
     /// Rows of bodies that cannot turn about each axis.
     pub(super) turn_locked: BitSet,
     /// Locked axes by row. Empty if no body has locked axes of translation.
@@ -284,35 +252,42 @@ impl BodyRows {
     /// the same row are ignored.
     #[inline]
     pub fn spin(&mut self, row: usize, inv_inertia: InvInertia, rotation: Rot) {
-        let spin = Gyro::of(inv_inertia).map(|gyro| Spin::new(row as u32, gyro, rotation));
-        if let Some(spin) = spin {
-            self.add_spin(spin);
+        if let Some(spin) = Gyro::of(inv_inertia).map(|gyro| Spin::new(gyro, rotation)) {
+            self.add_spin(row, spin);
         }
     }
 
     #[inline]
-    pub(super) fn add_spin(&mut self, spin: Spin) {
-        debug_assert!(
-            (self.first_dynamic..self.rows.len() as u32).contains(&spin.row),
-            "row {} is dynamic",
-            spin.row
-        );
-        let is_first = self.spins.push(spin.row as usize, spin);
-        debug_assert!(is_first, "body row {} spins twice", spin.row);
+    pub(super) fn add_spin(&mut self, row: usize, spin: Spin) {
+        debug_assert!((self.first_dynamic as usize..self.rows.len()).contains(&row), "row {row} is dynamic");
+        let is_first = self.spins.push(row, spin);
+        debug_assert!(is_first, "body row {row} spins twice");
     }
 
-    /// Lists the bodies that turn far within a step of substeps of `h` seconds. Those that cannot turn about each axis are left
-    /// out.
-    pub(super) fn find_fast_turns(&mut self, h: f32) {
-        let Self { spins, fast_turns, rows, turn_locked, .. } = self;
+    /// Lists the bodies with constraints that turn far within a step of substeps of `h` seconds. Those that cannot turn about
+    /// each axis are left out.
+    ///
+    /// A body without constraints would get its velocity back unchanged from every sweep.
+    pub(super) fn find_fast_turns(&mut self, input: &RowInput, colors: &ColorGraph, h: f32) {
+        let Self { spins, fast_turns, rows, turn_locked, constrained, .. } = self;
         fast_turns.clear();
-        for (row, spin) in spins.list() {
-            let w = rows[*row as usize].velocity().1;
-            if let Some(fast) = FastTurn::of(&spin.gyro, w, spin.rotation, h)
-                && !turn_locked.contains(*row)
-            {
-                fast_turns.push(*row as usize, fast);
+        constrained.clear();
+        let turns_far = |(row, spin): &&(u32, Spin)| {
+            !turn_locked.contains(*row) && spin.gyro().turns_far(rows[*row as usize].velocity().1, h)
+        };
+        let mut far = spins.list().iter().filter(turns_far).peekable();
+        if far.peek().is_none() {
+            return;
+        }
+        colors.bodies().for_each(|body| _ = constrained.insert(input.row_of(body)));
+        for kind in ConstraintKind::ALL {
+            for &id in colors.constraints(kind, OVERFLOW) {
+                let bodies = input.bodies_of(kind, id);
+                bodies.into_iter().for_each(|body| _ = constrained.insert(input.row_of(body)));
             }
+        }
+        for (row, spin) in far.filter(|(row, _)| constrained.contains(*row)) {
+            fast_turns.push(*row as usize, FastTurn::new(spin));
         }
     }
 

@@ -13,7 +13,7 @@
 //! rows are. A body of revolution has c = 1, and on its axis the velocity is exact: ω₀ × r₀ = S⁻¹ (ω × S r₀). Impulses
 //! are off by the angle θ, as without it.
 
-use super::{BodyRow, gyro::*};
+use super::{BodyRow, gyro::*, spin::Spin};
 use crate::math::{Angular, Rot};
 
 /// A body that turns far within this step.
@@ -29,14 +29,11 @@ pub(super) struct FastTurn {
 }
 
 impl FastTurn {
-    /// `None` if the body does not turn far in a step at the angular velocity `w`. `h` is the length of a substep.
-    pub(super) fn of(gyro: &Gyro, w: Angular, rotation: Rot, h: f32) -> Option<Self> {
-        gyro.turns_far(w, h).then(|| Self {
-            gyro: *gyro,
-            rotation,
-            axis: gyro.thin_axis(rotation),
-            seen: [Angular::ZERO; 2],
-        })
+    /// A body that turns far, by its free spin.
+    pub(super) fn new(spin: &Spin) -> Self {
+        let rotation = spin.rotation();
+        let axis = spin.gyro().thin_axis(rotation);
+        Self { gyro: spin.gyro(), rotation, axis, seen: [Angular::ZERO; 2] }
     }
 
     /// Sets the angular velocity to the one that rows see.

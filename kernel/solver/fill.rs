@@ -1,7 +1,7 @@
 //! Filling body rows by several threads.
 #![expect(unsafe_code, reason = "rows are written through a shared view, each by the thread that claimed it")]
 
-use super::{BodyRow, BodyRows, Limits, MassRow, Motion, body::Spin, gyro::Gyro};
+use super::{BodyRow, BodyRows, Limits, MassRow, Motion, gyro::Gyro, spin::Spin};
 use crate::data::Parts;
 use crate::math::{InvInertia, Rot};
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -102,9 +102,9 @@ impl BodyRows {
         for (row, limits) in special.limits.drain(..) {
             self.limit(row, limits);
         }
-        for spin in special.spins.drain(..).map(|(row, gyro, rotation)| Spin::new(row as u32, gyro, rotation))
-        {
-            self.add_spin(spin);
+        let spins = special.spins.drain(..);
+        for (row, spin) in spins.map(|(row, gyro, rotation)| (row, Spin::new(gyro, rotation))) {
+            self.add_spin(row, spin);
         }
     }
 }

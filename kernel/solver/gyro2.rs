@@ -2,9 +2,9 @@
 
 use crate::math::{Angular, InvInertia, Rot};
 
-/// Free spin of a body: never used in 2D.
+/// Inertia for free spin: no body has it in 2D.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Gyro {}
+pub(super) struct Gyro;
 
 impl Gyro {
     /// `None`: in 2D the spin axis is constant.
@@ -14,22 +14,17 @@ impl Gyro {
 
     /// Whether a body turns so far in a step that constraints must know of it.
     pub(super) fn turns_far(&self, _w: Angular, _h: f32) -> bool {
-        match *self {}
+        false
     }
 
     /// The axis of the smallest moment.
     pub(super) fn thin_axis(&self, _rotation: Rot) -> Angular {
-        match *self {}
+        Angular::ZERO
     }
 
     /// The energy of rotation.
     pub(super) fn energy(&self, _rotation: Rot, _w: Angular) -> f32 {
-        match *self {}
-    }
-
-    /// The angular velocity in the middle and at the end of `h` seconds of free spin.
-    pub(super) fn spun(&self, _w: Angular, _h: f32) -> (Angular, Angular) {
-        match *self {}
+        0.0
     }
 }
 

@@ -1,7 +1,7 @@
 //! Gyroscopic torque, which conserves the angular momentum of spinning bodies other than balls. `gyro2.rs` exports the
 //! same names.
 
-use crate::math::{Angular, InvInertia, MAX_RATIO, Rot, Vector};
+use crate::math::{Angular, InvInertia, Lane, MAX_RATIO, Rot, SymTensor, Vector};
 
 /// Maximum turn within a substep, in rad, for which precession is integrated. Bodies that turn further precess as if
 /// they turned by this: three Newton steps of [`Gyro::spun`] converge up to here for any inertia.
@@ -18,14 +18,14 @@ const MIN_TURN: f32 = 1.0e-5;
 /// Newton's method has not converged. The spin is then left as it is.
 const MAX_ENERGY_ERROR: f32 = 1.0e-4;
 
-/// Inertia of a body in its own frame, for free spin.
+/// Inertia of a body in its own frame, for free spin; of one body for each lane.
 ///
 /// Scaled so that the largest moment is about 1. Free spin does not depend on the scale, and determinants of tiny
 /// bodies' tensors would underflow.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Gyro {
-    inertia: InvInertia,
-    inv_inertia: InvInertia,
+pub(super) struct Gyro<N = f32> {
+    pub(super) inertia: SymTensor<N>,
+    pub(super) inv_inertia: SymTensor<N>,
 }
 
 /// Minimum of 1 + cos θ for which the swing by θ is known from both directions of the axis. Below it is rounding.
@@ -75,7 +75,9 @@ impl Gyro {
         let local = rotation.inverse_rotate(w);
         local.dot(self.inertia.apply(local))
     }
+}
 
+impl<N: Lane> Gyro<N> {
     /// The angular velocity in the middle and at the end of `h` seconds of free spin, all in the body's frame.
     ///
     /// Euler's equation I ω̇ = −ω × I ω by the implicit midpoint rule:
@@ -90,41 +92,49 @@ impl Gyro {
     /// In m it reads I (m − ω) + ½ h m × I m = 0. Newton's method solves it from the explicit guess m = ω − ½ h I⁻¹ (ω
     /// × I ω), with the Jacobian I + ½ h ([m]× I − [I m]×). The remaining difference between |I ω'| and |I ω| is scaled
     /// away.
-    pub(super) fn spun(&self, w: Angular, h: f32) -> (Angular, Angular) {
+    #[inline(always)]
+    pub(super) fn spun(&self, w: Angular<N>, h: N) -> (Angular<N>, Angular<N>) {
         let turn = w.length() * h;
-        if turn < MIN_TURN {
+        let rests = N::lt(turn, N::splat(MIN_TURN));
+        if N::bits(rests) == (1 << N::WIDTH) - 1 {
             return (w, w);
         }
-        let k = if turn > MAX_TURN { 0.5 * h * (MAX_TURN / turn) } else { 0.5 * h };
+        let half = N::splat(0.5) * h;
+        let k = N::select(N::lt(N::splat(MAX_TURN), turn), half * (N::splat(MAX_TURN) / turn), half);
         let momentum = self.inertia.apply(w);
         let guess = self.inv_inertia.apply(w.cross(momentum)) * -k;
-        let mut middle = w + guess;
-        for _ in 0..if turn > SMALL_TURN { 3 } else { 1 } {
-            middle = self.newton(w, middle, k);
+        let mut middle = self.newton(w, w + guess, k);
+        let far = N::lt(N::splat(SMALL_TURN), turn);
+        if N::any(far) {
+            let nearer = self.newton(w, self.newton(w, middle, k), k);
+            middle = select(far, nearer, middle);
         }
-        let change = self.kept(w, momentum, (middle - w) * 2.0);
-        (w + change * 0.5, w + change)
+        let change = self.kept(w, momentum, (middle - w) * N::splat(2.0));
+        (select(rests, w, w + change * N::splat(0.5)), select(rests, w, w + change))
     }
 
     /// One Newton step for the midpoint velocity `m`.
-    fn newton(&self, local: Vector, m: Vector, k: f32) -> Vector {
+    #[inline(always)]
+    fn newton(&self, local: Vector<N>, m: Vector<N>, k: N) -> Vector<N> {
         let momentum = self.inertia.apply(m);
         let residual = self.inertia.apply(m - local) + m.cross(momentum) * k;
-        // The Jacobian by its columns.
-        let column = |axis: Vector| {
-            let along = self.inertia.apply(axis);
-            along + (m.cross(along) - momentum.cross(axis)) * k
-        };
-        let (x, y, z) = (column(Vector::X), column(Vector::Y), column(Vector::Z));
+        // The columns of I and of [I m]×, which give those of the Jacobian.
+        let SymTensor { xx, yy, zz, xy, xz, yz } = self.inertia;
+        let Vector { x: p, y: q, z: r } = momentum;
+        let column = |along: Vector<N>, across: Vector<N>| along + (m.cross(along) - across) * k;
+        let x = column(Vector { x: xx, y: xy, z: xz }, Vector { x: N::ZERO, y: r, z: -q });
+        let y = column(Vector { x: xy, y: yy, z: yz }, Vector { x: -r, y: N::ZERO, z: p });
+        let z = column(Vector { x: xz, y: yz, z: zz }, Vector { x: q, y: -p, z: N::ZERO });
         let (yz, determinant) = (y.cross(z), x.dot(y.cross(z)));
         // Cramer's rule for J δ = residual.
         let change = Vector { x: residual.dot(yz), y: x.dot(residual.cross(z)), z: x.dot(y.cross(residual)) };
-        m - change * (1.0 / determinant)
+        m - change * (N::ONE / determinant)
     }
 
     /// The change of a velocity, scaled so that the momentum keeps its length. Zero if the energy is not conserved, or
     /// if a singular Jacobian gave no number.
-    fn kept(&self, local: Vector, momentum: Vector, change: Vector) -> Vector {
+    #[inline(always)]
+    fn kept(&self, local: Vector<N>, momentum: Vector<N>, change: Vector<N>) -> Vector<N> {
         let gained = self.inertia.apply(change);
         let after = momentum + gained;
         let square = after.length_squared();
@@ -132,12 +142,18 @@ impl Gyro {
         let excess = gained.dot(momentum + after);
         // s − 1 = |M| / |M'| − 1 by (1 + e)^½. A better Newton step leaves a smaller e.
         let e = -excess / square;
-        let s = e * (0.5 - 0.125 * e);
+        let s = e * (N::splat(0.5) - N::splat(0.125) * e);
         let change = change + (local + change) * s;
         let energy = local.dot(momentum);
-        let gain = change.dot(momentum) * 2.0 + change.dot(self.inertia.apply(change));
-        if gain.abs() <= MAX_ENERGY_ERROR * energy { change } else { Vector::ZERO }
+        let gain = change.dot(momentum) * N::splat(2.0) + change.dot(self.inertia.apply(change));
+        let is_kept = N::le(gain.max(-gain), N::splat(MAX_ENERGY_ERROR) * energy);
+        select(is_kept, change, Vector::ZERO)
     }
+}
+
+#[inline(always)]
+fn select<N: Lane>(mask: N::Mask, a: Vector<N>, b: Vector<N>) -> Vector<N> {
+    Vector { x: N::select(mask, a.x, b.x), y: N::select(mask, a.y, b.y), z: N::select(mask, a.z, b.z) }
 }
 
 /// The componentwise product.
@@ -146,17 +162,20 @@ pub(super) fn scale_angular(w: Angular, factors: Angular) -> Angular {
 }
 
 /// An angular velocity, in the frame of a body with this rotation.
-pub(super) fn to_body(rotation: Rot, w: Angular) -> Angular {
+#[inline(always)]
+pub(super) fn to_body<N: Lane>(rotation: Rot<N>, w: Angular<N>) -> Angular<N> {
     rotation.inverse_rotate(w)
 }
 
 /// An angular velocity of a body with this rotation, in world axes.
-pub(super) fn to_world(rotation: Rot, w: Angular) -> Angular {
+#[inline(always)]
+pub(super) fn to_world<N: Lane>(rotation: Rot<N>, w: Angular<N>) -> Angular<N> {
     rotation.rotate(w)
 }
 
 /// The current rotation of a body, of unit length: a deviation, kept over the steps, would change the spin.
-pub(super) fn world_rotation(delta: Rot, start: Rot) -> Rot {
+#[inline(always)]
+pub(super) fn world_rotation<N: Lane>(delta: Rot<N>, start: Rot<N>) -> Rot<N> {
     delta.mul(start).renormalized()
 }
 

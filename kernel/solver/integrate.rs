@@ -2,13 +2,16 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::body::OnceEach;
-use super::{BodyRow, BodyRows, RowView, gyro::*};
+use super::{BodyRow, BodyRows, RowView, gyro::*, spin::Spin};
 use crate::math::{Angular, F32x4, Lane, Rot};
 use crate::thread_pool::ThreadPool;
 
 /// Number of bodies in a block of the job, a multiple of the widest lanes. More leaves workers idle at the end, fewer cost
 /// more claims.
 const BLOCK: usize = 256;
+
+/// As [`BLOCK`], of bodies with free spin, each of which takes twenty times as long.
+const SPIN_BLOCK: usize = 64;
 
 impl<T: Send> OnceEach<T> {
     /// Changes rows of bodies that have an item in the list.
@@ -18,13 +21,57 @@ impl<T: Send> OnceEach<T> {
         pool: &ThreadPool,
         change: impl Fn(&mut T, &mut BodyRow) + Sync,
     ) {
-        let (count, items, view) = (self.list().len(), self.parts(), RowView::over(rows, 0));
-        pool.run(count.div_ceil(BLOCK), |block, _| {
-            // SAFETY: an item is in one block.
-            let items = unsafe { items.take(block * BLOCK..count.min((block + 1) * BLOCK)) };
+        self.each_block(BLOCK, pool, rows, |items, view| {
             for (row, item) in items {
                 // SAFETY: no row is listed twice, and an item is in one block.
                 unsafe { view.put(*row, |row| change(item, row)) };
+            }
+        });
+    }
+
+    /// Calls `change` with blocks of items. No row is listed twice, and an item is in one block.
+    fn each_block(
+        &mut self,
+        size: usize,
+        pool: &ThreadPool,
+        rows: &mut [BodyRow],
+        change: impl Fn(&mut [(u32, T)], &RowView<BodyRow>) + Sync,
+    ) {
+        let (count, items, view) = (self.list().len(), self.parts(), RowView::over(rows, 0));
+        pool.run(count.div_ceil(size), |block, _| {
+            // SAFETY: an item is in one block.
+            change(unsafe { items.take(block * size..count.min((block + 1) * size)) }, &view);
+        });
+    }
+}
+
+impl OnceEach<Spin> {
+    /// Before bodies are turned for `h` seconds: sets their angular velocities to those by which they turn.
+    fn begin_turns(&mut self, rows: &mut [BodyRow], pool: &ThreadPool, h: f32) {
+        self.each_block(SPIN_BLOCK, pool, rows, |spins, view| {
+            let (wide, rest) = spins.split_at_mut(spins.len() - spins.len() % F32x4::WIDTH);
+            for spins in wide.chunks_exact_mut(F32x4::WIDTH) {
+                // SAFETY: by `each_block`.
+                unsafe { Spin::begin_turns::<F32x4>(spins, view, h) };
+            }
+            for spins in rest.chunks_exact_mut(1) {
+                // SAFETY: as above.
+                unsafe { Spin::begin_turns::<f32>(spins, view, h) };
+            }
+        });
+    }
+
+    /// After bodies were turned: sets their angular velocities to those at the end of the substep.
+    fn end_turns(&mut self, rows: &mut [BodyRow], pool: &ThreadPool) {
+        self.each_block(SPIN_BLOCK, pool, rows, |spins, view| {
+            let (wide, rest) = spins.split_at_mut(spins.len() - spins.len() % F32x4::WIDTH);
+            for spins in wide.chunks_exact_mut(F32x4::WIDTH) {
+                // SAFETY: by `each_block`.
+                unsafe { Spin::end_turns::<F32x4>(spins, view) };
+            }
+            for spins in rest.chunks_exact_mut(1) {
+                // SAFETY: as above.
+                unsafe { Spin::end_turns::<f32>(spins, view) };
             }
         });
     }
@@ -70,7 +117,7 @@ impl BodyRows {
     /// would have moved, and contacts would throw it back.
     pub(super) fn integrate_positions(&mut self, h: f32, pool: &ThreadPool) {
         self.hold_back(pool);
-        self.spins.each(&mut self.rows, pool, |spin, row| spin.begin_turn(row, h));
+        self.spins.begin_turns(&mut self.rows, pool, h);
         self.hold_back(pool);
         let count = self.rows.len();
         let view = self.view_all();
@@ -87,7 +134,7 @@ impl BodyRows {
                 unsafe { move_bodies::<f32>(&view, &[id as u32], h) };
             }
         });
-        self.spins.each(&mut self.rows, pool, |spin, row| spin.end_turn(row));
+        self.spins.end_turns(&mut self.rows, pool);
         self.hold_back(pool);
     }
 
@@ -135,7 +182,7 @@ const SMALL: f32 = 0.0625;
 fn turned<N: Lane>(q: Rot<N>, delta: Angular<N>) -> Rot<N> {
     let near = q.integrated(exact_turn(delta));
     let far = N::lt(N::splat(SMALL), delta.length_squared() * N::splat(SERIES));
-    if N::any(far) { Rot::select(far, large_turn(q, delta), near) } else { near }
+    if N::any(far) { large_turn(q, delta, N::bits(far), near) } else { near }
 }
 
 /// The ratio of x of [`exact_turn`] to δ².
@@ -150,12 +197,12 @@ fn exact_turn<N: Lane>(turn: Angular<N>) -> Angular<N> {
     turn * (N::ONE + x * (N::splat(1.0 / 3.0) + x * series))
 }
 
-/// The rotation by a large angle, lane by lane with sine and cosine: the tangent of [`exact_turn`] is infinite at half
-/// a turn. Not inlined, since few bodies turn so fast.
+/// `near`, but in the lanes `far` the rotation by a large angle, lane by lane with sine and cosine: the tangent of
+/// [`exact_turn`] is infinite at half a turn. Not inlined, since few bodies turn so fast.
 #[inline(never)]
-fn large_turn<N: Lane>(q: Rot<N>, delta: Angular<N>) -> Rot<N> {
-    let mut turned = q;
-    for i in 0..N::WIDTH {
+fn large_turn<N: Lane>(q: Rot<N>, delta: Angular<N>, far: u32, near: Rot<N>) -> Rot<N> {
+    let mut turned = near;
+    for i in (0..N::WIDTH).filter(|i| far >> i & 1 != 0) {
         turned.set(i, q.get(i).turned_by(delta.get(i)));
     }
     turned

@@ -42,6 +42,9 @@ mod resistance;
 mod row;
 mod shares;
 mod softness;
+#[cfg_attr(feature = "2d", path = "spin2.rs")]
+#[cfg_attr(feature = "3d", path = "spin3.rs")]
+mod spin;
 mod split;
 mod stages;
 mod sweep;

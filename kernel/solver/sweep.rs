@@ -8,7 +8,7 @@ use crate::math::{Vector, max};
 use crate::thread_pool::ThreadPool;
 
 /// Number of bodies in a block of the job. More leaves workers idle at the end, fewer cost more claims.
-const BLOCK: usize = 512;
+const BLOCK: usize = 64;
 
 /// Number of swept bodies in a block of the job.
 const SWEPT_BLOCK: usize = 8;

@@ -366,6 +366,7 @@ impl Sim {
                 bodies: &self.bodies,
                 colliders: &self.colliders,
                 trees: &self.trees,
+                contacts: &self.contacts,
                 source: &(),
                 tolerance: 0.005,
                 dt: self.dt,

@@ -33,7 +33,7 @@ pub(crate) struct StepSolver {
     pub(crate) substeps: u32,
 }
 
-/// Wakes the threads at the start of a step if the last one had many contacts: waking takes longer than most stages.
+/// Wakes the threads at the start of a step if the last one had much to do: waking takes longer than most stages.
 pub(crate) fn wake_workers(mut threads: ResMut<Threads>, contacts: Res<Contacts>, workers: Res<WorkerCount>) {
     threads.wake(contacts.table.active_len(), workers.0, || workers.resolve());
 }
