@@ -34,17 +34,28 @@ const ON_BORDER: f32 = 0.02;
 /// Points closer than this share of a manifold's size are one.
 const SAME_POINT: f32 = 0.01;
 
+/// A facet rises from its deepest point if the separation grows by more than this share of the distance. Points up there do
+/// not tell which border is met.
+const RISING: f32 = 0.05;
+
 /// The maximum number of rounds of a cast. A pair that needs more meets where the last round placed it.
 const MAX_ROUNDS: usize = 16;
 
 /// Parts meet at a gap of this share of the prediction. More stops bodies that pass by; less takes more rounds.
 const MET: f32 = 0.1;
 
+/// Normals whose cosine is below this have little to do with each other: 8°.
+const TURNED: f32 = 0.99;
+/// A face is deeper than what was found from this share of the prediction on. Less is rounding.
+const DEEPER: f32 = 0.005;
+
 /// Buffers for the manifolds of composite shapes, kept between calls.
 #[derive(Clone, Debug, Default)]
 pub struct CompositeBuffers {
     parts: Vec<u32>,
     found: Vec<LocalManifold>,
+    /// For each of `found`, if it is doubtful, the share of the motion after which the shapes meet there.
+    doubts: Vec<Option<f32>>,
     /// For each of `found` the merged manifold it belongs to.
     groups: Vec<usize>,
     points: Vec<LocalPoint>,
@@ -128,6 +139,7 @@ fn collide_parts(
     buffers: &mut CompositeBuffers,
 ) -> f32 {
     buffers.found.clear();
+    buffers.doubts.clear();
     let is_usable = pose_b_in_a.position.is_finite() && pose_b_in_a.rotation.is_finite();
     if !(is_usable && look.prediction.is_finite() && look.motion.is_finite()) {
         return 0.0;
@@ -190,6 +202,7 @@ impl Pass<'_> {
         let near = around.swept(self.look.motion).grown(self.look.prediction);
         self.composite.tree().query(&near, |part| parts.push(part));
         let mut gap = f32::INFINITY;
+        let start = buffers.found.len();
         match self.composite.surface() {
             Some(surface) if !parts.is_empty() => {
                 let screen = Screen::new(self.other, self.pose, &around, self.look.motion);
@@ -208,7 +221,26 @@ impl Pass<'_> {
             }
         }
         buffers.parts = parts;
+        self.drop_doubtful(start, buffers);
         gap
+    }
+
+    /// Drops doubtful contacts from `buffers.found[start..]` where a contact without doubt is met by then, and none has their
+    /// normal. Side faces of a block on a wide floor have the floor's whole width on their inner side.
+    fn drop_doubtful(&self, start: usize, buffers: &mut CompositeBuffers) {
+        let CompositeBuffers { found, doubts, .. } = buffers;
+        let Look { prediction, motion, .. } = self.look;
+        for i in (start..found.len()).rev() {
+            let Some(share) = doubts[i] else { continue };
+            let certain =
+                || found[start..].iter().zip(&doubts[start..]).filter(|(_, d)| d.is_none()).map(|(m, _)| m);
+            let is_met = |m: &LocalManifold| m.lower_bound() + m.normal.dot(motion) * share <= prediction;
+            let is_alike = |m: &LocalManifold| m.normal.dot(found[i].normal) > SAME_NORMAL;
+            if certain().any(is_met) && !certain().any(is_alike) {
+                found.remove(i);
+                doubts.remove(i);
+            }
+        }
     }
 
     /// Adds the manifold of one part, if it has one. `screened` are lower bounds of its distance, now and during the motion.
@@ -218,6 +250,7 @@ impl Pass<'_> {
         let [now, ever] = screened.unwrap_or([-1.0; 2]);
         let (is_moving, mut local) = (motion != Vector::ZERO, LocalManifold::default());
         let mut gap = f32::INFINITY;
+        let mut met = Met { share: 0.0, is_doubtful: false };
         if self.alone {
             if ever > prediction {
                 return now;
@@ -226,28 +259,29 @@ impl Pass<'_> {
         } else if now > prediction {
             local.gap = now;
         } else {
-            self.collide_part(part, prediction, &mut local);
+            met.is_doubtful = self.collide_part(part, prediction, &mut local);
         }
         if local.count == 0 {
             gap = local.gap;
             let may_meet = !self.alone && is_moving && !(ever > MET * prediction);
-            if !(may_meet && self.cast(part, &mut local)) {
-                return gap;
+            match may_meet.then(|| self.cast(part, &mut local)).flatten() {
+                Some(later) => met = later,
+                None => return gap,
             }
         }
         let count = local.count;
         local.groups = [self.look.group(0, part), self.other_group];
         local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, part, p.feature]));
         buffers.found.push(local);
+        buffers.doubts.push(met.is_doubtful.then_some(met.share));
         gap
     }
 
-    /// Fills `local` with the contact of one part.
-    fn collide_part(&self, part: u32, prediction: f32, local: &mut LocalManifold) {
+    /// Fills `local` with the contact of one part. Returns whether it is doubtful.
+    fn collide_part(&self, part: u32, prediction: f32, local: &mut LocalManifold) -> bool {
         self.collide_alone(part, prediction, local);
-        if let Some(surface) = self.composite.surface().filter(|_| local.count > 0) {
-            self.keep_on_surface(surface, part, prediction, local);
-        }
+        let surface = self.composite.surface().filter(|_| local.count > 0);
+        surface.is_some_and(|surface| self.keep_on_surface(surface, part, prediction, local))
     }
 
     /// Fills `local` with the contact of one part as if there were no other.
@@ -266,8 +300,8 @@ impl Pass<'_> {
     }
 
     /// Follows the motion to where a part that is farther away than the prediction meets the other shape. `local` receives the
-    /// contact there, with the separations of now. Returns whether they meet.
-    fn cast(&self, part: u32, local: &mut LocalManifold) -> bool {
+    /// contact there, with the separations of now. Returns `None` if they do not meet.
+    fn cast(&self, part: u32, local: &mut LocalManifold) -> Option<Met> {
         let way = self.look.motion;
         let met = MET * self.look.prediction;
         let mut share = 0.0;
@@ -282,7 +316,7 @@ impl Pass<'_> {
             }
             let gap = local.lower_bound();
             if gap <= met || round == MAX_ROUNDS {
-                there.collide_part(part, self.look.prediction, local);
+                let is_doubtful = there.collide_part(part, self.look.prediction, local);
                 let along = local.normal.dot(way) * share;
                 let count = local.count;
                 for p in &mut local.points[..count] {
@@ -290,7 +324,7 @@ impl Pass<'_> {
                     p.point -= way * share - local.normal * (0.5 * along);
                     p.separation -= along;
                 }
-                return local.count > 0;
+                return (local.count > 0).then_some(Met { share, is_doubtful });
             }
             share += max(gap, met) / closing;
             if !(share <= 1.0) {
@@ -298,7 +332,7 @@ impl Pass<'_> {
             }
         }
         local.count = 0;
-        false
+        None
     }
 
     /// A facet's face on the side where the other shape is. The normal of a contact with a border tells little of it: under the
@@ -323,10 +357,17 @@ impl Pass<'_> {
         if is_under { -face } else { face }
     }
 
-    /// Replaces a facet's manifold by that of its face if its normal leans over a border where the surface goes on.
-    fn keep_on_surface(&self, surface: &Surface, facet: u32, prediction: f32, local: &mut LocalManifold) {
+    /// Replaces a facet's manifold by that of its face if its normal leans over a border where the surface goes on. Returns
+    /// whether that is deeper or quite another one: then the normal may be right, and the neighbour's contact has it.
+    fn keep_on_surface(
+        &self,
+        surface: &Surface,
+        facet: u32,
+        prediction: f32,
+        local: &mut LocalManifold,
+    ) -> bool {
         let corners = surface.corners(facet);
-        let Some(face) = face_normal(corners) else { return };
+        let Some(face) = face_normal(corners) else { return false };
         let borders = borders(corners, face);
         let (mut leans, mut is_free) = (false, true);
         for (border, neighbor) in borders.iter().zip(surface.neighbors(facet)) {
@@ -343,19 +384,33 @@ impl Pass<'_> {
         }
         // A normal that leans over a border without points there belongs to no feature of the facet.
         let is_met = || borders.iter().any(|b| local.normal.dot(b.outward) > LEAN && b.is_met_by(local));
-        if leans && !(is_free && is_met()) {
-            let own = self.toward_other(corners[0], face, local.normal);
-            collide_face(corners, own, self.other, self.pose, prediction, local);
+        if !leans || (is_free && is_met()) {
+            return false;
         }
+        let (found, nearest) = (local.normal, local.lower_bound());
+        let own = self.toward_other(corners[0], face, found);
+        collide_face(corners, own, self.other, self.pose, prediction, local);
+        own.dot(found) < TURNED || local.lower_bound() < nearest - DEEPER * prediction
     }
 }
 
+/// When and how a part meets the other shape.
+#[derive(Clone, Copy)]
+struct Met {
+    /// The share of the motion after which they meet.
+    share: f32,
+    is_doubtful: bool,
+}
+
 impl Border {
-    /// Whether all points of a manifold are on the facet's border.
+    /// Whether all points of a manifold are on the facet's border, but for those where it rises.
     fn is_met_by(&self, local: &LocalManifold) -> bool {
+        let deepest = local.points().iter().min_by(|p, q| p.separation.total_cmp(&q.separation));
+        let Some(deepest) = deepest else { return true };
         local.points().iter().all(|p| {
             let on_facet = p.point - local.normal * (0.5 * p.separation);
-            (self.corner - on_facet).dot(self.outward) <= ON_BORDER * self.depth
+            let is_above = p.separation - deepest.separation > RISING * (p.point - deepest.point).length();
+            is_above || (self.corner - on_facet).dot(self.outward) <= ON_BORDER * self.depth
         })
     }
 

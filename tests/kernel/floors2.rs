@@ -137,3 +137,34 @@ pub fn apart(count: usize) -> Vec<Vector> {
 pub fn yawed(_: &mut Dice) -> Rot {
     Rot::IDENTITY
 }
+
+/// Solids about a metre wide, as hulls and as the closed polylines of their sides.
+pub fn blocks() -> Vec<(&'static str, Shape, Shape)> {
+    let wheel = |count: usize| {
+        let corner =
+            |k| Rot::from_angle(core::f32::consts::TAU * k as f32 / count as f32).rotate(Vector::X * 0.5);
+        Hull::convex_hull_of(&(0..count).map(corner).collect::<Vec<_>>(), 0.0)
+    };
+    let box_like = |top: f32, height: f32| {
+        let corners = [[-0.5, -height], [0.5, -height], [0.5 * top, height], [-0.5 * top, height]];
+        Hull::convex_hull_of(&corners.map(|[x, y]| Vector { x, y }), 0.0)
+    };
+    let all = [
+        ("square", box_like(1.0, 0.5)),
+        ("plate", box_like(1.0, 0.1)),
+        ("sloping sides", box_like(0.6, 0.5)),
+        ("overhanging sides", box_like(1.4, 0.5)),
+        ("wedge", box_like(0.0, 0.5)),
+        ("few corners", wheel(6)),
+        ("many corners", wheel(24)),
+    ];
+    all.into_iter()
+        .map(|(name, hull)| {
+            let hull = hull.expect("a solid");
+            let count = hull.vertices().len() as u32;
+            let facets = (0..count).map(|k| [k, (k + 1) % count]).collect();
+            let line = Surface::new(hull.vertices().to_vec(), facets).expect("a surface");
+            (name, Shape::Hull(Arc::new(hull)), Shape::surface(line))
+        })
+        .collect()
+}

@@ -181,3 +181,46 @@ pub fn apart(count: usize) -> Vec<Vector> {
 pub fn yawed(dice: &mut Dice) -> Rot {
     Rot::from_axis_angle(Vector::Y, 4.0 * dice.signed())
 }
+
+/// Solids about a metre wide, as hulls and as the closed meshes of their faces.
+pub fn blocks() -> Vec<(&'static str, Shape, Shape)> {
+    let sphere = |count: usize| {
+        let golden = 2.399_963_2f32;
+        let points = (0..count).map(|k| {
+            let y = 1.0 - 2.0 * (k as f32 + 0.5) / count as f32;
+            let (sin, cos) = (golden * k as f32).sin_cos();
+            let r = (1.0 - y * y).sqrt();
+            Vector { x: r * cos, y, z: r * sin } * 0.5
+        });
+        Hull::convex_hull_of(&points.collect::<Vec<_>>())
+    };
+    let box_like = |top: f32| {
+        let corner = |k: u32| {
+            let sign = |bit: u32| if k >> bit & 1 == 0 { -0.5 } else { 0.5 };
+            let width = if k & 2 == 0 { 1.0 } else { top };
+            Vector { x: sign(0) * width, y: sign(1), z: sign(2) * width }
+        };
+        Hull::convex_hull_of(&(0..8).map(corner).collect::<Vec<_>>())
+    };
+    let all = [
+        ("cube", Hull::cuboid(Vector::ONE * 0.5)),
+        ("plate", Hull::cuboid(Vector { x: 0.5, y: 0.1, z: 0.5 })),
+        ("sloping sides", box_like(0.6)),
+        ("overhanging sides", box_like(1.4)),
+        ("wedge", box_like(0.0)),
+        ("few corners", sphere(20)),
+        ("many corners", sphere(80)),
+    ];
+    all.into_iter()
+        .map(|(name, hull)| {
+            let hull = hull.expect("a solid");
+            let fan = |face| {
+                let outline: &[u32] = hull.outline(face);
+                outline[1..].windows(2).map(|pair| [outline[0], pair[0], pair[1]]).collect::<Vec<_>>()
+            };
+            let facets = hull.faces().iter().flat_map(fan).collect();
+            let mesh = Surface::new(hull.vertices().to_vec(), facets).expect("a surface");
+            (name, Shape::Hull(Arc::new(hull)), Shape::surface(mesh))
+        })
+        .collect()
+}

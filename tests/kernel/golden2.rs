@@ -12,7 +12,7 @@ pub const GOLDEN: [(&str, u64, u64); 16] = [
     ("heap", 0x5ead069140e01cfe, 0xdfced2ed6d719ef9),
     ("terrain", 0x630a16f27a080a59, 0x1bd0c08adefed04b),
     ("slopes", 0x913ceca04e19105b, 0xd0d163b9bd7f7c36),
-    ("composites", 0x8250632f9e482854, 0xae073800977f9cda),
+    ("composites", 0x8738d7e0112d0563, 0x05616d663d6c7006),
     ("bounces", 0xc073b45ace37b773, 0x679e5bd94755935e),
     ("crowd", 0xc8690b526c1431a4, 0x059c17f2821840ac),
     ("sleepers", 0x6a07ca5ed8e38c07, 0x86df4a07c29794f0),

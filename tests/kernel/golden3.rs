@@ -12,7 +12,7 @@ pub const GOLDEN: [(&str, u64, u64); 16] = [
     ("heap", 0x8134b679a367c0b9, 0x9b8591a0186e1624),
     ("terrain", 0x0567063656e3cbdb, 0xa5b09c354a85c57c),
     ("slopes", 0x9f219452b5f952bc, 0x893810da8f7d8547),
-    ("composites", 0xb464052526c1eb5b, 0x4bde82e8245544b1),
+    ("composites", 0xc0f2193d9506efd6, 0xe8725cb2343bf7fb),
     ("bounces", 0xd0069b2c2773307d, 0x4c907feeef221aee),
     ("crowd", 0x12aec939605fbd66, 0x85ea1f4d7c6f5be2),
     ("sleepers", 0x134471faca94c0a7, 0x0f4342d68ab5ff95),

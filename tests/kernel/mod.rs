@@ -1,5 +1,6 @@
 //! Tests of the kernel's parts working together, written once for both dimensions.
 
+mod blocks;
 mod bounce;
 mod carried;
 mod crowds;

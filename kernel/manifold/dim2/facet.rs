@@ -12,6 +12,8 @@ use crate::shape::{Curved, Segment, Shape, direction};
 const BESIDE: f32 = 1.0e-3;
 /// Sides overlapped by more than this share of an ellipse's smaller half size have a contact in any case.
 const DEEP: f32 = 0.05;
+/// A point hangs deeper than the line between two others by more than this share of their distance.
+const HANGS: f32 = 1.0e-3;
 
 /// One end of a segment.
 pub(in crate::manifold) struct Border {
@@ -104,7 +106,8 @@ pub(in crate::manifold) fn collide_face(
     }
 }
 
-/// Puts the points that hold the same as all of `points` into a manifold: the outermost two.
+/// Puts the points that hold the same as all of `points` into a manifold: the outermost two, or the deepest and one of them
+/// where the middle hangs deeper.
 pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalManifold) {
     let tangent = out.normal.perp();
     let along = |p: &LocalPoint| p.point.dot(tangent);
@@ -116,6 +119,12 @@ pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalMani
         if along(p) > along(&last) {
             last = *p;
         }
+    }
+    let deepest = *points.iter().min_by(|p, q| p.separation.total_cmp(&q.separation)).unwrap_or(&first);
+    let (length, way) = (along(&last) - along(&first), along(&deepest) - along(&first));
+    let sag = first.separation + (last.separation - first.separation) * (way / length) - deepest.separation;
+    if sag > HANGS * length {
+        if first.separation <= last.separation { last = deepest } else { first = deepest }
     }
     out.count = 0;
     for p in [first, last].iter().take(points.len().min(2)) {

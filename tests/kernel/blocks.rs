@@ -1,0 +1,181 @@
+//! Closed meshes and polylines as solids: blocks that lie on wide floors, and planks that lie on blocks.
+
+use super::dim::floors::{blocks, yawed};
+use super::dim::{any_rotation, sized};
+use super::extreme::Dice;
+use super::sim::Sim;
+use crate::kernel;
+use kernel::manifold::{CompositeBuffers, LocalManifold, Look, collide_composite};
+use kernel::math::{Pose, Rot, Vector};
+use kernel::shape::{Cuboid, Shape};
+use kernel::table::BodyKind;
+
+const PREDICTION: f32 = 0.02;
+
+/// The contacts of two shapes in A's frame.
+fn contacts(a: &Shape, b: &Shape, pose: &Pose, motion: Vector) -> Vec<LocalManifold> {
+    let (mut buffers, mut out) = (CompositeBuffers::default(), Vec::new());
+    let look = Look { prediction: PREDICTION, motion, groups: Look::ALIKE };
+    collide_composite(a, b, pose, look, &mut buffers, &mut out);
+    out
+}
+
+/// Panics if the contacts of what lies on something do not bear it from below, at the given gap. Others may be no deeper.
+fn check_bearing(found: &[LocalManifold], gap: f32, up: Vector, what: &str) {
+    let least = found.iter().map(LocalManifold::lower_bound).fold(f32::INFINITY, f32::min);
+    assert!((least - gap).abs() < 1e-3, "{what}: {least} m, not {gap}: {found:?}");
+    for m in found {
+        assert!(
+            m.normal.dot(up) > 0.99 || m.lower_bound() > gap - 1e-4,
+            "{what}: along {:?}: {found:?}",
+            m.normal
+        );
+    }
+}
+
+/// Whether a block has a level top, as wide as its middle at least.
+fn has_flat_top(name: &str) -> bool {
+    ["square", "cube", "plate", "sloping sides", "overhanging sides"].contains(&name)
+}
+
+/// The lowest corner of a shape with a rotation.
+fn lowest(shape: &Shape, rotation: Rot) -> f32 {
+    let down = rotation.inverse_rotate(-Vector::Y);
+    rotation.rotate(shape.support(down).expect("bounded")).y
+}
+
+/// Each face of a mesh is one-sided towards a wide shape only where its neighbours are not nearer: a block had contacts along
+/// the floor, as deep as half of it.
+#[test]
+fn a_block_at_any_angle_has_upward_contacts_with_a_wide_floor() {
+    let floor = Shape::Cuboid(Cuboid { half: sized(6.0, 0.5, 5.0) });
+    let mut dice = Dice::new(5);
+    for (name, hull, mesh) in blocks() {
+        for round in 0..400 {
+            let rotation = match round % 4 {
+                0 => Rot::IDENTITY,
+                1 => yawed(&mut dice),
+                _ => any_rotation(&mut dice),
+            };
+            let gap = [-0.005, 0.0, 0.01, -0.02][round / 4 % 4];
+            let position =
+                sized(3.0 * dice.signed(), 0.5 + gap - lowest(&hull, rotation), 3.0 * dice.signed());
+            let pose = Pose::new(position, rotation);
+            let motion = if round % 3 == 0 { Vector::Y * (-0.3 * dice.unit()) } else { Vector::ZERO };
+            let what = format!("{name}, round {round}");
+            check_bearing(&contacts(&floor, &mesh, &pose, motion), gap, Vector::Y, &what);
+            let (inverse, motion) = (pose.inverse(), pose.rotation.inverse_rotate(-motion));
+            let up = pose.rotation.inverse_rotate(-Vector::Y);
+            check_bearing(&contacts(&mesh, &floor, &inverse, motion), gap, up, &what);
+        }
+    }
+}
+
+#[test]
+fn a_plank_that_overhangs_a_block_has_upward_contacts() {
+    let mut dice = Dice::new(6);
+    for (name, _, mesh) in
+        blocks().into_iter().filter(|(name, ..)| !name.contains("corners") && *name != "wedge")
+    {
+        let top = if name == "plate" { 0.1 } else { 0.5 };
+        for round in 0..400 {
+            let half = sized(0.1 + 0.9 * dice.unit(), 0.05 + 0.4 * dice.unit(), 0.1 + 0.9 * dice.unit());
+            let plank = Shape::Cuboid(Cuboid { half });
+            let gap = [-0.004, 0.0, 0.01][round % 3];
+            let rotation = if round % 2 == 0 { yawed(&mut dice) } else { Rot::IDENTITY };
+            let place = sized(0.25 * dice.signed(), top + half.y + gap, 0.25 * dice.signed());
+            let found = contacts(&mesh, &plank, &Pose::new(place, rotation), Vector::ZERO);
+            check_bearing(&found, gap, Vector::Y, &format!("{name}, round {round}"));
+        }
+    }
+}
+
+#[test]
+fn blocks_that_fall_on_a_floor_stop_on_it() {
+    let mut dice = Dice::new(7);
+    for (name, hull, mesh) in blocks() {
+        for (half, drop) in [(50.0, 0.0), (50.0, 1.0), (0.5, 0.0), (0.5, 1.0), (50.0, 20.0)] {
+            for is_turned in [false, true] {
+                let mut sim = Sim::new();
+                (sim.sleeping, sim.checked) = (true, false);
+                let floor = Shape::Cuboid(Cuboid { half: sized(half, 0.5, half) });
+                sim.add(BodyKind::Static, floor, Vector::Y * -0.5, Rot::IDENTITY);
+                let rotation = match (is_turned, half > 1.0) {
+                    (true, true) => any_rotation(&mut dice),
+                    (true, false) => yawed(&mut dice),
+                    _ => Rot::IDENTITY,
+                };
+                let start = Vector::Y * (drop - lowest(&hull, rotation));
+                let id = sim.add(BodyKind::Dynamic, mesh.clone(), start, rotation);
+                sim.weigh(id, &hull);
+                for step in 0..600 {
+                    sim.step();
+                    let frame = sim.bodies.frame(id);
+                    let at = frame.position.to_local();
+                    let low = at.y + lowest(&hull, frame.rotation);
+                    let what = format!("{name} from {drop} m on {half} m, step {step}: {at:?}");
+                    assert!(low > -0.02 - 0.001 * drop, "{what}: {low} m deep");
+                    let is_flat = !is_turned && has_flat_top(name);
+                    let aside = (at - Vector::Y * at.y).length();
+                    // Impacts of several points shift a hull as well.
+                    let limit = if drop > 0.0 { 0.02 + 0.002 * drop } else { 1e-3 };
+                    assert!(!is_flat || aside < limit, "{what}");
+                }
+                assert!(!sim.bodies[id].awake, "{name} from {drop} m on {half} m is awake");
+            }
+        }
+    }
+}
+
+/// A stack of blocks, with a plank that overhangs between each two.
+#[test]
+fn blocks_and_planks_stack() {
+    for (name, hull, mesh) in blocks().into_iter().take(2) {
+        let mut sim = Sim::new();
+        (sim.sleeping, sim.checked) = (true, false);
+        sim.floor();
+        let height = hull.support(Vector::Y).expect("bounded").y;
+        let plank = Shape::Cuboid(Cuboid { half: sized(0.9, 0.05, 0.7) });
+        let mut ids = Vec::new();
+        let mut y = 0.0;
+        for _ in 0..4 {
+            let id = sim.add(BodyKind::Dynamic, mesh.clone(), Vector::Y * (y + height), Rot::IDENTITY);
+            sim.weigh(id, &hull);
+            ids.push((id, y + height));
+            y += 2.0 * height;
+            let id = sim.add(BodyKind::Dynamic, plank.clone(), Vector::Y * (y + 0.05), Rot::IDENTITY);
+            ids.push((id, y + 0.05));
+            y += 0.1;
+        }
+        sim.steps(600);
+        for (id, y) in ids {
+            let at = sim.position(id).to_local();
+            assert!((at - Vector::Y * y).length() < 0.02, "{name}: {at:?}, not at {y} m");
+            assert!(!sim.bodies[id].awake, "{name} is awake");
+        }
+    }
+}
+
+/// From behind, the sides of a block were walls for what lies on it a little too deep.
+#[test]
+fn what_slides_off_a_block_keeps_its_speed() {
+    for (name, _, mesh) in blocks().into_iter().filter(|(name, ..)| has_flat_top(name)) {
+        let top = if name == "plate" { 0.1 } else { 0.5 };
+        for (half, speed) in [(0.1, 0.5), (0.1, 1.0), (0.3, 3.0), (0.1, 10.0), (0.5, 20.0)] {
+            let mut sim = Sim::new();
+            sim.add_with(BodyKind::Static, mesh.clone(), Vector::ZERO, Rot::IDENTITY, 0.0, 0.0);
+            let start = sized(-0.2, top + 0.05, 0.05);
+            let rider = Shape::Cuboid(Cuboid { half: sized(half, 0.05, 0.1) });
+            let id = sim.add_with(BodyKind::Dynamic, rider, start, Rot::IDENTITY, 0.0, 0.0);
+            sim.steps(20);
+            sim.bodies.velocities[id as usize].linear = sized(speed, 0.0, 0.0);
+            while sim.position(id).to_local().x < 0.6 {
+                sim.step();
+                let v = sim.bodies.velocities[id as usize].linear;
+                let at = sim.position(id).to_local();
+                assert!(v.x > 0.99 * speed, "{name}, {half} m at {speed} m/s: {v:?} at {at:?}");
+                assert!(sim.steps_done < 400, "{name}, {half} m at {speed} m/s is at {at:?}");
+            }
+        }
+    }
+}
