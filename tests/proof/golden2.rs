@@ -4,21 +4,21 @@ use avian::prelude::*;
 
 /// For each scene of native shapes the hash of its final state.
 pub const NATIVE: [(&str, u64); 11] = [
-    ("pyramid", 0x13c61d2ecb490375),
+    ("pyramid", 0x1b363c79a7d1c942),
     ("pyramids", 0x811b86f3099b89ca),
-    ("tumbler", 0x8b7f4b9bf261f285),
-    ("dominoes", 0x8d1ac626476d604d),
+    ("tumbler", 0x0ea202665cdba5a9),
+    ("dominoes", 0x6f2cd167c25f9c7c),
     ("card_house", 0x7a3a6bc972a90418),
     ("towers", 0x197dd90759ba2f7a),
-    ("smash", 0xd6c5394bfe6156f1),
+    ("smash", 0x70a2498063d96962),
     ("crowd", 0x4f876bd62e22b5fb),
-    ("sleepers", 0xb19b13f15278256b),
-    ("bounces", 0x097b1c0098787cd5),
-    ("settings", 0x99290ea5fbe2de99),
+    ("sleepers", 0xcc1e733e376113e0),
+    ("bounces", 0xad1d6998ab706d42),
+    ("settings", 0xcb0ba3ffe1dce8be),
 ];
 
 /// For each scene with shapes of parry the hash of its final state.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x2548410c3fe71a61), ("slopes", 0x292d8b0878a19b65)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0xf780c9648ba31ccf), ("slopes", 0x292d8b0878a19b65)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 20;
