@@ -3,6 +3,8 @@
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod drawn;
+mod velocity;
 
 #[expect(deprecated, reason = "former names stay importable")]
 pub use bevy_transform_interpolation::TransformEasingSet;
@@ -19,19 +21,18 @@ pub use bevy_transform_interpolation::{
 use bevy_app::{App, FixedFirst, FixedLast, Plugin, RunFixedMainLoop};
 use bevy_ecs::{
     prelude::*,
-    query::QueryData,
     schedule::{ConditionWithAccess, ScheduleLabel, SystemKey},
 };
-use bevy_math::Vec3;
 use bevy_platform::collections::HashSet;
 use bevy_time::{Fixed, Time};
 use bevy_transform_interpolation::{
-    RotationEasingState, ScaleEasingState, TransformEasingPlugin, TranslationEasingState, VelocitySource,
+    RotationEasingState, ScaleEasingState, TransformEasingPlugin, TranslationEasingState,
     extrapolation::TransformExtrapolationPlugin, hermite::TransformHermiteEasingPlugin,
     interpolation::TransformInterpolationPlugin,
 };
 
-use crate::dynamics::rigid_body::{AngularVelocity, LinearVelocity, RigidBody};
+use self::velocity::{AngVelSource, LinVelSource};
+use crate::dynamics::rigid_body::RigidBody;
 
 /// Eases the transforms of rigid bodies between steps, if physics runs in a fixed schedule and frames are drawn more
 /// often.
@@ -41,6 +42,9 @@ use crate::dynamics::rigid_body::{AngularVelocity, LinearVelocity, RigidBody};
 /// Both are off unless an entity has [`TransformInterpolation`] or [`TransformExtrapolation`], or a constructor of this
 /// plugin enables them for all bodies. [`NoTransformEasing`] and its siblings exclude an entity.
 /// [`TransformHermiteEasing`] uses velocities as well as positions.
+///
+/// Apps may write to the `Transform` of an eased body in any schedule. Writing `z` in 2D, or the scale, moves no body.
+/// Writing the rotation or a spatial axis sets that part of the pose; the other parts go on as without the write.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -108,8 +112,8 @@ impl Plugin for PhysicsInterpolationPlugin {
                 TransformInterpolationPlugin::default(),
                 TransformExtrapolationPlugin::<LinVelSource, AngVelSource>::default(),
                 TransformHermiteEasingPlugin::<LinVelSource, AngVelSource>::default(),
-            ))
-            .add_systems(FixedFirst, store_previous_velocities.in_set(TransformEasingSystems::UpdateStart));
+            ));
+            velocity::add_systems(app);
         });
 
         // Registration fails only if the requirement exists already.
@@ -125,23 +129,23 @@ impl Plugin for PhysicsInterpolationPlugin {
         if self.extrapolate_rotation {
             let _ = app.try_register_required_components::<RigidBody, RotationExtrapolation>();
         }
-        let _ = app.try_register_required_components::<TranslationHermiteEasing, PreviousLinearVelocity>();
-        let _ = app.try_register_required_components::<RotationHermiteEasing, PreviousAngularVelocity>();
     }
 
     fn finish(&self, app: &mut App) {
         // The plugins above would add it next, without the run condition.
+        let mut easing = Vec::new();
         if !app.is_plugin_added::<TransformEasingPlugin>() {
-            skip_while_nothing_eases(app, |app| {
+            easing = skip_while_nothing_eases(app, |app| {
                 app.add_plugins(TransformEasingPlugin);
             });
         }
+        skip_while_nothing_eases(app, |app| drawn::add_systems(app, &easing));
     }
 }
 
 /// Adds systems that are skipped while no entity is eased. Scheduling two dozen systems would be most of the cost of an
-/// empty world.
-fn skip_while_nothing_eases(app: &mut App, add_systems: impl FnOnce(&mut App)) {
+/// empty world. Returns those in [`RunFixedMainLoop`].
+fn skip_while_nothing_eases(app: &mut App, add_systems: impl FnOnce(&mut App)) -> Vec<SystemKey> {
     let eased = [FixedFirst.intern(), FixedLast.intern(), RunFixedMainLoop.intern()];
     let keys = |app: &App| {
         let systems = |schedule: &Schedule| schedule.graph().systems.iter().map(|(key, ..)| key).collect();
@@ -150,9 +154,11 @@ fn skip_while_nothing_eases(app: &mut App, add_systems: impl FnOnce(&mut App)) {
     let before = keys(app);
     add_systems(app);
     let after = keys(app);
+    let mut added = Vec::new();
     for ((label, before), after) in eased.into_iter().zip(before).zip(after) {
+        added = after.difference(&before).copied().collect();
         app.edit_schedule(label, |schedule| {
-            for key in after.difference(&before) {
+            for key in &added {
                 if let Some(conditions) = schedule.graph_mut().systems.get_conditions_mut(*key) {
                     let condition = IntoSystem::into_system(anything_eases);
                     conditions.push(ConditionWithAccess::new(Box::new(condition)));
@@ -160,64 +166,11 @@ fn skip_while_nothing_eases(app: &mut App, add_systems: impl FnOnce(&mut App)) {
             }
         });
     }
+    added
 }
 
 fn anything_eases(
     eased: Query<(), Or<(With<TranslationEasingState>, With<RotationEasingState>, With<ScaleEasingState>)>>,
 ) -> bool {
     !eased.is_empty()
-}
-
-/// Linear velocity at the start of the fixed tick, for Hermite easing.
-#[derive(Component, Default)]
-struct PreviousLinearVelocity(LinearVelocity);
-
-/// Angular velocity at the start of the fixed tick, for Hermite easing.
-#[derive(Component, Default)]
-struct PreviousAngularVelocity(AngularVelocity);
-
-fn store_previous_velocities(
-    mut linear: Query<(&LinearVelocity, &mut PreviousLinearVelocity)>,
-    mut angular: Query<(&AngularVelocity, &mut PreviousAngularVelocity)>,
-) {
-    for (current, mut previous) in &mut linear {
-        previous.0 = *current;
-    }
-    for (current, mut previous) in &mut angular {
-        previous.0 = *current;
-    }
-}
-
-/// Linear velocities for easing, in the three dimensions of `Transform`.
-#[derive(QueryData)]
-struct LinVelSource;
-
-impl VelocitySource for LinVelSource {
-    type Previous = PreviousLinearVelocity;
-    type Current = LinearVelocity;
-
-    fn previous(start: &Self::Previous) -> Vec3 {
-        dim::linear_vec3(start.0)
-    }
-
-    fn current(end: &Self::Current) -> Vec3 {
-        dim::linear_vec3(*end)
-    }
-}
-
-/// Angular velocities for easing, in the three dimensions of `Transform`.
-#[derive(QueryData)]
-struct AngVelSource;
-
-impl VelocitySource for AngVelSource {
-    type Previous = PreviousAngularVelocity;
-    type Current = AngularVelocity;
-
-    fn previous(start: &Self::Previous) -> Vec3 {
-        dim::angular_vec3(start.0)
-    }
-
-    fn current(end: &Self::Current) -> Vec3 {
-        dim::angular_vec3(*end)
-    }
 }

@@ -149,15 +149,27 @@ impl Frame {
 
     /// Transforms a point from the outer space to this frame; `None` if the frame is singular.
     fn local_point(&self, v: [f64; 3]) -> Option<[f64; 3]> {
-        let offset = [0, 1, 2].map(|i| v[i] - self.translation[i]);
+        self.local_vector([0, 1, 2].map(|i| v[i] - self.translation[i]))
+    }
+
+    /// Transforms a vector, such as a velocity, from the outer space to this frame; `None` if the frame is singular.
+    pub(crate) fn local_vector(&self, v: [f64; 3]) -> Option<[f64; 3]> {
         match self.linear {
             Linear::Scaled(scale) => {
-                let turned = self.rotation.inverse().rotate(offset);
+                let turned = self.rotation.inverse().rotate(v);
                 let local = [0, 1, 2].map(|i| turned[i] / scale[i]);
                 local.iter().all(|c| c.is_finite()).then_some(local)
             }
-            Linear::Sheared(m) => inverse(&m).map(|inverse| apply(&inverse, offset)),
+            Linear::Sheared(m) => inverse(&m).map(|inverse| apply(&inverse, v)),
         }
+    }
+
+    /// Transforms an angular velocity from the outer space to this frame: the axis as a vector, at the same speed, and in
+    /// the opposite sense if the frame mirrors. `None` if the frame is singular or nothing turns.
+    pub(crate) fn local_spin(&self, spin: [f64; 3]) -> Option<[f64; 3]> {
+        let axis = self.local_vector(spin)?;
+        let factor = (dot(spin, spin) / dot(axis, axis)).sqrt() * determinant(&self.matrix()).signum();
+        factor.is_finite().then(|| axis.map(|c| c * factor))
     }
 
     /// The local rotation of a child with the rotation `world` in the outer space.

@@ -24,6 +24,8 @@ mod custom_colliders_dim;
 mod diagnostics;
 #[path = "../../../../tests/drawing.rs"]
 mod drawing;
+#[path = "../../../../tests/easing.rs"]
+mod easing;
 #[path = "../../../../tests/facets.rs"]
 mod facets;
 #[path = "../../../../tests/facets2.rs"]
