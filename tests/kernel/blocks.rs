@@ -1,13 +1,13 @@
 //! Closed meshes and polylines as solids: blocks that lie on wide floors, and planks that lie on blocks.
 
 use super::dim::floors::{blocks, laid, yawed};
-use super::dim::{any_rotation, sized};
+use super::dim::{any_rotation, riders, sized};
 use super::extreme::Dice;
 use super::sim::Sim;
 use crate::kernel;
 use kernel::manifold::{CompositeBuffers, LocalManifold, Look, collide_composite};
-use kernel::math::{Pose, Rot, Vector};
-use kernel::shape::{Cuboid, Shape};
+use kernel::math::{DIM, Pose, Rot, Vector};
+use kernel::shape::{Cuboid, Shape, Surface};
 use kernel::table::BodyKind;
 
 const PREDICTION: f32 = 0.02;
@@ -211,4 +211,43 @@ fn blocks_pile_up_on_a_mesh() {
     let awake: Vec<_> =
         ids.iter().filter(|(id, ..)| sim.bodies[*id].awake).map(|(_, name, _)| name).collect();
     assert!(awake.is_empty(), "awake after 30 s: {awake:?}");
+}
+
+/// Rooms are meshes seen from inside.
+#[test]
+fn what_is_in_a_hollow_block_stays_in_it() {
+    let mut dice = Dice::new(9);
+    for (name, _, mesh) in blocks() {
+        let Shape::Composite(composite) = &mesh else { panic!("a mesh") };
+        let surface = composite.surface().expect("a surface");
+        let count = composite.len() as u32;
+        let corners = (0..count).flat_map(|f| surface.corners(f)).map(|v| v * 8.0).collect();
+        let facets = (0..count).map(|f| core::array::from_fn(|k| f * DIM as u32 + k as u32)).collect();
+        let room = Shape::surface(Surface::new(corners, facets).expect("a surface"));
+        for speed in [3.0f32, 30.0] {
+            let mut sim = Sim::new();
+            (sim.sleeping, sim.checked) = (true, false);
+            sim.add(BodyKind::Static, room.clone(), Vector::ZERO, Rot::IDENTITY);
+            let mut ids = Vec::new();
+            for (rider, shape) in riders() {
+                let at = sized(dice.signed(), 0.4 * dice.signed(), dice.signed());
+                let id = sim.add(BodyKind::Dynamic, shape, at, any_rotation(&mut dice));
+                let v = Vector::from_array(core::array::from_fn(|_| dice.signed()));
+                sim.bodies.velocities[id as usize].linear = v * (speed / v.length());
+                ids.push((id, rider));
+            }
+            for step in 0..1200 {
+                sim.step();
+                for (id, rider) in &ids {
+                    let at = sim.position(*id).to_local();
+                    let is_inside = at.abs().max_element() < 5.6 && at.y > -4.0;
+                    assert!(is_inside, "{rider} left {name} at {speed} m/s in step {step}: {at:?}");
+                }
+            }
+            for (id, rider) in &ids {
+                let v = sim.bodies.velocities[*id as usize].linear.length();
+                assert!(v < 1.0, "{rider} moves at {v} m/s in {name} after 20 s");
+            }
+        }
+    }
 }
