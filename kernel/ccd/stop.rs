@@ -33,7 +33,8 @@ pub struct SweepInput<'a, S> {
     pub colliders: &'a ColliderTable,
     /// The trees of the colliders.
     pub trees: &'a Trees,
-    /// The contacts: of all pairs whose fat boxes overlap and that may collide.
+    /// The contacts: of all pairs that were found and may collide. Where the app finds pairs, or hooks refuse some, a body within
+    /// its fat boxes is stopped only by what it has a contact with.
     pub contacts: &'a ContactTable,
     /// For pairs with a foreign shape.
     pub source: &'a S,
@@ -92,10 +93,11 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         }
         if is_known {
             // Within its fat boxes a body meets only what has contacts with it.
-            return self.colliders.of_body(body, self.bodies).any(|id| {
-                let mut contacts = self.contacts.of_collider(id, self.colliders);
-                contacts
-                    .any(|contact| self.contacts.bodies_of(contact).into_iter().any(|id| self.is_fixed(id)))
+            return self.colliders.of_body(body, self.bodies).any(|collider| {
+                let mut contacts = self.contacts.of_collider(collider, self.colliders);
+                contacts.any(|contact| {
+                    self.contacts.bodies_of(contact).into_iter().any(|body| self.is_fixed(body))
+                })
             });
         }
         let around = self.ball(body, reach).swept(way).grown(self.tolerance);

@@ -3,7 +3,8 @@
 //! A body that slides over flush tiles, or over the triangles of a mesh, meets the sides and edges of the pieces ahead. Each
 //! piece alone is an obstacle; together they are a plane. So the manifolds of a collider are compared: one whose points on
 //! the ground all lie on the plane of another manifold, or below it, stops nothing that the other does not hold already, and
-//! is not solved. Points on a kerb, a wall or the other side of a groove lie above that plane.
+//! is not solved. Points on a kerb, a wall or the other side of a groove lie above that plane. A body that has only its foot at
+//! a wall has no such point: there the wall itself is looked at, whether it goes on above the plane.
 //!
 //! Only manifolds of moving colliders with ground are compared: what is not dynamic, or is dynamic and at rest. The result
 //! depends on positions alone, not on the order of manifolds.
@@ -11,10 +12,11 @@
 use super::buffers::WorkerBuffers;
 use super::input::{ManifoldSource, NarrowPhaseInput, smaller};
 use super::load;
+use super::manifolds;
 use super::record::{Contact, ContactFlags, Manifold};
 use super::table::{ContactTable, PointCount};
-use crate::math::{Vector, max, min};
-use crate::shape::Shape;
+use crate::math::{Rot, Vector, WorldPose, max, min};
+use crate::shape::{Ball, Shape};
 use crate::table::{BodyKind, NONE};
 use crate::thread_pool::ThreadPool;
 
@@ -28,6 +30,9 @@ const CLIPPED: f32 = 1.0e-3;
 /// How far below a plane the collider may reach, besides how deep the plane's own contact is, in metres. What reaches farther
 /// down is another part of a concave collider, which a pit may hold.
 const BELOW: f32 = 0.005;
+
+/// The ground of a wall goes on at this height over a plane, in units of how far above it a point may lie.
+const RISES: f32 = 4.0;
 
 /// Planes whose normals differ by less than this hold the same, squared, in radians: 0.2°.
 const PARALLEL: f32 = 1.2e-5;
@@ -145,6 +150,36 @@ impl<S> NarrowPhaseInput<'_, S> {
                 || self.moves(contact) && (self.slides(contact, 0) || self.slides(contact, 1)))
     }
 
+    /// Whether the ground on the other side of a contact goes on above the plane of a holding manifold.
+    fn rises<W>(
+        &self,
+        contact: &Contact,
+        side: usize,
+        seen: &Seen,
+        holding: &Seen,
+        worker: &mut WorkerBuffers<W>,
+    ) -> bool {
+        let up = holding.normal;
+        let cos = seen.normal.dot(up);
+        let (along, level) = (up - seen.normal * cos, seen.normal - up * cos);
+        let steepness = along.length_squared();
+        let highest = seen.points().map(|[p, _]| p).reduce(|a, b| if b.dot(up) > a.dot(up) { b } else { a });
+        let Some(foot) = highest.filter(|_| steepness > 0.0) else { return false };
+        let height = RISES * seen.flush;
+        // Up along the ground, or straight up and a little into it: a normal that points down may be the collider's.
+        let direction =
+            if cos >= 0.0 { along * (1.0 / steepness) } else { up - level * (0.25 / level.length()) };
+        let probe = foot + direction * (holding.plane() + height - foot.dot(up));
+        let mut fixed = [None; 2];
+        let center = self.poses(contact, &mut fixed)[side].center;
+        let ground = contact.colliders[1 - side] as usize;
+        let shape = &self.colliders[ground as u32].def.shape;
+        let pose =
+            self.colliders.poses[ground].relative(&WorldPose::new(center + probe.to_world(), Rot::IDENTITY));
+        let ball = Ball { radius: 0.5 * height + self.margin(contact) };
+        manifolds::touches(shape, ball, &pose, worker)
+    }
+
     /// Whether a contact's bodies move against each other fast enough to [slide](Self::slides). Most do not.
     #[inline(always)]
     fn moves(&self, contact: &Contact) -> bool {
@@ -170,7 +205,7 @@ impl ContactTable {
         workers.iter().for_each(|worker| sliding.extend_from_slice(&worker.sliding));
         let this = &*self;
         pool.each_into(workers, sliding.chunks(BLOCK), |worker, ids| {
-            ids.iter().for_each(|id| this.find_internal(input, *id, &mut worker.internal));
+            ids.iter().for_each(|id| this.find_internal(input, *id, worker));
         });
         sliding.clear();
         self.sliding = sliding;
@@ -199,20 +234,28 @@ impl ContactTable {
     }
 
     /// Adds the manifolds of a contact whose mark is to change.
-    fn find_internal<S>(&self, input: &NarrowPhaseInput<S>, id: u32, changes: &mut Vec<(u32, u32)>) {
+    fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, id: u32, worker: &mut WorkerBuffers<W>) {
         let contact = self.get(id);
         for index in 0..=u32::from(contact.extra_count) {
             let Some(manifold) = self.manifold(contact, index).filter(|m| m.count > 0) else { continue };
-            let is_internal =
-                (0..2).any(|side| input.slides(contact, side) && self.is_internal(input, id, side, manifold));
+            let is_internal = (0..2).any(|side| {
+                input.slides(contact, side) && self.is_internal(input, id, side, manifold, worker)
+            });
             if is_internal != manifold.is_internal {
-                changes.push((id, index));
+                worker.internal.push((id, index));
             }
         }
     }
 
     /// Whether another manifold of the collider on a side of a contact holds what this one would stop.
-    fn is_internal<S>(&self, input: &NarrowPhaseInput<S>, id: u32, side: usize, manifold: &Manifold) -> bool {
+    fn is_internal<S, W>(
+        &self,
+        input: &NarrowPhaseInput<S>,
+        id: u32,
+        side: usize,
+        manifold: &Manifold,
+        worker: &mut WorkerBuffers<W>,
+    ) -> bool {
         let contact = self.get(id);
         let (collider, ground) = (contact.colliders[side], contact.colliders[1 - side]);
         let mut seen = None;
@@ -232,6 +275,7 @@ impl ContactTable {
                 let holding = Seen::new(input, other, other_side, m);
                 seen.is_held_by(&holding)
                     && !self.stands_on([ground, other.colliders[1 - other_side]], holding.normal)
+                    && !input.rises(contact, side, seen, &holding, worker)
             })
         })
     }

@@ -4,9 +4,9 @@ use super::buffers::WorkerBuffers;
 use super::input::{ManifoldSource, NarrowPhaseInput};
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint};
 use super::sweep::Meeting;
-use crate::manifold::{self, LocalManifold, Look};
-use crate::math::{Rot, Vector, min};
-use crate::shape::Shape;
+use crate::manifold::{self, FeatureCache, LocalManifold, Look};
+use crate::math::{Pose, Rot, Vector, min};
+use crate::shape::{Ball, Shape};
 use crate::table::BodyPose;
 
 /// A manifold continues an old one if the cosine between their normals is above this: 25°. More loses impulses of bodies
@@ -36,6 +36,23 @@ pub(super) fn collide<S>(
     // A point that does not touch, moved past a seam of the ground, would not be recognised as one of an inner edge.
     let near = input.margin(contact);
     manifold::lead_rims(shapes, pose_a.rotation, &relative, spin * (0.5 * input.dt), near, local)
+}
+
+/// Whether a ball overlaps a shape, given the ball's pose in the shape's frame. Shapes of the embedder are not known: false.
+pub(super) fn touches<W>(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut WorkerBuffers<W>) -> bool {
+    let WorkerBuffers { composite, local, .. } = buffers;
+    let (ball, mut found) = (Shape::Ball(ball), LocalManifold::default());
+    match shape {
+        Shape::Foreign(_) => return false,
+        Shape::Composite(_) => {
+            let look = Look { prediction: 0.0, motion: Vector::ZERO, groups: Look::ALIKE };
+            local.clear();
+            manifold::collide_composite(shape, &ball, pose, look, composite, local);
+            return !local.is_empty();
+        }
+        _ => manifold::collide(shape, &ball, pose, 0.0, &mut FeatureCache::NONE.clone(), &mut found),
+    }
+    found.count > 0
 }
 
 /// Adds the manifolds of two shapes of which one is composite, margins not subtracted. The motion is that of B against A in

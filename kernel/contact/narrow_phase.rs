@@ -353,7 +353,7 @@ struct Search {
     prediction: f32,
     /// The time of the points, if they are those of swept shapes or of the middle of the step.
     meeting: Option<Meeting>,
-    /// There are points farther away than that, which turning may bring together in this step.
+    /// There are points farther away than `prediction`, which turning may bring together in this step.
     has_far: bool,
 }
 
@@ -386,7 +386,7 @@ fn search_parts<S: ManifoldSource>(
     let motion = if prediction > near { input.predicted_motion(contact) } else { Vector::ZERO };
     let near = near + (farthest - prediction);
     let gap = manifolds::collide_parts(input, contact, near + margin, motion, buffers);
-    // Without a part nearby the gap is infinite.
+    // Without any part the gap is infinite.
     let known = if buffers.local.is_empty() && gap.is_finite() { max(gap - margin, near) } else { near };
     Search { prediction: known, meeting: None, has_far: false }
 }
@@ -408,8 +408,8 @@ fn search_native<S>(
     let mut until_lag = f32::INFINITY;
     let mut has_far = false;
     let with_margin = prediction + margin;
-    // Negated, so that a NaN is not taken for a gap.
     let farthest = input.farthest(contact, prediction);
+    // Negated, so that a NaN is not taken for a gap.
     if !(gap > with_margin) || !(gap - margin > farthest) {
         // What touches may slap down within the step with points that are far yet.
         let slaps = farthest > prediction && sweep::is_straight(input, contact);
@@ -417,6 +417,7 @@ fn search_native<S>(
         until_lag = manifolds::collide(input, contact, up_to, &mut local);
         if local.lower_bound() > with_margin {
             local = LocalManifold { gap: local.lower_bound(), ..LocalManifold::default() };
+            until_lag = f32::INFINITY;
         }
         has_far = local.points().iter().any(|p| p.separation > with_margin);
         if local.count == 0 {

@@ -44,21 +44,37 @@ const MAX_ROUNDS: usize = 16;
 /// Parts meet at a gap of this share of the prediction. More stops bodies that pass by; less takes more rounds.
 const MET: f32 = 0.1;
 
-/// Normals whose cosine is below this have little to do with each other: 8°.
+/// Normals differ if their cosine is below this: 8°.
 const TURNED: f32 = 0.99;
 /// A face is deeper than what was found from this share of the prediction on. Less is rounding.
 const DEEPER: f32 = 0.005;
+/// Rounding and clipping of the depth of a corner that pokes into a seam, as a share of the prediction.
+const POKE: f32 = 0.25;
+/// The least cosine between a face and the side of a corner that pokes into it.
+const MOST_LEAN: f32 = 0.25;
 
 /// Buffers for the manifolds of composite shapes, kept between calls.
 #[derive(Clone, Debug, Default)]
 pub struct CompositeBuffers {
     parts: Vec<u32>,
     found: Vec<LocalManifold>,
-    /// For each of `found`, if it is doubtful, the share of the motion after which the shapes meet there.
-    doubts: Vec<Option<f32>>,
+    /// For each of `found` what it replaced, if it is doubtful.
+    doubts: Vec<Option<Doubt>>,
     /// For each of `found` the merged manifold it belongs to.
     groups: Vec<usize>,
     points: Vec<LocalPoint>,
+}
+
+/// A contact that was replaced by that of the facet's own face, which is deeper or turned. It may be the right one.
+#[derive(Clone, Copy, Debug)]
+struct Doubt {
+    normal: Vector,
+    /// The least separation.
+    nearest: f32,
+    /// The share of the motion after which the facet meets the other shape.
+    share: f32,
+    /// Whether the face's contact is dropped.
+    is_needless: bool,
 }
 
 /// How far two shapes are looked at.
@@ -179,7 +195,9 @@ fn collide_both(
     let near = Aabb { min: around.min + inverse.position, max: around.max + inverse.position };
     let mut parts = Vec::new();
     b.tree().query(&near.grown(look.prediction + look.motion.length()), |part| parts.push(part));
-    parts.iter().fold(f32::INFINITY, |gap, part| {
+    // Parts of B that are not near are beyond what was looked at.
+    let beyond = if parts.len() < b.len() { look.prediction + look.motion.length() } else { f32::INFINITY };
+    parts.iter().fold(beyond, |gap, part| {
         let pass = |other: &Shape, pose: &Pose, buffers: &mut CompositeBuffers| {
             let other_group = look.group(1, *part);
             Pass { composite: a, other, pose, look, other_group, name: part + 1, alone }.collide(buffers)
@@ -221,26 +239,49 @@ impl Pass<'_> {
             }
         }
         buffers.parts = parts;
+        if buffers.found.len() == start && !self.alone {
+            return self.composite.tree().gap_beyond(&near, &around, gap);
+        }
         self.drop_doubtful(start, buffers);
         gap
     }
 
-    /// Drops doubtful contacts from `buffers.found[start..]` where a contact without doubt is met by then, and none has their
-    /// normal. Side faces of a block on a wide floor have the floor's whole width on their inner side.
+    /// Drops doubtful contacts from `buffers.found[start..]` that others make needless.
     fn drop_doubtful(&self, start: usize, buffers: &mut CompositeBuffers) {
         let CompositeBuffers { found, doubts, .. } = buffers;
-        let Look { prediction, motion, .. } = self.look;
-        for i in (start..found.len()).rev() {
-            let Some(share) = doubts[i] else { continue };
-            let certain =
-                || found[start..].iter().zip(&doubts[start..]).filter(|(_, d)| d.is_none()).map(|(m, _)| m);
-            let is_met = |m: &LocalManifold| m.lower_bound() + m.normal.dot(motion) * share <= prediction;
-            let is_alike = |m: &LocalManifold| m.normal.dot(found[i].normal) > SAME_NORMAL;
-            if certain().any(is_met) && !certain().any(is_alike) {
-                found.remove(i);
-                doubts.remove(i);
+        for i in start..found.len() {
+            if let Some(doubt) = doubts[i] {
+                let is_needless = self.is_needless(&doubt, &found[i], &found[start..], &doubts[start..]);
+                doubts[i] = Some(Doubt { is_needless, ..doubt });
             }
         }
+        let is_kept = |doubt: &Option<Doubt>| !doubt.is_some_and(|doubt| doubt.is_needless);
+        let mut all = doubts.iter();
+        found.retain(|_| all.next().is_some_and(is_kept));
+        doubts.retain(is_kept);
+    }
+
+    /// Whether contacts without doubt stand for a doubtful one. A block's side facets overlap a wide floor by half of it: what
+    /// they replaced is the bottom's contact. A corner that pokes into a wall is in no facet's own contact but the replaced ones,
+    /// so there the wall's face stays, whatever else is touched.
+    fn is_needless(
+        &self,
+        doubt: &Doubt,
+        own: &LocalManifold,
+        found: &[LocalManifold],
+        doubts: &[Option<Doubt>],
+    ) -> bool {
+        let Look { prediction, motion, .. } = self.look;
+        let at_meeting = |m: &LocalManifold| m.lower_bound() + m.normal.dot(motion) * doubt.share;
+        // A corner is as deep in the face as its side leans. Before it pokes into it, nothing was replaced.
+        let (depth, slack) = (own.lower_bound(), POKE * prediction);
+        let cos = max(own.normal.dot(doubt.normal), MOST_LEAN);
+        let deepest = min(doubt.nearest, doubt.nearest / cos);
+        let is_corner = doubt.share == 0.0 && deepest - slack <= depth && depth <= doubt.nearest + slack;
+        let certain = || found.iter().zip(doubts).filter(|(_, doubt)| doubt.is_none()).map(|(m, _)| m);
+        let has_normal = |m: &LocalManifold| !is_corner || m.normal.dot(doubt.normal) > TURNED;
+        certain().any(|m| has_normal(m) && at_meeting(m) <= prediction)
+            && !certain().any(|m| m.normal.dot(own.normal) > SAME_NORMAL)
     }
 
     /// Adds the manifold of one part, if it has one. `screened` are lower bounds of its distance, now and during the motion.
@@ -250,7 +291,7 @@ impl Pass<'_> {
         let [now, ever] = screened.unwrap_or([-1.0; 2]);
         let (is_moving, mut local) = (motion != Vector::ZERO, LocalManifold::default());
         let mut gap = f32::INFINITY;
-        let mut met = Met { share: 0.0, is_doubtful: false };
+        let mut doubt = None;
         if self.alone {
             if ever > prediction {
                 return now;
@@ -259,29 +300,31 @@ impl Pass<'_> {
         } else if now > prediction {
             local.gap = now;
         } else {
-            met.is_doubtful = self.collide_part(part, prediction, &mut local);
+            doubt = self.collide_part(part, prediction, &mut local);
         }
         if local.count == 0 {
             gap = local.gap;
             let may_meet = !self.alone && is_moving && !(ever > MET * prediction);
-            match may_meet.then(|| self.cast(part, &mut local)).flatten() {
-                Some(later) => met = later,
-                None => return gap,
+            if may_meet {
+                doubt = self.cast(part, &mut local);
+            }
+            if local.count == 0 {
+                return gap;
             }
         }
         let count = local.count;
         local.groups = [self.look.group(0, part), self.other_group];
         local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, part, p.feature]));
         buffers.found.push(local);
-        buffers.doubts.push(met.is_doubtful.then_some(met.share));
+        buffers.doubts.push(doubt);
         gap
     }
 
-    /// Fills `local` with the contact of one part. Returns whether it is doubtful.
-    fn collide_part(&self, part: u32, prediction: f32, local: &mut LocalManifold) -> bool {
+    /// Fills `local` with the contact of one part. Returns what it replaced, if it is doubtful.
+    fn collide_part(&self, part: u32, prediction: f32, local: &mut LocalManifold) -> Option<Doubt> {
         self.collide_alone(part, prediction, local);
         let surface = self.composite.surface().filter(|_| local.count > 0);
-        surface.is_some_and(|surface| self.keep_on_surface(surface, part, prediction, local))
+        surface.and_then(|surface| self.keep_on_surface(surface, part, prediction, local))
     }
 
     /// Fills `local` with the contact of one part as if there were no other.
@@ -300,8 +343,8 @@ impl Pass<'_> {
     }
 
     /// Follows the motion to where a part that is farther away than the prediction meets the other shape. `local` receives the
-    /// contact there, with the separations of now. Returns `None` if they do not meet.
-    fn cast(&self, part: u32, local: &mut LocalManifold) -> Option<Met> {
+    /// contact there, with the separations of now, if they meet. Returns what it replaced, if it is doubtful.
+    fn cast(&self, part: u32, local: &mut LocalManifold) -> Option<Doubt> {
         let way = self.look.motion;
         let met = MET * self.look.prediction;
         let mut share = 0.0;
@@ -316,7 +359,7 @@ impl Pass<'_> {
             }
             let gap = local.lower_bound();
             if gap <= met || round == MAX_ROUNDS {
-                let is_doubtful = there.collide_part(part, self.look.prediction, local);
+                let doubt = there.collide_part(part, self.look.prediction, local);
                 let along = local.normal.dot(way) * share;
                 let count = local.count;
                 for p in &mut local.points[..count] {
@@ -324,7 +367,7 @@ impl Pass<'_> {
                     p.point -= way * share - local.normal * (0.5 * along);
                     p.separation -= along;
                 }
-                return (local.count > 0).then_some(Met { share, is_doubtful });
+                return doubt.map(|doubt| Doubt { share, ..doubt });
             }
             share += max(gap, met) / closing;
             if !(share <= 1.0) {
@@ -358,16 +401,16 @@ impl Pass<'_> {
     }
 
     /// Replaces a facet's manifold by that of its face if its normal leans over a border where the surface goes on. Returns
-    /// whether that is deeper or quite another one: then the normal may be right, and the neighbour's contact has it.
+    /// what it replaced if the face is deeper or turned by more than 8°.
     fn keep_on_surface(
         &self,
         surface: &Surface,
         facet: u32,
         prediction: f32,
         local: &mut LocalManifold,
-    ) -> bool {
+    ) -> Option<Doubt> {
         let corners = surface.corners(facet);
-        let Some(face) = face_normal(corners) else { return false };
+        let Some(face) = face_normal(corners) else { return None };
         let borders = borders(corners, face);
         let (mut leans, mut is_free) = (false, true);
         for (border, neighbor) in borders.iter().zip(surface.neighbors(facet)) {
@@ -385,21 +428,14 @@ impl Pass<'_> {
         // A normal that leans over a border without points there belongs to no feature of the facet.
         let is_met = || borders.iter().any(|b| local.normal.dot(b.outward) > LEAN && b.is_met_by(local));
         if !leans || (is_free && is_met()) {
-            return false;
+            return None;
         }
         let (found, nearest) = (local.normal, local.lower_bound());
         let own = self.toward_other(corners[0], face, found);
         collide_face(corners, own, self.other, self.pose, prediction, local);
-        own.dot(found) < TURNED || local.lower_bound() < nearest - DEEPER * prediction
+        let is_doubtful = own.dot(found) < TURNED || local.lower_bound() < nearest - DEEPER * prediction;
+        is_doubtful.then_some(Doubt { normal: found, nearest, share: 0.0, is_needless: false })
     }
-}
-
-/// When and how a part meets the other shape.
-#[derive(Clone, Copy)]
-struct Met {
-    /// The share of the motion after which they meet.
-    share: f32,
-    is_doubtful: bool,
 }
 
 impl Border {

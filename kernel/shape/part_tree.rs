@@ -1,7 +1,7 @@
 //! The tree over the parts of a composite shape, built once.
 
 use super::Aabb;
-use crate::math::{DIM, Vector};
+use crate::math::{DIM, Vector, min};
 
 /// Leaves hold up to this number of parts. More makes walks test boxes in vain; less makes trees larger.
 const LEAF_PARTS: usize = 4;
@@ -81,6 +81,18 @@ impl PartTree {
         self.walk(|b| b.overlaps(aabb), |parts| parts.iter().for_each(|part| found(*part)));
     }
 
+    /// A lower bound of the distance of `around` to parts whose leaves' boxes do not touch `near`, or `limit` if that is less.
+    pub fn gap_beyond(&self, near: &Aabb, around: &Aabb, limit: f32) -> f32 {
+        let least = core::cell::Cell::new(limit);
+        let is_nearer = |b: &Aabb| b.gap(around) < least.get();
+        self.walk_nodes(is_nearer, |b, _| {
+            if !b.overlaps(near) {
+                least.set(min(least.get(), b.gap(around)));
+            }
+        });
+        least.get()
+    }
+
     /// Visits the parts in leaves whose boxes a ray enters before a limit. `hit` gets a part and the present limit, and returns
     /// the new one. `inverse` is the componentwise inverse of the direction.
     pub fn cast_ray(
@@ -137,6 +149,12 @@ impl PartTree {
     /// Depth first through all boxes that pass the test.
     #[inline(always)]
     fn walk(&self, test: impl Fn(&Aabb) -> bool, mut leaf: impl FnMut(&[u32])) {
+        self.walk_nodes(test, |_, parts| leaf(parts));
+    }
+
+    /// The same; `leaf` gets the box of the leaf as well.
+    #[inline(always)]
+    fn walk_nodes(&self, test: impl Fn(&Aabb) -> bool, mut leaf: impl FnMut(&Aabb, &[u32])) {
         let mut stack = [0_u32; STACK];
         let mut len = 0;
         let mut next = if self.nodes.is_empty() { None } else { Some(0) };
@@ -145,7 +163,7 @@ impl PartTree {
             next = None;
             if test(&node.aabb) {
                 if node.count > 0 {
-                    leaf(&self.order[node.start as usize..(node.start + node.count) as usize]);
+                    leaf(&node.aabb, &self.order[node.start as usize..(node.start + node.count) as usize]);
                 } else {
                     stack[len] = node.start;
                     len += 1;

@@ -168,3 +168,31 @@ pub fn blocks() -> Vec<(&'static str, Shape, Shape)> {
         })
         .collect()
 }
+
+/// The rotation of a box that has an edge ahead, and the height of its middle over the floor: a half size is 0.2.
+pub fn on_edge() -> (Rot, f32) {
+    (Rot::from_angle(core::f32::consts::FRAC_PI_4), 0.2 * core::f32::consts::SQRT_2)
+}
+
+/// A floor on y = 0 up to x = 0 and a wall on x = 0, in segments of a size, with a seam at a height.
+pub fn wall_and_floor(size: f32, seam: f32) -> Shape {
+    let count = (2.0 / size) as u32;
+    let floor = (0..=count).map(|k| Vector { x: size * k as f32 - 2.0, y: 0.0 });
+    let wall = (0..=count).map(|k| Vector { x: 0.0, y: seam + size * k as f32 });
+    let corners: Vec<_> = floor.chain(wall).collect();
+    let facets = (1..corners.len() as u32).map(|k| [k - 1, k]).collect();
+    Shape::surface(Surface::new(corners, facets).expect("a surface"))
+}
+
+/// Bodies that are widest at their foot.
+pub fn feet() -> Vec<(&'static str, Shape)> {
+    let corner = |x: f32, y: f32| Vector { x, y };
+    let triangle = crate::kernel::shape::Triangle {
+        a: corner(-0.2, -0.13),
+        b: corner(0.2, -0.13),
+        c: corner(0.0, 0.27),
+    };
+    let corners = [corner(-0.3, -0.2), corner(0.3, -0.2), corner(0.2, 0.2), corner(-0.2, 0.2)];
+    let trapezoid = Hull::convex_hull_of(&corners, 0.0).expect("it is solid");
+    vec![("triangle", Shape::Triangle(triangle)), ("trapezoid", Shape::Hull(Arc::new(trapezoid)))]
+}

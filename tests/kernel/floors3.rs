@@ -224,3 +224,39 @@ pub fn blocks() -> Vec<(&'static str, Shape, Shape)> {
         })
         .collect()
 }
+
+/// The rotation of a box that has an edge ahead, and the height of its middle over the floor: a half size is 0.2.
+pub fn on_edge() -> (Rot, f32) {
+    (Rot::from_axis_angle(Vector::Y, 0.5 * FRAC_PI_2), 0.2)
+}
+
+/// A floor on y = 0 up to x = 0 and a wall on x = 0, in squares of a size, with a seam at z = 0.
+pub fn wall_and_floor(size: f32, _seam: f32) -> Shape {
+    let count = (2.0 / size) as u32;
+    let floor = (0..=count).map(|k| Vector { x: size * k as f32 - 2.0, y: 0.0, z: 0.0 });
+    let wall = (1..=count).map(|k| Vector { x: 0.0, y: size * k as f32, z: 0.0 });
+    let profile: Vec<_> = floor.chain(wall).collect();
+    let (rows, columns) = (profile.len() as u32 - 1, 2 * count);
+    let across = |k: u32| Vector::Z * (size * k as f32 - 2.0);
+    let corners = profile.iter().flat_map(|at| (0..=columns).map(move |k| *at + across(k))).collect();
+    let facets = (0..rows * columns).flat_map(|k| {
+        let corner = |i: u32, j: u32| (k / columns + i) * (columns + 1) + k % columns + j;
+        let [a, b, c, d] = [corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)];
+        [[a, b, d], [a, d, c]]
+    });
+    Shape::surface(Surface::new(corners, facets.collect()).expect("a surface"))
+}
+
+/// Bodies that are widest at their foot.
+pub fn feet() -> Vec<(&'static str, Shape)> {
+    let corner = |x: f32, y: f32, z: f32| Vector { x, y, z };
+    let square =
+        [corner(-0.3, -0.2, -0.3), corner(-0.3, -0.2, 0.3), corner(0.3, -0.2, 0.3), corner(0.3, -0.2, -0.3)];
+    let hull = |points: &[Vector]| Shape::Hull(Arc::new(Hull::convex_hull_of(points).expect("it is solid")));
+    let top = square.map(|p| corner(0.6 * p.x, 0.2, 0.6 * p.z));
+    vec![
+        ("pyramid", hull(&[&square[..], &[corner(0.0, 0.4, 0.0)]].concat())),
+        ("frustum", hull(&[square, top].concat())),
+        ("cone", Shape::Curved(Curved { lower: 0.3, upper: 0.0, half_height: 0.25 })),
+    ]
+}

@@ -1,10 +1,10 @@
 //! Bodies that slide over floors of several pieces, as if the floor were one piece.
 
-use super::dim::floors::{heading, roll, rollers};
+use super::dim::floors::{feet, heading, roll, rollers, wall_and_floor};
 use super::dim::{more_riders, riders, sized, spin, tiles, turned, upright};
 use super::sim::Sim;
 use crate::kernel;
-use kernel::math::{Rot, Vector};
+use kernel::math::{Pose, Rot, Vector};
 use kernel::shape::{Cuboid, Shape};
 use kernel::table::{BodyKind, Velocity};
 
@@ -305,6 +305,53 @@ fn a_groove_holds_what_lies_in_it() {
         for angle in [0.1, 0.4, 0.8] {
             let place = in_a_groove(&rider, angle);
             assert!(place.y > 0.15 && place.x.abs() < 0.4, "{name} in a groove of {angle} rad: {place:?}");
+        }
+    }
+}
+
+/// A body that is wider at its foot has one point at a wall, on the plane of the floor, and walked into the wall.
+#[test]
+fn feet_stop_at_walls() {
+    let pieces = |half: Vector, at: Vector| (Shape::Cuboid(Cuboid { half }), at);
+    let floor = || pieces(sized(5.0, 0.5, 5.0), Vector::Y * -0.5);
+    for (name, foot) in feet() {
+        {
+            let wall = || pieces(sized(0.5, 0.5, 5.0), sized(1.5, 0.5, 0.0));
+            let compound =
+                [floor(), wall()].map(|(shape, at)| (Pose::new(at, Rot::IDENTITY), shape)).to_vec();
+            let compound = Shape::compound(compound).expect("solids");
+            let worlds = [
+                ("two boxes", vec![floor(), wall()]),
+                ("compound", vec![(compound, Vector::ZERO)]),
+                ("surface", vec![(wall_and_floor(0.5, 0.0), Vector::X)]),
+            ];
+            for (world, pieces) in worlds {
+                for (speed, friction) in [(0.5f32, 0.0), (1.0, 0.3), (3.0, 0.0)] {
+                    let mut sim = Sim::new();
+                    sim.checked = false;
+                    for (shape, at) in &pieces {
+                        sim.add_with(BodyKind::Static, shape.clone(), *at, Rot::IDENTITY, friction, 0.0);
+                    }
+                    let reach = foot.support(Vector::X).expect("bounded").x;
+                    let lowest = foot.support(-Vector::Y).expect("bounded").y;
+                    let at = sized(0.6 - reach, -lowest, 0.0);
+                    let id = sim.add_with(BodyKind::Dynamic, foot.clone(), at, Rot::IDENTITY, friction, 0.0);
+                    for step in 0..180 {
+                        sim.bodies.velocities[id as usize].linear.x = speed;
+                        sim.step();
+                        let frame = sim.bodies.frame(id);
+                        let ahead = foot.support(frame.rotation.inverse_rotate(Vector::X)).expect("bounded");
+                        let below = foot.support(frame.rotation.inverse_rotate(-Vector::Y)).expect("bounded");
+                        let at = frame.position.to_local();
+                        let in_wall = at.x + frame.rotation.rotate(ahead).x - 1.0;
+                        let deep = in_wall.max(-at.y - frame.rotation.rotate(below).y);
+                        let what = format!("{name}, {world}, {speed} m/s, step {step}");
+                        // The blow may press a thin edge in; what is pushed on stays out.
+                        let limit = if step < 120 { 0.05 } else { 0.01 };
+                        assert!(deep < limit, "{what}: {deep} m deep");
+                    }
+                }
+            }
         }
     }
 }

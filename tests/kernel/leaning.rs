@@ -183,8 +183,8 @@ fn deepest_slap(shape: &Shape, lean: f32, drop: f32, way: f32) -> f32 {
     deepest
 }
 
-/// Its points on the other side are farther away than it falls in the step. They were not in the manifold: the coin came to be
-/// 33 mm deep, the pole 25 mm. A turn by 0.15 rad in a step, of which the solver knows the tangent, leaves 1 cm.
+/// The body's points on the other side are farther away than it falls in the step. They were not in the manifold: the coin came to
+/// be 33 mm deep, the pole 25 mm. The solver takes the turn of 0.15 rad in a step as a straight motion, which leaves 1 cm.
 #[test]
 fn what_lands_on_an_edge_slaps_down_onto_the_floor() {
     let cuboid = |y: f32, z: f32| Shape::Cuboid(Cuboid { half: Vector { x: HALF, y, z } });

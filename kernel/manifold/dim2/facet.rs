@@ -123,7 +123,7 @@ pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalMani
     let deepest = *points.iter().min_by(|p, q| p.separation.total_cmp(&q.separation)).unwrap_or(&first);
     let (length, way) = (along(&last) - along(&first), along(&deepest) - along(&first));
     let sag = first.separation + (last.separation - first.separation) * (way / length) - deepest.separation;
-    if sag > HANGS * length {
+    if deepest != first && deepest != last && sag > HANGS * length {
         if first.separation <= last.separation { last = deepest } else { first = deepest }
     }
     out.count = 0;
