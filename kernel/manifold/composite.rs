@@ -410,7 +410,7 @@ impl Pass<'_> {
         local: &mut LocalManifold,
     ) -> Option<Doubt> {
         let corners = surface.corners(facet);
-        let Some(face) = face_normal(corners) else { return None };
+        let face = face_normal(corners)?;
         let borders = borders(corners, face);
         let (mut leans, mut is_free) = (false, true);
         for (border, neighbor) in borders.iter().zip(surface.neighbors(facet)) {
