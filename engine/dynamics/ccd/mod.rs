@@ -19,7 +19,7 @@
 //! | wall | default | `SpeculativeMargin::ZERO` | and `SweptCcd` |
 //! | --- | --- | --- | --- |
 //! | static, up to 1000 m/s | stops | stops at the wall, then bounces | as without |
-//! | kinematic or dynamic, up to 1000 m/s | stops | passes when it moves by more than its size | stops at the wall, then bounces |
+//! | kinematic or dynamic, up to 1000 m/s | most stop; of spinning ones up to a quarter passes in 2D, a twelfth in 3D | passes when it moves by more than its size | stops at the wall, then bounces |
 //!
 //! Without [`CcdPlugin`] there are no sweeps.
 
