@@ -31,7 +31,8 @@ const CLIPPED: f32 = 1.0e-3;
 /// down is another part of a concave collider, which a pit may hold.
 const BELOW: f32 = 0.005;
 
-/// The ground of a wall goes on at this height over a plane, in units of how far above it a point may lie.
+/// A wall is looked for at this height over a plane, in units of the height up to which points count as on it. More misses low
+/// walls; less takes the edges of flush tiles for walls.
 const RISES: f32 = 4.0;
 
 /// Planes whose normals differ by less than this hold the same, squared, in radians: 0.2°.

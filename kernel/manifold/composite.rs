@@ -261,9 +261,9 @@ impl Pass<'_> {
         doubts.retain(is_kept);
     }
 
-    /// Whether contacts without doubt stand for a doubtful one. A block's side facets overlap a wide floor by half of it: what
-    /// they replaced is the bottom's contact. A corner that pokes into a wall is in no facet's own contact but the replaced ones,
-    /// so there the wall's face stays, whatever else is touched.
+    /// Whether a doubtful contact is needless, because one without doubt bears the same. The side facets of a block on a wide floor
+    /// overlap it by half its width, and the bottom's contact bears the block. An edge that pokes into a wall at a seam is different:
+    /// both facets there are doubtful, so the wall's face stays unless another contact has the replaced normal.
     fn is_needless(
         &self,
         doubt: &Doubt,
@@ -273,7 +273,7 @@ impl Pass<'_> {
     ) -> bool {
         let Look { prediction, motion, .. } = self.look;
         let at_meeting = |m: &LocalManifold| m.lower_bound() + m.normal.dot(motion) * doubt.share;
-        // A corner is as deep in the face as its side leans. Before it pokes into it, nothing was replaced.
+        // A corner with the replaced normal is deeper in the face by 1 / cos. Contacts met later have no corner in the face yet.
         let (depth, slack) = (own.lower_bound(), POKE * prediction);
         let cos = max(own.normal.dot(doubt.normal), MOST_LEAN);
         let deepest = min(doubt.nearest, doubt.nearest / cos);
