@@ -76,18 +76,20 @@ impl Surface {
     }
 }
 
-/// The facet across each border of each facet.
+/// The facet across each border of each facet. Facets that there are several times count as one, and those with two corners in one
+/// place not at all.
 fn neighbors(vertices: &[Vector], facets: &[[u32; DIM]]) -> Vec<[u32; DIM]> {
     let names = welded(vertices);
     let mut borders: Vec<(u64, u32)> = Vec::with_capacity(DIM * facets.len());
     for (i, facet) in facets.iter().enumerate() {
-        for k in 0..DIM {
-            // In 3D a side from one corner to the next, in 2D one corner.
-            let [a, b] = [k, (k + DIM - 2) % DIM].map(|end| names[facet[end] as usize]);
-            borders.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), (i as u32) << 2 | k as u32));
-        }
+        borders.extend((0..DIM).map(|k| (border_name(&names, facet, k), (i as u32) << 2 | k as u32)));
     }
     borders.sort_unstable();
+    let is_crowded = borders.windows(3).any(|same| same[0].0 == same[2].0);
+    let first = if is_crowded { first_equals(&names, facets) } else { Vec::new() };
+    if is_crowded {
+        borders.retain(|(_, at)| first[(at >> 2) as usize] == at >> 2);
+    }
     let mut all = vec![[NO_FACET; DIM]; facets.len()];
     for same in borders.chunk_by(|a, b| a.0 == b.0) {
         if let [(_, a), (_, b)] = same
@@ -97,7 +99,42 @@ fn neighbors(vertices: &[Vector], facets: &[[u32; DIM]]) -> Vec<[u32; DIM]> {
             all[(b >> 2) as usize][(b & 3) as usize] = a >> 2;
         }
     }
+    for (i, first) in
+        first.into_iter().enumerate().filter(|(i, first)| *first != *i as u32 && *first != NO_FACET)
+    {
+        let known: [u64; DIM] = core::array::from_fn(|k| border_name(&names, &facets[first as usize], k));
+        for k in 0..DIM {
+            let name = border_name(&names, &facets[i], k);
+            let at = known.iter().position(|known| *known == name);
+            all[i][k] = at.map_or(NO_FACET, |at| all[first as usize][at]);
+        }
+    }
     all
+}
+
+/// A number for the ends of a border: in 3D a side from one corner to the next, in 2D one corner.
+fn border_name(names: &[u32], facet: &[u32; DIM], k: usize) -> u64 {
+    let [a, b] = [k, (k + DIM - 2) % DIM].map(|end| names[facet[end] as usize]);
+    u64::from(a.min(b)) << 32 | u64::from(a.max(b))
+}
+
+/// For each facet the first with the same corners; [`NO_FACET`] if two of them are in one place.
+fn first_equals(names: &[u32], facets: &[[u32; DIM]]) -> Vec<u32> {
+    let mut keys: Vec<([u32; DIM], u32)> = Vec::with_capacity(facets.len());
+    for (i, facet) in facets.iter().enumerate() {
+        let mut key = facet.map(|corner| names[corner as usize]);
+        key.sort_unstable();
+        keys.push((key, i as u32));
+    }
+    keys.sort_unstable();
+    let mut first = vec![NO_FACET; facets.len()];
+    for same in keys.chunk_by(|a, b| a.0 == b.0) {
+        let is_flat = same[0].0.windows(2).any(|pair| pair[0] == pair[1]);
+        if !is_flat {
+            same.iter().for_each(|(_, i)| first[*i as usize] = same[0].1);
+        }
+    }
+    first
 }
 
 /// The first of all vertices at the same place, for each vertex.
@@ -216,6 +253,35 @@ mod tests {
             let expected: Vec<u32> = (0..count).filter(|o| *o != facet && shared(*o) == DIM - 1).collect();
             assert_eq!(beside, expected, "of facet {facet}");
         }
+    }
+
+    /// Levels are exported with facets twice, from both sides, and with facets of which two corners are in one place.
+    #[test]
+    fn doubled_and_empty_facets_leave_neighbors() {
+        let plain = strip(5);
+        let mut facets = plain.facets.clone();
+        let mut turned = facets[2];
+        turned.swap(0, DIM - 1);
+        facets.insert(0, turned);
+        facets.push(facets[4]);
+        let mut empty = facets[3];
+        empty[1] = empty[0];
+        facets.push(empty);
+        let messy = Surface::new(plain.vertices.clone(), facets).expect("a surface");
+        let count = plain.facets.len() as u32;
+        for facet in 0..count {
+            // In the messy surface the first is the one that was turned, so that all others are one later.
+            let known = |n: &u32| if *n == 0 { 2 } else { *n - 1 };
+            let beside = messy.neighbors(facet + 1).map(|n| if n == NO_FACET { n } else { known(&n) });
+            assert_eq!(beside, plain.neighbors(facet), "of facet {facet}");
+        }
+        let sorted = |mut list: [u32; DIM]| {
+            list.sort_unstable();
+            list
+        };
+        assert_eq!(sorted(messy.neighbors(0)), sorted(messy.neighbors(3)), "of the turned facet");
+        assert_eq!(messy.neighbors(count + 1), messy.neighbors(4), "of the doubled facet");
+        assert_eq!(messy.neighbors(count + 2), [NO_FACET; DIM], "of the empty facet");
     }
 
     #[test]
