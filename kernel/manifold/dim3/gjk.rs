@@ -6,6 +6,7 @@
 
 use super::view::{MatrixPose, View};
 use crate::distance::nearest_weights;
+use crate::manifold::LocalManifold;
 use crate::math::{Vector, max};
 use crate::shape::Curved;
 
@@ -60,6 +61,23 @@ pub(super) struct Closest {
     pub distance: f32,
     /// The vertices that the points lie between.
     pub feature: u32,
+}
+
+impl Closest {
+    /// Fills `out` with one point between the closest points, where a contact has no point or separates by less than they do.
+    /// `radii` are those around the cores.
+    pub fn fill_apart(&self, radii: [f32; 2], separation: f32, prediction: f32, out: &mut LocalManifold) {
+        if !(self.distance > separation) && out.count > 0 {
+            return;
+        }
+        let [of_a, of_b] = radii;
+        (out.count, out.normal) = (0, self.normal);
+        let distance = self.distance - of_a - of_b;
+        if distance <= prediction {
+            let point = (self.a + self.normal * of_a + self.b - self.normal * of_b) * 0.5;
+            out.push(point, distance, 3 << 30 | self.feature);
+        }
+    }
 }
 
 /// A vertex of the Minkowski difference A − B.
