@@ -255,6 +255,10 @@ impl Pass<'_> {
         }
         buffers.parts = parts;
         if buffers.found.len() == start && !self.alone {
+            // Who only asks whether shapes touch does not need to know how far others are.
+            if self.look.prediction <= 0.0 {
+                return 0.0;
+            }
             return self.composite.tree().gap_beyond(&near, &around, gap);
         }
         self.drop_doubtful(start, buffers);

@@ -103,6 +103,19 @@ pub(super) fn closest_along<A: Core, B: Core>(
     frame: &MatrixPose,
     start: Vector,
 ) -> Option<Closest> {
+    closest_within(a, b, frame, start, f32::INFINITY)
+}
+
+/// The same up to a limit: of cores that are farther apart the distance may be any between the limit and the true one, and
+/// the points are not the closest.
+pub(super) fn closest_within<A: Core, B: Core>(
+    a: &A,
+    b: &B,
+    frame: &MatrixPose,
+    start: Vector,
+    limit: f32,
+) -> Option<Closest> {
+    let limit = f64::from(limit);
     let vertex = |direction: Vector| {
         let (p, i) = a.farthest_point(direction);
         let (q, j) = b.farthest_point(-frame.direction_in(direction));
@@ -122,6 +135,10 @@ pub(super) fn closest_along<A: Core, B: Core>(
         }
         let new = vertex((nearest * (-1.0 / square.sqrt())).narrow());
         scale = if new.w.length_squared() > scale { new.w.length_squared() } else { scale };
+        let bound = nearest.dot(new.w) / square.sqrt();
+        if bound > limit {
+            return Some(Closest { distance: bound as f32, ..witness(&simplex[..count], nearest) });
+        }
         let known = simplex[..count].iter().any(|v| v.ids == new.ids && v.w == new.w);
         if known || square - nearest.dot(new.w) <= GAP * square {
             break;

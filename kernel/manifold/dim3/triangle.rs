@@ -122,17 +122,17 @@ pub(super) fn collide(
 ) -> bool {
     (out.count, out.gap) = (0, 0.0);
     let Some(pair) = Pair::new(corners, view, pose, prediction) else { return false };
-    let best = pair.nearest_plane();
-    if best.separation > pair.limit() {
-        out.gap = max(best.separation - view.radius, 0.0);
+    let plane = pair.nearest_plane();
+    if plane.separation > pair.limit() {
+        out.gap = max(plane.separation - view.radius, 0.0);
         return true;
     }
-    let sides = pair.open_sides(&best);
+    let sides = pair.open_sides(&plane);
     if sides == 0 {
-        pair.build_plane(&best, out);
+        pair.build_plane(&plane, out);
         return true;
     }
-    let axis = pair.search(best, sides);
+    let axis = pair.search(plane, sides);
     let separation = axis.separation();
     // Sizes that are NaN give a NaN separation.
     if !(separation <= pair.limit()) {
@@ -409,8 +409,17 @@ impl<'a> Pair<'a> {
         let margins = F32x4::new([margin, margin, margin, 0.0]);
         let place = |v| (v, self.prism.heights(v) - margins);
         clip::incident_polygon(self.view, incident, place, &mut first);
-        let all = first.corners().iter().fold(F32x4::ZERO, |all, corner| all.max(corner.heights));
-        let outside = F32x4::bits(F32x4::ZERO.lt(all));
+        let start = (F32x4::ZERO, F32x4::splat(f32::INFINITY));
+        let (highest, lowest) = first
+            .corners()
+            .iter()
+            .fold(start, |(high, low), corner| (high.max(corner.heights), low.min(corner.heights)));
+        let outside = F32x4::bits(F32x4::ZERO.lt(highest));
+        if F32x4::bits(F32x4::ZERO.lt(lowest)) & SIDES != 0 {
+            // All of it is beyond one side.
+            (out.count, out.normal) = (0, self.face * plane.sign);
+            return false;
+        }
         let least = if outside & SIDES == 0 {
             self.fill(&first, plane, out)
         } else {
@@ -486,15 +495,22 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// One point between the closest features, where the axis understates the distance. Keeps present points if the distance is
-    /// no larger. `corners` are in the triangle's frame.
-    fn build_apart(&self, corners: [Vector; 3], axis: &Axis, out: &mut LocalManifold) {
-        let along = match *axis {
+    /// The unit normal from the triangle to the polyhedron, in the triangle's frame.
+    fn normal_of(&self, axis: &Axis) -> Vector {
+        match *axis {
             Axis::Plane(plane) => self.face * plane.sign,
             Axis::Face { face, .. } => -self.frame.direction(self.view.faces[face].normal),
             Axis::Edges { normal, .. } => self.frame.direction(normal),
+        }
+    }
+
+    /// One point between the closest features, where the axis understates the distance. Keeps present points if the distance is
+    /// no larger. `corners` are in the triangle's frame.
+    fn build_apart(&self, corners: [Vector; 3], axis: &Axis, out: &mut LocalManifold) {
+        let (start, limit) = (self.normal_of(axis), self.limit());
+        let Some(closest) = gjk::closest_within(&corners, self.view, &self.frame, start, limit) else {
+            return;
         };
-        let Some(closest) = gjk::closest_along(&corners, self.view, &self.frame, along) else { return };
         closest.fill_apart([0.0, self.view.radius], axis.separation(), self.prediction, out);
         if out.count == 0 {
             out.gap = max(closest.distance - self.view.radius, 0.0);
