@@ -31,6 +31,7 @@ struct Pair<'a> {
     /// Transforms the polyhedron to the frame of the triangle.
     frame: MatrixPose,
     prediction: f32,
+    /// The extents of both.
     smaller: f32,
     larger: f32,
 }
@@ -63,23 +64,15 @@ struct Plane {
     separation: f32,
 }
 
-/// A separating axis that is none of the triangle's normal.
+/// A feature that separates the pair.
 #[derive(Clone, Copy)]
 enum Axis {
+    /// The triangle's face.
     Plane(Plane),
     /// A face of the polyhedron, and the corner of the triangle that is lowest over it.
-    Face {
-        face: usize,
-        corner: usize,
-        separation: f32,
-    },
+    Face { face: usize, corner: usize, separation: f32 },
     /// A side of the triangle and an edge of the polyhedron, with the unit normal from the triangle.
-    Edges {
-        side: usize,
-        edge: usize,
-        normal: Vector,
-        separation: f32,
-    },
+    Edges { side: usize, edge: usize, normal: Vector, separation: f32 },
 }
 
 impl Axis {
@@ -292,7 +285,8 @@ impl<'a> Pair<'a> {
         (Axis::Face { face, corner, separation }, corner)
     }
 
-    /// The side of the triangle, out of `sides`, and the edge of the polyhedron with the largest separation, if that is larger than `known`.
+    /// The side of the triangle, out of `sides`, and the edge of the polyhedron with the largest separation, if that is larger
+    /// than `known`.
     /// `corner` is the triangle's, deepest in the polyhedron. See [`sat`](super::sat); the arc of a side goes from the face's
     /// normal to its reverse.
     fn best_edges(&self, sides: u32, corner: Vector, known: f32) -> Option<Axis> {
