@@ -219,7 +219,8 @@ fn check_pairs_of(kind: usize) {
         if KINDS[other] == KINDS[kind] && KINDS[kind] == "half-space" {
             continue;
         }
-        let mut dice = Dice(seed.wrapping_mul(0xA076_1D64_78BD_642F) ^ ((kind as u64) << 32 | other as u64));
+        let mut dice =
+            Dice::new(seed.wrapping_mul(0xA076_1D64_78BD_642F) ^ ((kind as u64) << 32 | other as u64));
         let (mut count, mut first) = (0u64, None);
         let mut shapes = [shape(kind, &mut dice), shape(other, &mut dice)];
         for i in 0..poses {
