@@ -3,10 +3,10 @@
 //! A facet alone ends at its borders, the surface does not. So a normal that leans over a border towards the neighbour is
 //! replaced by the facet's own: there the neighbour is nearer (convex edges keep the normals between both facets).
 
-use super::dim::{Border, borders, collide_face, face_normal, few_points};
+use super::dim::{Border, Convex, borders, face_normal, few_points, with_convex};
 use super::screen::{Gaps, LANES, Screen};
 use super::{FeatureCache, LocalManifold, LocalPoint, collide};
-use crate::math::{Lane, Pose, Vector, max, min};
+use crate::math::{F32x4, Lane, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Part, Shape, Surface};
 
 /// Manifolds with normals closer than this are merged: cos 2°. More merges slopes; less solves a plane several times.
@@ -103,7 +103,7 @@ impl Look<'_> {
 #[derive(Clone, Copy)]
 struct Pass<'a> {
     composite: &'a Composite<Shape>,
-    other: &'a Shape,
+    other: &'a Convex<'a>,
     /// The other shape in the composite's frame.
     pose: &'a Pose,
     /// How far to look; the motion is that of the other shape.
@@ -162,16 +162,17 @@ fn collide_parts(
     }
     match (a, b) {
         (Shape::Composite(a), Shape::Composite(b)) => collide_both([a, b], pose_b_in_a, look, alone, buffers),
-        (Shape::Composite(composite), other) => {
+        (Shape::Composite(composite), other) => with_other(composite, other, |other| {
             let pass = Pass { composite, other, pose: pose_b_in_a, look, other_group: 0, name: 0, alone };
             pass.collide(buffers)
-        }
+        }),
         (other, Shape::Composite(composite)) => {
             let pose = pose_b_in_a.inverse();
             let motion = pose_b_in_a.rotation.inverse_rotate(-look.motion);
             let look = Look { motion, groups: [look.groups[1], look.groups[0]], ..look };
-            let gap =
-                Pass { composite, other, pose: &pose, look, other_group: 0, name: 0, alone }.collide(buffers);
+            let gap = with_other(composite, other, |other| {
+                Pass { composite, other, pose: &pose, look, other_group: 0, name: 0, alone }.collide(buffers)
+            });
             buffers.found.iter_mut().for_each(|m| *m = m.flipped(&pose));
             gap
         }
@@ -179,6 +180,14 @@ fn collide_parts(
             debug_assert!(false, "one of the shapes is composite");
             0.0
         }
+    }
+}
+
+/// Calls `f` with a shape that is to be collided with the parts of a composite.
+fn with_other<R>(composite: &Composite<Shape>, other: &Shape, f: impl FnOnce(&Convex) -> R) -> R {
+    match composite.surface() {
+        Some(_) => with_convex(other, f),
+        None => f(&Convex::of(other)),
     }
 }
 
@@ -200,7 +209,9 @@ fn collide_both(
     parts.iter().fold(beyond, |gap, part| {
         let pass = |other: &Shape, pose: &Pose, buffers: &mut CompositeBuffers| {
             let other_group = look.group(1, *part);
-            Pass { composite: a, other, pose, look, other_group, name: part + 1, alone }.collide(buffers)
+            with_other(a, other, |other| {
+                Pass { composite: a, other, pose, look, other_group, name: part + 1, alone }.collide(buffers)
+            })
         };
         let here = match b.part(*part) {
             Part::Facet(facet) => pass(&Shape::from(facet), pose, buffers),
@@ -214,7 +225,7 @@ impl Pass<'_> {
     /// Adds the manifolds of all parts to `buffers.found`, in the composite's frame. Returns a lower bound of the distance to
     /// those without.
     fn collide(&self, buffers: &mut CompositeBuffers) -> f32 {
-        let around = self.other.local_box(self.pose);
+        let around = self.other.shape.local_box(self.pose);
         let mut parts = core::mem::take(&mut buffers.parts);
         parts.clear();
         let near = around.swept(self.look.motion).grown(self.look.prediction);
@@ -223,12 +234,16 @@ impl Pass<'_> {
         let start = buffers.found.len();
         match self.composite.surface() {
             Some(surface) if !parts.is_empty() => {
-                let screen = Screen::new(self.other, self.pose, &around, self.look.motion);
+                let screen = Screen::new(self.other.shape, self.pose, &around, self.look.motion);
                 for few in parts.chunks(LANES) {
-                    let Gaps { now, ever } = screen.gaps(surface, few);
-                    for (lane, part) in few.iter().enumerate() {
-                        let screened = Some([now.get(lane), ever.get(lane)]);
-                        gap = min(gap, self.add_part(*part, screened, buffers));
+                    let gaps = screen.gaps(surface, few);
+                    let (mut near, least) = self.split(&gaps, few.len());
+                    gap = min(gap, least);
+                    while near != 0 {
+                        let lane = near.trailing_zeros() as usize;
+                        near &= near - 1;
+                        let screened = Some([gaps.now.get(lane), gaps.ever.get(lane)]);
+                        gap = min(gap, self.add_part(few[lane], screened, buffers));
                     }
                 }
             }
@@ -240,10 +255,31 @@ impl Pass<'_> {
         }
         buffers.parts = parts;
         if buffers.found.len() == start && !self.alone {
+            // Who only asks whether shapes touch does not need to know how far others are.
+            if self.look.prediction <= 0.0 {
+                return 0.0;
+            }
             return self.composite.tree().gap_beyond(&near, &around, gap);
         }
         self.drop_doubtful(start, buffers);
         gap
+    }
+
+    /// The first `count` of four facets that may be near or may be met, as bits, and the least gap of the others.
+    #[inline(always)]
+    fn split(&self, gaps: &Gaps, count: usize) -> (u32, f32) {
+        let Look { prediction, motion, .. } = self.look;
+        let far = F32x4::splat(prediction).lt(gaps.now);
+        let far = if self.alone {
+            F32x4::and(far, F32x4::splat(prediction).lt(gaps.ever))
+        } else if motion != Vector::ZERO {
+            F32x4::and(far, F32x4::splat(MET * prediction).lt(gaps.ever))
+        } else {
+            far
+        };
+        let least = F32x4::select(far, gaps.now, F32x4::splat(f32::INFINITY));
+        let least = min(min(least.get(0), least.get(1)), min(least.get(2), least.get(3)));
+        (!F32x4::bits(far) & 0xf >> (LANES - count), least)
     }
 
     /// Drops doubtful contacts from `buffers.found[start..]` that others make needless.
@@ -293,9 +329,6 @@ impl Pass<'_> {
         let mut gap = f32::INFINITY;
         let mut doubt = None;
         if self.alone {
-            if ever > prediction {
-                return now;
-            }
             self.collide_alone(part, prediction + motion.length(), &mut local);
         } else if now > prediction {
             local.gap = now;
@@ -329,16 +362,17 @@ impl Pass<'_> {
 
     /// Fills `local` with the contact of one part as if there were no other.
     fn collide_alone(&self, part: u32, prediction: f32, local: &mut LocalManifold) {
-        let mut none = FeatureCache::NONE;
-        match self.composite.part(part) {
-            Part::Facet(facet) => {
-                collide(&Shape::from(facet), self.other, self.pose, prediction, &mut none, local);
+        match (self.composite.surface(), self.composite.solids().get(part as usize)) {
+            (Some(surface), _) => {
+                self.other.collide_facet(surface.corners(part), self.pose, prediction, local);
             }
-            Part::Solid(at, solid) => {
-                collide(solid, self.other, &at.inverse().then(self.pose), prediction, &mut none, local);
+            (None, Some((at, solid))) => {
+                let pose = at.inverse().then(self.pose);
+                collide(solid, self.other.shape, &pose, prediction, &mut FeatureCache::NONE.clone(), local);
                 local.normal = at.rotation.rotate(local.normal);
                 local.points[..local.count].iter_mut().for_each(|p| p.point = at.transform(p.point));
             }
+            (None, None) => local.count = 0,
         }
     }
 
@@ -382,7 +416,7 @@ impl Pass<'_> {
     /// leaning side of a cone that stands on the face it points into the face.
     fn toward_other(&self, corner: Vector, face: Vector, normal: Vector) -> Vector {
         let height = |direction: Vector| {
-            let lowest = self.other.support(self.pose.rotation.inverse_rotate(-direction))?;
+            let lowest = self.other.shape.support(self.pose.rotation.inverse_rotate(-direction))?;
             Some((self.pose.transform(lowest) - corner).dot(direction))
         };
         // The lowest height of the shape over the face, and over its back: negative where it reaches through.
@@ -411,6 +445,10 @@ impl Pass<'_> {
     ) -> Option<Doubt> {
         let corners = surface.corners(facet);
         let face = face_normal(corners)?;
+        let across = local.normal - face * local.normal.dot(face);
+        if across.length_squared() < LEAN * LEAN {
+            return None;
+        }
         let borders = borders(corners, face);
         let (mut leans, mut is_free) = (false, true);
         for (border, neighbor) in borders.iter().zip(surface.neighbors(facet)) {
@@ -432,7 +470,7 @@ impl Pass<'_> {
         }
         let (found, nearest) = (local.normal, local.lower_bound());
         let own = self.toward_other(corners[0], face, found);
-        collide_face(corners, own, self.other, self.pose, prediction, local);
+        self.other.collide_face(corners, own, self.pose, prediction, local);
         let is_doubtful = own.dot(found) < TURNED || local.lower_bound() < nearest - DEEPER * prediction;
         is_doubtful.then_some(Doubt { normal: found, nearest, share: 0.0, is_needless: false })
     }

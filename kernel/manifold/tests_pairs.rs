@@ -27,6 +27,10 @@ const NEAR: f32 = 0.02;
 pub(super) struct Dice(u64);
 
 impl Dice {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -215,7 +219,8 @@ fn check_pairs_of(kind: usize) {
         if KINDS[other] == KINDS[kind] && KINDS[kind] == "half-space" {
             continue;
         }
-        let mut dice = Dice(seed.wrapping_mul(0xA076_1D64_78BD_642F) ^ ((kind as u64) << 32 | other as u64));
+        let mut dice =
+            Dice::new(seed.wrapping_mul(0xA076_1D64_78BD_642F) ^ ((kind as u64) << 32 | other as u64));
         let (mut count, mut first) = (0u64, None);
         let mut shapes = [shape(kind, &mut dice), shape(other, &mut dice)];
         for i in 0..poses {

@@ -83,14 +83,16 @@ impl PartTree {
 
     /// A lower bound of the distance of `around` to parts whose leaves' boxes do not touch `near`, or `limit` if that is less.
     pub fn gap_beyond(&self, near: &Aabb, around: &Aabb, limit: f32) -> f32 {
-        let least = core::cell::Cell::new(limit);
-        let is_nearer = |b: &Aabb| b.gap(around) < least.get();
-        self.walk_nodes(is_nearer, |b, _| {
-            if !b.overlaps(near) {
-                least.set(min(least.get(), b.gap(around)));
-            }
-        });
-        least.get()
+        let mut least = limit;
+        self.visit_leaves(
+            limit,
+            |b| b.gap(around),
+            |leaf, _, limit| {
+                least = if leaf.overlaps(near) { limit } else { min(limit, leaf.gap(around)) };
+                least
+            },
+        );
+        least
     }
 
     /// Visits the parts in leaves whose boxes a ray enters before a limit. `hit` gets a part and the present limit, and returns
@@ -112,7 +114,26 @@ impl PartTree {
     /// Visits the parts of leaves by a distance of their boxes, nearer branches first, up to a limit. `entry` gives the distance
     /// of a box, infinity to leave it out. `hit` gets a part and the present limit, and returns the new one; the walk ends
     /// when it is negative.
-    pub fn visit(&self, mut limit: f32, entry: impl Fn(&Aabb) -> f32, mut hit: impl FnMut(u32, f32) -> f32) {
+    pub fn visit(&self, limit: f32, entry: impl Fn(&Aabb) -> f32, mut hit: impl FnMut(u32, f32) -> f32) {
+        self.visit_leaves(limit, entry, |_, parts, mut limit| {
+            for part in parts {
+                limit = hit(*part, limit);
+                if limit < 0.0 {
+                    break;
+                }
+            }
+            limit
+        });
+    }
+
+    /// The same with the box of each leaf and its parts.
+    #[inline(always)]
+    fn visit_leaves(
+        &self,
+        mut limit: f32,
+        entry: impl Fn(&Aabb) -> f32,
+        mut hit: impl FnMut(&Aabb, &[u32], f32) -> f32,
+    ) {
         let mut stack = [(0_u32, 0.0_f32); STACK];
         let mut len = 0;
         let Some(root) = self.nodes.first() else { return };
@@ -131,11 +152,10 @@ impl PartTree {
                     len += 1;
                     next = Some(near);
                 } else {
-                    for part in &self.order[node.start as usize..(node.start + node.count) as usize] {
-                        limit = hit(*part, limit);
-                        if limit < 0.0 {
-                            return;
-                        }
+                    let parts = &self.order[node.start as usize..(node.start + node.count) as usize];
+                    limit = hit(&node.aabb, parts, limit);
+                    if limit < 0.0 {
+                        return;
                     }
                 }
             }
@@ -149,12 +169,6 @@ impl PartTree {
     /// Depth first through all boxes that pass the test.
     #[inline(always)]
     fn walk(&self, test: impl Fn(&Aabb) -> bool, mut leaf: impl FnMut(&[u32])) {
-        self.walk_nodes(test, |_, parts| leaf(parts));
-    }
-
-    /// The same; `leaf` gets the box of the leaf as well.
-    #[inline(always)]
-    fn walk_nodes(&self, test: impl Fn(&Aabb) -> bool, mut leaf: impl FnMut(&Aabb, &[u32])) {
         let mut stack = [0_u32; STACK];
         let mut len = 0;
         let mut next = if self.nodes.is_empty() { None } else { Some(0) };
@@ -163,7 +177,7 @@ impl PartTree {
             next = None;
             if test(&node.aabb) {
                 if node.count > 0 {
-                    leaf(&node.aabb, &self.order[node.start as usize..(node.start + node.count) as usize]);
+                    leaf(&self.order[node.start as usize..(node.start + node.count) as usize]);
                 } else {
                     stack[len] = node.start;
                     len += 1;

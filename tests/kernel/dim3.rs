@@ -8,6 +8,8 @@ mod spin;
 pub mod floors;
 #[path = "golden3.rs"]
 pub mod golden_dim;
+#[path = "loads3.rs"]
+mod loads;
 
 use super::extreme::Dice;
 pub use floors::{more_riders, terrain, tiles};

@@ -12,7 +12,7 @@ pub const GOLDEN: [(&str, u64, u64); 16] = [
     ("heap", 0x0a6ce92c0e1a1910, 0xe963815491902dc6),
     ("terrain", 0x570f28c28ecd2a31, 0x58b8555945e24b95),
     ("slopes", 0x9f219452b5f952bc, 0x893810da8f7d8547),
-    ("composites", 0x55ac211fcb482fa3, 0x855c9736212816f3),
+    ("composites", 0x4a77d12fa287a36b, 0x2938294e8349bff0),
     ("bounces", 0xd0522644c75960be, 0x4c907feeef221aee),
     ("crowd", 0x18552c6233050780, 0xbd6e4b0a69117277),
     ("sleepers", 0x134471faca94c0a7, 0x0f4342d68ab5ff95),

@@ -47,9 +47,44 @@ pub(in crate::manifold) fn borders([a, b]: [Vector; 2], normal: Vector) -> [Bord
     [end(a, -axis), end(b, axis)]
 }
 
-/// Fills `out` with the contact of a segment's side alone, where the shape is over it. `normal` is the segment's, towards the
-/// shape.
-pub(in crate::manifold) fn collide_face(
+/// A convex shape that facets are collided with one after the other.
+pub(in crate::manifold) struct Convex<'a> {
+    pub shape: &'a Shape,
+}
+
+/// Calls `f` with a shape that is to be collided with facets.
+pub(in crate::manifold) fn with_convex<R>(shape: &Shape, f: impl FnOnce(&Convex) -> R) -> R {
+    f(&Convex::of(shape))
+}
+
+impl<'a> Convex<'a> {
+    /// The shape.
+    pub fn of(shape: &'a Shape) -> Self {
+        Self { shape }
+    }
+
+    /// Fills `out` with the contact of a segment as if there were no other; see [`collide`].
+    pub fn collide_facet(&self, [a, b]: [Vector; 2], pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+        let facet = Shape::Segment(Segment { a, b });
+        collide(&facet, self.shape, pose, prediction, &mut FeatureCache::NONE.clone(), out);
+    }
+
+    /// Fills `out` with the contact of a segment's side alone, where the shape is over it. `normal` is the segment's, towards
+    /// the shape.
+    pub fn collide_face(
+        &self,
+        corners: [Vector; 2],
+        normal: Vector,
+        pose: &Pose,
+        prediction: f32,
+        out: &mut LocalManifold,
+    ) {
+        collide_side(corners, normal, self.shape, pose, prediction, out);
+    }
+}
+
+/// See [`Convex::collide_face`].
+fn collide_side(
     corners: [Vector; 2],
     normal: Vector,
     other: &Shape,

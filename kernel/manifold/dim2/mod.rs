@@ -24,7 +24,7 @@ pub(super) mod tests_pairs;
 use super::{FeatureCache, LocalManifold};
 use crate::math::{Angular, Pose, Rot};
 use crate::shape::Shape;
-pub(super) use facet::{Border, borders, collide_face, face_normal, facing, few_points};
+pub(super) use facet::{Border, Convex, borders, face_normal, facing, few_points, with_convex};
 use polygonal::{Buffer, Polygonal};
 
 /// Centres farther apart than this, in metres, have no contact: their squares would overflow.

@@ -1,54 +1,84 @@
 //! The part of an incident face that lies over a reference face (Sutherland and Hodgman, "Reentrant
 //! Polygon Clipping", 1974), with a feature id for each corner.
 
+use super::reduce::{Candidate, Candidates, reduce};
 use super::view::{MatrixPose, View};
-use crate::math::Vector;
+use crate::manifold::LocalManifold;
+use crate::math::{F32x4, Lane, Vector, min};
 
-/// The most corners of a clipped polygon. A cut adds at most one per side.
-pub(super) const MAX_CORNERS: usize = 64;
-/// The most corners of nearly all polygons; smaller buffers take less time to clear.
-pub(super) const FEW_CORNERS: usize = 16;
+/// Clipped polygons have less corners than this. A cut adds at most one per side.
+pub(super) const MAX_CORNERS: usize = 65;
+/// The same for nearly all polygons; smaller buffers take less time to clear.
+pub(super) const FEW_CORNERS: usize = 17;
+/// The same where a triangle clips a face with up to four corners.
+pub(super) const LEAST_CORNERS: usize = 8;
 /// Incident faces with more vertices are thinned to every second, fourth, … vertex.
 const MAX_INCIDENT: usize = 32;
 /// Side planes are this share of the smaller shape's extent outside of the face, so that two equal faces on each other keep
 /// their own corners in spite of rounding.
-const MARGIN: f32 = 1.0e-3;
+pub(super) const MARGIN: f32 = 1.0e-3;
 /// Tags an edge that lies on a side of the reference face.
 const ON_SIDE: u32 = 0x200;
 
+/// What corners have beside their place, in between which it is interpolated.
+pub(super) trait Carried: Copy + Default {
+    /// The value at a share of the way to another.
+    fn between(self, other: Self, share: f32) -> Self;
+}
+
+impl Carried for () {
+    #[inline(always)]
+    fn between(self, _: Self, _: f32) {}
+}
+
+impl Carried for F32x4 {
+    #[inline(always)]
+    fn between(self, other: Self, share: f32) -> Self {
+        self + (other - self) * Self::splat(share)
+    }
+}
+
 /// A corner of the clipped polygon, in the frame of the reference polyhedron.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Corner {
+pub(super) struct Corner<H = ()> {
     pub point: Vector,
     /// Ten bits for the edge, ten for the side that cut it (plus 1), or for the vertex and 0.
     pub name: u32,
+    pub heights: H,
     /// The edge from here to the next corner.
     edge: u32,
 }
 
-/// A clipped polygon of at most `N` corners on the stack.
-pub(super) struct Polygon<const N: usize> {
-    corners: [Corner; N],
+/// A clipped polygon of less than `N` corners on the stack.
+pub(super) struct Polygon<const N: usize, H = ()> {
+    /// The last receives corners that are not wanted, and those beyond the capacity.
+    corners: [Corner<H>; N],
     count: usize,
-    /// Receives corners beyond the capacity.
-    beyond: Corner,
 }
 
-impl<const N: usize> Polygon<N> {
+impl<const N: usize, H: Carried> Polygon<N, H> {
+    #[inline(always)]
     pub fn new() -> Self {
-        Self { corners: [Corner::default(); N], count: 0, beyond: Corner::default() }
+        Self { corners: [Corner::default(); N], count: 0 }
     }
 
-    pub fn corners(&self) -> &[Corner] {
+    #[inline(always)]
+    pub fn corners(&self) -> &[Corner<H>] {
         &self.corners[..self.count]
     }
 
-    /// Writes a corner and counts it if `wanted`, without a branch. Corners beyond `N` are dropped.
+    /// Adds corner `number` of an incident face, and the edge that begins there.
     #[inline(always)]
-    fn push_if(&mut self, wanted: bool, corner: Corner) {
-        let has_room = self.count < N;
-        *self.corners.get_mut(self.count).unwrap_or(&mut self.beyond) = corner;
-        self.count += usize::from(wanted & has_room);
+    pub fn push(&mut self, number: u32, point: Vector, heights: H) {
+        let number = number & 0x1ff;
+        self.push_if(true, Corner { point, name: number << 10, heights, edge: number });
+    }
+
+    /// Writes a corner and counts it if `wanted`, without a branch.
+    #[inline(always)]
+    fn push_if(&mut self, wanted: bool, corner: Corner<H>) {
+        self.corners[self.count] = corner;
+        self.count += usize::from(wanted & (self.count < N - 1));
     }
 }
 
@@ -82,42 +112,41 @@ pub(super) fn incident_face(incident: &View, normal: Vector, deepest: usize) -> 
     Some(face as usize)
 }
 
-/// A face of `incident`, or its edge or vertex if it has no faces.
-pub(super) fn incident_polygon<const N: usize>(
+/// A face of `incident`, or its edge or vertex if it has no faces. `place` gives where each vertex is.
+#[inline(always)]
+pub(super) fn incident_polygon<const N: usize, H: Carried>(
     incident: &View,
     face: Option<usize>,
-    frame: &MatrixPose,
-    polygon: &mut Polygon<N>,
+    place: impl Fn(Vector) -> (Vector, H),
+    polygon: &mut Polygon<N, H>,
 ) {
     let Some(face) = face else {
         for (i, v) in incident.vertices.iter().enumerate() {
-            polygon.push_if(true, Corner { point: frame.point(*v), name: (i as u32) << 10, edge: 0 });
+            let (point, heights) = place(*v);
+            polygon.push_if(true, Corner { point, name: (i as u32) << 10, heights, edge: 0 });
         }
         return;
     };
     let outline = incident.outline(face);
     let stride = outline.len().div_ceil(MAX_INCIDENT).next_power_of_two();
     for i in outline.iter().step_by(stride) {
-        let number = i & 0x1ff;
-        let point = frame.point(incident.vertices[*i as usize]);
-        polygon.push_if(true, Corner { point, name: number << 10, edge: number });
+        let (point, heights) = place(incident.vertices[*i as usize]);
+        polygon.push(*i, point, heights);
     }
 }
 
-/// Cuts a polygon by the side planes of a face of `reference`; `extent` is that of the smaller shape. Alternates between two
-/// buffers and returns the one with the result.
-pub(super) fn clip<'a, const N: usize>(
-    reference: &View,
-    face: usize,
-    [mut polygon, mut spare]: [&'a mut Polygon<N>; 2],
+/// Cuts a polygon by the side planes of a face with a normal and an outline; `extent` is that of the smaller shape. Alternates
+/// between two buffers and returns the one with the result.
+#[inline(always)]
+pub(super) fn clip<const N: usize>(
+    normal: Vector,
+    outline: impl DoubleEndedIterator<Item = Vector> + Clone,
+    [mut polygon, mut spare]: [&mut Polygon<N>; 2],
     extent: f32,
-) -> &'a Polygon<N> {
-    let normal = reference.faces[face].normal;
-    let outline = reference.outline(face);
-    let mut tail = reference.vertices[outline[outline.len() - 1] as usize];
+) -> &Polygon<N> {
+    let Some(mut tail) = outline.clone().next_back() else { return polygon };
     let mut heights = [0.0; N];
-    for (side, i) in outline.iter().enumerate() {
-        let head = reference.vertices[*i as usize];
+    for (side, head) in outline.enumerate() {
         let outward = (head - tail).cross(normal);
         let margin = MARGIN * extent * outward.length();
         let offset = outward.dot(tail) + margin;
@@ -128,7 +157,7 @@ pub(super) fn clip<'a, const N: usize>(
             any_outside |= !(*height <= 0.0);
         }
         if any_outside {
-            cut(polygon, &heights, side as u32, spare);
+            cut(polygon, |k, _| heights[k], side as u32, spare);
             core::mem::swap(&mut polygon, &mut spare);
             if polygon.count == 0 {
                 break;
@@ -139,17 +168,97 @@ pub(super) fn clip<'a, const N: usize>(
     polygon
 }
 
-/// The part of a convex polygon behind a plane, given the heights of its corners over it.
-fn cut<const N: usize>(polygon: &Polygon<N>, heights: &[f32; N], side: u32, out: &mut Polygon<N>) {
+/// A reference face, and what the points of its contact are made from.
+pub(super) struct Reference<'a> {
+    pub normal: Vector,
+    pub offset: f32,
+    /// The radii around the reference polyhedron and the incident one.
+    pub radii: [f32; 2],
+    pub prediction: f32,
+    /// Transforms the face's frame to that of A, if it is another.
+    pub to_a: Option<&'a MatrixPose>,
+    /// The bits of the face in its points' features.
+    pub feature: u32,
+}
+
+impl Reference<'_> {
+    /// The bits of a face of A or B in features.
+    pub fn feature_of(of_b: bool, face: usize) -> u32 {
+        u32::from(of_b) << 30 | (face as u32 & 0x3ff) << 20
+    }
+
+    /// The point between the surfaces for a corner at height `s` over the plane: at (s + r_ref − r_inc) / 2. In A's frame.
+    #[inline(always)]
+    fn middle(&self, corner: Vector, s: f32) -> Vector {
+        let [of_reference, of_incident] = self.radii;
+        let point = corner - self.normal * (0.5 * (s - of_reference + of_incident));
+        self.to_a.map_or(point, |frame| frame.point(point))
+    }
+
+    /// The height of a point over the plane.
+    #[inline(always)]
+    pub fn height(&self, point: Vector) -> f32 {
+        self.normal.dot(point) - self.offset
+    }
+
+    /// Fills a manifold, whose normal is set, with the corners of a clipped polygon. Returns the least height of the corners.
+    #[inline(always)]
+    pub fn fill<const N: usize, H: Carried>(
+        &self,
+        polygon: &Polygon<N, H>,
+        height: impl Fn(&Corner<H>) -> f32,
+        out: &mut LocalManifold,
+    ) -> f32 {
+        let radius = self.radii[0] + self.radii[1];
+        let mut candidates = Candidates::<N>::new();
+        let mut least = f32::INFINITY;
+        for corner in polygon.corners() {
+            let s = height(corner);
+            least = min(s, least);
+            if s - radius <= self.prediction {
+                candidates.push(Candidate {
+                    point: self.middle(corner.point, s),
+                    separation: s - radius,
+                    feature: self.feature | corner.name,
+                });
+            }
+        }
+        out.count = 0;
+        let list = candidates.as_slice();
+        let (kept, count) = reduce(list, out.normal);
+        for k in &kept[..count] {
+            out.push(list[*k].point, list[*k].separation, list[*k].feature);
+        }
+        least
+    }
+
+    /// Adds the deepest vertex alone, where the shapes overlap beside the face.
+    pub fn push_deepest(&self, corner: Vector, separation: f32, out: &mut LocalManifold) {
+        let radius = self.radii[0] + self.radii[1];
+        out.push(self.middle(corner, separation), separation - radius, self.feature | 0xf_ffff);
+    }
+}
+
+/// The part of a convex polygon behind a plane, given the height of each corner over it.
+#[inline(always)]
+pub(super) fn cut<const N: usize, H: Carried>(
+    polygon: &Polygon<N, H>,
+    height: impl Fn(usize, &Corner<H>) -> f32,
+    side: u32,
+    out: &mut Polygon<N, H>,
+) {
     out.count = 0;
     let corners = polygon.corners();
+    let Some(first) = corners.first() else { return };
     // The outline of a segment is walked in one direction only.
     let walk = if corners.len() == 2 { 1 } else { corners.len() };
     let side_name = (side + 1) & 0x3ff;
-    for k in 0..corners.len() {
+    let mut next = height(0, first);
+    for (k, c) in corners.iter().enumerate() {
         let after = if k + 1 < corners.len() { k + 1 } else { 0 };
-        let (c, d) = (&corners[k], &corners[after]);
-        let (this, next) = (heights[k], heights[after]);
+        let d = &corners[after];
+        let this = next;
+        next = height(after, d);
         let inside = this <= 0.0;
         out.push_if(inside, *c);
         let t = this / (this - next);
@@ -157,6 +266,7 @@ fn cut<const N: usize>(polygon: &Polygon<N>, heights: &[f32; N], side: u32, out:
         // Where the polygon leaves, its next edge runs along the side.
         let edge = if inside { ON_SIDE | side & 0x1ff } else { c.edge };
         let crosses = k < walk && inside != (next <= 0.0);
-        out.push_if(crosses, Corner { point, name: c.edge << 10 | side_name, edge });
+        let heights = c.heights.between(d.heights, t);
+        out.push_if(crosses, Corner { point, name: c.edge << 10 | side_name, heights, edge });
     }
 }

@@ -4,13 +4,12 @@
 //! Faces are preferred to edges unless edges are clearly better, so that the choice of points is the same from step to step.
 
 use super::across;
-use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, clip};
+use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference, clip};
 use super::gjk;
-use super::reduce::{Candidate, Candidates, reduce};
 use super::sat::{self, EdgeAxis, FaceAxis, Known};
 use super::view::{MatrixPose, View, extents};
 use crate::manifold::{FeatureCache, LocalManifold};
-use crate::math::{Pose, Vector, clamp, max, min};
+use crate::math::{Pose, Vector, clamp, max};
 
 /// The number of faces of a triangle, which no solid has.
 const TRIANGLE_FACES: usize = 2;
@@ -119,25 +118,6 @@ pub(super) fn collide_apart(
     Pair::new(a, b, pose, prediction).build_apart(separation, out);
 }
 
-/// The contact of one face of A, that with about the given normal, whatever the best axis is.
-pub(super) fn collide_face(
-    a: &View,
-    normal: Vector,
-    b: &View,
-    pose: &Pose,
-    prediction: f32,
-    out: &mut LocalManifold,
-) {
-    let Some(face) = a.faces.iter().position(|face| face.normal.dot(normal) > 0.5) else { return };
-    let pair = Pair::new(a, b, pose, prediction);
-    let axis = sat::face_separation(a, face, b, &pair.b_in_a);
-    if axis.separation <= pair.limit() {
-        pair.build_face(&axis, false, out);
-    } else {
-        out.gap = axis.separation - pair.radius;
-    }
-}
-
 /// The cache for the next step. Features with an index above a byte are not cached.
 fn remember(axis: Axis) -> FeatureCache {
     let separation = axis.separation();
@@ -240,7 +220,7 @@ impl<'a> Pair<'a> {
             face: clip::incident_face(incident, local, axis.lowest),
             of_b,
         };
-        if clip::most_corners(reference, axis.face, incident, clipping.face) <= FEW_CORNERS {
+        if clip::most_corners(reference, axis.face, incident, clipping.face) < FEW_CORNERS {
             self.clip_face::<FEW_CORNERS>(axis, &clipping, out)
         } else {
             self.clip_face::<MAX_CORNERS>(axis, &clipping, out)
@@ -255,44 +235,30 @@ impl<'a> Pair<'a> {
         out: &mut LocalManifold,
     ) -> bool {
         let &Clipping { reference, incident, frame, face, of_b } = clipping;
-        let plane = &reference.faces[axis.face];
-        let (normal, separation) = (plane.normal, axis.separation);
+        let normal = reference.faces[axis.face].normal;
         let (mut polygon, mut spare) = (Polygon::<N>::new(), Polygon::<N>::new());
-        clip::incident_polygon(incident, face, frame, &mut polygon);
-        let polygon = clip(reference, axis.face, [&mut polygon, &mut spare], self.smaller);
-        let middle = |point: Vector, s: f32| self.middle(point, s, normal, of_b);
-        let base = u32::from(of_b) << 30 | (axis.face as u32 & 0x3ff) << 20;
-        let mut candidates = Candidates::<N>::new();
-        let mut least = f32::INFINITY;
-        for corner in polygon.corners() {
-            let s = normal.dot(corner.point) - plane.offset;
-            least = min(s, least);
-            if s - self.radius <= self.prediction {
-                let point = middle(corner.point, s);
-                candidates.push(Candidate {
-                    point,
-                    separation: s - self.radius,
-                    feature: base | corner.name,
-                });
-            }
-        }
-        out.count = 0;
+        clip::incident_polygon(incident, face, |v| (frame.point(v), ()), &mut polygon);
+        let outline = reference.outline(axis.face).iter().map(|i| reference.vertices[*i as usize]);
+        let polygon = clip(normal, outline, [&mut polygon, &mut spare], self.smaller);
         out.normal = if of_b { -self.b_in_a.direction(normal) } else { normal };
-        let list = candidates.as_slice();
-        let (kept, count) = reduce(list, out.normal);
-        for k in &kept[..count] {
-            out.push(list[*k].point, list[*k].separation, list[*k].feature);
-        }
-        least <= separation + EXACT * self.smaller
+        let reference = self.reference(axis, of_b);
+        let least = reference.fill(polygon, |corner| reference.height(corner.point), out);
+        least <= axis.separation + EXACT * self.smaller
     }
 
-    /// The point between the surfaces for a corner at height `s` over a plane of A, or of B, whose frame it is in: at
-    /// (s + r_ref − r_inc) / 2. In A's frame.
+    /// The face of an axis.
     #[inline(always)]
-    fn middle(&self, corner: Vector, s: f32, normal: Vector, of_b: bool) -> Vector {
+    fn reference(&self, axis: &FaceAxis, of_b: bool) -> Reference<'_> {
         let (reference, incident) = if of_b { (self.b, self.a) } else { (self.a, self.b) };
-        let point = corner - normal * (0.5 * (s - reference.radius + incident.radius));
-        if of_b { self.b_in_a.point(point) } else { point }
+        let plane = &reference.faces[axis.face];
+        Reference {
+            normal: plane.normal,
+            offset: plane.offset,
+            radii: [reference.radius, incident.radius],
+            prediction: self.prediction,
+            to_a: of_b.then_some(&self.b_in_a),
+            feature: Reference::feature_of(of_b, axis.face),
+        }
     }
 
     /// Adds the deepest vertex under a face alone, where the shapes overlap beside the face. Only for the best of all
@@ -303,12 +269,9 @@ impl<'a> Pair<'a> {
             Axis::FaceB(face) => (face, true),
             Axis::Edges(_) => return,
         };
-        let (reference, incident, frame) =
-            if of_b { (self.b, self.a, &self.a_in_b) } else { (self.a, self.b, &self.b_in_a) };
+        let (incident, frame) = if of_b { (self.a, &self.a_in_b) } else { (self.b, &self.b_in_a) };
         let corner = frame.point(incident.vertices[axis.lowest]);
-        let point = self.middle(corner, axis.separation, reference.faces[axis.face].normal, of_b);
-        let feature = u32::from(of_b) << 30 | (axis.face as u32 & 0x3ff) << 20 | 0xf_ffff;
-        out.push(point, axis.separation - self.radius, feature);
+        self.reference(&axis, of_b).push_deepest(corner, axis.separation, out);
     }
 
     fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {
@@ -353,37 +316,25 @@ impl<'a> Pair<'a> {
 
     /// Two cores without faces: a triangle without area is a segment or a point.
     fn build_faceless(&self, out: &mut LocalManifold) {
-        self.build_closest(f32::NEG_INFINITY, out);
-        if out.count == 0 && gjk::closest(self.a, self.b, &self.b_in_a).is_none() {
-            let point = self.a.center;
-            (out.normal, out.count) = (Vector::Y, 0);
-            out.push(point, -self.radius, 3 << 30);
+        out.count = 0;
+        match gjk::closest(self.a, self.b, &self.b_in_a) {
+            Some(closest) => closest.fill_apart(self.radii(), f32::NEG_INFINITY, self.prediction, out),
+            None => {
+                out.normal = Vector::Y;
+                out.push(self.a.center, -self.radius, 3 << 30);
+            }
         }
     }
 
     /// See [`collide_apart`].
     fn build_apart(&self, separation: f32, out: &mut LocalManifold) {
-        let is_farther = self.build_closest(separation, out);
-        // Beside the face, but no farther than its plane: a sliver, or rounding.
-        if out.count == 0 && !is_farther {
-            self.build_closest(f32::NEG_INFINITY, out);
+        if let Some(closest) = gjk::closest(self.a, self.b, &self.b_in_a) {
+            closest.fill_apart(self.radii(), separation, self.prediction, out);
         }
     }
 
-    /// One point between the closest vertices or edges, if they really are farther apart than `separation`. Returns
-    /// whether they are.
-    fn build_closest(&self, separation: f32, out: &mut LocalManifold) -> bool {
-        let Some(c) = gjk::closest(self.a, self.b, &self.b_in_a) else { return false };
-        if !(c.distance > separation) {
-            return false;
-        }
-        (out.count, out.normal) = (0, c.normal);
-        if c.distance - self.radius > self.prediction {
-            return true;
-        }
-        let point = (c.a + c.normal * self.a.radius + c.b - c.normal * self.b.radius) * 0.5;
-        out.push(point, c.distance - self.radius, 3 << 30 | c.feature);
-        true
+    fn radii(&self) -> [f32; 2] {
+        [self.a.radius, self.b.radius]
     }
 }
 

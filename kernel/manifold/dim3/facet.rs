@@ -1,13 +1,11 @@
 //! The triangles of a surface: their borders, and contacts with their face alone.
 
-use super::convex;
-use super::curved;
 use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce};
-use super::view::Small;
-use super::with_view;
-use crate::manifold::{LocalManifold, LocalPoint};
+use super::view::{Facing, Small, View};
+use super::{collide, curved, drop_unusable, is_near, triangle, with_view};
+use crate::manifold::{FeatureCache, LocalManifold, LocalPoint};
 use crate::math::{F32x4, Pose, Vector, max};
-use crate::shape::Shape;
+use crate::shape::{Shape, Triangle};
 
 /// A single point may lie outside of a face by this share of its height over the border.
 const BESIDE: f32 = 1.0e-3;
@@ -26,11 +24,7 @@ pub(in crate::manifold) struct Border {
 
 /// The unit normal of a triangle, counter-clockwise from outside; `None` if it has no area.
 pub(in crate::manifold) fn face_normal([a, b, c]: [Vector; 3]) -> Option<Vector> {
-    let (ab, ac) = (b - a, c - a);
-    let normal = ab.cross(ac);
-    let length = normal.length();
-    let size = max(ab.length_squared(), ac.length_squared());
-    (length > 1.0e-6 * size).then(|| normal * (1.0 / length))
+    Facing::of([b - a, c - b, a - c]).map(|facing| facing.normal)
 }
 
 /// Vectors across four triangles, of any length; 0 without area.
@@ -50,41 +44,69 @@ pub(in crate::manifold) fn borders(corners: [Vector; 3], normal: Vector) -> [Bor
     })
 }
 
-/// Fills `out` with the contact of a triangle's face alone, where the shape is over it. `normal` is the face's, towards the
-/// shape.
-pub(in crate::manifold) fn collide_face(
-    corners: [Vector; 3],
-    normal: Vector,
-    other: &Shape,
-    pose: &Pose,
-    prediction: f32,
-    out: &mut LocalManifold,
-) {
-    (out.count, out.gap) = (0, 0.0);
-    if let Shape::Curved(other) = other {
-        let small = Small::triangle(corners);
-        return curved::collide_face(&small.view(), normal, other, pose, prediction, out);
+/// A convex shape that facets are collided with one after the other.
+pub(in crate::manifold) struct Convex<'a> {
+    pub shape: &'a Shape,
+    /// The polyhedral core, but for balls, whose contacts have closed forms.
+    core: Option<&'a View<'a>>,
+}
+
+/// Calls `f` with a shape that is to be collided with facets.
+pub(in crate::manifold) fn with_convex<R>(shape: &Shape, f: impl FnOnce(&Convex) -> R) -> R {
+    match shape {
+        Shape::Ball(_) => f(&Convex::of(shape)),
+        _ => with_view(shape, |core| f(&Convex { shape, core })),
     }
-    let mut is_viewed = false;
-    if !matches!(other, Shape::Ball(_)) {
-        with_view(other, |view| {
-            is_viewed = true;
+}
+
+impl<'a> Convex<'a> {
+    /// A shape that is to be collided with few facets or none.
+    pub fn of(shape: &'a Shape) -> Self {
+        Self { shape, core: None }
+    }
+
+    /// Fills `out` with the contact of a triangle as if there were no other; see [`collide`](super::collide).
+    pub fn collide_facet(&self, corners: [Vector; 3], pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+        if let Some(core) = self.core
+            && is_near(pose)
+            && triangle::collide(corners, core, pose, prediction, out)
+        {
+            out.radii = [0.0, core.radius];
+            return drop_unusable(out);
+        }
+        let [a, b, c] = corners;
+        let facet = Shape::Triangle(Triangle { a, b, c });
+        collide(&facet, self.shape, pose, prediction, &mut FeatureCache::NONE.clone(), out);
+    }
+
+    /// Fills `out` with the contact of a triangle's face alone, where the shape is over it. `normal` is the face's, towards
+    /// the shape.
+    pub fn collide_face(
+        &self,
+        corners: [Vector; 3],
+        normal: Vector,
+        pose: &Pose,
+        prediction: f32,
+        out: &mut LocalManifold,
+    ) {
+        if let Some(core) = self.core {
+            return triangle::collide_face(corners, normal, core, pose, prediction, out);
+        }
+        (out.count, out.gap) = (0, 0.0);
+        if let Shape::Curved(other) = self.shape {
             let small = Small::triangle(corners);
-            convex::collide_face(&small.view(), normal, view, pose, prediction, out);
-        });
-    }
-    if is_viewed {
-        return;
-    }
-    let Some(lowest) = other.support(pose.rotation.inverse_rotate(-normal)) else { return };
-    let lowest = pose.transform(lowest);
-    let is_beside = |b: &Border| (lowest - b.corner).dot(b.outward) > BESIDE * b.depth;
-    let separation = (lowest - corners[0]).dot(normal);
-    if separation <= prediction && !borders_of(corners).is_some_and(|all| all.iter().any(is_beside)) {
-        out.normal = normal;
-        out.push(lowest - normal * (0.5 * separation), separation, 0);
-    } else {
-        out.gap = max(separation, 0.0);
+            return curved::collide_face(&small.view(), normal, other, pose, prediction, out);
+        }
+        let Some(lowest) = self.shape.support(pose.rotation.inverse_rotate(-normal)) else { return };
+        let lowest = pose.transform(lowest);
+        let is_beside = |b: &Border| (lowest - b.corner).dot(b.outward) > BESIDE * b.depth;
+        let separation = (lowest - corners[0]).dot(normal);
+        if separation <= prediction && !borders_of(corners).is_some_and(|all| all.iter().any(is_beside)) {
+            out.normal = normal;
+            out.push(lowest - normal * (0.5 * separation), separation, 0);
+        } else {
+            out.gap = max(separation, 0.0);
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 
 use super::view::{MatrixPose, View};
 use crate::distance::nearest_weights;
+use crate::manifold::LocalManifold;
 use crate::math::{Vector, max};
 use crate::shape::Curved;
 
@@ -62,6 +63,23 @@ pub(super) struct Closest {
     pub feature: u32,
 }
 
+impl Closest {
+    /// Fills `out` with one point between the closest points, where a contact has no point or separates by less than they do.
+    /// `radii` are those around the cores.
+    pub fn fill_apart(&self, radii: [f32; 2], separation: f32, prediction: f32, out: &mut LocalManifold) {
+        if !(self.distance > separation) && out.count > 0 {
+            return;
+        }
+        let [of_a, of_b] = radii;
+        (out.count, out.normal) = (0, self.normal);
+        let distance = self.distance - of_a - of_b;
+        if distance <= prediction {
+            let point = (self.a + self.normal * of_a + self.b - self.normal * of_b) * 0.5;
+            out.push(point, distance, 3 << 30 | self.feature);
+        }
+    }
+}
+
 /// A vertex of the Minkowski difference A − B.
 #[derive(Clone, Copy, Default)]
 struct Vertex {
@@ -85,6 +103,19 @@ pub(super) fn closest_along<A: Core, B: Core>(
     frame: &MatrixPose,
     start: Vector,
 ) -> Option<Closest> {
+    closest_within(a, b, frame, start, f32::INFINITY)
+}
+
+/// The same up to a limit: of cores that are farther apart the distance may be any between the limit and the true one, and
+/// the points are not the closest.
+pub(super) fn closest_within<A: Core, B: Core>(
+    a: &A,
+    b: &B,
+    frame: &MatrixPose,
+    start: Vector,
+    limit: f32,
+) -> Option<Closest> {
+    let limit = f64::from(limit);
     let vertex = |direction: Vector| {
         let (p, i) = a.farthest_point(direction);
         let (q, j) = b.farthest_point(-frame.direction_in(direction));
@@ -104,6 +135,10 @@ pub(super) fn closest_along<A: Core, B: Core>(
         }
         let new = vertex((nearest * (-1.0 / square.sqrt())).narrow());
         scale = if new.w.length_squared() > scale { new.w.length_squared() } else { scale };
+        let bound = nearest.dot(new.w) / square.sqrt();
+        if bound > limit {
+            return Some(Closest { distance: bound as f32, ..witness(&simplex[..count], nearest) });
+        }
         let known = simplex[..count].iter().any(|v| v.ids == new.ids && v.w == new.w);
         if known || square - nearest.dot(new.w) <= GAP * square {
             break;

@@ -22,13 +22,16 @@ mod sat;
 mod tests;
 #[cfg(test)]
 pub(super) mod tests_pairs;
+#[cfg(test)]
+mod tests_triangle;
+mod triangle;
 mod view;
 
 use super::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector};
 use crate::shape::{Capsule, Curved, Segment, Shape};
 pub use curved::lead_rims;
-pub(super) use facet::{Border, borders, collide_face, face_normal, facing, few_points};
+pub(super) use facet::{Border, Convex, borders, face_normal, facing, few_points, with_convex};
 use view::{Small, View};
 
 /// Centres farther apart than this, in metres, have no contact: their squares would overflow.
@@ -47,7 +50,7 @@ pub fn collide(
     out: &mut LocalManifold,
 ) {
     (out.count, out.gap) = (0, 0.0);
-    if !(pose_b_in_a.position.abs().max_element() < FARTHEST) || !pose_b_in_a.rotation.is_finite() {
+    if !is_near(pose_b_in_a) {
         return;
     }
     if let (Shape::Cuboid(a), Shape::Cuboid(b)) = (a, b) {
@@ -63,6 +66,11 @@ pub fn collide(
         out.radii = [a.radius(), b.radius()];
     }
     drop_unusable(out);
+}
+
+/// Whether squares of distances between two shapes do not overflow.
+fn is_near(pose: &Pose) -> bool {
+    pose.position.abs().max_element() < FARTHEST && pose.rotation.is_finite()
 }
 
 /// The order of the shapes in a pair for the functions below.
@@ -155,7 +163,7 @@ fn curved_with(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    with_view(a, |a| curved::with_polyhedron(a, b, pose, prediction, cache, out));
+    with_view(a, |a| a.map(|a| curved::with_polyhedron(a, b, pose, prediction, cache, out)));
 }
 
 /// Two shapes with polyhedral cores. Not inlined, since its stack frame is large.
@@ -168,7 +176,13 @@ fn polyhedra(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    with_view(a, |a| with_view(b, |b| convex::collide(a, b, pose, prediction, cache, out)));
+    with_view(a, |a| {
+        with_view(b, |b| {
+            if let (Some(a), Some(b)) = (a, b) {
+                convex::collide(a, b, pose, prediction, cache, out);
+            }
+        });
+    });
 }
 
 /// A segment as a capsule without radius.
@@ -178,15 +192,15 @@ fn capsule(segment: &Segment) -> Capsule {
 
 /// Calls `f` with the polyhedral core of a shape, if it has one.
 #[inline(always)]
-fn with_view(shape: &Shape, f: impl FnOnce(&View)) {
+fn with_view<R>(shape: &Shape, f: impl FnOnce(Option<&View>) -> R) -> R {
     let small = match shape {
-        Shape::Hull(hull) => return f(&View::from(&**hull)),
+        Shape::Hull(hull) => return f(Some(&View::from(&**hull))),
         Shape::Cuboid(s) => Small::cuboid(s.half),
         Shape::Triangle(s) => Small::triangle([s.a, s.b, s.c]),
         Shape::Capsule(s) => Small::capsule(s),
         Shape::Segment(s) => Small::segment(s.a, s.b, 0.0),
         Shape::Ball(s) => Small::point(Vector::ZERO, s.radius),
-        Shape::Composite(_) | Shape::Curved(_) | Shape::HalfSpace(_) | Shape::Foreign(_) => return,
+        Shape::Composite(_) | Shape::Curved(_) | Shape::HalfSpace(_) | Shape::Foreign(_) => return f(None),
     };
-    f(&small.view());
+    f(Some(&small.view()))
 }

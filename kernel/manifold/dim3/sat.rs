@@ -12,7 +12,7 @@ use crate::math::{F32x4, Lane, Num, Vector, min};
 use crate::shape::{EdgeBlock, largest};
 
 /// Edges with a smaller sine between them count as parallel: the direction of their product is rounding.
-const PARALLEL: f32 = 0.005;
+pub(super) const PARALLEL: f32 = 0.005;
 
 /// The number of blocks of A's edges that are tested beforehand. Of hulls with more, all other blocks are searched.
 const LISTED: usize = 64;
@@ -92,7 +92,7 @@ fn face_under(view: &View, point: Vector) -> usize {
 /// The edges of four, as bits, that may have an axis along which `point` of the other polyhedron is not deeper than
 /// `depth` ≤ 0. See the module.
 #[inline(always)]
-fn open_edges(block: &EdgeBlock, point: Vector, depth: f32) -> u32 {
+pub(super) fn open_edges(block: &EdgeBlock, point: Vector, depth: f32) -> u32 {
     let (arm, depth) = (Vector::<F32x4>::splat(point) - block.tail, F32x4::splat(depth));
     let (left, right) = (block.left.dot(arm).lt(depth), block.right.dot(arm).lt(depth));
     !F32x4::bits(F32x4::and(left, right)) & 0xf
@@ -230,6 +230,6 @@ fn edge_direction(view: &View, edge: usize) -> Vector {
 }
 
 /// The number of lanes of an edge block that are not padding.
-fn remaining(view: &View, block: usize) -> usize {
+pub(super) fn remaining(view: &View, block: usize) -> usize {
     (view.edges.len() - 4 * block).min(4)
 }

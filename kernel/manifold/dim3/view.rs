@@ -103,7 +103,7 @@ const fn wide(x: [f32; 4], y: [f32; 4], z: [f32; 4]) -> Vector<F32x4> {
 
 /// Four vectors side by side.
 #[inline(always)]
-fn four(v: [Vector; 4]) -> Vector<F32x4> {
+pub(super) fn four(v: [Vector; 4]) -> Vector<F32x4> {
     wide(v.map(|v| v.x), v.map(|v| v.y), v.map(|v| v.z))
 }
 
@@ -235,11 +235,7 @@ impl Small {
     pub fn triangle(corners: [Vector; 3]) -> Self {
         let [a, b, c] = corners;
         let sides = [b - a, c - b, a - c];
-        let size = sides.iter().fold(0.0, |m, s| max(m, s.abs().max_element()));
-        let k = if size > 0.0 { 1.0 / size } else { 0.0 };
-        let area = (sides[0] * k).cross(sides[1] * k);
-        let twice_area = area.length();
-        if !(twice_area > 1.0e-6) {
+        let Some(Facing { normal, scale: k }) = Facing::of(sides) else {
             let mut longest = 0;
             for i in 1..3 {
                 if sides[i].abs().max_element() > sides[longest].abs().max_element() {
@@ -247,8 +243,7 @@ impl Small {
                 }
             }
             return Self::segment(corners[longest], corners[(longest + 1) % 3], 0.0);
-        }
-        let normal = area * (1.0 / twice_area);
+        };
         let mut small = Self::bare(a, 0.0);
         (small.vertices[1], small.vertices[2]) = (b, c);
         small.vertices[3] = c;
@@ -337,6 +332,26 @@ impl Small {
     }
 }
 
+/// Where a triangle faces.
+pub(super) struct Facing {
+    /// The unit normal, counter-clockwise from outside.
+    pub normal: Vector,
+    /// The inverse of the largest coordinate of its sides, in 1/m. Squares of sides by it do not overflow.
+    pub scale: f32,
+}
+
+impl Facing {
+    /// That of a triangle with the given sides, one after the other; `None` without area.
+    #[inline(always)]
+    pub fn of(sides: [Vector; 3]) -> Option<Self> {
+        let size = sides.iter().fold(0.0, |m, s| max(m, s.abs().max_element()));
+        let scale = if size > 0.0 { 1.0 / size } else { 0.0 };
+        let area = (sides[0] * scale).cross(sides[1] * scale);
+        let twice_area = area.length();
+        (twice_area > 1.0e-6).then(|| Self { normal: area * (1.0 / twice_area), scale })
+    }
+}
+
 /// A pose with a rotation matrix, which is faster for several vectors.
 #[derive(Clone, Copy)]
 pub(super) struct MatrixPose {
@@ -379,8 +394,9 @@ impl MatrixPose {
 
     /// Rotates a direction to the inner frame.
     #[inline(always)]
-    pub fn direction_in(&self, v: Vector) -> Vector {
-        Vector { x: self.axes[0].dot(v), y: self.axes[1].dot(v), z: self.axes[2].dot(v) }
+    pub fn direction_in<N: Lane>(&self, v: Vector<N>) -> Vector<N> {
+        let [x, y, z] = self.axes.map(|axis| Vector::<N>::splat(axis).dot(v));
+        Vector { x, y, z }
     }
 }
 

@@ -82,7 +82,7 @@ fn extent(shape: &Shape) -> f32 {
     let mut extent = 0.0;
     match shape {
         Shape::Curved(s) => extent = s.extent(Vector::ZERO),
-        _ => with_view(shape, |view| extent = view.extent),
+        _ => with_view(shape, |view| extent = view.map_or(0.0, |view| view.extent)),
     }
     extent
 }

@@ -1,0 +1,513 @@
+//! Triangles of a surface against one polyhedron with a radius, which is viewed once for all of them.
+//!
+//! It decides as [`convex`] does, and adds what a triangle has of its own: a single plane, arcs of 180° on the Gauss map, and
+//! often a proof that its face is the best axis, which saves the search for others. Everything is in the polyhedron's frame.
+
+use super::clip::{self, Corner, FEW_CORNERS, LEAST_CORNERS, MAX_CORNERS, Polygon, Reference, clip};
+use super::convex::{EXACT, PREFER_FACES, closest_of_lines};
+use super::gjk::{self, Core};
+use super::sat::{PARALLEL, open_edges, remaining};
+use super::view::{Facing, MatrixPose, View, four};
+use crate::manifold::LocalManifold;
+use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
+use crate::shape::largest;
+
+/// A side makes no better axis than the face if the vertex behind the face is this many depths inside of it, but for those
+/// closer than [`STEEP`] to the reverse of the face's normal. See [`Pair::open_sides`].
+const REACH: f32 = 10.0;
+/// The cosine and sine of the angle from which on `REACH` says nothing: 2 atan(1 / 10) = 11.4°.
+const STEEP: [f32; 2] = [0.980_198, 0.198_02];
+
+/// A triangle and the polyhedron, in the frame of the polyhedron.
+struct Pair<'a> {
+    corners: [Vector; 3],
+    /// Unit directions of the sides, each from its corner to the next.
+    along: [Vector; 3],
+    /// The triangle's unit normal in its own frame, and here.
+    face: Vector,
+    normal: Vector,
+    prism: Prism,
+    view: &'a View<'a>,
+    /// Transforms the polyhedron to the frame of the triangle.
+    frame: MatrixPose,
+    prediction: f32,
+    /// The extents of both.
+    smaller: f32,
+    larger: f32,
+}
+
+/// The planes through the sides across the face, outward, and that of the face.
+struct Prism {
+    normals: Vector<F32x4>,
+    offsets: F32x4,
+}
+
+/// The lane of the face's plane in a prism.
+const FACE: usize = 3;
+/// The lanes of the sides, as bits.
+const SIDES: u32 = 0b111;
+
+impl Prism {
+    /// The heights of a point over all planes.
+    #[inline(always)]
+    fn heights(&self, point: Vector) -> F32x4 {
+        self.normals.dot(Vector::splat(point)) - self.offsets
+    }
+}
+
+/// One side of the triangle's face, and the vertex of the polyhedron that is lowest over it.
+#[derive(Clone, Copy)]
+struct Plane {
+    /// 1, or −1 for the back.
+    sign: f32,
+    lowest: usize,
+    separation: f32,
+}
+
+/// A feature that separates the pair.
+#[derive(Clone, Copy)]
+enum Axis {
+    /// The triangle's face.
+    Plane(Plane),
+    /// A face of the polyhedron, and the corner of the triangle that is lowest over it.
+    Face { face: usize, corner: usize, separation: f32 },
+    /// A side of the triangle and an edge of the polyhedron, with the unit normal from the triangle.
+    Edges { side: usize, edge: usize, normal: Vector, separation: f32 },
+}
+
+impl Axis {
+    fn separation(&self) -> f32 {
+        match self {
+            Self::Plane(plane) => plane.separation,
+            Self::Face { separation, .. } | Self::Edges { separation, .. } => *separation,
+        }
+    }
+}
+
+impl Core for [Vector; 3] {
+    #[inline]
+    fn farthest_point(&self, direction: Vector) -> (Vector, u32) {
+        let heights = self.map(|corner| corner.dot(direction));
+        let i = greatest(heights);
+        (self[i], i as u32)
+    }
+
+    fn center(&self) -> Vector {
+        (self[0] + self[1] + self[2]) * (1.0 / 3.0)
+    }
+}
+
+/// The index of the largest number, the lowest of equals.
+#[inline(always)]
+fn greatest(of: [f32; 3]) -> usize {
+    let first = if of[1] > of[0] { 1 } else { 0 };
+    if of[2] > of[first] { 2 } else { first }
+}
+
+/// Fills `out` with the contact of a triangle and a polyhedron, in the triangle's frame; see
+/// [`convex::collide`](super::convex::collide). Returns `false` for a triangle without area.
+pub(super) fn collide(
+    corners: [Vector; 3],
+    view: &View,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) -> bool {
+    (out.count, out.gap) = (0, 0.0);
+    let Some(pair) = Pair::new(corners, view, pose, prediction) else { return false };
+    let plane = pair.nearest_plane();
+    if plane.separation > pair.limit() {
+        out.gap = max(plane.separation - view.radius, 0.0);
+        return true;
+    }
+    let sides = pair.open_sides(&plane);
+    if sides == 0 {
+        pair.build_plane(&plane, out);
+        return true;
+    }
+    let axis = pair.search(plane, sides);
+    let separation = axis.separation();
+    // Sizes that are NaN give a NaN separation.
+    if !(separation <= pair.limit()) {
+        out.gap = max(separation - view.radius, 0.0);
+        return true;
+    }
+    let is_exact = pair.build(&axis, out);
+    if separation > gjk::resolution(pair.larger, pair.smaller) {
+        if !is_exact {
+            pair.build_apart(corners, &axis, out);
+        }
+    } else if out.count == 0 {
+        pair.push_deepest(&axis, out);
+    }
+    true
+}
+
+/// Fills `out` with the contact of a triangle's face alone, whatever the best axis is. `normal` is the face's, towards the
+/// polyhedron.
+pub(super) fn collide_face(
+    corners: [Vector; 3],
+    normal: Vector,
+    view: &View,
+    pose: &Pose,
+    prediction: f32,
+    out: &mut LocalManifold,
+) {
+    (out.count, out.gap) = (0, 0.0);
+    let Some(pair) = Pair::new(corners, view, pose, prediction) else { return };
+    let plane = pair.plane(if pair.face.dot(normal) < 0.0 { -1.0 } else { 1.0 });
+    if plane.separation <= pair.limit() {
+        pair.build_plane(&plane, out);
+    } else {
+        out.gap = plane.separation - view.radius;
+    }
+}
+
+impl<'a> Pair<'a> {
+    /// `None` for a triangle without area.
+    #[inline(always)]
+    fn new(corners: [Vector; 3], view: &'a View<'a>, pose: &Pose, prediction: f32) -> Option<Self> {
+        let [a, b, c] = corners;
+        let sides = [b - a, c - b, a - c];
+        let Facing { normal: face, scale } = Facing::of(sides)?;
+        let frame = MatrixPose::new(pose);
+        // Taken relative to the polyhedron first, so that rounding is small where they are near.
+        let [a, b, c] = corners.map(|corner| corner - frame.position);
+        let placed = frame.direction_in(four([a, b, c, c]));
+        let turned = frame.direction_in(four([sides[0], sides[1], sides[2], face]));
+        let sides = Vector { x: turned.x, y: turned.y, z: turned.z } * F32x4::splat(scale);
+        let along = sides * (F32x4::ONE / sides.length().max(F32x4::splat(f32::MIN_POSITIVE)));
+        let normal = turned.get(3);
+        let wide = Vector::<F32x4>::splat(normal);
+        let is_face = F32x4::ZERO.lt(F32x4::new([0.0, 0.0, 0.0, 1.0]));
+        let normals = Vector::select(is_face, wide, along.cross(wide));
+        let prism = Prism { normals, offsets: normals.dot(placed) };
+        let center = placed.get(0) + placed.get(1) + placed.get(2);
+        let arm = placed - Vector::splat(center * (1.0 / 3.0));
+        let arms = arm.length_squared();
+        let extent = max(max(arms.get(0), arms.get(1)), arms.get(2)).sqrt();
+        Some(Self {
+            corners: [placed.get(0), placed.get(1), placed.get(2)],
+            along: [along.get(0), along.get(1), along.get(2)],
+            face,
+            normal,
+            prism,
+            view,
+            frame,
+            prediction,
+            smaller: min(extent, view.extent),
+            larger: max(extent, view.extent),
+        })
+    }
+
+    /// Cores farther apart than this have no contact.
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.prediction + self.view.radius
+    }
+
+    /// One side of the face.
+    #[inline(always)]
+    fn plane(&self, sign: f32) -> Plane {
+        let (lowest, depth) = self.view.farthest(self.normal * -sign);
+        Plane { sign, lowest, separation: -depth - sign * self.normal.dot(self.corners[0]) }
+    }
+
+    /// The side of the face that the polyhedron's centre is on.
+    #[inline(always)]
+    fn nearest_plane(&self) -> Plane {
+        let height = self.normal.dot(self.view.center - self.corners[0]);
+        self.plane(if height < 0.0 { -1.0 } else { 1.0 })
+    }
+
+    /// The sides that may make an axis which separates more than a plane does, as bits. Without any the plane is the best of all
+    /// axes: its lowest vertex v is over the triangle.
+    ///
+    /// Let s be the separation along the plane's normal n, and ρ how far v is inside of a side, whose outward normal is u. An axis
+    /// m = n cos θ + u sin θ of the side separates by at most s cos θ − ρ sin θ, since v is no farther. That is at most s if s ≥ 0,
+    /// and if s < 0 for tan(θ/2) ≤ ρ/|s|. The rest is the axes around −n, along which the polyhedron's centre is deeper.
+    /// If that holds for all sides, it does for any axis: the triangle reaches at least the least ρ around v's foot.
+    #[inline(always)]
+    fn open_sides(&self, plane: &Plane) -> u32 {
+        let vertex = self.view.vertices[plane.lowest];
+        let depth = max(-plane.separation, 0.0);
+        let reach = -self.prism.heights(vertex);
+        let open = !F32x4::bits(F32x4::splat(REACH * depth).le(reach)) & SIDES;
+        if depth == 0.0 {
+            return open;
+        }
+        let arm = self.view.center - vertex;
+        let rise = arm.dot(self.normal) * plane.sign;
+        let aside = max(arm.length_squared() - rise * rise, 0.0).sqrt();
+        let [cos, sin] = STEEP;
+        if cos * (rise - depth) - sin * aside >= depth { open } else { SIDES }
+    }
+
+    /// The axis of least penetration or largest separation, or one beyond the limit. `plane` is that of the centre's side, and
+    /// `sides` are the open ones.
+    fn search(&self, mut plane: Plane, sides: u32) -> Axis {
+        if plane.separation < 0.0 {
+            let back = self.plane(-plane.sign);
+            if back.separation > plane.separation {
+                plane = back;
+            }
+        }
+        let (axis, corner) = self.best_face();
+        if axis.separation() > self.limit() {
+            return axis;
+        }
+        let preference = PREFER_FACES * self.smaller;
+        let best =
+            if axis.separation() > plane.separation + 0.1 * preference { axis } else { Axis::Plane(plane) };
+        self.best_edges(sides, self.corners[corner], best.separation() + preference).unwrap_or(best)
+    }
+
+    /// The face of the polyhedron with the largest separation, and the corner lowest over it; −∞ without faces.
+    fn best_face(&self) -> (Axis, usize) {
+        let corners = self.corners.map(Vector::<F32x4>::splat);
+        let mut best = F32x4::splat(f32::NEG_INFINITY);
+        let (mut at, mut number) = (F32x4::ZERO, F32x4::ZERO);
+        for block in self.view.face_blocks {
+            let [a, b, c] = corners.map(|corner| block.normal.dot(corner));
+            let height = a.min(b).min(c) - block.offset;
+            let better = best.lt(height);
+            best = F32x4::select(better, height, best);
+            at = F32x4::select(better, number, at);
+            number += F32x4::ONE;
+        }
+        if self.view.faces.is_empty() {
+            return (Axis::Face { face: 0, corner: 0, separation: f32::NEG_INFINITY }, 0);
+        }
+        let (face, separation) = largest(best, at);
+        let face = face.min(self.view.faces.len() - 1);
+        let normal = self.view.faces[face].normal;
+        let corner = greatest(self.corners.map(|corner| -corner.dot(normal)));
+        (Axis::Face { face, corner, separation }, corner)
+    }
+
+    /// The side of the triangle, out of `sides`, and the edge of the polyhedron with the largest separation, if that is larger
+    /// than `known`.
+    /// `corner` is the triangle's, deepest in the polyhedron. See [`sat`](super::sat); the arc of a side goes from the face's
+    /// normal to its reverse.
+    fn best_edges(&self, sides: u32, corner: Vector, known: f32) -> Option<Axis> {
+        let depth = min(known, 0.0);
+        let mut best = known;
+        let mut found = None;
+        let normal = Vector::<F32x4>::splat(self.normal);
+        for (j, block) in self.view.edge_blocks.iter().enumerate() {
+            if open_edges(block, corner, depth) == 0 {
+                continue;
+            }
+            let turn = normal.dot(block.direction);
+            for side in (0..FACE).filter(|side| sides >> side & 1 != 0) {
+                let along = Vector::<F32x4>::splat(self.along[side]);
+                let (left, right) = (block.left.dot(along), block.right.dot(along));
+                let crosses =
+                    F32x4::and((left * right).le(F32x4::ZERO), F32x4::ZERO.lt(turn * (left - right)));
+                if !F32x4::any(crosses) {
+                    continue;
+                }
+                let axis = along.cross(block.direction);
+                let square = axis.length_squared();
+                let usable = F32x4::and(crosses, F32x4::splat(PARALLEL * PARALLEL).lt(square));
+                let height = axis.dot(block.tail - Vector::splat(self.corners[side])) / square.sqrt();
+                let separation = F32x4::select(F32x4::ZERO.lt(turn), height, -height);
+                let better = F32x4::and(usable, F32x4::splat(best).lt(separation));
+                let mut left = F32x4::bits(better) & (0xf >> (4 - remaining(self.view, j)));
+                while left != 0 {
+                    let lane = left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    if separation.get(lane) > best {
+                        best = separation.get(lane);
+                        found = Some((side, 4 * j + lane, turn.get(lane) > 0.0));
+                    }
+                }
+            }
+        }
+        let (side, edge, is_forward) = found?;
+        let axis = self.along[side].cross(self.view.edge_blocks[edge / 4].direction.get(edge % 4));
+        let sign = if is_forward { 1.0 } else { -1.0 };
+        Some(Axis::Edges { side, edge, normal: axis * (sign / axis.length()), separation: best })
+    }
+
+    /// Fills the manifold from an axis. Returns whether its nearest point is as near as the separation along the axis, which is
+    /// then the true distance.
+    fn build(&self, axis: &Axis, out: &mut LocalManifold) -> bool {
+        match *axis {
+            Axis::Plane(plane) => self.build_plane(&plane, out),
+            Axis::Face { face, separation, .. } => {
+                let sides = self.view.faces[face].count as usize;
+                if sides + 3 < FEW_CORNERS {
+                    self.clip_triangle::<FEW_CORNERS>(face, separation, out)
+                } else {
+                    self.clip_triangle::<MAX_CORNERS>(face, separation, out)
+                }
+            }
+            Axis::Edges { side, edge, normal, separation } => {
+                self.build_edges(side, edge, normal, separation, out)
+            }
+        }
+    }
+
+    /// The face as the reference of a contact.
+    #[inline(always)]
+    fn reference(&self, plane: &Plane) -> Reference<'_> {
+        let normal = self.normal * plane.sign;
+        Reference {
+            normal,
+            offset: normal.dot(self.corners[0]),
+            radii: [0.0, self.view.radius],
+            prediction: self.prediction,
+            to_a: Some(&self.frame),
+            feature: Reference::feature_of(false, usize::from(plane.sign < 0.0)),
+        }
+    }
+
+    /// A face of the polyhedron as the reference of a contact.
+    #[inline(always)]
+    fn reference_of(&self, face: usize) -> Reference<'_> {
+        let plane = &self.view.faces[face];
+        Reference {
+            normal: plane.normal,
+            offset: plane.offset,
+            radii: [self.view.radius, 0.0],
+            prediction: self.prediction,
+            to_a: Some(&self.frame),
+            feature: Reference::feature_of(true, face),
+        }
+    }
+
+    fn build_plane(&self, plane: &Plane, out: &mut LocalManifold) -> bool {
+        let view = self.view;
+        let incident = clip::incident_face(view, self.normal * plane.sign, plane.lowest);
+        let most = 3 + incident.map_or(view.vertices.len(), |face| view.faces[face].count as usize);
+        if most < LEAST_CORNERS {
+            self.clip_face::<LEAST_CORNERS>(plane, incident, out)
+        } else if most < FEW_CORNERS {
+            self.clip_face::<FEW_CORNERS>(plane, incident, out)
+        } else {
+            self.clip_face::<MAX_CORNERS>(plane, incident, out)
+        }
+    }
+
+    /// The polyhedron's face over the triangle.
+    #[inline(never)]
+    fn clip_face<const N: usize>(
+        &self,
+        plane: &Plane,
+        incident: Option<usize>,
+        out: &mut LocalManifold,
+    ) -> bool {
+        let mut first = Polygon::<N, F32x4>::new();
+        let margin = clip::MARGIN * self.smaller;
+        let margins = F32x4::new([margin, margin, margin, 0.0]);
+        let place = |v| (v, self.prism.heights(v) - margins);
+        clip::incident_polygon(self.view, incident, place, &mut first);
+        let start = (F32x4::ZERO, F32x4::splat(f32::INFINITY));
+        let (highest, lowest) = first
+            .corners()
+            .iter()
+            .fold(start, |(high, low), corner| (high.max(corner.heights), low.min(corner.heights)));
+        let outside = F32x4::bits(F32x4::ZERO.lt(highest));
+        if F32x4::bits(F32x4::ZERO.lt(lowest)) & SIDES != 0 {
+            // All of it is beyond one side.
+            (out.count, out.normal) = (0, self.face * plane.sign);
+            return false;
+        }
+        let least = if outside & SIDES == 0 {
+            self.fill(&first, plane, out)
+        } else {
+            let mut second = Polygon::<N, F32x4>::new();
+            let (mut polygon, mut spare) = (&mut first, &mut second);
+            for side in (0..FACE).filter(|side| outside >> side & 1 != 0) {
+                clip::cut(polygon, |_, corner| corner.heights.get(side), side as u32, spare);
+                core::mem::swap(&mut polygon, &mut spare);
+            }
+            self.fill(polygon, plane, out)
+        };
+        least <= plane.separation + EXACT * self.smaller
+    }
+
+    /// Fills the manifold with the corners of a clipped polygon. Returns their least height over the face.
+    fn fill<const N: usize>(
+        &self,
+        polygon: &Polygon<N, F32x4>,
+        plane: &Plane,
+        out: &mut LocalManifold,
+    ) -> f32 {
+        out.normal = self.face * plane.sign;
+        let height = |corner: &Corner<F32x4>| corner.heights.get(FACE) * plane.sign;
+        self.reference(plane).fill(polygon, height, out)
+    }
+
+    /// The triangle over a face of the polyhedron.
+    #[inline(never)]
+    fn clip_triangle<const N: usize>(&self, face: usize, separation: f32, out: &mut LocalManifold) -> bool {
+        let (mut polygon, mut spare) = (Polygon::<N>::new(), Polygon::<N>::new());
+        (0..3).for_each(|i| polygon.push(i, self.corners[i as usize], ()));
+        let reference = self.reference_of(face);
+        let outline = self.view.outline(face).iter().map(|i| self.view.vertices[*i as usize]);
+        let polygon = clip(reference.normal, outline, [&mut polygon, &mut spare], self.smaller);
+        out.normal = -self.frame.direction(reference.normal);
+        let height = |corner: &Corner| reference.height(corner.point);
+        reference.fill(polygon, height, out) <= separation + EXACT * self.smaller
+    }
+
+    fn build_edges(
+        &self,
+        side: usize,
+        edge: usize,
+        normal: Vector,
+        separation: f32,
+        out: &mut LocalManifold,
+    ) -> bool {
+        let view = self.view;
+        let ends = [self.corners[side], self.corners[(side + 1) % 3]];
+        let ends_of = [view.edges[edge].tail, view.edges[edge].head].map(|i| view.vertices[i as usize]);
+        let (point, point_of, is_inside) = closest_of_lines(ends, ends_of);
+        let separation = separation - view.radius;
+        (out.count, out.normal) = (0, self.frame.direction(normal));
+        if separation <= self.prediction {
+            let between = (point + point_of - normal * view.radius) * 0.5;
+            let feature = 2 << 30 | (side as u32) << 15 | edge as u32 & 0x7fff;
+            out.push(self.frame.point(between), separation, feature);
+        }
+        is_inside
+    }
+
+    /// Adds the deepest vertex under a face alone, where the shapes overlap beside the face.
+    fn push_deepest(&self, axis: &Axis, out: &mut LocalManifold) {
+        match *axis {
+            Axis::Plane(plane) => {
+                let vertex = self.view.vertices[plane.lowest];
+                self.reference(&plane).push_deepest(vertex, plane.separation, out);
+            }
+            Axis::Face { face, corner, separation } => {
+                self.reference_of(face).push_deepest(self.corners[corner], separation, out);
+            }
+            Axis::Edges { .. } => {}
+        }
+    }
+
+    /// The unit normal from the triangle to the polyhedron, in the triangle's frame.
+    fn normal_of(&self, axis: &Axis) -> Vector {
+        match *axis {
+            Axis::Plane(plane) => self.face * plane.sign,
+            Axis::Face { face, .. } => -self.frame.direction(self.view.faces[face].normal),
+            Axis::Edges { normal, .. } => self.frame.direction(normal),
+        }
+    }
+
+    /// One point between the closest features, where the axis understates the distance. Keeps present points if the distance is
+    /// no larger. `corners` are in the triangle's frame.
+    fn build_apart(&self, corners: [Vector; 3], axis: &Axis, out: &mut LocalManifold) {
+        let (start, limit) = (self.normal_of(axis), self.limit());
+        let Some(closest) = gjk::closest_within(&corners, self.view, &self.frame, start, limit) else {
+            return;
+        };
+        closest.fill_apart([0.0, self.view.radius], axis.separation(), self.prediction, out);
+        if out.count == 0 {
+            out.gap = max(closest.distance - self.view.radius, 0.0);
+        }
+    }
+}
