@@ -106,7 +106,12 @@ impl Facing {
             self.push(first.0, first.1, at(first.1), out);
             self.push(second.0, second.1, at(second.1), out);
         } else {
-            // An edge is upright or has no length, or the edges touch by rounding.
+            // An edge is upright or has no length, or the edges touch by rounding with the end that is level with a corner.
+            let end = match (run > nothing, along[0] <= nothing, along[1] >= length - nothing) {
+                (true, true, false) => 0,
+                (true, false, true) => 1,
+                _ => end,
+            };
             self.push(1 - end, along[end], height[end], out);
         }
     }
@@ -139,4 +144,39 @@ impl Facing {
 #[inline]
 pub(super) fn pair(a: usize, b: usize) -> u32 {
     u32::from(a as u16) << 16 | u32::from(b as u16)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::{FeatureCache, LocalManifold};
+    use super::super::collide;
+    use crate::math::{Pose, Rot, Vector};
+    use crate::shape::{Cuboid, Shape};
+
+    /// The point was at the far end of the side, where the other box is not.
+    #[test]
+    fn boxes_whose_corners_are_level_meet_at_the_corners() {
+        let box_of = |x: f32, y: f32| Shape::Cuboid(Cuboid { half: Vector { x, y } });
+        let (tile, plank) = (box_of(0.025, 0.5), box_of(0.5, 0.04));
+        for ulp in -4..=4 {
+            let above = 0.5 * (f32::from(ulp as i8) * f32::EPSILON);
+            for turn in [0.0f32, 1.0e-7, -1.0e-7] {
+                let pose = Pose::new(Vector { x: -0.549, y: 0.54 + above }, Rot::from_angle(turn));
+                let mut out = LocalManifold::default();
+                collide(&tile, &plank, &pose, 0.1, &mut FeatureCache::NONE.clone(), &mut out);
+                let off = out.points().iter().map(|p| (p.point.y - 0.5).abs()).fold(0.0, f32::max);
+                assert!(
+                    out.count == 1 && off < 1.0e-6,
+                    "{above} m above, turned by {turn}: {off} m off: {out:?}"
+                );
+                let mut out = LocalManifold::default();
+                collide(&plank, &tile, &pose.inverse(), 0.1, &mut FeatureCache::NONE.clone(), &mut out);
+                let off = out.points().iter().map(|p| (p.point.y + 0.04).abs()).fold(0.0, f32::max);
+                assert!(
+                    out.count == 1 && off < 1.0e-6,
+                    "{above} m above, turned by {turn}: {off} m off: {out:?}"
+                );
+            }
+        }
+    }
 }
