@@ -353,11 +353,6 @@ impl ContactPass for Solve {
             // SAFETY: by the contract.
             unsafe { row.solve(&all.bodies, &all.params) };
         }
-        if can_bounce(all.passes) {
-            for (row, bounce) in all.block.rows.iter().zip(all.block.bounces) {
-                row.note_largest_impulses(bounce);
-            }
-        }
         false
     }
 }

@@ -121,6 +121,42 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         impulses
     }
 
+    /// Scales the impulses of an impact so that points reach their targets on average, weighted by impulse.
+    ///
+    /// The sweeps end before points have their targets. Impulses λ change the energy by ½ Σ λᵢ (vᵢ + vᵢ') if they change the normal
+    /// velocities from v to v'. With Σ λᵢ vᵢ' = Σ λᵢ wᵢ this is what it would be if all had their targets w: for w = −e v never
+    /// a gain. As v' = v + s K λ, the scale is s = Σ λᵢ (wᵢ − vᵢ) / λᵀ K λ.
+    #[inline(always)]
+    fn scale_impact(
+        &self,
+        pair: &mut Pair<N>,
+        before: &Pair<N>,
+        impulses: &mut [N; P],
+        targets: &[N; P],
+        moments: &[[Angular<N>; 2]; P],
+    ) {
+        if P == 1 {
+            return;
+        }
+        let n = self.normal;
+        let (mut wanted, mut got, mut total) = (N::ZERO, N::ZERO, N::ZERO);
+        let mut arms = [Angular::ZERO; 2];
+        for i in 0..P {
+            let old = before.along(n, moments[i]);
+            wanted += impulses[i] * (targets[i] - old);
+            got += impulses[i] * (pair.along(n, moments[i]) - old);
+            total += impulses[i];
+            arms[0] += moments[i][0] * impulses[i];
+            arms[1] += moments[i][1] * impulses[i];
+        }
+        let scale = N::select(N::ZERO.lt(got), wanted / got, N::ONE);
+        let more = scale - N::ONE;
+        for impulse in impulses {
+            *impulse = *impulse * scale;
+        }
+        self.push(pair, n * (total * more), [arms[0] * more, arms[1] * more]);
+    }
+
     /// Gives each point its target normal velocity, where that is not 0, by an impulse that only pushes, and then
     /// friction. Returns the normal impulses.
     #[inline(always)]
@@ -132,6 +168,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         moments: &[[Angular<N>; 2]; P],
     ) -> [N; P] {
         let n = self.normal;
+        let before = *pair;
         let mut impulses = self.share_impact(pair, targets, moments);
         // A few sweeps in alternating order: points of one manifold share the impact, and none comes first.
         for sweep in 0..if P == 1 { 1 } else { 4 } {
@@ -144,6 +181,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
                 self.push(pair, n * delta, [moments[i][0] * delta, moments[i][1] * delta]);
             }
         }
+        self.scale_impact(pair, &before, &mut impulses, targets, moments);
         let mut sum = N::ZERO;
         for i in 0..P {
             bounce.max_impulse[i] = bounce.max_impulse[i].max(impulses[i]);
@@ -160,6 +198,9 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// The restitution pass: points that approached faster than the threshold and had an impulse leave with e times the
     /// approach speed. Points that the impact pass has handled are skipped. Impulses are added to `sum`.
     ///
+    /// Other impacts may have slowed a point down before it touched, so its approach speed alone would add energy. Impulses λ that
+    /// stop points absorb ½ λᵀ K λ, and what the rebound returns is at most e² of that.
+    ///
     /// # Safety
     /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
     #[inline(always)]
@@ -170,30 +211,57 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         mut sum: Option<&mut [N; P]>,
         params: &SubstepParams,
     ) {
+        let threshold = N::splat(-params.restitution_threshold);
+        let (mut hit, mut any) = ([N::ZERO; P], N::ZERO);
+        for i in 0..P {
+            let fast = N::and(bounce.approach[i].lt(threshold), N::ZERO.lt(bounce.max_impulse[i]));
+            hit[i] = N::select(N::and(fast, N::ZERO.lt(bounce.restitution)), N::ONE, N::ZERO);
+            any = any.max(hit[i]);
+        }
+        if !N::any(N::ZERO.lt(any)) {
+            return;
+        }
         // SAFETY: by the contract.
         let before = unsafe { Pair::load(rows, &self.ids) };
-        let mut pair = before;
         let n = self.normal;
-        let threshold = N::splat(-params.restitution_threshold);
+        let (mut pair, mut stop) = (before, Pair::REST);
+        let mut moments = [[Angular::ZERO; 2]; P];
+        let mut deltas = [N::ZERO; P];
         for i in 0..P {
             let point = self.points[i];
             let (ma, mb) = (point.anchor.cross(n), (point.anchor - self.offset).cross(n));
-            let vn = pair.along(n, [ma, mb]);
-            let target = bounce.restitution * bounce.approach[i];
-            let new = (point.impulse - point.mass * (vn + target)).max(N::ZERO);
-            let hit = N::and(bounce.approach[i].lt(threshold), N::ZERO.lt(bounce.max_impulse[i]));
-            let hit = N::and(hit, N::ZERO.lt(bounce.restitution));
-            let new = N::select(hit, new, point.impulse);
-            let delta = new - point.impulse;
-            self.points[i].impulse = new;
-            bounce.max_impulse[i] = bounce.max_impulse[i].max(new);
+            moments[i] = [ma, mb];
+            let missing = pair.along(n, moments[i]) + bounce.restitution * bounce.approach[i];
+            let new = (point.impulse - point.mass * missing).max(N::ZERO);
+            let delta = (new - point.impulse) * hit[i];
+            deltas[i] = delta;
+            self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
+            let stopping = bounce.max_impulse[i] * hit[i];
+            self.push(&mut stop, n * stopping, [ma * stopping, mb * stopping]);
+        }
+        // Impulses scaled by s change the energy by a s + ½ b s².
+        let (mut a, mut b, mut absorbed) = (N::ZERO, N::ZERO, N::ZERO);
+        for i in 0..P {
+            let old = before.along(n, moments[i]);
+            a += deltas[i] * old;
+            b += deltas[i] * (pair.along(n, moments[i]) - old);
+            absorbed += bounce.max_impulse[i] * hit[i] * stop.along(n, moments[i]);
+        }
+        let returned = bounce.restitution * bounce.restitution * absorbed;
+        let root = (a * a + b * returned).max(N::ZERO).sqrt();
+        let scale = N::select(N::ZERO.lt(b), ((root - a) / b).min(N::ONE), N::ONE);
+        pair = before;
+        for i in 0..P {
+            let delta = deltas[i] * scale;
+            self.points[i].impulse += delta;
+            bounce.max_impulse[i] = bounce.max_impulse[i].max(self.points[i].impulse);
             if let Some(sum) = &mut sum {
                 sum[i] += delta;
             }
-            self.push(&mut pair, n * delta, [ma * delta, mb * delta]);
+            self.push(&mut pair, n * delta, moments[i].map(|moment| moment * delta));
         }
         // SAFETY: by the contract.
-        unsafe { pair.or_where_not(N::ZERO.lt(bounce.restitution), before).store(rows, &self.ids) };
+        unsafe { pair.or_where_not(N::ZERO.lt(any), before).store(rows, &self.ids) };
     }
 }
 

@@ -71,7 +71,7 @@ pub struct RestitutionRow<N: Lane, const P: usize> {
     pub gained: N,
     /// Normal velocity of each point at the start of the step, m/s. 0 once it has bounced.
     pub approach: [N; P],
-    /// Maximum impulse of each point so far in the step, N·s.
+    /// Maximum impulse of each point at the end of a substep so far, N·s.
     pub max_impulse: [N; P],
 }
 
@@ -192,8 +192,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// oscillation. With friction last, a pyramid of base 16 at rest reached 0.2 m/s in 50 s; with this order it comes
     /// to rest.
     ///
-    /// Where `restitution` is given and not 0, points that close fast are not slowed down before they touch: they are
-    /// left to the impact pass.
+    /// Where `restitution` is given and not 0, free points that close fast are not slowed down, also if turning has brought them to
+    /// touch: they are left to the impact pass.
     ///
     /// # Safety
     /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
@@ -326,7 +326,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             let mut new = (point.impulse - change).max(N::ZERO);
             if let Some(e) = restitution {
                 let fast = vn.lt(N::splat(-params.restitution_threshold));
-                let free = N::and(apart, point.impulse.eq(N::ZERO));
+                let free = point.impulse.eq(N::ZERO);
                 new = N::select(N::and(N::and(fast, free), N::ZERO.lt(e)), N::ZERO, new);
             }
             let delta = new - point.impulse;
