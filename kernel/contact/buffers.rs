@@ -1,8 +1,9 @@
 //! What one worker of the narrow phase computes with, and what it leaves for the table.
 
-use super::record::{Lost, Manifold};
+use super::record::{Lost, Manifold, Sliding};
 use super::recycle::RecycleBatch;
 use crate::manifold::{CompositeBuffers, LocalManifold};
+use crate::math::Vector;
 
 /// Buffers of one worker, kept between steps; `W` are those of its [`ManifoldSource`](super::ManifoldSource). They are
 /// written with every contact, so each worker's are in cache lines of their own.
@@ -25,8 +26,12 @@ pub struct WorkerBuffers<W = ()> {
     pub(super) pool: Vec<Manifold>,
     /// Contacts whose manifolds may be of internal edges.
     pub(super) sliding: Vec<u32>,
+    /// The manifolds of the sliding collider at hand.
+    pub(super) slides: Vec<Sliding>,
     /// Contacts, and the numbers of those of their manifolds, whose [`is_internal`](Manifold::is_internal) changes.
     pub(super) internal: Vec<(u32, u32)>,
+    /// Manifolds of the feet of walls, and the normals of the floors.
+    pub(super) walls: Vec<(u32, u32, Vector)>,
     /// Points under load that sliding colliders lost.
     pub(super) lost: Vec<Lost>,
     /// Whether any contact overlaps deeply.
@@ -41,6 +46,7 @@ impl<W> WorkerBuffers<W> {
         self.pool.clear();
         self.sliding.clear();
         self.internal.clear();
+        self.walls.clear();
         self.lost.clear();
         self.any_deep = false;
     }

@@ -44,13 +44,16 @@ fn overlaps_by<S>(input: &NarrowPhaseInput<S>, share: f32, contact: &Contact) ->
 }
 
 /// Sets the bits that name the platform, the body which contacts do not turn. Two round shapes have none, since one can
-/// roll under the same normal.
+/// roll under the same normal; what stands on its flat end is not round there.
 #[inline(always)]
 pub(super) fn set_platform<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact) {
     let is_platform = |body: u32| body == NONE || input.bodies[body].kind != BodyKind::Dynamic;
-    let is_round =
-        |s: &Shape| matches!(s, Shape::Ball(_) | Shape::Capsule(_) | Shape::Curved(_) | Shape::Segment(_));
-    let are_round = contact.colliders.iter().all(|id| is_round(&input.colliders[*id].def.shape));
+    let is_round = |side: usize| match &input.colliders[contact.colliders[side]].def.shape {
+        Shape::Ball(_) | Shape::Capsule(_) | Shape::Segment(_) => true,
+        Shape::Curved(_) => contact.manifold.radii[side] != 0.0,
+        _ => false,
+    };
+    let are_round = is_round(0) && is_round(1);
     let [a, b] = contact.bodies.map(|body| !are_round && is_platform(body));
     contact.flags.set(ContactFlags::PLATFORM_A, a);
     contact.flags.set(ContactFlags::PLATFORM_B, b && !a);

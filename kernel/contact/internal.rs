@@ -13,7 +13,7 @@ use super::buffers::WorkerBuffers;
 use super::input::{ManifoldSource, NarrowPhaseInput, smaller};
 use super::load;
 use super::manifolds;
-use super::record::{Contact, ContactFlags, Manifold};
+use super::record::{Contact, ContactFlags, Manifold, Sliding};
 use super::table::{ContactTable, PointCount};
 use crate::math::{Rot, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
@@ -35,10 +35,13 @@ const BELOW: f32 = 0.005;
 /// walls; less takes the edges of flush tiles for walls.
 const RISES: f32 = 4.0;
 
+/// The least sine of the angle by which the normal of a wall's foot points down. Less is rounding.
+const LEANS: f32 = 0.05;
+
 /// Planes whose normals differ by less than this hold the same, squared, in radians: 0.2°.
 const PARALLEL: f32 = 1.2e-5;
 
-/// The same if both are of round shapes, whose point moves with the normal.
+/// The same for a point of round shapes, and across the line of two: there points move with the normal.
 const ROUND_PARALLEL: f32 = 1.0e-8;
 
 /// Bodies slower than this against ground that does not move slide over nothing, in m/s.
@@ -62,6 +65,20 @@ struct Seen<'a> {
     origin: Vector,
     /// How far above a plane its points may lie.
     flush: f32,
+    /// How far the collider moves against the ground until they meet here, where that counts.
+    motion: Vector,
+    place: Place,
+}
+
+/// Where the anchors are of shapes that meet later in the step.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// Between both, where they meet.
+    Meeting,
+    /// At the ground's surface, half of the separation above it.
+    Ground,
+    /// At the collider's surface where it is now, half of the separation below it.
+    Collider,
 }
 
 impl<'a> Seen<'a> {
@@ -72,19 +89,36 @@ impl<'a> Seen<'a> {
         // Points of a recycled manifold keep their places on the ground.
         let frozen = if ground == 1 { contact.frozen.offset } else { Vector::ZERO };
         let origin = (poses[ground].center - poses[side].center).to_local() - frozen;
-        let normal = if side == 0 { -manifold.normal } else { manifold.normal };
+        let sign = if side == 0 { -1.0 } else { 1.0 };
         let [a, b] = input.reaches(contact);
-        let is_curved = |id: u32| matches!(input.colliders[id].def.shape, Shape::Curved(_));
-        let is_clipped = manifold.radii == [0.0; 2] || contact.colliders.into_iter().any(is_curved);
+        let shapes = contact.colliders.map(|id| &input.colliders[id].def.shape);
+        let is_curved = shapes.iter().any(|shape| matches!(shape, Shape::Curved(_)));
+        let is_clipped = manifold.radii == [0.0; 2] || is_curved;
         let clipped = if is_clipped { CLIPPED * smaller([a.extent, b.extent]) } else { 0.0 };
-        Self { manifold, normal, origin, flush: FLUSH + clipped }
+        let (mut motion, mut place) = (Vector::ZERO, Place::Meeting);
+        let closing = manifold.points[0].separation - manifold.points[0].frozen_separation;
+        let are_parts =
+            contact.flags.has(ContactFlags::COMPOSITE) && !contact.flags.has(ContactFlags::FROZEN);
+        if are_parts && closing != 0.0 {
+            let all = input.predicted_motion(contact);
+            motion = all * (sign * closing / -manifold.normal.dot(all));
+            let placed_on = usize::from(matches!(shapes[0], Shape::Composite(_)));
+            place = if placed_on == side { Place::Collider } else { Place::Ground };
+        }
+        Self { manifold, normal: manifold.normal * sign, origin, flush: FLUSH + clipped, motion, place }
     }
 
-    /// The points on the ground, and those across on the collider.
+    /// The points on the ground, and those across on the collider, when they meet.
     fn points(&self) -> impl Iterator<Item = [Vector; 2]> + '_ {
         self.manifold.points().iter().map(|p| {
-            let (middle, half) = (self.origin + p.anchor, self.normal * (0.5 * p.frozen_separation));
-            [middle - half, middle + half]
+            let (middle, gap) = (self.origin + p.anchor, self.normal * p.frozen_separation);
+            let half = self.normal * (0.5 * p.separation);
+            let ground = match self.place {
+                Place::Meeting => middle - gap * 0.5,
+                Place::Ground => middle - half,
+                Place::Collider => middle + half + self.motion - gap,
+            };
+            [ground, ground + gap]
         })
     }
 
@@ -98,10 +132,12 @@ impl<'a> Seen<'a> {
         other.points().fold(f32::NEG_INFINITY, |top, [p, _]| max(top, p.dot(self.normal))) - self.plane()
     }
 
-    /// Whether another manifold, which is not parallel, holds what this one would stop.
-    fn is_held_by(&self, other: &Seen) -> bool {
-        let highest = other.highest(self);
-        if !(highest <= self.flush && highest < self.highest(other)) {
+    /// Whether another manifold, which is not parallel, holds what this one would stop. If all points of both are in one place, it does
+    /// where the other's plane is that of both pieces of ground.
+    fn is_held_by(&self, other: &Seen, is_plane_of_both: impl FnOnce() -> bool) -> bool {
+        let [highest, of_other] = [other.highest(self), self.highest(other)];
+        let is_lower = highest < of_other || of_other >= -self.flush && is_plane_of_both();
+        if !(highest <= self.flush && is_lower) {
             return false;
         }
         let lowest = self.points().fold(f32::INFINITY, |low, [_, own]| min(low, own.dot(other.normal)));
@@ -110,12 +146,35 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// Whether two manifolds, seen from the same collider, hold the same. `is_flipped` tells that one is of side A, the other of B.
-fn are_parallel(a: &Manifold, b: &Manifold, is_flipped: bool) -> bool {
-    let are_round = a.radii != [0.0; 2] && b.radii != [0.0; 2];
-    let parallel = if are_round { ROUND_PARALLEL } else { PARALLEL };
-    let apart = if is_flipped { a.normal + b.normal } else { a.normal - b.normal };
-    apart.length_squared() < parallel
+/// What a manifold is beside the others of a moving collider.
+#[derive(Clone, Copy, PartialEq)]
+enum Role {
+    /// The collider is to be stopped by it.
+    Obstacle,
+    /// Another one holds what it would stop.
+    Internal,
+    /// The foot of a wall that stands on a floor with this normal, under the collider's upper side.
+    Wall(Vector),
+}
+
+impl Sliding {
+    /// Whether another manifold of the collider, between round shapes or not, holds the same as this one.
+    #[inline(always)]
+    fn is_parallel(&self, other: &Self) -> bool {
+        let apart = self.normal - other.normal;
+        let squared = apart.length_squared();
+        if !(self.is_round && other.is_round && squared < PARALLEL) || self.is_face {
+            return squared < PARALLEL;
+        }
+        // The point of round shapes moves with the normal, two points only across their line.
+        (apart - self.line * apart.dot(self.line)).length_squared() < ROUND_PARALLEL
+    }
+}
+
+/// The direction of a vector, 0 for none.
+fn unit(v: Vector) -> Vector {
+    let length = v.length();
+    if length > 0.0 { v * (1.0 / length) } else { Vector::ZERO }
 }
 
 impl<S> NarrowPhaseInput<'_, S> {
@@ -127,28 +186,55 @@ impl<S> NarrowPhaseInput<'_, S> {
         body != NONE && self.bodies[body].kind == BodyKind::Dynamic
     }
 
-    /// Whether the collider on a side of a contact slides over the other one as over ground.
-    pub(super) fn slides(&self, contact: &Contact, side: usize) -> bool {
-        let [body, ground] = [contact.bodies[side], contact.bodies[1 - side]];
-        // Deep overlap is pushed out from all sides.
-        if !self.is_dynamic(body) || contact.flags.has(ContactFlags::DEEP) {
-            return false;
+    /// The side of a contact whose collider slides over the other one as over ground.
+    pub(super) fn sliding_side(&self, contact: &Contact) -> Option<usize> {
+        let relative = (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length_squared();
+        // Most do not move. And deep overlap is pushed out from all sides.
+        if !(relative > min(SLIDING, MOVING) * min(SLIDING, MOVING)) || contact.flags.has(ContactFlags::DEEP)
+        {
+            return None;
         }
-        let relative = self.relative_speed_squared(contact);
-        if self.is_dynamic(ground) {
-            relative > SLIDING * SLIDING && self.speed_squared(ground) < RESTING * RESTING
-        } else {
-            relative > MOVING * MOVING
+        match contact.bodies.map(|body| self.is_dynamic(body)) {
+            [false, false] => None,
+            [true, true] => (0..2).find(|side| {
+                relative > SLIDING * SLIDING
+                    && self.speed_squared(contact.bodies[1 - side]) < RESTING * RESTING
+            }),
+            [is_of_a, _] => (relative > MOVING * MOVING).then_some(usize::from(!is_of_a)),
         }
     }
 
-    /// Whether a contact's manifolds are to be compared with others of the same collider.
+    /// Notes a contact whose manifolds are to be compared with others of the same collider, and the manifolds of one that slides no
+    /// more. `extra` are its recycled manifolds after the first.
     #[inline(always)]
-    pub(super) fn may_be_internal(&self, contact: &Contact) -> bool {
-        contact.is_solved()
-            && (contact.manifold.is_internal
-                || contact.extra_count > 0
-                || self.moves(contact) && (self.slides(contact, 0) || self.slides(contact, 1)))
+    pub(super) fn note_sliding<W>(
+        &self,
+        id: u32,
+        contact: &mut Contact,
+        extra: &[Manifold],
+        worker: &mut WorkerBuffers<W>,
+    ) {
+        let side = if contact.is_solved() { self.sliding_side(contact) } else { None };
+        contact.flags.set(ContactFlags::SLIDES_A, side == Some(0));
+        contact.flags.set(ContactFlags::SLIDES_B, side == Some(1));
+        if side.is_some() {
+            worker.sliding.push(id);
+        } else {
+            let marked =
+                core::iter::once(&contact.manifold).chain(extra).zip(0..).filter(|(m, _)| m.is_internal);
+            worker.internal.extend(marked.map(|(_, index)| (id, index)));
+        }
+    }
+
+    /// How far the ground on the other side of a contact reaches in a direction, from the centre of mass of the side's body; `None` for
+    /// surfaces and planes.
+    fn top(&self, contact: &Contact, side: usize, direction: Vector) -> Option<f32> {
+        let mut fixed = [None; 2];
+        let center = self.poses(contact, &mut fixed)[side].center;
+        let ground = contact.colliders[1 - side];
+        let pose = &self.colliders.poses[ground as usize];
+        let farthest = self.colliders[ground].def.shape.support(pose.rotation.inverse_rotate(direction))?;
+        Some(((pose.position - center).to_local() + pose.rotation.rotate(farthest)).dot(direction))
     }
 
     /// Whether the ground on the other side of a contact goes on above the plane of a holding manifold.
@@ -180,17 +266,6 @@ impl<S> NarrowPhaseInput<'_, S> {
         let ball = Ball { radius: 0.5 * height + self.margin(contact) };
         manifolds::touches(shape, ball, &pose, worker)
     }
-
-    /// Whether a contact's bodies move against each other fast enough to [slide](Self::slides). Most do not.
-    #[inline(always)]
-    fn moves(&self, contact: &Contact) -> bool {
-        self.relative_speed_squared(contact) > min(SLIDING, MOVING) * min(SLIDING, MOVING)
-    }
-
-    #[inline(always)]
-    fn relative_speed_squared(&self, contact: &Contact) -> f32 {
-        (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length_squared()
-    }
 }
 
 impl ContactTable {
@@ -213,72 +288,147 @@ impl ContactTable {
         let mut lost = core::mem::take(&mut self.lost);
         for (id, index) in workers.iter_mut().flat_map(|worker| worker.internal.drain(..)) {
             let contact = &self.contacts[id as usize];
-            let side = usize::from(!input.slides(contact, 0));
+            let side = usize::from(contact.flags.has(ContactFlags::SLIDES_B));
             let was = *self.manifold(contact, index).expect("the manifold was looked at");
             if !was.is_internal && input.match_points {
                 load::note_internal((id, index), side, contact, &was, &mut lost);
             }
-            let contact = &mut self.contacts[id as usize];
-            let manifold = match index {
-                0 => &mut contact.manifold,
-                _ => &mut self.extra[contact.extra as usize][index as usize - 1],
-            };
+            let manifold = self.manifold_mut(id, index);
             manifold.is_internal = !was.is_internal;
             if manifold.is_internal {
                 manifold.friction_impulse = Vector::ZERO;
                 manifold.twist_impulse = 0.0;
                 manifold.points.iter_mut().for_each(|p| (p.impulse, p.total_impulse) = (0.0, 0.0));
             }
+            let contact = &mut self.contacts[id as usize];
+            // The collider passes an edge, and meets the face behind it. In a composite both are of one contact.
+            if !contact.flags.has(ContactFlags::COMPOSITE) {
+                contact.flags.set(ContactFlags::FROZEN, false);
+            }
             self.points[id as usize] = PointCount::of(contact);
         }
         self.lost = lost;
-    }
-
-    /// Adds the manifolds of a contact whose mark is to change.
-    fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, id: u32, worker: &mut WorkerBuffers<W>) {
-        let contact = self.get(id);
-        for index in 0..=u32::from(contact.extra_count) {
-            let Some(manifold) = self.manifold(contact, index).filter(|m| m.count > 0) else { continue };
-            let is_internal = (0..2).any(|side| {
-                input.slides(contact, side) && self.is_internal(input, id, side, manifold, worker)
-            });
-            if is_internal != manifold.is_internal {
-                worker.internal.push((id, index));
-            }
+        for wall in workers.iter_mut().flat_map(|worker| worker.walls.drain(..)) {
+            self.raise(wall);
         }
     }
 
-    /// Whether another manifold of the collider on a side of a contact holds what this one would stop.
-    fn is_internal<S, W>(
+    /// Adds the manifolds of a sliding collider whose mark is to change, of all its contacts with the first one.
+    fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, id: u32, worker: &mut WorkerBuffers<W>) {
+        let contact = self.get(id);
+        let side = usize::from(contact.flags.has(ContactFlags::SLIDES_B));
+        let collider = contact.colliders[side];
+        let mut contacts =
+            self.of_collider(collider, input.colliders).filter(|id| self.slides(*id, collider));
+        if contacts.next() != Some(id) {
+            return;
+        }
+        let mut all = core::mem::take(&mut worker.slides);
+        all.clear();
+        for id in core::iter::once(id).chain(contacts) {
+            let contact = self.get(id);
+            let side = usize::from(contact.colliders[1] == collider);
+            for index in 0..=u32::from(contact.extra_count) {
+                let Some(m) = self.manifold(contact, index).filter(|m| m.count > 0) else { continue };
+                let line = match m.points() {
+                    [p, q] => unit(q.anchor - p.anchor),
+                    _ => Vector::ZERO,
+                };
+                all.push(Sliding {
+                    contact: id,
+                    index,
+                    side,
+                    normal: if side == 0 { -m.normal } else { m.normal },
+                    is_round: m.radii != [0.0; 2],
+                    is_face: m.count > 2,
+                    line,
+                    is_marked: m.is_internal,
+                });
+            }
+        }
+        // Within half of the tolerance of one, all are parallel.
+        let tolerance = if all.iter().any(|m| m.is_round) { ROUND_PARALLEL } else { PARALLEL };
+        let is_plane = all.iter().all(|m| (m.normal - all[0].normal).length_squared() < 0.25 * tolerance);
+        for this in &all {
+            let role = if is_plane { Role::Obstacle } else { self.role(input, this, &all, worker) };
+            if (role == Role::Internal) != this.is_marked {
+                worker.internal.push((this.contact, this.index));
+            }
+            if let Role::Wall(up) = role {
+                worker.walls.push((this.contact, this.index, up));
+            }
+        }
+        worker.slides = all;
+    }
+
+    /// Whether a collider slides over the other one of a contact in this update.
+    pub(super) fn slides(&self, id: u32, collider: u32) -> bool {
+        let contact = self.get(id);
+        let sides = [ContactFlags::SLIDES_A, ContactFlags::SLIDES_B];
+        contact.flags.has(sides[usize::from(contact.colliders[1] == collider)]) && self.is_active(id)
+    }
+
+    fn see<'a, S>(&'a self, input: &NarrowPhaseInput<S>, sliding: &Sliding) -> Seen<'a> {
+        let contact = self.get(sliding.contact);
+        let manifold = self.manifold(contact, sliding.index).expect("its contact has it");
+        Seen::new(input, contact, sliding.side, manifold)
+    }
+
+    /// What a manifold is beside the others of the collider.
+    fn role<S, W>(
         &self,
         input: &NarrowPhaseInput<S>,
-        id: u32,
-        side: usize,
-        manifold: &Manifold,
+        this: &Sliding,
+        all: &[Sliding],
         worker: &mut WorkerBuffers<W>,
-    ) -> bool {
-        let contact = self.get(id);
-        let (collider, ground) = (contact.colliders[side], contact.colliders[1 - side]);
-        let mut seen = None;
-        self.of_collider(collider, input.colliders).any(|other_id| {
-            let other = self.get(other_id);
-            let other_side = usize::from(other.colliders[1] == collider);
-            (0..=u32::from(other.extra_count)).any(|other_index| {
-                let Some(m) = self.manifold(other, other_index).filter(|m| m.count > 0) else { return false };
-                // Most are of the same plane, or this one itself. All else is looked at only if not.
-                if are_parallel(manifold, m, side != other_side)
-                    || !other.is_solved()
-                    || !(other_id == id || input.slides(other, other_side))
-                {
-                    return false;
-                }
-                let seen = seen.get_or_insert_with(|| Seen::new(input, contact, side, manifold));
-                let holding = Seen::new(input, other, other_side, m);
-                seen.is_held_by(&holding)
-                    && !self.stands_on([ground, other.colliders[1 - other_side]], holding.normal)
-                    && !input.rises(contact, side, seen, &holding, worker)
-            })
-        })
+    ) -> Role {
+        let contact = self.get(this.contact);
+        let (mut seen, mut steepest, mut role) = (None, -LEANS, Role::Obstacle);
+        // Most are of the same plane, or this one itself.
+        for other in all.iter().filter(|other| !this.is_parallel(other)) {
+            let seen = seen.get_or_insert_with(|| self.see(input, this));
+            let holding = self.see(input, other);
+            // An edge of the collider is at a seam: the next piece ends at the plane of this one, but not the other way round.
+            let is_plane_of_both = || {
+                let [own, of_other] = [(this, &holding), (other, &*seen)].map(|(of, plane)| {
+                    let top = input.top(self.get(of.contact), of.side, plane.normal)?;
+                    Some(top - plane.plane() <= plane.flush)
+                });
+                own == Some(true) && of_other == Some(false)
+            };
+            if !seen.is_held_by(&holding, is_plane_of_both) {
+                continue;
+            }
+            let ground = self.get(other.contact).colliders[1 - other.side];
+            let stands = self.stands_on([contact.colliders[1 - this.side], ground], holding.normal);
+            if !stands && !input.rises(contact, this.side, seen, &holding, worker) {
+                return Role::Internal;
+            }
+            let cos = seen.normal.dot(holding.normal);
+            if cos < steepest {
+                (steepest, role) = (cos, Role::Wall(holding.normal));
+            }
+        }
+        role
+    }
+
+    /// Makes a manifold of a wall's foot one of its side, with the same points on the ground. Its normal is that of the collider's
+    /// upper side, and would press the collider into the floor.
+    fn raise(&mut self, (id, index, up): (u32, u32, Vector)) {
+        let side = if self.get(id).flags.has(ContactFlags::SLIDES_B) { 1.0 } else { -1.0 };
+        let manifold = self.manifold_mut(id, index);
+        let level = manifold.normal - up * manifold.normal.dot(up);
+        let cos = level.length();
+        if !(cos > LEANS) {
+            return;
+        }
+        let (old, new) = (manifold.normal, level * (1.0 / cos));
+        for p in &mut manifold.points[..usize::from(manifold.count)] {
+            p.anchor += (new * (p.frozen_separation / cos) - old * p.frozen_separation) * (0.5 * side);
+            p.frozen_separation /= cos;
+            p.separation /= cos;
+        }
+        manifold.normal = new;
     }
 
     /// Whether the first of two colliders stands on the second, whose plane has this normal: then its foot is an obstacle.

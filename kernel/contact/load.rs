@@ -8,7 +8,7 @@
 //! Points are lost in parallel, and handed on by one thread in the order of contacts.
 
 use super::input::NarrowPhaseInput;
-use super::record::{Contact, ContactFlags, Lost, Manifold, ManifoldPoint};
+use super::record::{Contact, Lost, Manifold, ManifoldPoint};
 use super::table::ContactTable;
 use crate::math::Vector;
 
@@ -40,7 +40,7 @@ impl Before {
         if contact.manifold.count == 0 || !contact.is_solved() || !input.match_points {
             return None;
         }
-        let side = (0..2).find(|side| input.slides(contact, *side))?;
+        let side = input.sliding_side(contact)?;
         Some(Self { side, manifold: contact.manifold, offset: contact.frozen.offset })
     }
 
@@ -102,12 +102,7 @@ impl ContactTable {
         lost.sort_unstable_by_key(|lost| (lost.contact, lost.number));
         for lost in lost.drain(..) {
             let Some((id, index, point)) = self.nearest(input, &lost) else { continue };
-            let contact = &mut self.contacts[id as usize];
-            let manifold = match index {
-                0 => &mut contact.manifold,
-                _ => &mut self.extra[contact.extra as usize][index as usize - 1],
-            };
-            manifold.points[point].impulse += lost.impulse;
+            self.manifold_mut(id, index).points[point].impulse += lost.impulse;
         }
         self.lost = lost;
     }
@@ -116,13 +111,10 @@ impl ContactTable {
     fn nearest<S>(&self, input: &NarrowPhaseInput<S>, lost: &Lost) -> Option<(u32, u32, usize)> {
         let mut best = None;
         let mut least = f32::INFINITY;
-        for id in self.of_collider(lost.collider, input.colliders) {
+        let contacts = self.of_collider(lost.collider, input.colliders);
+        for id in contacts.filter(|id| self.slides(*id, lost.collider)) {
             let contact = self.get(id);
             let side = usize::from(contact.colliders[1] == lost.collider);
-            let is_over = contact.flags.has(ContactFlags::SEPARATED);
-            if is_over || !contact.is_solved() || !input.slides(contact, side) {
-                continue;
-            }
             for index in 0..=u32::from(contact.extra_count) {
                 let Some(m) = self.manifold(contact, index).filter(|m| !m.is_internal) else { continue };
                 if !(toward(side, m).dot(lost.normal) > SAME_NORMAL) {

@@ -184,9 +184,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
             let extra = unsafe { self.extra(contact) };
             if recycle(self.input, &worker.batch, place, contact, extra) {
                 worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
-                if self.input.may_be_internal(contact) {
-                    worker.sliding.push(id);
-                }
+                self.input.note_sliding(id, contact, extra, worker);
             } else {
                 self.recompute(id, contact, count, worker);
             }
@@ -218,6 +216,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
             before.note_lost(id, contact, extra, core::iter::empty(), &mut worker.lost);
         }
         contact.flags.set(ContactFlags::SEPARATED, true);
+        contact.flags.set(ContactFlags::SLIDES_A.union(ContactFlags::SLIDES_B), false);
         worker.changed.push(id);
         worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
     }
@@ -249,9 +248,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
             worker.pool.extend_from_slice(&worker.extra);
         }
         worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
-        if self.input.may_be_internal(contact) {
-            worker.sliding.push(id);
-        }
+        self.input.note_sliding(id, contact, &[], worker);
         // Blocks share cache lines of counts, so equal counts are not written.
         let now = PointCount::of(contact);
         if *count != now {
@@ -340,8 +337,11 @@ fn recompute<S: ManifoldSource>(
         let gap = manifolds::keep_met(input, contact, &mut buffers.local);
         search.prediction = min(search.prediction, gap);
     }
-    freeze(input, contact, poses, &search, buffers.local.is_empty());
+    freeze(input, contact, poses, &search, &buffers.local);
     manifolds::replace(input, contact, old_extra, poses[0], search.meeting.as_ref(), buffers);
+    if contact.flags.any(ContactFlags::TOUCHING.union(ContactFlags::COMPOSITE)) {
+        flags::set_platform(input, contact);
+    }
     // Only what has just come together, or was changed by hand, was placed where it is; all else was pressed there,
     // unless its bodies are crowded by those that were placed.
     flags::recomputed(input, contact, is_crowded || is_changed);
@@ -377,7 +377,6 @@ fn search_parts<S: ManifoldSource>(
 ) -> Search {
     let (prediction, margin) = (input.prediction(contact), input.margin(contact));
     let farthest = input.farthest(contact, prediction);
-    flags::set_platform(input, contact);
     let gap = input.box_gap(contact) - margin;
     if gap > farthest {
         return Search { prediction: gap, meeting: None, has_far: false };
@@ -440,7 +439,6 @@ fn search_native<S>(
     if local.count == 0 {
         return Search { prediction: max(gap - margin, looked_up_to), meeting: None, has_far: false };
     }
-    flags::set_platform(input, contact);
     found.push(local);
     Search { prediction: min(prediction, until_lag), meeting, has_far }
 }
@@ -453,7 +451,7 @@ fn freeze<S>(
     contact: &mut Contact,
     poses: [&BodyPose; 2],
     search: &Search,
-    is_empty: bool,
+    found: &[LocalManifold],
 ) {
     let offset = (poses[1].center - poses[0].center).to_local();
     contact.frozen = Frozen {
@@ -462,8 +460,9 @@ fn freeze<S>(
         prediction: search.prediction,
     };
     let is_native = !contact.flags.has(ContactFlags::FOREIGN);
-    let is_lasting = search.meeting.is_none() && !search.has_far;
+    let is_lasting =
+        search.meeting.is_none() && !search.has_far && found.iter().all(|local| local.closing == 0.0);
     let is_recyclable = input.recycle_distance > 0.0 && is_native && is_lasting;
-    let is_kept = is_empty || !contact.flags.has(ContactFlags::SENSOR);
+    let is_kept = found.is_empty() || !contact.flags.has(ContactFlags::SENSOR);
     contact.flags.set(ContactFlags::FROZEN, is_recyclable && is_kept);
 }

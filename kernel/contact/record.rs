@@ -39,6 +39,11 @@ impl ContactFlags {
     /// The embedder wants no response for this pair: no rows, no colour, no island.
     pub const QUIET: Self = Self(1 << 11);
 
+    /// Collider A slid over B as over ground in the last update. Not both slide.
+    pub const SLIDES_A: Self = Self(1 << 12);
+    /// Collider B slid over A as over ground in the last update.
+    pub const SLIDES_B: Self = Self(1 << 13);
+
     /// Whether all bits of `other` are set.
     #[inline(always)]
     pub fn has(self, other: Self) -> bool {
@@ -65,7 +70,7 @@ impl ContactFlags {
 pub struct ManifoldPoint {
     /// From body A's centre of mass, in world axes, at the frozen pose.
     pub anchor: Vector,
-    /// The separation at the frozen pose, in metres.
+    /// The separation at the frozen pose, in metres; where shapes that move meet, for those.
     pub frozen_separation: f32,
     /// The separation now, in metres.
     pub separation: f32,
@@ -139,6 +144,25 @@ pub(super) struct Lost {
     /// From the ground to the collider.
     pub(super) normal: Vector,
     pub(super) impulse: f32,
+}
+
+/// A manifold of a moving collider with what it slides over.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sliding {
+    pub(super) contact: u32,
+    /// The manifold's number in the contact.
+    pub(super) index: u32,
+    /// The collider's side of the contact.
+    pub(super) side: usize,
+    /// From the ground to the collider.
+    pub(super) normal: Vector,
+    /// Whether both shapes are round.
+    pub(super) is_round: bool,
+    pub(super) is_face: bool,
+    /// From its first to its second point, of length 1; 0 for one point.
+    pub(super) line: Vector,
+    /// Whether the manifold is marked.
+    pub(super) is_marked: bool,
 }
 
 /// The relative pose of the bodies at which the manifold was computed, turned since then with a platform.

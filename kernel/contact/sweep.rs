@@ -380,7 +380,6 @@ impl Meeting {
                 self.turns[side].shift_along(arm, arm.cross(n), n)
             });
             p.separation -= along + shifts[1] - shifts[0];
-            p.frozen_separation = p.separation;
         }
     }
 }

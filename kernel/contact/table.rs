@@ -170,6 +170,16 @@ impl ContactTable {
         &mut self.contacts[id as usize]
     }
 
+    /// A contact's manifold by its number, which it has.
+    #[inline(always)]
+    pub(super) fn manifold_mut(&mut self, id: u32, index: u32) -> &mut Manifold {
+        let contact = &mut self.contacts[id as usize];
+        match index {
+            0 => &mut contact.manifold,
+            _ => &mut self.extra[contact.extra as usize][index as usize - 1],
+        }
+    }
+
     /// A contact's manifold by its number, if there is one.
     #[inline(always)]
     pub fn manifold<'a>(&'a self, contact: &'a Contact, index: u32) -> Option<&'a Manifold> {

@@ -395,6 +395,7 @@ impl Pass<'_> {
             if gap <= met || round == MAX_ROUNDS {
                 let doubt = there.collide_part(part, self.look.prediction, local);
                 let along = local.normal.dot(way) * share;
+                local.closing = -along;
                 let count = local.count;
                 for p in &mut local.points[..count] {
                     // The point is on the other shape, at that shape's current pose.

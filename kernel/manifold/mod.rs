@@ -45,6 +45,9 @@ pub struct LocalManifold {
     pub radii: [f32; 2],
     /// The groups of the facets of A and B, see [`Look::groups`]; 0 without.
     pub groups: [u8; 2],
+    /// How far [`Look::motion`] closes the shapes along the normal until they meet, in metres; 0 if they are near now. If not 0, points
+    /// are on the shape that is not composite, or on B, where it is now.
+    pub closing: f32,
 }
 
 impl LocalManifold {

@@ -1,6 +1,6 @@
 //! Bodies on rotating platforms: contacts are recycled while both rotate together.
 
-use super::dim::{sized, spin, tilts, upright};
+use super::dim::{sized, spin, tilts, turntables, upright};
 use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Angular, Rot, Vector, WorldPose};
@@ -179,6 +179,35 @@ fn a_box_rides_a_turntable() {
                 let way = (plate.place() - from).length();
                 assert!(way < 1e-3, "{body_first}: it crept {way} m in {turn} turns");
             }
+        }
+    }
+}
+
+/// Two curved shapes counted as round, between which nothing is carried: coins flew off.
+#[test]
+fn coins_ride_a_round_turntable() {
+    let Some(axis) = upright() else { return };
+    for (name, table, coin) in turntables() {
+        for share in [0.1f32, 0.5] {
+            let (radius, friction) = (1.0, 0.6);
+            let mut sim = Sim::new();
+            sim.checked = false;
+            let height = |shape: &Shape| shape.local_aabb(Rot::IDENTITY).max.y;
+            let plate =
+                sim.add_with(BodyKind::Kinematic, table.clone(), Vector::ZERO, Rot::IDENTITY, friction, 0.0);
+            let at = Vector::Y * (height(&table) + height(&coin)) + Vector::X * radius;
+            let id = sim.add_with(BodyKind::Dynamic, coin.clone(), at, Rot::IDENTITY, friction, 0.0);
+            sim.steps(30);
+            // ω² r is a share of μ g.
+            let speed = (share * friction * GRAVITY / radius).sqrt();
+            for k in 0..1500 {
+                let angular = axis * (speed * (k as f32 / 300.0).min(1.0));
+                sim.bodies.set_velocity(plate, Velocity { angular, ..Velocity::default() });
+                sim.step();
+            }
+            let away = sim.position(id).to_local() - Vector::Y * sim.position(id).to_local().y;
+            let moved = (away.length() - radius).abs();
+            assert!(moved < 0.01, "{name} at {share} of its grip: {moved} m outwards");
         }
     }
 }

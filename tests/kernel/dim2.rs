@@ -109,6 +109,11 @@ pub fn upright() -> Option<Angular> {
     None
 }
 
+/// Round tables and what stands on them: none in 2D.
+pub fn turntables() -> Vec<(&'static str, Shape, Shape)> {
+    Vec::new()
+}
+
 /// Shapes that slide over floors.
 pub fn riders() -> Vec<(&'static str, Shape)> {
     let half = Vector { x: 0.25, y: 0.25 };

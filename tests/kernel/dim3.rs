@@ -124,6 +124,20 @@ pub fn upright() -> Option<Angular> {
     Some(Vector::Y)
 }
 
+/// Round tables and what stands on them.
+pub fn turntables() -> Vec<(&'static str, Shape, Shape)> {
+    let curved =
+        |lower: f32, upper: f32, half_height: f32| Shape::Curved(Curved { lower, upper, half_height });
+    let table = || curved(4.0, 4.0, 0.5);
+    vec![
+        ("coin", table(), curved(0.3, 0.3, 0.03)),
+        ("cylinder", table(), curved(0.2, 0.2, 0.3)),
+        ("cone", table(), curved(0.3, 0.0, 0.25)),
+        ("frustum", table(), curved(0.3, 0.2, 0.2)),
+        ("box", table(), Shape::Cuboid(Cuboid { half: Vector::ONE * 0.2 })),
+    ]
+}
+
 /// Shapes that slide over floors.
 pub fn riders() -> Vec<(&'static str, Shape)> {
     let half = Vector { x: 0.25, y: 0.25, z: 0.25 };

@@ -83,6 +83,16 @@ fn line(count: u32, vertex: impl Fn(u32) -> Vector) -> Shape {
     Shape::surface(Surface::new((0..=count).map(vertex).collect(), facets).expect("a line"))
 }
 
+/// Level lines as they come from editors: in chunks, and with points twice.
+pub fn messy() -> Vec<Floor> {
+    let chunk = |k: i32| {
+        let at = |i: u32| Vector::X * [0.0, 0.4, 1.0][i as usize];
+        (line(2, at), Vector::X * (k as f32 - 3.0))
+    };
+    let twice = line(69, |i| Vector::X * ((i / 2) as f32 * 0.5 - 3.0));
+    vec![("chunks", (0..17).map(chunk).collect()), ("points twice", vec![(twice, Vector::ZERO)])]
+}
+
 /// More shapes that slide over floors, with their rotations.
 pub fn more_riders() -> Vec<(&'static str, Shape, Rot)> {
     let half = Vector { x: 0.2, y: 0.2 };
@@ -194,5 +204,11 @@ pub fn feet() -> Vec<(&'static str, Shape)> {
     };
     let corners = [corner(-0.3, -0.2), corner(0.3, -0.2), corner(0.2, 0.2), corner(-0.2, 0.2)];
     let trapezoid = Hull::convex_hull_of(&corners, 0.0).expect("it is solid");
-    vec![("triangle", Shape::Triangle(triangle)), ("trapezoid", Shape::Hull(Arc::new(trapezoid)))]
+    let flat = [corner(-0.3, -0.05), corner(0.3, -0.05), corner(0.0, 0.05)];
+    let flat = Hull::convex_hull_of(&flat, 0.0).expect("it is solid");
+    vec![
+        ("triangle", Shape::Triangle(triangle)),
+        ("trapezoid", Shape::Hull(Arc::new(trapezoid))),
+        ("flat triangle", Shape::Hull(Arc::new(flat))),
+    ]
 }

@@ -98,7 +98,16 @@ fn irregular(size: f32) -> Shape {
 }
 
 fn mesh(size: f32, vertex: impl Fn(u32, u32) -> Vector, is_first: impl Fn(u32, u32) -> bool) -> Shape {
-    let (columns, rows) = ((17.0 / size) as u32 + 1, (4.0 / size) as u32 + 1);
+    let (vertices, facets) = squares([(17.0 / size) as u32 + 1, (4.0 / size) as u32 + 1], vertex, is_first);
+    Shape::surface(Surface::new(vertices, facets).expect("a surface"))
+}
+
+/// Vertices and triangles of squares, each cut along either diagonal.
+fn squares(
+    [columns, rows]: [u32; 2],
+    vertex: impl Fn(u32, u32) -> Vector,
+    is_first: impl Fn(u32, u32) -> bool,
+) -> (Vec<Vector>, Vec<[u32; 3]>) {
     let mut vertices = Vec::new();
     for i in 0..=columns {
         (0..=rows).for_each(|j| vertices.push(vertex(i, j)));
@@ -112,7 +121,47 @@ fn mesh(size: f32, vertex: impl Fn(u32, u32) -> Vector, is_first: impl Fn(u32, u
             facets.extend(halves);
         }
     }
-    Shape::surface(Surface::new(vertices, facets).expect("a surface"))
+    (vertices, facets)
+}
+
+/// Flat floors of meshes as they come from editors: in chunks, with triangles twice and from behind, with triangles of which two corners
+/// are in one place, and with vertices on the sides of neighbours.
+pub fn messy() -> Vec<Floor> {
+    let surface = |(vertices, facets): (Vec<Vector>, Vec<[u32; 3]>)| {
+        Shape::surface(Surface::new(vertices, facets).expect("a surface"))
+    };
+    let flat = |size: f32, counts: [u32; 2], from: [f32; 2], across: f32| {
+        let at = move |i: u32, j: u32| Vector {
+            x: from[0] + size * i as f32,
+            y: 0.0,
+            z: from[1] + across * j as f32,
+        };
+        squares(counts, at, |_, _| true)
+    };
+    let whole = || flat(0.43, [40, 10], [-3.0, -2.03], 0.43);
+    let chunk = |k: i32| (surface(flat(0.25, [4, 8], [0.0, -2.03], 0.5)), Vector::X * (k as f32 - 3.0));
+    let (vertices, mut twice) = whole();
+    let turned: Vec<_> = twice.iter().step_by(3).map(|[a, b, c]| [*c, *b, *a]).collect();
+    twice.extend(turned);
+    let twice = surface((vertices, twice));
+    let (vertices, mut empty) = whole();
+    let flat_ones: Vec<_> = empty.iter().step_by(2).map(|[a, b, _]| [*a, *b, *b]).collect();
+    empty.extend(flat_ones);
+    let empty = surface((vertices, empty));
+    let mut strips = (Vec::new(), Vec::new());
+    for k in 0..10 {
+        let size = [0.31, 0.5, 0.77, 1.0][k % 4];
+        let strip = flat(size, [(17.0 / size) as u32, 1], [-3.0, 0.4 * k as f32 - 2.0], 0.4);
+        let start = strips.0.len() as u32;
+        strips.0.extend(strip.0);
+        strips.1.extend(strip.1.iter().map(|facet: &[u32; 3]| facet.map(|i| i + start)));
+    }
+    vec![
+        ("chunks", (0..17).map(chunk).collect()),
+        ("triangles twice", vec![(twice, Vector::ZERO)]),
+        ("empty triangles", vec![(empty, Vector::ZERO)]),
+        ("strips", vec![(surface(strips), Vector::ZERO)]),
+    ]
 }
 
 /// More shapes that slide over floors, with their rotations.
@@ -258,5 +307,6 @@ pub fn feet() -> Vec<(&'static str, Shape)> {
         ("pyramid", hull(&[&square[..], &[corner(0.0, 0.4, 0.0)]].concat())),
         ("frustum", hull(&[square, top].concat())),
         ("cone", Shape::Curved(Curved { lower: 0.3, upper: 0.0, half_height: 0.25 })),
+        ("flat cone", Shape::Curved(Curved { lower: 0.3, upper: 0.0, half_height: 0.05 })),
     ]
 }

@@ -347,7 +347,9 @@ impl Sim {
         found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.pool);
         self.movers.clear();
         for &(a, b) in found.pairs() {
-            self.link().create(a, b);
+            if self.colliders[a].def.body != self.colliders[b].def.body {
+                self.link().create(a, b);
+            }
         }
         self.narrow();
         let params = self.params();

@@ -1,12 +1,12 @@
 //! Crowds of boxes that are driven over floors of pieces with friction, against closed forms.
 
 use super::dim::floors::{apart, laid, yawed};
-use super::dim::{sized, spin};
+use super::dim::{more_riders, sized, spin};
 use super::extreme::Dice;
 use super::sim::Sim;
 use crate::kernel;
-use kernel::math::{Rot, Vector};
-use kernel::shape::{Cuboid, Shape};
+use kernel::math::{Rot, Scalar, Vector};
+use kernel::shape::{Capsule, Cuboid, Shape};
 use kernel::table::{BodyKind, Velocity};
 
 const GRAVITY: f32 = 10.0;
@@ -99,4 +99,47 @@ fn boxes_driven_over_tiles_reach_the_speed_of_the_closed_form() {
 fn boxes_braked_by_tiles_end_at_the_speed_of_the_closed_form() {
     let errors = errors(Drive::Brake);
     assert!(errors.iter().all(|(_, error)| *error < 0.01), "{errors:?}");
+}
+
+/// A plank caught on the side of a tile whose upper corner was level with it. Of round bodies that lay on a tile's plane and others
+/// that were tilted by rounding against it, one tile alone held.
+#[test]
+fn small_tiles_brake_by_friction_alone() {
+    let mut shapes = vec![
+        ("box", Shape::Cuboid(Cuboid { half: Vector::ONE * 0.25 })),
+        ("plank", Shape::Cuboid(Cuboid { half: sized(0.5, 0.04, 0.2) })),
+        ("capsule", Shape::Capsule(Capsule { a: Vector::X * -0.25, b: Vector::X * 0.25, radius: 0.2 })),
+    ];
+    shapes.extend(
+        more_riders()
+            .into_iter()
+            .map(|(name, shape, _)| (name, shape))
+            .filter(|(name, _)| *name == "round box"),
+    );
+    let mut bad = Vec::new();
+    for size in [0.05f32, 0.1, 0.2] {
+        for (name, shape) in &shapes {
+            for (speed, friction) in [(5.0f32, 0.25f32), (8.0, 0.4)] {
+                let mut sim = Sim::new();
+                sim.checked = false;
+                let tile = Shape::Cuboid(Cuboid { half: sized(0.5 * size, 0.5, 1.0) });
+                for k in 0..(12.0 / size) as usize {
+                    let at = sized(-2.0 + 0.5 * size + size * k as f32, -0.5, 0.0);
+                    sim.add_with(BodyKind::Static, tile.clone(), at, Rot::IDENTITY, friction, 0.0);
+                }
+                let at = Vector::Y * -shape.local_aabb(Rot::IDENTITY).min.y;
+                let id = sim.add_with(BodyKind::Dynamic, shape.clone(), at, Rot::IDENTITY, friction, 0.0);
+                sim.steps(30);
+                let start = sim.position(id).x;
+                sim.bodies.set_velocity(id, Velocity { linear: Vector::X * speed, ..Velocity::default() });
+                sim.steps(180);
+                let way = Scalar::from(speed * speed / (2.0 * friction * GRAVITY));
+                let share = (sim.position(id).x - start) / way;
+                if (share - 1.0).abs() > 0.04 {
+                    bad.push(format!("{name} on {size} m at {speed} m/s: {share} of the way"));
+                }
+            }
+        }
+    }
+    assert!(bad.is_empty(), "{bad:#?}");
 }

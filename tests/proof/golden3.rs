@@ -10,15 +10,15 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("dominoes", 0x673eb503bb5daaeb),
     ("card_house", 0xe6146903538ecac2),
     ("towers", 0x18ce96b9cb419cb0),
-    ("smash", 0xce192b8098a62621),
+    ("smash", 0xae2cf826412bba3c),
     ("crowd", 0xaa0ff4ea2c3e4c39),
-    ("sleepers", 0x0c9554e7c3ac83eb),
-    ("bounces", 0xcf5d0706bf7c11c6),
-    ("settings", 0xe80debabaca881f7),
+    ("sleepers", 0xb36258823bb1856c),
+    ("bounces", 0xb086125d8dcfc8a7),
+    ("settings", 0x6ea90c0a12f63c05),
 ];
 
 /// For each scene with shapes of parry the hash of its final state.
-pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x8c792536587239ba), ("slopes", 0x74769eadeb619837)];
+pub const FOREIGN: [(&str, u64); 2] = [("pile", 0x37e0afe67f26f862), ("slopes", 0x74769eadeb619837)];
 
 /// Boxes along a side of the tumbler.
 pub const TUMBLER_SIDE: u32 = 7;
