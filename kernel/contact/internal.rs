@@ -135,9 +135,12 @@ impl<'a> Seen<'a> {
     /// Whether another manifold, which is not parallel, holds what this one would stop. If all points of both are in one place, it does
     /// where the other's plane is that of both pieces of ground.
     fn is_held_by(&self, other: &Seen, is_plane_of_both: impl FnOnce() -> bool) -> bool {
-        let [highest, of_other] = [other.highest(self), self.highest(other)];
-        let is_lower = highest < of_other || of_other >= -self.flush && is_plane_of_both();
-        if !(highest <= self.flush && is_lower) {
+        let highest = other.highest(self);
+        if !(highest <= self.flush) {
+            return false;
+        }
+        let of_other = self.highest(other);
+        if !(highest < of_other || of_other >= -self.flush && is_plane_of_both()) {
             return false;
         }
         let lowest = self.points().fold(f32::INFINITY, |low, [_, own]| min(low, own.dot(other.normal)));
@@ -313,7 +316,8 @@ impl ContactTable {
         }
     }
 
-    /// Adds the manifolds of a sliding collider whose mark is to change, of all its contacts with the first one.
+    /// Adds the manifolds of a sliding collider whose mark is to change, and those of walls. The collider's first contact adds them for
+    /// all its contacts; the others add nothing.
     fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, id: u32, worker: &mut WorkerBuffers<W>) {
         let contact = self.get(id);
         let side = usize::from(contact.flags.has(ContactFlags::SLIDES_B));
@@ -330,8 +334,9 @@ impl ContactTable {
             let side = usize::from(contact.colliders[1] == collider);
             for index in 0..=u32::from(contact.extra_count) {
                 let Some(m) = self.manifold(contact, index).filter(|m| m.count > 0) else { continue };
+                let is_round = m.radii != [0.0; 2];
                 let line = match m.points() {
-                    [p, q] => unit(q.anchor - p.anchor),
+                    [p, q] if is_round => unit(q.anchor - p.anchor),
                     _ => Vector::ZERO,
                 };
                 all.push(Sliding {
@@ -339,7 +344,7 @@ impl ContactTable {
                     index,
                     side,
                     normal: if side == 0 { -m.normal } else { m.normal },
-                    is_round: m.radii != [0.0; 2],
+                    is_round,
                     is_face: m.count > 2,
                     line,
                     is_marked: m.is_internal,

@@ -159,7 +159,7 @@ pub(super) struct Sliding {
     /// Whether both shapes are round.
     pub(super) is_round: bool,
     pub(super) is_face: bool,
-    /// From its first to its second point, of length 1; 0 for one point.
+    /// From its first to its second point, of length 1, between round shapes; 0 for one point.
     pub(super) line: Vector,
     /// Whether the manifold is marked.
     pub(super) is_marked: bool,

@@ -103,7 +103,7 @@ fn mesh(size: f32, vertex: impl Fn(u32, u32) -> Vector, is_first: impl Fn(u32, u
 }
 
 /// Vertices and triangles of squares, each cut along either diagonal.
-fn squares(
+pub fn squares(
     [columns, rows]: [u32; 2],
     vertex: impl Fn(u32, u32) -> Vector,
     is_first: impl Fn(u32, u32) -> bool,

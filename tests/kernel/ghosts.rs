@@ -322,6 +322,7 @@ fn feet_slide_over_flush_pieces() {
     }
 }
 
+/// A ball strays by 1.2 mm in 10 m over strips whose vertices are on the sides of neighbours.
 #[test]
 fn floors_of_messy_surfaces_do_not_stop_or_lift_what_slides_over_them() {
     for (floor, pieces) in messy() {

@@ -5,8 +5,9 @@
 
 use super::super::extreme::Dice;
 use super::super::sim::Sim;
+use super::floors::squares;
 use crate::kernel::math::{Rot, Vector};
-use crate::kernel::shape::{Ball, Capsule, Composite, Cuboid, Hull, Shape, Surface};
+use crate::kernel::shape::{Ball, Capsule, Cuboid, Hull, Shape, Surface};
 use crate::kernel::table::BodyKind;
 use std::sync::Arc;
 
@@ -15,24 +16,15 @@ const STEPS: usize = 110;
 
 /// A hilly surface of 20,000 triangles in cells of a metre, with a steep rim.
 fn hills() -> Shape {
-    let n = 101;
     let rim = |x: f32| 2.0 * (x.abs() - 43.0).max(0.0);
     let hill = |x: f32, z: f32| 1.5 * (0.21 * x).sin() * (0.17 * z).cos();
     let bump = |x: f32, z: f32| 0.25 * (0.9 * x + 0.3).sin() * (0.8 * z).sin();
-    let (mut points, mut triangles) = (Vec::new(), Vec::new());
-    for i in 0..n {
-        for j in 0..n {
-            let (x, z) = (i as f32 - 50.0, j as f32 - 50.0);
-            points.push(Vector { x, y: hill(x, z) + bump(x, z) + rim(x) + rim(z), z });
-            if i + 1 < n && j + 1 < n {
-                let a = i * n + j;
-                let [a, b, c, d] = [a, a + 1, a + n, a + n + 1].map(|i| i as u32);
-                triangles.extend([[a, b, c], [c, b, d]]);
-            }
-        }
-    }
-    let surface = Surface::new(points, triangles).expect("a surface");
-    Shape::Composite(Arc::new(Composite::of_surface(surface)))
+    let vertex = |i: u32, j: u32| {
+        let (x, z) = (i as f32 - 50.0, j as f32 - 50.0);
+        Vector { x, y: hill(x, z) + bump(x, z) + rim(x) + rim(z), z }
+    };
+    let (vertices, facets) = squares([100; 2], vertex, |_, _| false);
+    Shape::surface(Surface::new(vertices, facets).expect("a surface"))
 }
 
 /// A lumpy convex body of 12 points around a radius: a stretched icosahedron.
