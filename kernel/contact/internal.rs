@@ -7,7 +7,7 @@
 //! a wall has no such point: there the wall itself is looked at, whether it goes on above the plane.
 //!
 //! Only manifolds of moving colliders with ground are compared: what is not dynamic, or is dynamic and at rest. The result
-//! depends on positions alone, not on the order of manifolds.
+//! depends on positions and velocities, not on the number of threads.
 
 use super::buffers::WorkerBuffers;
 use super::input::{ManifoldSource, NarrowPhaseInput, smaller};
@@ -35,7 +35,7 @@ const BELOW: f32 = 0.005;
 /// walls; less takes the edges of flush tiles for walls.
 const RISES: f32 = 4.0;
 
-/// The least sine of the angle by which the normal of a wall's foot points down. Less is rounding.
+/// The least sine by which the normal of a wall's foot points down, and the least length of its level part. Less is rounding.
 const LEANS: f32 = 0.05;
 
 /// Planes whose normals differ by less than this hold the same, squared, in radians: 0.2°.
@@ -161,7 +161,7 @@ enum Role {
 }
 
 impl Sliding {
-    /// Whether another manifold of the collider, between round shapes or not, holds the same as this one.
+    /// Whether another manifold of the collider holds the same as this one.
     #[inline(always)]
     fn is_parallel(&self, other: &Self) -> bool {
         let apart = self.normal - other.normal;
@@ -304,7 +304,7 @@ impl ContactTable {
                 manifold.points.iter_mut().for_each(|p| (p.impulse, p.total_impulse) = (0.0, 0.0));
             }
             let contact = &mut self.contacts[id as usize];
-            // The collider passes an edge, and meets the face behind it. In a composite both are of one contact.
+            // The collider passes an edge, and meets the face behind it. Of a composite, one contact has both.
             if !contact.flags.has(ContactFlags::COMPOSITE) {
                 contact.flags.set(ContactFlags::FROZEN, false);
             }

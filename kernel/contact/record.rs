@@ -70,7 +70,7 @@ impl ContactFlags {
 pub struct ManifoldPoint {
     /// From body A's centre of mass, in world axes, at the frozen pose.
     pub anchor: Vector,
-    /// The separation at the frozen pose, in metres; where shapes that move meet, for those.
+    /// The separation at the frozen pose, in metres. Of shapes that meet later in the step it is that of when they meet.
     pub frozen_separation: f32,
     /// The separation now, in metres.
     pub separation: f32,
@@ -156,10 +156,11 @@ pub(super) struct Sliding {
     pub(super) side: usize,
     /// From the ground to the collider.
     pub(super) normal: Vector,
-    /// Whether both shapes are round.
+    /// Whether a shape is round.
     pub(super) is_round: bool,
+    /// Whether it has more than two points.
     pub(super) is_face: bool,
-    /// From its first to its second point, of length 1, between round shapes; 0 for one point.
+    /// From its first to its second point, of length 1, if a shape is round; 0 for one point.
     pub(super) line: Vector,
     /// Whether the manifold is marked.
     pub(super) is_marked: bool,
