@@ -6,6 +6,10 @@ use crate::graph::{ColorGraph, ConstraintKind, OVERFLOW};
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
 use core::sync::atomic::AtomicBool;
 
+/// Bodies that turn by less than this in half a step, in rad, keep their inertia through it. More lets them gain spin in
+/// contacts, less slows down piles that creep.
+const STILL: f32 = 1.0e-3;
+
 /// Acceleration and damping of a body. Constant over a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
@@ -130,6 +134,11 @@ impl<T> OnceEach<T> {
     /// Rows with their items. No row is listed twice.
     pub(super) fn list(&self) -> &[(u32, T)] {
         &self.list
+    }
+
+    /// Whether a row has an item.
+    fn contains(&self, row: u32) -> bool {
+        self.rows.contains(row)
     }
 
     /// As [`list`](Self::list), to be changed by several threads.
@@ -288,6 +297,21 @@ impl BodyRows {
         }
         for (row, spin) in far.filter(|(row, _)| constrained.contains(*row)) {
             fast_turns.push(*row as usize, FastTurn::new(spin));
+        }
+    }
+
+    /// Turns the inertia of bodies to that of the middle of a step of `dt` seconds. With that of the start, contacts add to
+    /// the spin of bodies whose axes are askew to it. Bodies that turn far keep it: their constraints see the start.
+    pub(super) fn turn_inertia(&mut self, dt: f32) {
+        let Self { spins, fast_turns, rows, masses, turn_locked, .. } = self;
+        for (row, _) in spins.list() {
+            let half = rows[*row as usize].velocity().1 * (0.5 * dt);
+            if half.length_squared() > STILL * STILL
+                && !turn_locked.contains(*row)
+                && !fast_turns.contains(*row)
+            {
+                masses[*row as usize].turn(half);
+            }
         }
     }
 

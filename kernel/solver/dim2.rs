@@ -146,6 +146,8 @@ impl MassRow {
     pub fn inv_inertia(&self) -> InvInertia {
         InvInertia { zz: self.quad.0[1] }
     }
+    /// Turns the inertia: in the plane it stays the same.
+    pub(super) fn turn(&mut self, _by: Angular) {}
     /// Loads one body for each lane.
     #[inline(always)]
     pub(super) fn gather<N: Lane>(rows: &[Self], ids: &N::Ids) -> (N, InvInertia<N>) {

@@ -177,6 +177,12 @@ impl MassRow {
         let ([_, xx, yy, zz], [xy, xz, yz, _]) = (self.diagonal.0, self.rest.0);
         InvInertia { xx, yy, zz, xy, xz, yz }
     }
+    /// Turns the inertia by a small rotation vector.
+    pub(super) fn turn(&mut self, by: Angular) {
+        let half = by * 0.5;
+        let by = Rot { x: half.x, y: half.y, z: half.z, w: 1.0 }.normalized();
+        *self = Self::new(self.inv_mass(), self.inv_inertia().rotated(by));
+    }
     /// Loads one body for each lane.
     #[inline(always)]
     pub(super) fn gather<N: Lane>(rows: &[Self], ids: &N::Ids) -> (N, InvInertia<N>) {

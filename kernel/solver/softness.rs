@@ -56,6 +56,8 @@ pub struct SubstepParams {
     pub h: f32,
     /// Inverse of `h`, 1/s.
     pub inv_h: f32,
+    /// Length of the step, in seconds.
+    pub dt: f32,
     /// Softness of contacts between two dynamic bodies.
     pub soft: Softness,
     /// Softness of contacts with an immovable body.
@@ -85,6 +87,7 @@ impl SubstepParams {
         Self {
             h,
             inv_h: 1.0 / h,
+            dt,
             soft: Softness::new(frequency, 10.0, h),
             stiff: Softness::new(2.0 * frequency, 10.0, h),
             max_push_speed: 4.0,
@@ -98,8 +101,7 @@ impl SubstepParams {
 
     /// Whether a substep may be run with these parameters.
     pub(super) fn is_valid(&self) -> bool {
-        let [h, inv_h] = [self.h, self.inv_h];
-        let is_step = h.is_finite() && h >= 0.0 && inv_h.is_finite() && inv_h >= 0.0;
+        let is_step = [self.h, self.inv_h, self.dt].iter().all(|x| x.is_finite() && *x >= 0.0);
         let limits = [self.max_push_speed, self.restitution_threshold, self.friction_fade, self.roll_speed];
         is_step
             && self.max_sag > 0.0

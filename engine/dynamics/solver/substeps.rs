@@ -45,6 +45,7 @@ impl Default for StepSolver {
             params: SubstepParams {
                 h: 1.0 / 360.0,
                 inv_h: 360.0,
+                dt: 1.0 / 60.0,
                 soft: Softness::RIGID,
                 stiff: Softness::RIGID,
                 max_push_speed: 4.0,
@@ -129,11 +130,13 @@ pub(crate) fn prepare_params(
     let soft = soft.map(|s| *s).unwrap_or_default();
     let unit = unit.metres();
     let substeps = count.0.max(1);
-    let h = time.delta_secs() / substeps as f32;
+    let dt = time.delta_secs();
+    let h = dt / substeps as f32;
     solver.substeps = substeps;
     solver.params = SubstepParams {
         h,
         inv_h: if h > 0.0 { 1.0 / h } else { 0.0 },
+        dt,
         soft: softness(soft.dynamic),
         stiff: softness(soft.non_dynamic),
         max_push_speed: setting(config.max_overlap_solve_speed, default.max_overlap_solve_speed) * unit,
