@@ -97,7 +97,7 @@ impl Solver {
         *first_dynamic = bodies.first_dynamic;
         deep.count(input, bodies);
         bodies.find_fast_turns(input, colors, params.h);
-        bodies.turn_inertia(params.dt);
+        bodies.turn_inertia(0.5 * (params.dt + params.h));
         let workers = pool.workers();
         shares.divide(workers, *first_dynamic, input, colors);
         let sorter = &Sorter { input, locks: &bodies.locks, shares };

@@ -393,37 +393,63 @@ fn the_inertia_of_a_thin_splinter_has_an_inverse() {
     assert_eq!(tiny.inverse(), InvInertia::ZERO, "the inverse is not finite");
 }
 
-/// Three bars that are joined askew.
-fn skew_bars() -> Shape {
-    let bar = |at: [f32; 3], half: [f32; 3]| {
+/// Solid boxes that are joined: the place and the half size of each.
+fn bars(list: [([f32; 3], [f32; 3]); 3]) -> Shape {
+    let bar = |(at, half): ([f32; 3], [f32; 3])| {
         let half = Vector::from_array(half);
         (Pose::new(Vector::from_array(at), Rot::IDENTITY), Shape::Cuboid(Cuboid { half }))
     };
-    Shape::compound(vec![
-        bar([0.0, 0.0, 0.0], [0.5, 0.1, 0.1]),
-        bar([0.4, 0.3, 0.0], [0.1, 0.3, 0.1]),
-        bar([-0.4, 0.0, 0.3], [0.1, 0.1, 0.3]),
-    ])
-    .expect("a compound")
+    Shape::compound(list.map(bar).into()).expect("a compound")
+}
+
+/// The least and the greatest share of its energy that a body has in 15 s on ice, after it was let down and given a spin about
+/// the vertical.
+fn energy_on_ice(shape: &Shape, clock: (f32, u32), speed: f32) -> [f64; 2] {
+    let mut sim = Sim::new();
+    (sim.dt, sim.substeps) = clock;
+    let ice = Shape::Cuboid(Cuboid { half: Vector { x: 50.0, y: 1.0, z: 50.0 } });
+    sim.add_with(BodyKind::Static, ice, Vector::Y * -1.0, Rot::IDENTITY, 0.0, 0.0);
+    let id = sim.add_with(BodyKind::Dynamic, shape.clone(), Vector::Y * 0.11, Rot::IDENTITY, 0.0, 0.0);
+    sim.steps((3.0 / clock.0) as usize);
+    let rest = sim.energy();
+    sim.bodies.velocities[id as usize].angular = Vector::Y * speed;
+    let start = sim.energy() - rest;
+    let mut range = [1.0f64, 1.0];
+    for _ in 0..(15.0 / clock.0) as usize {
+        sim.step();
+        let share = (sim.energy() - rest) / start;
+        range = [range[0].min(share), range[1].max(share)];
+    }
+    range
 }
 
 /// The floor pushed a body that spins askew as if it had not turned since the step began: in 15 s it gained a quarter of its spin.
 #[test]
 fn a_skew_body_that_spins_on_ice_keeps_its_energy() {
+    let shape = bars([
+        ([0.0, 0.0, 0.0], [0.5, 0.1, 0.1]),
+        ([0.4, 0.3, 0.0], [0.1, 0.3, 0.1]),
+        ([-0.4, 0.0, 0.3], [0.1, 0.1, 0.3]),
+    ]);
     for clock in CLOCKS {
-        let mut sim = Sim::new();
-        (sim.dt, sim.substeps) = clock;
-        let ice = Shape::Cuboid(Cuboid { half: Vector { x: 50.0, y: 1.0, z: 50.0 } });
-        sim.add_with(BodyKind::Static, ice, Vector::Y * -1.0, Rot::IDENTITY, 0.0, 0.0);
-        let id = sim.add_with(BodyKind::Dynamic, skew_bars(), Vector::Y * 0.11, Rot::IDENTITY, 0.0, 0.0);
-        sim.steps((3.0 / clock.0) as usize);
-        let rest = sim.energy();
-        sim.bodies.velocities[id as usize].angular = Vector::Y * 5.0;
-        let start = sim.energy() - rest;
-        for step in 0..(15.0 / clock.0) as usize {
-            sim.step();
-            let share = (sim.energy() - rest) / start;
-            assert!((share - 1.0).abs() < 0.05, "{clock:?}, step {step}: {share} of its energy");
+        let [least, most] = energy_on_ice(&shape, clock, 5.0);
+        assert!(least > 0.95 && most < 1.05, "{clock:?}: {least} to {most} of its energy");
+    }
+}
+
+/// It stands on an edge and the corner of another bar. Of the edge only one end was a point of contact, in turns, while points
+/// in the air had the other places: it gained up to 3.5 times its energy.
+#[test]
+fn a_body_that_spins_on_an_edge_and_a_corner_gains_no_energy() {
+    let shape = bars([
+        ([-0.3, 0.0, 0.3], [0.3, 0.1, 0.1]),
+        ([0.3, 0.2, -0.3], [0.3, 0.1, 0.1]),
+        ([0.0, 0.1, 0.0], [0.05, 0.2, 0.4]),
+    ]);
+    for clock in CLOCKS {
+        for speed in [4.0, 5.0, 5.5, 8.0] {
+            let [least, most] = energy_on_ice(&shape, clock, speed);
+            assert!(least > 0.9 && most < 1.01, "{clock:?}, {speed} rad/s: {least} to {most} of its energy");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The triangles of a surface: their borders, and contacts with their face alone.
 
-use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce};
+use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce_faces};
 use super::view::{Facing, Small, View};
 use super::{collide, curved, drop_unusable, is_near, triangle, with_view};
 use crate::manifold::{FeatureCache, LocalManifold, LocalPoint};
@@ -121,7 +121,7 @@ pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalMani
         candidates.push(Candidate { point, separation, feature });
     }
     let list = candidates.as_slice();
-    let (kept, count) = reduce(list, out.normal);
+    let (kept, count) = reduce_faces(list, out.normal);
     out.count = 0;
     for k in &kept[..count] {
         out.push(list[*k].point, list[*k].separation, list[*k].feature);

@@ -9,6 +9,11 @@ pub(super) const MAX_CANDIDATES: usize = 64;
 const ABOUT_EQUAL: f32 = 0.952;
 /// A point counts as deep as the deepest one within this share of the patch's size. Less makes the choice flicker.
 const DEEPER: f32 = 1.0e-3;
+/// The worth of a point of several faces falls with its height over the deepest one, down to [`IN_THE_AIR`] at this share of the
+/// patch's size. More drops one end of an edge that a body leans on for a point in the air; less makes the choice flicker.
+const HIGH: f32 = 0.02;
+/// The share of its worth that is left of a point in the air. More drops points that bear, less those that the body falls on.
+const IN_THE_AIR: f32 = 0.25;
 /// A point must add at least this share of the patch's squared size. Less keeps points on a line.
 const FLAT: f32 = 1.0e-6;
 
@@ -64,6 +69,19 @@ pub(super) fn reduce(list: &[Candidate], normal: Vector) -> ([usize; 4], usize) 
     }
 }
 
+/// As [`reduce`], of candidates from several faces: those above the deepest one are worth less.
+///
+/// Candidates of one face are in a plane, so that its ends hold it. Of several faces the ends may be in the air while the body
+/// leans on an edge between them. One end of that would be dropped, sink in, and be pushed out, which adds energy.
+#[inline]
+pub(super) fn reduce_faces(list: &[Candidate], normal: Vector) -> ([usize; 4], usize) {
+    match list.len() {
+        0..=4 => ([0, 1, 2, 3], list.len()),
+        5..=16 => Patch::<4>::of(list, normal).reduce_faces(),
+        _ => Patch::<16>::of(list, normal).reduce_faces(),
+    }
+}
+
 /// The positions of candidates in the plane of contact, four side by side in each of `B` blocks. The last may be unused.
 pub(super) struct Patch<const B: usize> {
     pub x: [F32x4; B],
@@ -111,18 +129,19 @@ impl<const B: usize> Patch<B> {
         (F32x4::flat(&self.x)[i], F32x4::flat(&self.y)[i])
     }
 
-    /// The first candidate of about the highest score above 0, and its score.
+    /// The first candidate of about the highest weighted worth above 0, and its worth.
     #[inline(always)]
-    fn pick(&self, worth: impl Fn(F32x4, F32x4) -> F32x4) -> (usize, f32) {
-        let mut worths = [F32x4::ZERO; B];
+    fn pick(&self, weights: &[F32x4; B], worth: impl Fn(F32x4, F32x4) -> F32x4) -> (usize, f32) {
+        let (mut worths, mut scores) = ([F32x4::ZERO; B], [F32x4::ZERO; B]);
         let mut most = F32x4::ZERO;
         for k in 0..B {
             let present = self.separation[k].lt(F32x4::splat(f32::INFINITY));
             worths[k] = F32x4::select(present, worth(self.x[k], self.y[k]), F32x4::ZERO);
-            most = most.max(worths[k]);
+            scores[k] = worths[k] * weights[k];
+            most = most.max(scores[k]);
         }
         let bar = F32x4::splat(ABOUT_EQUAL * greatest(most));
-        let i = self.those_with(|k, _| bar.le(worths[k])).trailing_zeros() as usize % (4 * B);
+        let i = self.those_with(|k, _| bar.le(scores[k])).trailing_zeros() as usize % (4 * B);
         (i, F32x4::flat(&worths)[i])
     }
 
@@ -130,6 +149,24 @@ impl<const B: usize> Patch<B> {
     /// patch's size. Then come the one farthest from it, the one of the largest triangle, and the one that adds most to the
     /// triangle's area.
     pub fn reduce(&self) -> ([usize; 4], usize) {
+        self.reduce_by(|_, _| [F32x4::ONE; B])
+    }
+
+    /// See [`reduce_faces`].
+    fn reduce_faces(&self) -> ([usize; 4], usize) {
+        self.reduce_by(|deepest, size| {
+            let (deepest, slope) = (F32x4::splat(deepest), F32x4::splat((1.0 - IN_THE_AIR) / (HIGH * size)));
+            let mut weights = self.separation;
+            for weight in &mut weights {
+                *weight = (F32x4::ONE - (*weight - deepest) * slope).max(F32x4::splat(IN_THE_AIR));
+            }
+            weights
+        })
+    }
+
+    /// As [`reduce`](Self::reduce), with weights by the least separation and the patch's size.
+    #[inline(always)]
+    fn reduce_by(&self, weights: impl Fn(f32, f32) -> [F32x4; B]) -> ([usize; 4], usize) {
         let mut present = self.present();
         let count = present.count_ones() as usize;
         if count <= 4 {
@@ -152,15 +189,17 @@ impl<const B: usize> Patch<B> {
             least = self.separation[k].min(least);
         }
         let size_squared = greatest(size);
-        let bar = F32x4::splat(DEEPER * size_squared.sqrt() - greatest(-least));
+        let (size, deepest) = (size_squared.sqrt(), -greatest(-least));
+        let weights = weights(deepest, size);
+        let bar = F32x4::splat(DEEPER * size + deepest);
         let first = self.those_with(|k, _| self.separation[k].le(bar)).trailing_zeros() as usize % (4 * B);
         let a = self.at(first);
-        let (second, far) = self.pick(distance(a));
+        let (second, far) = self.pick(&weights, distance(a));
         if !(far > FLAT * size_squared) {
             return ([first, 0, 0, 0], 1);
         }
         let b = self.at(second);
-        let (third, area) = self.pick(|x, y| {
+        let (third, area) = self.pick(&weights, |x, y| {
             let area = twice_area(a, b, x, y);
             area.max(-area)
         });
@@ -170,8 +209,9 @@ impl<const B: usize> Patch<B> {
         let c = self.at(third);
         let (cx, cy) = (F32x4::splat(c.0), F32x4::splat(c.1));
         let [p, q, r] = if twice_area(a, b, cx, cy).get(0) < 0.0 { [b, a, c] } else { [a, b, c] };
-        let (fourth, added) =
-            self.pick(|x, y| -twice_area(p, q, x, y).min(twice_area(q, r, x, y)).min(twice_area(r, p, x, y)));
+        let (fourth, added) = self.pick(&weights, |x, y| {
+            -twice_area(p, q, x, y).min(twice_area(q, r, x, y)).min(twice_area(r, p, x, y))
+        });
         let count = if added > FLAT * size_squared { 4 } else { 3 };
         ([first, second, third, fourth], count)
     }
