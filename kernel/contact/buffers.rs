@@ -30,8 +30,8 @@ pub struct WorkerBuffers<W = ()> {
     pub(super) slides: Vec<Sliding>,
     /// Contacts, and the numbers of those of their manifolds, whose [`is_internal`](Manifold::is_internal) changes.
     pub(super) internal: Vec<(u32, u32)>,
-    /// Manifolds of the feet of walls, and the normals of the floors.
-    pub(super) walls: Vec<(u32, u32, Vector)>,
+    /// Manifolds that get other normals, from the ground to the collider.
+    pub(super) turned: Vec<(u32, u32, Vector)>,
     /// Points under load that sliding colliders lost.
     pub(super) lost: Vec<Lost>,
     /// Whether any contact overlaps deeply.
@@ -46,7 +46,7 @@ impl<W> WorkerBuffers<W> {
         self.pool.clear();
         self.sliding.clear();
         self.internal.clear();
-        self.walls.clear();
+        self.turned.clear();
         self.lost.clear();
         self.any_deep = false;
     }

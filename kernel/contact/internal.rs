@@ -35,6 +35,10 @@ const BELOW: f32 = 0.005;
 /// walls; less takes the edges of flush tiles for walls.
 const RISES: f32 = 4.0;
 
+/// The least cosine between planes of flat shapes of which one is that of the ground, and the other that of a side of the collider:
+/// 25°. More lets bodies that tip over slap into the ground; less has contacts for sides that are far from it.
+const ASKEW: f32 = 0.9;
+
 /// The least sine by which the normal of a wall's foot points down, and the least length of its level part. Less is rounding.
 const LEANS: f32 = 0.05;
 
@@ -156,8 +160,9 @@ enum Role {
     Obstacle,
     /// Another one holds what it would stop.
     Internal,
-    /// The foot of a wall that stands on a floor with this normal, under the collider's upper side.
-    Wall(Vector),
+    /// The collider is to be stopped by it along another normal: on a plane that another one holds its flat side is a little askew, or
+    /// its upper side leans over a wall's foot.
+    Turned(Vector),
 }
 
 impl Sliding {
@@ -185,7 +190,7 @@ impl<S> NarrowPhaseInput<'_, S> {
         if body == NONE { 0.0 } else { self.bodies.velocities[body as usize].linear.length_squared() }
     }
 
-    fn is_dynamic(&self, body: u32) -> bool {
+    pub(super) fn is_dynamic(&self, body: u32) -> bool {
         body != NONE && self.bodies[body].kind == BodyKind::Dynamic
     }
 
@@ -311,8 +316,8 @@ impl ContactTable {
             self.points[id as usize] = PointCount::of(contact);
         }
         self.lost = lost;
-        for wall in workers.iter_mut().flat_map(|worker| worker.walls.drain(..)) {
-            self.raise(wall);
+        for (id, index, normal) in workers.iter_mut().flat_map(|worker| worker.turned.drain(..)) {
+            self.turn(id, index, normal);
         }
     }
 
@@ -359,8 +364,8 @@ impl ContactTable {
             if (role == Role::Internal) != this.is_marked {
                 worker.internal.push((this.contact, this.index));
             }
-            if let Role::Wall(up) = role {
-                worker.walls.push((this.contact, this.index, up));
+            if let Role::Turned(normal) = role {
+                worker.turned.push((this.contact, this.index, normal));
             }
         }
         worker.slides = all;
@@ -394,40 +399,49 @@ impl ContactTable {
             let seen = seen.get_or_insert_with(|| self.see(input, this));
             let holding = self.see(input, other);
             // An edge of the collider is at a seam: the next piece ends at the plane of this one, but not the other way round.
-            let is_plane_of_both = || {
-                let [own, of_other] = [(this, &holding), (other, &*seen)].map(|(of, plane)| {
-                    let top = input.top(self.get(of.contact), of.side, plane.normal)?;
-                    Some(top - plane.plane() <= plane.flush)
-                });
-                own == Some(true) && of_other == Some(false)
+            let mut ends_at = |of: &Sliding, own: &Seen, plane: &Seen| {
+                let contact = self.get(of.contact);
+                let top = input.top(contact, of.side, plane.normal);
+                let mut rises = || input.rises(contact, of.side, own, plane, worker);
+                top.map_or_else(|| !rises(), |top| top - plane.plane() <= plane.flush)
             };
+            let is_plane_of_both = || ends_at(this, seen, &holding) && !ends_at(other, &holding, seen);
             if !seen.is_held_by(&holding, is_plane_of_both) {
                 continue;
             }
             let ground = self.get(other.contact).colliders[1 - other.side];
             let stands = self.stands_on([contact.colliders[1 - this.side], ground], holding.normal);
-            if !stands && !input.rises(contact, this.side, seen, &holding, worker) {
+            let cos = seen.normal.dot(holding.normal);
+            if stands || input.rises(contact, this.side, seen, &holding, worker) {
+                if cos < steepest {
+                    (steepest, role) = (cos, Role::Turned(unit(seen.normal - holding.normal * cos)));
+                }
+                continue;
+            }
+            if cos < ASKEW || this.is_round || other.is_round {
                 return Role::Internal;
             }
-            let cos = seen.normal.dot(holding.normal);
-            if cos < steepest {
-                (steepest, role) = (cos, Role::Wall(holding.normal));
+            // The plane is held where the other has points. Here the collider may come down by turning.
+            let is_plane = [this, other].into_iter().all(|of| {
+                let top = input.top(self.get(of.contact), of.side, holding.normal);
+                top.is_none_or(|top| top - holding.plane() <= holding.flush)
+            });
+            if role == Role::Obstacle || is_plane && role == Role::Internal {
+                role = if is_plane { Role::Turned(holding.normal) } else { Role::Internal };
             }
         }
         role
     }
 
-    /// Makes a manifold of a wall's foot one of its side, with the same points on the ground. Its normal is that of the collider's
-    /// upper side, and would press the collider into the floor.
-    fn raise(&mut self, (id, index, up): (u32, u32, Vector)) {
+    /// Gives a manifold another normal, from the ground to the collider, with the same points on the ground.
+    fn turn(&mut self, id: u32, index: u32, normal: Vector) {
         let side = if self.get(id).flags.has(ContactFlags::SLIDES_B) { 1.0 } else { -1.0 };
         let manifold = self.manifold_mut(id, index);
-        let level = manifold.normal - up * manifold.normal.dot(up);
-        let cos = level.length();
+        let (old, new) = (manifold.normal, normal * side);
+        let cos = old.dot(new);
         if !(cos > LEANS) {
             return;
         }
-        let (old, new) = (manifold.normal, level * (1.0 / cos));
         for p in &mut manifold.points[..usize::from(manifold.count)] {
             p.anchor += (new * (p.frozen_separation / cos) - old * p.frozen_separation) * (0.5 * side);
             p.frozen_separation /= cos;
