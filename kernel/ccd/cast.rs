@@ -163,7 +163,7 @@ impl<S: ManifoldSource> Pair<'_, S> {
         let is_foreign = |shape: &Shape| matches!(shape, Shape::Foreign(_));
         let is_composite = |shape: &Shape| matches!(shape, Shape::Composite(_));
         let motion = other.rotation.inverse_rotate(rest.way);
-        let look = Look { prediction: rest.turning + self.margin, motion, groups: Look::ALIKE };
+        let look = Look { motion, ..Look::up_to(rest.turning + self.margin) };
         let mut local = LocalManifold::default();
         let mut cache = FeatureCache::NONE;
         match caster {

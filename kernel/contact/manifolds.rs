@@ -45,7 +45,7 @@ pub(super) fn touches<W>(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut W
     match shape {
         Shape::Foreign(_) => return false,
         Shape::Composite(_) => {
-            let look = Look { prediction: 0.0, motion: Vector::ZERO, groups: Look::ALIKE };
+            let look = Look::up_to(0.0);
             local.clear();
             manifold::collide_composite(shape, &ball, pose, look, composite, local);
             return !local.is_empty();
@@ -59,7 +59,7 @@ pub(super) fn touches<W>(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut W
 /// this step, in world axes. Returns a lower bound of the distance between the shapes.
 pub(super) fn collide_parts<S: ManifoldSource>(
     input: &NarrowPhaseInput<S>,
-    contact: &Contact,
+    contact: &mut Contact,
     prediction: f32,
     motion: Vector,
     buffers: &mut WorkerBuffers<S::Workspace>,
@@ -72,9 +72,13 @@ pub(super) fn collide_parts<S: ManifoldSource>(
         let facets = input.colliders[id].def.facets.as_ref();
         facets.map_or(&[][..], |facets| facets.groups())
     });
-    let look = Look { prediction, motion: pose_a.rotation.inverse_rotate(motion), groups };
+    let ground = contact.bodies.map(|body| !input.is_dynamic(body));
+    let look = Look { prediction, motion: pose_a.rotation.inverse_rotate(motion), ground, groups };
     let WorkerBuffers { composite, local, .. } = buffers;
-    manifold::collide_composite(shapes[0], shapes[1], &relative, look, composite, local)
+    composite.cache = contact.cache;
+    let gap = manifold::collide_composite(shapes[0], shapes[1], &relative, look, composite, local);
+    contact.cache = composite.cache;
+    gap
 }
 
 /// Removes the points of a sensor's contact at which the surfaces are apart and do not meet in this step. Returns the least

@@ -4,18 +4,23 @@
 //! normal from A to B; the narrow phase transforms the result to the world. Points lie midway between the two surfaces. Points
 //! have separations up to the prediction distance; those with a positive separation are speculative contacts.
 
+mod border;
 mod cache;
 mod composite;
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
 mod dim;
+mod look;
+mod merge;
+mod parts;
 mod screen;
 #[cfg(test)]
 mod tests_pairs;
 
 pub use cache::FeatureCache;
-pub use composite::{CompositeBuffers, Look, collide_composite, collide_each_part};
+pub use composite::{CompositeBuffers, collide_composite, collide_each_part};
 pub use dim::{collide, lead_rims};
+pub use look::Look;
 
 use crate::math::{MAX_POINTS, Vector, min};
 

@@ -1,6 +1,6 @@
 //! Shapes of many convex parts: surfaces of facets, and compounds of solids.
 
-use super::dim::Facet;
+use super::dim::{Facet, Hull, signed_volume};
 use super::part_tree::PartTree;
 use super::{Aabb, ShapeError};
 use crate::math::{DIM, Pose, Vector};
@@ -8,11 +8,22 @@ use crate::math::{DIM, Pose, Vector};
 /// No facet.
 pub const NO_FACET: u32 = u32::MAX;
 
+/// Surfaces of more facets are not looked at as solids. More takes longer to build; and hulls of more faces are slower than surfaces.
+const MOST_FACETS_OF_SOLID: usize = 256;
+
+/// Surfaces of more facets are not looked at for whether they are closed: they are levels, not bodies.
+const MOST_FACETS_OF_BODY: usize = 1 << 16;
+
+/// Corners are on a hull up to this share of its size. More flattens dents; less leaves out what rounding makes uneven.
+const ON_HULL: f32 = 1.0e-4;
+
 /// A shape of convex parts, with a tree over them. `S` is the shape of solids.
 #[derive(Clone, Debug)]
 pub struct Composite<S> {
     parts: Parts<S>,
     tree: PartTree,
+    /// What a closed convex surface bounds.
+    solid: Option<Box<Self>>,
 }
 
 #[derive(Clone, Debug)]
@@ -36,6 +47,8 @@ pub struct Surface {
     facets: Vec<[u32; DIM]>,
     /// The facet across each border of each facet, [`NO_FACET`] if there is none or more than one.
     neighbors: Vec<[u32; DIM]>,
+    /// 1 if the surface is closed and its facets face outward, -1 if they face inward, else 0.
+    outward: f32,
 }
 
 impl Surface {
@@ -55,7 +68,8 @@ impl Surface {
             return Err(ShapeError::NotFinite);
         }
         let neighbors = neighbors(&vertices, &facets);
-        Ok(Self { vertices, facets, neighbors })
+        let outward = outward(&vertices, &facets, &neighbors);
+        Ok(Self { vertices, facets, neighbors, outward })
     }
 
     /// The vertices.
@@ -67,6 +81,35 @@ impl Surface {
     #[inline]
     pub fn corners(&self, facet: u32) -> [Vector; DIM] {
         self.facets[facet as usize].map(|i| self.vertices[i as usize])
+    }
+
+    /// Whether its facets face out of what it bounds: 1, or -1 if they face into it; 0 if it is not closed or they do not agree.
+    #[inline]
+    pub fn outward(&self) -> f32 {
+        self.outward
+    }
+
+    /// The solid that the surface bounds, if it is closed and convex, whichever way its facets face.
+    pub(super) fn solid(&self) -> Option<Hull> {
+        if self.facets.len() > MOST_FACETS_OF_SOLID
+            || !is_closed(&self.vertices, &self.facets, &self.neighbors)
+        {
+            return None;
+        }
+        let facets = self.facets.iter().filter(|facet| !is_empty(&self.vertices, facet));
+        let corners: Vec<Vector> = facets.flatten().map(|i| self.vertices[*i as usize]).collect();
+        let hull = Hull::around(&corners)?;
+        let near = ON_HULL * Aabb::around(corners.iter().copied()).half().max_element();
+        let is_on_hull = |facet: &[Vector]| {
+            hull.planes().any(|(normal, offset)| facet.iter().all(|c| (c.dot(normal) - offset).abs() <= near))
+        };
+        corners.chunks(DIM).all(is_on_hull).then_some(hull)
+    }
+
+    /// The vertex farthest along a direction.
+    pub fn farthest(&self, direction: Vector) -> Vector {
+        let further = |a: Vector, b: Vector| if b.dot(direction) > a.dot(direction) { b } else { a };
+        self.vertices.iter().copied().reduce(further).unwrap_or(Vector::ZERO)
     }
 
     /// The facets across the borders of a facet: in 3D border `k` is the side from corner `k` to the next, in 2D corner `k`.
@@ -112,6 +155,47 @@ fn neighbors(vertices: &[Vector], facets: &[[u32; DIM]]) -> Vec<[u32; DIM]> {
     all
 }
 
+/// See [`Surface::outward`].
+fn outward(vertices: &[Vector], facets: &[[u32; DIM]], neighbors: &[[u32; DIM]]) -> f32 {
+    let is_body = facets.len() <= MOST_FACETS_OF_BODY && is_closed(vertices, facets, neighbors);
+    if !is_body || !agree(vertices, facets) {
+        return 0.0;
+    }
+    let volume = |facet: &[u32; DIM]| signed_volume(facet.map(|i| vertices[i as usize] - vertices[0]));
+    let all: f64 = facets.iter().map(volume).sum();
+    if all == 0.0 { 0.0 } else { all.signum() as f32 }
+}
+
+/// Whether two corners of a facet are in one place.
+fn is_empty(vertices: &[Vector], facet: &[u32; DIM]) -> bool {
+    let corners = facet.map(|i| vertices[i as usize]);
+    (0..DIM).any(|k| corners[k] == corners[(k + 1) % DIM])
+}
+
+/// Whether there is a neighbour across each border, but for those of empty facets.
+fn is_closed(vertices: &[Vector], facets: &[[u32; DIM]], neighbors: &[[u32; DIM]]) -> bool {
+    let is_inner = |neighbors: &[u32; DIM]| neighbors.iter().all(|facet| *facet != NO_FACET);
+    facets.iter().zip(neighbors).all(|(facet, neighbors)| is_inner(neighbors) || is_empty(vertices, facet))
+}
+
+/// Whether neighbours run through their common borders in opposite directions.
+fn agree(vertices: &[Vector], facets: &[[u32; DIM]]) -> bool {
+    let names = welded(vertices);
+    let mut ways: Vec<[u32; 2]> = facets
+        .iter()
+        .filter(|facet| !is_empty(vertices, facet))
+        .flat_map(|facet| {
+            let names = facet.map(|i| names[i as usize]);
+            (0..DIM).map(move |k| match DIM {
+                2 => [names[k], k as u32],
+                _ => [names[k], names[(k + 1) % DIM]],
+            })
+        })
+        .collect();
+    ways.sort_unstable();
+    ways.windows(2).all(|pair| pair[0] != pair[1])
+}
+
 /// A number for the ends of a border: in 3D a side from one corner to the next, in 2D one corner.
 fn border_name(names: &[u32], facet: &[u32; DIM], k: usize) -> u64 {
     let [a, b] = [k, (k + DIM - 2) % DIM].map(|end| names[facet[end] as usize]);
@@ -151,17 +235,22 @@ fn welded(vertices: &[Vector]) -> Vec<u32> {
 }
 
 impl<S> Composite<S> {
-    /// A surface as a shape.
-    pub fn of_surface(surface: Surface) -> Self {
+    /// A surface as a shape. If it is closed and convex, `solid` is the solid that it bounds, as the only part of a composite.
+    pub fn of_surface(surface: Surface, solid: Option<Self>) -> Self {
         let boxes: Vec<Aabb> =
             (0..surface.facets.len() as u32).map(|i| Aabb::around(surface.corners(i))).collect();
-        Self { tree: PartTree::new(&boxes), parts: Parts::Surface(surface) }
+        Self { tree: PartTree::new(&boxes), parts: Parts::Surface(surface), solid: solid.map(Box::new) }
     }
 
     /// Solids as one shape; `aabb` gives the box of each in the composite's frame.
     pub fn of_solids(solids: Vec<(Pose, S)>, aabb: impl Fn(&Pose, &S) -> Aabb) -> Self {
         let boxes: Vec<Aabb> = solids.iter().map(|(pose, solid)| aabb(pose, solid)).collect();
-        Self { tree: PartTree::new(&boxes), parts: Parts::Solids(solids) }
+        Self { tree: PartTree::new(&boxes), parts: Parts::Solids(solids), solid: None }
+    }
+
+    /// The solid that a closed convex surface bounds, as the only part of a composite.
+    pub fn solid(&self) -> Option<&Self> {
+        self.solid.as_deref()
     }
 
     /// The number of parts.

@@ -36,6 +36,11 @@ impl MassProperties {
     }
 }
 
+/// A multiple of the area between a segment and the origin, positive if its left normal faces away from the origin.
+pub(super) fn signed_volume([a, b]: [Vector; 2]) -> f64 {
+    -cross(wide(a), wide(b))
+}
+
 /// The properties of parts at poses together. Parts that overlap count twice.
 pub(super) fn mass_of_compound<'a>(
     parts: impl Iterator<Item = (&'a Pose, MassProperties)> + Clone,

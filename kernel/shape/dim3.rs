@@ -27,6 +27,11 @@ pub struct MassProperties {
     pub inertia: Inertia,
 }
 
+/// A multiple of the volume between a triangle and the origin, positive if it faces away from the origin.
+pub(super) fn signed_volume([a, b, c]: [Vector; 3]) -> f64 {
+    f64::from(a.dot(b.cross(c)))
+}
+
 impl MassProperties {
     /// All 0.
     pub const ZERO: Self = Self { mass: 0.0, center: Vector::ZERO, inertia: Inertia::ZERO };

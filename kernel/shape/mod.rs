@@ -69,7 +69,11 @@ impl From<Triangle> for Shape {
 impl Shape {
     /// A surface as a shape.
     pub fn surface(surface: Surface) -> Self {
-        Self::Composite(Arc::new(Composite::of_surface(surface)))
+        let solid = surface.solid().map(|hull| {
+            let solids = vec![(Pose::IDENTITY, Self::Hull(Arc::new(hull)))];
+            Composite::of_solids(solids, |pose, solid| solid.local_box(pose))
+        });
+        Self::Composite(Arc::new(Composite::of_surface(surface, solid)))
     }
 
     /// Convex solids at poses as one shape.

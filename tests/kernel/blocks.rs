@@ -17,7 +17,7 @@ const SIDEWAYS: f32 = 0.004;
 /// The contacts of two shapes in A's frame.
 fn contacts(a: &Shape, b: &Shape, pose: &Pose, motion: Vector) -> Vec<LocalManifold> {
     let (mut buffers, mut out) = (CompositeBuffers::default(), Vec::new());
-    let look = Look { prediction: PREDICTION, motion, groups: Look::ALIKE };
+    let look = Look { motion, ..Look::up_to(PREDICTION) };
     collide_composite(a, b, pose, look, &mut buffers, &mut out);
     out
 }

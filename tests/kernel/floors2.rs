@@ -179,6 +179,23 @@ pub fn blocks() -> Vec<(&'static str, Shape, Shape)> {
         .collect()
 }
 
+/// Solids that are not convex, with their convex hulls and their closed polylines, and a plank.
+pub fn bent() -> Vec<(&'static str, Shape, Shape)> {
+    let ell = [[-0.5, -0.5], [0.5, -0.5], [0.5, -0.2], [-0.2, -0.2], [-0.2, 0.5], [-0.5, 0.5]];
+    let plank = [[-1.0, -0.04], [1.0, -0.04], [1.0, 0.04], [-1.0, 0.04]];
+    [("ell", &ell[..]), ("plank", &plank[..])]
+        .into_iter()
+        .map(|(name, outline)| {
+            let corners: Vec<_> = outline.iter().map(|[x, y]| Vector { x: *x, y: *y }).collect();
+            let count = corners.len() as u32;
+            let facets = (0..count).map(|k| [k, (k + 1) % count]).collect();
+            let hull = Hull::convex_hull_of(&corners, 0.0).expect("a solid");
+            let line = Surface::new(corners, facets).expect("a surface");
+            (name, Shape::Hull(Arc::new(hull)), Shape::surface(line))
+        })
+        .collect()
+}
+
 /// The rotation of a box that has an edge ahead, and the height of its middle over the floor: a half size is 0.2.
 pub fn on_edge() -> (Rot, f32) {
     (Rot::from_angle(core::f32::consts::FRAC_PI_4), 0.2 * core::f32::consts::SQRT_2)

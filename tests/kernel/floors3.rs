@@ -274,6 +274,32 @@ pub fn blocks() -> Vec<(&'static str, Shape, Shape)> {
         .collect()
 }
 
+/// Solids that are not convex, with their convex hulls and their closed meshes, and a plank.
+pub fn bent() -> Vec<(&'static str, Shape, Shape)> {
+    let ell = [[-0.5, -0.5], [0.5, -0.5], [0.5, -0.2], [-0.2, -0.2], [-0.2, 0.5], [-0.5, 0.5]];
+    let plank = [[-1.0, -0.04], [1.0, -0.04], [1.0, 0.04], [-1.0, 0.04]];
+    [("ell", &ell[..], 3, 0.3), ("plank", &plank[..], 0, 0.2)]
+        .into_iter()
+        .map(|(name, outline, middle, half)| {
+            let count = outline.len() as u32;
+            let ring = |z: f32| outline.iter().map(move |[x, y]| Vector { x: *x, y: *y, z });
+            let corners: Vec<_> = ring(-half).chain(ring(half)).collect();
+            let sides = (0..count).flat_map(|k| {
+                let next = (k + 1) % count;
+                [[k, next, next + count], [k, next + count, k + count]]
+            });
+            let caps = (1..count - 1).flat_map(|k| {
+                let [a, b] = [(middle + k) % count, (middle + k + 1) % count];
+                [[middle, b, a], [middle + count, a + count, b + count]]
+            });
+            let facets = sides.chain(caps).collect();
+            let hull = Hull::convex_hull_of(&corners).expect("a solid");
+            let mesh = Surface::new(corners, facets).expect("a surface");
+            (name, Shape::Hull(Arc::new(hull)), Shape::surface(mesh))
+        })
+        .collect()
+}
+
 /// The rotation of a box that has an edge ahead, and the height of its middle over the floor: a half size is 0.2.
 pub fn on_edge() -> (Rot, f32) {
     (Rot::from_axis_angle(Vector::Y, 0.5 * FRAC_PI_2), 0.2)

@@ -17,6 +17,7 @@ mod held;
 mod hubs;
 mod impulses;
 mod memory;
+mod meshes;
 mod passing;
 mod physics;
 mod pushed;

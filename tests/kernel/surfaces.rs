@@ -38,7 +38,7 @@ fn corner() -> Shape {
 
 fn manifolds(a: &Shape, b: &Shape, pose: &Pose, prediction: f32) -> (Vec<LocalManifold>, f32) {
     let mut all = Vec::new();
-    let look = Look { prediction, motion: Vector::ZERO, groups: Look::ALIKE };
+    let look = Look::up_to(prediction);
     let gap = collide_composite(a, b, pose, look, &mut CompositeBuffers::default(), &mut all);
     (all, gap)
 }

@@ -171,12 +171,12 @@ fn a_face_alone_has_points_between_it_and_the_shape_over_it() {
 fn a_swapped_facet_has_the_same_contact() {
     let mut dice = Dice::new(7);
     let mut buffers = CompositeBuffers::default();
-    let look = Look { prediction: 0.05, motion: Vector::ZERO, groups: Look::ALIKE };
+    let look = Look::up_to(0.05);
     for (name, shape) in shapes(&mut dice) {
         for _ in 0..POSES / 4 {
             let corners = triangle(1.0, &mut dice);
             let surface = Surface::new(corners.to_vec(), vec![[0, 1, 2]]).expect("a surface");
-            let surface = Shape::Composite(Arc::new(Composite::of_surface(surface)));
+            let surface = Shape::Composite(Arc::new(Composite::of_surface(surface, None)));
             let pose = pose(corners, &shape, &mut dice);
             let (mut found, mut swapped) = (Vec::new(), Vec::new());
             collide_composite(&surface, &shape, &pose, look, &mut buffers, &mut found);

@@ -63,6 +63,16 @@ impl Hull {
         if turns_left_once(&outline) { Ok(Self::build(outline, radius)) } else { Err(ShapeError::Degenerate) }
     }
 
+    /// The convex hull of points, if it has an area.
+    pub fn around(points: &[Vector]) -> Option<Self> {
+        Self::convex_hull_of(points, 0.0).ok()
+    }
+
+    /// The lines along the edges: normals and distances from the origin.
+    pub fn planes(&self) -> impl Iterator<Item = (Vector, f32)> + '_ {
+        self.normals().iter().zip(self.vertices()).map(|(normal, vertex)| (*normal, normal.dot(*vertex)))
+    }
+
     fn build(vertices: Vec<Vector>, radius: f32) -> Self {
         let normals = edges(&vertices).map(|(p, q)| {
             let e = sub(wide(q), wide(p));
@@ -103,6 +113,12 @@ impl Hull {
     pub fn core(&self) -> (Vector, f32) {
         let center = self.mass.center;
         (center, least_depth(center, self.vertices(), self.normals()) + self.radius)
+    }
+
+    /// Whether a point is in the core, by a distance from each edge that `depth` gives for its normal.
+    pub fn contains(&self, point: Vector, depth: impl Fn(Vector) -> f32) -> bool {
+        let mut edges = self.normals().iter().zip(self.vertices());
+        edges.all(|(normal, vertex)| (point - *vertex).dot(*normal) <= -depth(*normal))
     }
 
     /// The point farthest along `direction` (any length), radius included.

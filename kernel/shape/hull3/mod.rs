@@ -208,6 +208,11 @@ impl Hull {
         &self.faces
     }
 
+    /// The planes of the faces: normals and distances from the origin.
+    pub fn planes(&self) -> impl Iterator<Item = (Vector, f32)> + '_ {
+        self.faces.iter().map(|face| (face.normal, face.offset))
+    }
+
     /// The vertices of a face, as indices, counter-clockwise from outside.
     pub fn outline(&self, face: &Face) -> &[u32] {
         &self.loops[face.first as usize..(face.first + face.count) as usize]
@@ -258,6 +263,11 @@ impl Hull {
     /// The faces around each vertex, one vertex after another, and the index of each vertex' first face.
     pub(crate) fn fans(&self) -> (&[u32], &[u32]) {
         (&self.fans, &self.fan_starts)
+    }
+
+    /// Whether a point is in the polyhedron, by a distance from each face that `depth` gives for its normal.
+    pub fn contains(&self, point: Vector, depth: impl Fn(Vector) -> f32) -> bool {
+        self.faces.iter().all(|face| point.dot(face.normal) <= face.offset - depth(face.normal))
     }
 
     /// The point farthest along `direction` (any length), radius included.

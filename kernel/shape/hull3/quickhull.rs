@@ -39,6 +39,11 @@ impl Facet {
 }
 
 impl Hull {
+    /// The convex hull of points, if it has a volume; see [`convex_hull_of`](Self::convex_hull_of).
+    pub fn around(points: &[Vector]) -> Option<Self> {
+        Self::convex_hull_of(points).ok()
+    }
+
     /// The convex hull of some points, in metres. Meant for up to a few hundred points.
     ///
     /// # Errors

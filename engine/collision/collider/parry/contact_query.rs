@@ -193,7 +193,7 @@ pub fn contact_manifolds(
     let mut found = Vec::new();
     match pair.native() {
         Some([a, b]) if matches!(a, Shape::Composite(_)) || matches!(b, Shape::Composite(_)) => {
-            let look = Look { prediction, motion: k::Vector::ZERO, groups: Look::ALIKE };
+            let look = Look::up_to(prediction);
             collide_composite(a, b, &pair.relative, look, &mut CompositeBuffers::default(), &mut found);
         }
         Some([a, b]) => {

@@ -1,0 +1,38 @@
+//! How far, and at what, two shapes are looked at.
+
+use crate::math::Vector;
+
+/// How far two shapes are looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Look<'a> {
+    /// Points up to this distance are found, in metres.
+    pub prediction: f32,
+    /// How far B moves against A until the end of the step, in A's frame. Parts farther away than the prediction are followed to
+    /// where they meet.
+    pub motion: Vector,
+    /// Whether A and B are ground: not dynamic. Ground is never inside of what is dynamic.
+    pub ground: [bool; 2],
+    /// The group of each facet of A and of B; facets beyond the list have 0. Manifolds of different groups are not merged.
+    pub groups: [&'a [u8]; 2],
+}
+
+impl<'a> Look<'a> {
+    /// All facets of both shapes in one group.
+    pub const ALIKE: [&'static [u8]; 2] = [&[]; 2];
+
+    /// A look at two bodies up to a distance, without motion.
+    pub fn up_to(prediction: f32) -> Self {
+        Self { prediction, motion: Vector::ZERO, ground: [false; 2], groups: Self::ALIKE }
+    }
+
+    /// The same with A and B swapped; the motion is given in B's frame.
+    pub(super) fn swapped(&self, motion: Vector) -> Self {
+        let ([own, other], [a, b]) = (self.ground, self.groups);
+        Self { motion, ground: [other, own], groups: [b, a], ..*self }
+    }
+
+    /// The group of a part of one side.
+    pub(super) fn group(&self, side: usize, part: u32) -> u8 {
+        self.groups[side].get(part as usize).copied().unwrap_or(0)
+    }
+}

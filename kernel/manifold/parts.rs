@@ -1,0 +1,412 @@
+//! The parts of a composite shape that are near one convex shape, each with its contact.
+//!
+//! A facet alone ends at its borders, the surface does not. So a normal that leans over a border towards the neighbour is
+//! replaced by the facet's own: there the neighbour is nearer (convex edges keep the normals between both facets).
+
+use super::dim::{Convex, borders, face_normal};
+use super::merge::SAME_NORMAL;
+use super::screen::{Gaps, LANES, Screen};
+use super::{FeatureCache, LocalManifold, Look, collide};
+use crate::math::{F32x4, Lane, Pose, Vector, max, min};
+use crate::shape::{Composite, NO_FACET, Shape, Surface};
+use core::cell::Cell;
+
+/// Normals that lean over a border by less than this are the facet's own, in radians. More brakes sliding bodies; rounding is
+/// a tenth of it.
+const LEAN: f32 = 1.0e-3;
+
+/// Normals whose cosine to a face is below this do not tell on which side of it the other shape is.
+const SIDEWAYS: f32 = 0.05;
+
+/// A shape is on one side of a face if it reaches to the other side by less than this share of its extent. More turns
+/// bodies over that reach under a facet from aside; less pulls cones into faces that they stand on.
+const ON_ONE_SIDE: f32 = 0.25;
+
+/// The maximum number of rounds of a cast. A pair that needs more meets where the last round placed it.
+const MAX_ROUNDS: usize = 16;
+
+/// Parts meet at a gap of this share of the prediction. More stops bodies that pass by; less takes more rounds.
+const MET: f32 = 0.1;
+
+/// Normals differ if their cosine is below this: 8°.
+const TURNED: f32 = 0.99;
+/// A face is deeper than what was found from this share of the prediction on. Less is rounding.
+const DEEPER: f32 = 0.005;
+/// Rounding and clipping of the depth of a corner that pokes into a seam, as a share of the prediction.
+const POKE: f32 = 0.25;
+/// The least cosine between a face and the side of a corner that pokes into it.
+const MOST_LEAN: f32 = 0.25;
+
+/// Buffers, kept between calls.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PartBuffers {
+    parts: Vec<u32>,
+    pub(super) found: Vec<LocalManifold>,
+    /// For each of `found` what it replaced, if it is doubtful.
+    doubts: Vec<Option<Doubt>>,
+}
+
+impl PartBuffers {
+    pub(super) fn clear(&mut self) {
+        self.found.clear();
+        self.doubts.clear();
+    }
+}
+
+/// A contact that was replaced by that of the facet's own face, which is deeper or turned. It may be the right one.
+#[derive(Clone, Copy, Debug)]
+struct Doubt {
+    normal: Vector,
+    /// The least separation.
+    nearest: f32,
+    /// The share of the motion after which the facet meets the other shape.
+    share: f32,
+    /// Whether the face's contact is dropped.
+    is_needless: bool,
+}
+
+/// The closed surface that a facet is part of.
+#[derive(Clone, Copy)]
+pub(super) struct Skin<'a> {
+    pub(super) surface: &'a Surface,
+    /// The facet's normal out of what the surface bounds, in the composite's frame.
+    pub(super) outward: Vector,
+}
+
+/// A composite shape against a convex one, or against a part of another composite.
+#[derive(Clone, Copy)]
+pub(super) struct Pass<'a> {
+    pub(super) composite: &'a Composite<Shape>,
+    pub(super) other: &'a Convex<'a>,
+    /// The other shape in the composite's frame.
+    pub(super) pose: &'a Pose,
+    /// How far to look; the motion is that of the other shape.
+    pub(super) look: Look<'a>,
+    /// The group of the other shape.
+    pub(super) other_group: u8,
+    /// Tells the features of several passes apart.
+    pub(super) name: u32,
+    /// Whether each part is collided as if it were the only one, up to the end of the motion.
+    pub(super) alone: bool,
+    /// Whether points of what is met later are on the composite where it is now, not on the other shape.
+    pub(super) on_composite: bool,
+    /// Whether the composite is B of the pair. Two solids are then collided in that order, which prefers faces of A.
+    pub(super) is_b: bool,
+    /// That of the pair, if the composite is one solid.
+    pub(super) cache: Option<&'a Cell<FeatureCache>>,
+    /// If the other shape is a facet of a closed surface that is smaller than the composite.
+    pub(super) skin: Option<Skin<'a>>,
+}
+
+impl<'a> Pass<'a> {
+    /// A composite against a convex shape.
+    pub(super) fn new(
+        composite: &'a Composite<Shape>,
+        other: &'a Convex<'a>,
+        pose: &'a Pose,
+        look: Look<'a>,
+        alone: bool,
+    ) -> Self {
+        let (other_group, name) = (0, 0);
+        let (on_composite, is_b, cache, skin) = (false, false, None, None);
+        Self { composite, other, pose, look, other_group, name, alone, on_composite, is_b, cache, skin }
+    }
+
+    /// Adds the manifolds of all parts to `buffers.found`, in the composite's frame. Returns a lower bound of the distance to
+    /// those without.
+    pub(super) fn collide(&self, buffers: &mut PartBuffers) -> f32 {
+        let around = self.other.shape.local_box(self.pose);
+        let mut parts = core::mem::take(&mut buffers.parts);
+        parts.clear();
+        let near = around.swept(self.look.motion).grown(self.look.prediction);
+        self.composite.tree().query(&near, |part| parts.push(part));
+        let mut gap = f32::INFINITY;
+        let start = buffers.found.len();
+        match self.composite.surface() {
+            Some(surface) if !parts.is_empty() => {
+                let screen = Screen::new(self.other.shape, self.pose, &around, self.look.motion);
+                for few in parts.chunks(LANES) {
+                    let gaps = screen.gaps(surface, few);
+                    let (mut near, least) = self.split(&gaps, few.len());
+                    gap = min(gap, least);
+                    while near != 0 {
+                        let lane = near.trailing_zeros() as usize;
+                        near &= near - 1;
+                        let screened = Some([gaps.now.get(lane), gaps.ever.get(lane)]);
+                        gap = min(gap, self.add_part(few[lane], screened, buffers));
+                    }
+                }
+            }
+            _ => {
+                for part in &parts {
+                    gap = min(gap, self.add_part(*part, None, buffers));
+                }
+            }
+        }
+        buffers.parts = parts;
+        if buffers.found.len() == start && !self.alone {
+            // Who only asks whether shapes touch does not need to know how far others are.
+            if self.look.prediction <= 0.0 {
+                return 0.0;
+            }
+            return self.composite.tree().gap_beyond(&near, &around, gap);
+        }
+        self.drop_doubtful(start, buffers);
+        gap
+    }
+
+    /// The first `count` of four facets that may be near or may be met, as bits, and the least gap of the others.
+    #[inline(always)]
+    fn split(&self, gaps: &Gaps, count: usize) -> (u32, f32) {
+        let Look { prediction, motion, .. } = self.look;
+        let far = F32x4::splat(prediction).lt(gaps.now);
+        let far = if self.alone {
+            F32x4::and(far, F32x4::splat(prediction).lt(gaps.ever))
+        } else if motion != Vector::ZERO {
+            F32x4::and(far, F32x4::splat(MET * prediction).lt(gaps.ever))
+        } else {
+            far
+        };
+        let least = F32x4::select(far, gaps.now, F32x4::splat(f32::INFINITY));
+        let least = min(min(least.get(0), least.get(1)), min(least.get(2), least.get(3)));
+        (!F32x4::bits(far) & 0xf >> (LANES - count), least)
+    }
+
+    /// Drops doubtful contacts from `buffers.found[start..]` that others make needless.
+    fn drop_doubtful(&self, start: usize, buffers: &mut PartBuffers) {
+        let PartBuffers { found, doubts, .. } = buffers;
+        for i in start..found.len() {
+            if let Some(doubt) = doubts[i] {
+                let is_needless = self.is_needless(&doubt, &found[i], &found[start..], &doubts[start..]);
+                doubts[i] = Some(Doubt { is_needless, ..doubt });
+            }
+        }
+        let is_kept = |doubt: &Option<Doubt>| !doubt.is_some_and(|doubt| doubt.is_needless);
+        let mut all = doubts.iter();
+        found.retain(|_| all.next().is_some_and(is_kept));
+        doubts.retain(is_kept);
+    }
+
+    /// Whether a doubtful contact is needless, because one without doubt bears the same. The side facets of a block on a wide floor
+    /// overlap it by half its width, and the bottom's contact bears the block. An edge that pokes into a wall at a seam is different:
+    /// both facets there are doubtful, so the wall's face stays unless another contact has the replaced normal.
+    fn is_needless(
+        &self,
+        doubt: &Doubt,
+        own: &LocalManifold,
+        found: &[LocalManifold],
+        doubts: &[Option<Doubt>],
+    ) -> bool {
+        let Look { prediction, motion, .. } = self.look;
+        let at_meeting = |m: &LocalManifold| m.lower_bound() + m.normal.dot(motion) * doubt.share;
+        // A corner with the replaced normal is deeper in the face by 1 / cos. Contacts met later have no corner in the face yet.
+        let (depth, slack) = (own.lower_bound(), POKE * prediction);
+        let cos = max(own.normal.dot(doubt.normal), MOST_LEAN);
+        let deepest = min(doubt.nearest, doubt.nearest / cos);
+        let is_corner = doubt.share == 0.0 && deepest - slack <= depth && depth <= doubt.nearest + slack;
+        let certain = || found.iter().zip(doubts).filter(|(_, doubt)| doubt.is_none()).map(|(m, _)| m);
+        let has_normal = |m: &LocalManifold| !is_corner || m.normal.dot(doubt.normal) > TURNED;
+        certain().any(|m| has_normal(m) && at_meeting(m) <= prediction)
+            && !certain().any(|m| m.normal.dot(own.normal) > SAME_NORMAL)
+    }
+
+    /// Adds the manifold of one part, if it has one. `screened` are lower bounds of its distance, now and during the motion.
+    /// Returns a lower bound of the distance if the part has no manifold, else infinity.
+    fn add_part(&self, part: u32, screened: Option<[f32; 2]>, buffers: &mut PartBuffers) -> f32 {
+        let Look { prediction, motion, .. } = self.look;
+        let [now, ever] = screened.unwrap_or([-1.0; 2]);
+        let (is_moving, mut local) = (motion != Vector::ZERO, LocalManifold::default());
+        let mut gap = f32::INFINITY;
+        let mut doubt = None;
+        if self.alone {
+            self.collide_alone(part, prediction + motion.length(), &mut local);
+        } else if now > prediction {
+            local.gap = now;
+        } else {
+            doubt = self.collide_part(part, prediction, &mut local);
+        }
+        if local.count == 0 {
+            gap = local.gap;
+            let may_meet = !self.alone && is_moving && !(ever > MET * prediction);
+            if may_meet {
+                doubt = self.cast(part, &mut local);
+            }
+            if local.count == 0 {
+                return gap;
+            }
+        }
+        let count = local.count;
+        local.groups = [self.look.group(0, part), self.other_group];
+        local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, part, p.feature]));
+        buffers.found.push(local);
+        buffers.doubts.push(doubt);
+        gap
+    }
+
+    /// Fills `local` with the contact of one part. Returns what it replaced, if it is doubtful.
+    fn collide_part(&self, part: u32, prediction: f32, local: &mut LocalManifold) -> Option<Doubt> {
+        self.collide_alone(part, prediction, local);
+        if let Some(skin) = self.skin.filter(|_| local.count > 0) {
+            self.keep_outside(&skin, part, prediction, local);
+        }
+        let surface = self.composite.surface().filter(|_| local.count > 0);
+        surface.and_then(|surface| self.keep_on_surface(surface, part, prediction, local))
+    }
+
+    /// Fills `local` with the contact of one part as if there were no other.
+    fn collide_alone(&self, part: u32, prediction: f32, local: &mut LocalManifold) {
+        match (self.composite.surface(), self.composite.solids().get(part as usize)) {
+            (Some(surface), _) => {
+                self.other.collide_facet(surface.corners(part), self.pose, prediction, local);
+            }
+            (None, Some((at, solid))) => {
+                let pose = at.inverse().then(self.pose);
+                let mut cache = self.cache.map_or(FeatureCache::NONE, Cell::get);
+                if self.is_b {
+                    let inverse = pose.inverse();
+                    collide(self.other.shape, solid, &inverse, prediction, &mut cache, local);
+                    *local = local.flipped(&inverse);
+                } else {
+                    collide(solid, self.other.shape, &pose, prediction, &mut cache, local);
+                }
+                self.cache.inspect(|last| last.set(cache));
+                local.normal = at.rotation.rotate(local.normal);
+                local.points[..local.count].iter_mut().for_each(|p| p.point = at.transform(p.point));
+            }
+            (None, None) => local.count = 0,
+        }
+    }
+
+    /// Follows the motion to where a part that is farther away than the prediction meets the other shape. `local` receives the
+    /// contact there, with the separations of now, if they meet. Returns what it replaced, if it is doubtful.
+    fn cast(&self, part: u32, local: &mut LocalManifold) -> Option<Doubt> {
+        let way = self.look.motion;
+        let met = MET * self.look.prediction;
+        let mut share = 0.0;
+        for round in 1..=MAX_ROUNDS {
+            let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
+            let there = Pass { pose: &pose, ..*self };
+            there.collide_alone(part, (1.0 - share) * way.length() + self.look.prediction, local);
+            let closing = -local.normal.dot(way);
+            // A plane between convex shapes that does not close is never crossed.
+            if local.count == 0 || !(closing > 0.0) {
+                break;
+            }
+            let gap = local.lower_bound();
+            if gap <= met || round == MAX_ROUNDS {
+                let doubt = there.collide_part(part, self.look.prediction, local);
+                let along = local.normal.dot(way) * share;
+                local.closing = -along;
+                let count = local.count;
+                for p in &mut local.points[..count] {
+                    let half = local.normal * (0.5 * along);
+                    p.point -= if self.on_composite { half } else { way * share - half };
+                    p.separation -= along;
+                }
+                return doubt.map(|doubt| Doubt { share, ..doubt });
+            }
+            share += max(gap, met) / closing;
+            if !(share <= 1.0) {
+                break;
+            }
+        }
+        local.count = 0;
+        None
+    }
+
+    /// A facet's face on the side where the other shape is. The normal of a contact with a border tells little of it: under the
+    /// leaning side of a cone that stands on the face it points into the face.
+    fn toward_other(&self, corner: Vector, face: Vector, normal: Vector) -> Vector {
+        let height = |direction: Vector| {
+            let local = self.pose.rotation.inverse_rotate(-direction);
+            let lowest = match self.skin {
+                Some(skin) => skin.surface.farthest(local),
+                None => self.other.shape.support(local)?,
+            };
+            Some((self.pose.transform(lowest) - corner).dot(direction))
+        };
+        // The lowest height of the shape over the face, and over its back: negative where it reaches through.
+        let (Some(over), Some(under)) = (height(face), height(-face)) else {
+            return if normal.dot(face) < 0.0 { -face } else { face };
+        };
+        let along = normal.dot(face);
+        let is_under = if along.abs() <= SIDEWAYS {
+            over < under
+        } else if along < 0.0 {
+            over <= ON_ONE_SIDE * under
+        } else {
+            under > ON_ONE_SIDE * over
+        };
+        if is_under { -face } else { face }
+    }
+
+    /// Replaces the contact of a facet of a closed surface that pushes it out of what the surface bounds, or through the composite, by
+    /// that of the face on the side where the surface is. Drops it if the facet is the surface's back.
+    fn keep_outside(&self, skin: &Skin, part: u32, prediction: f32, local: &mut LocalManifold) {
+        let is_behind = local.normal.dot(skin.outward) > SIDEWAYS;
+        let corners = self.composite.surface().map(|surface| surface.corners(part));
+        let face = corners.and_then(|corners| Some((corners, face_normal(corners)?)));
+        let Some((corners, face)) = face else {
+            if is_behind {
+                (local.count, local.gap) = (0, max(local.lower_bound(), 0.0));
+            }
+            return;
+        };
+        let own = self.toward_other(corners[0], face, local.normal);
+        if !is_behind && !(local.normal.dot(own) < -SIDEWAYS) {
+            return;
+        }
+        let gap = max(local.lower_bound(), 0.0);
+        if own.dot(skin.outward) > SIDEWAYS {
+            (local.count, local.gap) = (0, gap);
+        } else {
+            self.other.collide_face(corners, own, self.pose, prediction, local);
+        }
+    }
+
+    /// Replaces a facet's manifold by that of its face if its normal leans over a border where the surface goes on. Returns
+    /// what it replaced if the face is deeper or turned by more than 8°.
+    fn keep_on_surface(
+        &self,
+        surface: &Surface,
+        facet: u32,
+        prediction: f32,
+        local: &mut LocalManifold,
+    ) -> Option<Doubt> {
+        let corners = surface.corners(facet);
+        let face = face_normal(corners)?;
+        let across = local.normal - face * local.normal.dot(face);
+        if across.length_squared() < LEAN * LEAN {
+            return None;
+        }
+        let borders = borders(corners, face);
+        let (mut leans, mut is_free) = (false, true);
+        for (border, neighbor) in borders.iter().zip(surface.neighbors(facet)) {
+            if !(local.normal.dot(border.outward) > LEAN) {
+                continue;
+            }
+            leans = true;
+            if border.is_met_by(local) {
+                is_free &= neighbor == NO_FACET || {
+                    let beyond = border.toward_neighbor(surface.corners(neighbor));
+                    !(local.normal.dot(beyond) > LEAN)
+                };
+            }
+        }
+        // A normal that leans over a border without points there belongs to no feature of the facet.
+        let is_met = || borders.iter().any(|b| local.normal.dot(b.outward) > LEAN && b.is_met_by(local));
+        if !leans || (is_free && is_met()) {
+            return None;
+        }
+        let (found, nearest) = (local.normal, local.lower_bound());
+        let own = self.toward_other(corners[0], face, found);
+        self.other.collide_face(corners, own, self.pose, prediction, local);
+        let is_doubtful = own.dot(found) < TURNED || local.lower_bound() < nearest - DEEPER * prediction;
+        is_doubtful.then_some(Doubt { normal: found, nearest, share: 0.0, is_needless: false })
+    }
+}
+
+/// One number of three: features only need to be told apart, and to be the same in the next step.
+fn mix(words: [u32; 3]) -> u32 {
+    words.into_iter().fold(0, |hash: u32, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9))
+}
