@@ -15,7 +15,7 @@ const INSIDE: f32 = 0.5;
 /// Buffers for the manifolds of composite shapes, kept between calls.
 #[derive(Clone, Debug, Default)]
 pub struct CompositeBuffers {
-    /// That of the pair, where a surface counts as one solid; see [`collide`].
+    /// That of the pair, where a surface counts as one solid; see [`collide`](super::collide).
     pub cache: FeatureCache,
     parts: PartBuffers,
     merging: Merging,

@@ -10,11 +10,11 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("dominoes", 0x6f2cd167c25f9c7c),
     ("card_house", 0x7a3a6bc972a90418),
     ("towers", 0x197dd90759ba2f7a),
-    ("smash", 0x188e4667bf625794),
+    ("smash", 0x6f189f29815f188d),
     ("crowd", 0x4f876bd62e22b5fb),
     ("sleepers", 0x3e68cc78f2137c5d),
     ("bounces", 0x40183008e5387241),
-    ("settings", 0x6b82a6f3ff6faa52),
+    ("settings", 0xd563391653547760),
 ];
 
 /// For each scene with shapes of parry the hash of its final state.
