@@ -35,8 +35,8 @@ const BELOW: f32 = 0.005;
 /// walls; less takes the edges of flush tiles for walls.
 const RISES: f32 = 4.0;
 
-/// The least cosine between planes of flat shapes of which one is that of the ground, and the other that of a side of the collider:
-/// 25°. More lets bodies that tip over slap into the ground; less has contacts for sides that are far from it.
+/// The least cosine between the normals of a side of the collider and of the plane that holds it: 25°. More lets bodies that tip over
+/// slap into the ground; less has contacts for sides that are far from it.
 const ASKEW: f32 = 0.9;
 
 /// The least sine by which the normal of a wall's foot points down, and the least length of its level part. Less is rounding.
@@ -160,8 +160,8 @@ enum Role {
     Obstacle,
     /// Another one holds what it would stop.
     Internal,
-    /// The collider is to be stopped by it along another normal: on a plane that another one holds its flat side is a little askew, or
-    /// its upper side leans over a wall's foot.
+    /// The collider is to be stopped by it along another normal: that of a plane which its side is a little askew to, or that of a
+    /// wall whose foot its upper side leans over.
     Turned(Vector),
 }
 
@@ -321,7 +321,7 @@ impl ContactTable {
         }
     }
 
-    /// Adds the manifolds of a sliding collider whose mark is to change, and those of walls. The collider's first contact adds them for
+    /// Adds the manifolds of a sliding collider whose mark is to change, and those that get another normal. The collider's first contact adds them for
     /// all its contacts; the others add nothing.
     fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, id: u32, worker: &mut WorkerBuffers<W>) {
         let contact = self.get(id);

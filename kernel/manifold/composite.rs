@@ -8,8 +8,8 @@ use crate::math::{Pose, min};
 use crate::shape::{Aabb, Composite, Part, Shape};
 use core::cell::Cell;
 
-/// What is in a closed surface is in it by this share of its half size. More pushes out what lies inside on the surface; less keeps
-/// what sank in from outside.
+/// A guest is inside of a closed surface if its centre is deeper than this share of its half size. More pushes out what lies inside on
+/// the surface; less keeps what sank in from outside.
 const INSIDE: f32 = 0.5;
 
 /// Buffers for the manifolds of composite shapes, kept between calls.
@@ -178,7 +178,7 @@ fn collide_both(
     let skin = |part: u32| {
         let surface = small.surface().filter(|surface| surface.outward() != 0.0)?;
         let outward = pose.rotation.rotate(face_normal(surface.corners(part))?) * surface.outward();
-        Some(Skin { surface, outward })
+        Some(Skin { surface, around: small.tree().bounds(), outward })
     };
     parts.iter().fold(beyond, |gap, part| {
         let pass = |other: &Shape, pose: &Pose, skin, buffers: &mut PartBuffers| {

@@ -8,7 +8,7 @@ use super::merge::SAME_NORMAL;
 use super::screen::{Gaps, LANES, Screen};
 use super::{FeatureCache, LocalManifold, Look, collide};
 use crate::math::{F32x4, Lane, Pose, Vector, max, min};
-use crate::shape::{Composite, NO_FACET, Shape, Surface};
+use crate::shape::{Aabb, Composite, NO_FACET, Shape, Surface};
 use core::cell::Cell;
 
 /// Normals that lean over a border by less than this are the facet's own, in radians. More brakes sliding bodies; rounding is
@@ -18,9 +18,15 @@ const LEAN: f32 = 1.0e-3;
 /// Normals whose cosine to a face is below this do not tell on which side of it the other shape is.
 const SIDEWAYS: f32 = 0.05;
 
+/// A facet of a body that faces the ground with at least this cosine is pushed back into the body, as it should be.
+const FACING: f32 = 0.5;
+
 /// A shape is on one side of a face if it reaches to the other side by less than this share of its extent. More turns
 /// bodies over that reach under a facet from aside; less pulls cones into faces that they stand on.
 const ON_ONE_SIDE: f32 = 0.25;
+
+/// Up to this number of vertices are looked through for the farthest one, for each facet that may be on the wrong side.
+const FEW_VERTICES: usize = 64;
 
 /// The maximum number of rounds of a cast. A pair that needs more meets where the last round placed it.
 const MAX_ROUNDS: usize = 16;
@@ -69,8 +75,23 @@ struct Doubt {
 #[derive(Clone, Copy)]
 pub(super) struct Skin<'a> {
     pub(super) surface: &'a Surface,
+    /// The box around it, in its own frame.
+    pub(super) around: Aabb,
     /// The facet's normal out of what the surface bounds, in the composite's frame.
     pub(super) outward: Vector,
+}
+
+impl Skin<'_> {
+    /// The vertex of the surface that is farthest along a direction; of surfaces with many vertices the corner of their box.
+    fn farthest(&self, direction: Vector) -> Vector {
+        if self.surface.vertices().len() <= FEW_VERTICES {
+            return self.surface.farthest(direction);
+        }
+        let half = self.around.half().to_array();
+        let along = direction.to_array();
+        let corner = core::array::from_fn(|k| if along[k] < 0.0 { -half[k] } else { half[k] });
+        self.around.center() + Vector::from_array(corner)
+    }
 }
 
 /// A composite shape against a convex one, or against a part of another composite.
@@ -206,8 +227,11 @@ impl<'a> Pass<'a> {
         let is_corner = doubt.share == 0.0 && deepest - slack <= depth && depth <= doubt.nearest + slack;
         let certain = || found.iter().zip(doubts).filter(|(_, doubt)| doubt.is_none()).map(|(m, _)| m);
         let has_normal = |m: &LocalManifold| !is_corner || m.normal.dot(doubt.normal) > TURNED;
-        certain().any(|m| has_normal(m) && at_meeting(m) <= prediction)
-            && !certain().any(|m| m.normal.dot(own.normal) > SAME_NORMAL)
+        // The tread of a step has the floor's normal, and is another plane.
+        let is_plane = |m: &LocalManifold| {
+            m.normal.dot(own.normal) > SAME_NORMAL && at_meeting(m) <= at_meeting(own) + slack
+        };
+        certain().any(|m| has_normal(m) && at_meeting(m) <= prediction) && !certain().any(is_plane)
     }
 
     /// Adds the manifold of one part, if it has one. `screened` are lower bounds of its distance, now and during the motion.
@@ -247,7 +271,12 @@ impl<'a> Pass<'a> {
     fn collide_part(&self, part: u32, prediction: f32, local: &mut LocalManifold) -> Option<Doubt> {
         self.collide_alone(part, prediction, local);
         if let Some(skin) = self.skin.filter(|_| local.count > 0) {
+            let (normal, nearest) = (local.normal, local.lower_bound());
             self.keep_outside(&skin, part, prediction, local);
+            let is_turned = local.normal.dot(normal) < TURNED;
+            if local.count > 0 && (is_turned || local.lower_bound() < nearest - DEEPER * prediction) {
+                return Some(Doubt { normal, nearest, share: 0.0, is_needless: false });
+            }
         }
         let surface = self.composite.surface().filter(|_| local.count > 0);
         surface.and_then(|surface| self.keep_on_surface(surface, part, prediction, local))
@@ -320,7 +349,7 @@ impl<'a> Pass<'a> {
         let height = |direction: Vector| {
             let local = self.pose.rotation.inverse_rotate(-direction);
             let lowest = match self.skin {
-                Some(skin) => skin.surface.farthest(local),
+                Some(skin) => skin.farthest(local),
                 None => self.other.shape.support(local)?,
             };
             Some((self.pose.transform(lowest) - corner).dot(direction))
@@ -343,7 +372,11 @@ impl<'a> Pass<'a> {
     /// Replaces the contact of a facet of a closed surface that pushes it out of what the surface bounds, or through the composite, by
     /// that of the face on the side where the surface is. Drops it if the facet is the surface's back.
     fn keep_outside(&self, skin: &Skin, part: u32, prediction: f32, local: &mut LocalManifold) {
-        let is_behind = local.normal.dot(skin.outward) > SIDEWAYS;
+        let facing = local.normal.dot(skin.outward);
+        if facing < -FACING {
+            return;
+        }
+        let is_behind = facing > SIDEWAYS;
         let corners = self.composite.surface().map(|surface| surface.corners(part));
         let face = corners.and_then(|corners| Some((corners, face_normal(corners)?)));
         let Some((corners, face)) = face else {

@@ -1,9 +1,9 @@
 //! Shapes of many convex parts: surfaces of facets, and compounds of solids.
 
-use super::dim::{Facet, Hull, signed_volume};
+use super::dim::{Facet, Hull, face_normal, signed_volume};
 use super::part_tree::PartTree;
 use super::{Aabb, ShapeError};
-use crate::math::{DIM, Pose, Vector};
+use crate::math::{DIM, Pose, Vector, max, min};
 
 /// No facet.
 pub const NO_FACET: u32 = u32::MAX;
@@ -98,12 +98,28 @@ impl Surface {
         }
         let facets = self.facets.iter().filter(|facet| !is_empty(&self.vertices, facet));
         let corners: Vec<Vector> = facets.flatten().map(|i| self.vertices[*i as usize]).collect();
-        let hull = Hull::around(&corners)?;
         let near = ON_HULL * Aabb::around(corners.iter().copied()).half().max_element();
+        if !self.bulges(near) {
+            return None;
+        }
+        let hull = Hull::around(&corners)?;
         let is_on_hull = |facet: &[Vector]| {
             hull.planes().any(|(normal, offset)| facet.iter().all(|c| (c.dot(normal) - offset).abs() <= near))
         };
         corners.chunks(DIM).all(is_on_hull).then_some(hull)
+    }
+
+    /// Whether no facet's neighbours are on both sides of its plane, by more than a distance. This holds for convex surfaces, and takes
+    /// much less time than to make a hull.
+    fn bulges(&self, near: f32) -> bool {
+        (0..self.facets.len() as u32).all(|facet| {
+            let corners = self.corners(facet);
+            let Some(normal) = face_normal(corners) else { return true };
+            let beside = self.neighbors(facet).into_iter().filter(|neighbor| *neighbor != NO_FACET);
+            let heights = beside.flat_map(|n| self.corners(n)).map(|at| (at - corners[0]).dot(normal));
+            let (low, high) = heights.fold((0.0, 0.0), |(low, high), h| (min(low, h), max(high, h)));
+            low >= -near || high <= near
+        })
     }
 
     /// The vertex farthest along a direction.
@@ -161,7 +177,8 @@ fn outward(vertices: &[Vector], facets: &[[u32; DIM]], neighbors: &[[u32; DIM]])
     if !is_body || !agree(vertices, facets) {
         return 0.0;
     }
-    let volume = |facet: &[u32; DIM]| signed_volume(facet.map(|i| vertices[i as usize] - vertices[0]));
+    let origin = vertices[facets[0][0] as usize];
+    let volume = |facet: &[u32; DIM]| signed_volume(facet.map(|i| vertices[i as usize] - origin));
     let all: f64 = facets.iter().map(volume).sum();
     if all == 0.0 { 0.0 } else { all.signum() as f32 }
 }

@@ -36,6 +36,11 @@ impl MassProperties {
     }
 }
 
+/// The unit normal on the left of a segment; `None` if it has no length.
+pub(super) fn face_normal([a, b]: [Vector; 2]) -> Option<Vector> {
+    direction(b - a).map(|(axis, _)| axis.perp())
+}
+
 /// A multiple of the area between a segment and the origin, positive if its left normal faces away from the origin.
 pub(super) fn signed_volume([a, b]: [Vector; 2]) -> f64 {
     -cross(wide(a), wide(b))

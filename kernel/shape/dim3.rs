@@ -12,6 +12,7 @@ pub use curved3::Curved;
 pub use hull3::{Edge, Face, Hull};
 pub(crate) use hull3::{EdgeBlock, FaceBlock, farthest, largest};
 
+use super::primitives::direction;
 use super::{Ball, Capsule, Cuboid, RayHit, Segment, Triangle};
 use crate::math::{Inertia, Pose, Vector};
 use core::f32::consts::PI;
@@ -25,6 +26,11 @@ pub struct MassProperties {
     pub center: Vector,
     /// The inertia tensor about the centre of mass, along the shape's axes, in kg·m².
     pub inertia: Inertia,
+}
+
+/// The unit normal of a triangle, counter-clockwise from outside; `None` if it has no area.
+pub(super) fn face_normal([a, b, c]: [Vector; 3]) -> Option<Vector> {
+    direction((b - a).cross(c - a)).map(|(normal, _)| normal)
 }
 
 /// A multiple of the volume between a triangle and the origin, positive if it faces away from the origin.

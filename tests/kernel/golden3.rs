@@ -12,7 +12,7 @@ pub const GOLDEN: [(&str, u64, u64); 16] = [
     ("heap", 0xfd18d7f8f9ddaf03, 0x19946d927716be10),
     ("terrain", 0xd83b68c0c913d89f, 0x512378020ca302b4),
     ("slopes", 0xd9260d6d0d79040d, 0xd75e520f983bbf5b),
-    ("composites", 0xa8e2c2fe054b2ef3, 0x006d0d0ead6b6d0a),
+    ("composites", 0x9af7998ea3c931b4, 0x8c68583eaf7b5b48),
     ("bounces", 0xc5aef0f99bfb08ba, 0x71d6f3024c14060c),
     ("crowd", 0xa0f5ccdd25c877b6, 0x8a57453f92e50847),
     ("sleepers", 0x134471faca94c0a7, 0x0f4342d68ab5ff95),

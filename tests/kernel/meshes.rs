@@ -32,7 +32,7 @@ fn lowest(hull: &Shape, rotation: Rot) -> f32 {
     rotation.rotate(hull.support(down).expect("bounded")).y
 }
 
-/// Bodies of several pieces of ground under them, without friction.
+/// How much faster a mesh is after 6 m over pieces of ground without friction, and how far it went up or down.
 fn slide(pieces: &[(Shape, Vector)], (hull, mesh): (&Shape, &Shape), speed: f32) -> [f32; 2] {
     let mut sim = Sim::new();
     sim.checked = false;
@@ -109,12 +109,7 @@ fn what_tips_over_on_pieces_lies_on_them() {
                     }
                     let what = format!("{name} on {floor} from {height} m at {rate} Hz");
                     let most = if rate == 60.0 { 0.05 } else { 0.12 };
-                    if deep < -most {
-                        println!("FALL {what} {} {deep}", matches!(shape, Shape::Hull(_)));
-                    }
-                    if true {
-                        continue;
-                    }
+                    assert!(deep > -most, "{what}: {deep} m deep");
                     assert!(low > -0.003 && !sim.bodies[id].awake, "{what}: lies at {low} m");
                 }
             }

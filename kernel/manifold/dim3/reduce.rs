@@ -13,7 +13,7 @@ const DEEPER: f32 = 1.0e-3;
 /// patch's size. More drops one end of an edge that a body leans on for a point in the air; less makes the choice flicker.
 const HIGH: f32 = 0.02;
 /// The share of its worth that is left of a point in the air. More drops points that bear, less those that the body falls on.
-const IN_THE_AIR: f32 = 0.25;
+const IN_THE_AIR: f32 = 0.5;
 /// A point must add at least this share of the patch's squared size. Less keeps points on a line.
 const FLAT: f32 = 1.0e-6;
 
