@@ -21,6 +21,7 @@ use crate::{
         hooks::CollisionHooks,
     },
     dynamics::{
+        joints::JointPlugin,
         rigid_body::{forces::ForcePlugin, mass_properties::MassPropertyPlugin},
         solver::SolverPlugins,
     },
@@ -49,6 +50,7 @@ use crate::{
 /// | [`NarrowPhasePlugin`](crate::collision::narrow_phase::NarrowPhasePlugin) | contacts between them |
 /// | [`SolverPlugins`] | motion, contact response, sleep |
 /// | [`BroadPhaseCorePlugin`], [`BvhBroadPhasePlugin`] | pairs that might touch |
+/// | [`JointPlugin`] | joints |
 /// | [`SpatialQueryPlugin`] | ray casters and shape casters |
 /// | [`PhysicsTransformPlugin`] | `Transform` to `Position` and `Rotation`, and back |
 /// | [`PhysicsInterpolationPlugin`] | smooth transforms between steps, for those who ask |
@@ -121,6 +123,7 @@ impl PhysicsPlugins {
             )
             .add(BroadPhaseCorePlugin)
             .add(BvhBroadPhasePlugin::<H>::default())
+            .add(JointPlugin)
             .add(SpatialQueryPlugin::new(self.schedule))
             .add(PhysicsTransformPlugin::new(self.schedule))
             .add(PhysicsInterpolationPlugin::default())

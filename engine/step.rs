@@ -18,16 +18,20 @@ use crate::{
             ContactGraph,
             views::{ContactViews, forget_views},
         },
-        contacts::{link_contacts, update_contacts},
+        contacts::{link_contacts, note_touching, update_contacts},
         custom_contacts::CustomContacts,
         diagnostics::reset_collision,
         narrow_phase::{CollisionEventSystems, NarrowPhaseConfig, NarrowPhaseSystems},
         pairs::{FilterPairs, add_contacts, find_new_pairs, refit_awake, update_stale_boxes},
+        removal,
     },
     dynamics::{
         ccd::{SweptCcdSystems, sweep::sweep_bodies},
         drain::{drain_lifecycle, remove_lost_late},
         integrator::IntegrationSystems,
+        joints::{
+            forces::store_joint_forces, lifecycle::note_changed_joints, settle::settle_joints, table::Joints,
+        },
         lifecycle::{self, note_changed_colliders},
         materials::refresh_surfaces,
         rigid_body::{
@@ -35,6 +39,7 @@ use crate::{
             forces::{
                 ForceSystems,
                 apply::{apply_forces, clear_forces, follow_forces},
+                held::release_forces,
             },
             mass_properties::queue::{recompute, warn_of_missing_mass},
         },
@@ -43,6 +48,7 @@ use crate::{
             config::update_contact_softness,
             diagnostics::{SolverDiagnostics, reset_solver},
             gather::{gather_bodies, read_awake, rest_kinematic, wake_changed, wake_kinematic_late},
+            joint_graph::SyncEdges,
             scatter::{finish_bodies, keep_moved_within, note_moved_late, note_moved_within, scatter_bodies},
             schedule::{SolverSystems, SubstepSchedule, SubstepSolverSystems, start_substep_clock},
             substeps::{
@@ -54,6 +60,7 @@ use crate::{
         },
         tables::{Bodies, Colliders, Contacts},
     },
+    physics_transform::position_to_transform,
     schedule::{PhysicsSchedule, PhysicsStepSystems, StepTimes},
     threads::Threads,
 };
@@ -120,8 +127,12 @@ pub(crate) enum Owner {
     Solver,
     /// `CcdPlugin`.
     Ccd,
+    /// `JointPlugin`.
+    Joints,
     /// `IslandSleepingPlugin`.
     Sleeping,
+    /// `PhysicsTransformPlugin`.
+    Transforms,
 }
 
 stages! {
@@ -142,12 +153,16 @@ stages! {
     DrainLifecycle.in_set(PhysicsStepSystems::First) => {
         Step: (note_changed_colliders, drain_lifecycle.pipe(forget_views)).chain(),
     }
+    /// Adds, changes and removes joints in the tables.
+    SettleJoints.in_set(PhysicsStepSystems::First) => {
+        Joints: (note_changed_joints, settle_joints.pipe(forget_views)).chain().after(SyncEdges),
+    }
     /// Updates friction, restitution and margins from components.
     RefreshSurfaces.in_set(PhysicsStepSystems::First) => { NarrowPhase: refresh_surfaces }
     /// Puts islands to sleep and wakes them, as requested by the app.
     FollowSleep.in_set(PhysicsStepSystems::First) => { Sleeping: follow_requests }
     /// Wakes bodies with forces.
-    FollowForces.in_set(PhysicsStepSystems::First) => { Forces: follow_forces }
+    FollowForces.in_set(PhysicsStepSystems::First) => { Forces: (release_forces, follow_forces).chain() }
     /// Wakes bodies that the app moved or pushed.
     FollowApp.in_set(PhysicsStepSystems::First) => { SolverBodies: (wake_changed, rest_kinematic).chain() }
     /// Reads poses and velocities of awake bodies.
@@ -197,10 +212,18 @@ stages! {
     Scatter.in_set(SolverSystems::Finalize) => {
         SolverBodies: note_moved_late.pipe(scatter_bodies).pipe(keep_moved_within),
     }
+    /// Writes poses to transforms. From here on, a transform that the app sets is newer than the step.
+    WriteTransforms.in_set(SolverSystems::Finalize) => { Transforms: position_to_transform }
     /// Stores impulses in the manifolds.
     StoreImpulses.in_set(SolverSystems::StoreContactImpulses) => {
-        Solver: (store_impulses.pipe(forget_views), fill_graph, find_hits).chain(),
+        Solver: (store_impulses, find_hits).chain(),
     }
+    /// Finds the contacts that began to touch.
+    NoteTouching.in_set(SolverSystems::StoreContactImpulses) => {
+        NarrowPhase: (note_touching.pipe(forget_views), fill_graph).chain(),
+    }
+    /// Writes the forces of joints.
+    StoreJointForces.in_set(SolverSystems::StoreContactImpulses) => { Joints: store_joint_forces }
     /// Puts islands at rest to sleep.
     Sleep.in_set(PhysicsStepSystems::Sleeping) => { Sleeping: sleep_islands }
     /// Updates boxes of moved colliders, and the trees.
@@ -248,6 +271,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<ContactGraph>()
         .init_resource::<CustomContacts>()
         .init_resource::<StepSolver>()
+        .init_resource::<Joints>()
         .init_resource::<WorkerCount>()
         .init_resource::<RowWidth>()
         .init_resource::<StepTimes>()
@@ -257,6 +281,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<DefaultRestitution>()
         .init_resource::<NarrowPhaseConfig>();
     lifecycle::watch(app);
+    removal::watch(app);
     Stage::ALL.iter().for_each(|(stage, _)| place(app, *stage));
     add_systems_of(Owner::Step, app, PhysicsSchedule.intern());
     for (i, &(stage, name)) in Stage::ALL.iter().enumerate() {

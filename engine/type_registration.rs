@@ -19,6 +19,7 @@ impl Plugin for PhysicsTypeRegistrationPlugin {
     fn build(&self, app: &mut App) {
         register_schedule(app);
         register_dynamics(app);
+        register_joints(app);
         register_bodies(app);
         register_mass_properties(app);
         register_collision(app);
@@ -82,6 +83,22 @@ fn register_dynamics(app: &mut App) {
         PhysicsLengthUnit, SolverConfig, SolverDiagnostics, ContactSoftnessCoefficients, SubstepCount, WorkerCount,
         RowWidth,
         SoftnessParameters, SoftnessCoefficients, TimeToSleep, PhysicsTransformConfig,
+    );
+}
+
+fn register_joints(app: &mut App) {
+    use crate::dynamics::{
+        joints::{
+            AngleLimit, AngularMotor, DistanceLimit, JointAnchor, JointBasis, JointCollisionDisabled,
+            JointDamping, JointDisabled, JointForces, JointFrame, LinearMotor, MotorModel, dim,
+        },
+        solver::joint_graph::{JointComponentId, JointGraphEdge, JointId},
+    };
+
+    dim::register_kinds(app);
+    register!(app:
+        AngleLimit, AngularMotor, DistanceLimit, JointAnchor, JointBasis, JointCollisionDisabled, JointDamping,
+        JointDisabled, JointForces, JointFrame, LinearMotor, MotorModel, JointComponentId, JointGraphEdge, JointId,
     );
 }
 

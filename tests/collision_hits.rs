@@ -168,3 +168,54 @@ fn an_observer_may_despawn_what_was_hit() {
     steps(&mut app, 100);
     assert!(!app.world().resource::<Seen>().messages.is_empty());
 }
+
+/// A hull of random corners that falls without turning onto a floor of tiles. Each first blow has the speed of the fall,
+/// and no pair is told twice of one blow.
+#[test]
+fn issue_a_hull_that_struck_tiles_was_told_of_blows_with_other_speeds() {
+    let mut seed = 1_u32;
+    let mut random = move || {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 8) as f32 / (1 << 24) as f32
+    };
+    let mut wrong = Vec::new();
+    for case in 0..40 {
+        let mut app = app();
+        let size = 0.5 + 0.5 * random() as Scalar;
+        for x in -4..=4_i8 {
+            for z in -2..=2_i8 {
+                if Vector::AXES.len() == 2 && z != 0 {
+                    continue;
+                }
+                let center = Transform::from_xyz(f32::from(x), -0.5, f32::from(z));
+                app.world_mut().spawn((RigidBody::Static, cube(0.5), center));
+            }
+        }
+        let corners: Vec<Vector> = (0..12)
+            .map(|_| {
+                let corner = Vector::AXES
+                    .iter()
+                    .fold(Vector::ZERO, |sum, axis| sum + *axis * (random() as Scalar - 0.5));
+                corner.normalize_or_zero() * size
+            })
+            .collect();
+        let hull = Collider::convex_hull(corners).expect("corners around the origin");
+        let height = 1.5 + 2.0 * random();
+        let place = Transform::from_xyz(random() - 0.5, height, random() - 0.5);
+        let body = (RigidBody::Dynamic, hull, place, CollisionHitsEnabled::above(0.5));
+        let body = app.world_mut().spawn(body).id();
+        let mut speed = 0.0;
+        for _ in 0..200 {
+            if app.world().resource::<Seen>().messages.is_empty() {
+                speed = -app.world().get::<LinearVelocity>(body).expect("a body").y;
+            }
+            steps(&mut app, 1);
+        }
+        let hits = &app.world().resource::<Seen>().messages;
+        assert!(!hits.is_empty(), "case {case}: it fell");
+        if (hits[0].speed - speed).abs() > 0.2 {
+            wrong.push((case, hits[0].speed, speed));
+        }
+    }
+    assert_eq!(wrong, [], "case, reported and true speed");
+}

@@ -231,6 +231,45 @@ fn casts_contacts_islands_and_trees_are_drawn() {
     }
 }
 
+/// A hinge at a post draws the ways from the bodies to the anchor, the gap between the anchors, and its range.
+#[test]
+fn joints_are_drawn_with_their_anchors_gap_and_limits() {
+    let mut app = app(PhysicsGizmos::joints(Some(GREEN), Some(RED)));
+    app.insert_resource(Gravity(Vector::ZERO));
+    let world = app.world_mut();
+    let post = world.spawn((RigidBody::Static, Transform::from_xyz(1.0, 0.0, 0.0))).id();
+    let door = world.spawn((RigidBody::Static, Transform::from_xyz(4.0, 0.0, 0.0))).id();
+    let hinge =
+        RevoluteJoint::new(post, door).with_local_anchor1(Vector::X).with_local_anchor2(Vector::NEG_X);
+    let hinge = world.spawn(hinge).id();
+    frame(&mut app);
+    frame(&mut app);
+    let has = |app: &App, at: f32, color: Color| {
+        let near = |point: Vec3| point.distance(Vec3::X * at) < 1e-5;
+        drawn(app).iter().any(|(point, drawn)| near(*point) && *drawn == color.into())
+    };
+    for (at, color) in [(1.0, GREEN), (2.0, GREEN), (4.0, GREEN), (3.0, GREEN), (2.0, RED), (3.0, RED)] {
+        assert!(has(&app, at, color), "{at} m, {color:?}");
+    }
+    let without = drawn(&app).len();
+    app.world_mut().get_mut::<RevoluteJoint>(hinge).expect("a hinge").angle_limit = Some((-1.0, 1.0).into());
+    frame(&mut app);
+    assert!(drawn(&app).len() > without + 10, "its range is drawn");
+    app.world_mut().entity_mut(hinge).insert(JointDisabled);
+    frame(&mut app);
+    assert!(drawn(&app).is_empty(), "it is off");
+    // Other joints, and numbers that are not finite.
+    app.world_mut().spawn(PrismaticJoint::new(post, door).with_limits(-1.0, 1.0));
+    app.world_mut().spawn(DistanceJoint::new(post, door).with_max_distance(5.0));
+    app.world_mut().spawn(FixedJoint::new(post, door).with_anchor(Vector::X * 2.0));
+    app.world_mut()
+        .spawn(PrismaticJoint::new(post, door).with_slider_axis(Vector::NAN).with_limits(0.0, 1.0));
+    app.world_mut().spawn(RevoluteJoint::new(post, door).with_local_anchor1(Vector::NAN));
+    app.world_mut().spawn(RevoluteJoint::new(post, door).with_angle_limits(Scalar::NAN, Scalar::INFINITY));
+    frame(&mut app);
+    assert!(drawn(&app).len() > 10 && drawn(&app).iter().all(|(point, _)| point.is_finite()));
+}
+
 #[test]
 fn meshes_are_hidden_and_shown_again() {
     let mut app = app(PhysicsGizmos::default());

@@ -76,7 +76,8 @@ pub fn a_heap_falls_and_rests(floor: Collider, unit_box: Collider) {
     let height = |places: &[Vector]| places.iter().map(|p| p.y).sum::<f64>() / places.len() as f64;
     let (here, speed_here, _) = drop_all(Vector::ZERO, floor.clone(), &heap);
     let (there, speed_there, _) = drop_all(far(), floor, &heap);
-    assert!(speed_here < 0.1 && speed_there < 0.1, "{speed_here} and {speed_there} m/s after ten seconds");
+    // What falls asleep keeps the speed that it had, up to the threshold of sleep.
+    assert!(speed_here < 0.15 && speed_there < 0.15, "{speed_here} and {speed_there} m/s after ten seconds");
     assert!(there.iter().all(|p| p.y > 0.45 && p.length() < 40.0), "{there:?}");
     let (here, there) = (height(&here), height(&there));
     assert!((here - there).abs() < 0.1 * here, "mean height {here} here, {there} there");

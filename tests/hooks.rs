@@ -130,6 +130,41 @@ impl CollisionHooks for Rejecting<'_, '_> {
     }
 }
 
+/// How far a small box falls in 80 steps over a platform whose pairs are refused somehow.
+fn fall_through(mut app: App, platform: impl Bundle, swept: Option<SweptCcd>) -> Scalar {
+    app.world_mut().spawn((slab(2.0, 0.5), Transform::default(), platform));
+    let falling = app.world_mut().spawn((RigidBody::Dynamic, slab(0.1, 0.1))).id();
+    app.world_mut().entity_mut(falling).insert(Transform::from_xyz(0.0, 4.0, 0.0));
+    if let Some(swept) = swept {
+        app.world_mut().entity_mut(falling).insert(swept);
+    }
+    steps(&mut app, 80);
+    4.0 - position(&app, falling).y
+}
+
+/// A body of 0.2 m that was let through a platform hung in the air within it.
+#[test]
+fn what_is_let_through_falls_freely() {
+    let expected = fall_through(app::<()>(), Sensor, None);
+    for swept in [None, Some(SweptCcd::default())] {
+        for kind in [RigidBody::Static, RigidBody::Kinematic] {
+            let dropped =
+                fall_through(app::<Rejecting>(), (kind, ActiveCollisionHooks::MODIFY_CONTACTS), swept);
+            let mut filtering = app::<Ghosts>();
+            filtering.init_resource::<Asked>();
+            let filtered = fall_through(filtering, (kind, Ghost, ActiveCollisionHooks::FILTER_PAIRS), swept);
+            let layers = CollisionLayers::new(LayerMask(2), LayerMask(2));
+            let layered = fall_through(app::<()>(), (kind, layers), swept);
+            for fallen in [dropped, filtered, layered] {
+                assert!(
+                    (fallen - expected).abs() < 1e-3,
+                    "{kind:?} {swept:?}: {fallen} m instead of {expected} m"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn a_dropped_contact_is_no_collision() {
     let mut app = app::<Rejecting>();

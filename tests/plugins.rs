@@ -3,7 +3,10 @@
 use avian::{
     PhysicsTypeRegistrationPlugin,
     collision::collider::{AabbContext, AnyCollider},
-    dynamics::{integrator::IntegrationSystems, solver::SolverConfig},
+    dynamics::{
+        integrator::IntegrationSystems,
+        solver::{SolverConfig, joint_graph::JointGraphPlugin},
+    },
     math::{Scalar, Vector},
     parry::shape::SharedShape,
     prelude::*,
@@ -186,6 +189,8 @@ without! {
     without_interpolation: PhysicsInterpolationPlugin => moves, rests, is_attached;
     without_sweeps: CcdPlugin => moves, rests, is_attached;
     without_casters: SpatialQueryPlugin => moves, rests, is_attached;
+    without_joints: JointPlugin => moves, rests, is_attached;
+    without_joint_graph: JointGraphPlugin<FixedJoint> => moves, rests, is_attached;
 }
 
 /// As games do for speed, and crates for networking that keep poses and sleep to themselves.

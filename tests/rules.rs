@@ -493,14 +493,50 @@ fn nothing_is_left_for_later_in_the_code() {
     assert_none(&found, "what is missing is missing openly, not as a mark in the code");
 }
 
-/// The README's example compiles: it is an example of the package, verbatim.
+/// The front page is for somebody who decides in a minute.
+#[test]
+fn the_front_page_is_short() {
+    for (path, most) in [("README.md", 90), ("CHANGELOG.md", 40)] {
+        let lines =
+            fs::read_to_string(root().join(path)).expect("the file stands in the tree").lines().count();
+        assert!(lines <= most, "{path} has {lines} lines");
+    }
+}
+
+/// The examples of READMEs and of the crate's page compile: they are examples of the packages, verbatim.
 #[test]
 fn the_readme_shows_an_example() {
     let read = |path: &str| fs::read_to_string(root().join(path)).expect("the file stands in the tree");
-    let readme = read("README.md");
-    let shown = readme.split("```rust\n").nth(1).and_then(|rest| rest.split("```").next());
+    for (readme, dimension) in
+        [("README.md", 3), ("crates/avian3d/README.md", 3), ("crates/avian2d/README.md", 2)]
+    {
+        let readme = read(readme);
+        let shown = readme.split("```rust\n").nth(1).and_then(|rest| rest.split("```").next());
+        let example = read(&format!("examples/examples{dimension}d/examples/readme.rs"));
+        assert_eq!(shown, example.split_once("\n\n").map(|(_, code)| code));
+    }
+    // Rustdoc cannot compile it: the package has no renderer.
+    let docs: Vec<String> =
+        read("engine/lib.rs").lines().map(|line| line.trim_start_matches("//!").to_owned()).collect();
+    let shown =
+        docs.iter().skip_while(|line| *line != " ```ignore").skip(1).take_while(|line| *line != " ```");
+    let shown: String = shown.map(|line| line.strip_prefix(' ').unwrap_or(line).to_owned() + "\n").collect();
     let example = read("examples/examples3d/examples/readme.rs");
-    assert_eq!(shown, example.split_once("\n\n").map(|(_, code)| code));
+    assert_eq!(Some(shown.as_str()), example.split_once("\n\n").map(|(_, code)| code));
+}
+
+/// A newcomer finds every example in the index.
+#[test]
+fn examples_are_listed() {
+    let index = fs::read_to_string(root().join("examples/README.md")).expect("the examples have an index");
+    let mut unlisted = Vec::new();
+    for source in sources(&["examples/examples2d/examples", "examples/examples3d/examples"]) {
+        let path = source.path.trim_start_matches("examples/");
+        if !index.contains(&format!("({path})")) {
+            unlisted.push(path.to_owned());
+        }
+    }
+    assert_none(&unlisted, "examples/README.md lists all examples");
 }
 
 /// Paths between backticks or in links, with `{a,b}` written out.
@@ -524,8 +560,8 @@ fn paths_in(document: &str) -> Vec<String> {
 
 #[test]
 fn documents_name_files_that_exist() {
-    let mut names = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
-    for folder in ["docs", "docs/design"] {
+    let mut names = ["README.md", "CONTRIBUTING.md", "examples/README.md"].map(str::to_owned).to_vec();
+    for folder in ["docs", "docs/design", "docs/benchmarks"] {
         let entries = fs::read_dir(root().join(folder)).expect("a folder can be listed");
         names.extend(
             entries.map(|e| format!("{folder}/{}", e.expect("an entry").file_name().to_string_lossy())),
@@ -539,7 +575,7 @@ fn documents_name_files_that_exist() {
         let folder = root().join(name).parent().expect("a file is in a folder").to_owned();
         for path in paths_in(&text).iter().map(|path| path.split('#').next().unwrap_or_default()) {
             let from_root = folders.iter().any(|folder| path.starts_with(folder));
-            let is_link = path.ends_with(".md") || path.ends_with(".png");
+            let is_link = [".md", ".rs", ".png", ".svg", ".webp"].iter().any(|end| path.ends_with(end));
             let exists = root().join(path).exists() || folder.join(path).exists();
             if (from_root || is_link) && !path.contains(['*', ' ', '<']) && !exists {
                 missing.push(format!("{name}: {path}"));

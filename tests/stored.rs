@@ -36,8 +36,8 @@ use core::{fmt::Debug, time::Duration};
 use scenes::dim::{ball, block, spin};
 use serde::{Serialize, de::DeserializeOwned, de::DeserializeSeed};
 
-/// Types that are not stored: measurements of a step, ticks of a world, and settings of what is shown.
-const NOT_STORED: [&str; 17] = [
+/// Types that are not stored: measurements of a step, ticks and ids of a world, and settings of what is shown.
+const NOT_STORED: [&str; 18] = [
     "PhysicsGizmos",
     "PhysicsPickingSettings",
     "PhysicsPickable",
@@ -54,6 +54,7 @@ const NOT_STORED: [&str; 17] = [
     "SolverDiagnostics",
     "StepTimes",
     "LastPhysicsTick",
+    "JointComponentId",
     "Time",
 ];
 
@@ -121,6 +122,12 @@ fn components_come_back() {
     comes_back((friction, Restitution::new(0.9)));
     comes_back((Sleeping, SleepingDisabled, SleepTimer(0.3), SleepThreshold { linear: 0.1, angular: -1.0 }));
     comes_back(ColliderOf { body });
+    comes_back(FixedJoint::new(body, collider).with_anchor(Vector::X * 0.1).with_point_compliance(0.3));
+    comes_back(DistanceJoint::new(body, collider).with_limits(0.1, 0.7));
+    comes_back(PrismaticJoint::new(body, collider).with_limits(0.1, 0.7).with_motor(LinearMotor::default()));
+    comes_back(RevoluteJoint::new(body, collider).with_angle_limits(0.1, 0.7).with_local_anchor2(Vector::Y));
+    comes_back((JointDamping { linear: 0.1, angular: 0.3 }, JointForces::new(), JointDisabled));
+    comes_back(JointCollisionDisabled);
     let mut world = World::new();
     let listed = world.spawn_empty().id();
     let child = world.spawn(ColliderOf { body: listed }).id();

@@ -70,6 +70,7 @@ fn schedules_and_plugins_are_there_as_soon_as_the_group_is_added() {
 fn resources_that_apps_roll_back_are_cloned_and_have_defaults() {
     fn is_rolled_back<R: Resource + Clone + Default>() {}
     is_rolled_back::<ContactGraph>();
+    is_rolled_back::<avian::dynamics::solver::joint_graph::JointGraph>();
 }
 
 /// Trees and queries need neither narrow phase nor solver.

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::dynamics::{
     solver::schedule::SubstepCount,
-    tables::{Bodies, Colliders, Contacts, Tables, may_collide},
+    tables::{Bodies, Colliders, Contacts, Tables},
 };
 
 /// Makes contacts of the pairs that the app added, and removes those that it removed, in the order of collider ids.
@@ -49,7 +49,7 @@ fn is_possible(tables: &Tables, [a, b]: [u32; 2]) -> bool {
     let body = colliders.table.body(a);
     (a != b && (body == NONE || body != colliders.table.body(b)))
         && contacts.table.find(a, b).is_none()
-        && may_collide(&bodies.table, &colliders.table, [a, b])
+        && bodies.may_pair(&colliders.table, [a, b])
 }
 
 /// Fills [`ContactGraph`], if the app reads it.

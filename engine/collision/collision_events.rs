@@ -12,13 +12,14 @@
 //! every run and with any number of threads. Impulses are known then, and
 //! [`Collisions`](super::contact_types::Collisions) has the contacts.
 //!
-//! A collision also ends if a collider or its body is despawned or disabled, if the component is removed, or if layers
-//! forbid the pair from now on. Such an end is sent in the next step (in the same one if it happened within). The event
-//! then names an entity that may be gone; observers of the other collider run. Bodies that fall asleep do not end a
+//! A collision also ends if a collider is despawned or its component removed. Such an end is sent at once, also while
+//! physics is paused; within a step it is sent with that step's events. The event then names an entity that may be gone;
+//! observers of the other collider run. A collision ends in the next step if a collider or its body is disabled, if the
+//! body is removed, or if layers forbid the pair from now on. The colliders of a disabled body touch nothing. Those of a removed body may begin to touch others one step later, as colliders without a body. Bodies that fall asleep do not end a
 //! collision, and a collider that moves to another body ends none with what it still touches.
 //!
-//! Colliders touch while they have contact points: from 2 cm (times the length unit) before their surfaces meet, or if
-//! they meet in the step at hand. Sensors touch if they overlap, or will in the step. A pair of which no body can be
+//! Colliders touch from the step in which their surfaces meet, or push each other, until the surfaces are 2 cm (times the
+//! length unit) apart. So what rattles on the ground ends no collision with it. Sensors touch while they overlap. A pair of which no body can be
 //! pushed is reported if one is a [`Sensor`](super::collider::Sensor), or one is kinematic. Colliders of static bodies are
 //! no pair, sensor or not.
 //!
@@ -48,7 +49,6 @@ use bevy_ecs::{entity::EntityHashSet, message::Messages, prelude::*};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
-use kernel::contact::ContactFlags;
 
 use crate::{
     collision::collider::CollidingEntities,
@@ -118,16 +118,27 @@ macro_rules! seen_from {
     }};
 }
 
-/// Sends what began and ended in this step.
+/// Whether events are being sent. Collisions that observers of events end are reported after these events.
+#[derive(Resource, Default)]
+pub(crate) struct IsSending(pub(crate) bool);
+
+/// Sends what began and ended since the last call. Observers may despawn colliders, which ends more collisions.
 pub(crate) fn send_collision_events(world: &mut World) {
-    let mut contacts = world.resource_mut::<Contacts>();
-    let Reports { started, ended, trackers } = &mut contacts.bypass_change_detection().reports;
-    if started.is_empty() && ended.is_empty() && trackers.is_empty() {
+    if core::mem::replace(&mut world.resource_mut::<IsSending>().0, true) {
         return;
     }
-    let (started, ended) = (core::mem::take(started), core::mem::take(ended));
-    let trackers = core::mem::take(trackers);
+    loop {
+        let mut contacts = world.resource_mut::<Contacts>();
+        let reports = core::mem::take(&mut contacts.bypass_change_detection().reports);
+        if reports.started.is_empty() && reports.ended.is_empty() && reports.trackers.is_empty() {
+            break;
+        }
+        send(world, reports);
+    }
+    world.resource_mut::<IsSending>().0 = false;
+}
 
+fn send(world: &mut World, Reports { started, ended, trackers }: Reports) {
     let sent = |reports: &[Report]| reports.iter().copied().filter(|r| r.is_sent).collect::<Vec<_>>();
     let (started, ended) = (sent(&started), sent(&ended));
     if let Some(mut messages) = world.get_resource_mut::<Messages<CollisionStart>>() {
@@ -169,10 +180,10 @@ fn update_trackers(world: &mut World, trackers: Vec<Entity>) {
     let (colliders, contacts) = (world.resource::<Colliders>(), world.resource::<Contacts>());
     let touching = |collider: Entity| -> EntityHashSet {
         let Some(id) = colliders.find(collider) else { return EntityHashSet::default() };
-        let all = contacts.table.of_collider(id, &colliders.table).map(|contact| contacts.table.get(contact));
-        let touching = all.filter(|contact| contact.flags.has(ContactFlags::TOUCHING));
+        let all = contacts.table.of_collider(id, &colliders.table);
+        let touching = all.filter(|contact| contacts.touches(*contact));
         let other = |[a, b]: [u32; 2]| colliders.entities[if a == id { b } else { a } as usize];
-        touching.map(|contact| other(contact.colliders)).collect()
+        touching.map(|contact| other(contacts.table.get(contact).colliders)).collect()
     };
     let sets: Vec<(Entity, EntityHashSet)> = trackers.into_iter().map(|e| (e, touching(e))).collect();
     for (collider, set) in sets {

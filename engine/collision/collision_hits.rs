@@ -31,8 +31,9 @@ use kernel::{
 };
 
 use crate::{
+    collision::collision_events::IsSending,
     dynamics::{
-        reports::{Approach, Blow, Hits},
+        reports::{Approach, Blow, GoingBlow, Hits},
         solver::{config::PhysicsLengthUnit, substeps::StepSolver},
         tables::{Bodies, Colliders, Contacts},
     },
@@ -117,9 +118,10 @@ pub(crate) fn note_approaches(
     mut contacts: ResMut<Contacts>,
 ) {
     let Contacts { table, hits, .. } = &mut *contacts.bypass_change_detection();
-    hits.approaches.clear();
+    let Hits { approaches, going, .. } = hits;
+    approaches.clear();
     if colliders.hitting.is_empty() {
-        return;
+        return going.clear();
     }
     let all = colliders.hitting.iter().flat_map(|id| table.of_collider(id, &colliders.table));
     let mut ids: Vec<u32> = all.filter(|id| table.is_active(*id) && table.get(*id).is_solved()).collect();
@@ -130,69 +132,118 @@ pub(crate) fn note_approaches(
         let entities = contact.colliders.map(|collider| colliders.entities[collider as usize]);
         let min_speed = |entity: Entity| settings.get(entity).map_or(f32::INFINITY, |s| to_f32(s.min_speed));
         let min_speed = min_speed(entities[0]).min(min_speed(entities[1])) * unit.metres();
+        let blow = going.binary_search_by_key(&id, |blow| blow.contact).ok().map(|place| going[place]);
+        let approach = Approach {
+            min_speed,
+            blow: blow.filter(|blow| blow.colliders == entities),
+            ..approach(&bodies.table, &colliders, id, contact)
+        };
         let manifolds = core::iter::once(&contact.manifold).chain(table.extra_of(contact));
         let solved = manifolds.filter(|manifold| manifold.solved_points() > 0);
-        let approaches = solved.map(|manifold| approach(&bodies.table, &colliders, contact, manifold));
-        let fastest = approaches.max_by(|a, b| a.speed.total_cmp(&b.speed));
-        hits.approaches.extend(fastest.filter(|approach| approach.speed > min_speed));
+        let mut points =
+            solved.flat_map(|manifold| manifold.points().iter().map(move |p| (manifold, p.anchor)));
+        let is_fast = points.any(|(manifold, anchor)| approach.speed(manifold.normal, anchor) > min_speed);
+        if is_fast || approach.blow.is_some_and(|blow| !blow.is_told) {
+            approaches.push(approach);
+        }
     }
+    going.clear();
 }
 
-/// How fast the bodies of a manifold approach in the middle of its points.
-fn approach(bodies: &BodyTable, colliders: &Colliders, contact: &Contact, manifold: &Manifold) -> Approach {
-    let sum = manifold.points().iter().fold(k::Vector::ZERO, |sum, point| sum + point.anchor);
-    let arm = sum * (1.0 / f32::from(manifold.count));
+/// The bodies of a contact before it is solved.
+fn approach(bodies: &BodyTable, colliders: &Colliders, id: u32, contact: &Contact) -> Approach {
     let center = |side: usize| match contact.bodies[side] {
         NONE => colliders.table.poses[contact.colliders[side] as usize].position,
         body => bodies.poses[body as usize].center,
     };
-    let point = center(0) + arm.to_world();
-    let arms = [arm, (point - center(1)).to_local()];
-    let parting = parting(bodies, contact.bodies, arms, manifold.normal);
-    let entities = contact.colliders.map(|collider| colliders.entities[collider as usize]);
-    let bodies = contact.bodies;
-    Approach { colliders: entities, bodies, arms, point, normal: manifold.normal, speed: -parting }
+    Approach {
+        contact: id,
+        colliders: contact.colliders.map(|collider| colliders.entities[collider as usize]),
+        center: center(0),
+        offset: (center(1) - center(0)).to_local(),
+        velocities: velocities(bodies, contact.bodies),
+        min_speed: f32::INFINITY,
+        blow: None,
+    }
 }
 
-/// The speed along the normal at which two bodies part at a point.
-fn parting(bodies: &BodyTable, pair: [u32; 2], arms: [k::Vector; 2], normal: k::Vector) -> f32 {
-    let velocity = |side: usize| {
-        let Velocity { linear, angular } = match pair[side] {
-            NONE => Velocity::default(),
-            body => bodies.velocities[body as usize],
-        };
-        linear + angular.cross(arms[side])
-    };
-    normal.dot(velocity(1) - velocity(0))
+impl Approach {
+    /// The speed at which the bodies approached at a point, given from the first centre of mass.
+    fn speed(&self, normal: k::Vector, anchor: k::Vector) -> f32 {
+        -self.parting(self.velocities, normal, anchor)
+    }
+
+    /// The speed along the normal at which they part there with other velocities.
+    fn parting(&self, [a, b]: [Velocity; 2], normal: k::Vector, anchor: k::Vector) -> f32 {
+        let arm = anchor - self.offset;
+        normal.dot(b.linear + b.angular.cross(arm) - a.linear - a.angular.cross(anchor))
+    }
 }
 
-/// Makes hits of the fast contacts whose bodies do not approach any more, by half at least.
+fn velocities(bodies: &BodyTable, pair: [u32; 2]) -> [Velocity; 2] {
+    pair.map(|body| match body {
+        NONE => Velocity::default(),
+        body => bodies.velocities[body as usize],
+    })
+}
+
+/// Makes hits of the fast contacts that got impulses, once their bodies do not approach any more, by half at least. A blow
+/// that takes several steps has the speed at which it began, and is one hit.
 pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contacts: ResMut<Contacts>) {
-    let Hits { approaches, blows } = &mut contacts.bypass_change_detection().hits;
+    let Contacts { table, hits: Hits { approaches, going, blows }, .. } =
+        &mut *contacts.bypass_change_detection();
     for approach in approaches.drain(..) {
-        let Approach { colliders, bodies: pair, arms, point, normal, speed } = approach;
-        let change = parting(&bodies.table, pair, arms, normal) + speed;
-        if !(change > 0.5 * speed) {
+        let contact = table.get(approach.contact);
+        let manifolds = core::iter::once(&contact.manifold).chain(table.extra_of(contact));
+        let struck = manifolds.filter_map(struck_place).max_by(|a, b| a.impulse.total_cmp(&b.impulse));
+        let Some(Struck { normal, anchor, .. }) = struck else { continue };
+        let now = approach.speed(normal, anchor);
+        let speed = approach.blow.map_or(now, |blow| blow.speed.max(now));
+        if !(speed > approach.min_speed) {
+            continue;
+        }
+        let change = approach.parting(velocities(&bodies.table, contact.bodies), normal, anchor) + speed;
+        let was_told = approach.blow.is_some_and(|blow| blow.is_told);
+        let is_told = was_told || change > 0.5 * speed;
+        let Approach { contact: id, colliders, center, offset, .. } = approach;
+        going.push(GoingBlow { contact: id, colliders, speed, is_told });
+        if was_told || !is_told {
             continue;
         }
         let mut inverse_mass = 0.0;
-        for (body, arm) in pair.into_iter().zip(arms).filter(|(body, _)| *body != NONE) {
+        let arms = [anchor, anchor - offset];
+        for (body, arm) in contact.bodies.into_iter().zip(arms).filter(|(body, _)| *body != NONE) {
             let mass =
                 solver.kernel.bodies.masses.get(bodies.table.row(body) as usize).copied().unwrap_or_default();
             let moment = arm.cross(normal);
             inverse_mass += mass.inv_mass() + moment.dot(mass.inv_inertia().apply(moment));
         }
-        let [body1, body2] = pair.map(|body| (body != NONE).then(|| bodies.entities[body as usize]));
         let impulse = if inverse_mass > 0.0 { change / inverse_mass } else { 0.0 };
         blows.push(Blow {
             colliders,
-            bodies: [body1, body2],
-            point: world_from_kernel(point),
+            bodies: contact.bodies.map(|body| (body != NONE).then(|| bodies.entities[body as usize])),
+            point: world_from_kernel(center + anchor.to_world()),
             normal: vector_from_kernel(normal),
             speed: speed.adjust_precision(),
             impulse: impulse.adjust_precision(),
         });
     }
+}
+
+/// Where a manifold got impulses.
+struct Struck {
+    impulse: f32,
+    normal: k::Vector,
+    /// The mean of its points, weighted by their impulses, from the first centre of mass.
+    anchor: k::Vector,
+}
+
+/// Where a manifold got impulses in this step, if it did.
+fn struck_place(manifold: &Manifold) -> Option<Struck> {
+    let points = &manifold.points()[..manifold.solved_points() as usize];
+    let impulse = points.iter().fold(0.0, |sum, point| sum + point.total_impulse);
+    let sum = points.iter().fold(k::Vector::ZERO, |sum, point| sum + point.anchor * point.total_impulse);
+    (impulse > 0.0).then(|| Struck { impulse, normal: manifold.normal, anchor: sum * (1.0 / impulse) })
 }
 
 /// Sends the hits of the step.
@@ -202,6 +253,8 @@ pub(crate) fn send_hits(world: &mut World) {
         return;
     }
     let blows = core::mem::take(&mut contacts.bypass_change_detection().hits.blows);
+    // Collisions that observers of hits end are sent with those of the step.
+    world.resource_mut::<IsSending>().0 = true;
     let hits: Vec<CollisionHit> = blows.into_iter().map(CollisionHit::from).collect();
     if let Some(mut messages) = world.get_resource_mut::<Messages<CollisionHit>>() {
         messages.write_batch(hits.iter().copied());
@@ -216,4 +269,5 @@ pub(crate) fn send_hits(world: &mut World) {
             }
         }
     }
+    world.resource_mut::<IsSending>().0 = false;
 }

@@ -1,8 +1,9 @@
 //! The narrow phase's systems: manifolds of awake contacts, then the effects of contacts that began or ended.
 
 use bevy_ecs::prelude::*;
+use bevy_time::Time;
 use kernel::{
-    contact::{ManifoldSource, WorkerBuffers},
+    contact::{ContactFlags, ManifoldSource, Status, WorkerBuffers},
     manifold::LocalManifold,
     math::{Pose, Vector},
 };
@@ -14,8 +15,13 @@ use crate::{
         custom_contacts::CustomContacts,
         diagnostics::CollisionDiagnostics,
         narrow_phase::input::Settings,
+        touch::{StepEnd, touching_gap},
     },
-    dynamics::tables::Tables,
+    dynamics::{
+        solver::config::PhysicsLengthUnit,
+        tables::{Contacts, Tables},
+    },
+    schedule::Physics,
     threads::Threads,
 };
 
@@ -80,7 +86,8 @@ pub(crate) fn update_contacts(
     let input = settings.input(&tables.bodies.table, &colliders.table, &source);
     let contacts = &mut *tables.contacts;
     contacts.changed.clear();
-    let listeners = [&colliders.reporting, &colliders.tracking, &colliders.modifying];
+    contacts.is_before_solver = true;
+    let listeners = [&colliders.reporting, &colliders.tracking, &colliders.modifying, &colliders.hitting];
     contacts.table.sum_impulses = views.has_readers() || listeners.iter().any(|set| !set.is_empty());
     let workers = &settings.workers;
     threads.wake(contacts.table.active_len(), workers.0, || workers.resolve());
@@ -89,14 +96,50 @@ pub(crate) fn update_contacts(
     diagnostics.narrow_phase += start.elapsed();
 }
 
-/// Applies the effects of contacts that began or ended: colours, islands, waking.
+/// Applies the effects of contacts that got points or lost them: colours, islands, waking.
 pub(crate) fn link_contacts(mut tables: Tables) {
     let changed = core::mem::take(&mut tables.contacts.changed);
+    let mut parted = core::mem::take(&mut tables.contacts.parted);
     let (mut link, mut reporter) = tables.link_and_reporter();
-    link.apply(&changed, |_, contact, status| reporter.note(contact, status));
-    reporter.drop_resumed();
-    tables.contacts.changed = changed;
+    link.apply(&changed, |id, contact, status| {
+        if reporter.note_points(id, contact, status) {
+            parted.insert(id);
+        }
+    });
+    (tables.contacts.changed, tables.contacts.parted) = (changed, parted);
     if cfg!(feature = "validate") {
         tables.link().validate();
     }
+}
+
+/// Finds the contacts that began to touch in this step, once their impulses are known.
+pub(crate) fn note_touching(unit: Res<PhysicsLengthUnit>, time: Res<Time<Physics>>, mut tables: Tables) {
+    tables.contacts.is_before_solver = false;
+    let Tables { bodies, contacts, .. } = &mut tables;
+    let Contacts { table, nearing, met, changed, .. } = &mut **contacts;
+    let step =
+        StepEnd { bodies: &bodies.table, contacts: table, gap: touching_gap(&unit), dt: time.delta_secs() };
+    // Contacts of bodies at rest are updated once.
+    let is_updated = |id: u32| table.is_active(id) || changed.contains(id);
+    for id in nearing.iter() {
+        // Others were removed.
+        let is_near = table.is_live(id) && table.get(id).flags.has(ContactFlags::TOUCHING);
+        if !is_near || is_updated(id) && step.touches(id) {
+            met.insert(id);
+        }
+    }
+    let new: Vec<u32> = met.iter().collect();
+    for id in new {
+        tables.contacts.nearing.remove(id);
+        if tables.contacts.table.is_live(id) {
+            let (link, mut reporter) = tables.link_and_reporter();
+            let contact = link.contacts.get(id);
+            if contact.flags.has(ContactFlags::TOUCHING) {
+                reporter.note(contact, Status::Began);
+                continue;
+            }
+        }
+        tables.contacts.met.remove(id);
+    }
+    tables.link_and_reporter().1.drop_resumed();
 }

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::dynamics::{
     solver::schedule::SubstepCount,
-    tables::{Bodies, Colliders, Contacts, may_collide},
+    tables::{Bodies, Colliders, Contacts},
 };
 
 /// Filters pairs and changes contacts, with the access of a system parameter.
@@ -112,7 +112,7 @@ pub(crate) fn filter_pairs<H: CollisionHooks + 'static>(
         let is_asked = colliders.filtering.contains(a) || colliders.filtering.contains(b);
         let [entity1, entity2] = [a, b].map(|id| colliders.entities[id as usize]);
         is_asked
-            && may_collide(&bodies.table, &colliders.table, [a, b])
+            && bodies.may_pair(&colliders.table, [a, b])
             && !hooks.filter_pairs(entity1, entity2, &mut commands)
     });
 }

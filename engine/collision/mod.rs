@@ -15,6 +15,8 @@ pub mod hooks;
 pub(crate) mod local_points;
 pub mod narrow_phase;
 pub(crate) mod pairs;
+pub(crate) mod removal;
+pub(crate) mod touch;
 
 pub use diagnostics::CollisionDiagnostics;
 

@@ -19,7 +19,7 @@ use crate::{
     dynamics::{
         ids::ColliderId,
         solver::config::PhysicsLengthUnit,
-        tables::{Bodies, Colliders, Contacts, Tables, is_minority, may_collide},
+        tables::{Bodies, Colliders, Contacts, Tables, is_minority},
     },
     math::vector_from_kernel,
     scan::IN_TABLES,
@@ -248,8 +248,7 @@ pub(crate) fn add_contacts(
     let start = bevy_platform::time::Instant::now();
     let mut sleepers = Vec::new();
     for (place, &(a, b)) in search.found.pairs().iter().enumerate() {
-        if may_collide(&tables.bodies.table, &tables.colliders.table, [a, b])
-            && !search.rejected.contains(place as u32)
+        if tables.bodies.may_pair(&tables.colliders.table, [a, b]) && !search.rejected.contains(place as u32)
         {
             sleepers.extend(add_contact(&mut tables, [a, b], ContactFlags::default()));
         }

@@ -1,4 +1,4 @@
-//! Drawing of bodies, colliders, contacts and queries as lines, with feature `debug-plugin`.
+//! Drawing of bodies, colliders, joints, contacts and queries as lines, with feature `debug-plugin`.
 //!
 //! [`PhysicsDebugPlugin`] draws what [`PhysicsGizmos`] asks for. [`DebugRender`] on an entity takes its place there.
 //! [`PhysicsGizmoExt`] has the same lines for systems of the app.
@@ -16,6 +16,7 @@ mod curves;
 mod dim;
 mod draw;
 mod gizmos;
+mod joints;
 mod lines;
 mod meshes;
 #[cfg(feature = "default-collider")]
@@ -28,4 +29,5 @@ mod voxels;
 
 pub use configuration::{ContactGizmoScale, DebugRender, PhysicsGizmos};
 pub use gizmos::PhysicsGizmoExt;
+pub use joints::{DebugRenderConstraint, debug_render_constraint};
 pub use plugin::PhysicsDebugPlugin;

@@ -10,12 +10,13 @@ use bevy_transform::TransformSystems;
 use super::{
     PhysicsGizmos,
     contacts::draw_contacts,
+    dim,
     draw::{draw_aabbs, draw_axes, draw_islands, draw_trees, is_enabled},
     meshes::hide_meshes,
 };
 use crate::{collision::contact_types::views::ContactViews, schedule::PhysicsSystems};
 
-/// Draws bodies, colliders, contacts and queries as lines, as [`PhysicsGizmos`] says, at the end of each frame.
+/// Draws bodies, colliders, joints, contacts and queries as lines, as [`PhysicsGizmos`] says, at the end of each frame.
 ///
 /// In [`PostUpdate`], after transforms are propagated and after physics if that runs there, so that lines are where the
 /// frame's meshes are. Entities that the app hides are not drawn. Without a window it draws nothing and does no harm.
@@ -48,6 +49,7 @@ impl Plugin for PhysicsDebugPlugin {
                 )
                     .in_set(Drawing),
             )
+            .add_systems(PostUpdate, dim::joints::draw_joints().in_set(Drawing))
             .add_systems(PostUpdate, hide_meshes.before(VisibilitySystems::VisibilityPropagate))
             .configure_sets(
                 PostUpdate,

@@ -1,16 +1,20 @@
-//! Numbers of bodies and colliders.
+//! Numbers of bodies, colliders and joints.
 
 use super::{PhysicsDiagnosticsSystems, Within, diagnostic_paths, list};
 use crate::{
     collision::collider::ColliderMarker,
-    dynamics::rigid_body::{RigidBody, RigidBodyDisabled},
+    dynamics::{
+        joints::JointDisabled,
+        rigid_body::{RigidBody, RigidBodyDisabled},
+        solver::joint_graph::JointComponentId,
+    },
     schedule::PhysicsSchedule,
 };
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
-/// Counts bodies and colliders after each step, in [`PhysicsEntityDiagnostics`].
+/// Counts bodies, colliders and joints after each step, in [`PhysicsEntityDiagnostics`].
 pub struct PhysicsEntityDiagnosticsPlugin;
 
 impl Plugin for PhysicsEntityDiagnosticsPlugin {
@@ -32,7 +36,7 @@ pub struct PhysicsEntityDiagnostics {
     pub static_body_count: u32,
     /// Number of colliders.
     pub collider_count: u32,
-    /// Number of joints. 0 until there are joints.
+    /// Number of joints that are not disabled.
     pub joint_count: u32,
 }
 
@@ -53,6 +57,7 @@ fn keep(_: ResMut<PhysicsEntityDiagnostics>) {}
 fn count_entities(
     bodies: Query<&RigidBody, Without<RigidBodyDisabled>>,
     colliders: Query<(), With<ColliderMarker>>,
+    joints: Query<(), (With<JointComponentId>, Without<JointDisabled>)>,
     mut diagnostics: ResMut<PhysicsEntityDiagnostics>,
 ) {
     let mut counts = PhysicsEntityDiagnostics::default();
@@ -63,6 +68,8 @@ fn count_entities(
             RigidBody::Static => counts.static_body_count += 1,
         }
     }
-    counts.collider_count = u32::try_from(colliders.iter().count()).unwrap_or(u32::MAX);
+    let count = |all: usize| u32::try_from(all).unwrap_or(u32::MAX);
+    counts.collider_count = count(colliders.iter().count());
+    counts.joint_count = count(joints.iter().count());
     *diagnostics = counts;
 }

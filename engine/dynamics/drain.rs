@@ -4,6 +4,7 @@ use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
 use bevy_log::warn;
 use kernel::{
     bvh::TreeKind,
+    data::BitSet,
     math::{Pose, WorldPose},
     table::{BodyKind, ColliderDef, ColliderFlags, Layers, NONE, Velocity},
 };
@@ -20,13 +21,15 @@ use crate::{
     },
     dynamics::{
         ids::{BodyId, ColliderId},
+        joints::table::JointTables,
         lifecycle::{IsComplete, LifecycleQueue},
         materials::{SurfaceQuery, Surfaces},
         quarantine::{is_finite, quarantine},
         rigid_body::{
             Dominance, RigidBody, RigidBodyDisabled, mass_properties::components::ComputedCenterOfMass,
         },
-        tables::{Colliders, Tables, may_collide},
+        sleep::SleepRequests,
+        tables::{Colliders, Contacts, Tables, may_collide},
     },
     math::vector_to_kernel,
     physics_transform::{Position, Rotation, said_pose, unit_rotation, world_pose},
@@ -79,20 +82,30 @@ pub(crate) struct Census<'w, 's> {
 
 /// Drains the queue: lost ids are removed, then queued bodies are added, removed or retyped, then queued colliders. Ids
 /// follow the order in which entities were queued, not the order of entities.
-pub(crate) fn drain_lifecycle(mut queue: ResMut<LifecycleQueue>, mut tables: Tables, mut census: Census) {
-    // Systems that mirror sleep have run at the end of the last step.
-    tables.bodies.table.flipped.clear();
-    tables.contacts.changed.clear();
-    remove_lost(&mut queue, &mut tables, &mut census);
+pub(crate) fn drain_lifecycle(
+    mut queue: ResMut<LifecycleQueue>,
+    sleep: Option<Res<SleepRequests>>,
+    mut tables: Tables,
+    mut joints: JointTables,
+    mut census: Census,
+) {
+    // Where sleep is mirrored, only bodies are left that woke since: what held them was despawned.
+    if sleep.is_none() {
+        tables.bodies.table.flipped.clear();
+    }
+    queue.is_within_step = true;
+    let Contacts { changed, met, parted, .. } = &mut *tables.contacts;
+    [changed, met, parted].into_iter().for_each(BitSet::clear);
+    remove_lost(&mut queue, &mut tables, &mut joints, &mut census);
     // Includes ids of entities that were despawned since the last step, so that a level that is replaced at once gets
     // the same ids.
     tables.bodies.table.ids.recycle();
-    tables.colliders.table.ids.recycle();
+    tables.colliders.table.recycle_ids();
     tables.contacts.table.recycle_ids();
 
     let mut bodies = core::mem::take(&mut queue.bodies);
     for (entity, ()) in bodies.drain() {
-        census.settle_body(entity, &mut tables, &mut queue);
+        census.settle_body(entity, &mut tables, &mut joints, &mut queue);
     }
     queue.bodies = bodies;
 
@@ -101,14 +114,36 @@ pub(crate) fn drain_lifecycle(mut queue: ResMut<LifecycleQueue>, mut tables: Tab
         census.settle_collider(entity, &mut tables, &mut queue);
     }
     queue.colliders = colliders;
+    let LifecycleQueue { colliders, bereft, later, .. } = &mut *queue;
+    bereft.clear();
+    colliders.extend(later.drain(..));
 }
 
 /// Removes entities that were despawned during the step, before observers and events of its end.
-pub(crate) fn remove_lost_late(mut queue: ResMut<LifecycleQueue>, mut tables: Tables, mut census: Census) {
-    remove_lost(&mut queue, &mut tables, &mut census);
+pub(crate) fn remove_lost_late(
+    mut queue: ResMut<LifecycleQueue>,
+    mut tables: Tables,
+    mut joints: JointTables,
+    mut census: Census,
+) {
+    for id in core::mem::take(&mut queue.shapeless) {
+        if tables.colliders.table.ids.is_live(id) {
+            tables.end_contacts(id, |_, _| true);
+            tables.colliders.moved.insert(id);
+        }
+    }
+    remove_lost(&mut queue, &mut tables, &mut joints, &mut census);
+    queue.is_within_step = false;
+    // These are queued for the next step anyway.
+    queue.bereft.clear();
 }
 
-fn remove_lost(queue: &mut LifecycleQueue, tables: &mut Tables, census: &mut Census) {
+fn remove_lost(
+    queue: &mut LifecycleQueue,
+    tables: &mut Tables,
+    joints: &mut JointTables,
+    census: &mut Census,
+) {
     for id in core::mem::take(&mut queue.lost_colliders) {
         if tables.colliders.table.ids.is_live(id) {
             remove_collider(id, tables);
@@ -116,7 +151,7 @@ fn remove_lost(queue: &mut LifecycleQueue, tables: &mut Tables, census: &mut Cen
     }
     for id in core::mem::take(&mut queue.lost_bodies) {
         if tables.bodies.table.ids.is_live(id) {
-            census.remove_body(id, tables, queue);
+            census.remove_body(id, tables, joints, queue);
         }
     }
 }
@@ -164,7 +199,13 @@ fn put<T: Clone>(list: &mut Vec<T>, index: u32, value: T, filler: T) {
 }
 
 impl Census<'_, '_> {
-    fn settle_body(&mut self, entity: Entity, tables: &mut Tables, queue: &mut LifecycleQueue) {
+    fn settle_body(
+        &mut self,
+        entity: Entity,
+        tables: &mut Tables,
+        joints: &mut JointTables,
+        queue: &mut LifecycleQueue,
+    ) {
         let id = self.body_ids.get(entity).map_or(NONE, |id| id.0);
         let wanted = self.bodies.get(entity).ok().filter(|state| {
             let (_, body_disabled, disabled, position, ..) = state;
@@ -178,8 +219,9 @@ impl Census<'_, '_> {
             finite
         });
         match (wanted, id) {
-            (None, NONE) => {}
-            (None, id) => self.remove_body(id, tables, queue),
+            // The colliders of a disabled body become colliders without a body.
+            (None, NONE) => self.note_colliders(entity, queue),
+            (None, id) => self.remove_body(id, tables, joints, queue),
             (Some((body, _, _, position, rotation, center, dominance)), NONE) => {
                 let kind = kind_of(body);
                 let center = vector_to_kernel(center.0);
@@ -198,6 +240,7 @@ impl Census<'_, '_> {
                     component.0 = id;
                 }
                 self.note_colliders(entity, queue);
+                joints.joints.note_of_body(entity);
             }
             (Some((body, ..)), id) => {
                 let kind = kind_of(body);
@@ -218,11 +261,22 @@ impl Census<'_, '_> {
         queue.colliders.extend(self.colliders_of(body));
     }
 
+    fn is_disabled(&self, body: Entity) -> bool {
+        self.bodies.get(body).is_ok_and(|(_, body_disabled, disabled, ..)| body_disabled || disabled)
+    }
+
     fn colliders_of(&self, body: Entity) -> Vec<Entity> {
         self.surfaces.colliders_of(body)
     }
 
-    fn remove_body(&mut self, id: u32, tables: &mut Tables, queue: &mut LifecycleQueue) {
+    fn remove_body(
+        &mut self,
+        id: u32,
+        tables: &mut Tables,
+        joints: &mut JointTables,
+        queue: &mut LifecycleQueue,
+    ) {
+        joints.release_of_body(tables.bodies.entities[id as usize], tables);
         loop {
             let first = tables.bodies.table[id].first_collider;
             if first == NONE {
@@ -234,6 +288,7 @@ impl Census<'_, '_> {
             if let Ok(mut component) = self.collider_ids.get_mut(entity) {
                 component.0 = NONE;
                 queue.colliders.note(entity);
+                queue.bereft.insert(entity);
             }
         }
         tables.link().leave(id);
@@ -265,8 +320,15 @@ impl Census<'_, '_> {
         };
         let body_entity = of.map(|of| of.body);
         let body = body_entity.and_then(|body| self.body_ids.get(body).ok()).map_or(NONE, |id| id.0);
-        if body == NONE && body_entity.is_some() {
+        let is_detached = body == NONE && body_entity.is_some();
+        if is_detached {
             queue.detached.insert(entity);
+        }
+        let inactive = is_detached && body_entity.is_some_and(|body| self.is_disabled(body));
+        // Its collisions as a part of the body end before it forms contacts on its own.
+        if body == NONE && !inactive && queue.bereft.contains(&entity) {
+            queue.later.push(entity);
+            return;
         }
         let Surfaces { material, margin, speculative } = self.surfaces.of(entity, body_entity);
         let local = transform.filter(|_| body_entity != Some(entity)).map_or(Pose::IDENTITY, local_pose);
@@ -277,7 +339,7 @@ impl Census<'_, '_> {
             material,
             facets: self.surfaces.facets_of(entity),
             layers: layers_of(layers.copied().unwrap_or_default()),
-            flags: ColliderFlags { sensor },
+            flags: ColliderFlags { sensor, inactive },
             margin,
             speculative,
         };
@@ -331,13 +393,22 @@ impl Census<'_, '_> {
     fn settle_reports(&self, entity: Entity, id: u32, tables: &mut Tables) {
         let (reports, tracks, hits, hooks) = self.reports.get(entity).unwrap_or_default();
         let has = |flag| hooks.is_some_and(|hooks| hooks.contains(flag));
+        let (filters, modifies) =
+            (has(ActiveCollisionHooks::FILTER_PAIRS), has(ActiveCollisionHooks::MODIFY_CONTACTS));
+        let colliders = &tables.colliders;
+        let hooked = [colliders.filtering.contains(id), colliders.modifying.contains(id)];
+        // A new collider has no contacts, and a level may be spawned asleep.
+        if hooked != [filters, modifies] && colliders.table[id].first_contact != NONE {
+            let body = colliders.table.body(id);
+            tables.link().wake_with_touching(body);
+        }
         let Colliders { reporting, tracking, hitting, filtering, modifying, .. } = &mut *tables.colliders;
         for (set, is_in) in [
             (reporting, reports),
             (tracking, tracks),
             (hitting, hits),
-            (filtering, has(ActiveCollisionHooks::FILTER_PAIRS)),
-            (modifying, has(ActiveCollisionHooks::MODIFY_CONTACTS)),
+            (filtering, filters),
+            (modifying, modifies),
         ] {
             if is_in {
                 set.insert(id);
@@ -362,10 +433,7 @@ fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
     // A collider that becomes or ceases to be a sensor needs other pairs.
     let repaired = old.layers != def.layers || old.flags != def.flags;
     let mut link = tables.link();
-    if body != NONE {
-        link.wake_body(body);
-        link.wake_touching(body);
-    }
+    link.wake_with_touching(body);
     link.colliders.redefine(id, def, link.bodies);
     if repaired {
         drop_forbidden(id, tables);

@@ -15,7 +15,10 @@
 
 use bevy_app::App;
 use bevy_ecs::{
-    change_detection::Tick, entity::EntityIndexSet, entity_disabling::Disabled, prelude::*,
+    change_detection::Tick,
+    entity::{EntityHashSet, EntityIndexSet},
+    entity_disabling::Disabled,
+    prelude::*,
     system::SystemChangeTick,
 };
 use kernel::table::NONE;
@@ -57,8 +60,16 @@ pub(crate) struct LifecycleQueue {
     pub(crate) refused: EntityIndexSet,
     /// Colliders of bodies that are not in the simulation. They use their own pose.
     pub(crate) detached: EntityIndexSet,
+    /// Colliders whose body left the simulation in this step.
+    pub(crate) bereft: EntityHashSet,
+    /// Colliders that enter in the next step.
+    pub(crate) later: Vec<Entity>,
     /// Tick of the last search for mutated colliders.
     pub(crate) drained: Tick,
+    /// Whether a step is between its drain and its last removals. Contacts stay in the tables meanwhile.
+    pub(crate) is_within_step: bool,
+    /// Colliders that lost their shape since the drain. Their contacts end with the last removals.
+    pub(crate) shapeless: Vec<u32>,
 }
 
 impl LifecycleQueue {
@@ -215,7 +226,7 @@ mod tests {
         collision::collider::collider_transform::Placement,
         dynamics::{rigid_body::sleeping::Sleeping, sleep::SleepRequests},
         physics_transform::{
-            sync::SpawnQueue,
+            spawned::SpawnQueue,
             tree::{HierarchyQueue, TransformTree},
         },
         schedule::{Physics, PhysicsSchedule, PhysicsTime},

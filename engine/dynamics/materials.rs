@@ -198,16 +198,23 @@ pub(crate) fn refresh_surfaces(
             if !tables.colliders.table.ids.is_live(id.0) {
                 continue;
             }
-            let surfaces = query.of(collider, of.map(|of| of.body));
+            let Surfaces { material, margin, speculative } = query.of(collider, of.map(|of| of.body));
+            let facets = query.facets_of(collider);
+            let def = &tables.colliders.table[id.0].def;
+            let reaches = def.margin != margin || def.speculative != speculative;
+            if !reaches && def.material == material && def.facets == facets {
+                continue;
+            }
             let mut link = tables.link();
-            link.set_material(id.0, surfaces.material);
-            link.set_facets(id.0, query.facets_of(collider));
-            let Tables { bodies, colliders, .. } = &mut tables;
-            let colliders = &mut **colliders;
-            let entry = &mut colliders.table[id.0];
-            if entry.def.margin != surfaces.margin || entry.def.speculative != surfaces.speculative {
-                entry.def.margin = surfaces.margin;
-                entry.def.speculative = surfaces.speculative;
+            // What rests on the surface may slide or bounce from now on.
+            link.wake_with_touching(link.colliders.body(id.0));
+            link.set_material(id.0, material);
+            link.set_facets(id.0, facets);
+            if reaches {
+                let Tables { bodies, colliders, .. } = &mut tables;
+                let colliders = &mut **colliders;
+                let entry = &mut colliders.table[id.0];
+                (entry.def.margin, entry.def.speculative) = (margin, speculative);
                 colliders.table.update_reach(id.0, &bodies.table);
                 colliders.stale.insert(id.0);
             }

@@ -1,10 +1,11 @@
-//! Dynamics: [rigid bodies](rigid_body), [gravity and integration](integrator), [continuous collision detection](ccd)
-//! and the contact [solver].
+//! Dynamics: [rigid bodies](rigid_body), [joints], [gravity and integration](integrator), [continuous collision
+//! detection](ccd) and the [solver].
 
 pub mod ccd;
 pub(crate) mod drain;
 pub(crate) mod ids;
 pub mod integrator;
+pub mod joints;
 pub(crate) mod lifecycle;
 pub(crate) mod materials;
 pub(crate) mod quarantine;
@@ -18,8 +19,6 @@ pub(crate) mod validate;
 
 /// The names of this module that most apps use.
 pub mod prelude {
-    #[cfg(feature = "3d")]
-    pub use super::rigid_body::forces::{ConstantLocalAngularAcceleration, ConstantLocalTorque};
     #[expect(deprecated, reason = "former names stay importable")]
     pub use super::{
         ccd::SweptCcdSet,
@@ -29,6 +28,11 @@ pub mod prelude {
     pub use super::{
         ccd::{CcdPlugin, SpeculativeMargin, SweepMode, SweptCcd},
         integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity, IntegratorPlugin},
+        joints::{
+            AngleLimit, AngularMotor, DistanceJoint, DistanceLimit, FixedJoint, JointAnchor, JointBasis,
+            JointCollisionDisabled, JointDamping, JointDisabled, JointForces, JointFrame, JointPlugin,
+            LinearMotor, MotorModel, PrismaticJoint, RevoluteJoint,
+        },
         rigid_body::{
             forces::{
                 ConstantAngularAcceleration, ConstantForce, ConstantLinearAcceleration, ConstantLocalForce,
@@ -56,5 +60,10 @@ pub mod prelude {
             schedule::{SolverSchedulePlugin, SolverSystems, SubstepCount, SubstepSchedule},
             solver_body::SolverBodyPlugin,
         },
+    };
+    #[cfg(feature = "3d")]
+    pub use super::{
+        joints::SphericalJoint,
+        rigid_body::forces::{ConstantLocalAngularAcceleration, ConstantLocalTorque},
     };
 }

@@ -2,7 +2,7 @@
 
 use bevy_ecs::entity::{Entity, EntityIndexSet};
 use bevy_platform::collections::HashSet;
-use kernel::math as k;
+use kernel::{math as k, table::Velocity};
 
 use crate::math::{Scalar, Vector};
 
@@ -50,13 +50,28 @@ impl Reports {
 /// A contact that closes fast, before it is solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Approach {
+    pub(crate) contact: u32,
     pub(crate) colliders: [Entity; 2],
-    pub(crate) bodies: [u32; 2],
-    /// From both centres of mass to the middle of the points.
-    pub(crate) arms: [k::Vector; 2],
-    pub(crate) point: k::WorldVector,
-    pub(crate) normal: k::Vector,
+    /// The centre of mass of the first body, and from there to that of the second.
+    pub(crate) center: k::WorldVector,
+    pub(crate) offset: k::Vector,
+    /// The velocities of both bodies.
+    pub(crate) velocities: [Velocity; 2],
+    /// Slower blows are not reported.
+    pub(crate) min_speed: f32,
+    /// The blow that is going on, if one is.
+    pub(crate) blow: Option<GoingBlow>,
+}
+
+/// A blow that may take more than one step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GoingBlow {
+    pub(crate) contact: u32,
+    pub(crate) colliders: [Entity; 2],
+    /// The speed at which it began.
     pub(crate) speed: f32,
+    /// Whether it was reported.
+    pub(crate) is_told: bool,
 }
 
 /// A fast contact whose bodies do not approach any more.
@@ -74,5 +89,7 @@ pub(crate) struct Blow {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hits {
     pub(crate) approaches: Vec<Approach>,
+    /// Blows that are not over, by contact.
+    pub(crate) going: Vec<GoingBlow>,
     pub(crate) blows: Vec<Blow>,
 }

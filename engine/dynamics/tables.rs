@@ -4,7 +4,7 @@
 use bevy_ecs::{change_detection::Tick, prelude::*, system::SystemParam};
 use kernel::{
     contact::{Contact, ContactFlags, ContactTable, Link, Status},
-    data::BitSet,
+    data::{BitSet, PairSet},
     graph::{ColorGraph, Islands},
     math::WorldPose,
     table::{BodyKind, BodyTable, ColliderTable, NONE, Velocity},
@@ -38,6 +38,8 @@ pub(crate) struct Bodies {
     pub(crate) moved_within: Vec<(u32, Position, Rotation)>,
     /// Bodies with a solver row in this step, in the order of rows, from row 1.
     pub(crate) listed: Vec<u32>,
+    /// Pairs of bodies whose collisions joints turn off, with the number of these joints.
+    pub(crate) apart: PairSet,
     /// Entities that are looked up one by one. Kept for its buffer.
     pub(crate) some: Vec<Entity>,
     /// Body ids. Kept for its buffer.
@@ -56,6 +58,13 @@ impl Bodies {
         }
         self.kept[id as usize] = velocity;
         self.table.set_velocity(id, Velocity::default());
+    }
+
+    /// Whether a pair of colliders may form a contact: [`may_collide`], and no joint turns it off.
+    pub(crate) fn may_pair(&self, colliders: &ColliderTable, pair: [u32; 2]) -> bool {
+        let [a, b] = pair.map(|id| colliders.body(id));
+        let is_apart = !self.apart.is_empty() && a != b && self.apart.contains(a, b);
+        !is_apart && may_collide(&self.table, colliders, pair)
     }
 
     /// Whether a change tick is from the app, not from the engine.
@@ -131,12 +140,35 @@ impl Colliders {
 pub(crate) struct Contacts {
     pub(crate) table: ContactTable,
     pub(crate) colors: ColorGraph,
-    /// Contacts that began or ceased to touch in this step's narrow phase.
+    /// Contacts that got their first points or lost their last ones in this step's narrow phase.
     pub(crate) changed: BitSet,
+    /// Contacts that have points and did not touch yet: their colliders come near, or pass by.
+    pub(crate) nearing: BitSet,
+    /// Whether the narrow phase of this step has begun, and its impulses are not known: all contacts with points count as
+    /// touching.
+    pub(crate) is_before_solver: bool,
+    /// Contacts that began to touch in this step, after the solver.
+    pub(crate) met: BitSet,
+    /// Contacts that ceased to touch in this step's narrow phase.
+    pub(crate) parted: BitSet,
     /// Collisions to be sent.
     pub(crate) reports: Reports,
     /// Fast contacts, and blows to be sent.
     pub(crate) hits: Hits,
+}
+
+impl Contacts {
+    /// Whether the colliders of a contact touch.
+    pub(crate) fn touches(&self, id: u32) -> bool {
+        self.table.get(id).flags.has(ContactFlags::TOUCHING)
+            && (self.is_before_solver || !self.nearing.contains(id))
+    }
+
+    /// Whether they began to touch in this step.
+    pub(crate) fn started(&self, id: u32) -> bool {
+        let set = if self.is_before_solver { &self.changed } else { &self.met };
+        set.contains(id) && self.touches(id)
+    }
 }
 
 /// The islands. Absent without the island plugin: then no body sleeps.
@@ -160,11 +192,12 @@ impl Tables<'_> {
 
     /// The same, and what notes collisions that begin and end.
     pub(crate) fn link_and_reporter(&mut self) -> (Link<'_>, Reporter<'_>) {
-        let Contacts { table: contacts, colors, reports, .. } = &mut *self.contacts;
+        let Contacts { table: contacts, colors, reports, nearing, .. } = &mut *self.contacts;
         let Colliders { table: colliders, entities, reporting, tracking, .. } = &mut *self.colliders;
         let Bodies { table: bodies, entities: body_entities, .. } = &mut *self.bodies;
         let islands = self.islands.as_mut().map(|i| &mut i.0);
-        let reporter = Reporter { bodies: body_entities, colliders: entities, reporting, tracking, reports };
+        let reporter =
+            Reporter { bodies: body_entities, colliders: entities, reporting, tracking, reports, nearing };
         (Link { bodies, colliders, contacts, colors, islands }, reporter)
     }
 
@@ -177,10 +210,45 @@ impl Tables<'_> {
         for id in gone {
             let contact = link.contacts.get(id);
             if contact.flags.has(ContactFlags::TOUCHING) {
-                reporter.note(contact, Status::Ended);
+                reporter.note_points(id, contact, Status::Ended);
             }
             link.destroy(id);
         }
+    }
+}
+
+impl Tables<'_> {
+    /// Turns off collisions of two bodies, until [`let_collide`](Self::let_collide) was called as often.
+    pub(crate) fn keep_apart(&mut self, [a, b]: [u32; 2]) {
+        let count = self.bodies.apart.get(a, b).unwrap_or(0);
+        self.bodies.apart.insert(a, b, count + 1);
+        if count == 0 {
+            for collider in self.movable_colliders([a, b]) {
+                self.end_contacts(collider, |_, contact| {
+                    [a, b].iter().all(|body| contact.bodies.contains(body))
+                });
+            }
+        }
+    }
+
+    /// Turns collisions of two bodies on again.
+    pub(crate) fn let_collide(&mut self, [a, b]: [u32; 2]) {
+        match self.bodies.apart.remove(a, b) {
+            None | Some(0 | 1) => {
+                // Pairs are found as for colliders that moved.
+                for collider in self.movable_colliders([a, b]) {
+                    self.colliders.moved.insert(collider);
+                }
+            }
+            Some(count) => _ = self.bodies.apart.insert(a, b, count - 1),
+        }
+    }
+
+    /// The colliders of one of two bodies, that is not static if possible. All contacts of the two have one.
+    fn movable_colliders(&self, [a, b]: [u32; 2]) -> Vec<u32> {
+        let bodies = &self.bodies.table;
+        let body = if bodies[a].kind == BodyKind::Static { b } else { a };
+        self.colliders.table.of_body(body, bodies).collect()
     }
 }
 
@@ -191,9 +259,24 @@ pub(crate) struct Reporter<'a> {
     reporting: &'a BitSet,
     tracking: &'a BitSet,
     reports: &'a mut Reports,
+    nearing: &'a mut BitSet,
 }
 
 impl Reporter<'_> {
+    /// Notes that a contact got its first points, or lost its last ones. Returns whether its colliders do not touch any
+    /// more.
+    pub(crate) fn note_points(&mut self, id: u32, contact: &Contact, status: Status) -> bool {
+        match status {
+            Status::Began => _ = self.nearing.insert(id),
+            Status::Ended if self.nearing.remove(id) => {}
+            Status::Ended => {
+                self.note(contact, status);
+                return true;
+            }
+        }
+        false
+    }
+
     /// Notes that a contact began or ended.
     #[inline]
     pub(crate) fn note(&mut self, contact: &Contact, status: Status) {
@@ -221,13 +304,14 @@ impl Reporter<'_> {
     }
 }
 
-/// Whether two colliders of different bodies may form a contact: their layers interact, and one of them can be pushed,
-/// is a sensor or belongs to a kinematic body.
+/// Whether two colliders of different bodies may form a contact: both are active, their layers interact, and one of them
+/// can be pushed, is a sensor or belongs to a kinematic body.
 pub(crate) fn may_collide(bodies: &BodyTable, colliders: &ColliderTable, pair: [u32; 2]) -> bool {
     let [a, b] = pair.map(|id| &colliders[id].def);
     let moves = |body: u32| body != NONE && bodies[body].kind != BodyKind::Static;
     let detects = a.flags.sensor || b.flags.sensor;
-    (moves(a.body) || moves(b.body) || detects) && a.layers.interacts_with(b.layers)
+    let active = !(a.flags.inactive || b.flags.inactive);
+    active && (moves(a.body) || moves(b.body) || detects) && a.layers.interacts_with(b.layers)
 }
 
 /// Whether looking up the wanted entities is cheaper than iterating the queries: they are less than a quarter of all. `all`

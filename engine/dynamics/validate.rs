@@ -4,6 +4,7 @@ use bevy_app::App;
 use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
 use kernel::{
     bvh::TreeKind,
+    graph::ConstraintKind,
     table::{BodyKind, NONE},
 };
 
@@ -12,6 +13,7 @@ use crate::{
     dynamics::{
         drain::{kind_of, tree_of},
         ids::{BodyId, ColliderId},
+        joints::{JointDisabled, dim::IsJoint, table::Joints},
         lifecycle::{IsComplete, LifecycleQueue},
         rigid_body::{RigidBody, RigidBodyDisabled, sleeping::Sleeping},
         sleep::SleepRequests,
@@ -49,6 +51,8 @@ struct Audit<'w, 's> {
     complete: Query<'w, 's, (), (IsComplete, Allow<Disabled>)>,
     queue: Res<'w, LifecycleQueue>,
     requests: Option<Res<'w, SleepRequests>>,
+    known: Query<'w, 's, Entity, (IsJoint, Without<JointDisabled>)>,
+    joints: Res<'w, Joints>,
     tables: Tables<'w>,
 }
 
@@ -62,6 +66,7 @@ fn validate(mut audit: Audit) {
     audit.check_bodies();
     audit.check_colliders();
     audit.check_trees();
+    audit.check_joints();
 }
 
 impl Audit<'_, '_> {
@@ -90,6 +95,7 @@ impl Audit<'_, '_> {
             if let Some(requests) = &self.requests
                 && record.kind == BodyKind::Dynamic
                 && !requests.concern(entity)
+                && !bodies.table.flipped.contains(&id)
             {
                 assert_eq!(sleeping, !record.awake, "{entity} says whether it sleeps");
             }
@@ -148,6 +154,43 @@ impl Audit<'_, '_> {
         });
         let attached = colliders.table.ids.iter().filter(|c| colliders.table[*c].def.body != NONE).count();
         assert_eq!(listed.sum::<usize>(), attached, "bodies list their colliders");
+    }
+
+    /// Joints in the kernel are those of entities, and hold the bodies that these name. A joint waits only for a body that is
+    /// not in the simulation, or was reported. Joints that changed since the queue was drained are skipped.
+    fn check_joints(&self) {
+        let (bodies, joints) = (&*self.tables.bodies, &*self.joints);
+        let constraints = bodies.table.constraints(ConstraintKind::Joint);
+        let mut count = 0;
+        for (entity, record) in joints.iter() {
+            let is_queued = joints.is_queued(entity);
+            assert!(is_queued || self.known.contains(entity), "{entity} is a joint");
+            let Some(held) = record.held else {
+                let is_there = |body: &Entity| self.bodies.get(*body).is_ok_and(|(_, id, ..)| id.0 != NONE);
+                let waits = record.told.is_some() || !record.bodies.iter().all(is_there);
+                assert!(is_queued || waits, "{entity} waits for nothing");
+                continue;
+            };
+            count += 1;
+            assert!(constraints.is_live(held.id), "{entity} has the joint {}, which is not in use", held.id);
+            assert_eq!(constraints.get(held.id).bodies, held.bodies, "{entity} holds these bodies");
+            let entities = held.bodies.map(|body| bodies.entities[body as usize]);
+            assert_eq!(entities, record.bodies, "{entity} holds the bodies that it says");
+            let [a, b] = held.bodies;
+            assert!(
+                !held.is_apart || bodies.apart.contains(a, b),
+                "{entity} keeps its bodies from colliding"
+            );
+        }
+        assert_eq!(constraints.len(), count, "joints in the kernel are those of entities");
+        for entity in &self.known {
+            let is_known = joints.get(entity).is_some() || joints.is_queued(entity);
+            assert!(is_known || !joints.is_watched, "{entity} is known");
+        }
+        for (_, contact) in self.tables.contacts.table.iter() {
+            let [a, b] = contact.bodies;
+            assert!(a == b || !bodies.apart.contains(a, b), "joints let bodies {a} and {b} pass");
+        }
     }
 
     fn check_trees(&self) {

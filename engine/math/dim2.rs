@@ -3,10 +3,16 @@
 use bevy_math::{Dir2, Ray2d, Vec2};
 use kernel::math as k;
 
-use super::{AdjustPrecision, Scalar, Vector};
+use super::{AdjustPrecision, Matrix2, Scalar, SymmetricMatrix2, Vector2};
 
 /// The number of spatial dimensions.
 pub const DIM: usize = 2;
+/// A vector of the crate's dimension, in [`Scalar`] precision.
+pub type Vector = Vector2;
+/// A square matrix of the crate's dimension, in [`Scalar`] precision.
+pub type Matrix = Matrix2;
+/// A symmetric matrix of the crate's dimension, in [`Scalar`] precision.
+pub type SymmetricMatrix = SymmetricMatrix2;
 /// A direction of unit length.
 pub type Dir = Dir2;
 

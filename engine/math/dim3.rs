@@ -3,10 +3,16 @@
 use bevy_math::{Dir3, Ray3d, Vec3};
 use kernel::math as k;
 
-use super::{AsF32, Matrix3, Scalar, SymmetricMatrix3, Vector, Vector3};
+use super::{AsF32, Matrix3, Scalar, SymmetricMatrix3, Vector3};
 
 /// The number of spatial dimensions.
 pub const DIM: usize = 3;
+/// A vector of the crate's dimension, in [`Scalar`] precision.
+pub type Vector = Vector3;
+/// A square matrix of the crate's dimension, in [`Scalar`] precision.
+pub type Matrix = Matrix3;
+/// A symmetric matrix of the crate's dimension, in [`Scalar`] precision.
+pub type SymmetricMatrix = SymmetricMatrix3;
 /// A direction of unit length.
 pub type Dir = Dir3;
 

@@ -17,32 +17,14 @@ pub const TAU: Scalar = core::f64::consts::TAU;
 /// 1 / √2.
 pub const FRAC_1_SQRT_2: Scalar = core::f64::consts::FRAC_1_SQRT_2;
 
-/// A vector of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "2d")]
-pub type Vector = DVec2;
-/// A vector of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "3d")]
-pub type Vector = DVec3;
 /// A 2D vector in [`Scalar`] precision.
 pub type Vector2 = DVec2;
 /// A 3D vector in [`Scalar`] precision.
 pub type Vector3 = DVec3;
-/// A square matrix of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "2d")]
-pub type Matrix = Matrix2;
-/// A square matrix of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "3d")]
-pub type Matrix = Matrix3;
 /// A 2 × 2 matrix in [`Scalar`] precision.
 pub type Matrix2 = bevy_math::DMat2;
 /// A 3 × 3 matrix in [`Scalar`] precision.
 pub type Matrix3 = DMat3;
-/// A symmetric matrix of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "2d")]
-pub type SymmetricMatrix = SymmetricDMat2;
-/// A symmetric matrix of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "3d")]
-pub type SymmetricMatrix = SymmetricDMat3;
 /// A symmetric 2 × 2 matrix in [`Scalar`] precision.
 pub type SymmetricMatrix2 = SymmetricDMat2;
 /// A symmetric 3 × 3 matrix in [`Scalar`] precision.

@@ -17,32 +17,14 @@ pub const TAU: Scalar = core::f32::consts::TAU;
 /// 1 / √2.
 pub const FRAC_1_SQRT_2: Scalar = core::f32::consts::FRAC_1_SQRT_2;
 
-/// A vector of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "2d")]
-pub type Vector = Vec2;
-/// A vector of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "3d")]
-pub type Vector = Vec3;
 /// A 2D vector in [`Scalar`] precision.
 pub type Vector2 = Vec2;
 /// A 3D vector in [`Scalar`] precision.
 pub type Vector3 = Vec3;
-/// A square matrix of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "2d")]
-pub type Matrix = Matrix2;
-/// A square matrix of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "3d")]
-pub type Matrix = Matrix3;
 /// A 2 × 2 matrix in [`Scalar`] precision.
 pub type Matrix2 = bevy_math::Mat2;
 /// A 3 × 3 matrix in [`Scalar`] precision.
 pub type Matrix3 = Mat3;
-/// A symmetric matrix of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "2d")]
-pub type SymmetricMatrix = SymmetricMat2;
-/// A symmetric matrix of the crate's dimension, in [`Scalar`] precision.
-#[cfg(feature = "3d")]
-pub type SymmetricMatrix = SymmetricMat3;
 /// A symmetric 2 × 2 matrix in [`Scalar`] precision.
 pub type SymmetricMatrix2 = SymmetricMat2;
 /// A symmetric 3 × 3 matrix in [`Scalar`] precision.

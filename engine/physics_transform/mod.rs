@@ -40,6 +40,7 @@ pub(crate) mod plugin;
 mod position;
 mod rotation64;
 mod rotation_ops;
+pub(crate) mod spawned;
 pub(crate) mod sync;
 #[cfg(test)]
 mod tests;

@@ -6,15 +6,22 @@ use bevy_transform::components::Transform;
 
 use super::{
     ApplyPosToTransform, PhysicsTransformConfig, PhysicsTransformSystems, Position, Rotation,
+    position::Originals,
+    spawned::{SpawnQueue, initialise_added, initialise_poses, note_rotation},
     sync::{
-        SpawnQueue, SyncTicks, find_changed_transforms, initialise_added, initialise_poses, note_rotation,
-        position_to_transform, propagate_global_transforms, transform_to_position,
+        SyncTicks, find_changed_transforms, position_to_transform, propagate_global_transforms,
+        transform_to_position,
     },
     tree::{
         HierarchyQueue, TransformTree, TreeChanges, enqueue, enqueue_enabled, enqueue_parented, update_tree,
     },
 };
-use crate::{dynamics::rigid_body::RigidBody, schedule::PhysicsSystems, threads::Threads};
+use crate::{
+    dynamics::rigid_body::RigidBody,
+    schedule::{PhysicsSchedule, PhysicsSystems},
+    step::{self, Owner},
+    threads::Threads,
+};
 
 /// Synchronises [`Position`] and [`Rotation`] with `Transform`; see [`PhysicsTransformConfig`].
 pub struct PhysicsTransformPlugin {
@@ -44,6 +51,7 @@ impl Plugin for PhysicsTransformPlugin {
         app.init_resource::<PhysicsTransformConfig>()
             .register_type::<(Position, Rotation, PhysicsTransformConfig)>()
             .init_resource::<SpawnQueue>()
+            .init_resource::<Originals>()
             .add_observer(initialise_added)
             .add_observer(note_rotation)
             .add_systems(
@@ -67,6 +75,8 @@ impl Plugin for PhysicsTransformPlugin {
                 self.schedule,
                 position_to_transform.in_set(PhysicsTransformSystems::PositionToTransform),
             );
+        step::install(app);
+        step::add_systems_of(Owner::Transforms, app, PhysicsSchedule.intern());
     }
 }
 

@@ -1,7 +1,13 @@
 //! The world position of a body or collider.
 
 use bevy_derive::{Deref, DerefMut};
-use bevy_ecs::{component::Component, reflect::ReflectComponent};
+use bevy_ecs::{
+    component::Component,
+    entity::{ComponentCloneCtx, Entity, EntityHashMap, SourceComponent},
+    reflect::ReflectComponent,
+    resource::Resource,
+    world::World,
+};
 use bevy_math::curve::{FunctionCurve, Interval, easing::Ease};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
@@ -17,6 +23,8 @@ use crate::math::{Scalar, Vector, vector_from_xyz};
 /// place an entity, set either; if both were set since the last step, the position wins. The position of a collider
 /// that is a child of a body follows from the body and the collider's
 /// [`ColliderTransform`](crate::collision::collider::collider_transform::ColliderTransform).
+///
+/// A clone of an entity has its pose, unless the app sets another `Transform` or position before the next step.
 ///
 /// A nested body (a body that is a child of another) moves on its own: the simulated motion of its parent does not
 /// change its position.
@@ -37,9 +45,26 @@ use crate::math::{Scalar, Vector, vector_from_xyz};
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Debug, Component, Default, PartialEq)]
+#[component(clone_behavior = Custom(clone_position))]
 pub struct Position(pub Vector);
 
 crate::type_path::type_path!(Position, "physics_transform::transform");
+
+/// The original of each clone that has not got its [`Position`] yet.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct Originals(pub(super) EntityHashMap<Entity>);
+
+/// Clones the position, and notes that the app did not give it.
+fn clone_position(source: &SourceComponent, context: &mut ComponentCloneCtx) {
+    let Some(&position) = source.read::<Position>() else { return };
+    let (original, clone) = (context.source(), context.target());
+    context.queue_deferred(move |world: &mut World, _| {
+        if let Some(mut originals) = world.get_resource_mut::<Originals>() {
+            originals.0.insert(clone, original);
+        }
+    });
+    context.write_target_component(position);
+}
 
 impl Position {
     /// Placeholder for the position of the `Transform`. It is replaced when the entity gets its body or collider.

@@ -8,7 +8,6 @@
 use bevy_ecs::{
     change_detection::{CheckChangeTicks, ContiguousRef, Tick},
     entity::EntityHashSet,
-    entity_disabling::Disabled,
     prelude::*,
     system::{SystemChangeTick, SystemParam},
 };
@@ -23,9 +22,8 @@ use super::{
 };
 use crate::{
     columns::{Column, is_change_tracked, pieces},
-    dynamics::rigid_body::RigidBody,
+    dynamics::rigid_body::{RigidBody, RigidBodyDisabled},
     math::Vector,
-    noted::Noted,
     scan::{IN_TABLES, Since},
     schedule::OnThisThread,
     threads::Threads,
@@ -36,41 +34,20 @@ use crate::{
 pub(crate) struct SyncTicks {
     /// The last scan of `Transform`.
     scan: Tick,
-    /// The last write-back. Transforms that it wrote have this tick.
-    writeback: Tick,
+    /// The last two write-backs, the later one first: one follows the solver, one the step. Transforms that they wrote
+    /// have these ticks.
+    writeback: [Tick; 2],
     /// The last initialisation and the last read. Poses that they wrote have these ticks. They came from transforms, so
     /// they need not be written back.
-    read: [Tick; 2],
+    pub(super) read: [Tick; 2],
     /// Entities whose transform is not finite and was reported.
-    reported: EntityHashSet,
+    pub(super) reported: EntityHashSet,
 }
 
 impl SyncTicks {
     pub(crate) fn clamp(&mut self, check: CheckChangeTicks) {
-        for tick in [&mut self.scan, &mut self.writeback].into_iter().chain(&mut self.read) {
-            tick.check_tick(check);
-        }
-    }
-}
-
-/// An entity that got its [`Position`] since the last step.
-#[derive(Clone, Debug)]
-pub(crate) struct Spawned {
-    /// Whether the app gave the position and the rotation.
-    given: [bool; 2],
-    /// The pose after the first initialisation.
-    first: (Position, Option<Rotation>),
-}
-
-/// Entities to be initialised, in order of spawning, and those that got a [`Rotation`].
-#[derive(Resource, Clone, Debug, Default)]
-pub(crate) struct SpawnQueue(Noted<Spawned>, Noted);
-
-#[cfg(test)]
-impl SpawnQueue {
-    /// The number of queued entities.
-    pub(crate) fn len(&self) -> usize {
-        self.0.len() + self.1.len()
+        let ticks = core::iter::once(&mut self.scan).chain(&mut self.writeback).chain(&mut self.read);
+        ticks.for_each(|tick| _ = tick.check_tick(check));
     }
 }
 
@@ -124,7 +101,7 @@ pub(crate) fn find_changed_transforms(
             if !matters(entities[row], physical, has_children) {
                 return;
             }
-            if changed[row] != ticks.writeback {
+            if !ticks.writeback.contains(&changed[row]) {
                 found.push(entities[row]);
             } else if is_behind(row) {
                 written.push(entities[row]);
@@ -166,118 +143,18 @@ pub(crate) fn propagate_global_transforms(
 }
 
 /// Warns of a transform that is not finite, once until it is finite again. The entity keeps its pose.
-fn warn_non_finite(entity: Entity, transform: &Transform, read: &Vector, reported: &mut EntityHashSet) {
+pub(super) fn warn_non_finite(
+    entity: Entity,
+    transform: &Transform,
+    read: &Vector,
+    reported: &mut EntityHashSet,
+) {
     if read.is_finite() && transform.rotation.is_finite() {
         if !reported.is_empty() {
             reported.remove(&entity);
         }
     } else if reported.insert(entity) {
         warn!("the transform of {entity}, or of an ancestor, is not finite; its pose does not follow it");
-    }
-}
-
-/// Queries for initialising poses.
-#[derive(SystemParam)]
-pub(crate) struct Initialiser<'w, 's> {
-    poses: Query<
-        'w,
-        's,
-        (&'static mut Position, Option<&'static mut Rotation>, Has<RigidBody>, Has<FollowsBody>),
-        Allow<Disabled>,
-    >,
-    transforms: Query<'w, 's, &'static mut Transform, Allow<Disabled>>,
-    parents: Parents<'w, 's>,
-    config: Res<'w, PhysicsTransformConfig>,
-}
-
-impl Initialiser<'_, '_> {
-    fn depth(&self, entity: Entity) -> usize {
-        core::iter::successors(Some(entity), |&at| self.parents.get(at).ok().map(ChildOf::parent)).count()
-    }
-
-    /// Warns of a transform that is not finite, if a pose was to be initialised from it.
-    fn warn_non_finite(&self, entity: Entity, given: [bool; 2], reported: &mut EntityHashSet) {
-        let Ok(transform) = self.transforms.get(entity) else { return };
-        if given != [true; 2] {
-            let parent = parent_frame(entity, &self.parents, |e| self.transforms.get(e).ok().copied());
-            warn_non_finite(entity, transform, &read_pose(parent.as_ref(), transform).0, reported);
-        }
-    }
-
-    /// Writes what the app gave to the `Transform`, and takes the rest from the `Transform`.
-    fn initialise(&mut self, entity: Entity, given: [bool; 2]) {
-        let Ok((mut position, mut rotation, ..)) = self.poses.get_mut(entity) else { return };
-        let transform = self.transforms.get(entity).copied().unwrap_or_default();
-        let parent = parent_frame(entity, &self.parents, |e| self.transforms.get(e).ok().copied());
-        let (read, turned) = read_pose(parent.as_ref(), &transform);
-        if !given[0] {
-            position.0 = if read.is_finite() { read } else { Vector::ZERO };
-        }
-        if !given[1]
-            && let Some(rotation) = &mut rotation
-        {
-            **rotation = turned.unwrap_or(Rotation::IDENTITY);
-        }
-        if !self.config.position_to_transform || given == [false; 2] {
-            return;
-        }
-        let rotation = rotation.map_or(Rotation::IDENTITY, |rotation| *rotation);
-        let written = write_pose(parent.as_ref(), &transform, position.0, rotation);
-        if let Ok(mut transform) = self.transforms.get_mut(entity) {
-            if given[0] && !same_translation(&transform, &written) {
-                transform.translation = written.translation;
-            }
-            if given[1] && !same_rotation(&transform, &written) {
-                transform.rotation = written.rotation;
-            }
-        }
-    }
-}
-
-/// Initialises a new [`Position`] at once, so that no system reads a placeholder. Ancestors may still be missing or
-/// change, so [`initialise_poses`] checks again before the step.
-pub(crate) fn initialise_added(
-    added: On<Add, Position>,
-    mut initialiser: Initialiser,
-    mut queue: ResMut<SpawnQueue>,
-) {
-    let entity = added.event_target();
-    let Ok((position, rotation, ..)) = initialiser.poses.get(entity) else { return };
-    let given = [*position != Position::PLACEHOLDER, rotation.is_some_and(|r| *r != Rotation::PLACEHOLDER)];
-    initialiser.initialise(entity, given);
-    let Ok((position, rotation, ..)) = initialiser.poses.get(entity) else { return };
-    queue.0.put(entity, Spawned { given, first: (*position, rotation.copied()) });
-}
-
-/// Records new rotations of entities that had a position before.
-pub(crate) fn note_rotation(added: On<Add, Rotation>, mut queue: ResMut<SpawnQueue>) {
-    queue.1.note(added.event_target());
-}
-
-/// Initialises the poses of new entities, ancestors first.
-pub(crate) fn initialise_poses(
-    mut queue: ResMut<SpawnQueue>,
-    mut initialiser: Initialiser,
-    mut ticks: ResMut<SyncTicks>,
-    system: SystemChangeTick,
-    _: OnThisThread,
-) {
-    ticks.read[0] = system.this_run();
-    let mut spawned: Vec<(usize, Entity, Spawned)> =
-        queue.0.drain().map(|(entity, new)| (initialiser.depth(entity), entity, new)).collect();
-    spawned.sort_by_key(|&(depth, ..)| depth);
-    for (_, entity, Spawned { given, first }) in spawned {
-        let Ok((position, rotation, _, false)) = initialiser.poses.get(entity) else { continue };
-        // A pose set after spawning counts as given.
-        let given = [given[0] || *position != first.0, given[1] || rotation.copied() != first.1];
-        initialiser.initialise(entity, given);
-        initialiser.warn_non_finite(entity, given, &mut ticks.reported);
-    }
-    for (entity, ()) in queue.1.drain() {
-        let Ok((_, Some(rotation), ..)) = initialiser.poses.get(entity) else { continue };
-        if *rotation == Rotation::PLACEHOLDER {
-            initialiser.initialise(entity, [true, false]);
-        }
     }
 }
 
@@ -293,32 +170,44 @@ pub struct TransformReader<'w, 's> {
     poses: Query<'w, 's, (&'static mut Position, Option<&'static mut Rotation>), Without<FollowsBody>>,
 }
 
+/// Reads a transform into a pose, separately for position and rotation: where its bits differ from what would be written
+/// for the pose, and the pose is free.
+fn read_into(
+    mut position: Mut<Position>,
+    rotation: Option<Mut<Rotation>>,
+    parent: Option<&Frame>,
+    transform: &Transform,
+    is_free: impl Fn(Tick) -> bool,
+) {
+    let held = rotation.as_ref().map_or(Rotation::IDENTITY, |rotation| **rotation);
+    let expected = write_pose(parent, transform, position.0, held);
+    let (read, turned) = read_pose(parent, transform);
+    let moved = !same_translation(&expected, transform) && read.is_finite();
+    if moved && is_free(position.last_changed()) && position.0 != read {
+        position.0 = read;
+    }
+    let (Some(mut rotation), Some(turned)) = (rotation, turned) else { return };
+    let current = parent.map_or(Rotation64::from_quat(transform.rotation), |f| f.child(transform).rotation());
+    let rotated = !same_rotation(&expected, transform) && !dim::is_rounding(turned, held, current);
+    if rotated && is_free(rotation.last_changed()) && *rotation != turned {
+        *rotation = turned;
+    }
+}
+
 /// Reads transforms that the app changed since the last step, or whose ancestors' transforms it changed, into
 /// [`Position`] and [`Rotation`]. A position or rotation that was itself set since then is kept.
 pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick, _: OnThisThread) {
     let TransformReader { mut tree, changes, mut ticks, config, transforms, parents, mut poses } = reader;
     ticks.read[1] = system.this_run();
-    let last = ticks.writeback;
+    let [last, _] = ticks.writeback;
     let reported = &mut ticks.reported;
     reported.retain(|entity| transforms.contains(*entity));
     let mut visit = |entity: Entity, parent: Option<&Frame>, transform: &Transform| {
-        let Ok((mut position, rotation)) = poses.get_mut(entity) else { return };
-        let held = rotation.as_ref().map_or(Rotation::IDENTITY, |rotation| **rotation);
-        let expected = write_pose(parent, transform, position.0, held);
-        let is_free = |changed: Tick| !changed.is_newer_than(last, system.this_run());
-        let (read, turned) = read_pose(parent, transform);
-        warn_non_finite(entity, transform, &read, reported);
-        let moved = !same_translation(&expected, transform) && read.is_finite();
-        if moved && is_free(position.last_changed()) && position.0 != read {
-            position.0 = read;
-        }
-        let (Some(mut rotation), Some(turned)) = (rotation, turned) else { return };
-        let current =
-            parent.map_or(Rotation64::from_quat(transform.rotation), |f| f.child(transform).rotation());
-        let rotated = !same_rotation(&expected, transform) && !dim::is_rounding(turned, held, current);
-        if rotated && is_free(rotation.last_changed()) && *rotation != turned {
-            *rotation = turned;
-        }
+        let Ok((position, rotation)) = poses.get_mut(entity) else { return };
+        warn_non_finite(entity, transform, &read_pose(parent, transform).0, reported);
+        read_into(position, rotation, parent, transform, |changed| {
+            !changed.is_newer_than(last, system.this_run())
+        });
     };
     tree.begin_walk();
     for &entity in &changes.transforms {
@@ -343,6 +232,9 @@ type Written = Or<(With<RigidBody>, With<ApplyPosToTransform>)>;
 /// A pose, with its change ticks.
 type Pose = (Entity, Ref<'static, Position>, Ref<'static, Rotation>);
 
+/// A pose to be read or written, and whether it is that of a disabled body.
+type PoseMut = (&'static mut Position, &'static mut Rotation, Has<RigidBodyDisabled>);
+
 /// Queries for writing transforms.
 #[derive(SystemParam)]
 pub struct TransformWriter<'w, 's> {
@@ -354,7 +246,7 @@ pub struct TransformWriter<'w, 's> {
         's,
         (
             Query<'w, 's, (Pose, &'static mut Transform), Written>,
-            (Query<'w, 's, Pose, Written>, Query<'w, 's, &'static mut Transform>),
+            (Query<'w, 's, PoseMut, Written>, Query<'w, 's, &'static mut Transform>),
         ),
     >,
     parents: Parents<'w, 's>,
@@ -368,8 +260,11 @@ pub struct TransformWriter<'w, 's> {
 }
 
 /// Writes poses that changed since the last write-back to `Transform`: of bodies, and of entities with
-/// [`ApplyPosToTransform`]. Bodies below a moved one keep their world pose, so their transforms are written, too. Scale
-/// is kept; in 2D also depth and tilt.
+/// [`ApplyPosToTransform`]. Bodies below a moved one keep their world pose, so their transforms are written, too. Disabled
+/// bodies below it keep their transform, and are carried along. Scale is kept; in 2D also depth and tilt.
+///
+/// It runs twice: when the solver is done, so that a `Transform` that the app sets later in the step is newer than the
+/// pose, and after the step, for poses that the app sets there.
 pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTick, _: OnThisThread) {
     let TransformWriter {
         mut tree,
@@ -382,9 +277,9 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
         mut found,
         ..
     } = writer;
-    let (last, read) = (ticks.writeback, ticks.read);
+    let ([last, _], read) = (ticks.writeback, ticks.read);
     let since = Since::new(last, system);
-    ticks.writeback = system.this_run();
+    ticks.writeback = [system.this_run(), last];
     if !config.position_to_transform {
         return;
     }
@@ -428,7 +323,7 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
         return;
     }
     late.sort_unstable();
-    let (poses, mut transforms) = queries.p1();
+    let (mut poses, mut transforms) = queries.p1();
     let set: EntityHashSet = late.iter().copied().collect();
     tree.begin_walk();
     for &entity in &late {
@@ -437,13 +332,18 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
         let top = line.filter(|ancestor| set.contains(ancestor)).last().unwrap_or(entity);
         let parent = parent_frame(top, &parents, |e| transforms.get(e).ok().copied());
         tree.descend(top, parent, |entity, parent: &Option<Frame>| {
-            if let Ok((_, position, rotation)) = poses.get(entity)
+            if let Ok((position, rotation, is_disabled)) = poses.get_mut(entity)
                 && !following.contains(entity)
                 && let Ok(mut transform) = transforms.get_mut(entity)
             {
-                let written = write_pose(parent.as_ref(), &transform, position.0, *rotation);
-                if !same_pose(&transform, &written) {
-                    *transform = written;
+                let changed = [position.last_changed(), rotation.last_changed()];
+                if is_disabled && parent.is_some() && !changed.into_iter().any(is_own) {
+                    read_into(position, Some(rotation), parent.as_ref(), &transform, |_| true);
+                } else {
+                    let written = write_pose(parent.as_ref(), &transform, position.0, *rotation);
+                    if !same_pose(&transform, &written) {
+                        *transform = written;
+                    }
                 }
             }
             let transform = transforms.get(entity).ok()?;

@@ -22,6 +22,7 @@ use crate::{dynamics::rigid_body::RigidBody, noted::Noted, schedule::OnThisThrea
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(crate) struct FollowsBody {
     /// The nearest body above, as the hierarchy gives it. `None` if the app inserted the link.
+    #[entities]
     pub(crate) above: Option<Entity>,
 }
 

@@ -125,6 +125,11 @@ pub(crate) fn make_deterministic(schedule: &mut Schedule) {
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub struct PhysicsSchedule;
 
+/// Runs instead of [`PhysicsSchedule`] where the hosting schedule runs and takes no step: while physics is paused, or at
+/// a relative speed of 0.
+#[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
+pub(crate) struct SkippedStep;
+
 /// System sets of physics in the hosting schedule, in this order, before [`TransformSystems::Propagate`].
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PhysicsSystems {
@@ -222,6 +227,7 @@ fn run_physics_schedule(world: &mut World) {
         clock.advance_by(Duration::ZERO);
     }
     if clock.delta().is_zero() {
+        _ = world.try_run_schedule(SkippedStep);
         return;
     }
 

@@ -11,8 +11,8 @@ use std::sync::OnceLock;
 /// stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
 ///
 /// The time of the app's systems between two parts is included in the later one. `DrainLifecycle`, `ReadAwake`,
-/// `Gather`, `Scatter` and `MirrorSleep`, besides `Prepare` and `Writeback`, only copy between components and the
-/// engine's tables. The names are for display, and may change.
+/// `Gather`, `Scatter`, `WriteTransforms` and `MirrorSleep`, besides `Prepare` and `Writeback`, only copy between
+/// components and the engine's tables. The names are for display, and may change.
 ///
 /// ```
 /// # use avian::schedule::StepTimes;

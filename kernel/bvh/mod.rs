@@ -10,8 +10,6 @@
 
 mod build;
 mod fit;
-#[cfg(test)]
-mod measure;
 mod meet;
 #[cfg(test)]
 mod oracle;

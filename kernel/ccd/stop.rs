@@ -33,8 +33,7 @@ pub struct SweepInput<'a, S> {
     pub colliders: &'a ColliderTable,
     /// The trees of the colliders.
     pub trees: &'a Trees,
-    /// The contacts: of all pairs that were found and may collide. Where the app finds pairs, or hooks refuse some, a body within
-    /// its fat boxes is stopped only by what it has a contact with.
+    /// The contacts of all pairs with overlapping fat boxes. Such a pair without a contact was refused, and is not swept.
     pub contacts: &'a ContactTable,
     /// For pairs with a foreign shape.
     pub source: &'a S,
@@ -174,7 +173,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             for &kind in kinds {
                 self.trees[kind].query(&around, |other| {
                     let found = &self.colliders[other].def;
-                    if !found.flags.sensor && def.layers.interacts_with(found.layers) {
+                    let interacts = !found.flags.sensor && def.layers.interacts_with(found.layers);
+                    if interacts && !self.is_refused(collider, other) {
                         candidates.push(other);
                     }
                     true
@@ -183,6 +183,15 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             candidates.iter().for_each(|other| met([collider, *other], buffers));
         }
         buffers.candidates = candidates;
+    }
+
+    /// Whether the embedder lets two colliders through each other. A pair whose fat boxes did not overlap when the step began was
+    /// not offered to it, and counts as not refused.
+    fn is_refused(&self, a: u32, b: u32) -> bool {
+        match self.contacts.find(a, b) {
+            Some(id) => self.contacts.get(id).is_let_through(),
+            None => self.colliders.fat[a as usize].overlaps(&self.colliders.fat[b as usize]),
+        }
     }
 
     /// The box of all places that a collider takes on its body's path.

@@ -15,7 +15,7 @@ use super::load;
 use super::manifolds;
 use super::record::{Contact, ContactFlags, Manifold, Sliding};
 use super::table::{ContactTable, PointCount};
-use crate::math::{Rot, Vector, WorldPose, max, min};
+use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
 use crate::table::{BodyKind, NONE};
 use crate::thread_pool::ThreadPool;
@@ -69,7 +69,7 @@ struct Seen<'a> {
     origin: Vector,
     /// How far above a plane its points may lie.
     flush: f32,
-    /// How far the collider moves against the ground until they meet here, where that counts.
+    /// How far the collider moves against the ground until they meet here; 0 where it is now.
     motion: Vector,
     place: Place,
 }
@@ -97,13 +97,15 @@ impl<'a> Seen<'a> {
         let [a, b] = input.reaches(contact);
         let shapes = contact.colliders.map(|id| &input.colliders[id].def.shape);
         let is_curved = shapes.iter().any(|shape| matches!(shape, Shape::Curved(_)));
-        let is_clipped = manifold.radii == [0.0; 2] || is_curved;
+        let is_clipped =
+            manifold.radii == [0.0; 2] || is_curved || !shapes.iter().any(|shape| is_line(shape));
         let clipped = if is_clipped { CLIPPED * smaller([a.extent, b.extent]) } else { 0.0 };
-        let (mut motion, mut place) = (Vector::ZERO, Place::Meeting);
+        let is_recycled = contact.flags.has(ContactFlags::FROZEN);
+        let now = (poses[1].center - poses[0].center).to_local();
+        let until_met = if is_recycled { Vector::ZERO } else { contact.frozen.offset - now };
+        let (mut motion, mut place) = (until_met * sign, Place::Meeting);
         let closing = manifold.points[0].separation - manifold.points[0].frozen_separation;
-        let are_parts =
-            contact.flags.has(ContactFlags::COMPOSITE) && !contact.flags.has(ContactFlags::FROZEN);
-        if are_parts && closing != 0.0 {
+        if contact.flags.has(ContactFlags::COMPOSITE) && !is_recycled && closing != 0.0 {
             let all = input.predicted_motion(contact);
             motion = all * (sign * closing / -manifold.normal.dot(all));
             let placed_on = usize::from(matches!(shapes[0], Shape::Composite(_)));
@@ -148,8 +150,11 @@ impl<'a> Seen<'a> {
             return false;
         }
         let lowest = self.points().fold(f32::INFINITY, |low, [_, own]| min(low, own.dot(other.normal)));
-        let deepest = other.manifold.points().iter().fold(0.0, |deep, p| min(deep, p.separation));
-        lowest - other.plane() >= deepest - BELOW
+        let nearest = other.manifold.points().iter().fold(f32::INFINITY, |s, p| min(s, p.separation));
+        // Until they meet the collider goes down to the plane, not into it.
+        let down = self.motion.dot(other.normal);
+        let held = max(-max(nearest, 0.0) - down, 0.0);
+        lowest + held - other.plane() >= min(nearest, 0.0) - BELOW
     }
 }
 
@@ -177,6 +182,11 @@ impl Sliding {
         // The point of round shapes moves with the normal, two points only across their line.
         (apart - self.line * apart.dot(self.line)).length_squared() < ROUND_PARALLEL
     }
+}
+
+/// Whether a shape is a point or a line and a radius: it has no faces to be clipped.
+fn is_line(shape: &Shape) -> bool {
+    matches!(shape, Shape::Ball(_) | Shape::Capsule(_) | Shape::Segment(_))
 }
 
 /// The direction of a vector, 0 for none.
@@ -305,7 +315,8 @@ impl ContactTable {
             manifold.is_internal = !was.is_internal;
             if manifold.is_internal {
                 manifold.friction_impulse = Vector::ZERO;
-                manifold.twist_impulse = 0.0;
+                manifold.twist_impulse = NormalMoment::new(0.0);
+                manifold.friction_owed = 0.0;
                 manifold.points.iter_mut().for_each(|p| (p.impulse, p.total_impulse) = (0.0, 0.0));
             }
             let contact = &mut self.contacts[id as usize];

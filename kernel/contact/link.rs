@@ -255,6 +255,14 @@ impl Link<'_> {
         }
     }
 
+    /// Wakes a body and what it touches, as after a collider of it changed. Nothing for [`NONE`].
+    pub fn wake_with_touching(&mut self, body: u32) {
+        if body != NONE {
+            self.wake_body(body);
+            self.wake_touching(body);
+        }
+    }
+
     /// Wakes all bodies of an island and has them rest anew, at once or, where the island is awake, when
     /// [`apply`](Self::apply) is next called: so all that wakes an island in one step costs one walk over it.
     pub fn wake_island(&mut self, island: IslandId) {
@@ -367,6 +375,8 @@ impl Link<'_> {
         let is_composite = defs.iter().any(|d| matches!(d.shape, Shape::Composite(_)));
         flags.set(ContactFlags::FOREIGN, is_foreign);
         flags.set(ContactFlags::COMPOSITE, is_composite && !is_foreign);
+        let is_hull = defs.iter().any(|d| matches!(d.shape, Shape::Hull(_)));
+        flags.set(ContactFlags::HULL, is_hull);
         let unattached = bodies.contains(&NONE);
         let movable = bodies.iter().any(|b| *b != NONE && self.bodies[*b].kind == BodyKind::Dynamic);
         flags.set(ContactFlags::IMMOVABLE, unattached || !movable);

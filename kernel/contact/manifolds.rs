@@ -144,7 +144,7 @@ pub(super) fn replace<S: ManifoldSource>(
         {
             continue;
         }
-        vary_first(&mut m, contact.colliders);
+        vary_first(&mut m, contact.colliders.map(|id| input.colliders.number(id)));
         if input.match_points {
             inherit(&mut m, core::iter::once(&old).chain(old_extra.iter()));
         }
@@ -183,9 +183,9 @@ fn to_world(local: &LocalManifold, rotation: Rot, to_shape: Vector, margin: f32)
 /// Varies which point comes first over the contacts. Points that follow each other in pairs still do.
 ///
 /// The solver takes points one after the other, which favours some a little. If these were on the same side in every
-/// contact, a stack would lean to that side as it settles. So the ids of the colliders choose the first point, by the R₂
-/// sequence (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018): it spreads evenly along ids
-/// that count up in one collider and in both. Bits of the sum of the ids would follow the rows of a wall.
+/// contact, a stack would lean to that side as it settles. So the numbers of the colliders choose the first point, by the R₂
+/// sequence (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018): it spreads evenly along numbers
+/// that count up in one collider and in both. Bits of the sum of the numbers would follow the rows of a wall.
 fn vary_first(m: &mut Manifold, [a, b]: [u32; 2]) {
     // 2³² / ρ and 2³² / ρ², where ρ³ = ρ + 1.
     const R2: [u32; 2] = [0xC13F_A9A9, 0x91E1_0DA6];
@@ -222,5 +222,6 @@ fn inherit<'a>(m: &mut Manifold, old: impl Iterator<Item = &'a Manifold>) {
     if any {
         m.friction_impulse = old.friction_impulse;
         m.twist_impulse = old.twist_impulse;
+        m.friction_owed = old.friction_owed;
     }
 }

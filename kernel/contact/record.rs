@@ -2,7 +2,7 @@
 
 use crate::graph::ColorSlot;
 use crate::manifold::FeatureCache;
-use crate::math::{MAX_POINTS, Rot, Vector};
+use crate::math::{MAX_POINTS, NormalMoment, Rot, Vector};
 use crate::table::NONE;
 
 /// Bits of a contact's state.
@@ -43,6 +43,9 @@ impl ContactFlags {
     pub const SLIDES_A: Self = Self(1 << 12);
     /// Collider B slid over A as over ground in the last update.
     pub const SLIDES_B: Self = Self(1 << 13);
+
+    /// A shape is a hull. As it turns, faces come near that a full manifold has no points of.
+    pub const HULL: Self = Self(1 << 14);
 
     /// Whether all bits of `other` are set.
     #[inline(always)]
@@ -102,8 +105,10 @@ pub struct Manifold {
     pub radii: [f32; 2],
     /// The friction impulse in world axes, N·s; the next step starts from it.
     pub friction_impulse: Vector,
-    /// The impulse of the friction against turning about the normal, N·m·s; 0 in 2D.
-    pub twist_impulse: f32,
+    /// The impulse of the friction against turning about the normal, N·m·s.
+    pub twist_impulse: NormalMoment,
+    /// Normal impulses that friction was not limited by yet, N·s.
+    pub friction_owed: f32,
 }
 
 impl Manifold {
@@ -236,6 +241,12 @@ impl Contact {
     #[inline(always)]
     pub fn is_solved(&self) -> bool {
         self.flags.has(ContactFlags::TOUCHING) && !self.is_inert()
+    }
+
+    /// Whether its bodies may pass through each other: it detects only, or the embedder dropped its manifolds in this step.
+    pub fn is_let_through(&self) -> bool {
+        let is_dropped = self.flags.has(ContactFlags::CHANGED) && !self.flags.has(ContactFlags::TOUCHING);
+        is_dropped || self.flags.any(ContactFlags::SENSOR.union(ContactFlags::QUIET))
     }
 
     /// Whether the solver ignores it even if it has points.

@@ -197,15 +197,16 @@ impl RecycleBatch {
         let m = &contact.manifold;
         row.count = f32::from(m.count);
         row.platform = platform(contact.flags);
-        let is_composite = contact.flags.has(ContactFlags::COMPOSITE);
-        if is_composite && m.count > 0 {
-            // No number of points tells that other parts are far.
-            row.count = 1.0;
-        }
-        if usize::from(m.count) < MAX_POINTS || is_composite {
+        let may_lack = contact.flags.any(ContactFlags::COMPOSITE.union(ContactFlags::HULL));
+        if usize::from(m.count) < MAX_POINTS || may_lack {
             let [a, b] = [input.velocity(contact, 0), input.velocity(contact, 1)];
             row.speed = (b.linear - a.linear).length();
             row.angular = [a.angular, b.angular];
+            let turns = row.angular != [Angular::ZERO; 2];
+            if m.count > 0 && (turns || contact.flags.has(ContactFlags::COMPOSITE)) {
+                // No number of points tells that others are far.
+                row.count = 1.0;
+            }
         }
         if m.count > 0 {
             row.set_manifold(m);
@@ -330,7 +331,7 @@ impl<N: Lane> RecycleRow<N> {
             curved = N::select(is_flat, curved.min(extent * extent / radius), curved);
         }
         let errors = N::select(is_round, errors.min(curved * N::splat(ROUND_SHARE)), errors);
-        // A manifold that is not full may lack points that were too far apart. None of these may close in this step.
+        // A manifold that is not complete may lack points that were too far apart. None of these may close in this step.
         let is_full = count.eq(N::splat(MAX_POINTS as f32));
         let with_points = N::select(is_full, errors, errors.min(prediction - closing));
         let allowed = N::select(count.eq(N::ZERO), without_points, with_points);

@@ -2,6 +2,7 @@
 
 use super::record::{Contact, Lost, Manifold, ManifoldSurface};
 use crate::data::{BitSet, IdPool, PairSet, prefetch};
+use crate::math::DIM;
 use crate::table::{ColliderTable, NONE};
 use std::collections::BTreeMap;
 
@@ -38,7 +39,7 @@ pub struct ContactTable {
     /// The surfaces of changed manifolds, by contact and index.
     pub(super) surfaces: BTreeMap<(u32, u32), ManifoldSurface>,
     /// Bodies to which the solver gave more mass in the last step, by id, and how long it lasts.
-    raised_masses: Vec<(u32, u8)>,
+    raised_masses: Vec<(u32, [u8; DIM])>,
     /// Contacts that may be of internal edges; empty between updates.
     pub(super) sliding: Vec<u32>,
     /// Points under load that sliding colliders lost; empty between updates.
@@ -198,12 +199,12 @@ impl ContactTable {
     }
 
     /// Bodies to which the solver gave more mass in the last step, by id, and how long it lasts.
-    pub(crate) fn raised_masses(&self) -> &[(u32, u8)] {
+    pub(crate) fn raised_masses(&self) -> &[(u32, [u8; DIM])] {
         &self.raised_masses
     }
 
     /// Sets the bodies to which the solver gave more mass in this step, in the order of ids.
-    pub(crate) fn set_raised_masses(&mut self, raised: &[(u32, u8)]) {
+    pub(crate) fn set_raised_masses(&mut self, raised: &[(u32, [u8; DIM])]) {
         debug_assert!(raised.is_sorted(), "bodies are in the order of ids");
         self.raised_masses.clear();
         self.raised_masses.extend_from_slice(raised);
@@ -233,7 +234,8 @@ impl ContactTable {
 
     /// Adds the contact of a pair that has none to all lists of both colliders. It is not active yet.
     pub(super) fn add(&mut self, contact: Contact, colliders: &mut ColliderTable) -> u32 {
-        let id = self.ids.allocate();
+        // What pushes nothing has no colour, and must not change the order of what has.
+        let id = if contact.is_inert() { self.ids.allocate_aside() } else { self.ids.allocate() };
         let [a, b] = contact.colliders;
         debug_assert!(a < b, "the lower collider comes first: {a}, {b}");
         debug_assert!(self.find(a, b).is_none(), "colliders {a} and {b} have no contact yet");

@@ -9,15 +9,48 @@ use super::BitSet;
 ///
 /// A freed id is neither live nor allocated again before it is recycled. An id that is still held from this step is
 /// then not live, instead of naming another object.
+///
+/// *Ids aside.* What takes no part in the ordered work gets its ids from [`allocate_aside`](Self::allocate_aside). Both
+/// kinds share the numbers, but each kind reuses its own only. So things aside never change the order of the others:
+/// with and without them, others get ids in the same order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdPool {
     live: BitSet,
-    free: BitSet,
-    free_count: u32,
-    /// No id below this one is free.
-    lowest: u32,
+    /// Reusable ids: ordinary ones, and ids aside.
+    free: [Free; 2],
+    /// All ids aside, live or not.
+    aside: BitSet,
     pending: Vec<u32>,
     capacity: u32,
+}
+
+/// Reusable ids of one kind.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Free {
+    ids: BitSet,
+    count: u32,
+    /// No id below this one is free.
+    lowest: u32,
+}
+
+impl Free {
+    const fn new() -> Self {
+        Self { ids: BitSet::new(), count: 0, lowest: 0 }
+    }
+
+    fn take_lowest(&mut self) -> Option<u32> {
+        let id = if self.count == 0 { None } else { self.ids.first_from(self.lowest) }?;
+        self.ids.remove(id);
+        self.count -= 1;
+        self.lowest = id + 1;
+        Some(id)
+    }
+
+    fn add(&mut self, id: u32) {
+        self.ids.insert(id);
+        self.count += 1;
+        self.lowest = self.lowest.min(id);
+    }
 }
 
 impl IdPool {
@@ -25,9 +58,8 @@ impl IdPool {
     pub const fn new() -> Self {
         Self {
             live: BitSet::new(),
-            free: BitSet::new(),
-            free_count: 0,
-            lowest: 0,
+            free: [Free::new(), Free::new()],
+            aside: BitSet::new(),
             pending: Vec::new(),
             capacity: 0,
         }
@@ -35,19 +67,22 @@ impl IdPool {
 
     /// Allocates the lowest reusable id, or else the next id that was never allocated.
     pub fn allocate(&mut self) -> u32 {
-        let reusable = if self.free_count == 0 { None } else { self.free.first_from(self.lowest) };
-        let id = match reusable {
-            Some(id) => {
-                self.free.remove(id);
-                self.free_count -= 1;
-                self.lowest = id + 1;
-                id
+        self.allocate_of(false)
+    }
+
+    /// The same for something that takes no part in the ordered work.
+    pub fn allocate_aside(&mut self) -> u32 {
+        self.allocate_of(true)
+    }
+
+    fn allocate_of(&mut self, aside: bool) -> u32 {
+        let id = self.free[usize::from(aside)].take_lowest().unwrap_or_else(|| {
+            self.capacity += 1;
+            if aside {
+                self.aside.insert(self.capacity - 1);
             }
-            None => {
-                self.capacity += 1;
-                self.capacity - 1
-            }
-        };
+            self.capacity - 1
+        });
         self.live.insert(id);
         id
     }
@@ -65,9 +100,7 @@ impl IdPool {
     /// Makes the ids freed so far reusable.
     pub fn recycle(&mut self) {
         for id in self.pending.drain(..) {
-            self.free.insert(id);
-            self.free_count += 1;
-            self.lowest = self.lowest.min(id);
+            self.free[usize::from(self.aside.contains(id))].add(id);
         }
     }
 
@@ -80,7 +113,8 @@ impl IdPool {
     /// The number of live ids.
     #[inline]
     pub fn len(&self) -> usize {
-        self.capacity as usize - self.free_count as usize - self.pending.len()
+        let free: u32 = self.free.iter().map(|free| free.count).sum();
+        self.capacity as usize - free as usize - self.pending.len()
     }
 
     /// Whether no id is live.
@@ -140,6 +174,38 @@ mod tests {
             }
             let model: BTreeSet<u32> = live.into_iter().collect();
             prop_assert!(pool.iter().eq(model.into_iter()));
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
+        /// Two pools, one with things aside. The others have ids of the same order in both.
+        #[test]
+        fn ids_aside_do_not_change_the_order_of_others(
+            ops in prop::collection::vec((0..20u8, any::<u32>()), 500),
+        ) {
+            let (mut alone, mut both) = (IdPool::new(), IdPool::new());
+            let (mut pairs, mut aside) = (Vec::<(u32, u32)>::new(), Vec::<u32>::new());
+            for (kind, pick) in ops {
+                match kind {
+                    0..=5 => pairs.push((alone.allocate(), both.allocate())),
+                    6..=10 => aside.push(both.allocate_aside()),
+                    11..=14 if !pairs.is_empty() => {
+                        let (one, other) = pairs.swap_remove(pick as usize % pairs.len());
+                        alone.free(one);
+                        both.free(other);
+                    }
+                    15..=17 if !aside.is_empty() => both.free(aside.swap_remove(pick as usize % aside.len())),
+                    _ => {
+                        alone.recycle();
+                        both.recycle();
+                    }
+                }
+                pairs.sort_unstable();
+                prop_assert!(pairs.is_sorted_by_key(|(_, other)| *other));
+                prop_assert_eq!(both.len(), pairs.len() + aside.len());
+            }
         }
     }
 

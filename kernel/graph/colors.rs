@@ -2,6 +2,7 @@
 //! lanes and by several threads.
 
 use super::kind::ConstraintKind;
+use core::num::NonZeroU8;
 
 /// The number of colours, the overflow included.
 pub const COLOR_COUNT: usize = 24;
@@ -18,10 +19,22 @@ const STATIC_COLORS: u32 = ((1 << OVERFLOW) - 1) & !1;
 /// Place of a constraint among those of its kind and colour. Another one moves into the slot of one that is released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColorSlot {
-    /// Colour, below [`COLOR_COUNT`].
-    pub color: u8,
+    /// One more than the colour: an optional slot is no larger.
+    above_color: NonZeroU8,
     /// Index in the list of that colour.
-    pub index: u32,
+    index: u32,
+}
+
+impl ColorSlot {
+    /// The slot of an index in the list of a colour below [`COLOR_COUNT`].
+    fn new(color: u8, index: usize) -> Self {
+        Self { above_color: NonZeroU8::MIN.saturating_add(color), index: index as u32 }
+    }
+
+    /// The colour, below [`COLOR_COUNT`].
+    pub fn color(self) -> u8 {
+        self.above_color.get() - 1
+    }
 }
 
 /// The constraints of one colour, by kind. All kinds share the masks of bodies, so that a joint and a contact of one
@@ -74,7 +87,7 @@ impl ColorGraph {
         let color = self.take_color(bodies);
         let list = &mut self.colors[usize::from(color)].lists[kind as usize];
         list.push(id);
-        ColorSlot { color, index: list.len() as u32 - 1 }
+        ColorSlot::new(color, list.len() - 1)
     }
 
     /// Releases the colour of a constraint. `bodies` must be those it was assigned with.
@@ -87,14 +100,15 @@ impl ColorGraph {
         slot: ColorSlot,
         bodies: [Option<u32>; 2],
     ) -> Option<u32> {
-        let list = self.colors.get_mut(usize::from(slot.color)).map(|color| &mut color.lists[kind as usize]);
+        let list =
+            self.colors.get_mut(usize::from(slot.color())).map(|color| &mut color.lists[kind as usize]);
         let Some(list) = list.filter(|list| (slot.index as usize) < list.len()) else {
             debug_assert!(false, "no constraint lies in the slot to release: {slot:?}");
             return None;
         };
         list.swap_remove(slot.index as usize);
         let moved = list.get(slot.index as usize).copied();
-        self.give_back_color(slot.color, bodies);
+        self.give_back_color(slot.color(), bodies);
         moved
     }
 
@@ -117,6 +131,13 @@ impl ColorGraph {
     /// partners last.
     pub fn colors(&self) -> impl Iterator<Item = (u8, &[u32])> {
         (0..OVERFLOW).map(|color| (color, self.contacts(color))).filter(|(_, contacts)| !contacts.is_empty())
+    }
+
+    /// The other constraints in their colours, without the contacts.
+    pub fn without_contacts(&self) -> Self {
+        let mut rest = self.clone();
+        rest.colors.iter_mut().for_each(|color| color.lists[ConstraintKind::Contact as usize].clear());
+        rest
     }
 
     /// The number of constraints in all colours.
@@ -184,9 +205,9 @@ impl ColorGraph {
         for (kind, color) in ConstraintKind::ALL.into_iter().flat_map(of_kind) {
             for (index, &id) in self.constraints(kind, color).iter().enumerate() {
                 let (slot, bodies) = record(kind, id);
-                let here = ColorSlot { color, index: index as u32 };
+                let here = ColorSlot::new(color, index);
                 assert_eq!(slot, here, "{kind:?} {id} lies where its record says");
-                if here.color == OVERFLOW {
+                if here.color() == OVERFLOW {
                     continue;
                 }
                 let allowed = if bodies.contains(&None) { STATIC_COLORS } else { DYNAMIC_COLORS };
@@ -230,9 +251,9 @@ mod tests {
     impl World {
         fn assign(&mut self, contact: u32, bodies: Bodies) -> u8 {
             let slot = self.graph.assign(ConstraintKind::Contact, contact, bodies);
-            assert_eq!(self.graph.contacts(slot.color)[slot.index as usize], contact);
+            assert_eq!(self.graph.contacts(slot.color())[slot.index as usize], contact);
             self.records.insert(contact, (slot, bodies));
-            slot.color
+            slot.color()
         }
 
         fn release(&mut self, contact: u32) {
@@ -247,7 +268,7 @@ mod tests {
             let dynamic: BTreeSet<u32> = bodies.into_iter().flatten().collect();
             let free = |color: &u8| {
                 self.records.values().all(|(slot, others)| {
-                    slot.color != *color || others.iter().flatten().all(|other| !dynamic.contains(other))
+                    slot.color() != *color || others.iter().flatten().all(|other| !dynamic.contains(other))
                 })
             };
             if dynamic.len() == 2 { (0..20).find(free) } else { (1..=22).rev().find(free) }
@@ -260,8 +281,12 @@ mod tests {
             let mut seen: BTreeMap<u8, BTreeSet<u32>> = BTreeMap::new();
             for (slot, bodies) in self.records.values() {
                 for body in bodies.iter().flatten() {
-                    let fresh = seen.entry(slot.color).or_default().insert(*body);
-                    assert!(fresh || slot.color == OVERFLOW, "body {body} twice in colour {}", slot.color);
+                    let fresh = seen.entry(slot.color()).or_default().insert(*body);
+                    assert!(
+                        fresh || slot.color() == OVERFLOW,
+                        "body {body} twice in colour {}",
+                        slot.color()
+                    );
                 }
             }
         }

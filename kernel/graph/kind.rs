@@ -5,13 +5,13 @@
 pub enum ConstraintKind {
     /// A touching contact.
     Contact,
-    /// A distance between two points.
-    Distance,
+    /// A joint.
+    Joint,
 }
 
 impl ConstraintKind {
     /// All kinds, in the order of their numbers.
-    pub const ALL: [Self; 2] = [Self::Contact, Self::Distance];
+    pub const ALL: [Self; 2] = [Self::Contact, Self::Joint];
     /// The number of kinds.
     pub const COUNT: usize = Self::ALL.len();
 }

@@ -15,3 +15,4 @@ pub(crate) use islands::VISITS;
 pub use islands::{IslandId, IslandLink, Islands, LinkId};
 pub use kind::{ConstraintId, ConstraintKind};
 pub use sleep::SleepScan;
+pub(crate) use union_find::DisjointSets;

@@ -3,7 +3,7 @@
 /// Union-find with union by rank and path halving (Tarjan and van Leeuwen, "Worst-case analysis of set union
 /// algorithms", 1984): almost constant time per call, no recursion. Buffers are reused.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct DisjointSets {
+pub(crate) struct DisjointSets {
     parent: Vec<u32>,
     /// Upper bound of the height of the tree below a root.
     rank: Vec<u8>,
@@ -12,7 +12,7 @@ pub(super) struct DisjointSets {
 
 impl DisjointSets {
     /// Resets to `n` sets of one element each.
-    pub(super) fn reset(&mut self, n: usize) {
+    pub(crate) fn reset(&mut self, n: usize) {
         self.parent.clear();
         self.parent.extend(0..n as u32);
         self.rank.clear();
@@ -26,7 +26,7 @@ impl DisjointSets {
     }
 
     /// The representative of an element's set.
-    pub(super) fn find(&mut self, element: u32) -> u32 {
+    pub(crate) fn find(&mut self, element: u32) -> u32 {
         let mut at = element;
         loop {
             let parent = self.parent[at as usize];
@@ -40,7 +40,7 @@ impl DisjointSets {
     }
 
     /// Merges the sets of `a` and `b`.
-    pub(super) fn unite(&mut self, a: u32, b: u32) {
+    pub(crate) fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
         if a == b {
             return;

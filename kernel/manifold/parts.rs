@@ -6,7 +6,7 @@
 use super::dim::{Convex, borders, face_normal};
 use super::merge::SAME_NORMAL;
 use super::screen::{Gaps, LANES, Screen};
-use super::{FeatureCache, LocalManifold, Look, collide};
+use super::{FeatureCache, LocalManifold, Look, MAX_POINTS, collide};
 use crate::math::{F32x4, Lane, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Shape, Surface};
 use core::cell::Cell;
@@ -248,6 +248,7 @@ impl<'a> Pass<'a> {
             local.gap = now;
         } else {
             doubt = self.collide_part(part, prediction, &mut local);
+            self.look_ahead(part, &mut local);
         }
         if local.count == 0 {
             gap = local.gap;
@@ -282,6 +283,20 @@ impl<'a> Pass<'a> {
         surface.and_then(|surface| self.keep_on_surface(surface, part, prediction, local))
     }
 
+    /// Adds the points that the motion brings to the part of a contact. What is struck at one of them turns to the others.
+    fn look_ahead(&self, part: u32, local: &mut LocalManifold) {
+        let Look { prediction, motion, .. } = self.look;
+        let closing = -local.normal.dot(motion);
+        if local.count == 0 || local.count == MAX_POINTS || !(closing > prediction) {
+            return;
+        }
+        let mut ahead = LocalManifold::default();
+        self.collide_part(part, prediction + closing, &mut ahead);
+        if ahead.count > local.count && ahead.normal.dot(local.normal) > SAME_NORMAL {
+            *local = ahead;
+        }
+    }
+
     /// Fills `local` with the contact of one part as if there were no other.
     fn collide_alone(&self, part: u32, prediction: f32, local: &mut LocalManifold) {
         match (self.composite.surface(), self.composite.solids().get(part as usize)) {
@@ -311,7 +326,7 @@ impl<'a> Pass<'a> {
     fn cast(&self, part: u32, local: &mut LocalManifold) -> Option<Doubt> {
         let way = self.look.motion;
         let met = MET * self.look.prediction;
-        let mut share = 0.0;
+        let (mut share, mut beside) = (0.0, None);
         for round in 1..=MAX_ROUNDS {
             let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
             let there = Pass { pose: &pose, ..*self };
@@ -323,16 +338,19 @@ impl<'a> Pass<'a> {
             }
             let gap = local.lower_bound();
             if gap <= met || round == MAX_ROUNDS {
+                let normal = local.normal;
                 let doubt = there.collide_part(part, self.look.prediction, local);
-                let along = local.normal.dot(way) * share;
-                local.closing = -along;
-                let count = local.count;
-                for p in &mut local.points[..count] {
-                    let half = local.normal * (0.5 * along);
-                    p.point -= if self.on_composite { half } else { way * share - half };
-                    p.separation -= along;
+                if local.count > 0
+                    && beside.is_none_or(|beside: Vector| beside.dot(local.normal) > SAME_NORMAL)
+                {
+                    self.bring_back(share, local);
+                    return doubt.map(|doubt| Doubt { share, ..doubt });
                 }
-                return doubt.map(|doubt| Doubt { share, ..doubt });
+                // What meets a facet beside a border may cross it before it touches: the neighbour was met on this side.
+                if local.count > 0 || gap < -met {
+                    break;
+                }
+                beside.get_or_insert(normal);
             }
             share += max(gap, met) / closing;
             if !(share <= 1.0) {
@@ -341,6 +359,20 @@ impl<'a> Pass<'a> {
         }
         local.count = 0;
         None
+    }
+
+    /// Gives a contact that is met after a share of the motion the separations of now.
+    fn bring_back(&self, share: f32, local: &mut LocalManifold) {
+        let way = self.look.motion * share;
+        let along = local.normal.dot(way);
+        local.closing = -along;
+        let half = local.normal * (0.5 * along);
+        let back = if self.on_composite { half } else { way - half };
+        let count = local.count;
+        for p in &mut local.points[..count] {
+            p.point -= back;
+            p.separation -= along;
+        }
     }
 
     /// A facet's face on the side where the other shape is. The normal of a contact with a border tells little of it: under the

@@ -287,6 +287,12 @@ impl<N: Lane> SymTensor<N> {
         self.zz
     }
 
+    /// Reads lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> SymTensor {
+        SymTensor { zz: self.zz.get(i) }
+    }
+
     /// Writes lane `i`.
     #[inline(always)]
     pub fn set(&mut self, i: usize, v: SymTensor) {

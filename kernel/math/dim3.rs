@@ -267,6 +267,14 @@ impl<N: Lane> SymTensor<N> {
         self.xx + self.yy + self.zz
     }
 
+    /// Reads lane `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> SymTensor {
+        let [xx, yy, zz] = [self.xx, self.yy, self.zz].map(|entry| entry.get(i));
+        let [xy, xz, yz] = [self.xy, self.xz, self.yz].map(|entry| entry.get(i));
+        SymTensor { xx, yy, zz, xy, xz, yz }
+    }
+
     /// Writes lane `i`.
     #[inline(always)]
     pub fn set(&mut self, i: usize, v: SymTensor) {

@@ -94,8 +94,8 @@ pub use lane_sse::F32x4;
 pub(crate) use needle3::MAX_RATIO;
 pub use pose::{Pose, WorldPose, WorldVector};
 pub(crate) use pose::{wide_position, world_position};
-pub use tangent::{Tangent, TangentFrame, TangentMass};
-pub use trig::{atan2, cos, sin, sin_cos};
+pub use tangent::{NormalMoment, Tangent, TangentFrame, TangentMass};
+pub use trig::{atan2, atan2_lanes, cos, sin, sin_cos};
 
 /// A rotation counts as of unit length if the square of its length differs from 1 by at most this. A product of a few
 /// rotations differs by a tenth of it; the integrator renormalises rotations of moving bodies.

@@ -24,6 +24,23 @@ pub struct TangentMass<N = f32> {
     xx: N,
 }
 
+/// An angular impulse about the normal of a contact: nothing in 2D, and no bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NormalMoment;
+
+impl NormalMoment {
+    /// Nothing in 2D.
+    #[inline(always)]
+    pub fn new(_impulse: f32) -> Self {
+        Self
+    }
+    /// 0 in 2D.
+    #[inline(always)]
+    pub fn get(self) -> f32 {
+        0.0
+    }
+}
+
 impl Vector {
     /// A unit vector at right angles to this unit vector.
     #[inline]
@@ -42,6 +59,11 @@ impl<N: Lane> Tangent<N> {
     #[inline(always)]
     pub fn clamp_length(self, limit: N) -> Self {
         Self { x: self.x.max(-limit).min(limit) }
+    }
+    /// The magnitude.
+    #[inline(always)]
+    pub fn length(self) -> N {
+        self.x.max(-self.x)
     }
     /// Writes lane `i`.
     #[inline(always)]
@@ -91,6 +113,13 @@ impl<N: Lane> TangentMass<N> {
     #[inline(always)]
     pub fn rub(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
         (impulse - self.apply(v)).clamp_length(limit)
+    }
+}
+
+impl TangentMass {
+    /// The change of slip per impulse, 1/kg; 0 if nothing moves.
+    pub fn mean_inverse(self) -> f32 {
+        if self.xx > 0.0 { 1.0 / self.xx } else { 0.0 }
     }
 }
 

@@ -29,6 +29,23 @@ pub struct TangentMass<N = f32> {
     xy: N,
 }
 
+/// An angular impulse about the normal of a contact, N·m·s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NormalMoment(f32);
+
+impl NormalMoment {
+    /// An angular impulse, N·m·s.
+    #[inline(always)]
+    pub fn new(impulse: f32) -> Self {
+        Self(impulse)
+    }
+    /// The angular impulse, N·m·s.
+    #[inline(always)]
+    pub fn get(self) -> f32 {
+        self.0
+    }
+}
+
 impl Vector {
     /// A unit vector at right angles to this unit vector.
     #[inline]
@@ -50,6 +67,11 @@ impl<N: Lane> Tangent<N> {
         let long = (limit * limit).lt(square);
         let factor = N::select(long, limit / square.sqrt(), N::ONE);
         Self { x: self.x * factor, y: self.y * factor }
+    }
+    /// The magnitude.
+    #[inline(always)]
+    pub fn length(self) -> N {
+        (self.x * self.x + self.y * self.y).sqrt()
     }
     /// Writes lane `i`.
     #[inline(always)]
@@ -141,6 +163,26 @@ impl<N: Lane> TangentMass<N> {
         let factor = (limit / square.sqrt().max(tiny)).min(square / along.max(tiny));
         let slide = Tangent::select(regular, against * factor, stick.clamp_length(limit));
         Tangent::select(slides, slide, stick)
+    }
+}
+
+impl<N: Lane> TangentMass<N> {
+    /// The slip that an impulse stops.
+    #[inline(always)]
+    pub fn slip(self, impulse: Tangent<N>) -> Tangent<N> {
+        let (determinant, trace) = (self.xx * self.yy - self.xy * self.xy, self.xx + self.yy);
+        let regular = (trace * trace * N::splat(SINGULAR)).lt(determinant);
+        let adjugate = Self { xx: self.yy, yy: self.xx, xy: -self.xy };
+        let slip = adjugate.apply(impulse) * (N::ONE / determinant);
+        Tangent::select(regular, slip, impulse * (N::ONE / trace.max(N::splat(f32::MIN_POSITIVE))))
+    }
+}
+
+impl TangentMass {
+    /// The change of slip per impulse, 1/kg, about: that along both tangents is not the same. 0 if nothing moves.
+    pub fn mean_inverse(self) -> f32 {
+        let sum = self.xx + self.yy;
+        if sum > 0.0 { 2.0 / sum } else { 0.0 }
     }
 }
 

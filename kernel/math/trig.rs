@@ -2,6 +2,8 @@
 //! Taylor series after range reduction, accurate to about one unit in the last place of `f64`. Rounded to `f32`, results are
 //! the nearest `f32` but for rare ties.
 
+use super::Lane;
+
 /// π/2 in three parts; the first two have 33 bits, so that `k` times them is exact for `k < 2^20`.
 const HALF_PI: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
 /// Larger arguments are first reduced to one turn by the (exact) remainder.
@@ -41,6 +43,11 @@ const ATAN_EIGHTHS: [f64; 9] = [
     0.7188299996216245,
     core::f64::consts::FRAC_PI_4,
 ];
+
+/// tan π/8.
+const TAN_EIGHTH: f32 = 0.414_213_56;
+/// Coefficients of (atan z − z) / z³ in z².
+const ATAN: [f32; 4] = [-0.333_329_5, 0.199_777_1, -0.138_776_86, 0.080_537_446];
 
 /// The sine and cosine of an angle in radians; NaN for an infinite or NaN angle.
 pub fn sin_cos(angle: f64) -> (f64, f64) {
@@ -90,6 +97,26 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     let first = if steep { FRAC_PI_2 - first } else { first };
     let half = if x.is_sign_negative() { PI - first } else { first };
     if y.is_sign_negative() { -half } else { half }
+}
+
+/// The angle of the point `(x, y)` in radians, in −π … π, to within 1e-6; 0 for the origin.
+///
+/// The polynomial is that of Cephes' `atanf`, for ratios up to tan π/8; larger ones are turned back by π/4.
+#[inline(always)]
+pub fn atan2_lanes<N: Lane>(y: N, x: N) -> N {
+    use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+    let (ax, ay) = (x.max(-x), y.max(-y));
+    let (small, large) = (ax.min(ay), ax.max(ay));
+    let ratio = small / N::select(N::ZERO.lt(large), large, N::ONE);
+    let is_wide = N::splat(TAN_EIGHTH).lt(ratio);
+    let turned = (ratio - N::ONE) / (ratio + N::ONE);
+    let z = N::select(is_wide, turned, ratio);
+    let s = z * z;
+    let polynomial = ATAN.iter().rev().fold(N::ZERO, |sum, c| sum * s + N::splat(*c));
+    let angle = z + z * s * polynomial + N::select(is_wide, N::splat(FRAC_PI_4), N::ZERO);
+    let angle = N::select(ax.lt(ay), N::splat(FRAC_PI_2) - angle, angle);
+    let angle = N::select(x.lt(N::ZERO), N::splat(PI) - angle, angle);
+    N::select(y.lt(N::ZERO), -angle, angle)
 }
 
 /// The arc tangent for 0 ≤ z ≤ 1: atan z = atan c + atan((z − c) / (1 + z c)), c the nearest eighth.

@@ -2,18 +2,18 @@
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
 use super::bearing::Bearing;
-use super::input::RowInput;
+use super::impact::{Striking, Struck};
+use super::input::{Item, RowInput};
 use super::split::DeepCounts;
-use super::{BodyRow, MassRow, Motion, RowView, SubstepParams};
+use super::{BodyRow, MassRow, RowView, SubstepParams};
 use crate::contact::ManifoldsView;
-use crate::math::AxisLocks;
+use crate::data::BitSet;
+use crate::math::Vector;
 use core::ops::Range;
 
 /// What a sweep does with each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pass {
-    /// Restitution of points that close fast within the substep.
-    Impact,
     /// Apply the impulses of the last substep.
     WarmStart,
     /// Solve with soft bias.
@@ -22,11 +22,9 @@ pub(super) enum Pass {
     UndoSplit,
     /// Solve without bias.
     Relax,
-    /// Restitution after the last substep.
-    Restitute,
 }
 
-/// A set of passes, as bits, and whether the rows may have an overloaded body.
+/// A set of passes, as bits, and whether the rows may have an overloaded body, or a point that may be struck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Passes(u8);
 
@@ -35,6 +33,7 @@ impl Passes {
     pub(super) const BASIC: Self = Self::of(Pass::WarmStart).with(Pass::Solve).with(Pass::Relax);
 
     const OVERLOADED: u8 = 1 << 7;
+    const WATCHED: u8 = 1 << 6;
 
     const fn of(pass: Pass) -> Self {
         Self(1 << pass as u8)
@@ -50,6 +49,17 @@ impl Passes {
         Self(self.0 | Self::OVERLOADED)
     }
 
+    /// This set, marked as of rows with a point that may be struck.
+    pub(super) const fn watched(self) -> Self {
+        Self(self.0 | Self::WATCHED)
+    }
+
+    /// Whether a point of the rows may be struck in this step.
+    #[inline(always)]
+    pub(super) fn are_watched(self) -> bool {
+        self.0 & Self::WATCHED != 0
+    }
+
     /// Whether the rows may have an overloaded body.
     #[inline(always)]
     pub(super) fn are_overloaded(self) -> bool {
@@ -63,28 +73,26 @@ impl Passes {
     }
 }
 
-/// The source of one lane of a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Item {
-    /// The id of the constraint.
-    pub(super) id: u32,
-    /// Number of the row among those of the constraint; for contacts the number of the manifold.
-    pub(super) index: u32,
-}
-
 /// Inputs for filling rows.
 #[derive(Clone, Copy)]
 pub(super) struct Filling<'a> {
     pub(super) input: &'a RowInput<'a>,
     pub(super) bodies: RowView<'a, BodyRow>,
     pub(super) masses: &'a [MassRow],
-    pub(super) motions: &'a [Motion],
     pub(super) first_dynamic: u32,
     pub(super) params: &'a SubstepParams,
     pub(super) deep: &'a DeepCounts,
     pub(super) bearing: &'a Bearing,
-    /// Locked axes by body row. Empty if no body has locked axes.
-    pub(super) locks: &'a [AxisLocks],
+    /// As in [`BodyRows`](super::BodyRows).
+    pub(super) axes: &'a [Vector],
+}
+
+/// What to find among rows.
+#[derive(Clone, Copy)]
+pub(super) struct Seek<'a> {
+    pub(super) striking: Striking<'a>,
+    /// Body rows that were struck in this step.
+    pub(super) reached: &'a BitSet,
 }
 
 /// One pass over all rows.
@@ -103,12 +111,27 @@ pub(super) trait Batch: Sync {
     /// Until it returns, no other thread uses these rows, or writes a body or contact of theirs.
     unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes;
 
-    /// Runs a pass over rows that need `passes`. Returns whether an impact was found.
+    /// Runs a pass over rows that need `passes`.
     ///
     /// # Safety
     /// Until it returns, no other thread uses these rows, or reads or writes a dynamic body of theirs, or writes any
     /// other body of theirs.
-    unsafe fn run(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) -> bool;
+    unsafe fn run(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep);
+
+    /// Watches lanes with a body that was reached, and adds those with a point that is struck. Returns whether any lane is
+    /// watched. Kinds without impacts add none.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread uses these rows, or writes a body of theirs.
+    unsafe fn find_struck(
+        &self,
+        _rows: Range<usize>,
+        _block: (&[Item], Passes),
+        _seek: &Seek,
+        _found: &mut Vec<Struck>,
+    ) -> bool {
+        false
+    }
 
     /// Stores the impulses of rows in the constraints of their items.
     ///

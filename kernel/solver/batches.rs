@@ -2,12 +2,9 @@
 
 use super::batch::Batch;
 use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, Room, sort_contacts};
-use super::distance::{
-    DISTANCE_BATCHES, DistanceRows, DistanceTable, DistanceView, Records, distances, sort_distances,
-};
+use super::joint::{JOINT_BATCHES, JointRows, JointTable, JointView, Records, joints, sort_joints};
 use super::layer::{Layer, Sorter};
 use super::plan::{Plan, Planned};
-use crate::contact::ContactFlags;
 use crate::graph::{COLOR_COUNT, ColorGraph, OVERFLOW};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
@@ -30,13 +27,13 @@ pub(super) struct AllRows {
 #[derive(Clone, Debug, Default)]
 struct KindRows<N: Lane> {
     contacts: ContactRows<N>,
-    distances: DistanceRows<N>,
+    joints: JointRows<N>,
 }
 
 /// Number of batches of one width.
-const BATCHES: usize = DISTANCE + DISTANCE_BATCHES;
-/// The batch of distances. Those before are of contacts.
-const DISTANCE: usize = CONTACT_BATCHES;
+const BATCHES: usize = JOINT + JOINT_BATCHES;
+/// The first batch of joints. Those before are of contacts.
+const JOINT: usize = CONTACT_BATCHES;
 
 /// The first batch of rows that share bodies. Those before are of single constraints of the overflow.
 const SHARED: usize = BATCHES;
@@ -62,15 +59,21 @@ impl Layers {
     }
 
     /// Sorts the constraints of all colours. Each colour is sorted by one worker.
-    pub(super) fn sort(&mut self, colors: &ColorGraph, sorter: &Sorter, pool: &ThreadPool) {
+    pub(super) fn sort(
+        &mut self,
+        colors: &ColorGraph,
+        table: &JointTable,
+        sorter: &Sorter,
+        pool: &ThreadPool,
+    ) {
         self.colors.resize_with(COLOR_COUNT, Vec::new);
         self.used.resize(COLOR_COUNT, 0);
         let layers = self.colors.iter_mut().zip(&mut self.used).zip(0..);
         pool.each(layers, |((layers, used), color)| {
             *used = if color == OVERFLOW {
-                sort_overflow(colors, sorter, layers)
+                sort_overflow(colors, table, sorter, layers)
             } else {
-                sort_color(colors, color, sorter, layers)
+                sort_color((colors, color), table, sorter, layers)
             };
         });
     }
@@ -110,15 +113,20 @@ fn layer(layers: &mut Vec<Layer>, number: usize) -> &mut Layer {
 }
 
 /// Sorts the constraints of a colour into layers. Returns the number of layers.
-fn sort_color(colors: &ColorGraph, color: u8, sorter: &Sorter, layers: &mut Vec<Layer>) -> usize {
-    let (contacts, distances) = (colors.contacts(color), distances(colors, color));
-    let (mut left, mut number) = (contacts.len() + distances.len(), 0);
+fn sort_color(
+    (colors, color): (&ColorGraph, u8),
+    table: &JointTable,
+    sorter: &Sorter,
+    layers: &mut Vec<Layer>,
+) -> usize {
+    let (contacts, joints) = (colors.contacts(color), joints(colors, color));
+    let (mut left, mut number) = (contacts.len() + joints.len(), 0);
     while left > 0 {
         let layer = layer(layers, number);
         layer.begin(BATCHES, sorter.shares.parts(left));
         left = sort_contacts(contacts, number as u32, sorter, layer);
         if number == 0 {
-            sort_distances(distances, DISTANCE, sorter, layer);
+            sort_joints(joints, JOINT, table, sorter, layer);
         }
         number += 1;
     }
@@ -132,34 +140,27 @@ fn sort_color(colors: &ColorGraph, color: u8, sorter: &Sorter, layers: &mut Vec<
 /// a row, and the hub is split into as many bodies of equal mass, whose mean velocity it gets (mass splitting: Tonge,
 /// Benevolenski, Voroshilov, "Mass Splitting for Jitter-Free Parallel Rigid Body Simulation", 2012). That conserves
 /// momentum and adds no energy, at any ratio of masses; and a heavy hub, as most are, hardly notices. A row has four
-/// lanes on every CPU, because the result depends on how many bodies a hub is split into. Contacts with restitution
-/// stay single, because an impact on a split body is too weak, and all do in steps with deep overlap, whose contacts
-/// work against each other.
-fn sort_overflow(colors: &ColorGraph, sorter: &Sorter, layers: &mut Vec<Layer>) -> usize {
-    let distances = distances(colors, OVERFLOW);
-    if colors.overflow().is_empty() && distances.is_empty() {
+/// lanes on every CPU, because the result depends on how many bodies a hub is split into. In steps with deep overlap all
+/// contacts stay single, as they work against each other.
+fn sort_overflow(colors: &ColorGraph, table: &JointTable, sorter: &Sorter, layers: &mut Vec<Layer>) -> usize {
+    let joints = joints(colors, OVERFLOW);
+    if colors.overflow().is_empty() && joints.is_empty() {
         return 0;
     }
     layers.resize_with(layers.len().max(2), Layer::default);
     let [singles, shared, ..] = &mut layers[..] else { return 0 };
     singles.begin_ordered(BATCHES);
     shared.begin(CONTACT_BATCHES, 1);
-    sort_distances(distances, DISTANCE, sorter, singles);
+    sort_joints(joints, JOINT, table, sorter, singles);
     let many = colors.overflow().len() >= WORTH_SHARED_ROWS && !sorter.input.contacts.any_deep();
     for contact in colors.overflow() {
-        let layer = if many && may_share(sorter, *contact) { &mut *shared } else { &mut *singles };
+        let layer = if many { &mut *shared } else { &mut *singles };
         let mut index = 0;
         while sort_contacts(core::slice::from_ref(contact), index, sorter, layer) > 0 {
             index += 1;
         }
     }
     2
-}
-
-/// Whether a contact of the overflow has no restitution.
-fn may_share(sorter: &Sorter, contact: u32) -> bool {
-    let contact = sorter.input.contacts.get(contact);
-    !(contact.flags.has(ContactFlags::CHANGED) || contact.surface[1] > 0.0)
 }
 
 impl AllRows {
@@ -186,8 +187,8 @@ impl AllRows {
     }
 
     /// Calls a function with all batches, by number.
-    pub(super) fn with<R>(&mut self, distances: &mut DistanceTable, f: impl FnOnce(&[&dyn Batch]) -> R) -> R {
-        let records = &distances.records();
+    pub(super) fn with<R>(&mut self, joints: &mut JointTable, f: impl FnOnce(&[&dyn Batch]) -> R) -> R {
+        let records = &joints.records();
         let overflow = self.overflow.view((), records);
         let shared = self.shared.view(());
         match self.width {
@@ -201,25 +202,25 @@ impl AllRows {
 impl<N: Entry> KindRows<N> {
     fn make_room(&mut self, rows: &[u32], room: Room) {
         self.contacts.make_room(rows, room);
-        self.distances.make_room(rows[DISTANCE]);
+        self.joints.make_room(&rows[JOINT..BATCHES]);
     }
 
     fn view<'a>(&'a mut self, proof: N::Proof, records: &'a Records<'a>) -> KindViews<'a, N> {
-        let Self { contacts, distances } = self;
-        KindViews { contacts: contacts.view(proof), distances: distances.view(proof, records) }
+        let Self { contacts, joints } = self;
+        KindViews { contacts: contacts.view(proof), joints: joints.view(proof, records) }
     }
 }
 
 /// A view of [`KindRows`] whose blocks are changed by several threads.
 struct KindViews<'a, N: Entry> {
     contacts: ContactView<'a, N>,
-    distances: DistanceView<'a, N>,
+    joints: [JointView<'a, N>; JOINT_BATCHES],
 }
 
 impl<N: Entry> KindViews<'_, N> {
     fn batches(&self) -> [&dyn Batch; BATCHES] {
-        let [a, b, c, d, e, f] = self.contacts.batches();
-        [a, b, c, d, e, f, &self.distances]
+        let contacts = self.contacts.batches();
+        core::array::from_fn(|i| if i < JOINT { contacts[i] } else { &self.joints[i - JOINT] })
     }
 
     /// Calls a function with these batches, then those that share bodies, then the wide ones.

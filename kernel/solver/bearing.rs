@@ -9,13 +9,16 @@
 //! the heavy body does hardly changes. Only compression counts, not the net impulse: a body that hits a wall keeps its
 //! mass. Other engines let users scale masses by hand.
 //!
+//! Decision: each world axis has its own mass, by the compression along it. A light slab that slides below a heavy block has
+//! its own mass along its way, and friction gives the block no more momentum than the slab has. Blows see the true mass.
+//!
 //! Decision: masses are doubled step by step, upward at once and downward late. A mass that follows the load is fed
 //! back by the load, and such a tower shakes until it falls.
 
 use super::input::RowInput;
-use super::{BodyRows, MassRow, SubstepParams};
+use super::{BodyRows, SubstepParams};
 use crate::contact::{Contact, ContactFlags, ContactTable, Manifold};
-use crate::math::{Vector, max, min};
+use crate::math::{DIM, Vector, max, min};
 
 /// Ratio of the masses of two bodies from which the lighter one gets more mass, if it is loaded. Less would change
 /// ordinary stacks, more leaves towers soft that could be stiff.
@@ -50,29 +53,29 @@ pub(super) struct Bearing {
     loads: Vec<Load>,
     /// Body rows of contacts that press.
     presses: Vec<[u32; 2]>,
-    /// Bodies with more mass in this step, by id, and for how many steps of halving it will last.
-    raised: Vec<(u32, u8)>,
+    /// Bodies with more mass in this step, by id, and for each axis for how many steps of halving it will last.
+    raised: Vec<(u32, [u8; DIM])>,
 }
 
 /// The impulses of all contacts of a body in the last substep, N·s.
 #[derive(Clone, Copy, Debug)]
 struct Load {
-    /// The sum of their lengths.
-    total: f32,
+    /// The sum of their lengths along each axis.
+    total: Vector,
     /// Their sum.
     net: Vector,
     /// Whether contacts that press connect the body with one below a heavy body.
     is_below: bool,
-    /// Whether the body has more mass.
-    is_raised: bool,
+    /// The ratio of the body's mass along each axis to the one that contacts see.
+    share: Vector,
 }
 
 impl Load {
-    const NONE: Self = Self { total: 0.0, net: Vector::ZERO, is_below: false, is_raised: false };
+    const NONE: Self = Self { total: Vector::ZERO, net: Vector::ZERO, is_below: false, share: Vector::ONE };
 
-    /// The impulse that compresses the body: the part that is balanced.
-    fn compression(&self) -> f32 {
-        0.5 * max(self.total - self.net.length(), 0.0)
+    /// The impulse that compresses the body along each axis: the part that is balanced.
+    fn compression(&self) -> Vector {
+        (self.total - self.net.abs()).max(Vector::ZERO) * 0.5
     }
 }
 
@@ -123,16 +126,15 @@ impl Bearing {
         for body in input.bodies.awake_dynamic() {
             let row = input.row_of(body) as usize;
             let load = &mut self.loads[row];
-            let last = before.binary_search_by_key(&body, |(id, _)| *id).map_or(0, |i| before[i].1);
-            if !load.is_below && last == 0 {
+            let last = before.binary_search_by_key(&body, |(id, _)| *id).map_or([0; DIM], |i| before[i].1);
+            if !load.is_below && last == [0; DIM] {
                 continue;
             }
-            let mass = &mut bodies.masses[row];
-            let steps = next_steps(load.compression() * mass.inv_mass() * sag_rate, last);
-            if steps > 0 {
-                let share = 1.0 / (1u32 << doublings(steps)) as f32;
-                *mass = MassRow::new(mass.inv_mass() * share, mass.inv_inertia().scaled(share));
-                load.is_raised = true;
+            let sags = (load.compression() * (bodies.masses[row].inv_mass() * sag_rate)).to_array();
+            let steps: [u8; DIM] = core::array::from_fn(|axis| next_steps(sags[axis], last[axis]));
+            if steps != [0; DIM] {
+                load.share = Vector::from_array(steps.map(|steps| 1.0 / (1u32 << doublings(steps)) as f32));
+                bodies.lower_inv_mass(row, load.share);
                 self.raised.push((body, steps));
             }
         }
@@ -143,8 +145,14 @@ impl Bearing {
     /// Share of the push-out speed of a contact between two body rows.
     #[inline(always)]
     pub(super) fn push_share(&self, rows: [u32; 2]) -> f32 {
-        let is_raised = |row: u32| self.loads.get(row as usize).is_some_and(|load| load.is_raised);
-        if rows.into_iter().any(is_raised) { PUSH_SHARE } else { 1.0 }
+        let is_raised = |row| self.share(row) != Vector::ONE;
+        if !self.raised.is_empty() && rows.into_iter().any(is_raised) { PUSH_SHARE } else { 1.0 }
+    }
+
+    /// The ratio of a body's mass along each axis to the one that contacts see.
+    #[inline(always)]
+    pub(super) fn share(&self, row: u32) -> Vector {
+        self.loads.get(row as usize).map_or(Vector::ONE, |load| load.share)
     }
 
     /// Stores which bodies have more mass, for the next step.
@@ -179,7 +187,7 @@ impl Bearing {
         let impulse: f32 = manifold.points().iter().map(|point| point.impulse).sum();
         for (row, sign) in rows.into_iter().zip([-1.0, 1.0]) {
             let load = &mut self.loads[row as usize];
-            load.total += impulse;
+            load.total += manifold.normal.abs() * impulse;
             load.net += manifold.normal * (impulse * sign);
         }
         let [a, b] = rows.map(|row| bodies.masses[row as usize].inv_mass());
@@ -249,9 +257,9 @@ mod tests {
 
     #[test]
     fn a_push_from_one_side_does_not_compress() {
-        let pushed = Load { total: 3.0, net: Vector::Y * -3.0, ..Load::NONE };
-        assert_eq!(pushed.compression(), 0.0);
-        let squeezed = Load { total: 6.0, ..Load::NONE };
-        assert_eq!(squeezed.compression(), 3.0);
+        let pushed = Load { total: Vector::Y * 3.0, net: Vector::Y * -3.0, ..Load::NONE };
+        assert_eq!(pushed.compression(), Vector::ZERO);
+        let squeezed = Load { total: Vector::Y * 6.0, ..Load::NONE };
+        assert_eq!(squeezed.compression(), Vector::Y * 3.0);
     }
 }

@@ -136,6 +136,11 @@ impl<T> OnceEach<T> {
         &self.list
     }
 
+    /// As [`list`](Self::list), to change items.
+    fn list_mut(&mut self) -> &mut [(u32, T)] {
+        &mut self.list
+    }
+
     /// Whether a row has an item.
     fn contains(&self, row: u32) -> bool {
         self.rows.contains(row)
@@ -191,8 +196,8 @@ pub struct BodyRows {
     pub(super) constrained: BitSet,
     /// Rows of bodies that cannot turn about each axis.
     pub(super) turn_locked: BitSet,
-    /// Locked axes by row. Empty if no body has locked axes of translation.
-    pub(super) locks: Vec<AxisLocks>,
+    /// Factors of the inverse mass along each axis, by row: 0 where an axis is locked. Empty if all are 1.
+    pub(super) axes: Vec<Vector>,
     pub(super) claims: Claims,
     /// Row of the first dynamic body.
     pub(super) first_dynamic: u32,
@@ -212,7 +217,7 @@ impl BodyRows {
         self.fast_turns.clear();
         self.turn_locked.clear();
         self.thrusts.clear();
-        self.locks.clear();
+        self.axes.clear();
         self.first_dynamic = 1 + kinematic as u32;
         self.set_at_rest(0);
     }
@@ -236,8 +241,19 @@ impl BodyRows {
             self.turn_locked.insert(row as u32);
         }
         if is_first && limits.locks.is_translation_held() {
-            self.locks.resize(self.rows.len(), AxisLocks::NONE);
-            self.locks[row] = limits.locks;
+            self.axes.resize(self.rows.len(), Vector::ONE);
+            self.axes[row] = limits.locks.translation_factors();
+        }
+    }
+
+    /// Multiplies the inverse mass along each axis, as constraints see it, by shares, and the inverse inertia by the least.
+    pub(super) fn lower_inv_mass(&mut self, row: usize, shares: Vector) {
+        let least = shares.min_element();
+        let mass = &mut self.masses[row];
+        *mass = MassRow::new(mass.inv_mass() * least, mass.inv_inertia().scaled(least));
+        if shares != Vector::ONE * least {
+            self.axes.resize(self.rows.len(), Vector::ONE);
+            self.axes[row] = self.axes[row].scale(shares * (1.0 / least));
         }
     }
 
@@ -297,6 +313,25 @@ impl BodyRows {
         }
         for (row, spin) in far.filter(|(row, _)| constrained.contains(*row)) {
             fast_turns.push(*row as usize, FastTurn::new(spin));
+        }
+    }
+
+    /// After blows displaced bodies: free spin starts from their present rotations, and those that turn far from now on are
+    /// listed, and have the angular velocity that rows see.
+    pub(super) fn follow_blows(&mut self, struck: &BitSet, h: f32) {
+        let Self { spins, fast_turns, rows, turn_locked, .. } = self;
+        if struck.is_empty() {
+            return;
+        }
+        for (row, spin) in spins.list_mut().iter_mut().filter(|(row, _)| struck.contains(*row)) {
+            spin.restart();
+            let body = &mut rows[*row as usize];
+            let turns_far = !turn_locked.contains(*row) && spin.gyro().turns_far(body.velocity().1, h);
+            if turns_far && !fast_turns.contains(*row) {
+                let mut fast = FastTurn::new(spin);
+                fast.enter(body);
+                fast_turns.push(*row as usize, fast);
+            }
         }
     }
 

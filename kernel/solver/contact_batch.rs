@@ -1,13 +1,16 @@
 //! Contacts as batches of rows: one batch for each lane width, number of points and kind of inverse mass.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
-use super::batch::{Batch, Filling, Item, Pass, Passes, Sweep};
+use super::batch::{Batch, Filling, Pass, Passes, Seek, Sweep};
+use super::blow::Blows;
 use super::contact_fill::{BlockRows, PREFETCH_DISTANCE, fill_rows};
+use super::impact::{Striking, Struck};
+use super::input::Item;
 use super::layer::{Layer, Sorter};
-use super::{BodyRow, ContactRow, InvMass, RestitutionRow, RowView, SplitImpulseRow, SubstepParams};
+use super::{BodyRow, ContactRow, ImpactRow, InvMass, RowView, SplitImpulseRow, SubstepParams};
 use crate::contact::{Manifold, ManifoldsView};
 use crate::data::Parts;
-use crate::math::{Entry, Job, Lane, TangentFrame, Vector};
+use crate::math::{Entry, Ids, Job, Lane, NormalMoment, TangentFrame, Vector};
 use core::marker::PhantomData;
 use core::ops::Range;
 
@@ -31,8 +34,8 @@ struct ByPoints<N: Lane, M> {
 struct Rows<N: Lane, M, const P: usize> {
     /// Data of every pass.
     rows: Vec<ContactRow<N, M, P>>,
-    /// Data of restitution.
-    bounces: Vec<RestitutionRow<N, P>>,
+    /// Data of impacts.
+    impacts: Vec<ImpactRow<N>>,
     /// Data of split impulses.
     splits: Vec<SplitImpulseRow<N, P>>,
     /// Sums of impulses over the substeps; empty where they are not kept.
@@ -47,7 +50,7 @@ impl<N: Lane, M: InvMass<N>> Default for ByPoints<N, M> {
 
 impl<N: Lane, M, const P: usize> Default for Rows<N, M, P> {
     fn default() -> Self {
-        Self { rows: Vec::new(), bounces: Vec::new(), splits: Vec::new(), sums: Vec::new() }
+        Self { rows: Vec::new(), impacts: Vec::new(), splits: Vec::new(), sums: Vec::new() }
     }
 }
 
@@ -128,7 +131,7 @@ impl<N: Entry, M: InvMass<N>, const P: usize> Rows<N, M, P> {
     fn make_room(&mut self, count: usize, room: Room) {
         if self.rows.len() < count {
             self.rows.resize(count, ContactRow::default());
-            self.bounces.resize(count, RestitutionRow::default());
+            self.impacts.resize(count, ImpactRow::default());
         }
         if room.any_deep && self.splits.len() < count {
             self.splits.resize(count, SplitImpulseRow::default());
@@ -144,7 +147,7 @@ impl<N: Entry, M: InvMass<N>, const P: usize> Rows<N, M, P> {
         RowsView {
             proof,
             rows: Parts::of(&mut self.rows),
-            bounces: Parts::of(&mut self.bounces),
+            impacts: Parts::of(&mut self.impacts),
             splits: Parts::of(&mut self.splits),
             sums: Parts::of(&mut self.sums),
         }
@@ -176,7 +179,7 @@ struct RowsView<'a, N: Entry, M, const P: usize> {
     /// Proof that the CPU has the features of the lanes.
     proof: N::Proof,
     rows: Parts<'a, ContactRow<N, M, P>>,
-    bounces: Parts<'a, RestitutionRow<N, P>>,
+    impacts: Parts<'a, ImpactRow<N>>,
     splits: Parts<'a, SplitImpulseRow<N, P>>,
     sums: Parts<'a, [N; P]>,
 }
@@ -193,7 +196,7 @@ impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
         unsafe {
             BlockRows {
                 rows: self.rows.take(range.clone()),
-                bounces: self.bounces.take(range),
+                impacts: self.impacts.take(range),
                 splits: self.splits.take(splits),
                 sums: self.sums.take(sums),
             }
@@ -204,12 +207,12 @@ impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
     ///
     /// # Safety
     /// As [`Batch::run`].
-    unsafe fn enter<S: ContactPass>(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) -> bool {
+    unsafe fn enter<S: ContactPass>(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) {
         let Sweep { bodies, params, .. } = *sweep;
         // SAFETY: by the contract.
         unsafe {
             let rows = Swept { block: self.take(rows), passes, bodies, params: *params };
-            N::enter(self.proof, RunJob::<S, N, M, P> { rows, pass: PhantomData })
+            N::enter(self.proof, RunJob::<S, N, M, P> { rows, pass: PhantomData });
         }
     }
 }
@@ -220,18 +223,30 @@ impl<N: Entry, M: InvMass<N>, const P: usize> Batch for RowsView<'_, N, M, P> {
         unsafe { N::enter(self.proof, FillJob { block: self.take(rows), items, from: *from }) }
     }
 
-    unsafe fn run(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) -> bool {
+    unsafe fn run(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) {
         // SAFETY: by the contract.
         unsafe {
             match sweep.pass {
-                Pass::Impact => self.enter::<Impact>(rows, passes, sweep),
                 Pass::WarmStart => self.enter::<WarmStart>(rows, passes, sweep),
                 Pass::Solve => self.enter::<Solve>(rows, passes, sweep),
                 Pass::UndoSplit => self.enter::<UndoSplit>(rows, passes, sweep),
-                Pass::Relax if can_bounce(passes) => self.enter::<RelaxBouncing>(rows, passes, sweep),
+                Pass::Relax if passes.are_watched() => self.enter::<RelaxWatched>(rows, passes, sweep),
                 Pass::Relax => self.enter::<Relax>(rows, passes, sweep),
-                Pass::Restitute => self.enter::<Restitute>(rows, passes, sweep),
             }
+        }
+    }
+
+    unsafe fn find_struck(
+        &self,
+        rows: Range<usize>,
+        (items, passes): (&[Item], Passes),
+        seek: &Seek,
+        found: &mut Vec<Struck>,
+    ) -> bool {
+        // SAFETY: by the contract.
+        unsafe {
+            let block = self.take(rows);
+            N::enter(self.proof, FindJob { block, items, passes, seek: *seek, found })
         }
     }
 
@@ -273,19 +288,13 @@ struct RunJob<'a, S, N: Lane, M, const P: usize> {
 }
 
 impl<S: ContactPass, N: Lane, M: InvMass<N>, const P: usize> Job for RunJob<'_, S, N, M, P> {
-    type Output = bool;
+    type Output = ();
 
     #[inline(always)]
-    unsafe fn run(self) -> bool {
+    unsafe fn run(self) {
         // SAFETY: by the contract.
         unsafe { S::over(self.rows) }
     }
-}
-
-/// Whether a block with these passes has rows with restitution.
-#[inline(always)]
-fn can_bounce(passes: Passes) -> bool {
-    passes.has(Pass::Impact)
 }
 
 /// Whether a block with these passes has rows with split impulses.
@@ -299,33 +308,16 @@ fn has_split(passes: Passes) -> bool {
 /// The loops are plain, without iterator adaptors: code for a CPU feature must be inlined into the function that
 /// enables it.
 trait ContactPass {
-    /// Returns whether it found an impact.
-    ///
     /// # Safety
     /// As [`Batch::run`].
-    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool;
-}
-
-struct Impact;
-
-impl ContactPass for Impact {
-    #[inline(always)]
-    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
-        let mut hit = false;
-        for (i, (row, bounce)) in all.block.rows.iter_mut().zip(all.block.bounces).enumerate() {
-            let sum = all.block.sums.get_mut(i);
-            // SAFETY: by the contract.
-            hit |= unsafe { row.impact(&all.bodies, bounce, sum, &all.params) };
-        }
-        hit
-    }
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>);
 }
 
 struct WarmStart;
 
 impl ContactPass for WarmStart {
     #[inline(always)]
-    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) {
         if has_split(all.passes) {
             for (row, split) in all.block.rows.iter_mut().zip(&*all.block.splits) {
                 row.scale_impulses(split);
@@ -335,7 +327,6 @@ impl ContactPass for WarmStart {
             // SAFETY: by the contract.
             unsafe { row.warm_start(&all.bodies) };
         }
-        false
     }
 }
 
@@ -343,7 +334,7 @@ struct Solve;
 
 impl ContactPass for Solve {
     #[inline(always)]
-    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) {
         if has_split(all.passes) {
             for (row, split) in all.block.rows.iter().zip(all.block.splits) {
                 row.save_impulses(split);
@@ -353,7 +344,6 @@ impl ContactPass for Solve {
             // SAFETY: by the contract.
             unsafe { row.solve(&all.bodies, &all.params) };
         }
-        false
     }
 }
 
@@ -361,12 +351,11 @@ struct UndoSplit;
 
 impl ContactPass for UndoSplit {
     #[inline(always)]
-    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) {
         for (row, split) in all.block.rows.iter_mut().zip(&*all.block.splits) {
             // SAFETY: by the contract.
             unsafe { row.undo_split(&all.bodies, split) };
         }
-        false
     }
 }
 
@@ -374,7 +363,7 @@ struct Relax;
 
 impl ContactPass for Relax {
     #[inline(always)]
-    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) {
         for row in all.block.rows.iter_mut() {
             // SAFETY: by the contract.
             unsafe { row.relax(&all.bodies, &all.params, None) };
@@ -382,41 +371,66 @@ impl ContactPass for Relax {
         for (row, sum) in all.block.rows.iter().zip(all.block.sums) {
             row.sum_impulses(sum);
         }
-        false
     }
 }
 
-/// [`Relax`] for rows with restitution.
-struct RelaxBouncing;
+/// [`Relax`] for rows of which a point may be struck.
+struct RelaxWatched;
 
-impl ContactPass for RelaxBouncing {
+impl ContactPass for RelaxWatched {
     #[inline(always)]
-    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
-        for (row, bounce) in all.block.rows.iter_mut().zip(&*all.block.bounces) {
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) {
+        for (row, impact) in all.block.rows.iter_mut().zip(&*all.block.impacts) {
             // SAFETY: by the contract.
-            unsafe { row.relax(&all.bodies, &all.params, Some(bounce.restitution)) };
-        }
-        for (row, bounce) in all.block.rows.iter().zip(all.block.bounces) {
-            row.note_largest_impulses(bounce);
+            unsafe { row.relax(&all.bodies, &all.params, Some(impact.watched)) };
         }
         for (row, sum) in all.block.rows.iter().zip(all.block.sums) {
             row.sum_impulses(sum);
         }
-        false
     }
 }
 
-struct Restitute;
+struct FindJob<'a, N: Lane, M, const P: usize> {
+    block: BlockRows<'a, N, M, P>,
+    items: &'a [Item],
+    passes: Passes,
+    seek: Seek<'a>,
+    found: &'a mut Vec<Struck>,
+}
 
-impl ContactPass for Restitute {
+impl<N: Lane, M: InvMass<N>, const P: usize> Job for FindJob<'_, N, M, P> {
+    type Output = bool;
+
     #[inline(always)]
-    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) -> bool {
-        for (i, (row, bounce)) in all.block.rows.iter_mut().zip(all.block.bounces).enumerate() {
-            let sum = all.block.sums.get_mut(i);
+    unsafe fn run(self) -> bool {
+        let Self { block, items, passes, seek, found } = self;
+        let Striking { bodies, params, time, .. } = seek.striking;
+        let mut is_watched = passes.are_watched();
+        for (i, (row, impact)) in block.rows.iter().zip(block.impacts).enumerate() {
+            for ids in &row.ids {
+                let reached = Blows::reached_lanes(seek.reached, ids.lanes());
+                for lane in (0..N::WIDTH).filter(|lane| reached >> lane & 1 != 0) {
+                    if impact.watched.get(lane) >= 0.0 {
+                        impact.watched.set(lane, 1.0);
+                    }
+                }
+            }
+            let mut lanes = N::bits(N::ZERO.lt(impact.watched));
+            if lanes == 0 {
+                continue;
+            }
+            is_watched = true;
             // SAFETY: by the contract.
-            unsafe { row.restitute(&all.bodies, bounce, sum, &all.params) };
+            lanes &= unsafe { row.struck_lanes(&bodies, params, time) };
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize;
+                lanes &= lanes - 1;
+                let (item, restitution) = (items[i * N::WIDTH + lane], impact.restitution.get(lane));
+                // SAFETY: by the contract.
+                found.push(unsafe { Struck::of(item, row.lane(lane), restitution, &seek.striking) });
+            }
         }
-        false
+        is_watched
     }
 }
 
@@ -442,7 +456,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for StoreJob<'_, N, M, P> {
                 // SAFETY: by the contract; the manifold of the previous item is not used any more.
                 let manifold = unsafe { contacts.manifold(item.id, item.index) };
                 manifold.friction_impulse = friction.get(lane);
-                manifold.twist_impulse = row.twist.impulse(lane);
+                manifold.twist_impulse = NormalMoment::new(row.twist.impulse(lane));
+                manifold.friction_owed = row.owed.get(lane);
                 let count = usize::from(manifold.count);
                 // Without sums an old one must not stay.
                 let sum = block.sums.get(i).copied().unwrap_or([N::ZERO; P]);

@@ -1,12 +1,13 @@
 //! Filling contact rows: lane by lane from manifolds, then the effective masses for all lanes of a row at once.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::batch::{Filling, Item, Pass, Passes};
+use super::batch::{Filling, Pass, Passes};
 use super::bearing::{HEAVY, PRESSED, sag_rate};
+use super::input::Item;
 use super::pair::lanes_of_body;
 use super::resistance::levers;
 use super::split::DeepCounts;
-use super::{BodyRow, ContactRow, InvMass, MassRow, RestitutionRow, RowView, SplitImpulseRow, SubstepParams};
+use super::{BodyRow, ContactRow, ImpactRow, InvMass, MassRow, SplitImpulseRow, SubstepParams};
 use crate::contact::{Contact, ContactFlags, Manifold};
 use crate::math::{Ids, Lane, TangentFrame, Vector};
 use crate::table::{BodyTable, NONE};
@@ -17,7 +18,7 @@ pub(super) const PREFETCH_DISTANCE: usize = 1;
 /// The rows of one block.
 pub(super) struct BlockRows<'a, N: Lane, M, const P: usize> {
     pub(super) rows: &'a mut [ContactRow<N, M, P>],
-    pub(super) bounces: &'a mut [RestitutionRow<N, P>],
+    pub(super) impacts: &'a mut [ImpactRow<N>],
     /// Empty in steps without deep overlap.
     pub(super) splits: &'a mut [SplitImpulseRow<N, P>],
     /// The sum of each point's impulses over the substeps, N·s. Empty where sums are not kept.
@@ -31,7 +32,7 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
     items: &[Item],
     from: &Filling,
 ) -> Passes {
-    let (mut can_bounce, mut any_deep, mut overloaded) = (false, false, false);
+    let (mut watched, mut any_deep, mut overloaded) = (false, false, false);
     let sag_rate = N::splat(sag_rate(from.params));
     let pressed = N::splat(PRESSED * from.params.max_sag);
     for (i, lanes) in items.chunks(N::WIDTH).enumerate() {
@@ -39,16 +40,16 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
         for item in items.iter().skip(next).take(N::WIDTH) {
             from.input.contacts.prefetch(&[item.id]);
         }
-        let (row, bounce) = (&mut block.rows[i], &mut block.bounces[i]);
+        let (row, impact) = (&mut block.rows[i], &mut block.impacts[i]);
         *row = ContactRow::default();
-        *bounce = RestitutionRow::default();
+        *impact = ImpactRow::default();
         let mut fill = Fill::<N, P>::new();
         for (lane, item) in lanes.iter().enumerate() {
-            fill.lane(from, *item, lane, row, bounce);
+            fill.lane(from, *item, lane, row, impact);
         }
-        fill.finish(row, bounce, from.masses, &from.bodies);
+        fill.finish(row, impact, from);
         overloaded |= N::any(pressed.lt(row.heavy_push() * sag_rate));
-        can_bounce |= N::any(N::ZERO.lt(bounce.restitution));
+        watched |= N::any(N::ZERO.lt(impact.watched));
         if let Some(sum) = block.sums.get_mut(i) {
             *sum = [N::ZERO; P];
         }
@@ -56,11 +57,12 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
             let split = &mut block.splits[i];
             *split = SplitImpulseRow::default();
             any_deep |= split.mark(from.deep, &row.ids, from.first_dynamic);
+            impact.watched = N::select(N::ZERO.lt(split.deep), N::splat(-1.0), impact.watched);
         }
     }
     let mut passes = Passes::BASIC;
-    if can_bounce {
-        passes = passes.with(Pass::Impact).with(Pass::Restitute);
+    if watched {
+        passes = passes.watched();
     }
     if any_deep {
         passes = passes.with(Pass::UndoSplit);
@@ -102,6 +104,12 @@ impl<N: Lane, const P: usize> SplitImpulseRow<N, P> {
         any
     }
 }
+
+/// Share of the speed of a blow from which a point is watched at the start of the step: it gains speed within the step.
+const WATCHED_SPEED: f32 = 0.5;
+
+/// A point is watched if it would touch within this many steps: it gains speed within the step.
+const WATCHED_TIME: f32 = 2.0;
 
 /// Minimum share of K that locked axes must leave for a point to be pushed along the normal. Below it, K is rounding
 /// error.
@@ -145,7 +153,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         item: Item,
         lane: usize,
         row: &mut ContactRow<N, M, P>,
-        bounce: &mut RestitutionRow<N, P>,
+        impact: &mut ImpactRow<N>,
     ) {
         let input = from.input;
         let contact = input.contacts.get(item.id);
@@ -164,11 +172,9 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let ids = contact.bodies.map(|body| input.row_of(body));
         for side in 0..2 {
             row.ids[side].set(lane, ids[side]);
-            if let Some(locks) = from.locks.get(ids[side] as usize)
-                && locks.is_translation_held()
-            {
-                self.free[side].set(lane, locks.translation_factors());
-            }
+        }
+        if !from.axes.is_empty() {
+            self.set_axes(from, ids, lane);
         }
         if input.bodies.any_dominance {
             self.dominate(input.bodies, contact, lane);
@@ -187,15 +193,19 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         }
         debug_assert!(friction >= 0.0 && restitution >= 0.0, "a surface: {friction}, {restitution}");
         row.friction.set(lane, friction);
-        bounce.restitution.set(lane, restitution);
-        if restitution > 0.0 {
-            let [a, b] = ids.map(|row| from.motions[row as usize].acceleration);
-            bounce.gained.set(lane, (a - b).dot(manifold.normal) * from.params.h);
-        }
+        impact.restitution.set(lane, restitution);
         let share = from.deep.share(ids, from.first_dynamic);
         debug_assert!(share > 0.0 && share <= 1.0, "a share: {share}");
         row.push_speed.set(lane, from.params.max_push_speed * share * from.bearing.push_share(ids));
         self.copy(manifold, contact.frozen.offset, from.params, lane, row);
+    }
+
+    /// Sets the factors of the inverse masses along each axis. Not inlined, since most worlds have none.
+    #[inline(never)]
+    fn set_axes(&mut self, from: &Filling, ids: [u32; 2], lane: usize) {
+        for (free, id) in self.free.iter_mut().zip(ids) {
+            free.set(lane, from.axes[id as usize]);
+        }
     }
 
     /// Sets the velocity that friction gives the surfaces of a lane.
@@ -234,7 +244,8 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         for (to, from) in self.radii.iter_mut().zip(manifold.radii) {
             to.set(lane, from);
         }
-        row.twist.set_impulse(lane, manifold.twist_impulse * params.warm_start);
+        row.twist.set_impulse(lane, manifold.twist_impulse.get() * params.warm_start);
+        row.owed.set(lane, manifold.friction_owed * params.warm_start);
         for (i, p) in manifold.points().iter().enumerate() {
             let point = &mut row.points[i];
             point.anchor.set(lane, p.anchor);
@@ -249,18 +260,17 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         }
     }
 
-    /// Computes effective masses, friction centre and approach speeds, for all lanes at once.
+    /// Computes effective masses, friction centre and whether a point may be struck, for all lanes at once.
     #[inline(always)]
     fn finish<M: InvMass<N>>(
         &self,
         row: &mut ContactRow<N, M, P>,
-        bounce: &mut RestitutionRow<N, P>,
-        masses: &[MassRow],
-        view: &RowView<BodyRow>,
+        impact: &mut ImpactRow<N>,
+        from: &Filling,
     ) {
         let mut unheld = N::ZERO;
         for side in 0..2 {
-            let (inv_mass, inertia) = MassRow::gather::<N>(masses, &row.ids[side]);
+            let (inv_mass, inertia) = MassRow::gather::<N>(from.masses, &row.ids[side]);
             let mut movable = N::select(N::ZERO.lt(self.dominated[side]), N::ZERO, N::ONE);
             if N::SHARES {
                 movable = movable * lanes_of_body(&row.ids, side);
@@ -272,8 +282,10 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         }
         // SAFETY: no thread writes bodies while rows are filled.
         let [(va, wa), (vb, wb)] =
-            unsafe { row.ids.each_ref().map(|ids| BodyRow::gather_velocity::<N>(view, ids)) };
+            unsafe { row.ids.each_ref().map(|ids| BodyRow::gather_velocity::<N>(&from.bodies, ids)) };
         let n = row.normal;
+        let slow = N::splat(-WATCHED_SPEED * from.params.blow_speed);
+        let time = N::splat(WATCHED_TIME * from.params.dt);
         let linear = n.dot(row.inv_mass[0].apply(n)) + n.dot(row.inv_mass[1].apply(n));
         let (mut total, mut center) = (N::ZERO, Vector::ZERO);
         let to_surface = n * self.radii[0];
@@ -286,7 +298,9 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             let k = linear + ma.dot(row.inv_inertia[0].apply(ma)) + mb.dot(row.inv_inertia[1].apply(mb));
             let present = N::and((unheld * N::splat(MIN_FREE_SHARE)).lt(k), N::ZERO.lt(point.mass));
             point.mass = N::select(present, N::ONE / k.max(unheld * N::splat(MIN_USED_SHARE)), N::ZERO);
-            bounce.approach[i] = (vb - va).dot(n) + wb.dot(mb) - wa.dot(ma);
+            let speed = (vb - va).dot(n) + wb.dot(mb) - wa.dot(ma);
+            let may_be_struck = N::and(speed.lt(slow), (point.separation + speed * time).lt(N::ZERO));
+            impact.watched = N::select(N::and(may_be_struck, present), N::ONE, impact.watched);
             total += self.weights[i];
             center += point.anchor * self.weights[i];
         }
@@ -294,12 +308,8 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let core = center * (N::ONE / total);
         row.center = core + to_surface;
         let frame = TangentFrame::new(n);
-        let [ra, rb] = row.surface_arms();
-        let arms = [(row.inv_inertia[0], ra), (row.inv_inertia[1], rb)];
-        let [m0, m1] = row.inv_mass;
-        row.tangent_mass = frame.mass(m0.diagonal() + m1.diagonal(), arms);
+        row.weigh_friction(&frame);
         row.tangent_impulse = frame.project(self.friction_impulse);
-        row.load = row.pressure();
         if self.is_driven {
             row.surface_velocity = frame.project(self.surface_velocity);
         }

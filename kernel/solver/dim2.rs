@@ -3,7 +3,7 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::RowView;
-use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Vector};
+use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Tangent, TangentMass, Vector};
 
 /// A body while the solver runs: velocity, and displacement in this step. 32 bytes.
 #[derive(Clone, Copy, Debug)]
@@ -181,16 +181,31 @@ impl<N: Lane, const P: usize> Twist<N, P> {
         _w: &mut [Angular<N>; 2],
     ) {
     }
+    /// The limits of sliding and of torsional friction: in 2D all is sliding.
+    #[inline(always)]
+    pub(super) fn limits(
+        &self,
+        _normal: Vector<N>,
+        limit: N,
+        _impulses: [N; P],
+        _sliding: (TangentMass<N>, Tangent<N>),
+        _w: &[Angular<N>; 2],
+    ) -> [N; 2] {
+        [limit, N::ZERO]
+    }
     /// Solves the row: nothing in 2D.
     #[inline(always)]
     pub(super) fn solve(
         &mut self,
         _normal: Vector<N>,
-        _friction: N,
-        _impulses: [N; P],
+        _limit: N,
         _inertia: [InvInertia<N>; 2],
         _w: &mut [Angular<N>; 2],
     ) {
+    }
+    /// Lane `i`: nothing in 2D.
+    pub(super) fn lane<const Q: usize>(&self, _i: usize) -> Twist<f32, Q> {
+        Twist::default()
     }
     /// The accumulated impulse of lane `i`, N·m·s.
     pub(super) fn impulse(&self, _i: usize) -> f32 {

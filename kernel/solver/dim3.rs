@@ -3,7 +3,7 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::RowView;
-use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Vector};
+use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Tangent, TangentMass, Vector};
 
 /// A body while the solver runs: velocity, and displacement in this step. 64 bytes, one cache line. Padding makes each
 /// part one load of four floats.
@@ -192,10 +192,25 @@ impl MassRow {
     }
 }
 
+/// The mean distance from the centre under even pressure, by number of points, as a share of that of the points: of a line
+/// half its end's, of a disc two thirds of its rim's.
+const EVEN: [f32; 5] = [0.0, 1.0, 1.0 / 2.0, 2.0 / 3.0, 2.0 / 3.0];
+
+/// By how much spin weakens sliding friction, as a fourth power: 1.26⁴. A disc under even pressure has 1.5⁴; with that, one that
+/// lies on several pieces slides too far.
+const SPUN: f32 = 2.5;
+
 /// Torsional friction about the contact normal.
 ///
-/// The angular row K = nᵀ (I_A⁻¹ + I_B⁻¹) n, limited by μ Σ lᵢ λᵢ: each point resists with its normal impulse λᵢ at its
-/// distance lᵢ from the friction centre.
+/// The angular row K = nᵀ (I_A⁻¹ + I_B⁻¹) n. Alone it is limited by T = μ Σ lᵢ λᵢ: each point resists with its normal impulse
+/// λᵢ at a lever lᵢ. Together with sliding friction f, of limit F, its impulse τ is limited by an ellipse (Howe and
+/// Cutkosky, "Practical Force-Motion Models for Sliding Manipulation", 1996):
+///
+/// (f / F)² + (τ / T)² ≤ 1.
+///
+/// What slips at u and spins at ω would meet the impulses of the ellipse whose outward normal is (u, ω): with r = T / F these
+/// are f = F u / s and τ = T r ω / s, where s² = u² + r² ω². That f is half too strong where spin prevails: a disc under even
+/// pressure has f = F u / (u⁴ + (1.5 r ω)⁴)^¼ within 2 % of F, and ends both motions at once (`SPUN`).
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Twist<N, const P: usize> {
@@ -224,7 +239,7 @@ impl<N: Lane, const P: usize> Twist<N, P> {
         let k = normal.dot(inertia[0].apply(normal) + inertia[1].apply(normal));
         self.mass = N::select(N::ZERO.lt(k), N::ONE / k, N::ZERO);
         for (lever, anchor) in self.levers.iter_mut().zip(anchors) {
-            *lever = (anchor - center).length() + patch;
+            *lever = (anchor - center).length() * N::splat(EVEN[P]) + patch;
         }
     }
     /// Applies the accumulated impulse.
@@ -234,27 +249,59 @@ impl<N: Lane, const P: usize> Twist<N, P> {
         w[0] -= inertia[0].apply(impulse);
         w[1] += inertia[1].apply(impulse);
     }
+    /// The limits of sliding and of torsional friction, if both together are limited by `limit`, μ times the normal impulse.
+    /// `sliding` is the effective mass of sliding, and the impulse that stops it.
+    #[inline(always)]
+    pub(super) fn limits(
+        &self,
+        normal: Vector<N>,
+        limit: N,
+        impulses: [N; P],
+        (mass, stick): (TangentMass<N>, Tangent<N>),
+        w: &[Angular<N>; 2],
+    ) -> [N; 2] {
+        let (mut sum, mut levers) = (N::ZERO, N::ZERO);
+        for (lever, impulse) in self.levers.iter().zip(impulses) {
+            sum += impulse;
+            levers += *lever * impulse;
+        }
+        let radius = N::select(N::ZERO.lt(sum), levers / sum, N::ZERO);
+        let torque = limit * radius;
+        let stop = self.impulse - self.mass * normal.dot(w[1] - w[0]);
+        let turn = stop / radius.max(N::splat(f32::MIN_POSITIVE));
+        let square = stick.x * stick.x + stick.y * stick.y + turn * turn;
+        let slides = N::and((limit * limit).lt(square), N::ZERO.lt(radius));
+        if !N::any(slides) {
+            return [limit, torque];
+        }
+        let slip = mass.slip(stick).length();
+        let spin = N::select(N::ZERO.lt(self.mass), radius * stop / self.mass, N::ZERO);
+        let [u, w] = [slip * slip, spin * spin];
+        let part = |speed: N, of: N| N::select(N::ZERO.lt(of), speed / of, N::ZERO);
+        let slide = part(slip, (u * u + w * w * N::splat(SPUN)).sqrt().sqrt());
+        let spin = part(spin.max(-spin), (u + w).sqrt());
+        [N::select(slides, limit * slide, limit), N::select(slides, torque * spin, torque)]
+    }
     /// Solves the row.
     #[inline(always)]
     pub(super) fn solve(
         &mut self,
         normal: Vector<N>,
-        friction: N,
-        impulses: [N; P],
+        limit: N,
         inertia: [InvInertia<N>; 2],
         w: &mut [Angular<N>; 2],
     ) {
-        let mut limit = N::ZERO;
-        for (lever, impulse) in self.levers.iter().zip(impulses) {
-            limit += *lever * impulse;
-        }
-        let limit = friction * limit;
         let speed = normal.dot(w[1] - w[0]);
         let new = (self.impulse - self.mass * speed).max(-limit).min(limit);
         let impulse = normal * (new - self.impulse);
         self.impulse = new;
         w[0] -= inertia[0].apply(impulse);
         w[1] += inertia[1].apply(impulse);
+    }
+    /// Lane `i`, with room for more points and no impulse.
+    pub(super) fn lane<const Q: usize>(&self, i: usize) -> Twist<f32, Q> {
+        let levers = core::array::from_fn(|k| self.levers.get(k).map_or(0.0, |lever| lever.get(i)));
+        Twist { levers, mass: self.mass.get(i), impulse: 0.0 }
     }
     /// The accumulated impulse of lane `i`, N·m·s.
     pub(super) fn impulse(&self, i: usize) -> f32 {

@@ -35,9 +35,9 @@ const MIN_SWING: f32 = 1.0e-3;
 const STEP_SUBSTEPS: f32 = 4.0;
 
 /// Minimum product r φ² of the ratio of moments r and the squared angle φ of a step, in rad², for which a body turns far. A
-/// box, whose r is 6 to 10, turns far from about 10 rad/s on at 60 Hz, a rod 10 times as long as thick from 3 rad/s on. More lets
+/// box, whose r is 6 to 10, turns far from about 6 rad/s on at 60 Hz, a rod 10 times as long as thick from 2 rad/s on. More lets
 /// such bodies gain energy in contacts, less slows down piles that tumble.
-const FAR_TURN: f32 = 0.2;
+const FAR_TURN: f32 = 0.08;
 
 impl Gyro {
     /// `None` if the three moments are equal (within 1 ‰) and the tensor is diagonal, so that ω × I ω vanishes, or if

@@ -29,3 +29,12 @@ impl RowInput<'_> {
         if body == NONE { 0 } else { self.bodies.rows[body as usize] }
     }
 }
+
+/// The source of one lane of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Item {
+    /// The id of the constraint.
+    pub(super) id: u32,
+    /// Number of the row among those of the constraint; for contacts the number of the manifold.
+    pub(super) index: u32,
+}

@@ -1,9 +1,8 @@
 //! The constraints of one colour, sorted into lists from which stages are planned.
 
-use super::batch::Item;
-use super::input::RowInput;
+use super::input::{Item, RowInput};
 use super::shares::Shares;
-use crate::math::AxisLocks;
+use crate::math::Vector;
 
 /// Items without a common dynamic body, in a list for each part of the stage and each batch.
 ///
@@ -71,17 +70,17 @@ impl Layer {
 /// Inputs for sorting constraints.
 pub(super) struct Sorter<'a> {
     pub(super) input: &'a RowInput<'a>,
-    /// Locked axes by body row. Empty if no body has locked axes.
-    pub(super) locks: &'a [AxisLocks],
+    /// As in [`BodyRows`](super::BodyRows).
+    pub(super) axes: &'a [Vector],
     pub(super) shares: &'a Shares,
 }
 
 impl Sorter<'_> {
-    /// Whether one of two bodies has locked axes.
+    /// Whether one of two bodies has an inverse mass for each axis.
     #[inline(always)]
     pub(super) fn is_held(&self, bodies: [u32; 2]) -> bool {
-        let held = |body: u32| self.locks[self.input.row_of(body) as usize].is_translation_held();
-        !self.locks.is_empty() && bodies.into_iter().any(held)
+        let held = |body: u32| self.axes[self.input.row_of(body) as usize] != Vector::ONE;
+        !self.axes.is_empty() && bodies.into_iter().any(held)
     }
 
     /// The part that a constraint between two bodies belongs to.

@@ -1,8 +1,7 @@
 //! The TGS-Soft contact solver: dense body rows, wide contact rows, and the stages of a substep.
 //!
 //! One step: fill [`Solver::bodies`], build the rows of the constraints, run the substeps (integrate velocities →
-//! impacts → warm start → solve with soft bias → integrate positions → relax), then restitution, and store the
-//! impulses.
+//! blows → warm start → solve with soft bias → integrate positions → relax), then blows once more, and store the impulses.
 //!
 //! The method is Erin Catto's (Solver2D, Box2D v3, Box3D): soft constraints, relaxation, positions as displacements
 //! over the step. Rows differ in three ways. Both dimensions have one central friction row per manifold (in 2D the two
@@ -16,13 +15,13 @@
 mod batch;
 mod batches;
 mod bearing;
+mod blow;
 mod body;
 mod contact_batch;
 mod contact_fill;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
-mod distance;
 mod exclusive;
 mod fast_turn;
 mod fill;
@@ -35,6 +34,7 @@ mod impact;
 mod input;
 mod integrate;
 mod inv_mass;
+mod joint;
 mod layer;
 mod pair;
 mod plan;
@@ -53,11 +53,15 @@ mod view;
 pub use body::{BodyRows, Limits, Motion, Thrust};
 pub use dim::{BodyRow, MassRow, Twist};
 use dim::{about, resist_rolling};
-pub use distance::{Distance, DistanceError, DistanceTable, Spring};
 pub use fill::{BodyFiller, FilledBody, SpecialBodies};
+pub use impact::ImpactRow;
 pub use input::RowInput;
 pub use inv_mass::InvMass;
-pub use row::{ContactRow, PointRow, RestitutionRow, SplitImpulseRow};
+pub use joint::{
+    AXES, Axis, Drive, Give, JointDef, JointError, JointFrame, JointReaction, JointTable, Motor, Spring,
+    coordinate,
+};
+pub use row::{ContactRow, PointRow, SplitImpulseRow};
 pub use softness::{Softness, SubstepParams};
 pub use stages::Solver;
 use view::RowView;

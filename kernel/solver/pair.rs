@@ -12,9 +12,6 @@ pub(super) struct Pair<N> {
 }
 
 impl<N: Lane> Pair<N> {
-    /// Two bodies at rest.
-    pub(super) const REST: Self = Self { v: [Vector::ZERO; 2], w: [Angular::ZERO; 2] };
-
     /// # Safety
     /// Until it returns, no other thread writes these rows.
     #[inline(always)]

@@ -1,6 +1,7 @@
 //! The order of solving: stages, cut into blocks that workers share.
 
-use super::batch::{Item, Passes};
+use super::batch::Passes;
+use super::input::Item;
 use super::layer::Layer;
 use super::shares::Shares;
 

@@ -53,26 +53,13 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
     pub tangent_mass: TangentMass<N>,
     /// The accumulated friction impulse, N·s.
     pub tangent_impulse: Tangent<N>,
-    /// The sum of the normal impulses that the substep begins with, N·s.
-    pub load: N,
+    /// Normal impulses that friction was not limited by yet: those of the last relax pass less those of the solve pass before
+    /// it, N·s.
+    pub owed: N,
     /// Torsional friction about the normal.
     pub twist: Twist<N, P>,
     /// The points.
     pub points: [PointRow<N>; P],
-}
-
-/// Data of restitution, apart from the rows that every pass reads.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub struct RestitutionRow<N: Lane, const P: usize> {
-    /// The mixed coefficient of restitution.
-    pub restitution: N,
-    /// Approach speed that accelerations add in a substep, m/s.
-    pub gained: N,
-    /// Normal velocity of each point at the start of the step, m/s. 0 once it has bounced.
-    pub approach: [N; P],
-    /// Maximum impulse of each point at the end of a substep so far, N·s.
-    pub max_impulse: [N; P],
 }
 
 /// Data of split impulses, apart from the rows that every pass reads.
@@ -116,16 +103,10 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Default for ContactRow<N, M, P> {
             center: Vector::ZERO,
             tangent_mass: TangentMass::default(),
             tangent_impulse: Tangent::ZERO,
-            load: N::ZERO,
+            owed: N::ZERO,
             twist: Twist::default(),
             points: [PointRow::default(); P],
         }
-    }
-}
-
-impl<N: Lane, const P: usize> Default for RestitutionRow<N, P> {
-    fn default() -> Self {
-        Self { restitution: N::ZERO, gained: N::ZERO, approach: [N::ZERO; P], max_impulse: [N::ZERO; P] }
     }
 }
 
@@ -192,8 +173,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// oscillation. With friction last, a pyramid of base 16 at rest reached 0.2 m/s in 50 s; with this order it comes
     /// to rest.
     ///
-    /// Where `restitution` is given and not 0, free points that close fast are not slowed down, also if turning has brought them to
-    /// touch: they are left to the impact pass.
+    /// Where `watched` is given and not 0, free points that close fast are not slowed down, also if turning has brought them to
+    /// touch: they are left to the next blow.
     ///
     /// # Safety
     /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
@@ -202,16 +183,19 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         &mut self,
         rows: &RowView<BodyRow>,
         params: &SubstepParams,
-        restitution: Option<N>,
+        watched: Option<N>,
     ) {
         // SAFETY: by the contract.
         let mut pair = unsafe { Pair::load(rows, &self.ids) };
         // SAFETY: by the contract.
         let carried = unsafe { self.carried(rows, &pair, params) };
-        self.solve_friction(&mut pair, carried, params);
+        let pressure = self.pressure();
+        let load = (pressure + self.owed).max(N::ZERO);
+        self.solve_friction(&mut pair, carried, load);
+        self.resist_rolling(&mut pair, load, params);
         // SAFETY: by the contract.
-        unsafe { self.solve_normals(rows, &mut pair, params, None, restitution) };
-        self.load = self.pressure();
+        unsafe { self.solve_normals(rows, &mut pair, params, None, watched) };
+        self.owed = self.pressure() - pressure;
         // SAFETY: by the contract.
         unsafe { pair.store(rows, &self.ids) };
     }
@@ -232,7 +216,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         for point in &mut self.points {
             point.impulse = point.impulse * split.warm;
         }
-        self.load = self.load * split.warm;
+        self.owed = self.owed * split.warm;
     }
 
     /// Saves the impulses that [`undo_split`](Self::undo_split) returns to.
@@ -265,14 +249,6 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         unsafe { pair.or_where_not(N::ZERO.lt(split.deep), before).store(rows, &self.ids) };
     }
 
-    /// Updates the maximum impulses, for the restitution pass.
-    #[inline(always)]
-    pub(super) fn note_largest_impulses(&self, bounce: &mut RestitutionRow<N, P>) {
-        for (max, point) in bounce.max_impulse.iter_mut().zip(&self.points) {
-            *max = max.max(point.impulse);
-        }
-    }
-
     /// Adds the impulses of a substep to their sums.
     #[inline(always)]
     pub(super) fn sum_impulses(&self, sum: &mut [N; P]) {
@@ -293,7 +269,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         pair: &mut Pair<N>,
         params: &SubstepParams,
         soft: Option<SoftLanes<N>>,
-        restitution: Option<N>,
+        watched: Option<N>,
     ) {
         // SAFETY: by the contract.
         let [(pa, qa), (pb, qb)] = unsafe {
@@ -324,15 +300,24 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             let vn = pair.along(n, [ma, mb]);
             let change = point.mass * (mass_scale * vn + bias) + impulse_scale * point.impulse;
             let mut new = (point.impulse - change).max(N::ZERO);
-            if let Some(e) = restitution {
-                let fast = vn.lt(N::splat(-params.restitution_threshold));
-                let free = point.impulse.eq(N::ZERO);
-                new = N::select(N::and(N::and(fast, free), N::ZERO.lt(e)), N::ZERO, new);
+            if let Some(watched) = watched {
+                let fast = vn.lt(N::splat(-params.blow_speed));
+                let free = N::and(point.impulse.eq(N::ZERO), N::ZERO.lt(watched));
+                new = N::select(N::and(fast, free), N::ZERO, new);
             }
             let delta = new - point.impulse;
             self.points[i].impulse = new;
             self.push(pair, n * delta, [ma * delta, mb * delta]);
         }
+    }
+
+    /// Computes the effective mass of friction.
+    #[inline(always)]
+    pub(super) fn weigh_friction(&mut self, frame: &TangentFrame<N>) {
+        let [ra, rb] = self.surface_arms();
+        let arms = [(self.inv_inertia[0], ra), (self.inv_inertia[1], rb)];
+        let [m0, m1] = self.inv_mass;
+        self.tangent_mass = frame.mass(m0.diagonal() + m1.diagonal(), arms);
     }
 
     /// The vectors from both centres of mass to the friction centre.

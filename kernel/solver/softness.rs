@@ -68,6 +68,8 @@ pub struct SubstepParams {
     pub warm_start: f32,
     /// Minimum approach speed for restitution, m/s.
     pub restitution_threshold: f32,
+    /// Minimum approach speed of a blow, m/s. Slower contacts are stopped by the solve and relax passes.
+    pub blow_speed: f32,
     /// Separation over which the weight of a point in the friction centre fades, in metres.
     pub friction_fade: f32,
     /// Overlap to which a heavy body may press light ones into each other, in metres, before they get more mass. Positive.
@@ -93,6 +95,7 @@ impl SubstepParams {
             max_push_speed: 4.0,
             warm_start: 1.0,
             restitution_threshold: 1.0,
+            blow_speed: 0.5,
             friction_fade: 0.02,
             max_sag: 0.005,
             roll_speed: 0.2,
@@ -102,7 +105,13 @@ impl SubstepParams {
     /// Whether a substep may be run with these parameters.
     pub(super) fn is_valid(&self) -> bool {
         let is_step = [self.h, self.inv_h, self.dt].iter().all(|x| x.is_finite() && *x >= 0.0);
-        let limits = [self.max_push_speed, self.restitution_threshold, self.friction_fade, self.roll_speed];
+        let limits = [
+            self.max_push_speed,
+            self.restitution_threshold,
+            self.blow_speed,
+            self.friction_fade,
+            self.roll_speed,
+        ];
         is_step
             && self.max_sag > 0.0
             && self.soft.is_valid()

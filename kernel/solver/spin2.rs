@@ -24,6 +24,9 @@ impl Spin {
         Rot::IDENTITY
     }
 
+    /// There is nothing to be taken.
+    pub(super) fn restart(&mut self) {}
+
     /// Nothing turns.
     ///
     /// # Safety

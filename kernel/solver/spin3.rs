@@ -41,6 +41,11 @@ impl Spin {
         Rot { x, y, z, w }
     }
 
+    /// Takes the angular velocity as it will be when the body is turned next: its rotation was changed by other than its turning.
+    pub(super) fn restart(&mut self) {
+        self.after = [Quad::default(); 2];
+    }
+
     /// Sets the angular velocities to those in the middle of a substep of `h` seconds, by which bodies are turned. One body
     /// for each lane.
     ///

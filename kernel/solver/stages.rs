@@ -1,15 +1,17 @@
 //! The stages of a step, in the order they run.
 #![expect(unsafe_code, reason = "blocks of a stage are changed at once, each by one worker")]
 
-use super::batch::{Filling, Pass, Sweep};
+use super::batch::{Filling, Pass, Seek, Sweep};
 use super::batches::{AllRows, Layers};
 use super::bearing::Bearing;
+use super::blow::{Blows, ROUNDS};
 use super::contact_batch::Room;
-use super::distance::DistanceTable;
 use super::exclusive;
+use super::impact::Striking;
 use super::input::RowInput;
+use super::joint::JointTable;
 use super::layer::Sorter;
-use super::plan::{Plan, Stage};
+use super::plan::{Block, Plan, Stage};
 use super::shares::Shares;
 use super::split::DeepCounts;
 use super::{BodyRows, RowView, SubstepParams};
@@ -18,7 +20,6 @@ use crate::data::Parts;
 use crate::graph::ColorGraph;
 use crate::math::Width;
 use crate::thread_pool::ThreadPool;
-use core::sync::atomic::{AtomicBool, Ordering};
 
 /// Maximum number of rows of a block if several workers share them: some microseconds of work. More leaves workers idle
 /// at the end of a stage, fewer cost more claims.
@@ -37,8 +38,10 @@ const WORTH_WAKING: u32 = 256;
 pub struct Solver {
     /// The bodies. The embedder fills them and reads the results.
     pub bodies: BodyRows,
-    /// Distance constraints.
-    pub distances: DistanceTable,
+    /// Joints.
+    pub joints: JointTable,
+    /// Inertia that joints ask for, by row of the body.
+    least_inertia: Vec<f32>,
     rows: AllRows,
     layers: Layers,
     seen: exclusive::Seen,
@@ -46,6 +49,7 @@ pub struct Solver {
     shares: Shares,
     deep: DeepCounts,
     bearing: Bearing,
+    blows: Blows,
     /// The first body row that constraint rows may write, kept from when they were built.
     first_dynamic: u32,
 }
@@ -70,7 +74,7 @@ impl Solver {
         self.bodies.reset(kinematic, dynamic);
     }
 
-    /// Builds the rows of all constraints in the colours: touching contacts, and [`distances`](Self::distances).
+    /// Builds the rows of all constraints in the colours: touching contacts, and [`joints`](Self::joints).
     ///
     /// # Safety
     /// No two constraints of a colour other than the overflow share a body whose row is dynamic, and no constraint is
@@ -88,7 +92,7 @@ impl Solver {
         params: &SubstepParams,
         pool: &ThreadPool,
     ) {
-        let Self { bodies, rows, layers, plan, shares, deep, first_dynamic, seen, .. } = self;
+        let Self { bodies, joints, least_inertia, shares, deep, first_dynamic, seen, .. } = self;
         debug_assert!(params.is_valid(), "{params:?}");
         debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
         if cfg!(debug_assertions) {
@@ -98,43 +102,53 @@ impl Solver {
         deep.count(input, bodies);
         bodies.find_fast_turns(input, colors, params.h);
         bodies.turn_inertia(0.5 * (params.dt + params.h));
-        let workers = pool.workers();
-        shares.divide(workers, *first_dynamic, input, colors);
-        let sorter = &Sorter { input, locks: &bodies.locks, shares };
-        layers.sort(colors, sorter, pool);
-        plan.begin(if workers > 1 { BLOCK_ROWS } else { u32::MAX }, workers, AllRows::BATCHES);
-        layers.plan(rows.width, sorter, plan);
-        rows.make_room(plan.rows(), Room { any_deep: deep.any(), sums: input.contacts.sum_impulses });
+        joints.stiffen(input, colors, params.h, &mut bodies.masses, least_inertia);
+        shares.divide(pool.workers(), *first_dynamic, input, colors);
+        self.plan_rows(input, colors, pool);
+        let Self { plan, .. } = self;
         if plan.rows().iter().sum::<u32>() >= WORTH_WAKING {
             pool.wake();
         }
         self.bearing.clear();
+        self.blows.begin_step();
         self.fill_rows(input, params, pool);
         let Self { bodies, plan, bearing, .. } = self;
         let any_overloaded = plan.blocks.iter().any(|block| block.passes.are_overloaded());
         let was_any = !input.contacts.raised_masses().is_empty();
         if (any_overloaded || was_any) && bearing.raise_masses(input, bodies, params) {
+            // Rows of bodies with a mass for each axis are others.
+            self.plan_rows(input, colors, pool);
             self.fill_rows(input, params, pool);
         }
     }
 
+    /// Sorts the constraints of all colours into rows, and makes room for them.
+    fn plan_rows(&mut self, input: &RowInput, colors: &ColorGraph, pool: &ThreadPool) {
+        let Self { bodies, joints, rows, layers, plan, shares, deep, .. } = self;
+        let workers = pool.workers();
+        let sorter = &Sorter { input, axes: &bodies.axes, shares };
+        layers.sort(colors, joints, sorter, pool);
+        plan.begin(if workers > 1 { BLOCK_ROWS } else { u32::MAX }, workers, AllRows::BATCHES);
+        layers.plan(rows.width, sorter, plan);
+        rows.make_room(plan.rows(), Room { any_deep: deep.any(), sums: input.contacts.sum_impulses });
+    }
+
     /// Fills the rows of all blocks.
     fn fill_rows(&mut self, input: &RowInput, params: &SubstepParams, pool: &ThreadPool) {
-        let Self { bodies, distances, rows, layers, plan, deep, bearing, .. } = self;
-        let BodyRows { rows: body_rows, masses, motions, locks, first_dynamic, .. } = bodies;
+        let Self { bodies, joints, rows, layers, plan, deep, bearing, .. } = self;
+        let BodyRows { rows: body_rows, masses, axes, first_dynamic, .. } = bodies;
         let filling = &Filling {
             input,
             bodies: RowView::over(body_rows, *first_dynamic),
             masses,
-            motions,
             first_dynamic: *first_dynamic,
             params,
             deep,
             bearing,
-            locks,
+            axes,
         };
         let mut blocks = core::mem::take(&mut plan.blocks);
-        rows.with(distances, |batches| {
+        rows.with(joints, |batches| {
             let blocks = Parts::of(&mut blocks);
             pool.run(blocks.len(), |block, _| {
                 // SAFETY: each block is run once, and no two share a row. Bodies and contacts are only read.
@@ -164,17 +178,10 @@ impl Solver {
         self.bodies.integrate_velocities(params.h, pool);
     }
 
-    /// Applies restitution to points that close fast in this substep, then the accumulated impulses.
-    ///
-    /// An impact runs on through a row of bodies, as in Newton's cradle: two bodies further per sweep.
+    /// Strikes what closes fast in this substep, then applies the accumulated impulses.
     pub fn warm_start(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         self.bodies.enter_rows(pool);
-        if self.plan.blocks.iter().any(|block| block.passes.has(Pass::Impact)) {
-            let mut sweeps = 0;
-            while sweeps < IMPACT_SWEEPS && self.sweep(Pass::Impact, params, pool) {
-                sweeps += 1;
-            }
-        }
+        self.strike(params.h, params, pool);
         self.sweep(Pass::WarmStart, params, pool);
         self.bodies.leave_rows(pool);
     }
@@ -211,22 +218,56 @@ impl Solver {
         self.relax(params, pool);
     }
 
-    /// Applies restitution, once after the last substep.
+    /// Strikes what closes fast and touches, after the last substep.
     pub fn restitute(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         self.bodies.enter_rows(pool);
-        self.sweep(Pass::Restitute, params, pool);
+        self.strike(0.0, params, pool);
         self.bodies.leave_rows(pool);
     }
 
-    /// Stores the impulses in manifolds and distances, for the warm start of the next step.
+    /// Strikes what closes fast and touches within `time` seconds.
+    fn strike(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) {
+        let Self { bodies, joints, rows, plan, layers, blows, bearing, first_dynamic, .. } = self;
+        let is_watched = plan.blocks.iter().any(|block| block.passes.are_watched());
+        if !is_watched && blows.reached.is_empty() {
+            return;
+        }
+        let BodyRows { rows: body_rows, motions, .. } = bodies;
+        let bodies_view = RowView::over(body_rows, *first_dynamic);
+        let striking = Striking { bodies: bodies_view, motions, bearing, params, time };
+        blows.begin();
+        let mut blocks = core::mem::take(&mut plan.blocks);
+        rows.with(joints, |batches| {
+            for _ in 0..ROUNDS {
+                let Blows { found, reached, .. } = blows;
+                let seek = &Seek { striking, reached };
+                let looked_at = |block: &&mut Block| !seek.reached.is_empty() || block.passes.are_watched();
+                pool.each_into(found, blocks.iter_mut().filter(looked_at), |found, block| {
+                    let items = plan.items(block, layers.colors());
+                    let batch = batches[usize::from(block.batch)];
+                    // SAFETY: each block is looked at once, and bodies are only read.
+                    if unsafe { batch.find_struck(block.rows(), (items, block.passes), seek, found) } {
+                        block.passes = block.passes.watched();
+                    }
+                });
+                if !blows.strike(*first_dynamic, &striking, pool) {
+                    break;
+                }
+            }
+        });
+        plan.blocks = blocks;
+        bodies.follow_blows(&blows.reached, params.h);
+    }
+
+    /// Stores the impulses in manifolds and joints, for the warm start of the next step.
     pub fn store_impulses(&mut self, contacts: &mut ContactTable, pool: &ThreadPool) {
         debug_assert!(
             self.manifold_count() == 0 || !contacts.is_empty(),
             "the rows came from these contacts"
         );
-        let Self { distances, rows, plan, layers, .. } = self;
+        let Self { joints, rows, plan, layers, .. } = self;
         let manifolds = &contacts.manifolds_view();
-        rows.with(distances, |batches| {
+        rows.with(joints, |batches| {
             for Stage { blocks, parts } in plan.stages() {
                 // SAFETY: each block is run once, no two share a row, and by the contract of `build_rows` no constraint
                 // is there twice.
@@ -242,20 +283,20 @@ impl Solver {
             }
         });
         self.bearing.store(contacts);
+        self.blows.store(contacts);
         self.plan.begin(0, 1, 0);
     }
 
-    /// Runs a pass over all blocks that need it, stage by stage. Returns whether an impact was found.
-    fn sweep(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) -> bool {
+    /// Runs a pass over all blocks that need it, stage by stage.
+    fn sweep(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
-        let Self { bodies, distances, rows, plan, first_dynamic, .. } = self;
+        let Self { bodies, joints, rows, plan, first_dynamic, .. } = self;
         debug_assert!(
             plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),
             "bodies have the rows that rows of constraints were built for"
         );
         let sweep = &Sweep { pass, bodies: bodies.view(*first_dynamic), params };
-        let hit = AtomicBool::new(false);
-        rows.with(distances, |batches| {
+        rows.with(joints, |batches| {
             for Stage { blocks, parts } in plan.stages() {
                 let solve = |block: usize, _| {
                     let block = &blocks[block];
@@ -265,9 +306,7 @@ impl Solver {
                     let batch = batches[usize::from(block.batch)];
                     // SAFETY: each block is run once, no two share a row, and by the contract of `build_rows` no two of
                     // a shared stage share a dynamic body. Of the bodies only dynamic ones are written.
-                    if unsafe { batch.run(block.rows(), block.passes, sweep) } {
-                        hit.store(true, Ordering::Relaxed);
-                    }
+                    unsafe { batch.run(block.rows(), block.passes, sweep) };
                 };
                 match parts {
                     Some(parts) => pool.run_parts(parts, solve),
@@ -275,10 +314,5 @@ impl Solver {
                 }
             }
         });
-        hit.into_inner()
     }
 }
-
-/// Maximum number of sweeps per substep for impacts that follow from impacts. Fewer stop a chain of impacts sooner:
-/// each sweep reaches two bodies further.
-const IMPACT_SWEEPS: usize = 8;

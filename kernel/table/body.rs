@@ -147,7 +147,9 @@ impl BodyTable {
 
     /// Adds a body, awake unless static.
     pub fn add(&mut self, kind: BodyKind, local_center: Vector, pose: WorldPose) -> u32 {
-        let id = self.ids.allocate();
+        let is_static = kind == BodyKind::Static;
+        // Static bodies have no row, and do not change the order of those that have.
+        let id = if is_static { self.ids.allocate_aside() } else { self.ids.allocate() };
         let body = Body {
             kind,
             awake: false,

@@ -47,6 +47,8 @@ impl Layers {
 pub struct ColliderFlags {
     /// The collider detects contacts without response.
     pub sensor: bool,
+    /// The collider is there for queries only: the embedder makes no contacts for it.
+    pub inactive: bool,
 }
 
 /// Definition of a collider, by the embedder.
@@ -162,9 +164,14 @@ pub(crate) fn is_swinging(reach: &Reach, turn: f32, small: f32) -> bool {
 /// All colliders of the simulation.
 #[derive(Clone, Debug, Default)]
 pub struct ColliderTable {
-    /// The ids in use.
+    /// The ids in use. Those of colliders that were added as sensors are aside, so that they do not change the order of
+    /// others.
     pub ids: IdPool,
     colliders: Vec<Collider>,
+    /// The numbers in use.
+    in_numbers: IdPool,
+    /// The [number](Self::number) of each collider by id, [`NONE`] for sensors.
+    numbers: Vec<u32>,
     /// Bodies by collider id. A look-up in `colliders` would load a cache line each.
     owners: Vec<u32>,
     /// World poses by id.
@@ -191,19 +198,21 @@ pub struct Fattening {
 impl ColliderTable {
     /// Bytes of memory per collider, besides one bit, and besides the geometry of hulls, which colliders share.
     pub const BYTES_PER_COLLIDER: usize = size_of::<Collider>()
-        + size_of::<u32>()
+        + 2 * size_of::<u32>()
         + size_of::<WorldPose>()
         + 2 * size_of::<Aabb>()
         + size_of::<Reach>();
 
     /// Adds a collider at a pose and attaches it to its body. Its fat box is empty until [`refresh`](Self::refresh).
     pub fn add(&mut self, def: ColliderDef, pose: WorldPose, bodies: &mut BodyTable) -> u32 {
-        let id = self.ids.allocate();
+        let is_sensor = def.flags.sensor;
+        let id = if is_sensor { self.ids.allocate_aside() } else { self.ids.allocate() };
         let collider = Collider { def, first_contact: NONE, proxy: NONE, next: NONE, previous: NONE };
         let i = id as usize;
         if i == self.colliders.len() {
             self.colliders.push(collider);
             self.owners.push(NONE);
+            self.numbers.push(NONE);
             self.poses.push(pose);
             self.tight.push(Aabb::EMPTY);
             self.fat.push(Aabb::EMPTY);
@@ -214,6 +223,7 @@ impl ColliderTable {
             self.tight[i] = Aabb::EMPTY;
             self.fat[i] = Aabb::EMPTY;
         }
+        self.renumber(id);
         self.attach(id, bodies);
         // The revision keeps counting, so that caches of the id's last owner do not match.
         self.update_reach(id, bodies);
@@ -225,6 +235,37 @@ impl ColliderTable {
         debug_assert!(self[id].first_contact == NONE, "a removed collider has no contacts");
         self.detach(id, bodies);
         self.ids.free(id);
+        let number = core::mem::replace(&mut self.numbers[id as usize], NONE);
+        if number != NONE {
+            self.in_numbers.free(number);
+        }
+    }
+
+    /// Makes ids and numbers that were freed before this usable again.
+    pub fn recycle_ids(&mut self) {
+        self.ids.recycle();
+        self.in_numbers.recycle();
+    }
+
+    /// The number of a collider among those that are no sensors: its id, if there never was a sensor. What depends on
+    /// more than the order of ids takes this, so that sensors do not change what others do. [`NONE`] for sensors.
+    #[inline]
+    pub fn number(&self, id: u32) -> u32 {
+        self.numbers[id as usize]
+    }
+
+    /// Gives a collider a number exactly if it is no sensor.
+    fn renumber(&mut self, id: u32) {
+        let is_sensor = self[id].def.flags.sensor;
+        let number = &mut self.numbers[id as usize];
+        if is_sensor == (*number == NONE) {
+            return;
+        }
+        if is_sensor {
+            self.in_numbers.free(core::mem::replace(number, NONE));
+        } else {
+            *number = self.in_numbers.allocate();
+        }
     }
 
     /// Changes the definition of a collider, and invalidates its cached contacts. If the body changes, the contacts
@@ -236,6 +277,7 @@ impl ColliderTable {
         );
         self.detach(id, bodies);
         self[id].def = def;
+        self.renumber(id);
         self.attach(id, bodies);
         self.update_reach(id, bodies);
     }

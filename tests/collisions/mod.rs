@@ -15,6 +15,8 @@ use scenes::dim::{ball, block};
 
 mod app_pairs;
 mod contacts;
+mod removal;
+mod touch;
 
 const DT: Duration = Duration::from_micros(15_625);
 
@@ -277,13 +279,57 @@ fn removing_a_body_ends_what_its_collider_may_not_touch_alone() {
 }
 
 #[test]
-fn both_despawned_at_once_end_with_a_message_alone() {
+fn issue_sensors_and_kinematic_floors_were_not_told_of_disabled_and_removed_bodies() {
+    let partners: [fn(&mut EntityWorldMut); 3] = [
+        |partner| _ = partner.insert((RigidBody::Static, Sensor)),
+        |partner| _ = partner.insert(Sensor),
+        |partner| _ = partner.insert(RigidBody::Kinematic),
+    ];
+    let reporting = (CollisionEventsEnabled, CollidingEntities::default());
+    for (kind, partner) in partners.into_iter().enumerate() {
+        for disabled in [true, false] {
+            let what = format!("partner {kind}, disabled: {disabled}");
+            let mut app = app();
+            let mut other = app.world_mut().spawn((ball(0.5), at(0.0, 0.0), reporting.clone()));
+            partner(&mut other);
+            let other = other.id();
+            let body = (RigidBody::Dynamic, ball(0.5), at(0.995, 0.0), reporting.clone(), SleepingDisabled);
+            let body = app.world_mut().spawn(body).id();
+            step(&mut app);
+            said(&mut app);
+            assert_eq!([touched(&app, other), touched(&app, body)], [vec![body], vec![other]], "{what}");
+            let mut entity = app.world_mut().entity_mut(body);
+            if disabled {
+                entity.insert(RigidBodyDisabled);
+            } else {
+                entity.remove::<RigidBody>();
+            }
+            step(&mut app);
+            let ends = [SawEnd(other, body), SawEnd(body, other), Ended(other, body)];
+            assert_eq!(said(&mut app), ends, "{what}");
+            assert_eq!([touched(&app, other), touched(&app, body)], [vec![], vec![]], "{what}");
+            steps(&mut app, 5);
+            // Without its body, the collider meets the other one anew.
+            let starts = [SawStart(other, body), SawStart(body, other), Started(other, body)];
+            assert_eq!(said(&mut app), if disabled { &starts[..0] } else { &starts[..] }, "{what}");
+            if disabled {
+                app.world_mut().entity_mut(body).remove::<RigidBodyDisabled>();
+                step(&mut app);
+                let all = said(&mut app);
+                assert!(all.contains(&Started(other, body)) && all.len() == 3, "{what}: {all:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn of_two_despawned_one_after_the_other_the_second_is_told() {
     let mut app = app();
     let [wall, body] = touching(&mut app);
     app.world_mut().despawn(wall);
     app.world_mut().despawn(body);
     step(&mut app);
-    assert_eq!(said(&mut app), [Ended(wall, body)]);
+    assert_eq!(said(&mut app), [SawEnd(body, wall), Ended(wall, body)]);
 }
 
 #[test]
@@ -368,17 +414,21 @@ fn reporting_may_begin_and_stop_at_any_time() {
 }
 
 #[test]
-fn changes_during_a_pause_are_told_in_the_next_step() {
+fn changes_during_a_pause_are_told_at_once_if_the_collider_is_gone_and_else_in_the_next_step() {
     let mut app = app();
     let [wall, body] = touching(&mut app);
     app.world_mut().resource_mut::<Time<Physics>>().pause();
     steps(&mut app, 5);
-    app.world_mut().despawn(wall);
+    app.world_mut().entity_mut(wall).insert(ColliderDisabled);
     steps(&mut app, 5);
     assert_eq!(said(&mut app), []);
+    app.world_mut().entity_mut(wall).remove::<ColliderDisabled>();
+    app.world_mut().despawn(wall);
+    steps(&mut app, 5);
+    assert_eq!(said(&mut app), [SawEnd(body, wall), Ended(wall, body)]);
     app.world_mut().resource_mut::<Time<Physics>>().unpause();
     step(&mut app);
-    assert_eq!(said(&mut app), [SawEnd(body, wall), Ended(wall, body)]);
+    assert_eq!(said(&mut app), []);
 }
 
 /// A collider that is disabled and enabled between two steps still touches.

@@ -134,3 +134,66 @@ fn accelerations_written_by_hand_act_for_one_step() {
     assert_eq!((data.linear_increment, data.angular_increment), (Vector::ZERO, Angular::default()));
     assert_eq!(lab.get::<AccumulatedLocalAcceleration>(body), AccumulatedLocalAcceleration::default());
 }
+
+/// What a force of 2 N and local ones do to a body of 1 kg in a step.
+fn push(forces: &mut ForcesItem) {
+    forces.apply_force(Vector::X * 2.0);
+    forces.apply_local_force(Vector::Y * 2.0);
+    forces.apply_torque(about_z(2.0));
+}
+
+#[test]
+fn issue_forces_of_ticks_without_a_step_added_up() {
+    let stops: [fn(&mut Lab, bool); 2] = [
+        |lab, stopped| lab.pause(stopped),
+        |lab, stopped| {
+            let mut clock = lab.app.world_mut().resource_mut::<Time<Physics>>();
+            clock.set_relative_speed(if stopped { 0.0 } else { 1.0 });
+        },
+    ];
+    for stop in stops {
+        let mut lab = Lab::new();
+        let [pushed, once, lone] = [(); 3].map(|()| lab.spawn(body(1.0, 1.0)));
+        lab.app
+            .world_mut()
+            .get_mut::<VelocityIntegrationData>(pushed)
+            .expect("it has it")
+            .linear_damping_rhs = 0.5;
+        lab.step();
+        stop(&mut lab, true);
+        lab.apply(once, push);
+        for _ in 0..128 {
+            lab.apply(pushed, push);
+            lab.step();
+        }
+        assert_eq!(lab.velocity(pushed), Vector::ZERO, "nothing moves");
+        stop(&mut lab, false);
+        lab.apply(pushed, push);
+        lab.step();
+        for body in [pushed, once] {
+            near(lab.velocity(body), Vector::new_xy(2.0 * DT, 2.0 * DT), 1e-3, "one force");
+            near(z_of(lab.spin(body)), 2.0 * DT, 1e-5, "one torque");
+        }
+        assert_eq!(lab.velocity(lone), Vector::ZERO, "no force");
+        let data = lab.app.world().get::<VelocityIntegrationData>(pushed).expect("every body has it");
+        assert_eq!((data.linear_increment, data.linear_damping_rhs), (Vector::ZERO, 0.5));
+        lab.step();
+        near(lab.velocity(once), Vector::new_xy(2.0 * DT, 2.0 * DT), 1e-3, "it has acted");
+    }
+}
+
+/// A step that the app runs by hand, while the hosting schedule runs without one.
+#[test]
+fn forces_of_ticks_without_a_step_act_in_a_step_by_hand() {
+    let mut lab = Lab::new();
+    let body = lab.spawn(body(1.0, 1.0));
+    lab.step();
+    lab.pause(true);
+    for _ in 0..10 {
+        lab.apply(body, |forces| forces.apply_force(Vector::X * 2.0));
+        lab.app.update();
+    }
+    lab.app.world_mut().resource_mut::<Time<Physics>>().advance_by(Duration::from_secs_f64(DT as f64));
+    lab.app.world_mut().run_schedule(PhysicsSchedule);
+    near(lab.velocity(body), Vector::X * 2.0 * DT, 1e-5, "one force");
+}

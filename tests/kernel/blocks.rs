@@ -7,7 +7,7 @@ use super::sim::Sim;
 use crate::kernel;
 use kernel::manifold::{CompositeBuffers, LocalManifold, Look, collide_composite};
 use kernel::math::{DIM, Pose, Rot, Vector};
-use kernel::shape::{Cuboid, Shape, Surface};
+use kernel::shape::{Aabb, Cuboid, Shape, Surface};
 use kernel::table::BodyKind;
 
 const PREDICTION: f32 = 0.02;
@@ -191,6 +191,7 @@ fn blocks_pile_up_on_a_mesh() {
     (sim.sleeping, sim.checked) = (true, false);
     let (_, floor) = laid().pop().expect("a mesh");
     sim.add(BodyKind::Static, floor[0].0.clone(), floor[0].1, Rot::IDENTITY);
+    let bounds = floor[0].0.local_aabb(Rot::IDENTITY);
     let all = blocks();
     let mut ids = Vec::new();
     for k in 0..24 {
@@ -202,11 +203,16 @@ fn blocks_pile_up_on_a_mesh() {
     }
     for step in 0..1800 {
         sim.step();
+        // One or two roll off the edge of the floor.
+        ids.retain(|(id, ..)| {
+            let at = sim.position(*id).to_local();
+            bounds.contains(&Aabb::around([at - Vector::Y * at.y]))
+        });
+        assert!(ids.len() > 20, "only {} are left on the floor", ids.len());
         for (id, name, hull) in &ids {
             let frame = sim.bodies.frame(*id);
             let low = frame.position.to_local().y + lowest(hull, frame.rotation);
-            // Meshes are hollow: what falls 20 m onto one and is fallen on sinks in for a while.
-            assert!(low > -0.2, "step {step}: {name} is {low} m deep");
+            assert!(low > -0.05, "step {step}: {name} is {low} m deep");
             let v = sim.bodies.velocities[*id as usize].linear.length();
             assert!(v < 28.0, "step {step}: {name} moves at {v} m/s");
         }

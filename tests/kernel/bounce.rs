@@ -70,7 +70,8 @@ fn elastic_boxes_keep_their_energy_in_a_bounce() {
                 let start = sim.energy();
                 sim.steps((0.8 * rate) as usize);
                 let share = sim.energy() / start;
-                if !(0.95..=1.005).contains(&share) {
+                // A corner that touches at 1 m/s and is stopped may take as much as m (1 m/s)² / 2, a ninth of the least start.
+                if !(0.94..=1.005).contains(&share) {
                     bad.push(format!("seed {seed}, floor {floor}, {rate} Hz: {share} of its energy"));
                 }
             }

@@ -9,7 +9,7 @@ use super::extreme::Dice;
 pub use floors::{more_riders, terrain, tiles};
 
 use crate::kernel::math::{Angular, InvInertia, Rot, Vector};
-use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape};
+use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape, Surface};
 use std::sync::Arc;
 
 /// The inverse inertia of a body.
@@ -61,6 +61,23 @@ pub fn restless() -> Vec<(&'static str, Shape)> {
         ("round box", hull(&square, 0.1)),
         ("octagon", hull(&octagon, 0.0)),
     ]
+}
+
+/// The angular momentum of rotation.
+pub fn spin_momentum(inverse: InvInertia, _rotation: Rot, w: Angular) -> Angular {
+    Angular { z: w.z / inverse.zz }
+}
+
+/// A surface with a profile in the plane of x and y.
+pub fn channel(profile: &[[f32; 2]]) -> Shape {
+    let vertices = profile.iter().map(|[x, y]| Vector { x: *x, y: *y }).collect();
+    let facets = (1..profile.len() as u32).map(|k| [k - 1, k]).collect();
+    Shape::surface(Surface::new(vertices, facets).expect("a line"))
+}
+
+/// A cylinder that stands upright; in 2D its outline.
+pub fn cylinder(radius: f32, half_height: f32) -> Shape {
+    Shape::Cuboid(Cuboid { half: Vector { x: radius, y: half_height } })
 }
 
 /// The kinetic energy of rotation.
@@ -147,4 +164,13 @@ pub fn bullets(size: f32) -> Vec<(&'static str, Shape)> {
         ("rhombus", hull_of(Vector { x: half, y: 0.6 * half })),
         ("ellipse", Shape::Curved(Curved { half: Vector { x: half, y: 0.6 * half } })),
     ]
+}
+
+/// The angle of a joint in the plane of x and y, and its other angles.
+pub const TURN: usize = crate::kernel::solver::coordinate::ANGLE;
+pub const SWINGS: core::ops::Range<usize> = TURN + 1..TURN + 1;
+
+/// The basis of a joint's frame in which [`TURN`] is about the axis out of the plane of x and y.
+pub fn hinge_basis() -> Rot {
+    Rot::IDENTITY
 }

@@ -8,14 +8,16 @@ mod spin;
 pub mod floors;
 #[path = "golden3.rs"]
 pub mod golden_dim;
-#[path = "loads3.rs"]
-mod loads;
+#[path = "joints3.rs"]
+mod joints;
+#[path = "rubbing3.rs"]
+mod rubbing;
 
 use super::extreme::Dice;
 pub use floors::{more_riders, terrain, tiles};
 
 use crate::kernel::math::{Angular, InvInertia, Rot, Vector};
-use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape};
+use crate::kernel::shape::{Cuboid, Curved, Hull, MassProperties, Shape, Surface};
 use std::sync::Arc;
 
 /// The inverse inertia of a body.
@@ -72,6 +74,26 @@ pub fn restless() -> Vec<(&'static str, Shape)> {
         ("icosahedron", hull(&icosahedron)),
         ("hull of 12", hull(&twelve)),
     ]
+}
+
+/// The angular momentum of rotation.
+pub fn spin_momentum(inverse: InvInertia, rotation: Rot, w: Angular) -> Angular {
+    rotation.rotate(inverse.inverse().apply(rotation.inverse_rotate(w)))
+}
+
+/// A surface 2 m wide with a profile in the plane of x and y.
+pub fn channel(profile: &[[f32; 2]]) -> Shape {
+    let vertex = |i: u32, j: u32| {
+        let [x, y] = profile[i as usize];
+        Vector { x, y, z: 2.0 * j as f32 - 1.0 }
+    };
+    let (vertices, facets) = floors::squares([profile.len() as u32 - 1, 1], vertex, |_, _| true);
+    Shape::surface(Surface::new(vertices, facets).expect("a surface"))
+}
+
+/// A cylinder that stands upright; in 2D its outline.
+pub fn cylinder(radius: f32, half_height: f32) -> Shape {
+    Shape::Curved(Curved { lower: radius, upper: radius, half_height })
 }
 
 /// The kinetic energy of rotation.
@@ -182,4 +204,13 @@ pub fn bullets(size: f32) -> Vec<(&'static str, Shape)> {
         ("cylinder", Shape::Curved(Curved { lower: half, upper: half, half_height: half })),
         ("cone", Shape::Curved(Curved { lower: half, upper: 0.0, half_height: half })),
     ]
+}
+
+/// The angle of a joint in the plane of x and y, and its other angles.
+pub const TURN: usize = crate::kernel::solver::coordinate::TWIST;
+pub const SWINGS: core::ops::Range<usize> = TURN + 1..TURN + 3;
+
+/// The basis of a joint's frame in which [`TURN`] is about the axis out of the plane of x and y.
+pub fn hinge_basis() -> Rot {
+    Rot::from_axis_angle(Vector::Y, -core::f32::consts::FRAC_PI_2)
 }

@@ -6,22 +6,22 @@ use std::sync::Arc;
 
 /// For each scene the hash with world positions in `f32`, and in `f64`.
 pub const GOLDEN: [(&str, u64, u64); 16] = [
-    ("pyramid", 0x0cd977a423a70691, 0x2fd11e3273ade0c7),
-    ("towers", 0x77227f15c0f2b7a4, 0x1fb527836b9446be),
-    ("pairs", 0x937e39b72f397cc3, 0x1621b40b84262850),
-    ("heap", 0xfd18d7f8f9ddaf03, 0x19946d927716be10),
-    ("terrain", 0xd83b68c0c913d89f, 0x512378020ca302b4),
-    ("slopes", 0xd9260d6d0d79040d, 0xd75e520f983bbf5b),
-    ("composites", 0x9af7998ea3c931b4, 0x8c68583eaf7b5b48),
-    ("bounces", 0xc5aef0f99bfb08ba, 0x71d6f3024c14060c),
-    ("crowd", 0xa0f5ccdd25c877b6, 0x8a57453f92e50847),
-    ("sleepers", 0x134471faca94c0a7, 0x0f4342d68ab5ff95),
-    ("held", 0x85db4ef8f0b28b66, 0xabd79cb794b9f46e),
-    ("dominance", 0xd527df7eec75f931, 0x7c948e2e11080947),
-    ("spin", 0xb9abd16315da0dc0, 0xd726cf4ed2b39606),
-    ("mixer", 0x625b2a265cf44340, 0xc7612565d9aaa821),
-    ("changes", 0x82f54361c26200f8, 0xc160073f8090743d),
-    ("wall", 0x1028373799604f93, 0x71ef62c95bd824d2),
+    ("pyramid", 0xef0b3742dbd6a29e, 0xd44a668998527000),
+    ("towers", 0x2551183e6c1b9faf, 0x8224992f97c3a103),
+    ("pairs", 0x24bab2e77f273ca5, 0xb0538a5713ace1c0),
+    ("heap", 0x0694c9dcb5287bd7, 0xd4f9c95281928010),
+    ("terrain", 0x632c5a1e88c8e9a5, 0xd8df42971a704c21),
+    ("slopes", 0x07b8e0302fb19954, 0x6a07a83159f32601),
+    ("composites", 0xc70ab8848aa8ab75, 0x25841fb8009d49f5),
+    ("bounces", 0xc718bc23bca41c5e, 0x26452e71491ff34a),
+    ("crowd", 0xf0bd1f6ea654472e, 0x26e91e44e83432ad),
+    ("sleepers", 0x5efbe7d9b8784b12, 0x2067ef1aff2a5f3f),
+    ("held", 0xef1d567bf1f810c7, 0xc484d778e7ffa891),
+    ("dominance", 0xb53885af25852011, 0xd63b06690ecc5ae9),
+    ("spin", 0x1ec7f54b72ec7d96, 0x505616878f5604ff),
+    ("mixer", 0x2c7f6ad70b38e442, 0x4b7fa7a7bf74d7b7),
+    ("changes", 0x5262b198b8fb6ea3, 0xdc42b17385d07e3f),
+    ("wall", 0x88dfbfcd93046d1c, 0xa1f501d3b4dff5f3),
 ];
 
 /// Every native shape with bounds, each about a metre across.

@@ -1,8 +1,11 @@
 //! Tests of the kernel's parts working together, written once for both dimensions.
 
 mod blocks;
+mod blows;
 mod bounce;
 mod carried;
+#[allow(unused, reason = "its scenes are for `tools/cost.sh`")]
+pub mod costs;
 mod crowds;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -16,18 +19,27 @@ mod heavy;
 mod held;
 mod hubs;
 mod impulses;
+mod joints;
 mod memory;
 mod meshes;
 mod passing;
 mod physics;
 mod pushed;
 mod recycling;
+mod refused;
 mod reload;
 mod rest;
+mod rubbing;
+mod sensors;
 mod sim;
 mod sound;
+mod strikes;
+mod struck;
 mod surfaces;
+#[allow(unused, reason = "its tables are for the documentation")]
+pub mod surveys;
 mod swept_spin;
 mod tiles;
 mod tunnel;
 mod unrest;
+mod walled;

@@ -55,8 +55,10 @@ fn towers_stand() {
         }
         sim.steps(600);
         let p = sim.position(top);
+        // Each contact sags by the load above it, and the tower by the square of its height: half as much was seen.
+        let height_squared = (height * height) as kernel::math::Scalar;
         assert!(
-            p.y > 0.97 * (height as kernel::math::Scalar - 0.5) && p.x.abs() < 0.25,
+            p.y > height as kernel::math::Scalar - 0.5 - 3.0e-4 * height_squared && p.x.abs() < 0.01,
             "the top of {height} is at {p:?}"
         );
     }
@@ -427,31 +429,4 @@ fn a_body_held_along_an_axis_only_moves_along_the_others() {
     assert!((p.y - 0.5).abs() < 0.02);
     let b = sim.position(ball);
     assert!(b.x < -0.85, "the ball stopped at what it could not move: {b:?}");
-}
-
-/// How long a step of a large pyramid takes, or of `COUNT` of base `BASE`:
-/// `cargo test --release -- --ignored --nocapture pyramid_speed`.
-#[test]
-#[ignore = "prints a time"]
-fn pyramid_speed() {
-    let mut sim = Sim::new();
-    sim.floor();
-    if std::env::var_os("NARROW").is_some() {
-        sim.set_narrow();
-    }
-    let number = |name: &str| std::env::var(name).ok().and_then(|n| n.parse().ok());
-    if let Some(workers) = number("WORKERS") {
-        sim.set_workers(workers);
-    }
-    let base = number("BASE").unwrap_or(100);
-    let count = number("COUNT").unwrap_or(1);
-    for i in 0..count {
-        pyramid(&mut sim, base, (i as f32 - 0.5 * count as f32) * (base as f32 + 1.0));
-    }
-    sim.steps(5);
-    let start = std::time::Instant::now();
-    let steps = 200;
-    sim.steps(steps);
-    let ms = start.elapsed().as_secs_f64() * 1e3 / steps as f64;
-    println!("{ms:.3} ms a step, {} contacts", sim.contacts.len());
 }

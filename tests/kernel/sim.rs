@@ -6,15 +6,15 @@ use crate::kernel;
 use kernel::bvh::{FoundPairs, Mover, Movers, PairMask, ProxyId, TreeKind, Trees};
 use kernel::ccd::{SweepBuffers, SweepInput};
 use kernel::contact::{
-    Contact, ContactTable, Link, NarrowPhaseInput, Outcome, WorkerBuffers, update_contact,
+    Contact, ContactFlags, ContactTable, Link, NarrowPhaseInput, Outcome, WorkerBuffers, update_contact,
 };
 use kernel::data::BitSet;
 use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::solver::{
-    BodyRow, BodyRows, Distance, DistanceError, DistanceTable, Limits, MassRow, Motion, RowInput, Solver,
-    SubstepParams,
+    BodyRow, BodyRows, JointDef, JointError, JointReaction, JointTable, Limits, MassRow, Motion, RowInput,
+    Solver, SubstepParams,
 };
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
@@ -70,13 +70,17 @@ pub struct Sim {
     /// Whether fast bodies are swept after the substeps.
     pub sweeps: bool,
     pub locks: Vec<AxisLocks>,
+    /// Colliders whose pairs are refused, as by a hook that filters pairs.
+    pub unpaired: Vec<u32>,
+    /// Colliders whose contacts are dropped after each update, as by a hook that changes contacts.
+    pub dropped: Vec<u32>,
     /// Number of steps so far.
     pub steps_done: usize,
     /// Number of stages that several workers shared in the last step.
     pub shared: usize,
     trees: Trees,
     proxies: Vec<(TreeKind, ProxyId)>,
-    masses: Vec<(f32, InvInertia)>,
+    pub masses: Vec<(f32, InvInertia)>,
     movers: Movers,
     solver: Solver,
     pool: ThreadPool,
@@ -110,6 +114,8 @@ impl Sim {
             builds_rows: true,
             sweeps: true,
             locks: Vec::new(),
+            unpaired: Vec::new(),
+            dropped: Vec::new(),
             steps_done: 0,
             shared: 0,
             trees: Trees::default(),
@@ -164,6 +170,18 @@ impl Sim {
         friction: f32,
         restitution: f32,
     ) -> u32 {
+        self.add_flagged(kind, shape, position, rotation, [friction, restitution], ColliderFlags::default())
+    }
+
+    fn add_flagged(
+        &mut self,
+        kind: BodyKind,
+        shape: Shape,
+        position: Vector,
+        rotation: Rot,
+        [friction, restitution]: [f32; 2],
+        flags: ColliderFlags,
+    ) -> u32 {
         let mass = shape.mass_properties(1.0);
         let pose = WorldPose::new(position.to_world(), rotation);
         let id = self.bodies.add(kind, mass.center, pose);
@@ -181,7 +199,7 @@ impl Sim {
             material: Material { friction: surface(friction), restitution: surface(restitution) },
             facets: None,
             layers: Layers { memberships: 1, filters: u32::MAX },
-            flags: ColliderFlags::default(),
+            flags,
             margin: 0.0,
             speculative: f32::MAX,
         };
@@ -226,6 +244,12 @@ impl Sim {
         self.movers.insert(Mover { id, kind: tree, mask: PairMask::solid(tree), aabb });
     }
 
+    /// Adds a static body whose collider is a sensor.
+    pub fn add_sensor(&mut self, shape: Shape, position: Vector) -> u32 {
+        let flags = ColliderFlags { sensor: true, ..ColliderFlags::default() };
+        self.add_flagged(BodyKind::Static, shape, position, Rot::IDENTITY, [0.6, 0.0], flags)
+    }
+
     pub fn ball(&mut self, radius: f32, position: Vector) -> u32 {
         self.add(BodyKind::Dynamic, Shape::Ball(Ball { radius }), position, Rot::IDENTITY)
     }
@@ -249,7 +273,7 @@ impl Sim {
 
     fn recycle_ids(&mut self) {
         self.bodies.ids.recycle();
-        self.colliders.ids.recycle();
+        self.colliders.recycle_ids();
         self.contacts.recycle_ids();
     }
 
@@ -272,26 +296,38 @@ impl Sim {
         self.colliders.redefine(id, def, &mut self.bodies);
     }
 
-    /// Adds a distance constraint.
-    pub fn join(&mut self, def: Distance) -> Result<u32, DistanceError> {
-        self.with_distances(|distances, link| distances.add(link, def))
+    /// Has a body touch nothing.
+    pub fn ghost(&mut self, id: u32) {
+        let layers = Layers { memberships: 0, filters: 0 };
+        let def = ColliderDef { layers, ..self.colliders[id].def.clone() };
+        self.colliders.redefine(id, def, &mut self.bodies);
     }
 
-    /// Removes a distance constraint.
-    pub fn part(&mut self, id: u32) -> Result<(), DistanceError> {
-        self.with_distances(|distances, link| distances.remove(link, id))
+    /// Adds a joint.
+    pub fn join(&mut self, def: JointDef) -> Result<u32, JointError> {
+        self.with_joints(|joints, link| joints.add(link, def))
     }
 
-    fn with_distances<R>(&mut self, f: impl FnOnce(&mut DistanceTable, &mut Link) -> R) -> R {
-        let mut distances = core::mem::take(&mut self.solver.distances);
-        let result = f(&mut distances, &mut self.link());
-        self.solver.distances = distances;
+    /// Changes a joint.
+    pub fn rejoin(&mut self, id: u32, def: JointDef) -> Result<(), JointError> {
+        self.with_joints(|joints, link| joints.set(link, id, def))
+    }
+
+    /// Removes a joint.
+    pub fn part(&mut self, id: u32) -> Result<(), JointError> {
+        self.with_joints(|joints, link| joints.remove(link, id))
+    }
+
+    fn with_joints<R>(&mut self, f: impl FnOnce(&mut JointTable, &mut Link) -> R) -> R {
+        let mut joints = core::mem::take(&mut self.solver.joints);
+        let result = f(&mut joints, &mut self.link());
+        self.solver.joints = joints;
         result
     }
 
-    /// The impulse of a distance in the last substep.
-    pub fn distance_impulse(&self, id: u32) -> f32 {
-        self.solver.distances.impulse(id)
+    /// What a joint did in the last substep.
+    pub fn reaction(&self, id: u32) -> JointReaction {
+        self.solver.joints.reaction(id)
     }
 
     pub fn floor(&mut self) -> u32 {
@@ -347,7 +383,9 @@ impl Sim {
         found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.pool);
         self.movers.clear();
         for &(a, b) in found.pairs() {
-            if self.colliders[a].def.body != self.colliders[b].def.body {
+            let is_refused = [a, b].iter().any(|id| self.unpaired.contains(id));
+            let [first, second] = [a, b].map(|id| &self.colliders[id].def);
+            if !is_refused && first.body != second.body && first.layers.interacts_with(second.layers) {
                 self.link().create(a, b);
             }
         }
@@ -421,6 +459,13 @@ impl Sim {
         self.changed.clear();
         self.pool.wake();
         self.contacts.update(&phase, &self.pool, &mut self.scratch, &mut self.changed);
+        for &collider in &self.dropped {
+            let contacts: Vec<u32> = self.contacts.of_collider(collider, &self.colliders).collect();
+            let touches = |id: &u32| self.contacts.get(*id).flags.has(ContactFlags::TOUCHING);
+            for id in contacts.into_iter().filter(touches).collect::<Vec<_>>() {
+                self.contacts.change(id, core::iter::empty(), &mut self.changed);
+            }
+        }
         let changed = core::mem::take(&mut self.changed);
         self.link().apply(&changed, |_, _, _| {});
         self.changed = changed;
@@ -459,17 +504,22 @@ impl Sim {
 
     /// Kinetic and potential energy of the dynamic bodies.
     pub fn energy(&self) -> f64 {
-        let mut sum = 0.0;
-        for id in self.bodies.awake_dynamic() {
-            let (inverse, local) = self.masses[id as usize];
-            let v = self.bodies.velocities[id as usize];
-            let mass = 1.0 / f64::from(inverse);
-            let rotation = self.bodies.poses[id as usize].rotation;
-            sum += 0.5 * mass * f64::from(v.linear.length_squared());
-            sum += super::dim::spin_energy(local, rotation, v.angular);
+        let potential = |id: u32| {
             let p = self.bodies.poses[id as usize].center.to_local();
-            sum -= mass * f64::from(self.gravity.dot(p));
-        }
-        sum
+            -self.mass(id) * f64::from(self.gravity.dot(p))
+        };
+        self.bodies.awake_dynamic().map(|id| self.kinetic_energy(id) + potential(id)).sum()
+    }
+
+    /// The mass of a body, kg. Infinite for a shape without volume.
+    pub fn mass(&self, id: u32) -> f64 {
+        1.0 / f64::from(self.masses[id as usize].0)
+    }
+
+    /// The kinetic energy of a body with a mass, J.
+    pub fn kinetic_energy(&self, id: u32) -> f64 {
+        let (v, pose) = (self.bodies.velocities[id as usize], self.bodies.poses[id as usize]);
+        let spin = super::dim::spin_energy(self.masses[id as usize].1, pose.rotation, v.angular);
+        0.5 * self.mass(id) * f64::from(v.linear.length_squared()) + spin
     }
 }

@@ -143,11 +143,3 @@ fn small_tiles_brake_by_friction_alone() {
     }
     assert!(bad.is_empty(), "{bad:#?}");
 }
-
-/// The scene by which the cost of comparing manifolds is counted, under a profiler that collects in `Sim::step`.
-#[test]
-#[ignore = "for counting instructions"]
-fn a_hundred_boxes_on_tiles() {
-    let (_, floor) = laid().into_iter().find(|(name, _)| *name == "tiles").expect("it is laid");
-    println!("{:?} m/s", driven(&floor, Start::Yawed, Drive::Force, (64.0, 6)));
-}

@@ -109,9 +109,7 @@ fn of_ten_thousand_random_bullets_none_passes_a_wall() {
 }
 
 /// The table of `docs/design/collision-detection.md`.
-#[test]
-#[ignore = "prints a table"]
-fn table_of_modes() {
+pub fn table_of_modes() {
     let modes = [(false, false), (true, false), (false, true), (true, true)];
     for thickness in [0.01, 0.1, 1.0] {
         for speed in [20.0, 50.0, 100.0, 200.0, 1000.0] {

@@ -127,6 +127,47 @@ fn a_floor_that_moves_wakes_what_stands_on_it() {
 }
 
 #[test]
+fn issue_sleepers_slept_on_when_a_surface_changed() {
+    type Change = (&'static str, fn(&mut Lab, Entity));
+    fn facets() -> FacetMaterials {
+        FacetMaterials { materials: vec![FacetMaterial::from(Friction::new(0.01))], facets: vec![0; 64] }
+    }
+    let changes: [Change; 6] = [
+        ("friction", |lab, e| lab.insert(e, Friction::new(0.1))),
+        ("restitution", |lab, e| lab.insert(e, Restitution::new(0.9))),
+        ("mutated friction", |lab, e| {
+            lab.insert(e, Friction::new(0.1));
+            lab.seconds(8.0);
+            lab.app.world_mut().get_mut::<Friction>(e).expect("inserted").dynamic_coefficient = 0.2;
+        }),
+        ("hooks", |lab, e| lab.insert(e, ActiveCollisionHooks::MODIFY_CONTACTS)),
+        ("facets", |lab, e| lab.insert(e, facets())),
+        ("no friction any more", |lab, e| {
+            lab.insert(e, Friction::new(0.1));
+            lab.seconds(8.0);
+            lab.remove::<Friction>(e);
+        }),
+    ];
+    for (what, change) in changes {
+        for of_floor in [true, false] {
+            let (mut lab, floor, boxes) = sleeping_tower();
+            let changed = if of_floor { floor } else { boxes[0] };
+            change(&mut lab, changed);
+            lab.steps(1);
+            assert_eq!(asleep(&lab, &boxes), 0, "{what}, of the floor: {of_floor}");
+            lab.seconds(8.0);
+            assert_eq!(asleep(&lab, &boxes), boxes.len(), "{what}, of the floor: {of_floor}");
+            // The same again is no change.
+            if let Some(friction) = lab.app.world().get::<Friction>(changed).copied() {
+                lab.insert(changed, friction);
+            }
+            lab.steps(2);
+            assert_eq!(asleep(&lab, &boxes), boxes.len(), "{what}, of the floor: {of_floor}");
+        }
+    }
+}
+
+#[test]
 fn other_gravity_wakes() {
     let (mut lab, _, boxes) = sleeping_tower();
     lab.gravity(Vector::Y * 5.0);

@@ -55,7 +55,8 @@ fn head(results: &Results) -> String {
          The same scenes from the same code on every engine, each run in a process of its own, pinned to as many cores as the \
          engine had threads, engines interleaved, on one machine. Times are the middle of the runs' mean times of a step, in \
          milliseconds; of Avian and of this engine they are those of the whole `App::update`. How, and how to run it: \
-         [benches/README.md](../benches/README.md).\n\n\
+         [benches/README.md](../benches/README.md). Medians, later runs and costs of parts: \
+         [notes](benchmarks/notes.md).\n\n\
          {runs} runs; other processes used at most {others:.2} of a core during any of them.\n\n| | |\n|---|---|\n"
     );
     for (name, value) in &results.facts {

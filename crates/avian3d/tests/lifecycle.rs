@@ -1,5 +1,7 @@
 //! The life cycle in avian3d. The files are shared with avian2d.
 
+#[path = "../../../tests/clones.rs"]
+mod clones;
 #[path = "../../../tests/lifecycle.rs"]
 mod lifecycle;
 #[path = "../../../tests/paused.rs"]
@@ -8,6 +10,8 @@ mod paused;
 mod rates;
 #[path = "../../../tests/reload.rs"]
 mod reload;
+#[path = "../../../tests/respawn.rs"]
+mod respawn;
 #[path = "../../../tests/rest.rs"]
 mod rest;
 #[path = "../../../tests/spawn.rs"]

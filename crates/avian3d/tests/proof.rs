@@ -28,9 +28,6 @@ mod mission_dim;
 mod motion;
 #[path = "../../../tests/proof/pushed.rs"]
 mod pushed;
-#[expect(dead_code, reason = "the README's example is to compile; it would not end")]
-#[path = "../../../examples/examples3d/examples/readme.rs"]
-mod readme;
 #[path = "../../../tests/proof/sleep.rs"]
 mod sleep;
 #[path = "../../../tests/proof/spin3.rs"]

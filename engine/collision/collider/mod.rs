@@ -81,7 +81,7 @@ pub struct ColliderDisabled;
 pub struct Sensor;
 
 /// The colliders that a collider touches, sensors included. Insert it on a collider; the engine fills it at the end of each
-/// step, before collision events are sent.
+/// step, before collision events are sent. Colliders that are despawned leave it at once.
 ///
 /// ```
 /// # use avian::prelude::*;

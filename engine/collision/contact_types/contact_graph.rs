@@ -13,7 +13,8 @@ use crate::data_structures::pair_key::PairKey;
 /// All pairs of colliders whose boxes overlap, touching or not, awake or asleep, in the order of ids.
 ///
 /// The resource is filled after the narrow phase and after the solver, from the step after it was first read on: an app
-/// that never reads it pays nothing. [`Collisions::graph`](super::Collisions::graph) is filled at once.
+/// that never reads it pays nothing. Contacts of despawned colliders are removed at once, and the last contacts take their
+/// places in the order. [`Collisions::graph`](super::Collisions::graph) is filled at once.
 ///
 /// A broad phase of the app adds pairs to the resource with [`add_edge`](Self::add_edge), in
 /// [`BroadPhaseSystems::CollectCollisions`](crate::prelude::BroadPhaseSystems::CollectCollisions). They become contacts
@@ -67,6 +68,11 @@ impl Clone for Flag {
     }
 }
 
+/// The indices of the entities of a contact.
+fn key_of(edge: &ContactEdge) -> u64 {
+    PairKey::new(edge.collider1.index_u32(), edge.collider2.index_u32()).0
+}
+
 impl ContactGraph {
     /// Whether the app ever read it.
     pub(crate) fn is_read(&self) -> bool {
@@ -82,6 +88,39 @@ impl ContactGraph {
         self.by_id.clone_from(by_id);
         self.by_key.clone_from(by_key);
         self.by_collider.clone_from(by_collider);
+    }
+
+    /// Removes the contacts of a collider that is gone. The last contacts take their places.
+    pub(crate) fn remove_collider(&mut self, collider: Entity) {
+        while let Some(&place) = self.by_collider.get(&collider).and_then(|places| places.last()) {
+            self.remove_at(place);
+        }
+        self.by_collider.remove(&collider);
+    }
+
+    fn remove_at(&mut self, place: usize) {
+        let edge = self.edges.swap_remove(place);
+        self.by_id.remove(&edge.id.0);
+        self.by_key.remove(&key_of(&edge));
+        for collider in [edge.collider1, edge.collider2] {
+            if let Some(places) = self.by_collider.get_mut(&collider) {
+                places.retain(|held| *held != place);
+            }
+        }
+        if let Some(moved) = self.edges.get(place) {
+            let from = self.edges.len();
+            self.by_id.insert(moved.id.0, place);
+            self.by_key.insert(key_of(moved), place);
+            for collider in [moved.collider1, moved.collider2] {
+                let places = self.by_collider.get_mut(&collider).into_iter().flatten();
+                places.filter(|held| **held == from).for_each(|held| *held = place);
+            }
+        }
+        let pairs = if edge.is_sleeping() { &mut self.sleeping } else { &mut self.active };
+        pairs.swap_remove(edge.pair_index);
+        if let Some(moved) = pairs.get(edge.pair_index) {
+            self.edges[self.by_id[&moved.contact_id.0]].pair_index = edge.pair_index;
+        }
     }
 
     /// Takes the pairs that the app added and removed since the last call.
@@ -155,8 +194,7 @@ impl ContactGraph {
         edge.pair_index = pairs.len();
         pairs.push(pair);
         self.by_id.insert(edge.id.0, place);
-        let key = PairKey::new(edge.collider1.index_u32(), edge.collider2.index_u32());
-        self.by_key.insert(key.0, place);
+        self.by_key.insert(key_of(&edge), place);
         for collider in [edge.collider1, edge.collider2] {
             self.by_collider.entry(collider).or_default().push(place);
         }

@@ -115,13 +115,13 @@ bitflags! {
         const TOUCHING = 1 << 0;
         /// The boxes of the colliders are apart.
         const DISJOINT_AABB = 1 << 1;
-        /// The colliders began to touch in the last narrow phase.
+        /// The colliders began to touch in the last step.
         const STARTED_TOUCHING = 1 << 2;
         /// The colliders ceased to touch in the last narrow phase.
         const STOPPED_TOUCHING = 1 << 3;
         /// The solver pushes the bodies apart if the colliders touch: none is a sensor, and a body is dynamic.
         const GENERATE_CONSTRAINTS = 1 << 4;
-        /// The contact began to generate constraints in the last narrow phase.
+        /// The contact began to generate constraints in the last step.
         const STARTED_GENERATING_CONSTRAINTS = 1 << 5;
         /// The first body is static.
         const STATIC1 = 1 << 6;
@@ -202,7 +202,7 @@ impl ContactPair {
         self.flags.contains(ContactPairFlags::DISJOINT_AABB)
     }
 
-    /// Whether the colliders began to touch in the last narrow phase.
+    /// Whether the colliders began to touch in the last step, as known after the solver.
     pub fn collision_started(&self) -> bool {
         self.flags.contains(ContactPairFlags::STARTED_TOUCHING)
     }

@@ -17,11 +17,13 @@ use crate::{
 
 /// The pairs of colliders that touch, as a system parameter.
 ///
-/// Colliders touch while they have contact points: from 2 cm (times the length unit) before their surfaces meet, or
-/// if they meet in the step at hand. Sensors touch if they overlap, or will in the step.
+/// Colliders touch from the step in which their surfaces meet, or push each other, until the surfaces are 2 cm (times the
+/// length unit) apart. Sensors touch while they overlap.
 ///
-/// Contacts are complete from [`NarrowPhaseSystems::Last`] on, their impulses from
-/// [`SolverSystems::StoreContactImpulses`] on. Systems that run between steps read those of the last step. Contacts are made when they are read, once for all readers; a step in which nothing is read costs nothing.
+/// The points of contacts are complete from [`NarrowPhaseSystems::Last`] on. Impulses, and pairs that begin to touch in the
+/// step, are known from [`SolverSystems::StoreContactImpulses`] on; in between, all pairs with points count as touching. Systems that run between steps read those of the last step, without
+/// colliders that were despawned since. Contacts are made when they are read, once for all readers; a step in which
+/// nothing is read costs nothing.
 ///
 /// To be told of changes, use [`CollisionStart`](crate::prelude::CollisionStart) and
 /// [`CollisionEnd`](crate::prelude::CollisionEnd).

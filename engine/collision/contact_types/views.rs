@@ -36,10 +36,7 @@ pub(crate) struct ContactViews {
 
 /// Forgets what was read. Piped behind each system that changes contacts, so that no system of the app reads in between.
 pub(crate) fn forget_views(mut views: ResMut<ContactViews>) {
-    let views = views.bypass_change_detection();
-    if views.pairs.get().is_some() || views.graph.get().is_some() {
-        (views.pairs, views.graph) = Default::default();
-    }
+    views.bypass_change_detection().forget();
 }
 
 /// What contacts are made of.
@@ -53,6 +50,13 @@ pub(crate) struct Source<'a> {
 }
 
 impl ContactViews {
+    /// Forgets what was read.
+    pub(crate) fn forget(&mut self) {
+        if self.pairs.get().is_some() || self.graph.get().is_some() {
+            (self.pairs, self.graph) = Default::default();
+        }
+    }
+
     /// Notes that a system asks for contacts: from the next step on, impulses are summed over the substeps.
     pub(crate) fn note_reader(&self) {
         if !self.has_readers() {
@@ -93,7 +97,7 @@ impl<'a> Source<'a> {
 
     /// Whether the colliders of a contact touch.
     pub(super) fn is_touching(self, id: u32) -> bool {
-        self.contacts.table.get(id).flags.has(ContactFlags::TOUCHING)
+        self.contacts.touches(id)
     }
 
     /// The contacts of a collider that touch, by id.
@@ -127,7 +131,7 @@ impl<'a> Source<'a> {
         let sleeps = can_sleep && !self.contacts.table.is_active(id);
         let reports = contact.colliders.iter().any(|collider| self.colliders.reporting.contains(*collider));
         let mut flags = ContactEdgeFlags::empty();
-        flags.set(ContactEdgeFlags::TOUCHING, contact.flags.has(ContactFlags::TOUCHING));
+        flags.set(ContactEdgeFlags::TOUCHING, self.is_touching(id));
         flags.set(ContactEdgeFlags::SLEEPING, sleeps);
         flags.set(ContactEdgeFlags::CONTACT_EVENTS, reports);
         ContactEdge { id: ContactId(id), collider1, collider2, body1, body2, pair_index: 0, flags }
@@ -157,17 +161,16 @@ impl<'a> Source<'a> {
     }
 
     fn pair_flags(self, id: u32, contact: &Contact) -> ContactPairFlags {
-        let touches = contact.flags.has(ContactFlags::TOUCHING);
         let responds = !contact.is_inert();
-        let changed = self.contacts.changed.contains(id);
+        let started = self.contacts.started(id);
         let [a, b] = contact.bodies.map(|body| self.kind(body) == Some(BodyKind::Static));
         let mut flags = ContactPairFlags::empty();
-        flags.set(ContactPairFlags::TOUCHING, touches);
+        flags.set(ContactPairFlags::TOUCHING, self.is_touching(id));
         flags.set(ContactPairFlags::DISJOINT_AABB, contact.flags.has(ContactFlags::SEPARATED));
-        flags.set(ContactPairFlags::STARTED_TOUCHING, changed && touches);
-        flags.set(ContactPairFlags::STOPPED_TOUCHING, changed && !touches);
+        flags.set(ContactPairFlags::STARTED_TOUCHING, started);
+        flags.set(ContactPairFlags::STOPPED_TOUCHING, self.contacts.parted.contains(id));
         flags.set(ContactPairFlags::GENERATE_CONSTRAINTS, responds);
-        flags.set(ContactPairFlags::STARTED_GENERATING_CONSTRAINTS, responds && changed && touches);
+        flags.set(ContactPairFlags::STARTED_GENERATING_CONSTRAINTS, responds && started);
         flags.set(ContactPairFlags::STATIC1, a);
         flags.set(ContactPairFlags::STATIC2, b);
         let is_hooked = |collider: &u32| self.colliders.modifying.contains(*collider);

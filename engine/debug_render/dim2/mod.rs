@@ -1,5 +1,6 @@
 //! The lines of 2D: boxes, axes, arrows. `dim3` exports the same names.
 
+pub(super) mod joints;
 #[cfg(feature = "default-collider")]
 pub(super) mod outline;
 #[cfg(all(test, feature = "default-collider"))]

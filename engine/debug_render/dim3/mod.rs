@@ -1,5 +1,6 @@
 //! The lines of 3D: boxes, axes, arrows. `dim2` exports the same names.
 
+pub(super) mod joints;
 #[cfg(feature = "default-collider")]
 pub(super) mod outline;
 #[cfg(all(test, feature = "default-collider"))]

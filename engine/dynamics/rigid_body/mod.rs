@@ -104,8 +104,10 @@ impl RigidBody {
     }
 }
 
-/// Takes a body out of the simulation: it does not move, its contacts and joints have no effect, and bodies resting on
-/// it wake. Its components keep their values.
+/// Takes a body out of the simulation: it does not move by itself, its colliders touch nothing, its joints have no effect,
+/// and bodies resting on it wake. Its components keep their values. Spatial queries find its colliders.
+///
+/// Below another entity in the hierarchy it keeps its `Transform` and moves with that entity: so a body can be carried.
 ///
 /// ```
 /// # use avian::prelude::*;

@@ -89,7 +89,8 @@ pub struct SolverConfig {
     pub warm_start_coefficient: Scalar,
     /// Minimum approach speed for restitution, in LU/s. 1 by default. With 0 resting bodies never come to rest.
     pub restitution_threshold: Scalar,
-    /// Number of restitution passes per step. 1 by default. More passes carry a bounce further through touching bodies.
+    /// How often impacts are solved after the last substep, for what was stopped by continuous collision detection. 1 by default.
+    /// Impacts within substeps do not depend on it.
     pub restitution_iterations: usize,
 }
 

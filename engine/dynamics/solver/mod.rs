@@ -1,6 +1,7 @@
-//! The contact solver: its [configuration](SolverConfig), its [schedule] and its plugins.
+//! The solver: its [configuration](SolverConfig), its [schedule] and its plugins.
 
 pub mod islands;
+pub mod joint_graph;
 pub mod schedule;
 pub mod softness_parameters;
 pub mod solver_body;

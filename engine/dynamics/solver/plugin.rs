@@ -1,18 +1,30 @@
 //! The plugin that solves contacts, and the group of all plugins of the solver.
 
 use bevy_app::{App, Plugin, PluginGroup, PluginGroupBuilder};
-use bevy_ecs::schedule::ScheduleLabel;
+use bevy_ecs::{
+    component::{Component, Mutable},
+    schedule::ScheduleLabel,
+};
 
 use super::{
     config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig},
     diagnostics::SolverDiagnostics,
     islands::{IslandPlugin, IslandSleepingPlugin},
+    joint_graph::JointGraphPlugin,
     schedule::{SolverSchedulePlugin, SubstepSchedule},
     solver_body::SolverBodyPlugin,
 };
 use crate::{
     diagnostics::{Within, list},
-    dynamics::{ccd::CcdPlugin, integrator::IntegratorPlugin},
+    dynamics::{
+        ccd::CcdPlugin,
+        integrator::IntegratorPlugin,
+        joints::{
+            EntityConstraint,
+            dim::each_kind,
+            kind::{JointKind, KindVisitor},
+        },
+    },
     math::Scalar,
     schedule::PhysicsSchedule,
     step::{self, Owner},
@@ -29,6 +41,7 @@ use crate::{
 /// | [`CcdPlugin`] | sweeps of fast bodies |
 /// | [`IslandPlugin`] | which bodies rest on which |
 /// | [`IslandSleepingPlugin`] | sleep |
+/// | [`JointGraphPlugin`], for each type of joint | which joints hold which bodies |
 #[derive(Debug, Default)]
 pub struct SolverPlugins {
     length_unit: Option<Scalar>,
@@ -43,14 +56,27 @@ impl SolverPlugins {
 
 impl PluginGroup for SolverPlugins {
     fn build(self) -> PluginGroupBuilder {
-        PluginGroupBuilder::start::<Self>()
+        let group = PluginGroupBuilder::start::<Self>()
             .add(SolverBodyPlugin)
             .add(SolverSchedulePlugin)
             .add(IntegratorPlugin::default())
             .add(self.length_unit.map_or_else(SolverPlugin::default, SolverPlugin::new_with_length_unit))
             .add(CcdPlugin)
             .add(IslandPlugin)
-            .add(IslandSleepingPlugin)
+            .add(IslandSleepingPlugin);
+        let mut graphs = Graphs(group);
+        each_kind(&mut graphs);
+        graphs.0
+    }
+}
+
+/// Adds the graph plugins of all kinds of joints.
+struct Graphs(PluginGroupBuilder);
+
+impl KindVisitor for Graphs {
+    fn visit<J: JointKind + EntityConstraint<2> + Component<Mutability = Mutable>>(&mut self) {
+        let group = core::mem::replace(&mut self.0, PluginGroupBuilder::start::<SolverPlugins>());
+        self.0 = group.add(JointGraphPlugin::<J>::default());
     }
 }
 

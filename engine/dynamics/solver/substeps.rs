@@ -3,10 +3,7 @@
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use bevy_time::Time;
 use core::any::TypeId;
-use kernel::{
-    graph::ColorGraph,
-    solver::{RowInput, Softness, Solver, SubstepParams},
-};
+use kernel::solver::{RowInput, Softness, Solver, SubstepParams};
 
 use crate::{
     collision::narrow_phase::ContactResponse,
@@ -51,6 +48,7 @@ impl Default for StepSolver {
                 max_push_speed: 4.0,
                 warm_start: 1.0,
                 restitution_threshold: 1.0,
+                blow_speed: BLOW_SPEED,
                 friction_fade: 0.02,
                 max_sag: 0.005,
                 roll_speed: 0.2,
@@ -94,6 +92,10 @@ impl OwnSubstepSystems {
 /// The friction centre fades out a separated point over this distance, times the length unit. Less makes friction jump as
 /// points open and close.
 const FRICTION_FADE: f32 = (4.0 * LINEAR_SLOP) as f32;
+
+/// Minimum approach speed of a blow, times the length unit. Less strikes what comes to rest, more tilts what falls flat from low
+/// heights.
+const BLOW_SPEED: f32 = 0.5;
 
 /// Light bodies that a heavy one presses into each other by more than this, times the length unit, get more mass in the
 /// solver. Less adds more mass, more lets heavy bodies sink into light ones.
@@ -142,13 +144,14 @@ pub(crate) fn prepare_params(
         max_push_speed: setting(config.max_overlap_solve_speed, default.max_overlap_solve_speed) * unit,
         warm_start: setting(config.warm_start_coefficient, default.warm_start_coefficient).min(1.0),
         restitution_threshold: setting(config.restitution_threshold, default.restitution_threshold) * unit,
+        blow_speed: BLOW_SPEED * unit,
         friction_fade: FRICTION_FADE * unit,
         max_sag: MAX_SAG * unit,
         roll_speed: ROLL_SPEED * unit,
     };
 }
 
-/// Builds the rows of all touching contacts.
+/// Builds the rows of all joints and touching contacts.
 #[expect(unsafe_code, reason = "the caller of `build_rows` answers for contacts and colours")]
 pub(crate) fn prepare_rows(
     (bodies, colliders): (Res<Bodies>, Res<Colliders>),
@@ -161,15 +164,15 @@ pub(crate) fn prepare_rows(
     let input = RowInput { contacts: &contacts.table, bodies: &bodies.table, colliders: &colliders.table };
     let StepSolver { kernel, params, .. } = &mut *solver;
     kernel.set_narrow(*width == RowWidth::Four);
-    let none;
+    let others;
     let colors = if response.is_none_or(|r| r.0) {
         &contacts.colors
     } else {
-        none = ColorGraph::new();
-        &none
+        others = contacts.colors.without_contacts();
+        &others
     };
     // SAFETY: the engine has one table of contacts, one graph and one table of bodies, which apps cannot reach. It
-    // changes contacts, colours and the kinds of bodies only through `Link`. An empty graph has no contact twice.
+    // changes contacts, colours and the kinds of bodies only through `Link`. What is left without contacts is as it was.
     unsafe { kernel.build_rows(&input, colors, params, &threads.pool) };
     diagnostics.contact_constraint_count = kernel.manifold_count() as u32;
     diagnostics.prepare_constraints += start.elapsed();

@@ -38,6 +38,10 @@ mod forces_dim;
 mod hooks;
 #[path = "../../../../tests/hooks2.rs"]
 mod hooks_dim;
+#[path = "../../../../tests/joints/mod.rs"]
+mod joints;
+#[path = "../../../../tests/joints/dim2.rs"]
+mod joints_dim;
 #[path = "../../../../tests/levels.rs"]
 mod levels;
 #[path = "../../../../tests/marble2.rs"]
@@ -66,3 +70,5 @@ mod stored;
 mod switching;
 #[path = "../../../../tests/type_paths.rs"]
 mod type_paths;
+#[path = "../../../../tests/walls.rs"]
+mod walls;

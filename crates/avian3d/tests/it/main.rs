@@ -40,6 +40,10 @@ mod gltf;
 mod hooks;
 #[path = "../../../../tests/hooks3.rs"]
 mod hooks_dim;
+#[path = "../../../../tests/joints/mod.rs"]
+mod joints;
+#[path = "../../../../tests/joints/dim3.rs"]
+mod joints_dim;
 #[path = "../../../../tests/levels.rs"]
 mod levels;
 #[path = "../../../../tests/marble3.rs"]
@@ -68,3 +72,5 @@ mod stored;
 mod switching;
 #[path = "../../../../tests/type_paths.rs"]
 mod type_paths;
+#[path = "../../../../tests/walls.rs"]
+mod walls;

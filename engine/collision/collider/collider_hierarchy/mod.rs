@@ -6,10 +6,11 @@ pub use plugin::ColliderHierarchyPlugin;
 pub(super) use plugin::{AttachesColliders, PlacesColliders, attach_now};
 
 use bevy_ecs::{
+    entity::{ComponentCloneCtx, SourceComponent},
     lifecycle::HookContext,
     prelude::*,
     reflect::ReflectComponent,
-    relationship::{Relationship, RelationshipHookMode},
+    relationship::{Relationship, RelationshipHookMode, RelationshipTarget, clone_relationship_target},
     world::DeferredWorld,
 };
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -85,7 +86,8 @@ impl Relationship for ColliderOf {
     /// Adds the collider to the body's list, as Bevy's own hook does. It reports no error if an observer has despawned
     /// one of them, and does not add a body to its own list twice.
     fn on_insert(mut world: DeferredWorld, context: HookContext) {
-        if !matches!(context.relationship_hook_mode, RelationshipHookMode::Run) {
+        // A clone of a body has no list, so the links of its cloned colliders make one.
+        if matches!(context.relationship_hook_mode, RelationshipHookMode::Skip) {
             return;
         }
         let collider = context.entity;
@@ -117,8 +119,59 @@ fn list_collider(world: &mut World, collider: Entity) {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, Default, PartialEq)]
-#[relationship_target(relationship = ColliderOf, linked_spawn)]
-pub struct RigidBodyColliders(Vec<Entity>);
+#[component(
+    clone_behavior = Custom(clone_list),
+    on_discard = <RigidBodyColliders as RelationshipTarget>::on_discard,
+    on_despawn = <RigidBodyColliders as RelationshipTarget>::on_despawn,
+)]
+pub struct RigidBodyColliders(#[entities] Vec<Entity>);
+
+impl RelationshipTarget for RigidBodyColliders {
+    const LINKED_SPAWN: bool = true;
+
+    type Relationship = ColliderOf;
+    type Collection = Vec<Entity>;
+
+    fn collection(&self) -> &Vec<Entity> {
+        &self.0
+    }
+
+    fn collection_mut_risky(&mut self) -> &mut Vec<Entity> {
+        &mut self.0
+    }
+
+    fn from_collection_risky(collection: Vec<Entity>) -> Self {
+        Self(collection)
+    }
+}
+
+/// Clones no list: links make one. Colliders below a body are cloned with its children, if these are. With them go
+/// colliders that the app attached and that are elsewhere.
+fn clone_list(source: &SourceComponent, context: &mut ComponentCloneCtx) {
+    let Some(list) = source.read::<RigidBodyColliders>() else { return };
+    if context.moving() {
+        let mut moved = RigidBodyColliders::default();
+        clone_relationship_target(list, &mut moved, context);
+        return context.write_target_component(moved);
+    }
+    if context.linked_cloning() {
+        let (colliders, original, clone) = (list.0.clone(), context.source(), context.target());
+        context.queue_deferred(move |world: &mut World, _| {
+            let is_below = |collider: Entity, world: &World| {
+                let above = |at: &Entity| world.get::<ChildOf>(*at).map(ChildOf::parent);
+                core::iter::successors(Some(collider), above).any(|at| at == original)
+            };
+            for collider in colliders {
+                if !is_below(collider, world)
+                    && let Ok(mut entity) = world.get_entity_mut(collider)
+                {
+                    let copy = entity.clone_and_spawn_with_opt_out(|cloner| _ = cloner.linked_cloning(true));
+                    world.entity_mut(copy).insert(ColliderOf { body: clone });
+                }
+            }
+        });
+    }
+}
 
 impl<'a> IntoIterator for &'a RigidBodyColliders {
     type Item = <Self::IntoIter as Iterator>::Item;

@@ -86,7 +86,8 @@ type Sums = (
 /// The velocity of a body.
 type Velocities = (&'static mut LinearVelocity, &'static mut AngularVelocity);
 
-fn is_idle(data: &VelocityIntegrationData, local: &AccumulatedLocalAcceleration) -> bool {
+/// Whether a body has no accelerations.
+pub(super) fn is_idle(data: &VelocityIntegrationData, local: &AccumulatedLocalAcceleration) -> bool {
     data.is_idle() && local.linear == Vector::ZERO && local.local_angular() == AngularVector::default()
 }
 

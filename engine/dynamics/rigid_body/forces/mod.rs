@@ -10,8 +10,9 @@
 //!
 //! [`Forces`] is query data with a method for each of them. Forces and accelerations add up until the next step, act
 //! during the whole of that step, in each of its substeps, and end with it: apply a lasting force in a schedule that
-//! runs once per step, for instance `FixedUpdate`. What is applied twice before a step acts twice as much. What is
-//! applied within a step, in [`PhysicsSchedule`](crate::schedule::PhysicsSchedule), counts in that step until the solver
+//! runs once per step, for instance `FixedUpdate`. What is applied twice before a step acts twice as much. Ticks without a
+//! step, as while physics is paused, do not add up: the last of them counts, and only if nothing is applied in the
+//! tick of the next step. What is applied within a step, in [`PhysicsSchedule`](crate::schedule::PhysicsSchedule), counts in that step until the solver
 //! begins, and in the next one afterwards. Impulses change the velocity at once.
 //!
 //! ```
@@ -56,6 +57,7 @@ mod constant;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+pub(crate) mod held;
 mod plugin;
 mod pushed;
 mod query_data;

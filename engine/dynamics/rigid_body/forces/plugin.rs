@@ -3,13 +3,16 @@
 use bevy_app::{App, Plugin};
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 
-use super::{ForceSystems, apply};
+use super::{
+    ForceSystems, apply,
+    held::{HeldForces, hold_forces},
+};
 use crate::{
     dynamics::{
         integrator::IntegrationSystems,
         solver::schedule::{SolverSystems, SubstepSchedule},
     },
-    schedule::PhysicsSchedule,
+    schedule::{PhysicsSchedule, SkippedStep},
     step::{self, Owner},
 };
 
@@ -21,6 +24,7 @@ impl Plugin for ForcePlugin {
     fn build(&self, app: &mut App) {
         step::install(app);
         apply::watch(app);
+        app.init_resource::<HeldForces>().add_systems(SkippedStep, hold_forces);
         step::add_systems_of(Owner::Forces, app, PhysicsSchedule.intern());
         app.configure_sets(
             PhysicsSchedule,

@@ -1,12 +1,34 @@
-//! A measurement of trees: `cargo test --release -- --ignored --nocapture bvh`.
+//! How long trees take: `cargo bench -p avian_kernel3d --bench trees`.
 
-use super::oracle::Noise;
-use super::*;
-use crate::data::PairSet;
-use crate::math::{DIM, Vector};
-use crate::shape::Aabb;
-use crate::thread_pool::ThreadPool;
+use crate::kernel;
+use kernel::bvh::{FoundPairs, Mover, Movers, PairMask, ProxyId, Tree, TreeKind, Trees};
+use kernel::data::PairSet;
+use kernel::math::{DIM, Vector};
+use kernel::shape::Aabb;
+use kernel::thread_pool::ThreadPool;
 use std::time::Instant;
+
+/// Pseudo-random numbers by splitmix64.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    fn vector(&mut self, low: f32, high: f32) -> Vector {
+        let mut unit = || (self.next() >> 40) as f32 / (1u64 << 24) as f32;
+        Vector::from_array(core::array::from_fn(|_| low + (high - low) * unit()))
+    }
+}
 
 /// Prints the fastest of many short rounds per item, some of which run undisturbed on a busy machine.
 fn time<T>(what: &str, count: usize, mut f: impl FnMut() -> T) -> T {
@@ -20,9 +42,7 @@ fn time<T>(what: &str, count: usize, mut f: impl FnMut() -> T) -> T {
     result.expect("at least one round")
 }
 
-#[test]
-#[ignore = "a measurement"]
-fn measure() {
+pub fn main() {
     const N: usize = 100_000;
     let mut noise = Noise(42);
     // About the density of a pile: each box touches a few others.

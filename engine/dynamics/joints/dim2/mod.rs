@@ -1,0 +1,150 @@
+//! The kinds of joints in 2D, and what limits and bases have there only. `dim3` exports the same names.
+
+mod revolute;
+
+pub use revolute::RevoluteJoint;
+
+use bevy_app::App;
+use bevy_ecs::{prelude::*, query::QueryData, system::SystemParam};
+
+use super::{
+    changes::each_changed,
+    distance::DistanceJoint,
+    fixed::FixedJoint,
+    frame::JointBasis,
+    kind::{JointMut, KindVisitor},
+    limits::AngleLimit,
+    prismatic::PrismaticJoint,
+};
+use crate::{
+    math::{Scalar, Vector, orthonormal_basis_from_vec},
+    scan::Since,
+};
+
+/// Visits each kind of joint.
+pub(crate) fn each_kind(visitor: &mut impl KindVisitor) {
+    visitor.visit::<FixedJoint>();
+    visitor.visit::<DistanceJoint>();
+    visitor.visit::<PrismaticJoint>();
+    visitor.visit::<RevoluteJoint>();
+}
+
+/// Registers each kind of joint for reflection.
+pub(crate) fn register_kinds(app: &mut App) {
+    app.register_type::<(FixedJoint, DistanceJoint, PrismaticJoint, RevoluteJoint)>();
+}
+
+/// The filter for entities with a joint.
+pub(crate) type IsJoint =
+    Or<(With<FixedJoint>, With<DistanceJoint>, With<PrismaticJoint>, With<RevoluteJoint>)>;
+
+/// The joint of an entity.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct AnyJoint {
+    fixed: Option<&'static mut FixedJoint>,
+    distance: Option<&'static mut DistanceJoint>,
+    prismatic: Option<&'static mut PrismaticJoint>,
+    revolute: Option<&'static mut RevoluteJoint>,
+}
+
+impl AnyJointItem<'_, '_> {
+    /// The joint; if there are several for a moment, the first.
+    pub(crate) fn joint(&mut self) -> Option<&mut dyn JointMut> {
+        match self {
+            Self { fixed: Some(joint), .. } => Some(joint),
+            Self { distance: Some(joint), .. } => Some(joint),
+            Self { prismatic: Some(joint), .. } => Some(joint),
+            Self { revolute: Some(joint), .. } => Some(joint),
+            _ => None,
+        }
+    }
+}
+
+/// Queries for joints that changed.
+#[derive(SystemParam)]
+pub(crate) struct ChangedJoints<'w, 's> {
+    fixed: Query<'w, 's, (Entity, Ref<'static, FixedJoint>)>,
+    distance: Query<'w, 's, (Entity, Ref<'static, DistanceJoint>)>,
+    prismatic: Query<'w, 's, (Entity, Ref<'static, PrismaticJoint>)>,
+    revolute: Query<'w, 's, (Entity, Ref<'static, RevoluteJoint>)>,
+}
+
+impl ChangedJoints<'_, '_> {
+    /// Calls `found` with each entity whose joint changed.
+    pub(crate) fn each(&self, since: Since, mut found: impl FnMut(Entity)) {
+        each_changed(&self.fixed, since, &mut found);
+        each_changed(&self.distance, since, &mut found);
+        each_changed(&self.prismatic, since, &mut found);
+        each_changed(&self.revolute, since, &mut found);
+    }
+}
+
+impl JointBasis {
+    /// The basis whose x axis has a direction on the body. Any length will do.
+    pub fn from_local_x(x_axis: Vector) -> Self {
+        Self::Local(orthonormal_basis_from_vec(x_axis))
+    }
+
+    /// The basis whose y axis has a direction on the body. Any length will do.
+    pub fn from_local_y(y_axis: Vector) -> Self {
+        Self::from_local_x(-y_axis.perp())
+    }
+
+    /// The basis whose x axis has a direction in the world. Any length will do.
+    pub fn from_global_x(x_axis: Vector) -> Self {
+        Self::FromGlobal(orthonormal_basis_from_vec(x_axis))
+    }
+
+    /// The basis whose y axis has a direction in the world. Any length will do.
+    pub fn from_global_y(y_axis: Vector) -> Self {
+        Self::from_global_x(-y_axis.perp())
+    }
+}
+
+impl AngleLimit {
+    /// The angle in radians by which the second body has to turn to be within the limits, at most `max_correction`. `None`
+    /// within them.
+    pub fn compute_correction(&self, angle_difference: Scalar, max_correction: Scalar) -> Option<Scalar> {
+        let excess = self.excess(angle_difference);
+        (excess != 0.0).then(|| (-excess).max(-max_correction).min(max_correction))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::joints::{
+        motor::AngularMotor,
+        space::TRANSLATIONS,
+        tests::{define, entities, is_locked},
+    };
+    use kernel::solver::{Axis, coordinate::ANGLE};
+
+    #[test]
+    fn bases_have_the_axes_that_they_are_made_of() {
+        let axis = Vector::new(0.6, 0.8);
+        let basis = |basis: JointBasis| basis.local().expect("it is local");
+        assert!((basis(JointBasis::from_local_x(axis * 3.0)) * Vector::X - axis).length() < 1e-6);
+        assert!((basis(JointBasis::from_local_y(axis * 3.0)) * Vector::Y - axis).length() < 1e-6);
+    }
+
+    #[test]
+    fn a_revolute_joint_leaves_the_angle() {
+        let [a, b] = entities();
+        let joint = RevoluteJoint::new(a, b).with_angle_limits(-1.0, 2.0).with_point_compliance(0.5);
+        let def = define(&joint.with_motor(AngularMotor::default().with_max_torque(3.0)));
+        assert!(TRANSLATIONS.iter().all(|i| is_locked(def.axes[*i], 0.5)));
+        assert_eq!(def.axes[ANGLE].limits, Some([-1.0, 2.0]));
+        assert_eq!(def.axes[ANGLE].motor.map(|motor| motor.max_force), Some(3.0));
+        assert_eq!(define(&RevoluteJoint::new(a, b)).axes[ANGLE], Axis::FREE);
+    }
+
+    #[test]
+    fn an_angle_is_led_back() {
+        let limit = AngleLimit::new(-0.5, 1.0);
+        assert_eq!(limit.compute_correction(0.0, 1.0), None);
+        assert_eq!(limit.compute_correction(1.5, 1.0), Some(-0.5));
+        assert_eq!(limit.compute_correction(-1.5, 0.25), Some(0.25));
+    }
+}

@@ -1,0 +1,247 @@
+//! The kinds of joints in 3D, and what limits and bases have there only. `dim2` exports the same names.
+
+mod revolute;
+mod spherical;
+
+pub use revolute::RevoluteJoint;
+pub use spherical::SphericalJoint;
+
+use bevy_app::App;
+use bevy_ecs::{prelude::*, query::QueryData, system::SystemParam};
+
+use super::{
+    changes::each_changed,
+    distance::DistanceJoint,
+    fixed::FixedJoint,
+    frame::JointBasis,
+    kind::{JointMut, KindVisitor},
+    limits::AngleLimit,
+    prismatic::PrismaticJoint,
+};
+use crate::{
+    math::{Quaternion, Scalar, Vector, orthonormal_basis},
+    scan::Since,
+};
+
+/// Visits each kind of joint.
+pub(crate) fn each_kind(visitor: &mut impl KindVisitor) {
+    visitor.visit::<FixedJoint>();
+    visitor.visit::<DistanceJoint>();
+    visitor.visit::<PrismaticJoint>();
+    visitor.visit::<RevoluteJoint>();
+    visitor.visit::<SphericalJoint>();
+}
+
+/// Registers each kind of joint for reflection.
+pub(crate) fn register_kinds(app: &mut App) {
+    app.register_type::<(FixedJoint, DistanceJoint, PrismaticJoint, RevoluteJoint, SphericalJoint)>();
+}
+
+/// The filter for entities with a joint.
+pub(crate) type IsJoint = Or<(
+    With<FixedJoint>,
+    With<DistanceJoint>,
+    With<PrismaticJoint>,
+    With<RevoluteJoint>,
+    With<SphericalJoint>,
+)>;
+
+/// The joint of an entity.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct AnyJoint {
+    fixed: Option<&'static mut FixedJoint>,
+    distance: Option<&'static mut DistanceJoint>,
+    prismatic: Option<&'static mut PrismaticJoint>,
+    revolute: Option<&'static mut RevoluteJoint>,
+    spherical: Option<&'static mut SphericalJoint>,
+}
+
+impl AnyJointItem<'_, '_> {
+    /// The joint; if there are several for a moment, the first.
+    pub(crate) fn joint(&mut self) -> Option<&mut dyn JointMut> {
+        match self {
+            Self { fixed: Some(joint), .. } => Some(joint),
+            Self { distance: Some(joint), .. } => Some(joint),
+            Self { prismatic: Some(joint), .. } => Some(joint),
+            Self { revolute: Some(joint), .. } => Some(joint),
+            Self { spherical: Some(joint), .. } => Some(joint),
+            _ => None,
+        }
+    }
+}
+
+/// Queries for joints that changed.
+#[derive(SystemParam)]
+pub(crate) struct ChangedJoints<'w, 's> {
+    fixed: Query<'w, 's, (Entity, Ref<'static, FixedJoint>)>,
+    distance: Query<'w, 's, (Entity, Ref<'static, DistanceJoint>)>,
+    prismatic: Query<'w, 's, (Entity, Ref<'static, PrismaticJoint>)>,
+    revolute: Query<'w, 's, (Entity, Ref<'static, RevoluteJoint>)>,
+    spherical: Query<'w, 's, (Entity, Ref<'static, SphericalJoint>)>,
+}
+
+impl ChangedJoints<'_, '_> {
+    /// Calls `found` with each entity whose joint changed.
+    pub(crate) fn each(&self, since: Since, mut found: impl FnMut(Entity)) {
+        each_changed(&self.fixed, since, &mut found);
+        each_changed(&self.distance, since, &mut found);
+        each_changed(&self.prismatic, since, &mut found);
+        each_changed(&self.revolute, since, &mut found);
+        each_changed(&self.spherical, since, &mut found);
+    }
+}
+
+/// Defines the bases from two axes, of which the first keeps its direction.
+macro_rules! from_axes {
+    ($($local:ident, $global:ident: $first:literal, $second:literal => |$a:ident, $b:ident, $c:ident| $axes:expr;)+) => {
+        impl JointBasis {$(
+            #[doc = concat!("The basis on the body whose ", $first, " axis has the direction of the first vector, and whose ")]
+            #[doc = concat!($second, " axis is in the plane of both. They may have any length. Vectors that span no plane give ")]
+            #[doc = "the identity."]
+            pub fn $local($a: Vector, $b: Vector) -> Self {
+                Self::Local(from_plane($a, $b, |$a, $b, $c| $axes))
+            }
+
+            #[doc = concat!("The basis in the world whose ", $first, " axis has the direction of the first vector, and whose ")]
+            #[doc = concat!($second, " axis is in the plane of both. They may have any length. Vectors that span no plane give ")]
+            #[doc = "the identity."]
+            pub fn $global($a: Vector, $b: Vector) -> Self {
+                Self::FromGlobal(from_plane($a, $b, |$a, $b, $c| $axes))
+            }
+        )+}
+    };
+}
+
+from_axes! {
+    from_local_xy, from_global_xy: "x", "y" => |x_axis, y_axis, z_axis| [x_axis, y_axis, z_axis];
+    from_local_xz, from_global_xz: "x", "z" => |x_axis, z_axis, y_axis| [x_axis, -y_axis, z_axis];
+    from_local_yz, from_global_yz: "y", "z" => |y_axis, z_axis, x_axis| [x_axis, y_axis, z_axis];
+}
+
+/// The rotation to axes that are made of the first vector, what the second has across it, and the normal of both.
+fn from_plane(
+    first: Vector,
+    second: Vector,
+    axes: impl Fn(Vector, Vector, Vector) -> [Vector; 3],
+) -> Quaternion {
+    let along = first.try_normalize();
+    let normal = along.and_then(|along| along.cross(second).try_normalize());
+    match (along, normal) {
+        (Some(along), Some(normal)) => orthonormal_basis(axes(along, normal.cross(along), normal)),
+        _ => Quaternion::IDENTITY,
+    }
+}
+
+impl AngleLimit {
+    /// The rotation vector in radians by which the second body has to turn to be within the limits, at most `max_correction`
+    /// long. `None` within them.
+    ///
+    /// The angle is that from `axis1` to `axis2` about `limit_axis`. All have unit length.
+    pub fn compute_correction(
+        &self,
+        limit_axis: Vector,
+        axis1: Vector,
+        axis2: Vector,
+        max_correction: Scalar,
+    ) -> Option<Vector> {
+        let sin = axis1.cross(axis2).dot(limit_axis);
+        let cos = axis1.dot(axis2);
+        #[allow(clippy::useless_conversion, clippy::unnecessary_cast, reason = "Scalar may be f64")]
+        let angle = kernel::math::atan2(f64::from(sin), f64::from(cos)) as Scalar;
+        let excess = self.excess(angle);
+        (excess != 0.0).then(|| limit_axis * (-excess).max(-max_correction).min(max_correction))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        dynamics::joints::{
+            motor::AngularMotor,
+            space::TRANSLATIONS,
+            tests::{define, entities, is_locked},
+        },
+        math::vector_to_kernel,
+    };
+    use kernel::{
+        math::Vector as KernelVector,
+        solver::{
+            Axis, Give, JointFrame,
+            coordinate::{CONE, SWING_Y, SWING_Z, TWIST},
+        },
+    };
+
+    #[test]
+    fn bases_have_the_axes_that_they_are_made_of() {
+        let (a, b) = (Vector::new(1.0, 2.0, 3.0), Vector::new(-2.0, 0.5, 1.0));
+        let (first, second) = (a.normalize(), b.reject_from(a).normalize());
+        let is = |basis: JointBasis, one: Vector, other: Vector| {
+            let basis = basis.local().expect("it is local");
+            let apart = (basis * one - first).length() + (basis * other - second).length();
+            assert!(apart < 1e-5 && (basis.length() - 1.0).abs() < 1e-5, "{apart}");
+        };
+        is(JointBasis::from_local_xy(a, b), Vector::X, Vector::Y);
+        is(JointBasis::from_local_xz(a, b), Vector::X, Vector::Z);
+        is(JointBasis::from_local_yz(a, b), Vector::Y, Vector::Z);
+    }
+
+    /// Whether the x axis of a kernel's frame is an axis.
+    fn has_x(frame: &JointFrame, axis: Vector) -> bool {
+        (frame.basis.rotate(KernelVector::X) - vector_to_kernel(axis.normalize())).length() < 1e-6
+    }
+
+    #[test]
+    fn a_revolute_joint_turns_about_the_x_axis_of_its_turned_frames() {
+        let [a, b] = entities();
+        let axis = Vector::new(1.0, 2.0, -2.0);
+        let joint = RevoluteJoint::new(a, b)
+            .with_hinge_axis(axis)
+            .with_local_basis1(Quaternion::from_rotation_y(1.0))
+            .with_angle_limits(-1.0, 2.0)
+            .with_point_compliance(0.5)
+            .with_align_compliance(0.25)
+            .with_motor(AngularMotor::default().with_max_torque(3.0));
+        let def = define(&joint);
+        assert!(has_x(&def.frames[0], joint.local_hinge_axis1().expect("it is local")));
+        assert!(has_x(&def.frames[1], axis));
+        assert!(TRANSLATIONS.iter().all(|i| is_locked(def.axes[*i], 0.5)));
+        assert!([SWING_Y, SWING_Z].iter().all(|i| is_locked(def.axes[*i], 0.25)));
+        assert_eq!(def.axes[TWIST].limits, Some([-1.0, 2.0]));
+        assert_eq!(def.axes[TWIST].motor.map(|motor| motor.max_force), Some(3.0));
+        assert_eq!(define(&RevoluteJoint::new(a, b)).axes[TWIST], Axis::FREE);
+    }
+
+    #[test]
+    fn a_spherical_joint_limits_swing_and_twist() {
+        let [a, b] = entities();
+        let joint = SphericalJoint::new(a, b).with_swing_limits(0.0, 1.0).with_twist_limits(-0.5, 0.5);
+        let def = define(&joint.with_swing_compliance(0.25).with_twist_compliance(0.125));
+        assert!(has_x(&def.frames[0], Vector::Y) && has_x(&def.frames[1], Vector::Y));
+        assert_eq!(def.axes[CONE], Axis::limited(0.0, 1.0).with_give(Give::Compliance(0.25)));
+        assert_eq!(def.axes[TWIST], Axis::limited(-0.5, 0.5).with_give(Give::Compliance(0.125)));
+        let stiff = define(&SphericalJoint::new(a, b).with_swing_limits(0.0, 0.0));
+        assert!([SWING_Y, SWING_Z].iter().all(|i| is_locked(stiff.axes[*i], 0.0)));
+        assert_eq!((stiff.axes[CONE], stiff.axes[TWIST]), (Axis::FREE, Axis::FREE));
+    }
+
+    #[test]
+    fn an_axis_without_direction_is_not_finite() {
+        let [a, b] = entities();
+        for axis in [Vector::ZERO, Vector::NAN] {
+            let def = define(&RevoluteJoint::new(a, b).with_hinge_axis(axis));
+            assert!(!def.frames[0].basis.is_finite());
+        }
+    }
+
+    #[test]
+    fn an_angle_is_led_back() {
+        let limit = AngleLimit::new(-0.5, 1.0);
+        let correct = |axis2, max| limit.compute_correction(Vector::Z, Vector::X, axis2, max);
+        assert_eq!(correct(Vector::X, 1.0), None);
+        let way = correct(Vector::Y, 1.0).expect("a quarter turn is too much");
+        assert!((way.z - (1.0 - crate::math::FRAC_PI_2)).abs() < 1e-6 && way.x == 0.0, "{way}");
+        assert_eq!(correct(Vector::NEG_Y, 0.25), Some(Vector::Z * 0.25));
+    }
+}

@@ -1,0 +1,171 @@
+//! [`SphericalJoint`]: ball and socket.
+
+use bevy_ecs::{
+    component::Component,
+    entity::{Entity, EntityMapper, MapEntities},
+    reflect::{ReflectComponent, ReflectMapEntities},
+};
+use bevy_reflect::Reflect;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use kernel::{
+    math::Rot as KernelRot,
+    solver::{
+        JointDef,
+        coordinate::{CONE, SWING_Y, SWING_Z, TWIST},
+    },
+};
+
+use super::super::{
+    frame::{JointAnchor, JointBasis, JointFrame, frame_methods},
+    kind::{EntityConstraint, JointKind, between_two_bodies, limited, locked, own_frames},
+    limits::AngleLimit,
+    space::{Isometry, Rot, TRANSLATIONS, rotation_of, turn_to},
+};
+use crate::math::{Scalar, Vector};
+
+/// Holds a point of one body at a point of another, and lets them turn in any way: shoulders, chains, trailers.
+///
+/// Swing is the angle between the twist axes of both frames, from 0 to π. Twist is the angle about them. Both may have
+/// limits.
+///
+/// ```
+/// # use avian::{math::Vector, prelude::*};
+/// # use bevy_ecs::prelude::*;
+/// fn join(mut commands: Commands, chest: Entity, arm: Entity) {
+///     let shoulder = SphericalJoint::new(chest, arm)
+///         .with_local_anchor1(Vector::new(0.3, 0.4, 0.0))
+///         .with_local_anchor2(Vector::Y * 0.3)
+///         .with_swing_limits(0.0, 1.2)
+///         .with_twist_limits(-0.8, 0.8);
+///     commands.spawn((shoulder, JointCollisionDisabled));
+/// }
+/// ```
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(type_path = false, Debug, Component, MapEntities, PartialEq)]
+#[component(map_entities)]
+pub struct SphericalJoint {
+    /// The first body.
+    pub body1: Entity,
+    /// The second body.
+    pub body2: Entity,
+    /// The frame on the first body.
+    pub frame1: JointFrame,
+    /// The frame on the second body.
+    pub frame2: JointFrame,
+    /// The direction of the twist axis in the joint's frames. Its length does not matter.
+    pub twist_axis: Vector,
+    /// The least and the greatest swing, if there are any. It is never negative, so a least value below 0 has no effect.
+    pub swing_limit: Option<AngleLimit>,
+    /// The least and the greatest twist, if there are any.
+    pub twist_limit: Option<AngleLimit>,
+    /// How far the anchors give way, in m/N. 0 for not at all.
+    pub point_compliance: Scalar,
+    /// How far the limits of swing give way, in rad/(N·m). 0 for not at all.
+    pub swing_compliance: Scalar,
+    /// How far the limits of twist give way, in rad/(N·m). 0 for not at all.
+    pub twist_compliance: Scalar,
+}
+
+crate::type_path::type_path!(SphericalJoint, "dynamics::joints::spherical");
+
+impl SphericalJoint {
+    /// The y axis.
+    pub const DEFAULT_TWIST_AXIS: Vector = Vector::Y;
+
+    /// A joint at the origins of two bodies, without limits.
+    pub const fn new(body1: Entity, body2: Entity) -> Self {
+        Self {
+            body1,
+            body2,
+            frame1: JointFrame::IDENTITY,
+            frame2: JointFrame::IDENTITY,
+            twist_axis: Self::DEFAULT_TWIST_AXIS,
+            swing_limit: None,
+            twist_limit: None,
+            point_compliance: 0.0,
+            swing_compliance: 0.0,
+            twist_compliance: 0.0,
+        }
+    }
+
+    /// Sets the twist axis, in the joint's frames.
+    pub const fn with_twist_axis(mut self, twist_axis: Vector) -> Self {
+        self.twist_axis = twist_axis;
+        self
+    }
+
+    /// The twist axis relative to the first body, if its basis is local.
+    pub fn local_twist_axis1(&self) -> Option<Vector> {
+        Some(rotation_of(self.local_basis1()?) * self.twist_axis)
+    }
+
+    /// The twist axis relative to the second body, if its basis is local.
+    pub fn local_twist_axis2(&self) -> Option<Vector> {
+        Some(rotation_of(self.local_basis2()?) * self.twist_axis)
+    }
+
+    /// Sets the least and the greatest swing, in radians.
+    pub const fn with_swing_limits(mut self, min: Scalar, max: Scalar) -> Self {
+        self.swing_limit = Some(AngleLimit::new(min, max));
+        self
+    }
+
+    /// Sets the least and the greatest twist, in radians.
+    pub const fn with_twist_limits(mut self, min: Scalar, max: Scalar) -> Self {
+        self.twist_limit = Some(AngleLimit::new(min, max));
+        self
+    }
+
+    /// Sets all compliances.
+    #[deprecated(since = "0.4.0", note = "use the methods for single compliances")]
+    pub const fn with_compliance(mut self, compliance: Scalar) -> Self {
+        self.point_compliance = compliance;
+        self.swing_compliance = compliance;
+        self.twist_compliance = compliance;
+        self
+    }
+
+    /// Sets how far the anchors give way, in m/N.
+    pub const fn with_point_compliance(mut self, compliance: Scalar) -> Self {
+        self.point_compliance = compliance;
+        self
+    }
+
+    /// Sets how far the limits of swing give way, in rad/(N·m).
+    pub const fn with_swing_compliance(mut self, compliance: Scalar) -> Self {
+        self.swing_compliance = compliance;
+        self
+    }
+
+    /// Sets how far the limits of twist give way, in rad/(N·m).
+    pub const fn with_twist_compliance(mut self, compliance: Scalar) -> Self {
+        self.twist_compliance = compliance;
+        self
+    }
+}
+
+frame_methods!(SphericalJoint);
+between_two_bodies!(SphericalJoint);
+
+impl JointKind for SphericalJoint {
+    own_frames!();
+
+    fn turn(&self) -> KernelRot {
+        turn_to(self.twist_axis)
+    }
+
+    fn set_axes(&self, mut def: JointDef) -> JointDef {
+        def.axes[TWIST] = limited(self.twist_limit, self.twist_compliance);
+        match self.swing_limit {
+            // A swing of 0 has no direction.
+            Some(AngleLimit { min, max: 0.0 }) if min <= 0.0 => {
+                def = def.with([SWING_Y, SWING_Z], locked(self.swing_compliance));
+            }
+            limit => def.axes[CONE] = limited(limit, self.swing_compliance),
+        }
+        def.with(TRANSLATIONS, locked(self.point_compliance))
+    }
+}

@@ -1,0 +1,211 @@
+//! A kind of joint, and how it becomes a joint of the kernel.
+//!
+//! The kernel knows one joint: two frames, and for each coordinate of the second frame in the first whether it is free, limited
+//! or driven. A kind is a choice of these settings. Where it has an axis, the frames are turned so that their x axis is
+//! that axis.
+
+use bevy_ecs::{
+    change_detection::Mut,
+    component::{Component, Mutable},
+    entity::{Entity, MapEntities},
+};
+use kernel::{
+    math::Rot,
+    solver::{Axis, Drive, Give, JointDef, Motor, Spring},
+};
+
+use super::{
+    frame::JointFrame,
+    limits::{AngleLimit, DistanceLimit},
+    motor::{AngularMotor, LinearMotor, MotorModel},
+    settings::JointDamping,
+    space::rotation_of,
+};
+use crate::math::{Scalar, to_f32, vector_to_kernel};
+
+/// A constraint between entities.
+pub trait EntityConstraint<const ENTITY_COUNT: usize>: MapEntities {
+    /// The entities that it holds.
+    fn entities(&self) -> [Entity; ENTITY_COUNT];
+}
+
+/// A kind of joint of the engine.
+pub(crate) trait JointKind {
+    /// The coordinate that its motor drives.
+    fn motor(&self) -> Option<usize> {
+        None
+    }
+
+    /// The frames on both bodies.
+    fn frames(&self) -> [JointFrame; 2];
+
+    /// Replaces the frames.
+    fn set_frames(&mut self, frames: [JointFrame; 2]);
+
+    /// The turn from the kernel's axes to the joint's.
+    fn turn(&self) -> Rot {
+        Rot::IDENTITY
+    }
+
+    /// Sets what the joint does with each coordinate.
+    fn set_axes(&self, def: JointDef) -> JointDef;
+}
+
+/// Something to be done for each kind of joint.
+pub(crate) trait KindVisitor {
+    /// Does it for one kind.
+    fn visit<J: JointKind + EntityConstraint<2> + Component<Mutability = Mutable>>(&mut self);
+}
+
+/// A joint's component, of any kind.
+pub(crate) trait JointMut {
+    /// The entities of its bodies.
+    fn bodies(&self) -> [Entity; 2];
+
+    /// The joint.
+    fn kind(&self) -> &dyn JointKind;
+
+    /// Replaces its frames. The component counts as changed.
+    fn set_frames(&mut self, frames: [JointFrame; 2]);
+}
+
+impl<J: JointKind + EntityConstraint<2> + Component> JointMut for Mut<'_, J> {
+    fn bodies(&self) -> [Entity; 2] {
+        self.entities()
+    }
+
+    fn kind(&self) -> &dyn JointKind {
+        &**self
+    }
+
+    fn set_frames(&mut self, frames: [JointFrame; 2]) {
+        JointKind::set_frames(&mut **self, frames);
+    }
+}
+
+/// Implements what all joints have in common for one with `body1` and `body2`.
+macro_rules! between_two_bodies {
+    ($joint:ident) => {
+        impl EntityConstraint<2> for $joint {
+            fn entities(&self) -> [Entity; 2] {
+                [self.body1, self.body2]
+            }
+        }
+
+        impl MapEntities for $joint {
+            fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+                self.body1 = mapper.get_mapped(self.body1);
+                self.body2 = mapper.get_mapped(self.body2);
+            }
+        }
+    };
+}
+
+pub(super) use between_two_bodies;
+
+/// The methods of [`JointKind`] for one with `frame1` and `frame2`.
+macro_rules! own_frames {
+    () => {
+        fn frames(&self) -> [JointFrame; 2] {
+            [self.frame1, self.frame2]
+        }
+
+        fn set_frames(&mut self, frames: [JointFrame; 2]) {
+            [self.frame1, self.frame2] = frames;
+        }
+    };
+}
+
+pub(super) use own_frames;
+
+/// The kernel's joint for a kind whose frames are local, between the bodies with these ids. `None` if a frame is global.
+pub(crate) fn definition(
+    joint: &(impl JointKind + ?Sized),
+    bodies: [u32; 2],
+    damping: Option<&JointDamping>,
+) -> Option<JointDef> {
+    let turn = joint.turn();
+    let mut def = JointDef::free(bodies, Default::default());
+    for (frame, local) in def.frames.iter_mut().zip(joint.frames()) {
+        frame.anchor = vector_to_kernel(local.anchor.local()?);
+        frame.basis = rotation_of(local.basis.local()?).to_kernel().admitted().mul(turn);
+    }
+    if let Some(damping) = damping {
+        def.damping = [to_f32(damping.linear), to_f32(damping.angular)];
+    }
+    Some(joint.set_axes(def))
+}
+
+/// A locked coordinate that gives way by a compliance, in m/N or rad/(N·m).
+pub(super) fn locked(compliance: Scalar) -> Axis {
+    Axis::LOCKED.with_give(give(compliance))
+}
+
+/// How far a limit with a compliance gives way.
+pub(super) fn give(compliance: Scalar) -> Give {
+    match to_f32(compliance) {
+        0.0 => Give::Rigid,
+        compliance => Give::Compliance(compliance),
+    }
+}
+
+/// A coordinate with limits, if there are any.
+pub(super) fn limited(limits: Option<impl Into<[f32; 2]>>, compliance: Scalar) -> Axis {
+    limits.map_or(Axis::FREE, |limits| {
+        let [min, max] = limits.into();
+        Axis::limited(min, max).with_give(give(compliance))
+    })
+}
+
+impl From<DistanceLimit> for [f32; 2] {
+    fn from(limit: DistanceLimit) -> Self {
+        [to_f32(limit.min), to_f32(limit.max)]
+    }
+}
+
+impl From<AngleLimit> for [f32; 2] {
+    fn from(limit: AngleLimit) -> Self {
+        [to_f32(limit.min), to_f32(limit.max)]
+    }
+}
+
+/// The kernel's motor for one that turns.
+pub(super) fn angular_motor(motor: &AngularMotor) -> Option<Motor> {
+    kernel_motor(
+        motor.enabled,
+        [motor.target_velocity, motor.target_position, motor.max_torque],
+        motor.motor_model,
+    )
+}
+
+/// The kernel's motor for one that moves along an axis.
+pub(super) fn linear_motor(motor: &LinearMotor) -> Option<Motor> {
+    kernel_motor(
+        motor.enabled,
+        [motor.target_velocity, motor.target_position, motor.max_force],
+        motor.motor_model,
+    )
+}
+
+fn kernel_motor(enabled: bool, [velocity, position, max]: [Scalar; 3], model: MotorModel) -> Option<Motor> {
+    let drive = match model {
+        // Without a frequency there is neither stiffness nor damping.
+        MotorModel::SpringDamper { frequency: 0.0, .. } => return None,
+        MotorModel::SpringDamper { frequency, damping_ratio } => {
+            Drive::Spring(Spring { frequency: to_f32(frequency), damping_ratio: to_f32(damping_ratio) })
+        }
+        MotorModel::ForceBased { stiffness, damping } => {
+            Drive::Force { stiffness: to_f32(stiffness), damping: to_f32(damping) }
+        }
+        MotorModel::AccelerationBased { stiffness, damping } => {
+            Drive::Acceleration { stiffness: to_f32(stiffness), damping: to_f32(damping) }
+        }
+    };
+    let max = to_f32(max);
+    enabled.then_some(Motor {
+        target_velocity: to_f32(velocity),
+        target_position: to_f32(position),
+        max_force: if max == f32::MAX { f32::INFINITY } else { max },
+        drive,
+    })
+}

@@ -1,0 +1,78 @@
+//! Joints: what holds two bodies together, and how they may move relative to each other.
+//!
+//! A joint is an entity with one of these components:
+//!
+//! | Component | Leaves free |
+//! | --- | --- |
+//! | [`FixedJoint`] | nothing |
+//! | [`DistanceJoint`] | everything within a range of distances of two points |
+//! | [`PrismaticJoint`] | a movement along an axis, with limits and a motor |
+//! | [`RevoluteJoint`] | a turn about a point (2D) or an axis (3D), with limits and a motor |
+//! | `SphericalJoint` (3D) | all turns about a point, with limits of swing and twist |
+//!
+//! Beside it may be [`JointDisabled`], [`JointCollisionDisabled`], [`JointDamping`] and [`JointForces`].
+//!
+//! ```
+//! # use avian::{math::Vector, prelude::*};
+//! # use bevy_ecs::prelude::*;
+//! fn pendulum(mut commands: Commands) {
+//!     let hook = commands.spawn(RigidBody::Static).id();
+//!     let bob = commands.spawn((RigidBody::Dynamic, Collider::capsule(0.2, 0.1), Position(Vector::X * 2.0))).id();
+//!     // At the hook, two metres from the bob.
+//!     commands.spawn(RevoluteJoint::new(hook, bob).with_anchor(Vector::ZERO));
+//! }
+//! ```
+//!
+//! A joint acts while both its entities are bodies in the simulation, in whatever order all three were spawned. Its fields may
+//! change at any time, the bodies too. One that cannot act, because its bodies are one or its numbers are not finite, is
+//! reported once, and acts as soon as it can. Bodies of a joint are in one island: they sleep and wake together.
+//!
+//! # Compliance
+//!
+//! A compliance of 0 is rigid: it gives way as little as the substeps resolve. A compliance of α gives way by α times the force
+//! or torque, without damping of its own: it is a spring of stiffness 1/α. [`JointDamping`] damps it.
+
+mod changes;
+#[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
+#[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
+pub(crate) mod dim;
+mod distance;
+mod fixed;
+pub(crate) mod forces;
+mod frame;
+pub(crate) mod kind;
+pub(crate) mod lifecycle;
+mod limits;
+mod motor;
+mod plugin;
+mod prismatic;
+mod settings;
+pub(crate) mod settle;
+#[cfg_attr(feature = "2d", path = "space2.rs")]
+#[cfg_attr(feature = "3d", path = "space3.rs")]
+pub(crate) mod space;
+pub(crate) mod table;
+#[cfg(test)]
+mod tests;
+
+pub use dim::*;
+pub use distance::DistanceJoint;
+pub use fixed::FixedJoint;
+pub use frame::{JointAnchor, JointBasis, JointFrame};
+pub use kind::EntityConstraint;
+pub use limits::{AngleLimit, DistanceLimit};
+pub use motor::{AngularMotor, LinearMotor, MotorModel};
+pub use plugin::JointPlugin;
+pub use prismatic::PrismaticJoint;
+pub use settings::{JointCollisionDisabled, JointDamping, JointDisabled, JointForces};
+
+use bevy_ecs::schedule::SystemSet;
+
+/// System sets of joints.
+#[derive(SystemSet, Clone, Debug, Hash, PartialEq, Eq)]
+pub enum JointSystems {
+    /// Between [`SolverSystems::PrepareSolverBodies`](super::solver::schedule::SolverSystems::PrepareSolverBodies) and
+    /// [`SolverSystems::PrepareJoints`](super::solver::schedule::SolverSystems::PrepareJoints). Frames are local by then: they
+    /// are computed at the start of the step, where joints enter.
+    PrepareLocalFrames,
+}

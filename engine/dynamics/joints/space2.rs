@@ -1,0 +1,53 @@
+//! Rotations and frames of 2D joints. `space3.rs` exports the same names.
+
+use bevy_math::{Isometry2d, Rot2};
+use kernel::{
+    math as k,
+    solver::coordinate::{ANGLE, X, Y},
+};
+
+use crate::{
+    math::{AdjustPrecision, AngularVector, AsF32, Vector, vector_to_kernel},
+    physics_transform::Rotation,
+};
+
+/// The rotation of a basis.
+pub(crate) type Rot = Rotation;
+/// A frame in `f32`.
+pub(crate) type Isometry = Isometry2d;
+
+/// The coordinates of a position.
+pub(super) const TRANSLATIONS: [usize; 2] = [X, Y];
+/// Those across the x axis.
+pub(super) const ACROSS: [usize; 1] = [Y];
+/// The coordinates of a rotation.
+pub(super) const ROTATIONS: [usize; 1] = [ANGLE];
+
+/// No torque.
+pub(super) const NO_TORQUE: AngularVector = 0.0;
+
+/// The rotation of a basis, with its operations.
+pub(crate) fn rotation_of(basis: Rot) -> Rotation {
+    basis
+}
+
+/// The basis with a rotation.
+pub(crate) fn basis_of(rotation: Rotation) -> Rot {
+    rotation
+}
+
+/// Translation and rotation of a frame.
+pub(super) fn parts(isometry: Isometry) -> (Vector, Rot) {
+    (isometry.translation.adjust_precision(), isometry.rotation.into())
+}
+
+/// The frame with a translation and a rotation.
+pub(super) fn isometry(translation: Vector, rotation: Rot) -> Isometry {
+    Isometry2d::new(translation.f32(), Rot2::from(rotation))
+}
+
+/// The rotation that takes the x axis to an axis; not finite if that has no direction.
+pub(super) fn turn_to(axis: Vector) -> k::Rot {
+    let axis = vector_to_kernel(axis.normalize());
+    k::Rot { cos: axis.x, sin: axis.y }
+}

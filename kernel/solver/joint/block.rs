@@ -1,0 +1,226 @@
+//! The coordinates of a joint that are locked in A's frame, solved at once.
+
+use super::super::pair::Pair;
+use super::dim::ANGLE_AXES;
+use super::place::{Gradient, Masses, Place, Response};
+use crate::math::{Angular, DIM, Lane, Vector};
+
+/// What a coordinate that is locked gives way.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct Softening<N> {
+    /// Bias velocity per metre or radian of error, 1/s.
+    pub(super) bias_rate: N,
+    /// What is added to the inverse of the effective mass: a share of it, and a number in 1/kg or 1/(kg m²).
+    pub(super) share: N,
+    pub(super) more: N,
+    /// 1 for a spring, whose implicit step is complete before the relax pass; else 0.
+    pub(super) is_spring: N,
+}
+
+impl<N: Lane> Softening<N> {
+    pub(super) const NONE: Self =
+        Self { bias_rate: N::ZERO, share: N::ZERO, more: N::ZERO, is_spring: N::ZERO };
+}
+
+/// A coordinate of the block.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct Locked<N> {
+    /// 1 if it is locked, else 0.
+    pub(super) is_locked: N,
+    /// Where it is locked, in m or rad.
+    pub(super) target: N,
+    pub(super) softening: Softening<N>,
+    /// In N·s or N·m·s.
+    pub(super) impulse: N,
+}
+
+impl<N: Lane> Locked<N> {
+    pub(super) const FREE: Self =
+        Self { is_locked: N::ZERO, target: N::ZERO, softening: Softening::NONE, impulse: N::ZERO };
+}
+
+/// The first `D` coordinates in a pass.
+pub(super) struct Block<N, const D: usize> {
+    pub(super) gradients: [Gradient<N>; D],
+    values: [N; D],
+    responses: [Response<N>; D],
+}
+
+/// A block whose matrix is factored.
+pub(super) struct Solved<N, const D: usize> {
+    takes_part: [N; D],
+    factors: Factors<N, D>,
+}
+
+impl<N: Lane, const D: usize> Block<N, D> {
+    #[inline(always)]
+    pub(super) fn new(place: &Place<N>, of_world: N::Mask, masses: &Masses<N>) -> Self {
+        let axes = place.axes(of_world);
+        let mut values = [N::ZERO; D];
+        let mut gradients = [Gradient::NONE; D];
+        for k in 0..DIM.min(D) {
+            values[k] = axes[k].dot(place.between);
+            gradients[k] = place.gradient(axes[k], Angular::ZERO);
+        }
+        if D > DIM {
+            for ((value, axis), number) in place.angles().into_iter().zip(ANGLE_AXES) {
+                if number < D {
+                    values[number] = value;
+                    gradients[number] = Gradient { normal: Vector::ZERO, moments: [axis; 2] };
+                }
+            }
+        }
+        Self { gradients, values, responses: gradients.map(|gradient| masses.response(&gradient)) }
+    }
+
+    /// Applies impulses.
+    #[inline(always)]
+    pub(super) fn push(&self, rows: &[Locked<N>], pair: &mut Pair<N>) {
+        for (response, row) in self.responses.iter().zip(rows) {
+            response.push(pair, row.impulse);
+        }
+    }
+
+    /// Solves the coordinates. With bias, or without it as in the relax pass, where springs are left out.
+    #[inline(always)]
+    pub(super) fn solve(&self, rows: &mut [Locked<N>], pair: &mut Pair<N>, biased: bool) -> Solved<N, D> {
+        let mut k = [[N::ZERO; D]; D];
+        let mut wanted = [N::ZERO; D];
+        let mut takes_part = [N::ZERO; D];
+        for i in 0..D {
+            let row = &rows[i];
+            let soft = &row.softening;
+            takes_part[i] = if biased { row.is_locked } else { row.is_locked * (N::ONE - soft.is_spring) };
+            let own = self.responses[i].along(&self.gradients[i]);
+            let mut rate = self.gradients[i].rate(pair);
+            let mut diagonal = own;
+            if biased {
+                let error = self.values[i] - row.target;
+                let error = if i < DIM { error } else { wrapped(error) };
+                let softness = own * soft.share + soft.more;
+                diagonal = own + softness;
+                rate += soft.bias_rate * error + softness * row.impulse;
+            }
+            wanted[i] = -(rate * takes_part[i]);
+            // A coordinate that is free takes part as a row of its own.
+            k[i][i] = N::select(N::ZERO.lt(takes_part[i]), diagonal, N::ONE);
+            for j in 0..i {
+                k[i][j] = self.responses[i].along(&self.gradients[j]) * (takes_part[i] * takes_part[j]);
+            }
+        }
+        let factors = Factors::of(k);
+        let impulses = factors.solve(wanted);
+        for i in 0..D {
+            rows[i].impulse += impulses[i];
+            self.responses[i].push(pair, impulses[i]);
+        }
+        Solved { takes_part, factors }
+    }
+
+    /// A response that leaves the block solved, and the impulses of the block for each of its own.
+    #[inline(always)]
+    pub(super) fn beside(&self, solved: &Solved<N, D>, mut response: Response<N>) -> (Response<N>, [N; D]) {
+        let shared = core::array::from_fn(|i| response.along(&self.gradients[i]) * solved.takes_part[i]);
+        let kept = solved.factors.solve(shared);
+        for (own, share) in self.responses.iter().zip(kept) {
+            response.add(own, -share);
+        }
+        (response, kept)
+    }
+}
+
+/// An angle within a turn of 0, brought to −π … π.
+#[inline(always)]
+pub(super) fn wrapped<N: Lane>(angle: N) -> N {
+    let (half, turn) = (N::splat(core::f32::consts::PI), N::splat(core::f32::consts::TAU));
+    let angle = N::select(half.lt(angle), angle - turn, angle);
+    N::select(angle.lt(-half), angle + turn, angle)
+}
+
+/// Share of a diagonal element below which its pivot is rounding: the row depends on those before.
+pub(super) const NO_PIVOT: f32 = 1.0e-6;
+
+/// K = L D Lᵀ.
+pub(super) struct Factors<N, const D: usize> {
+    lower: [[N; D]; D],
+    inverse: [N; D],
+}
+
+impl<N: Lane, const D: usize> Factors<N, D> {
+    /// Factors the lower half of a symmetric K that is not negative. Rows that depend on those before, or that nothing
+    /// moves, are left out.
+    #[inline(always)]
+    pub(super) fn of(k: [[N; D]; D]) -> Self {
+        let (mut lower, mut inverse) = (k, [N::ZERO; D]);
+        for j in 0..D {
+            let mut pivot = k[j][j];
+            for m in 0..j {
+                // It is still times d[m].
+                let scaled = lower[j][m] * inverse[m];
+                pivot -= scaled * lower[j][m];
+                lower[j][m] = scaled;
+            }
+            let counts = (k[j][j] * N::splat(NO_PIVOT)).lt(pivot);
+            inverse[j] = N::select(counts, N::ONE / N::select(counts, pivot, N::ONE), N::ZERO);
+            for i in j + 1..D {
+                for m in 0..j {
+                    lower[i][j] -= lower[i][m] * lower[j][m];
+                }
+            }
+        }
+        Self { lower, inverse }
+    }
+
+    /// Solves K x = b.
+    #[inline(always)]
+    pub(super) fn solve(&self, b: [N; D]) -> [N; D] {
+        let mut x = b;
+        for i in 0..D {
+            for m in 0..i {
+                x[i] -= self.lower[i][m] * x[m];
+            }
+        }
+        for i in 0..D {
+            x[i] = x[i] * self.inverse[i];
+        }
+        for i in (0..D).rev() {
+            for m in i + 1..D {
+                x[i] -= self.lower[m][i] * x[m];
+            }
+        }
+        x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn factors_solve_what_is_positive_definite(
+            m in prop::array::uniform6(prop::array::uniform6(-1.0f32..1.0)),
+            b in prop::array::uniform6(-10.0f32..10.0),
+        ) {
+            let k: [[f32; 6]; 6] = core::array::from_fn(|i| core::array::from_fn(|j| {
+                let dot: f32 = (0..6).map(|n| m[i][n] * m[j][n]).sum();
+                dot + if i == j { 0.5 } else { 0.0 }
+            }));
+            let x = Factors::of(k).solve(b);
+            for i in 0..6 {
+                let sum: f32 = (0..6).map(|j| k[i][j] * x[j]).sum();
+                prop_assert!((sum - b[i]).abs() < 1.0e-3, "row {i}: {sum} for {}", b[i]);
+            }
+        }
+    }
+
+    #[test]
+    fn rows_that_nothing_moves_are_left_out() {
+        let k = [[2.0f32, 0.0, 0.0], [0.0, 0.0, 0.0], [2.0, 0.0, 2.0]];
+        let x = Factors::of(k).solve([4.0, 1.0, 4.0]);
+        assert_eq!(x, [2.0, 0.0, 0.0]);
+    }
+}

@@ -1,0 +1,99 @@
+//! The coordinates of a joint in 3D.
+
+use crate::math::{Angular, InvInertia, Lane, Rot, Vector, atan2_lanes};
+
+/// Numbers of coordinates of B's frame in A's.
+pub mod coordinate {
+    /// Along A's x axis, m.
+    pub const X: usize = 0;
+    /// Along A's y axis, m.
+    pub const Y: usize = 1;
+    /// Along A's z axis, m.
+    pub const Z: usize = 2;
+    /// The angle about the x axes, rad.
+    pub const TWIST: usize = 3;
+    /// The part about A's y axis of the rotation vector from A's x axis to B's, rad.
+    pub const SWING_Y: usize = 4;
+    /// The part about A's z axis of that vector, rad.
+    pub const SWING_Z: usize = 5;
+    /// The distance of the two anchors, m.
+    pub const DISTANCE: usize = 6;
+    /// The angle between the x axes, rad.
+    pub const CONE: usize = 7;
+}
+
+/// Number of coordinates.
+pub const AXES: usize = 8;
+/// Number of coordinates that a frame has in another; they come first.
+pub(super) const BLOCK: usize = 6;
+/// Number of angles, those outside of the block included.
+pub(super) const ANGLES: usize = 4;
+/// The angle, by number among angles, that counts turns.
+pub(super) const TURNING: usize = 0;
+
+/// The coordinate of each angle.
+pub(super) const ANGLE_AXES: [usize; ANGLES] =
+    [coordinate::TWIST, coordinate::SWING_Y, coordinate::SWING_Z, coordinate::CONE];
+
+/// Square of the sine of half a swing below which it has no axis.
+const NO_SWING: f32 = 1.0e-12;
+
+/// The angles of B's frame in A's, and the axes about which each grows, as a change of B's angular velocity.
+///
+/// The rotation is a twist about x, then a swing about an axis across it. Twist grows with the angular velocity along the
+/// mean of the two x axes.
+#[inline(always)]
+pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] {
+    let [x, y, z] = Vector::AXES.map(|axis| a.rotate(Vector::splat(axis)));
+    let q = a.inverse().mul(b);
+    let sign = N::select(q.w.lt(N::ZERO), -N::ONE, N::ONE);
+    let (qx, qy, qz, qw) = (q.x * sign, q.y * sign, q.z * sign, q.w * sign);
+    let two = N::splat(2.0);
+    let twist = two * atan2_lanes(qx, qw);
+    // The swing is q times the inverse of the twist.
+    let n = (qx * qx + qw * qw).sqrt();
+    let has_twist = N::ZERO.lt(n);
+    let inverse = N::ONE / N::select(has_twist, n, N::ONE);
+    let (tx, tw) = (qx * inverse, N::select(has_twist, qw * inverse, N::ONE));
+    let (sy, sz) = (tw * qy - tx * qz, tw * qz + tx * qy);
+    let square = sy * sy + sz * sz;
+    let swings = N::splat(NO_SWING).lt(square);
+    let s = N::select(swings, square, N::ONE).sqrt();
+    let cone = two * atan2_lanes(s, n);
+    let factor = N::select(swings, cone / s, two);
+    let axis = Vector::select(swings, y * (sy / s) + z * (sz / s), y);
+    let bx = b.rotate(Vector::splat(Vector::X));
+    let mean = x + bx;
+    // The axes are opposite after half a turn: then twist is not defined, and grows along A's axis.
+    let along = N::ONE + x.dot(bx);
+    let is_defined = N::splat(NO_SWING).lt(along);
+    let twist_axis = Vector::select(is_defined, mean * (N::ONE / N::select(is_defined, along, N::ONE)), x);
+    [(twist, twist_axis), (sy * factor, y), (sz * factor, z), (N::select(swings, cone, N::ZERO), axis)]
+}
+
+/// Number of axes about which bodies turn.
+pub(super) const TURNS: usize = 3;
+
+/// The unit turns.
+#[inline(always)]
+pub(super) fn units<N: Lane>() -> [Angular<N>; TURNS] {
+    Vector::AXES.map(Vector::splat)
+}
+
+/// A vector of a function of each component.
+#[inline(always)]
+pub(super) fn each<N: Lane>(v: Vector<N>, f: impl Fn(N) -> N) -> Vector<N> {
+    Vector { x: f(v.x), y: f(v.y), z: f(v.z) }
+}
+
+/// An inverse of inertia with about no less inertia than given about any axis, in kg·m²: what lacks about the axis of
+/// least inertia is added about all.
+pub(super) fn with_least_inertia(inverse: InvInertia, least: f32) -> InvInertia {
+    let lacks = least - 1.0 / inverse.trace();
+    let more = if lacks > 0.0 { inverse.inverse() } else { InvInertia::ZERO };
+    // A body that does not turn about some axis has no inertia to add to.
+    if more == InvInertia::ZERO {
+        return inverse;
+    }
+    InvInertia { xx: more.xx + lacks, yy: more.yy + lacks, zz: more.zz + lacks, ..more }.inverse()
+}

@@ -1,0 +1,27 @@
+//! Joints: two frames of two bodies, and for each coordinate of one frame in the other whether it is free, locked, limited,
+//! driven or sprung. Kinds of joints are settings of this; none has rows of its own.
+//!
+//! The coordinates that are locked in A's frame are solved as one block, K = J M⁻¹ Jᵀ + Γ, by LDLᵀ. Limits, motors and
+//! distances are one-dimensional rows after it, each in the space that the block leaves (the Schur complement): a limit that
+//! is struck does not open the hinge. Every coordinate is an oscillator, integrated implicitly: with stiffness k and damping c it has Γ = 1 / (h (c + h k)) and the bias
+//! k x / (c + h k). What is rigid has the highest frequency that the substeps resolve. Directions follow the exact motion
+//! of the bodies in every pass, so that long swings keep their length.
+//!
+//! After Catto, "Soft Constraints" (GDC 2011), and his Box2D v3.
+
+mod batch;
+mod block;
+mod def;
+#[cfg_attr(feature = "2d", path = "dim2.rs")]
+#[cfg_attr(feature = "3d", path = "dim3.rs")]
+mod dim;
+mod place;
+mod row;
+mod single;
+mod table;
+
+pub(super) use batch::{JOINT_BATCHES, JointRows, JointView, joints, sort_joints};
+pub use def::{Axis, Drive, Give, JointDef, JointError, JointFrame, Motor, Spring};
+pub use dim::{AXES, coordinate};
+pub(super) use table::Records;
+pub use table::{JointReaction, JointTable};

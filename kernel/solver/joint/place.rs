@@ -1,0 +1,165 @@
+//! Where the bodies of a joint are in a pass.
+
+use super::super::pair::Pair;
+use super::super::{BodyRow, InvMass, RowView};
+use super::dim::{ANGLES, angles};
+use crate::math::{Angular, DIM, InvInertia, Lane, Rot, Vector};
+
+/// The direction in which a coordinate grows: as a change of the bodies' velocities.
+#[derive(Clone, Copy)]
+pub(super) struct Gradient<N> {
+    /// The change along which B moves, and against which A moves.
+    pub(super) normal: Vector<N>,
+    /// The moments of A and of B.
+    pub(super) moments: [Angular<N>; 2],
+}
+
+impl<N: Lane> Gradient<N> {
+    pub(super) const NONE: Self = Self { normal: Vector::ZERO, moments: [Angular::ZERO; 2] };
+
+    /// The rate of the coordinate.
+    #[inline(always)]
+    pub(super) fn rate(&self, pair: &Pair<N>) -> N {
+        pair.along(self.normal, self.moments)
+    }
+}
+
+/// Inverse masses of a joint's bodies.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct Masses<N> {
+    /// Inverse mass along each world axis, 1/kg. 0 along locked axes.
+    pub(super) linear: [Vector<N>; 2],
+    pub(super) angular: [InvInertia<N>; 2],
+}
+
+impl<N: Lane> Masses<N> {
+    pub(super) const NONE: Self = Self { linear: [Vector::ZERO; 2], angular: [InvInertia::ZERO; 2] };
+
+    /// The changes of velocity by a unit impulse along a gradient.
+    #[inline(always)]
+    pub(super) fn response(&self, gradient: &Gradient<N>) -> Response<N> {
+        Response {
+            v: self.linear.map(|inverse| inverse.apply(gradient.normal)),
+            w: core::array::from_fn(|side| self.angular[side].apply(gradient.moments[side])),
+        }
+    }
+}
+
+/// The changes of velocity by a unit impulse. Those of A are against it.
+#[derive(Clone, Copy)]
+pub(super) struct Response<N> {
+    v: [Vector<N>; 2],
+    w: [Angular<N>; 2],
+}
+
+impl<N: Lane> Response<N> {
+    /// How fast another coordinate grows by it.
+    #[inline(always)]
+    pub(super) fn along(&self, g: &Gradient<N>) -> N {
+        (self.v[0] + self.v[1]).dot(g.normal) + self.w[0].dot(g.moments[0]) + self.w[1].dot(g.moments[1])
+    }
+
+    /// Adds the response to another impulse.
+    #[inline(always)]
+    pub(super) fn add(&mut self, other: &Self, impulse: N) {
+        for side in 0..2 {
+            self.v[side] += other.v[side] * impulse;
+            self.w[side] += other.w[side] * impulse;
+        }
+    }
+
+    /// Applies an impulse.
+    #[inline(always)]
+    pub(super) fn push(&self, pair: &mut Pair<N>, impulse: N) {
+        pair.v[0] -= self.v[0] * impulse;
+        pair.w[0] -= self.w[0] * impulse;
+        pair.v[1] += self.v[1] * impulse;
+        pair.w[1] += self.w[1] * impulse;
+    }
+}
+
+/// Where two frames are at the start of the step.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct Start<N> {
+    /// From the centres of mass to the anchors.
+    pub(super) arms: [Vector<N>; 2],
+    /// From A's centre of mass to B's.
+    pub(super) offset: Vector<N>,
+    /// From the frames to the world.
+    pub(super) bases: [Rot<N>; 2],
+}
+
+impl<N: Lane> Start<N> {
+    pub(super) const NONE: Self =
+        Self { arms: [Vector::ZERO; 2], offset: Vector::ZERO, bases: [Rot::IDENTITY; 2] };
+
+    /// The place now.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread writes the bodies.
+    #[expect(unsafe_code, reason = "rows of bodies are shared by threads")]
+    #[inline(always)]
+    pub(super) unsafe fn now(&self, bodies: &RowView<BodyRow>, ids: &[N::Ids; 2]) -> Place<N> {
+        // SAFETY: by the contract.
+        let [(pa, qa), (pb, qb)] = unsafe {
+            [BodyRow::gather_delta::<N>(bodies, &ids[0]), BodyRow::gather_delta::<N>(bodies, &ids[1])]
+        };
+        let [ra, rb] = [qa.rotate(self.arms[0]), qb.rotate(self.arms[1])];
+        let between = self.offset + pb - pa + rb - ra;
+        Place { between, arms: [ra + between, rb], bases: [qa.mul(self.bases[0]), qb.mul(self.bases[1])] }
+    }
+}
+
+/// Where two frames are now.
+#[derive(Clone, Copy)]
+pub(super) struct Place<N> {
+    /// From A's anchor to B's.
+    pub(super) between: Vector<N>,
+    /// From the centres of mass to B's anchor.
+    arms: [Vector<N>; 2],
+    /// From the frames to the world.
+    pub(super) bases: [Rot<N>; 2],
+}
+
+/// Minimum distance of two points, in metres, for which the vector between them has a direction.
+const COINCIDENT: f32 = 1.0e-6;
+
+impl<N: Lane> Place<N> {
+    /// From B's centre of mass to its anchor.
+    #[inline(always)]
+    pub(super) fn arm(&self) -> Vector<N> {
+        self.arms[1]
+    }
+
+    /// The gradient of a shift along a direction, and of a turn.
+    #[inline(always)]
+    pub(super) fn gradient(&self, normal: Vector<N>, turn: Angular<N>) -> Gradient<N> {
+        Gradient { normal, moments: self.arms.map(|arm| arm.cross(normal) + turn) }
+    }
+
+    /// A's axes, or those of the world where the mask is set.
+    #[inline(always)]
+    pub(super) fn axes(&self, of_world: N::Mask) -> [Vector<N>; DIM] {
+        Vector::AXES.map(|axis| {
+            let axis = Vector::splat(axis);
+            Vector::select(of_world, axis, self.bases[0].rotate(axis))
+        })
+    }
+
+    /// The distance of the anchors, and the direction from A's to B's.
+    #[inline(always)]
+    pub(super) fn apart(&self) -> (N, Vector<N>) {
+        let distance = self.between.length();
+        let is_apart = N::splat(COINCIDENT).lt(distance);
+        let scaled = self.between * (N::ONE / N::select(is_apart, distance, N::ONE));
+        (distance, Vector::select(is_apart, scaled, Vector::splat(Vector::X)))
+    }
+
+    /// The angles, and the axes about which they grow.
+    #[inline(always)]
+    pub(super) fn angles(&self) -> [(N, Angular<N>); ANGLES] {
+        angles(self.bases)
+    }
+}

@@ -1,0 +1,307 @@
+//! The joints of `N::WIDTH` lanes.
+#![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
+
+use super::super::batch::{Filling, Pass};
+use super::super::pair::Pair;
+use super::super::{BodyRow, InvMass, MassRow, RowView, Softness, SubstepParams};
+use super::block::{Block, Factors, Locked, Softening};
+use super::def::{Axis, Drive, Give, JointDef, Motor};
+use super::dim::{ANGLE_AXES, AXES, BLOCK, TURNING, TURNS, coordinate, each, units};
+use super::place::{Gradient, Masses, Start};
+use super::single::{MotorRow, Single, turns_near};
+use super::table::{JointReaction, Record};
+use crate::math::{Angular, DIM, Ids, Lane, Vector};
+
+/// Damping ratio of what is rigid. Its frequency is the highest that the substeps resolve, a quarter of their rate.
+const RIGID_DAMPING: f32 = 2.0;
+/// Share of the rate of the substeps that is the frequency of what is rigid.
+const RIGID_FREQUENCY: f32 = 0.25;
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct Row<N: Lane> {
+    ids: [N::Ids; 2],
+    start: Start<N>,
+    masses: Masses<N>,
+    /// Share of the relative velocity that is lost in a substep: linear and angular.
+    damping: [N; 2],
+    /// 1 where the block's axes are those of the world: if all shifts are locked alike.
+    of_world: N,
+    block: [Locked<N>; BLOCK],
+    force: Vector<N>,
+    torque: Angular<N>,
+    inv_h: f32,
+}
+
+impl<N: Lane> Default for Row<N> {
+    fn default() -> Self {
+        Self {
+            ids: [N::Ids::splat(0); 2],
+            start: Start::NONE,
+            masses: Masses::NONE,
+            damping: [N::ZERO; 2],
+            of_world: N::ZERO,
+            block: [Locked::FREE; BLOCK],
+            force: Vector::ZERO,
+            torque: Angular::ZERO,
+            inv_h: 0.0,
+        }
+    }
+}
+
+/// The coefficients of an oscillator: bias rate, share of the mass, and what is added besides.
+fn softening(give: Give, h: f32) -> (f32, f32, f32, bool) {
+    let of_spring = |frequency: f32, damping_ratio: f32| {
+        let s = Softness::new(frequency, damping_ratio, h);
+        (s.bias_rate, if s.mass_scale > 0.0 { s.impulse_scale / s.mass_scale } else { 0.0 })
+    };
+    match give {
+        Give::Rigid => {
+            let (rate, share) = of_spring(RIGID_FREQUENCY / h, RIGID_DAMPING);
+            (rate, share, 0.0, false)
+        }
+        Give::Spring(spring) => {
+            let (rate, share) = of_spring(spring.frequency, spring.damping_ratio);
+            (rate, share, 0.0, true)
+        }
+        Give::Compliance(compliance) => (1.0 / h, 0.0, compliance / (h * h), true),
+    }
+}
+
+impl<N: Lane> Softening<N> {
+    fn set(&mut self, lane: usize, give: Give, h: f32) {
+        let (rate, share, more, is_spring) = softening(give, h);
+        self.bias_rate.set(lane, rate);
+        self.share.set(lane, share);
+        self.more.set(lane, more);
+        self.is_spring.set(lane, f32::from(u8::from(is_spring)));
+    }
+}
+
+impl<N: Lane> MotorRow<N> {
+    fn set(&mut self, lane: usize, motor: &Motor, h: f32) {
+        let (of_mass, besides) = match motor.drive {
+            Drive::Spring(spring) => {
+                let omega = core::f32::consts::TAU * spring.frequency;
+                ([omega * omega, 2.0 * spring.damping_ratio * omega], [0.0; 2])
+            }
+            Drive::Acceleration { stiffness, damping } => ([stiffness, damping], [0.0; 2]),
+            Drive::Force { stiffness, damping } => ([0.0; 2], [stiffness, damping]),
+        };
+        for i in 0..2 {
+            self.of_mass[i].set(lane, of_mass[i]);
+            self.besides[i].set(lane, besides[i]);
+        }
+        self.target_velocity.set(lane, motor.target_velocity);
+        self.target_position.set(lane, motor.target_position);
+        self.most.set(lane, motor.max_force * h);
+    }
+}
+
+/// The value near which an angle is looked for at first: its own if that is between the limits, else their middle.
+fn first_guess(angle: f32, [min, max]: [f32; 2]) -> f32 {
+    match (min.is_finite(), max.is_finite()) {
+        _ if (min..=max).contains(&angle) => angle,
+        (true, true) => 0.5 * (min + max),
+        (true, false) => min,
+        (false, true) => max,
+        (false, false) => angle,
+    }
+}
+
+impl<N: Lane> Single<N> {
+    /// Copies a coordinate into a lane. `angle` is that of the turning coordinate, within a turn.
+    fn set(&mut self, lane: usize, number: usize, record: &Record, angle: f32, params: &SubstepParams) {
+        let axis: &Axis = &record.def.axes[number];
+        match ANGLE_AXES.iter().position(|a| *a == number) {
+            Some(k) => self.about[k].set(lane, 1.0),
+            None if number == coordinate::DISTANCE => self.apart.set(lane, 1.0),
+            None => self.along[number].set(lane, 1.0),
+        }
+        let [min, max] = axis.limits.unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
+        self.limits[0].set(lane, min);
+        self.limits[1].set(lane, max);
+        self.softening.set(lane, axis.give, params.h);
+        let [lower, upper, motor] = record.singles[number].map(|impulse| impulse * params.warm_start);
+        self.impulses[0].set(lane, lower);
+        self.impulses[1].set(lane, upper);
+        if let Some(of) = &axis.motor {
+            self.motor.set(lane, of, params.h);
+            self.motor.impulse.set(lane, motor);
+        }
+        if number == ANGLE_AXES[TURNING] {
+            let target = axis.motor.map_or(0.0, |motor| motor.target_position);
+            let near = match axis.limits {
+                Some(limits) if record.angle.is_nan() => first_guess(angle, limits),
+                Some(_) => record.angle,
+                None => target,
+            };
+            let turns = turns_near(angle, near);
+            self.turns.set(lane, turns);
+            self.near.set(lane, if axis.limits.is_some() { angle + turns } else { target });
+            self.counts_turns.set(lane, f32::from(u8::from(axis.limits.is_some())));
+        }
+    }
+}
+
+/// Whether all shifts are locked at 0 and give way alike, so that any axes serve.
+fn is_locked_alike(def: &JointDef) -> bool {
+    (0..DIM).all(|k| def.axes[k].locked_at() == Some(0.0) && def.axes[k].give == def.axes[0].give)
+}
+
+impl<N: Lane> Row<N> {
+    /// Copies a joint into a lane.
+    pub(super) fn set(
+        &mut self,
+        singles: &mut [Single<N>],
+        lane: usize,
+        record: &Record,
+        bodies: [u32; 2],
+        from: &Filling,
+    ) {
+        let (table, def, params) = (from.input.bodies, &record.def, from.params);
+        let poses = bodies.map(|body| &table.poses[body as usize]);
+        for side in 0..2 {
+            let row = from.input.row_of(bodies[side]);
+            self.ids[side].set(lane, row);
+            let frame = &def.frames[side];
+            let arm = frame.anchor - table[bodies[side]].local_center;
+            self.start.arms[side].set(lane, poses[side].rotation.rotate(arm));
+            self.start.bases[side].set(lane, poses[side].rotation.mul(frame.basis).normalized());
+            // Factors, until the mass is known.
+            self.masses.linear[side].set(lane, from.axes.get(row as usize).copied().unwrap_or(Vector::ONE));
+        }
+        self.inv_h = params.inv_h;
+        self.start.offset.set(lane, (poses[1].center - poses[0].center).to_local());
+        for (share, rate) in self.damping.iter_mut().zip(def.damping) {
+            share.set(lane, rate * params.h / (1.0 + rate * params.h));
+        }
+        self.of_world.set(lane, f32::from(u8::from(is_locked_alike(def))));
+        for (number, locked) in self.block.iter_mut().enumerate().filter(|(k, _)| def.is_in_block(*k)) {
+            locked.is_locked.set(lane, 1.0);
+            locked.target.set(lane, def.axes[number].locked_at().unwrap_or(0.0));
+            locked.softening.set(lane, def.axes[number].give, params.h);
+            locked.impulse.set(lane, record.block[number] * params.warm_start);
+        }
+        let bases = self.start.bases.map(|basis| basis.get(lane));
+        let angle = super::dim::angles::<f32>(bases)[TURNING].0;
+        let numbers = (0..AXES).filter(|k| def.is_single(*k));
+        for (number, single) in numbers.zip(singles) {
+            single.set(lane, number, record, angle, params);
+        }
+    }
+
+    /// Computes derived values, for all lanes at once.
+    #[inline(always)]
+    pub(super) fn finish(&mut self, masses: &[MassRow]) {
+        for side in 0..2 {
+            let (inv_mass, inertia) = MassRow::gather::<N>(masses, &self.ids[side]);
+            self.masses.linear[side] = InvMass::new(inv_mass, self.masses.linear[side]);
+            self.masses.angular[side] = inertia;
+        }
+    }
+
+    fn of_world(&self) -> N::Mask {
+        N::ZERO.lt(self.of_world)
+    }
+
+    /// Runs a pass. All of them are one function, as it is inlined for every width and size of block.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
+    #[inline(always)]
+    pub(super) unsafe fn run<const D: usize>(
+        &mut self,
+        singles: &mut [Single<N>],
+        bodies: &RowView<BodyRow>,
+        params: &SubstepParams,
+        pass: Pass,
+    ) {
+        // SAFETY: by the contract.
+        let (place, mut pair) = unsafe { (self.start.now(bodies, &self.ids), Pair::load(bodies, &self.ids)) };
+        let biased = pass == Pass::Solve;
+        let (arm, of_world) = (place.arm(), self.of_world());
+        let (mut force, mut torque) = (Vector::ZERO, Angular::ZERO);
+        let mut add = |gradient: &Gradient<N>, impulse: N| {
+            force += gradient.normal * impulse;
+            torque += (gradient.moments[1] - arm.cross(gradient.normal)) * impulse;
+        };
+        let rows = &mut self.block[..D];
+        let block = Block::<N, D>::new(&place, of_world, &self.masses);
+        let solved = if pass == Pass::WarmStart {
+            block.push(rows, &mut pair);
+            None
+        } else {
+            Some(block.solve(rows, &mut pair, biased))
+        };
+        for single in singles {
+            let (gradient, value) = single.gradient(&place);
+            let alone = self.masses.response(&gradient);
+            match &solved {
+                None => alone.push(&mut pair, single.impulse()),
+                Some(solved) => {
+                    let at = (&gradient, value);
+                    single.solve(at, alone, (&block, solved, rows), &mut pair, params, biased);
+                    add(&gradient, single.impulse());
+                }
+            }
+        }
+        for (gradient, locked) in block.gradients.iter().zip(rows) {
+            add(gradient, locked.impulse);
+        }
+        (self.force, self.torque) = (force * N::splat(params.inv_h), torque * N::splat(params.inv_h));
+        if solved.is_none() && N::any(N::ZERO.lt(self.damping[0] + self.damping[1])) {
+            self.damp(&mut pair);
+        }
+        // SAFETY: by the contract.
+        unsafe { pair.store(bodies, &self.ids) };
+    }
+
+    /// Takes a share of the relative velocities of the centres of mass, and of the bodies' turning.
+    #[inline(always)]
+    fn damp(&self, pair: &mut Pair<N>) {
+        let [a, b] = self.masses.linear.map(|inverse| InvMass::diagonal(inverse));
+        let masses = each(a + b, |k| {
+            let moves = N::ZERO.lt(k);
+            N::select(moves, N::ONE / N::select(moves, k, N::ONE), N::ZERO)
+        });
+        let impulse = (pair.v[1] - pair.v[0]).scale(masses) * self.damping[0];
+        pair.v[0] += impulse.scale(a);
+        pair.v[1] -= impulse.scale(b);
+        let [ia, ib] = self.masses.angular;
+        let units = units::<N>();
+        let k = core::array::from_fn::<_, TURNS, _>(|i| {
+            core::array::from_fn(|j| units[j].dot(ia.apply(units[i])) + units[j].dot(ib.apply(units[i])))
+        });
+        let relative = (pair.w[1] - pair.w[0]) * self.damping[1];
+        let moments = Factors::of(k).solve(units.map(|unit| unit.dot(relative)));
+        for (unit, moment) in units.into_iter().zip(moments) {
+            pair.w[0] += ia.apply(unit * moment);
+            pair.w[1] -= ib.apply(unit * moment);
+        }
+    }
+
+    /// Copies a lane back into the joint.
+    pub(super) fn store(&self, singles: &[Single<N>], lane: usize, record: &mut Record) {
+        let def = &record.def;
+        let mut reaction = JointReaction {
+            force: self.force.get(lane),
+            torque: self.torque.get(lane),
+            ..JointReaction::default()
+        };
+        for (number, locked) in self.block.iter().enumerate().filter(|(k, _)| def.is_in_block(*k)) {
+            record.block[number] = locked.impulse.get(lane);
+        }
+        let numbers = (0..AXES).filter(|k| def.is_single(*k));
+        for (number, single) in numbers.zip(singles) {
+            let [lower, upper] = single.impulses.map(|impulse| impulse.get(lane));
+            let motor = single.motor.impulse.get(lane);
+            record.singles[number] = [lower, upper, motor];
+            reaction.motors[number] = motor * self.inv_h;
+            if number == ANGLE_AXES[TURNING] && single.counts_turns.get(lane) > 0.0 {
+                record.angle = single.near.get(lane);
+            }
+        }
+        record.reaction = reaction;
+    }
+}

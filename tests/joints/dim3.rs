@@ -1,0 +1,101 @@
+//! 3D parts of the tests of joints: ball and socket, and axes across the plane.
+#![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
+
+use avian::{
+    math::{Quaternion, Scalar, Vector},
+    prelude::*,
+};
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+
+use super::joints::{INERTIA, MASS, Rig};
+
+/// A body without a collider.
+pub fn rod() -> impl Bundle {
+    (RigidBody::Dynamic, Mass(MASS as f32), AngularInertia::new(Vec3::splat(INERTIA as f32)))
+}
+
+/// The angle about z, in radians.
+pub fn angle_of(rotation: Rotation) -> Scalar {
+    2.0 * rotation.z.atan2(rotation.w)
+}
+
+/// The component about z.
+pub fn spin_of(velocity: AngularVelocity) -> Scalar {
+    velocity.0.z
+}
+
+/// The angle between a body's y axis and the world's.
+fn swing(rig: &Rig, body: Entity) -> Scalar {
+    (*rig.get::<Rotation>(body) * Vector::Y).angle_between(Vector::Y)
+}
+
+#[test]
+fn a_ball_falls_over_as_far_as_its_swing_may() {
+    for direction in [Vector::X, Vector::Z, Vector::new(0.6, 0.0, 0.8)] {
+        let mut rig = Rig::new();
+        let post = rig.post(0.0, 0.0);
+        let arm = rig.rod(0.0, 1.0);
+        let joint =
+            SphericalJoint::new(post, arm).with_local_anchor2(Vector::NEG_Y).with_swing_limits(0.0, 0.6);
+        rig.spawn(joint);
+        rig.insert(arm, LinearVelocity(direction * 0.5));
+        let mut widest: Scalar = 0.0;
+        for _ in 0..256 {
+            rig.step();
+            widest = widest.max(swing(&rig, arm));
+        }
+        assert!(widest < 0.6 + 0.02, "{direction}: {widest} rad");
+        assert!((swing(&rig, arm) - 0.6).abs() < 0.01, "it leans on the limit: {}", swing(&rig, arm));
+        assert!((rig.place(arm).length() - 1.0).abs() < 1e-3, "it stays on the ball");
+    }
+}
+
+#[test]
+fn a_twist_ends_at_its_limit() {
+    let mut rig = Rig::weightless();
+    let post = rig.post(0.0, 0.0);
+    let arm = rig.rod(0.0, 0.0);
+    rig.insert(arm, AngularVelocity(Vector::Y * 2.0));
+    rig.spawn(SphericalJoint::new(post, arm).with_twist_limits(-0.5, 0.75));
+    let mut widest: Scalar = 0.0;
+    for _ in 0..128 {
+        rig.step();
+        let turn = rig.get::<Rotation>(arm).0;
+        widest = widest.max(2.0 * turn.y.atan2(turn.w));
+    }
+    assert!(widest > 0.7 && widest < 0.75 + 0.02, "{widest} rad");
+}
+
+#[test]
+fn a_hinge_keeps_its_axis_in_any_frame() {
+    let mut rig = Rig::weightless();
+    let basis = Quaternion::from_rotation_x(0.7) * Quaternion::from_rotation_y(0.4);
+    let post = rig.post(0.0, 0.0);
+    let wheel = rig.rod(0.0, 0.0);
+    let joint = RevoluteJoint::new(post, wheel).with_hinge_axis(Vector::X).with_basis(basis);
+    let axis = basis * Vector::X;
+    // Half of it is about the axis.
+    rig.insert(wheel, AngularVelocity(axis * 2.0 + axis.any_orthonormal_vector() * 2.0));
+    rig.spawn(joint);
+    rig.steps(128);
+    let spin = rig.get::<AngularVelocity>(wheel).0;
+    assert!((spin - axis * 2.0).length() < 0.02, "{spin}");
+    let tilt = (*rig.get::<Rotation>(wheel) * axis).angle_between(axis);
+    assert!(tilt < 0.01, "{tilt} rad");
+}
+
+#[test]
+fn a_second_joint_of_an_entity_replaces_the_first() {
+    let mut rig = Rig::new();
+    let post = rig.post(0.0, 0.0);
+    let rod = rig.rod(0.0, -1.0);
+    let joint = rig.spawn((SphericalJoint::new(post, rod).with_local_anchor2(Vector::Y), JointForces::new()));
+    rig.step();
+    rig.insert(joint, DistanceJoint::new(post, rod).with_limits(0.0, 1.0));
+    rig.steps(8);
+    assert!(rig.app.world().get::<SphericalJoint>(joint).is_none() && rig.acts(joint));
+    rig.remove::<DistanceJoint>(joint);
+    rig.steps(8);
+    assert!(!rig.acts(joint));
+}

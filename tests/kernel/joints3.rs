@@ -1,0 +1,70 @@
+//! Ball joints with limits of swing and twist.
+
+use super::super::extreme::Dice;
+use super::super::sim::Sim;
+use crate::kernel::math::{Rot, Vector};
+use crate::kernel::shape::{Ball, Cuboid, Shape};
+use crate::kernel::solver::coordinate::{CONE, TWIST, X, Z};
+use crate::kernel::solver::{Axis, JointDef, JointFrame};
+use crate::kernel::table::{BodyKind, Velocity};
+
+/// Swing and twist of a body whose axis is its x axis, which hangs down at rest.
+fn swing_and_twist(turn: Rot, rest: Rot) -> (f32, f32) {
+    let q = rest.inverse().mul(turn);
+    let (x, w) = (f64::from(q.x), f64::from(q.w));
+    let axis = q.rotate(Vector::X);
+    let swing = f64::from(axis.y.hypot(axis.z)).atan2(f64::from(axis.x));
+    let mut twist = 2.0 * x.atan2(w);
+    if twist > std::f64::consts::PI {
+        twist -= std::f64::consts::TAU;
+    } else if twist < -std::f64::consts::PI {
+        twist += std::f64::consts::TAU;
+    }
+    (swing as f32, twist as f32)
+}
+
+/// A limb that is thrown about stays within its cone and its twist.
+#[test]
+fn a_limb_keeps_within_cone_and_twist() {
+    for seed in 0..20 {
+        let mut dice = Dice::new(seed);
+        let mut sim = Sim::new();
+        let hold = sim.add(BodyKind::Static, Shape::Ball(Ball { radius: 0.1 }), Vector::ZERO, Rot::IDENTITY);
+        // Its x axis points down.
+        let rest = Rot::from_axis_angle(Vector::Z, -core::f32::consts::FRAC_PI_2);
+        let half = Vector { x: 0.3, y: 0.08, z: 0.1 };
+        let limb = sim.add(BodyKind::Dynamic, Shape::Cuboid(Cuboid { half }), Vector::Y * -0.3, rest);
+        sim.ghost(hold);
+        sim.ghost(limb);
+        let (cone, twist) = (0.3 + dice.unit(), 0.2 + dice.unit());
+        let frames = [
+            JointFrame { anchor: Vector::ZERO, basis: rest },
+            JointFrame { anchor: Vector::X * -0.3, basis: Rot::IDENTITY },
+        ];
+        let def = JointDef { frames, ..JointDef::free([hold, limb], [Vector::ZERO; 2]) }
+            .with(X..=Z, Axis::LOCKED)
+            .with([CONE], Axis::limited(0.0, cone))
+            .with([TWIST], Axis::limited(-twist, 0.5 * twist));
+        sim.join(def).unwrap();
+        let mut angular = || Vector { x: dice.signed(), y: 3.0 * dice.signed(), z: dice.signed() } * 10.0;
+        let (mut most_swing, mut most_twist) = (0.0f32, [0.0f32; 2]);
+        for step in 0..240 {
+            if step % 60 == 0 {
+                let angular = angular();
+                let linear = angular.cross(Vector::Y * -0.3);
+                sim.bodies.set_velocity(limb, Velocity { linear, angular });
+            }
+            sim.step();
+            let frame = sim.bodies.frame(limb);
+            let (swing, turn) = swing_and_twist(frame.rotation, rest);
+            most_swing = most_swing.max(swing);
+            most_twist = [most_twist[0].min(turn), most_twist[1].max(turn)];
+            let gap = frame.transform(Vector::X * -0.3).to_local().length();
+            assert!(gap < 0.02, "seed {seed}, step {step}: open by {gap} m");
+        }
+        let past = [most_swing - cone, -twist - most_twist[0], most_twist[1] - 0.5 * twist];
+        let most = past.map(f32::to_degrees).into_iter().fold(f32::MIN, f32::max);
+        assert!(most < 2.0, "seed {seed}: {past:?} rad past cone {cone} and twist {twist}");
+        assert!(most_swing > 0.2, "seed {seed}: it swings by {most_swing} rad only");
+    }
+}
