@@ -113,28 +113,9 @@ pub(crate) fn watch(app: &mut App) {
         return;
     }
     app.init_resource::<LifecycleQueue>();
-    note_body::<RigidBody>(app);
-    note_body::<RigidBodyDisabled>(app);
-    note_body::<Disabled>(app);
-    note_collider::<Collider>(app);
-    note_collider::<CustomShape>(app);
-    note_collider::<ColliderOf>(app);
-    note_collider::<ColliderDisabled>(app);
-    note_collider::<CollisionLayers>(app);
-    note_collider::<Sensor>(app);
-    note_collider::<CollisionEventsEnabled>(app);
-    note_collider::<CollidingEntities>(app);
-    note_collider::<ActiveCollisionHooks>(app);
-    note_collider::<CollisionHitsEnabled>(app);
-    note_collider::<Disabled>(app);
-    app.add_observer(|on: On<Add, BodyEssentials>, mut queue: ResMut<LifecycleQueue>| {
-        queue.note_body(on.entity);
-        queue.note_collider(on.entity);
-    })
-    .add_observer(|on: On<Remove, BodyEssentials>, mut queue: ResMut<LifecycleQueue>| {
-        queue.note_body(on.entity);
-        queue.note_collider(on.entity);
-    });
+    app.add_observer(note_body::<Insert>).add_observer(note_body::<Remove>);
+    app.add_observer(note_collider::<Insert>).add_observer(note_collider::<Remove>);
+    app.add_observer(note_essentials::<Add>).add_observer(note_essentials::<Remove>);
     app.add_observer(lose_body).add_observer(lose_collider);
 
     let world = app.world_mut();
@@ -147,16 +128,36 @@ pub(crate) fn watch(app: &mut App) {
     queue.colliders.extend(colliders);
 }
 
-fn note_body<C: Component>(app: &mut App) {
-    app.add_observer(|on: On<Insert, C>, mut queue: ResMut<LifecycleQueue>| queue.note_body(on.entity))
-        .add_observer(|on: On<Remove, C>, mut queue: ResMut<LifecycleQueue>| queue.note_body(on.entity));
+/// Components whose coming and going may change a body.
+type OfBodies = (RigidBody, RigidBodyDisabled, Disabled);
+
+/// Components whose coming and going may change a collider.
+type OfColliders = (
+    Collider,
+    CustomShape,
+    ColliderOf,
+    ColliderDisabled,
+    CollisionLayers,
+    Sensor,
+    CollisionEventsEnabled,
+    CollidingEntities,
+    ActiveCollisionHooks,
+    CollisionHitsEnabled,
+    Disabled,
+);
+
+// One observer for many components: each observer is compiled like a system.
+fn note_body<E: EntityEvent>(on: On<E, OfBodies>, mut queue: ResMut<LifecycleQueue>) {
+    queue.note_body(on.event_target());
 }
 
-fn note_collider<C: Component>(app: &mut App) {
-    app.add_observer(|on: On<Insert, C>, mut queue: ResMut<LifecycleQueue>| queue.note_collider(on.entity))
-        .add_observer(|on: On<Remove, C>, mut queue: ResMut<LifecycleQueue>| {
-            queue.note_collider(on.entity);
-        });
+fn note_collider<E: EntityEvent>(on: On<E, OfColliders>, mut queue: ResMut<LifecycleQueue>) {
+    queue.note_collider(on.event_target());
+}
+
+fn note_essentials<E: EntityEvent>(on: On<E, BodyEssentials>, mut queue: ResMut<LifecycleQueue>) {
+    queue.note_body(on.event_target());
+    queue.note_collider(on.event_target());
 }
 
 /// Queues colliders that were mutated, and moved ones without a body in the simulation.

@@ -6,24 +6,20 @@
 //! ```
 
 use bevy_app::App;
-use bevy_ecs::{component::Mutable, entity_disabling::Disabled, prelude::*, system::SystemChangeTick};
+use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemChangeTick};
 
 use super::{
     JointCollisionDisabled, JointDamping, JointDisabled,
     changes::each_changed,
-    dim::{ChangedJoints, IsJoint, each_kind},
-    kind::{EntityConstraint, JointKind, KindVisitor},
+    dim::{ChangedJoints, IsJoint, Kinds},
     table::Joints,
 };
 use crate::scan::Since;
 
 /// Adds the observers, and notes joints that were spawned before.
 pub(crate) fn watch(app: &mut App) {
-    each_kind(&mut Watch { app });
-    note_setting::<JointDisabled>(app);
-    note_setting::<JointCollisionDisabled>(app);
-    note_setting::<JointDamping>(app);
-    note_setting::<Disabled>(app);
+    app.add_observer(note_joint::<Insert>).add_observer(note_joint::<Remove>);
+    app.add_observer(note_settings::<Insert>).add_observer(note_settings::<Remove>);
     let world = app.world_mut();
     let joints: Vec<Entity> = world.query_filtered::<Entity, IsJoint>().iter(world).collect();
     let mut known = world.resource_mut::<Joints>();
@@ -34,33 +30,19 @@ pub(crate) fn watch(app: &mut App) {
     }
 }
 
-/// Observes each kind of joint.
-struct Watch<'a> {
-    app: &'a mut App,
+fn note_joint<E: EntityEvent>(on: On<E, Kinds>, mut joints: ResMut<Joints>) {
+    joints.note(on.event_target());
 }
 
-impl KindVisitor for Watch<'_> {
-    fn visit<J: JointKind + EntityConstraint<2> + Component<Mutability = Mutable>>(&mut self) {
-        self.app
-            .add_observer(|on: On<Insert, J>, mut joints: ResMut<Joints>| joints.note(on.entity))
-            .add_observer(|on: On<Remove, J>, mut joints: ResMut<Joints>| joints.note(on.entity));
-    }
-}
+/// Components beside joints that change them.
+type Settings = (JointDisabled, JointCollisionDisabled, JointDamping, Disabled);
 
-/// Observes a component beside joints.
-fn note_setting<C: Component>(app: &mut App) {
-    app.add_observer(|on: On<Insert, C>, known: Query<(), IsKnown>, joints: ResMut<Joints>| {
-        note_known(on.entity, &known, joints);
-    })
-    .add_observer(|on: On<Remove, C>, known: Query<(), IsKnown>, joints: ResMut<Joints>| {
-        note_known(on.entity, &known, joints);
-    });
-}
-
-/// The filter for entities with a joint, disabled or not.
-type IsKnown = (IsJoint, Allow<Disabled>);
-
-fn note_known(entity: Entity, known: &Query<(), IsKnown>, mut joints: ResMut<Joints>) {
+fn note_settings<E: EntityEvent>(
+    on: On<E, Settings>,
+    known: Query<(), (IsJoint, Allow<Disabled>)>,
+    mut joints: ResMut<Joints>,
+) {
+    let entity = on.event_target();
     if known.contains(entity) {
         joints.note(entity);
     }

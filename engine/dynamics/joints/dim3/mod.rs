@@ -34,8 +34,11 @@ pub(crate) fn each_kind(visitor: &mut impl KindVisitor) {
 
 /// Registers each kind of joint for reflection.
 pub(crate) fn register_kinds(app: &mut App) {
-    app.register_type::<(FixedJoint, DistanceJoint, PrismaticJoint, RevoluteJoint, SphericalJoint)>();
+    app.register_type::<Kinds>();
 }
+
+/// All kinds of joints.
+pub(crate) type Kinds = (FixedJoint, DistanceJoint, PrismaticJoint, RevoluteJoint, SphericalJoint);
 
 /// The filter for entities with a joint.
 pub(crate) type IsJoint = Or<(

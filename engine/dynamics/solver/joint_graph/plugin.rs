@@ -46,9 +46,11 @@ impl<T: Component + EntityConstraint<2>> Plugin for JointGraphPlugin<T> {
                 commands.entity(on.entity).try_remove::<JointComponentId>();
             }
         });
-        follow::<T, JointDisabled>(app, own);
-        follow::<T, Disabled>(app, own);
-        follow::<T, JointCollisionDisabled>(app, own);
+        app.add_observer(move |on: On<Insert, Settings>, mut edges: Edges<T>| edges.refresh(on.entity, own))
+            // The component is still there, and the joint may leave with it: the edge is refreshed after both.
+            .add_observer(move |on: On<Remove, Settings>, mut commands: Commands| {
+                commands.run_system_cached_with(refresh::<T>, (on.entity, own));
+            });
 
         // Plugins are built in order, and so run their systems: edges get the same ids in every run.
         let place = app.world().resource::<Places>().0;
@@ -64,14 +66,8 @@ impl<T: Component + EntityConstraint<2>> Plugin for JointGraphPlugin<T> {
     }
 }
 
-/// Refreshes the edges of joints where another component is inserted or removed.
-fn follow<T: Component + EntityConstraint<2>, C: Component>(app: &mut App, own: ComponentId) {
-    app.add_observer(move |on: On<Insert, C>, mut edges: Edges<T>| edges.refresh(on.entity, own))
-        // The component is still there, and the joint may leave with it: the edge is refreshed after both.
-        .add_observer(move |on: On<Remove, C>, mut commands: Commands| {
-            commands.run_system_cached_with(refresh::<T>, (on.entity, own));
-        });
-}
+/// Components beside a joint that its edge follows from.
+type Settings = (JointDisabled, Disabled, JointCollisionDisabled);
 
 /// Refreshes the edge of a joint.
 fn refresh<T: Component + EntityConstraint<2>>(
