@@ -447,8 +447,8 @@ fn issue_a_collider_without_layers_went_through_everything() {
 #[test]
 fn issue_a_sensor_made_of_a_solid_collider_found_no_new_partners() {
     let mut app = app();
-    app.world_mut().spawn((RigidBody::Static, block(), at(0.0, 0.0)));
-    // Without a body, so that it forms no pair with the other one.
+    // Without bodies, so that they form no pair.
+    app.world_mut().spawn((block(), at(0.0, 0.0)));
     let wall = app.world_mut().spawn((block(), at(0.5, 0.0))).id();
     steps(&mut app, 5);
     assert_eq!(app.world().resource::<avian::collision::CollisionDiagnostics>().contact_count, 0);

@@ -30,6 +30,29 @@ fn a_ray_from_inside_of_a_solid_hits_at_once_without_a_normal() {
 }
 
 #[test]
+fn hits_tell_their_points() {
+    let mut app = app();
+    let body = app.world_mut().spawn((RigidBody::Static, shape(1), at(3.0))).id();
+    step(&mut app);
+    let (origin, direction) =
+        (Vector::Y * -1.2, Dir::new(Vector::X * 5.0 + Vector::Y * 2.0).expect("not zero"));
+    let (ray, cast) = ask(&mut app, move |q| {
+        let config = ShapeCastConfig::from_max_distance(50.0);
+        let cast = q.cast_shape(&shape(1), origin, Default::default(), direction, &config, &ALL);
+        (q.cast_ray(origin, direction, 50.0, true, &ALL), cast)
+    });
+    let (ray, cast) = (ray.expect("it is ahead"), cast.expect("it is ahead"));
+    let off = |shape_at: Vector, point: Vector| {
+        shape(1).distance_to_point(shape_at, Rotation::default(), point, false).abs()
+    };
+    let wall = app.world().get::<Position>(body).expect("a pose").0;
+    assert!(off(wall, ray.point(origin, direction)) < 1.0e-4 && ray.distance > 1.0, "{ray:?}");
+    let stop = cast.point(origin, direction);
+    assert!(off(wall, cast.point1) < 1.0e-3 && off(stop, cast.point2) < 1.0e-3, "{cast:?} at {stop}");
+    assert!(cast.point1.distance(cast.point2) < 1.0e-3);
+}
+
+#[test]
 fn callbacks_stop_a_query_with_false() {
     let mut app = app();
     for x in [0.0, 0.1, 0.2] {

@@ -176,15 +176,16 @@ impl ProxyTable {
         }
     }
 
-    /// The query for new pairs of a collider that moved. Pairs in which neither side can be pushed matter to sensors
-    /// only, and are filtered later.
+    /// The query for new pairs of a collider that moved. What is static forms pairs with what is dynamic or kinematic. Pairs
+    /// in which neither side has a body matter to sensors only, and are filtered later.
     pub(crate) fn mover(&self, id: u32, aabb: Aabb) -> Option<Mover> {
         let kind = self.kind(id)?;
         let dynamic = PairMask::only(TreeKind::Dynamic);
         let moving = dynamic.with(PairMask::only(TreeKind::Kinematic));
         let mask = match kind {
-            TreeKind::Static => moving.with(PairMask::only(TreeKind::Standalone)),
-            TreeKind::Standalone | TreeKind::Kinematic | TreeKind::Dynamic => PairMask::ALL,
+            TreeKind::Static => moving,
+            TreeKind::Standalone => moving.with(PairMask::only(TreeKind::Standalone)),
+            TreeKind::Kinematic | TreeKind::Dynamic => PairMask::ALL,
         };
         Some(Mover { id, kind, mask, aabb })
     }

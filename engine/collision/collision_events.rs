@@ -19,9 +19,11 @@
 //! collision, and a collider that moves to another body ends none with what it still touches.
 //!
 //! Colliders touch from the step in which their surfaces meet, or push each other, until the surfaces are 2 cm (times the
-//! length unit) apart. So what rattles on the ground ends no collision with it. Sensors touch while they overlap. A pair of which no body can be
-//! pushed is reported if one is a [`Sensor`](super::collider::Sensor), or one is kinematic. Colliders of static bodies are
-//! no pair, sensor or not.
+//! length unit) apart. So what rattles on the ground ends no collision with it. Sensors touch while they overlap.
+//!
+//! A pair is reported if one of its bodies is dynamic or kinematic, and a pair of colliders without bodies if one is a
+//! [`Sensor`](super::collider::Sensor). Colliders of static bodies are no pair with each other or with a collider without a
+//! body, sensor or not: a trigger zone is not told of the floor below it.
 //!
 //! ```
 //! # use avian::prelude::*;

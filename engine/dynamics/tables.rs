@@ -305,11 +305,11 @@ impl Reporter<'_> {
 }
 
 /// Whether two colliders of different bodies may form a contact: both are active, their layers interact, and one of them
-/// can be pushed, is a sensor or belongs to a kinematic body.
+/// belongs to a dynamic or kinematic body. Of two without a body one must be a sensor.
 pub(crate) fn may_collide(bodies: &BodyTable, colliders: &ColliderTable, pair: [u32; 2]) -> bool {
     let [a, b] = pair.map(|id| &colliders[id].def);
     let moves = |body: u32| body != NONE && bodies[body].kind != BodyKind::Static;
-    let detects = a.flags.sensor || b.flags.sensor;
+    let detects = [a.body, b.body] == [NONE; 2] && (a.flags.sensor || b.flags.sensor);
     let active = !(a.flags.inactive || b.flags.inactive);
     active && (moves(a.body) || moves(b.body) || detects) && a.layers.interacts_with(b.layers)
 }

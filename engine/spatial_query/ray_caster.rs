@@ -240,6 +240,29 @@ pub struct RayHitData {
     pub normal: Vector,
 }
 
+impl RayHitData {
+    /// The point where the ray hits, in the world, in metres. Takes the origin and direction that the ray was cast with.
+    ///
+    /// [`RayCaster::get_global_point`] does the same for the hits of a caster.
+    ///
+    /// ```
+    /// # use avian::prelude::*;
+    /// # use bevy_ecs::prelude::*;
+    /// # use bevy_math::Dir;
+    /// fn shoot(queries: SpatialQuery, gun: Single<&Position, With<Gun>>) {
+    ///     let (origin, direction) = (gun.0, Dir::X);
+    ///     if let Some(hit) = queries.cast_ray(origin, direction, 100.0, true, &SpatialQueryFilter::default()) {
+    ///         println!("{} is hit at {}", hit.entity, hit.point(origin, direction));
+    ///     }
+    /// }
+    /// # #[derive(Component)]
+    /// # struct Gun;
+    /// ```
+    pub fn point(&self, origin: Vector, direction: Dir) -> Vector {
+        origin + VectorF32::from(direction).adjust_precision() * self.distance
+    }
+}
+
 impl MapEntities for RayHitData {
     fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
         self.entity = mapper.get_mapped(self.entity);

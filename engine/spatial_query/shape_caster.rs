@@ -12,7 +12,7 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use super::{SpatialQueryFilter, frame::CasterFrame};
 use crate::{
     collision::collider::Collider,
-    math::{Dir, RotationValue, Scalar, Vector},
+    math::{AdjustPrecision, Dir, RotationValue, Scalar, Vector, VectorF32},
     physics_transform::Rotation,
 };
 
@@ -332,6 +332,16 @@ pub struct ShapeHitData {
     pub normal1: Vector,
     /// The outward unit normal of the shape that was cast, in the world.
     pub normal2: Vector,
+}
+
+impl ShapeHitData {
+    /// The point where the shape stops: its origin when they meet, in the world, in metres. Takes the origin and direction
+    /// that the shape was cast with.
+    ///
+    /// [`point1`](Self::point1) and [`point2`](Self::point2) are where the surfaces meet.
+    pub fn point(&self, origin: Vector, direction: Dir) -> Vector {
+        origin + VectorF32::from(direction).adjust_precision() * self.distance
+    }
 }
 
 impl MapEntities for ShapeHitData {

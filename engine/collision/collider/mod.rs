@@ -65,6 +65,9 @@ pub struct ColliderDisabled;
 
 /// Makes a collider a sensor: it detects contacts, but does not collide and has no mass.
 ///
+/// It is told of what dynamic and kinematic bodies carry, and on such a body of static colliders, too. Without a body it is
+/// told of other colliders without one, and not of static floors and walls.
+///
 /// ```
 /// # use avian::prelude::*;
 /// # use bevy_ecs::prelude::*;

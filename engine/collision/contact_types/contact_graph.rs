@@ -134,7 +134,7 @@ impl ContactGraph {
     /// Returns `None` if the pair has a contact or was added already. The id is [`ContactId::PLACEHOLDER`], as the
     /// contact gets its own when it is made. Bodies and flags of `contact_edge` are not used: they follow from the
     /// colliders. No contact is made of a collider with itself or one of the same body, of layers that do not interact,
-    /// and of two that cannot move unless one is a sensor.
+    /// and of two without a dynamic or kinematic body, unless both have no body and one is a sensor.
     pub fn add_edge(&mut self, contact_edge: ContactEdge) -> Option<ContactId> {
         self.add_edge_with(contact_edge, |_| ())
     }
