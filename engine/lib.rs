@@ -130,7 +130,7 @@
 //! # Units
 //!
 //! Metres, seconds, kilograms and radians. If a metre is 100 pixels in your game, set [`PhysicsPlugins::with_length_unit`] to
-//! 100.
+//! 100, and [`Gravity`](prelude::Gravity) to 981.
 //!
 //! # Features
 //!

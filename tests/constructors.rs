@@ -102,7 +102,7 @@ fn half(collider: &Collider) -> Scalar {
 }
 
 /// The warnings that a closure gives on this thread.
-fn warnings(run: impl FnOnce()) -> Vec<String> {
+pub fn warnings(run: impl FnOnce()) -> Vec<String> {
     #[derive(Clone, Default)]
     struct Lines(Arc<Mutex<Vec<u8>>>);
     impl Write for Lines {

@@ -172,10 +172,10 @@ fn the_panel_shows_each_value_while_it_is_enabled() {
     spawn_boxes(&mut app);
     steps(&mut app, 3);
     let shown = rows(&mut app);
-    for expected in ["dynamic bodies", "contact count", "total step time", "miscellaneous"] {
+    for expected in ["Dynamic bodies", "Contact count", "Total step time", "Miscellaneous"] {
         assert!(shown.iter().any(|[name, _]| name == expected), "{expected}: {shown:?}");
     }
-    assert!(shown.contains(&["colliders".to_string(), "4".to_string()]), "{shown:?}");
+    assert!(shown.contains(&["Colliders".to_string(), "4".to_string()]), "{shown:?}");
     let world = app.world_mut();
     assert_eq!(world.query::<&PhysicsDiagnosticsUiNode>().iter(world).count(), 1);
 
@@ -190,5 +190,50 @@ fn the_panel_shows_each_value_while_it_is_enabled() {
     app.world_mut().resource_mut::<PhysicsDiagnosticsUiSettings>().enabled = true;
     steps(&mut app, 2);
     let shown = rows(&mut app);
-    assert!(shown.iter().any(|[name, _]| name == "shots fired"), "{shown:?}");
+    assert!(shown.iter().any(|[name, _]| name == "Shots fired"), "{shown:?}");
+}
+
+/// Each heading of the panel with the names below it.
+fn panel(app: &mut App) -> Vec<(String, Vec<String>)> {
+    let world = app.world_mut();
+    let panel = world.query_filtered::<&Children, With<PhysicsDiagnosticsUiNode>>().single(world);
+    let text = |entity: Entity| world.get::<Text>(entity).map(|text| text.0.clone());
+    let mut groups: Vec<(String, Vec<String>)> = Vec::new();
+    for line in panel.expect("one panel").iter() {
+        match (text(line), world.get::<Children>(line)) {
+            (Some(heading), _) => groups.push((heading, vec![])),
+            (None, row) => {
+                let name = row.and_then(|row| text(row[0])).expect("a row begins with its name");
+                groups.last_mut().expect("a heading comes first").1.push(name);
+            }
+        }
+    }
+    groups
+}
+
+#[test]
+fn the_panel_groups_its_rows_under_headings() {
+    let mut app = app();
+    app.add_plugins((PhysicsDiagnosticsUiPlugin, PhysicsPickingPlugin));
+    app.register_physics_diagnostics::<Shots>();
+    app.finish();
+    steps(&mut app, 2);
+    let panel = panel(&mut app);
+    let below = |heading: &str| {
+        let mut all = panel.iter().filter(|group| group.0 == heading);
+        let rows = all.next().map(|group| group.1.clone()).unwrap_or_default();
+        assert!(all.next().is_none(), "one heading {heading}: {panel:?}");
+        rows
+    };
+    assert_eq!(below("Collision"), ["Broad phase", "Update contacts", "Contact count"]);
+    assert_eq!(below("Collider tree"), ["Optimize", "Update"]);
+    assert_eq!(below("Spatial query"), ["Update ray casters", "Update shape casters"]);
+    assert_eq!(below("Whole step"), ["Total step time", "Step number", "Miscellaneous"]);
+    assert_eq!(below("Picking"), ["Update hits"]);
+    assert_eq!(below("Game"), ["Reload", "Shots fired"]);
+    assert_eq!(below("Entity count").len(), 5);
+    assert!(below("Solver").len() > 10);
+    let rows: usize = panel.iter().map(|group| group.1.len()).sum();
+    let world = app.world_mut();
+    assert_eq!(rows + panel.len() + rows, world.query::<&Text>().iter(world).count());
 }

@@ -182,7 +182,7 @@ fn contact_normals_are_as_long_as_the_force() {
     app.world_mut().spawn((
         RigidBody::Dynamic,
         cube(0.5),
-        Mass(3.0),
+        Mass(1.5),
         SleepingDisabled,
         Transform::from_xyz(0.0, 0.5, 0.0),
     ));
@@ -194,7 +194,69 @@ fn contact_normals_are_as_long_as_the_force() {
     let lines = if Vector::AXES.len() == 2 { 3 } else { 5 };
     let shafts = points.chunks(2 * lines).map(|arrow| arrow[0].0.distance(arrow[1].0));
     let sum: f32 = shafts.sum();
-    assert!((sum - 30.0 * scale as f32).abs() < 0.02 * sum, "{sum} m for 30 N");
+    assert!((sum - 15.0 * scale as f32).abs() < 0.02 * sum, "{sum} m for 15 N");
+}
+
+#[test]
+fn normals_of_heavy_loads_are_a_metre_long() {
+    for (limit, unit, longest) in [(Some(1.0), 1.0, 1.0), (Some(0.5), 2.0, 1.0), (None, 1.0, 25.0)] {
+        let mut app = app(PhysicsGizmos::contact_normals(RED).with_max_contact_normal_length(limit));
+        assert_eq!(PhysicsGizmos::default().max_contact_normal_length, Some(1.0));
+        app.insert_resource(Gravity(Vector::NEG_Y * 10.0));
+        app.insert_resource(avian::dynamics::solver::PhysicsLengthUnit(unit));
+        app.world_mut().spawn((RigidBody::Static, cube(10.0), Transform::from_xyz(0.0, -10.0, 0.0)));
+        let block = (RigidBody::Dynamic, cube(0.5), Transform::from_xyz(0.0, 0.5, 0.0));
+        app.world_mut().spawn((block, Mass(400.0), SleepingDisabled));
+        (0..60).for_each(|_| frame(&mut app));
+        let lines = if Vector::AXES.len() == 2 { 3 } else { 5 };
+        let points = drawn(&app);
+        let shafts = points.chunks(2 * lines).map(|arrow| arrow[0].0.distance(arrow[1].0));
+        let most = shafts.fold(0.0, f32::max);
+        assert!(most > longest * 0.99 && (limit.is_none() || most < 1.001), "{limit:?}: {most} m");
+    }
+}
+
+/// The color of the outlines within 1 m of a place on the X axis.
+fn color_at(app: &App, x: f32) -> LinearRgba {
+    let near = |point: &Vec3| (point.x - x).abs() < 1.0;
+    let mut colors: Vec<_> =
+        drawn(app).iter().filter(|(point, _)| near(point)).map(|(_, color)| *color).collect();
+    colors.dedup();
+    assert_eq!(colors.len(), 1, "one color at {x}");
+    colors[0]
+}
+
+#[test]
+fn outlines_tell_what_a_collider_is() {
+    let spawn = |app: &mut App| {
+        app.insert_resource(Gravity(Vector::ZERO));
+        let world = app.world_mut();
+        let at = |x: f32| Transform::from_xyz(x, 0.0, 0.0);
+        world.spawn((RigidBody::Dynamic, cube(0.5), at(0.0), SleepingDisabled));
+        world.spawn((RigidBody::Kinematic, cube(0.5), at(5.0), LinearVelocity(Vector::Y)));
+        world.spawn((RigidBody::Static, cube(0.5), at(10.0)));
+        world.spawn((cube(0.5), at(15.0)));
+        world.spawn((RigidBody::Static, cube(0.5), at(20.0), Sensor));
+        world.spawn((RigidBody::Static, cube(0.5), at(25.0), DebugRender::collider(GREEN)));
+        (0..3).for_each(|_| frame(app));
+    };
+    let gizmos = PhysicsGizmos::default;
+    let color = |color: Option<Color>| LinearRgba::from(color.expect("a default"));
+    let mut app = app(gizmos().without_axes());
+    spawn(&mut app);
+    let all = [0.0, 5.0, 10.0, 15.0, 20.0].map(|x| color_at(&app, x));
+    let kinds = [gizmos().collider_color, gizmos().kinematic_color, gizmos().static_color];
+    let [dynamic, kinematic, fixed] = kinds.map(color);
+    assert_eq!(all, [dynamic, kinematic, fixed, fixed, color(gizmos().sensor_color)]);
+    assert!([kinematic, fixed, all[4]].iter().all(|color| *color != dynamic) && kinematic != fixed);
+    assert_eq!(color_at(&app, 25.0), GREEN.into(), "its own");
+    // One color that the app chose is that of all.
+    let mut app = self::app(gizmos().without_axes().with_collider_color(RED));
+    spawn(&mut app);
+    assert!([0.0, 5.0, 10.0, 15.0, 20.0].iter().all(|x| color_at(&app, *x) == RED.into()));
+    let mut app = self::app(gizmos().without_axes().without_colliders());
+    spawn(&mut app);
+    assert!(drawn(&app).iter().all(|(point, _)| (point.x - 25.0).abs() < 1.0), "only its own");
 }
 
 #[test]

@@ -187,6 +187,7 @@ without! {
     without_broad_phase: BvhBroadPhasePlugin => moves, falls_through, is_attached;
     without_transforms: PhysicsTransformPlugin => moves_unseen, rests, is_attached;
     without_interpolation: PhysicsInterpolationPlugin => moves, rests, is_attached;
+    without_length_unit_check: LengthUnitCheckPlugin => moves, rests, is_attached;
     without_sweeps: CcdPlugin => moves, rests, is_attached;
     without_casters: SpatialQueryPlugin => moves, rests, is_attached;
     without_joints: JointPlugin => moves, rests, is_attached;

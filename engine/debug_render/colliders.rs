@@ -12,8 +12,8 @@ use super::{
     outline::outline,
 };
 use crate::{
-    collision::collider::{Collider, ColliderDisabled, collider_hierarchy::ColliderOf},
-    dynamics::rigid_body::sleeping::Sleeping,
+    collision::collider::{Collider, ColliderDisabled, Sensor, collider_hierarchy::ColliderOf},
+    dynamics::rigid_body::{RigidBody, sleeping::Sleeping},
 };
 
 /// The outline of each collider, and the tick at which the collider was as it is there.
@@ -26,19 +26,21 @@ const SPARE: usize = 64;
 /// Draws the outlines of colliders.
 pub(super) fn draw_colliders(
     colliders: Query<
-        (Entity, Ref<Collider>, DrawnPose, Option<&ColliderOf>, Option<&DebugRender>),
+        (Entity, Ref<Collider>, DrawnPose, Option<&ColliderOf>, Has<Sensor>, Option<&DebugRender>),
         Without<ColliderDisabled>,
     >,
+    bodies: Query<&RigidBody>,
     sleeping: Query<(), With<Sleeping>>,
     hidden: HiddenMeshes,
     mut outlines: Local<Outlines>,
     mut gizmos: Gizmos<PhysicsGizmos>,
 ) {
-    let general = style(gizmos.config_ext, None);
-    let general_colors = colors(&general);
+    let general =
+        Kind::ALL.map(|kind| colors(&style(gizmos.config_ext, None), kind.color(gizmos.config_ext)));
     let mut drawn = 0;
-    for (entity, collider, pose, body, own) in &colliders {
-        let colors = own.map_or(general_colors, colors);
+    for (entity, collider, pose, body, is_sensor, own) in &colliders {
+        let kind = Kind::of(is_sensor, body.and_then(|of| bodies.get(of.body).ok()));
+        let colors = own.map_or(general[kind as usize], |own| colors(own, own.collider_color));
         let Some([awake, asleep]) = colors.filter(|_| pose.is_shown(&hidden)) else { continue };
         let color = if sleeps(body, &sleeping) { asleep } else { awake };
         let changed = collider.last_changed();
@@ -54,8 +56,42 @@ pub(super) fn draw_colliders(
     }
 }
 
+/// The kinds of colliders that have a color of their own.
+#[derive(Clone, Copy)]
+enum Kind {
+    Dynamic,
+    Kinematic,
+    /// Without a body, too.
+    Static,
+    Sensor,
+}
+
+impl Kind {
+    const ALL: [Self; 4] = [Self::Dynamic, Self::Kinematic, Self::Static, Self::Sensor];
+
+    fn of(is_sensor: bool, body: Option<&RigidBody>) -> Self {
+        match body {
+            _ if is_sensor => Self::Sensor,
+            Some(RigidBody::Dynamic) => Self::Dynamic,
+            Some(RigidBody::Kinematic) => Self::Kinematic,
+            Some(RigidBody::Static) | None => Self::Static,
+        }
+    }
+
+    /// The color of the kind. Without that of all colliders none is drawn.
+    fn color(self, gizmos: &PhysicsGizmos) -> Option<Color> {
+        let own = match self {
+            Self::Dynamic => None,
+            Self::Kinematic => gizmos.kinematic_color,
+            Self::Static => gizmos.static_color,
+            Self::Sensor => gizmos.sensor_color,
+        };
+        gizmos.collider_color.map(|general| own.unwrap_or(general))
+    }
+}
+
 /// The colors of a collider: awake and asleep.
-fn colors(style: &DebugRender) -> Option<[LinearRgba; 2]> {
-    let awake: Color = style.collider_color?;
+fn colors(style: &DebugRender, color: Option<Color>) -> Option<[LinearRgba; 2]> {
+    let awake = color?;
     Some([awake, sleeping_color(awake, style.sleeping_color_multiplier)].map(LinearRgba::from))
 }

@@ -38,8 +38,15 @@ pub struct PhysicsGizmos {
     pub axis_lengths: Option<Vector>,
     /// Color of the bounding boxes of colliders. Not drawn by default.
     pub aabb_color: Option<Color>,
-    /// Color of the outlines of colliders. Orange by default.
+    /// Color of the outlines of colliders. Orange by default. The next three replace it for colliders of a kind, so that it is
+    /// left for those of dynamic bodies.
     pub collider_color: Option<Color>,
+    /// Color of the outlines on kinematic bodies, instead of [`collider_color`](Self::collider_color). Blue by default.
+    pub kinematic_color: Option<Color>,
+    /// Color of the outlines on static bodies, and of colliders without a body. Gray by default.
+    pub static_color: Option<Color>,
+    /// Color of the outlines of sensors, on whatever body. Green by default.
+    pub sensor_color: Option<Color>,
     /// Factors of hue, saturation, lightness and alpha for colors of sleeping bodies. `[1.0, 1.0, 0.4, 1.0]` by default:
     /// they are darker.
     pub sleeping_color_multiplier: Option<[f32; 4]>,
@@ -49,6 +56,9 @@ pub struct PhysicsGizmos {
     pub contact_normal_color: Option<Color>,
     /// Length of contact normals.
     pub contact_normal_scale: ContactGizmoScale,
+    /// The longest that normals with [`ContactGizmoScale::Scaled`] are drawn. 1 by default: the load of a large body would
+    /// reach out of the picture.
+    pub max_contact_normal_length: Option<Scalar>,
     /// Color of the lines from bodies to the anchors of joints. Pink by default.
     pub joint_anchor_color: Option<Color>,
     /// Color of the lines between the anchors of joints. Red by default.
@@ -98,6 +108,9 @@ impl Default for PhysicsGizmos {
         Self {
             axis_lengths: Some(AXES),
             collider_color: Some(css::ORANGE.into()),
+            kinematic_color: Some(css::CORNFLOWER_BLUE.into()),
+            static_color: Some(css::GRAY.into()),
+            sensor_color: Some(css::LIMEGREEN.into()),
             sleeping_color_multiplier: Some(SLEEPING),
             joint_anchor_color: Some(css::PINK.into()),
             joint_separation_color: Some(css::RED.into()),
@@ -133,10 +146,14 @@ impl PhysicsGizmos {
             axis_lengths: None,
             aabb_color: None,
             collider_color: None,
+            kinematic_color: None,
+            static_color: None,
+            sensor_color: None,
             sleeping_color_multiplier: None,
             contact_point_color: None,
             contact_normal_color: None,
             contact_normal_scale: ContactGizmoScale::default(),
+            max_contact_normal_length: Some(1.0),
             joint_anchor_color: None,
             joint_separation_color: None,
             raycast_color: None,
@@ -194,9 +211,21 @@ impl PhysicsGizmos {
         self
     }
 
-    /// Draws the outlines of colliders.
-    pub fn with_collider_color(mut self, color: Color) -> Self {
-        self.collider_color = Some(color);
+    /// Draws the outlines of all colliders in one color.
+    pub fn with_collider_color(self, color: Color) -> Self {
+        Self { collider_color: Some(color), ..self }.with_kind_colors(None, None, None)
+    }
+
+    /// Sets the colors of outlines on kinematic bodies, on static ones and of sensors. `None` is the color of all others.
+    pub fn with_kind_colors(
+        mut self,
+        kinematic: Option<Color>,
+        fixed: Option<Color>,
+        sensor: Option<Color>,
+    ) -> Self {
+        self.kinematic_color = kinematic;
+        self.static_color = fixed;
+        self.sensor_color = sensor;
         self
     }
 
@@ -221,6 +250,12 @@ impl PhysicsGizmos {
     /// Sets the length of contact normals.
     pub fn with_contact_normal_scale(mut self, scale: ContactGizmoScale) -> Self {
         self.contact_normal_scale = scale;
+        self
+    }
+
+    /// Sets the longest that normals scaled by force are drawn, in metres. `None` is no limit.
+    pub fn with_max_contact_normal_length(mut self, length: Option<Scalar>) -> Self {
+        self.max_contact_normal_length = length;
         self
     }
 

@@ -41,7 +41,10 @@ pub(super) fn draw_contacts(
                 let length = match config.contact_normal_scale {
                     ContactGizmoScale::Constant(length) => length,
                     ContactGizmoScale::Scaled(_) if *last_step <= 0.0 => 0.0,
-                    ContactGizmoScale::Scaled(scale) => scale * contact.normal_impulse / *last_step,
+                    ContactGizmoScale::Scaled(scale) => {
+                        let length = scale * contact.normal_impulse / *last_step;
+                        config.max_contact_normal_length.map_or(length, |most| length.min(most))
+                    }
                 };
                 let tip = contact.point + manifold.normal * (length * unit);
                 gizmos.draw_arrow(contact.point, tip, (0.1 * unit).min(length * unit * 0.3), color);

@@ -19,6 +19,8 @@ pub(crate) mod validate;
 
 /// The names of this module that most apps use.
 pub mod prelude {
+    #[cfg(feature = "default-collider")]
+    pub use super::solver::LengthUnitCheckPlugin;
     #[expect(deprecated, reason = "former names stay importable")]
     pub use super::{
         ccd::SweptCcdSet,

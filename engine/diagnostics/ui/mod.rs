@@ -74,28 +74,68 @@ fn build_panel(
     commands
         .spawn((PhysicsDiagnosticsUiNode, Rows(paths.len()), panel, background, GlobalZIndex(1000)))
         .with_children(|panel| {
-            for path in paths {
-                let row = Node {
-                    justify_content: JustifyContent::SpaceBetween,
-                    align_items: AlignItems::Center,
-                    ..Node::default()
-                };
-                panel.spawn(row).with_children(|row| {
-                    row.spawn(text(name(path)));
-                    row.spawn((text(String::new()), Value(path)));
-                });
+            for (heading, paths) in groups(paths) {
+                let title = (text(heading, 12.0, HEADING), Node { margin: MARGIN, ..Node::default() });
+                panel.spawn(title);
+                for path in paths {
+                    let row = Node {
+                        justify_content: JustifyContent::SpaceBetween,
+                        align_items: AlignItems::Center,
+                        ..Node::default()
+                    };
+                    panel.spawn(row).with_children(|row| {
+                        row.spawn(text(name(path), 11.0, Color::WHITE));
+                        row.spawn((text(String::new(), 11.0, Color::WHITE), Value(path)));
+                    });
+                }
             }
         });
 }
 
-/// A small white text.
-fn text(text: String) -> impl Bundle {
-    (Text(text), TextFont { font_size: FontSize::Px(11.0), ..TextFont::default() }, TextColor(Color::WHITE))
+/// The color of headings.
+const HEADING: Color = Color::srgb(1.0, 0.8, 0.4);
+/// The space around headings.
+const MARGIN: UiRect = UiRect::new(Val::ZERO, Val::ZERO, Val::Px(5.0), Val::Px(1.0));
+
+/// A small text of a size in pixels.
+fn text(text: String, size: f32, color: Color) -> impl Bundle {
+    (Text(text), TextFont { font_size: FontSize::Px(size), ..TextFont::default() }, TextColor(color))
+}
+
+/// The paths by their heading, in the order in which the headings were registered.
+fn groups(paths: &[&'static DiagnosticPath]) -> Vec<(String, Vec<&'static DiagnosticPath>)> {
+    let mut groups: Vec<(String, Vec<_>)> = Vec::new();
+    for &path in paths {
+        let heading = heading(path);
+        match groups.iter_mut().find(|group| group.0 == heading) {
+            Some(group) => group.1.push(path),
+            None => groups.push((heading, vec![path])),
+        }
+    }
+    groups
+}
+
+/// The heading above a path: its folder in words, without the name of the engine.
+fn heading(path: &DiagnosticPath) -> String {
+    let parts: Vec<&str> = path.components().collect();
+    match &parts[..parts.len().saturating_sub(1)] {
+        ["avian"] => "Whole step".into(),
+        // The path is Avian's. Nothing but picking is there.
+        ["avian", "physics"] => "Picking".into(),
+        ["avian", folders @ ..] | folders => words(&folders.join(", ")),
+    }
 }
 
 /// The last part of a path, in words.
 fn name(path: &DiagnosticPath) -> String {
-    path.components().last().unwrap_or_default().replace('_', " ")
+    words(path.components().last().unwrap_or_default())
+}
+
+/// An identifier in words, the first one with a capital.
+fn words(identifier: &str) -> String {
+    let words = identifier.replace('_', " ");
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn update_rows(

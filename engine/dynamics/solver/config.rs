@@ -26,7 +26,8 @@ pub(crate) const LINEAR_SLOP: f64 = 0.005;
 ///
 /// Tolerances and thresholds that are lengths or speeds are multiplied by it, so that a 2D game with characters of 100
 /// pixels is as stable as one with characters of 1 unit. It does not scale positions, velocities or
-/// [`Gravity`](crate::dynamics::integrator::Gravity). 1 by default. Set it before anything moves.
+/// [`Gravity`](crate::dynamics::integrator::Gravity). 1 by default. Set it before anything moves. Where gravity and the
+/// sizes of all that moves say that it was forgotten, `LengthUnitCheckPlugin` warns once.
 ///
 /// ```
 /// # use avian::prelude::*;

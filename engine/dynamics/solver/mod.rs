@@ -9,6 +9,8 @@ pub mod solver_body;
 pub(crate) mod config;
 pub(crate) mod diagnostics;
 pub(crate) mod gather;
+#[cfg(feature = "default-collider")]
+mod length_unit;
 mod plugin;
 pub(crate) mod scatter;
 pub(crate) mod substeps;
@@ -16,5 +18,7 @@ pub(crate) mod workers;
 
 pub use config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig};
 pub use diagnostics::SolverDiagnostics;
+#[cfg(feature = "default-collider")]
+pub use plugin::LengthUnitCheckPlugin;
 pub use plugin::{SolverPlugin, SolverPlugins};
 pub use workers::{RowWidth, WorkerCount};

@@ -41,6 +41,7 @@ use crate::{
 /// | [`CcdPlugin`] | sweeps of fast bodies |
 /// | [`IslandPlugin`] | which bodies rest on which |
 /// | [`IslandSleepingPlugin`] | sleep |
+/// | `LengthUnitCheckPlugin` | a warning if the length unit was forgotten |
 /// | [`JointGraphPlugin`], for each type of joint | which joints hold which bodies |
 #[derive(Debug, Default)]
 pub struct SolverPlugins {
@@ -64,6 +65,8 @@ impl PluginGroup for SolverPlugins {
             .add(CcdPlugin)
             .add(IslandPlugin)
             .add(IslandSleepingPlugin);
+        #[cfg(feature = "default-collider")]
+        let group = group.add(LengthUnitCheckPlugin);
         let mut graphs = Graphs(group);
         each_kind(&mut graphs);
         graphs.0
@@ -77,6 +80,21 @@ impl KindVisitor for Graphs {
     fn visit<J: JointKind + EntityConstraint<2> + Component<Mutability = Mutable>>(&mut self) {
         let group = core::mem::replace(&mut self.0, PluginGroupBuilder::start::<SolverPlugins>());
         self.0 = group.add(JointGraphPlugin::<J>::default());
+    }
+}
+
+/// Warns once where everything that moves is too large or too small for gravity, so that [`PhysicsLengthUnit`] must have been
+/// forgotten: a 2D game in pixels with a length unit of 1, or a game in metres with one of 100.
+///
+/// Looks at the first second of physics at most, and no further once it sees one dynamic or kinematic collider of an ordinary
+/// size. Beyond Avian.
+#[cfg(feature = "default-collider")]
+pub struct LengthUnitCheckPlugin;
+
+#[cfg(feature = "default-collider")]
+impl Plugin for LengthUnitCheckPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(bevy_app::Last, super::length_unit::check_length_unit);
     }
 }
 

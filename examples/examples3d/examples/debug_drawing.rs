@@ -1,5 +1,6 @@
-//! All shapes as lines. Look at the outlines: orange while awake, dark when asleep. Keys show more: 1 bounding boxes, 2
-//! contacts with normals as long as their force, 3 the collider trees, 4 islands; 5 hides the meshes, 0 turns drawing off.
+//! All shapes as lines. Look at the outlines: dynamic bodies are orange while awake and dark when asleep, what is static
+//! is gray. Keys show more: 1 bounding boxes, 2 contacts with normals as long as their force, 3 the collider trees,
+//! 4 islands; 5 hides the meshes, 0 turns drawing off.
 //!
 //! `cargo run --release -p examples3d --example debug_drawing`
 

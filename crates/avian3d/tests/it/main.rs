@@ -44,6 +44,8 @@ mod hooks_dim;
 mod joints;
 #[path = "../../../../tests/joints/dim3.rs"]
 mod joints_dim;
+#[path = "../../../../tests/length_unit.rs"]
+mod length_unit;
 #[path = "../../../../tests/levels.rs"]
 mod levels;
 #[path = "../../../../tests/marble3.rs"]
