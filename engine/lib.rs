@@ -89,6 +89,7 @@
 //! | make colliders from meshes, scenes and files | `ColliderConstructor`, `ColliderConstructorHierarchy` |
 //! | set its mass | `ColliderDensity`, [`Mass`](prelude::Mass), [`AngularInertia`](prelude::AngularInertia), [`CenterOfMass`](prelude::CenterOfMass) |
 //! | move it | [`LinearVelocity`](prelude::LinearVelocity), [`AngularVelocity`](prelude::AngularVelocity); [`Position`](prelude::Position) or `Transform` to teleport |
+//! | let it carry what stands on it while its `Transform` is animated | [`FollowTransform`](prelude::FollowTransform) |
 //! | push it | [`Forces`](prelude::Forces), [`ConstantForce`](prelude::ConstantForce), [`forces`](dynamics::rigid_body::forces) |
 //! | change how it falls | [`Gravity`](prelude::Gravity), [`GravityScale`](prelude::GravityScale), [`LinearDamping`](prelude::LinearDamping), [`MaxLinearSpeed`](prelude::MaxLinearSpeed) |
 //! | hold it along or about axes | [`LockedAxes`](prelude::LockedAxes) |
@@ -117,7 +118,7 @@
 //! | | 2D | 3D |
 //! |---|---|---|
 //! | games | `moving_platform`, `one_way_platform` | `conveyor_belt`, `time_control` |
-//! | bodies | `locked_axes`, `sleeping`, `interpolation` | `child_colliders`, `materials`, `layers`, `dominoes` |
+//! | bodies | `locked_axes`, `sleeping`, `interpolation` | `hinged_door`, `child_colliders`, `materials`, `layers`, `dominoes` |
 //! | colliders and queries | `ray_caster`, `custom_collider` | `collider_constructors`, `spatial_queries`, `custom_broad_phase` |
 //! | tools | `step_times` | `debug_drawing`, `diagnostics` |
 //!
@@ -209,7 +210,9 @@ pub mod prelude {
         collision::prelude::*,
         dynamics::{self, ccd::SpeculativeMargin, prelude::*},
         interpolation::*,
-        physics_transform::{PhysicsTransformHelper, PhysicsTransformPlugin, Position, Rotation},
+        physics_transform::{
+            FollowTransform, PhysicsTransformHelper, PhysicsTransformPlugin, Position, Rotation,
+        },
         schedule::{
             Physics, PhysicsSchedule, PhysicsSchedulePlugin, PhysicsStepSystems, PhysicsSystems, PhysicsTime,
             Substeps,

@@ -47,6 +47,7 @@ use crate::{
         solver::{
             config::update_contact_softness,
             diagnostics::{SolverDiagnostics, reset_solver},
+            follow::follow_transforms,
             gather::{gather_bodies, read_awake, rest_kinematic, wake_changed, wake_kinematic_late},
             joint_graph::SyncEdges,
             scatter::{finish_bodies, keep_moved_within, note_moved_late, note_moved_within, scatter_bodies},
@@ -163,6 +164,8 @@ stages! {
     FollowSleep.in_set(PhysicsStepSystems::First) => { Sleeping: follow_requests }
     /// Wakes bodies with forces.
     FollowForces.in_set(PhysicsStepSystems::First) => { Forces: (release_forces, follow_forces).chain() }
+    /// Sets velocities of kinematic bodies that follow their transform.
+    FollowTargets.in_set(PhysicsStepSystems::First) => { Transforms: follow_transforms }
     /// Wakes bodies that the app moved or pushed.
     FollowApp.in_set(PhysicsStepSystems::First) => { SolverBodies: (wake_changed, rest_kinematic).chain() }
     /// Reads poses and velocities of awake bodies.

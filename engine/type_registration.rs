@@ -114,11 +114,11 @@ fn register_bodies(app: &mut App) {
             },
             sleeping::{SleepThreshold, SleepTimer, Sleeping, SleepingDisabled},
         },
-        physics_transform::{Position, Rotation},
+        physics_transform::{FollowTransform, Position, Rotation},
     };
 
     register!(app:
-        RigidBody, RigidBodyDisabled, Position, Rotation, LinearVelocity, AngularVelocity, MaxLinearSpeed,
+        RigidBody, RigidBodyDisabled, FollowTransform, Position, Rotation, LinearVelocity, AngularVelocity, MaxLinearSpeed,
         MaxAngularSpeed, GravityScale, LinearDamping, AngularDamping, Dominance, LockedAxes,
         Friction, Restitution, CoefficientCombine, DefaultFriction, DefaultRestitution, FacetMaterials,
         Sleeping, SleepingDisabled, SleepThreshold, SleepTimer,

@@ -186,6 +186,11 @@ impl Rotation {
         narrow(kernel::math::atan2(c * os - s * oc, c * oc + s * os))
     }
 
+    /// The angle in radians from `self` to `end`, in −π … π. As a rotation vector in 3D.
+    pub(crate) fn turn_to(self, end: Self) -> Scalar {
+        self.angle_between(end)
+    }
+
     /// The inverse rotation.
     pub fn inverse(self) -> Self {
         Self { cos: self.cos, sin: -self.sin }

@@ -66,6 +66,16 @@ impl Rotation {
         Self::from_f64(mix.normalized()).unwrap_or(self)
     }
 
+    /// The rotation vector from `self` to `end` in world axes, in rad, along the shorter arc.
+    pub(crate) fn turn_to(self, end: Self) -> Vector {
+        let turn = end.to_f64().mul(self.to_f64().inverse());
+        let turn = if turn.w < 0.0 { turn.negated() } else { turn };
+        // sin(angle/2), which the axis is multiplied by.
+        let sine = (turn.x * turn.x + turn.y * turn.y + turn.z * turn.z).sqrt();
+        let factor = if sine > 0.0 { turn.angle() / sine } else { 2.0 };
+        Vector::new(narrow(turn.x * factor), narrow(turn.y * factor), narrow(turn.z * factor))
+    }
+
     /// One Newton step towards length 1, without a square root. For quaternions that are nearly unit.
     pub fn fast_renormalize(self) -> Self {
         let q = self.0;

@@ -5,6 +5,7 @@
 //! - If both were set since the last step, the pose wins over the transform, separately for position and rotation.
 //! - Bodies move independently of their parents in the simulation. A change to a parent's `Transform` by the app moves
 //!   the bodies below it.
+//! - A kinematic body with [`FollowTransform`] goes where its transform is by velocity, and its transform is not written.
 
 /// `$left * $right` for every mix of values, references and mutable references.
 macro_rules! by_reference {
@@ -30,9 +31,11 @@ macro_rules! by_reference {
     };
 }
 
+mod aim;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+pub(crate) mod follow;
 pub(crate) mod frame;
 mod helper;
 mod kernel_pose;
@@ -47,6 +50,7 @@ mod tests;
 pub(crate) mod tree;
 
 pub use dim::Rotation;
+pub use follow::FollowTransform;
 pub use helper::PhysicsTransformHelper;
 pub(crate) use kernel_pose::{filled_in, pose_from_kernel, said_pose, unit_rotation, world_pose};
 pub use plugin::PhysicsTransformPlugin;

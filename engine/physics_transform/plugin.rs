@@ -1,11 +1,12 @@
 //! The plugins of the hierarchy's tree, and of the synchronisation between poses and transforms.
 
-use bevy_app::{App, FixedPostUpdate, Plugin};
+use bevy_app::{App, FixedPostUpdate, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::{change_detection::CheckChangeTicks, intern::Interned, prelude::*, schedule::ScheduleLabel};
 use bevy_transform::components::Transform;
 
 use super::{
     ApplyPosToTransform, PhysicsTransformConfig, PhysicsTransformSystems, Position, Rotation,
+    aim::{InFixedLoop, aim, begin_frame, end_fixed_loop},
     position::Originals,
     spawned::{SpawnQueue, initialise_added, initialise_poses, note_rotation},
     sync::{
@@ -52,13 +53,17 @@ impl Plugin for PhysicsTransformPlugin {
             .register_type::<(Position, Rotation, PhysicsTransformConfig)>()
             .init_resource::<SpawnQueue>()
             .init_resource::<Originals>()
+            .init_resource::<InFixedLoop>()
+            .add_systems(RunFixedMainLoop, begin_frame.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop))
+            .add_systems(RunFixedMainLoop, end_fixed_loop.in_set(RunFixedMainLoopSystems::AfterFixedMainLoop))
             .add_observer(initialise_added)
             .add_observer(note_rotation)
             .add_systems(
                 self.schedule,
                 (
                     initialise_poses,
-                    transform_to_position
+                    (aim, transform_to_position)
+                        .chain()
                         .run_if(|config: Res<PhysicsTransformConfig>| config.transform_to_position),
                 )
                     .chain()

@@ -16,6 +16,7 @@ use bevy_transform::components::{GlobalTransform, Transform};
 
 use super::{
     ApplyPosToTransform, PhysicsTransformConfig, Position, Rotation, dim,
+    follow::Followed,
     frame::{Frame, read_pose, same_pose, same_rotation, same_translation, write_pose},
     rotation64::Rotation64,
     tree::{FollowsBody, HierarchyQueue, Parents, Physical, TransformTree, TreeChanges},
@@ -167,8 +168,11 @@ pub struct TransformReader<'w, 's> {
     config: Res<'w, PhysicsTransformConfig>,
     transforms: Query<'w, 's, &'static Transform>,
     parents: Parents<'w, 's>,
-    poses: Query<'w, 's, (&'static mut Position, Option<&'static mut Rotation>), Without<FollowsBody>>,
+    poses: Query<'w, 's, Readable, Without<FollowsBody>>,
 }
+
+/// A pose that a transform is read into, and how far it followed it.
+type Readable = (&'static mut Position, Option<&'static mut Rotation>, Option<&'static Followed>);
 
 /// Reads a transform into a pose, separately for position and rotation: where its bits differ from what would be written
 /// for the pose, and the pose is free.
@@ -203,7 +207,10 @@ pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick, 
     let reported = &mut ticks.reported;
     reported.retain(|entity| transforms.contains(*entity));
     let mut visit = |entity: Entity, parent: Option<&Frame>, transform: &Transform| {
-        let Ok((position, rotation)) = poses.get_mut(entity) else { return };
+        let Ok((position, rotation, followed)) = poses.get_mut(entity) else { return };
+        if followed.is_some_and(Followed::is_led) {
+            return;
+        }
         warn_non_finite(entity, transform, &read_pose(parent, transform).0, reported);
         read_into(position, rotation, parent, transform, |changed| {
             !changed.is_newer_than(last, system.this_run())
@@ -232,8 +239,9 @@ type Written = Or<(With<RigidBody>, With<ApplyPosToTransform>)>;
 /// A pose, with its change ticks.
 type Pose = (Entity, Ref<'static, Position>, Ref<'static, Rotation>);
 
-/// A pose to be read or written, and whether it is that of a disabled body.
-type PoseMut = (&'static mut Position, &'static mut Rotation, Has<RigidBodyDisabled>);
+/// A pose to be read or written, whether it is that of a disabled body, and how far it followed its transform.
+type PoseMut =
+    (&'static mut Position, &'static mut Rotation, Has<RigidBodyDisabled>, Option<&'static Followed>);
 
 /// Queries for writing transforms.
 #[derive(SystemParam)]
@@ -245,7 +253,7 @@ pub struct TransformWriter<'w, 's> {
         'w,
         's,
         (
-            Query<'w, 's, (Pose, &'static mut Transform), Written>,
+            Query<'w, 's, (Pose, &'static mut Transform, Has<Followed>), Written>,
             (Query<'w, 's, PoseMut, Written>, Query<'w, 's, &'static mut Transform>),
         ),
     >,
@@ -291,7 +299,7 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
         tree.follow(&noted, &parents, &writer.physical, &mut writer.changes.early);
     }
     let looks_up = is_change_tracked();
-    for (pose, transforms) in queries.p0().contiguous_iter_mut().expect(IN_TABLES) {
+    for (pose, transforms, follow) in queries.p0().contiguous_iter_mut().expect(IN_TABLES) {
         let (entities, positions, rotations) = pose;
         let (at, turned) = (positions.changed_ticks_slice(), rotations.changed_ticks_slice());
         let mut changed = None;
@@ -304,7 +312,7 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
                 if !is_own(at[row]) && !is_own(turned[row]) {
                     return;
                 }
-                if looks_up || tree.is_tied(entities[row]) {
+                if looks_up || follow || tree.is_tied(entities[row]) {
                     late.push(entities[row]);
                     return;
                 }
@@ -332,8 +340,9 @@ pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTi
         let top = line.filter(|ancestor| set.contains(ancestor)).last().unwrap_or(entity);
         let parent = parent_frame(top, &parents, |e| transforms.get(e).ok().copied());
         tree.descend(top, parent, |entity, parent: &Option<Frame>| {
-            if let Ok((position, rotation, is_disabled)) = poses.get_mut(entity)
+            if let Ok((position, rotation, is_disabled, followed)) = poses.get_mut(entity)
                 && !following.contains(entity)
+                && !followed.is_some_and(Followed::is_led)
                 && let Ok(mut transform) = transforms.get_mut(entity)
             {
                 let changed = [position.last_changed(), rotation.last_changed()];

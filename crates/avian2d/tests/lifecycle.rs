@@ -2,6 +2,8 @@
 
 #[path = "../../../tests/clones.rs"]
 mod clones;
+#[path = "../../../tests/follow.rs"]
+mod follow;
 #[path = "../../../tests/lifecycle.rs"]
 mod lifecycle;
 #[path = "../../../tests/paused.rs"]

@@ -14,6 +14,24 @@ use crate::{
 };
 
 /// Angular velocity of a body, in rad/s about each of the world's axes, right-handed.
+///
+/// Dynamic and kinematic bodies turn about their centre of mass, wherever their origin is. To let a kinematic door turn about its
+/// edge, put the origin at the hinge, the collider beside it on a child, and the centre of mass at the origin. With
+/// [`FollowTransform`](crate::physics_transform::FollowTransform) the app turns the `Transform`, and the engine sets both
+/// velocities. A dynamic door needs a [`RevoluteJoint`](crate::dynamics::joints::RevoluteJoint). All three are in the example
+/// `hinged_door`.
+///
+/// ```
+/// # use avian::{math::Vector, prelude::*};
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_transform::components::Transform;
+/// fn setup(mut commands: Commands) {
+///     let hinge = (CenterOfMass::ZERO, NoAutoCenterOfMass);
+///     commands
+///         .spawn((RigidBody::Kinematic, hinge, Transform::from_xyz(3.0, 0.0, 0.0), AngularVelocity(Vector::Y)))
+///         .with_child((Collider::capsule(0.1, 1.0), Transform::from_xyz(1.0, 0.0, 0.0)));
+/// }
+/// ```
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(

@@ -8,6 +8,7 @@ pub mod solver_body;
 
 pub(crate) mod config;
 pub(crate) mod diagnostics;
+pub(crate) mod follow;
 pub(crate) mod gather;
 #[cfg(feature = "default-collider")]
 mod length_unit;
