@@ -27,6 +27,7 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use kernel::{
     contact::{Contact, Manifold},
     math as k,
+    solver::ManifoldBlow,
     table::{BodyTable, NONE, Velocity},
 };
 
@@ -56,10 +57,9 @@ pub struct CollisionHit {
     pub point: Vector,
     /// The unit normal there, from the first collider to the second.
     pub normal: Vector,
-    /// The speed at which they approached along the normal, m/s.
+    /// The speed at which they approached along the normal as they met, m/s.
     pub speed: Scalar,
-    /// The impulse along the normal that turned the approach into what it was afterwards, N·s, by the masses that both bodies
-    /// have at the point.
+    /// The impulse along the normal, N·s. A body that stops gets its momentum; on several colliders these share it.
     pub impulse: Scalar,
 }
 
@@ -109,7 +109,7 @@ impl CollisionHitsEnabled {
     }
 }
 
-/// Notes the contacts of reporting colliders that close faster than these want to know.
+/// Notes the contacts of reporting colliders before they are solved.
 pub(crate) fn note_approaches(
     settings: Query<&CollisionHitsEnabled>,
     unit: Res<PhysicsLengthUnit>,
@@ -133,7 +133,7 @@ pub(crate) fn note_approaches(
         let min_speed = |entity: Entity| settings.get(entity).map_or(f32::INFINITY, |s| to_f32(s.min_speed));
         let min_speed = min_speed(entities[0]).min(min_speed(entities[1])) * unit.metres();
         let blow = going.binary_search_by_key(&id, |blow| blow.contact).ok().map(|place| going[place]);
-        let approach = Approach {
+        let mut approach = Approach {
             min_speed,
             blow: blow.filter(|blow| blow.colliders == entities),
             ..approach(&bodies.table, &colliders, id, contact)
@@ -142,10 +142,9 @@ pub(crate) fn note_approaches(
         let solved = manifolds.filter(|manifold| manifold.solved_points() > 0);
         let mut points =
             solved.flat_map(|manifold| manifold.points().iter().map(move |p| (manifold, p.anchor)));
-        let is_fast = points.any(|(manifold, anchor)| approach.speed(manifold.normal, anchor) > min_speed);
-        if is_fast || approach.blow.is_some_and(|blow| !blow.is_told) {
-            approaches.push(approach);
-        }
+        approach.is_fast =
+            points.any(|(manifold, anchor)| approach.speed(manifold.normal, anchor) > min_speed);
+        approaches.push(approach);
     }
     going.clear();
 }
@@ -163,6 +162,7 @@ fn approach(bodies: &BodyTable, colliders: &Colliders, id: u32, contact: &Contac
         offset: (center(1) - center(0)).to_local(),
         velocities: velocities(bodies, contact.bodies),
         min_speed: f32::INFINITY,
+        is_fast: false,
         blow: None,
     }
 }
@@ -192,12 +192,28 @@ fn velocities(bodies: &BodyTable, pair: [u32; 2]) -> [Velocity; 2] {
 pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contacts: ResMut<Contacts>) {
     let Contacts { table, hits: Hits { approaches, going, blows }, .. } =
         &mut *contacts.bypass_change_detection();
+    if approaches.is_empty() {
+        return;
+    }
+    let mut struck: Vec<ManifoldBlow> = solver.kernel.blows().collect();
+    // Stable: those of a contact stay in the order of time.
+    struck.sort_by_key(|blow| blow.contact);
     for approach in approaches.drain(..) {
         let contact = table.get(approach.contact);
         let manifolds = core::iter::once(&contact.manifold).chain(table.extra_of(contact));
-        let struck = manifolds.filter_map(struck_place).max_by(|a, b| a.impulse.total_cmp(&b.impulse));
-        let Some(Struck { normal, anchor, .. }) = struck else { continue };
-        let now = approach.speed(normal, anchor);
+        let places = manifolds.filter_map(struck_place);
+        let place = places.clone().max_by(|a, b| a.impulse.total_cmp(&b.impulse));
+        let Some(Struck { normal, anchor, .. }) = place else { continue };
+        let first = struck.partition_point(|blow| blow.contact < approach.contact);
+        let of_contact = struck[first..].iter().take_while(|blow| blow.contact == approach.contact);
+        let gained = of_contact.clone().next().map_or(0.0, |blow| blow.gained);
+        let before = approach.blow.map_or(k::Vector::ZERO, |blow| blow.impulse);
+        let impulse = of_contact.fold(before, |sum, blow| sum + blow.impulse);
+        let now = approach.speed(normal, anchor) + gained;
+        let is_fast = approach.is_fast || now > approach.min_speed;
+        if !is_fast && approach.blow.is_none_or(|blow| blow.is_told) {
+            continue;
+        }
         let speed = approach.blow.map_or(now, |blow| blow.speed.max(now));
         if !(speed > approach.min_speed) {
             continue;
@@ -206,19 +222,25 @@ pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contac
         let was_told = approach.blow.is_some_and(|blow| blow.is_told);
         let is_told = was_told || change > 0.5 * speed;
         let Approach { contact: id, colliders, center, offset, .. } = approach;
-        going.push(GoingBlow { contact: id, colliders, speed, is_told });
-        if was_told || !is_told {
+        let is_now = is_told && !was_told;
+        let along = impulse.dot(normal);
+        let mut movable = contact.bodies.into_iter().filter(|body| *body != NONE);
+        if is_now && !(along > 0.0) && movable.any(|body| solver.kernel.was_struck(bodies.table.row(body))) {
+            // Another collider stopped it.
             continue;
         }
-        let mut inverse_mass = 0.0;
-        let arms = [anchor, anchor - offset];
-        for (body, arm) in contact.bodies.into_iter().zip(arms).filter(|(body, _)| *body != NONE) {
-            let mass =
-                solver.kernel.bodies.masses.get(bodies.table.row(body) as usize).copied().unwrap_or_default();
-            let moment = arm.cross(normal);
-            inverse_mass += mass.inv_mass() + moment.dot(mass.inv_inertia().apply(moment));
+        going.push(GoingBlow { contact: id, colliders, speed, impulse, is_told });
+        if !is_now {
+            continue;
         }
-        let impulse = if inverse_mass > 0.0 { change / inverse_mass } else { 0.0 };
+        let impulse = if along > 0.0 {
+            along
+        } else {
+            // Slow bodies are not struck. Impulses of their step hold their weight, too.
+            let arms = [anchor, anchor - offset];
+            let stopping = change * mass_along(&solver, &bodies.table, contact.bodies, normal, arms);
+            stopping.min(places.map(|place| place.impulse).sum())
+        };
         blows.push(Blow {
             colliders,
             bodies: contact.bodies.map(|body| (body != NONE).then(|| bodies.entities[body as usize])),
@@ -228,6 +250,23 @@ pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contac
             impulse: impulse.adjust_precision(),
         });
     }
+}
+
+/// The mass that two bodies together have along a normal, at a point given from both centres of mass. 0 if neither moves.
+fn mass_along(
+    solver: &StepSolver,
+    bodies: &BodyTable,
+    pair: [u32; 2],
+    normal: k::Vector,
+    arms: [k::Vector; 2],
+) -> f32 {
+    let mut inverse_mass = 0.0;
+    for (body, arm) in pair.into_iter().zip(arms).filter(|(body, _)| *body != NONE) {
+        let mass = solver.kernel.bodies.masses.get(bodies.row(body) as usize).copied().unwrap_or_default();
+        let moment = arm.cross(normal);
+        inverse_mass += mass.inv_mass() + moment.dot(mass.inv_inertia().apply(moment));
+    }
+    if inverse_mass > 0.0 { 1.0 / inverse_mass } else { 0.0 }
 }
 
 /// Where a manifold got impulses.

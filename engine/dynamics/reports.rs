@@ -47,7 +47,7 @@ impl Reports {
     }
 }
 
-/// A contact that closes fast, before it is solved.
+/// A contact that may be struck, before it is solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Approach {
     pub(crate) contact: u32,
@@ -59,6 +59,8 @@ pub(crate) struct Approach {
     pub(crate) velocities: [Velocity; 2],
     /// Slower blows are not reported.
     pub(crate) min_speed: f32,
+    /// Whether a point closes faster.
+    pub(crate) is_fast: bool,
     /// The blow that is going on, if one is.
     pub(crate) blow: Option<GoingBlow>,
 }
@@ -70,6 +72,8 @@ pub(crate) struct GoingBlow {
     pub(crate) colliders: [Entity; 2],
     /// The speed at which it began.
     pub(crate) speed: f32,
+    /// The impulses so far, on the second body, N·s.
+    pub(crate) impulse: k::Vector,
     /// Whether it was reported.
     pub(crate) is_told: bool,
 }

@@ -55,8 +55,31 @@ pub(super) struct Blows {
     sets: DisjointSets,
     /// By worker.
     groups: Vec<Vec<StruckBody>>,
-    /// Normal impulses of all rounds of the step, N·s.
-    given: Vec<(Item, [f32; MAX_POINTS])>,
+    /// Of all rounds of the step.
+    given: Vec<Given>,
+    /// The time from the start of the step to the end of this substep, in seconds.
+    pub(super) elapsed: f32,
+}
+
+/// What a manifold got in a round.
+#[derive(Clone, Debug)]
+struct Given {
+    item: Item,
+    /// The normal impulses of its points, N·s.
+    impulses: [f32; MAX_POINTS],
+    normal: Vector,
+    gained: f32,
+}
+
+/// The impulse that struck a manifold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ManifoldBlow {
+    /// The contact of the manifold.
+    pub contact: u32,
+    /// The sum of the normal impulses of its points, on the second body, in world axes, N·s.
+    pub impulse: Vector,
+    /// The approach speed along the normal that accelerations of the bodies added since the start of the step, m/s.
+    pub gained: f32,
 }
 
 /// A body of a group.
@@ -74,11 +97,21 @@ impl Blows {
     pub(super) fn begin_step(&mut self) {
         self.reached.clear();
         self.given.clear();
+        self.elapsed = 0.0;
     }
 
     /// Starts a substep.
     pub(super) fn begin(&mut self) {
         self.struck.clear();
+    }
+
+    /// The blows of the step, in the order of time. A manifold may be struck several times.
+    pub(super) fn given(&self) -> impl Iterator<Item = ManifoldBlow> {
+        self.given.iter().map(|given| ManifoldBlow {
+            contact: given.item.id,
+            impulse: given.normal * given.impulses.iter().sum::<f32>(),
+            gained: given.gained,
+        })
     }
 
     /// The lanes with a body that was struck in this step, as bits.
@@ -108,7 +141,8 @@ impl Blows {
         for one in struck.iter_mut() {
             let impulses = one.impulses();
             if impulses.iter().any(|impulse| *impulse > 0.0) {
-                given.push((one.item, impulses));
+                let (normal, gained) = (one.row.normal, one.gained);
+                given.push(Given { item: one.item, impulses, normal, gained });
             }
             one.rest();
         }
@@ -154,7 +188,7 @@ impl Blows {
             return;
         }
         let manifolds = contacts.manifolds_view();
-        for (item, impulses) in &self.given {
+        for Given { item, impulses, .. } in &self.given {
             // SAFETY: one thread uses the view, and one manifold of it at a time.
             let manifold = unsafe { manifolds.manifold(item.id, item.index) };
             let count = usize::from(manifold.count);

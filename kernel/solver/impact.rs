@@ -230,6 +230,8 @@ pub(super) struct Struck {
     pub(super) bounces: bool,
     /// The time from the start of the substep until the first point touches, in seconds. Negative if it has touched before.
     pub(super) time: f32,
+    /// The approach speed along the normal that accelerations added since the start of the step, m/s.
+    pub(super) gained: f32,
     moments: [[Angular; 2]; MAX_POINTS],
     /// The ratio of the impulse that a point returns to the one that stops it. Negative for points that do not take part.
     returned: [f32; MAX_POINTS],
@@ -249,6 +251,8 @@ pub(super) struct Striking<'a> {
     pub(super) params: &'a SubstepParams,
     /// The time within which points are struck, in seconds.
     pub(super) time: f32,
+    /// The time from the start of the step to the end of the substep, in seconds.
+    pub(super) elapsed: f32,
 }
 
 impl Struck {
@@ -262,7 +266,7 @@ impl Struck {
         restitution: f32,
         striking: &Striking,
     ) -> Self {
-        let Striking { params, time, .. } = *striking;
+        let Striking { params, time, elapsed, .. } = *striking;
         row.take_true_masses(striking.bearing);
         // SAFETY: by the contract.
         let Motions { mut moments, mut speeds, gaps } = unsafe { row.motions(&striking.bodies) };
@@ -271,7 +275,8 @@ impl Struck {
             (moments, speeds) = turned;
         }
         let [a, b] = [0, 1].map(|side: usize| striking.motions[row.ids[side][0] as usize].acceleration);
-        let gained = (a - b).dot(row.normal) * params.h;
+        let closing = (a - b).dot(row.normal);
+        let gained = closing * params.h;
         let bounce = Bounce { restitution, gained, inv_h: params.inv_h };
         // Contacts are predicted by velocities alone: what closes by acceleration may be this deep when it is found.
         let unforeseen = 0.5 * max(gained, 0.0) * params.inv_h * params.dt * params.dt;
@@ -285,6 +290,7 @@ impl Struck {
             is_jammed: false,
             bounces: false,
             time: f32::MAX,
+            gained: closing * elapsed,
             moments,
             returned: [ABSENT; MAX_POINTS],
             stopped: [[0.0; MAX_POINTS]; 2],

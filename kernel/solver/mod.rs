@@ -50,6 +50,7 @@ mod stages;
 mod sweep;
 mod view;
 
+pub use blow::ManifoldBlow;
 pub use body::{BodyRows, Limits, Motion, Thrust};
 pub use dim::{BodyRow, MassRow, Twist};
 use dim::{about, resist_rolling};

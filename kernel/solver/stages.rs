@@ -4,7 +4,7 @@
 use super::batch::{Filling, Pass, Seek, Sweep};
 use super::batches::{AllRows, Layers};
 use super::bearing::Bearing;
-use super::blow::{Blows, ROUNDS};
+use super::blow::{Blows, ManifoldBlow, ROUNDS};
 use super::contact_batch::Room;
 use super::exclusive;
 use super::impact::Striking;
@@ -228,14 +228,16 @@ impl Solver {
     /// Strikes what closes fast and touches within `time` seconds.
     fn strike(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) {
         let Self { bodies, joints, rows, plan, layers, blows, bearing, first_dynamic, .. } = self;
+        blows.elapsed += time;
         let is_watched = plan.blocks.iter().any(|block| block.passes.are_watched());
         if !is_watched && blows.reached.is_empty() {
             return;
         }
         let BodyRows { rows: body_rows, motions, .. } = bodies;
         let bodies_view = RowView::over(body_rows, *first_dynamic);
-        let striking = Striking { bodies: bodies_view, motions, bearing, params, time };
         blows.begin();
+        let striking =
+            Striking { bodies: bodies_view, motions, bearing, params, time, elapsed: blows.elapsed };
         let mut blocks = core::mem::take(&mut plan.blocks);
         rows.with(joints, |batches| {
             for _ in 0..ROUNDS {
@@ -257,6 +259,16 @@ impl Solver {
         });
         plan.blocks = blocks;
         bodies.follow_blows(&blows.reached, params.h);
+    }
+
+    /// The blows of the step, in the order of time. A manifold may be struck several times. They are kept until the next step.
+    pub fn blows(&self) -> impl Iterator<Item = ManifoldBlow> {
+        self.blows.given()
+    }
+
+    /// Whether the body of a row was struck in the step.
+    pub fn was_struck(&self, row: u32) -> bool {
+        self.blows.reached.contains(row)
     }
 
     /// Stores the impulses in manifolds and joints, for the warm start of the next step.

@@ -44,6 +44,10 @@ mod hooks_dim;
 mod joints;
 #[path = "../../../../tests/joints/dim3.rs"]
 mod joints_dim;
+#[path = "../../../../tests/landings.rs"]
+mod landings;
+#[path = "../../../../tests/landings3.rs"]
+mod landings_dim;
 #[path = "../../../../tests/length_unit.rs"]
 mod length_unit;
 #[path = "../../../../tests/levels.rs"]
