@@ -117,7 +117,7 @@
 //!
 //! | | 2D | 3D |
 //! |---|---|---|
-//! | games | `moving_platform`, `one_way_platform` | `conveyor_belt`, `time_control` |
+//! | games | `moving_platform`, `one_way_platform` | `conveyor_belt`, `save_and_load`, `time_control` |
 //! | bodies | `locked_axes`, `sleeping`, `interpolation` | `hinged_door`, `child_colliders`, `materials`, `layers`, `dominoes` |
 //! | colliders and queries | `ray_caster`, `custom_collider` | `collider_constructors`, `spatial_queries`, `custom_broad_phase` |
 //! | tools | `step_times` | `debug_drawing`, `diagnostics` |
@@ -144,7 +144,7 @@
 //! | `collider-from-mesh`, `bevy_scene` (default) | colliders from meshes; hierarchies that wait for their scene |
 //! | `parallel` (default) | Bevy's threads, which physics uses too |
 //! | `bevy_diagnostic`, `diagnostic_ui` | timers and counters in Bevy's diagnostics, and in a panel |
-//! | `serialize` | serde for components, resources and `Collider` |
+//! | `serialize` | serde for components, resources and `Collider`, which Bevy's `DynamicWorldBuilder` then saves, too |
 //! | `validate` | expensive checks of whole tables, for tests |
 //! | `simd`, `enhanced-determinism`, `xpbd_joints` (default) | empty, so that crates resolve: the first two are always on, joints are not there yet |
 

@@ -182,12 +182,12 @@ fn register_queries(app: &mut App) {
     register!(app: SpatialQueryFilter, SpatialQueryDiagnostics, RayCaster, RayHits, RayHitData);
 }
 
-/// Constructors and settings of colliders. Shapes themselves are not reflected.
+/// Colliders, their constructors and settings.
 #[cfg(feature = "default-collider")]
 fn register_collider_settings(app: &mut App) {
     use crate::{
         collision::collider::{
-            FillMode, TrimeshFlags, VhacdParameters,
+            Collider, FillMode, TrimeshFlags, VhacdParameters,
             constructor::{self, ColliderConstructorHierarchy, ColliderConstructorHierarchyConfig},
             contact_query::ClosestPoints,
         },
@@ -195,7 +195,7 @@ fn register_collider_settings(app: &mut App) {
     };
 
     register!(app:
-        VhacdParameters, FillMode, TrimeshFlags, ShapeCaster, ShapeHits, ShapeHitData, ShapeCastConfig, PointProjection,
+        Collider, VhacdParameters, FillMode, TrimeshFlags, ShapeCaster, ShapeHits, ShapeHitData, ShapeCastConfig, PointProjection,
         ClosestPoints, ColliderConstructorHierarchy, ColliderConstructorHierarchyConfig,
     );
     constructor::register_types(app);

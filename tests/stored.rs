@@ -292,7 +292,7 @@ fn load(app: &mut App, text: &str) -> Vec<Entity> {
 }
 
 /// A pile of bodies of all kinds that has fallen for a while.
-fn pile(app: &mut App, steps_before: u32) -> Vec<Entity> {
+pub fn pile(app: &mut App, steps_before: u32) -> Vec<Entity> {
     app.world_mut().insert_resource(Gravity(-Vector::Y * 10.0));
     let mut all = vec![app.world_mut().spawn((RigidBody::Static, Collider::half_space(Vector::Y))).id()];
     for (i, shape) in shapes().into_iter().enumerate() {
@@ -339,7 +339,7 @@ fn shapes() -> Vec<Collider> {
     one.into_iter().chain(again).collect()
 }
 
-fn bits(app: &App, entities: &[Entity]) -> Vec<String> {
+pub fn bits(app: &App, entities: &[Entity]) -> Vec<String> {
     let of = |&entity: &Entity| {
         let entity = app.world().entity(entity);
         let pose = (entity.get::<Position>(), entity.get::<Rotation>());

@@ -64,6 +64,8 @@ mod queries;
 mod query_contract;
 #[path = "../../../../tests/reflection.rs"]
 mod reflection;
+#[path = "../../../../tests/saved_worlds.rs"]
+mod saved_worlds;
 #[path = "../../../../tests/scale/mod.rs"]
 mod scale;
 #[path = "../../../../tests/scale/dim2.rs"]

@@ -56,8 +56,13 @@ use crate::dynamics::rigid_body::mass_properties::components::{ColliderDensity, 
 use crate::math::Vector;
 use crate::parry::shape::SharedShape;
 use bevy_ecs::prelude::Component;
+#[cfg(feature = "serialize")]
+use bevy_ecs::reflect::ReflectComponent;
 #[cfg(feature = "collider-from-mesh")]
 use bevy_mesh as mesh_type;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use native::native_shape;
 use std::sync::OnceLock;
 
@@ -86,11 +91,15 @@ pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
 /// instead.
 ///
 /// With feature `serialize` a collider is stored as the definition of its shape and its scale, and is read back with
-/// the same bits. A definition that makes no shape is an error. Custom shape types cannot be stored.
+/// the same bits. A definition that makes no shape is an error. Custom shape types cannot be stored. With this feature colliders
+/// are part of Bevy's worlds in files (`DynamicWorldBuilder`), as all other components are: the example `save_and_load`.
 ///
 /// Parry's shapes are available in their own types: `Collider::from(SharedShape)` accepts any of them, and
 /// [`shape_scaled`](Self::shape_scaled) returns the one the engine uses.
-#[derive(Clone, Component, Debug)]
+#[derive(Clone, Component, Debug, Reflect)]
+#[reflect(opaque, Clone, Debug, Default)]
+// Without serde a world with colliders could not be written to a file: Bevy then leaves them out.
+#[cfg_attr(feature = "serialize", reflect(Component, Serialize, Deserialize))]
 #[require(
     ColliderMarker,
     ColliderAabb,
