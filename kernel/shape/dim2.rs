@@ -1,10 +1,13 @@
 //! Shapes in the plane: masses and areas, rays against triangles and segments, the convex polygon.
 
 mod curved2;
+mod field2;
+mod grid2;
 mod hull2;
 
 pub use super::Segment as Facet;
 pub use curved2::Curved;
+pub(super) use grid2::Layout;
 pub use hull2::Hull;
 
 pub(crate) use super::primitives::{direction, direction_or};

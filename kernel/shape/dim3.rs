@@ -2,6 +2,8 @@
 //! exports the same names.
 
 mod curved3;
+mod field3;
+mod grid3;
 mod hull3;
 #[cfg(test)]
 #[path = "tests_rays3.rs"]
@@ -9,6 +11,7 @@ mod rays;
 
 pub use super::Triangle as Facet;
 pub use curved3::Curved;
+pub(super) use grid3::Layout;
 pub use hull3::{Edge, Face, Hull};
 pub(crate) use hull3::{EdgeBlock, FaceBlock, farthest, largest};
 

@@ -4,6 +4,7 @@
 //! [`Shape::Foreign`] in the tables, and get their manifolds from a [`ManifoldSource`](crate::contact::ManifoldSource).
 
 mod aabb;
+mod adjacency;
 mod composite;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -11,13 +12,16 @@ mod dim;
 mod part_tree;
 mod primitives;
 mod results;
+mod surface;
 
 pub use aabb::Aabb;
-pub use composite::{Composite, NO_FACET, Part, Surface};
+pub use adjacency::NO_FACET;
+pub use composite::{Composite, Part};
 pub use dim::*;
 pub use part_tree::PartTree;
 pub use primitives::{Ball, Capsule, Cuboid, HalfSpace, Segment, Triangle};
 pub use results::{RayHit, ShapeError};
+pub use surface::Surface;
 
 use crate::math::{Pose, Vector, WorldPose};
 use std::sync::Arc;

@@ -30,44 +30,69 @@ struct Node {
     count: u32,
 }
 
-/// A range of `order` that becomes a node.
-struct Task {
-    start: usize,
-    end: usize,
-    depth: u32,
-    /// The branch whose second child it is.
-    parent: Option<usize>,
+/// Adds the nodes of a tree one after the other.
+#[derive(Default)]
+pub(super) struct Builder(PartTree);
+
+impl Builder {
+    /// With room for a tree over this number of parts.
+    pub(super) fn with_parts(count: usize) -> Self {
+        Self(PartTree { nodes: Vec::with_capacity(count), order: Vec::with_capacity(count) })
+    }
+
+    /// Adds a leaf of up to [`LEAF_PARTS`] parts, and at least one. Returns its box.
+    pub(super) fn leaf(&mut self, parts: impl Iterator<Item = u32>, aabb: Aabb) -> Aabb {
+        let PartTree { nodes, order } = &mut self.0;
+        let start = order.len() as u32;
+        order.extend(parts);
+        nodes.push(Node { aabb, start, count: order.len() as u32 - start });
+        aabb
+    }
+
+    /// Adds a branch with two children. Returns its box.
+    pub(super) fn branch(
+        &mut self,
+        first: impl FnOnce(&mut Self) -> Aabb,
+        second: impl FnOnce(&mut Self) -> Aabb,
+    ) -> Aabb {
+        let node = self.0.nodes.len();
+        self.0.nodes.push(Node { aabb: Aabb::EMPTY, start: 0, count: 0 });
+        let first = first(self);
+        self.0.nodes[node].start = self.0.nodes.len() as u32;
+        let aabb = first.union(&second(self));
+        self.0.nodes[node].aabb = aabb;
+        aabb
+    }
+
+    /// The tree.
+    pub(super) fn finish(self) -> PartTree {
+        self.0
+    }
+}
+
+/// A part that is to be sorted into the tree.
+#[derive(Clone, Copy)]
+struct Entry {
+    part: u32,
+    /// Twice the centre of its box.
+    center: Vector,
 }
 
 impl PartTree {
     /// The tree over boxes, of which the `i`-th is part `i`. Boxes that are not `min ≤ max` are never found.
     pub fn new(boxes: &[Aabb]) -> Self {
-        let mut tree = Self { nodes: Vec::new(), order: (0..boxes.len() as u32).collect() };
-        let mut order = core::mem::take(&mut tree.order);
-        let mut tasks = Vec::new();
-        if !boxes.is_empty() {
-            tree.nodes.reserve(boxes.len());
-            tasks.push(Task { start: 0, end: boxes.len(), depth: 0, parent: None });
+        if boxes.is_empty() {
+            return Self::default();
         }
-        while let Some(Task { start, end, depth, parent }) = tasks.pop() {
-            let node = tree.nodes.len();
-            if let Some(parent) = parent {
-                tree.nodes[parent].start = node as u32;
-            }
-            let range = &mut order[start..end];
-            let aabb =
-                range.iter().fold(Aabb::EMPTY, |all, part| all.union(&admitted(&boxes[*part as usize])));
-            if range.len() <= LEAF_PARTS {
-                tree.nodes.push(Node { aabb, start: start as u32, count: range.len() as u32 });
-                continue;
-            }
-            let middle = start + split(range, boxes, depth);
-            tree.nodes.push(Node { aabb, start: 0, count: 0 });
-            tasks.push(Task { start: middle, end, depth: depth + 1, parent: Some(node) });
-            tasks.push(Task { start, end: middle, depth: depth + 1, parent: None });
-        }
-        tree.order = order;
-        tree
+        let number = |c: f32| if c.is_finite() { c } else { 0.0 };
+        let center = |b: &Aabb| Vector::from_array((b.min + b.max).to_array().map(number));
+        let entries = boxes.iter().enumerate();
+        let mut entries: Vec<Entry> =
+            entries.map(|(i, b)| Entry { part: i as u32, center: center(b) }).collect();
+        let around = Aabb::around(entries.iter().map(|entry| entry.center));
+        let mut builder = Builder::with_parts(boxes.len());
+        grow(&mut builder, &mut entries, around, boxes, 0);
+        builder.finish()
     }
 
     /// The box around all parts; empty if there are none.
@@ -199,39 +224,51 @@ fn admitted(aabb: &Aabb) -> Aabb {
     if (0..DIM).all(|i| low[i] <= high[i]) { *aabb } else { Aabb::EMPTY }
 }
 
+/// Adds the tree over some parts, of which the box around their centres is known. Returns its box.
+fn grow(builder: &mut Builder, entries: &mut [Entry], around: Aabb, boxes: &[Aabb], depth: u32) -> Aabb {
+    if entries.len() <= LEAF_PARTS {
+        let parts = entries.iter().map(|entry| entry.part);
+        let aabb = parts.clone().fold(Aabb::EMPTY, |all, part| all.union(&admitted(&boxes[part as usize])));
+        return builder.leaf(parts, aabb);
+    }
+    let (middle, [first_around, second_around]) = split(entries, around, depth);
+    let (first, second) = entries.split_at_mut(middle);
+    builder.branch(
+        |builder| grow(builder, first, first_around, boxes, depth + 1),
+        |builder| grow(builder, second, second_around, boxes, depth + 1),
+    )
+}
+
 /// Sorts at least two parts into two groups that are not empty, at the middle of the longest side of their centres' box.
-/// Returns the size of the first group.
-fn split(parts: &mut [u32], boxes: &[Aabb], depth: u32) -> usize {
-    // Twice the centre; what is not finite counts as 0.
-    let center = |part: u32| {
-        let b = &boxes[part as usize];
-        Vector::from_array((b.min + b.max).to_array().map(|c| if c.is_finite() { c } else { 0.0 }))
-    };
-    let around = parts.iter().fold(Aabb::EMPTY, |all, part| {
-        let c = center(*part);
-        Aabb { min: all.min.min(c), max: all.max.max(c) }
-    });
+/// Returns the size of the first group, and the boxes around the centres of both.
+fn split(entries: &mut [Entry], around: Aabb, depth: u32) -> (usize, [Aabb; 2]) {
     let size = (around.max - around.min).to_array();
     let axis = (1..DIM).fold(0, |best, i| if size[i] > size[best] { i } else { best });
     if depth < MAX_FREE_DEPTH {
         let middle = around.center().to_array()[axis];
-        let (mut i, mut j) = (0, parts.len());
+        let mut boxes = [Aabb::EMPTY; 2];
+        let (mut i, mut j) = (0, entries.len());
         while i < j {
-            if center(parts[i]).to_array()[axis] <= middle {
-                i += 1;
-            } else {
+            let center = entries[i].center;
+            let is_second = !(center.to_array()[axis] <= middle);
+            let aabb = &mut boxes[usize::from(is_second)];
+            *aabb = Aabb { min: aabb.min.min(center), max: aabb.max.max(center) };
+            if is_second {
                 j -= 1;
-                parts.swap(i, j);
+                entries.swap(i, j);
+            } else {
+                i += 1;
             }
         }
-        if i > 0 && i < parts.len() {
-            return i;
+        if i > 0 && i < entries.len() {
+            return (i, boxes);
         }
     }
-    let middle = parts.len() / 2;
-    let key = |part: &u32| center(*part).to_array()[axis];
-    parts.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
-    middle
+    let middle = entries.len() / 2;
+    let key = |entry: &Entry| entry.center.to_array()[axis];
+    entries.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.part.cmp(&b.part)));
+    let around = |entries: &[Entry]| Aabb::around(entries.iter().map(|entry| entry.center));
+    (middle, [around(&entries[..middle]), around(&entries[middle..])])
 }
 
 #[cfg(test)]

@@ -2,10 +2,12 @@
 //!
 //! All checks are relative to the largest extent of the mesh.
 
+use super::half_edges::{HalfEdge, HalfEdges};
 use super::wide::{Wide, narrow, widen};
 use super::{Hull, mass, size_of};
 use crate::math::Vector;
 use crate::shape::ShapeError;
+use crate::shape::adjacency::welded;
 
 /// The tolerances, as shares of the size, within which a vertex is in a face's plane or on an edge. Larger ones remove small
 /// bevels, smaller ones leave the slivers of hull builders. In thin solids a large one joins faces that are not one polygon;
@@ -17,9 +19,6 @@ const CONVEXITY: f64 = 1.0e-3;
 const SAME_DIRECTION: f64 = 0.99;
 /// Meshes with less volume than this share of the size's cube are flat.
 const FLAT_VOLUME: f64 = 1.0e-9;
-
-/// A half edge of the input mesh: tail, head, face.
-type HalfEdge = (u32, u32, u32);
 
 impl Hull {
     /// A hull from vertices (in metres) and faces, each a loop of at least three vertex indices,
@@ -40,7 +39,7 @@ impl Hull {
         if faces.len() < 4 || !(size > 1.0e-12 && size < 1.0e12) {
             return Err(ShapeError::Degenerate);
         }
-        let half_edges = half_edges(&faces)?;
+        let half_edges = HalfEdges::of(vertices.len(), &faces).ok_or(ShapeError::Degenerate)?;
         let volume = mass::signed_volume(&vertices, &faces);
         if !(volume.abs() > FLAT_VOLUME * size * size * size) {
             return Err(ShapeError::Degenerate);
@@ -63,7 +62,7 @@ impl Hull {
     fn merged(
         vertices: &[Vector],
         faces: &[Vec<u32>],
-        half_edges: &[HalfEdge],
+        half_edges: &HalfEdges,
         size: f64,
         tolerance: f64,
     ) -> Result<Self, ShapeError> {
@@ -71,11 +70,11 @@ impl Hull {
         let outlines = outlines(vertices, &groups, half_edges, tolerance)?;
         let planes = checked_planes(vertices, &outlines, size)?;
         let (vertices, outlines) = drop_unused(vertices, outlines);
-        let half_edge_count = self::half_edges(&outlines)?.len();
-        if vertices.len() * 2 + outlines.len() * 2 != half_edge_count + 4 {
+        let half_edges = HalfEdges::of(vertices.len(), &outlines).ok_or(ShapeError::Degenerate)?;
+        if vertices.len() * 2 + outlines.len() * 2 != half_edges.all.len() + 4 {
             return Err(ShapeError::Degenerate);
         }
-        Ok(Self::assemble(vertices, &planes, &outlines))
+        Ok(Self::assemble(vertices, &planes, &outlines, &half_edges))
     }
 
     /// A hull from a triangle mesh, as from builders of convex hulls; see
@@ -97,14 +96,7 @@ fn weld(vertices: Vec<Vector>, mut faces: Vec<Vec<u32>>) -> Result<(Vec<Vector>,
     if faces.iter().flatten().any(|i| *i as usize >= vertices.len()) {
         return Err(ShapeError::Degenerate);
     }
-    let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
-    let key = |i: u32| vertices[i as usize].to_array().map(|c| (c + 0.0).to_bits());
-    order.sort_by_key(|i| (key(*i), *i));
-    let mut first_of = vec![0u32; vertices.len()];
-    for k in 0..order.len() {
-        let same = k > 0 && key(order[k]) == key(order[k - 1]);
-        first_of[order[k] as usize] = if same { first_of[order[k - 1] as usize] } else { order[k] };
-    }
+    let first_of = welded(&vertices);
     for face in &mut faces {
         for i in face.iter_mut() {
             *i = first_of[*i as usize];
@@ -116,26 +108,6 @@ fn weld(vertices: Vec<Vector>, mut faces: Vec<Vec<u32>>) -> Result<(Vec<Vector>,
     }
     faces.retain(|f| f.len() >= 3);
     Ok((vertices, faces))
-}
-
-/// The half edges, sorted. Each must occur once, and so must its twin.
-fn half_edges(faces: &[Vec<u32>]) -> Result<Vec<HalfEdge>, ShapeError> {
-    let mut list = Vec::new();
-    for (f, face) in faces.iter().enumerate() {
-        for k in 0..face.len() {
-            list.push((face[k], face[(k + 1) % face.len()], f as u32));
-        }
-    }
-    list.sort_unstable();
-    let twice = list.windows(2).any(|w| (w[0].0, w[0].1) == (w[1].0, w[1].1));
-    let closed = list.iter().all(|h| h.0 != h.1 && face_at(&list, h.1, h.0).is_some());
-    if twice || !closed { Err(ShapeError::Degenerate) } else { Ok(list) }
-}
-
-/// The face that has the half edge from `tail` to `head`.
-fn face_at(half_edges: &[HalfEdge], tail: u32, head: u32) -> Option<u32> {
-    let at = half_edges.binary_search_by_key(&(tail, head), |h| (h.0, h.1));
-    at.ok().map(|i| half_edges[i].2)
 }
 
 /// Twice the area vector of a polygon (Newell's method): its normal, not of unit length.
@@ -151,23 +123,24 @@ fn area_vector(vertices: &[Vector], outline: &[u32]) -> Wide {
 fn merge_coplanar(
     vertices: &[Vector],
     faces: &[Vec<u32>],
-    half_edges: &[HalfEdge],
+    half_edges: &HalfEdges,
     tolerance: f64,
 ) -> Vec<u32> {
     let areas: Vec<Wide> = faces.iter().map(|f| area_vector(vertices, f)).collect();
+    let lengths: Vec<f64> = areas.iter().map(|area| area.length()).collect();
     let mut order: Vec<usize> = (0..faces.len()).collect();
-    order.sort_by(|a, b| areas[*b].length().total_cmp(&areas[*a].length()).then(a.cmp(b)));
+    order.sort_unstable_by(|a, b| lengths[*b].total_cmp(&lengths[*a]).then(a.cmp(b)));
     let mut group = vec![u32::MAX; faces.len()];
     let mut queue = Vec::new();
     for seed in order {
         if group[seed] != u32::MAX {
             continue;
         }
-        let length = areas[seed].length();
+        let length = lengths[seed];
         let normal = if length > 0.0 { areas[seed] * (1.0 / length) } else { Wide::ZERO };
         let base = widen(vertices[faces[seed][0] as usize]);
         let joins = |face: usize| {
-            let area = areas[face].length();
+            let area = lengths[face];
             let at = |k: usize| widen(vertices[faces[face][k % faces[face].len()] as usize]);
             let longest = (0..faces[face].len()).map(|k| (at(k + 1) - at(k)).length()).fold(0.0, f64::max);
             let sliver = area < tolerance * longest;
@@ -182,8 +155,8 @@ fn merge_coplanar(
         while let Some(face) = queue.pop() {
             for k in 0..faces[face].len() {
                 let (tail, head) = (faces[face][k], faces[face][(k + 1) % faces[face].len()]);
-                let Some(other) = face_at(half_edges, head, tail) else { continue };
-                let other = other as usize;
+                let Some(edge) = half_edges.at(tail, head) else { continue };
+                let other = edge.across as usize;
                 if group[other] == u32::MAX && joins(other) {
                     group[other] = seed as u32;
                     queue.push(other);
@@ -199,23 +172,21 @@ fn merge_coplanar(
 fn outlines(
     vertices: &[Vector],
     group: &[u32],
-    half_edges: &[HalfEdge],
+    half_edges: &HalfEdges,
     tolerance: f64,
 ) -> Result<Vec<Vec<u32>>, ShapeError> {
-    let mut border: Vec<HalfEdge> = Vec::new();
-    for &(tail, head, face) in half_edges {
-        let twin = face_at(half_edges, head, tail).ok_or(ShapeError::Degenerate)?;
-        if group[face as usize] != group[twin as usize] {
-            border.push((group[face as usize], tail, head));
-        }
-    }
+    let is_border = |edge: &&HalfEdge| group[edge.face as usize] != group[edge.across as usize];
+    let in_group = |edge: &HalfEdge| (group[edge.face as usize], edge.tail, edge.head);
+    let mut border: Vec<_> = half_edges.all.iter().filter(is_border).map(in_group).collect();
     border.sort_unstable();
-    let vertex_count = border.iter().map(|b| b.1 as usize + 1).max().ok_or(ShapeError::Degenerate)?;
-    let mut degree = vec![0u32; vertex_count];
+    let mut degree = vec![0u32; vertices.len()];
     for b in &border {
         degree[b.1 as usize] += 1;
     }
-    let mut result = Vec::new();
+    if border.is_empty() {
+        return Err(ShapeError::Degenerate);
+    }
+    let mut result = Vec::with_capacity(group.len());
     for of_group in border.chunk_by(|a, b| a.0 == b.0) {
         let mut outline = Vec::with_capacity(of_group.len());
         let corner = of_group.iter().position(|b| degree[b.1 as usize] > 2).ok_or(ShapeError::Degenerate)?;

@@ -1,5 +1,6 @@
 //! The convex polyhedron: vertices, polygonal faces, and edges with the faces beside them.
 
+mod half_edges;
 mod mass;
 mod mesh;
 mod quickhull;
@@ -8,6 +9,7 @@ mod rounded;
 mod tests;
 mod wide;
 
+use self::half_edges::HalfEdges;
 use super::MassProperties;
 use crate::math::{F32x4, Lane, Num, Vector, max, min};
 use crate::shape::primitives::{direction_or, hit_of_stretch};
@@ -151,27 +153,22 @@ impl Hull {
     }
 
     /// Makes a hull from valid parts: each face is a loop of vertices.
-    fn assemble(vertices: Vec<Vector>, planes: &[(Vector, f32)], outlines: &[Vec<u32>]) -> Self {
+    fn assemble(
+        vertices: Vec<Vector>,
+        planes: &[(Vector, f32)],
+        outlines: &[Vec<u32>],
+        half_edges: &HalfEdges,
+    ) -> Self {
         let mut faces = Vec::with_capacity(planes.len());
-        let mut loops = Vec::new();
-        let mut half_edges = Vec::new();
-        for (face, (outline, (normal, offset))) in outlines.iter().zip(planes).enumerate() {
+        let mut loops = Vec::with_capacity(half_edges.all.len());
+        for (outline, (normal, offset)) in outlines.iter().zip(planes) {
             let first = loops.len() as u32;
             faces.push(Face { normal: *normal, offset: *offset, first, count: outline.len() as u32 });
             loops.extend_from_slice(outline);
-            for (k, tail) in outline.iter().enumerate() {
-                half_edges.push((*tail, outline[(k + 1) % outline.len()], face as u32));
-            }
         }
-        half_edges.sort_unstable();
-        let twin = |tail: u32, head: u32| {
-            let at = half_edges.binary_search_by_key(&(head, tail), |h| (h.0, h.1));
-            at.map_or(0, |i| half_edges[i].2)
-        };
+        let half_edges = half_edges.all.iter().filter(|edge| edge.tail < edge.head);
         let edges: Vec<Edge> = half_edges
-            .iter()
-            .filter(|(tail, head, _)| tail < head)
-            .map(|&(tail, head, left)| Edge { tail, head, left, right: twin(tail, head) })
+            .map(|edge| Edge { tail: edge.tail, head: edge.head, left: edge.face, right: edge.across })
             .collect();
         let (fans, fan_starts) = fans(vertices.len(), outlines);
         let unit_mass = mass::of_polyhedron(&vertices, outlines);
@@ -364,13 +361,20 @@ fn face_blocks(faces: &[Face]) -> Vec<FaceBlock> {
 
 /// The faces around each of `count` vertices, and the index of each vertex' first face, followed by the number of all.
 fn fans(vertices: usize, outlines: &[Vec<u32>]) -> (Vec<u32>, Vec<u32>) {
-    let mut around = vec![Vec::new(); vertices];
-    for (face, outline) in outlines.iter().enumerate() {
-        outline.iter().for_each(|v| around[*v as usize].push(face as u32));
+    let mut starts = vec![0; vertices + 1];
+    outlines.iter().flatten().for_each(|v| starts[*v as usize + 1] += 1);
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
     }
-    let starts = around.iter().scan(0, |end, fan| Some(core::mem::replace(end, *end + fan.len() as u32)));
-    let starts = starts.chain([outlines.iter().map(|o| o.len() as u32).sum()]).collect();
-    (around.concat(), starts)
+    let (mut fans, mut ends) = (vec![0; starts[vertices] as usize], starts.clone());
+    for (face, outline) in outlines.iter().enumerate() {
+        for v in outline {
+            let end = &mut ends[*v as usize];
+            fans[*end as usize] = face as u32;
+            *end += 1;
+        }
+    }
+    (fans, starts)
 }
 
 /// The largest extent of some points along an axis; 0 for none.

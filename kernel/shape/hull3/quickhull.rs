@@ -98,10 +98,32 @@ fn first_tetrahedron(points: &[Wide], tolerance: f64) -> Option<[usize; 4]> {
     Some(if normal.dot(points[d] - a) > 0.0 { [0, c, b, d] } else { [0, b, c, d] })
 }
 
+/// The sides of the living facets, by the point at which they begin: where each ends, and its facet.
+struct Sides(Vec<Vec<(usize, usize)>>);
+
+impl Sides {
+    fn add(&mut self, facet: usize, corners: [usize; 3]) {
+        for k in 0..3 {
+            self.0[corners[k]].push((corners[(k + 1) % 3], facet));
+        }
+    }
+
+    fn remove(&mut self, facet: usize, corners: [usize; 3]) {
+        corners.into_iter().for_each(|tail| self.0[tail].retain(|side| side.1 != facet));
+    }
+
+    /// The facet on the other side of a side.
+    fn across(&self, tail: usize, head: usize) -> Option<usize> {
+        self.0[head].iter().find(|side| side.0 == tail).map(|side| side.1)
+    }
+}
+
 fn quickhull(points: &[Wide], tolerance: f64) -> Option<Vec<[u32; 3]>> {
     let [a, b, c, d] = first_tetrahedron(points, tolerance)?;
     let mut facets: Vec<Facet> =
         [[a, b, c], [a, d, b], [b, d, c], [c, d, a]].map(|t| Facet::new(points, t)).into();
+    let mut sides = Sides(vec![Vec::new(); points.len()]);
+    facets.iter().enumerate().for_each(|(f, facet)| sides.add(f, facet.corners));
     let tolerance = tolerance * ON_FACE;
     assign(points, &mut facets, 0, (0..points.len()).collect(), tolerance);
     // Every round removes at least the point it adds.
@@ -109,16 +131,18 @@ fn quickhull(points: &[Wide], tolerance: f64) -> Option<Vec<[u32; 3]>> {
         let Some(facet) = facets.iter().position(|f| f.alive && !f.outside.is_empty()) else { break };
         let height = |i: &usize| facets[facet].height(points[*i]);
         let apex = *facets[facet].outside.iter().max_by(|x, y| height(x).total_cmp(&height(y)))?;
-        let (visible, horizon) = visible_from(&facets, facet, points[apex], tolerance)?;
+        let (visible, horizon) = visible_from(&facets, &sides, facet, points[apex], tolerance)?;
         let mut orphans = Vec::new();
         for f in visible {
             facets[f].alive = false;
+            sides.remove(f, facets[f].corners);
             orphans.append(&mut facets[f].outside);
         }
         orphans.retain(|p| *p != apex);
         orphans.sort_unstable();
         let from = facets.len();
         for (tail, head) in horizon {
+            sides.add(facets.len(), [tail, head, apex]);
             facets.push(Facet::new(points, [tail, head, apex]));
         }
         assign(points, &mut facets, from, orphans, tolerance);
@@ -146,21 +170,11 @@ fn assign(points: &[Wide], facets: &mut [Facet], from: usize, candidates: Vec<us
 /// The facets that a point sees, connected to the one given, and the half edges around them.
 fn visible_from(
     facets: &[Facet],
+    sides: &Sides,
     start: usize,
     eye: Wide,
     tolerance: f64,
 ) -> Option<(Vec<usize>, Vec<(usize, usize)>)> {
-    let mut neighbours: Vec<(usize, usize, usize)> = Vec::new();
-    for (f, facet) in facets.iter().enumerate().filter(|(_, f)| f.alive) {
-        for k in 0..3 {
-            neighbours.push((facet.corners[k], facet.corners[(k + 1) % 3], f));
-        }
-    }
-    neighbours.sort_unstable();
-    let across = |tail: usize, head: usize| {
-        let at = neighbours.binary_search_by_key(&(head, tail), |n| (n.0, n.1));
-        at.ok().map(|i| neighbours[i].2)
-    };
     let mut visible = vec![start];
     let mut horizon = Vec::new();
     let mut at = 0;
@@ -169,7 +183,7 @@ fn visible_from(
         at += 1;
         for k in 0..3 {
             let (tail, head) = (corners[k], corners[(k + 1) % 3]);
-            let other = across(tail, head)?;
+            let other = sides.across(tail, head)?;
             if visible.contains(&other) {
                 continue;
             }
@@ -184,7 +198,7 @@ fn visible_from(
         let corners = facets[*f].corners;
         for k in 0..3 {
             let (tail, head) = (corners[k], corners[(k + 1) % 3]);
-            if !visible.contains(&across(tail, head)?) {
+            if !visible.contains(&sides.across(tail, head)?) {
                 horizon.push((tail, head));
             }
         }

@@ -122,8 +122,10 @@ impl Hull {
     ///
     /// `NotFinite` or `Negative` for a bad radius.
     pub fn rounded(mut self, radius: f32) -> Result<Self, ShapeError> {
-        self.radius = checked_length(radius)?;
-        self.unit_mass = mass_of(&self);
+        let old = core::mem::replace(&mut self.radius, checked_length(radius)?);
+        if old != self.radius {
+            self.unit_mass = mass_of(&self);
+        }
         Ok(self)
     }
 
