@@ -11,7 +11,7 @@ use crate::math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to
 use crate::parry::math::{Pose, Rot2};
 use crate::parry::shape::{HeightField, SharedShape, TypedShape};
 use crate::physics_transform::Rotation;
-use kernel::shape::Shape as NativeShape;
+use kernel::shape::{Shape as NativeShape, Surface};
 
 /// The default of [`VhacdParameters::concavity`](super::VhacdParameters::concavity).
 pub(super) const VHACD_CONCAVITY: Scalar = 0.1;
@@ -96,7 +96,7 @@ pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> 
         TypedShape::Polyline(line) => {
             surface(line.vertices().iter().copied(), line.indices().iter().copied())
         }
-        TypedShape::HeightField(field) => surface_of_facets(field.segments().map(|s| [s.a, s.b])),
+        TypedShape::HeightField(field) => height_field(field),
         TypedShape::TriMesh(mesh) => unmoved(mesh.triangles().map(|t| {
             let [a, b, c] = [t.a, t.b, t.c].map(vector_to_kernel);
             NativeShape::Triangle(kernel::shape::Triangle { a, b, c })
@@ -112,6 +112,17 @@ pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> 
         }
         _ => None,
     }
+}
+
+/// A height field; without a line if segments are left out.
+fn height_field(field: &HeightField) -> Option<NativeShape> {
+    let segments: Vec<[Vector; 2]> = field.segments().map(|s| [s.a, s.b]).collect();
+    if segments.len() < field.num_cells() {
+        return surface_of_facets(segments.into_iter());
+    }
+    let first = segments.first()?[0];
+    let vertices = core::iter::once(first).chain(segments.iter().map(|ends| ends[1]));
+    Surface::line(vertices.map(vector_to_kernel).collect()).ok().map(NativeShape::surface)
 }
 
 /// A polygon of the kernel with a radius; `None` if it has too many corners.

@@ -7,10 +7,10 @@ mod tests;
 use super::native_composite::{surface, surface_of_facets, unmoved};
 use crate::math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to_kernel};
 use crate::parry::math::{Pose, Rotation as ParryRotation};
-use crate::parry::shape::{ConvexPolyhedron, HeightField, SharedShape, TypedShape};
+use crate::parry::shape::{ConvexPolyhedron, HeightField, HeightFieldCellStatus, SharedShape, TypedShape};
 use crate::physics_transform::Rotation;
 use bevy_math::Quat;
-use kernel::shape::{Curved, Hull, Shape as NativeShape, ShapeError};
+use kernel::shape::{Curved, Hull, Shape as NativeShape, ShapeError, Surface};
 
 /// The default of [`VhacdParameters::concavity`](super::VhacdParameters::concavity).
 pub(super) const VHACD_CONCAVITY: Scalar = 0.01;
@@ -84,7 +84,7 @@ pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> 
             native_hull(hull, round.border_radius)
         }
         TypedShape::TriMesh(mesh) => surface(mesh.vertices().iter().copied(), mesh.indices().iter().copied()),
-        TypedShape::HeightField(field) => surface_of_facets(field.triangles().map(|t| [t.a, t.b, t.c])),
+        TypedShape::HeightField(field) => height_field(field),
         TypedShape::Polyline(line) => unmoved(line.segments().map(|s| {
             let [a, b] = [s.a, s.b].map(vector_to_kernel);
             NativeShape::Segment(kernel::shape::Segment { a, b })
@@ -93,6 +93,22 @@ pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> 
         TypedShape::Cone(s) => native_curved(Curved::cone(s.radius as f32, s.half_height as f32)),
         _ => None,
     }
+}
+
+/// A height field; without a grid if triangles are left out.
+fn height_field(field: &HeightField) -> Option<NativeShape> {
+    if field.cells_statuses().data().iter().any(|cell| cell.intersects(HeightFieldCellStatus::CELL_REMOVED)) {
+        return surface_of_facets(field.triangles().map(|t| [t.a, t.b, t.c]));
+    }
+    let (rows, columns) = (field.nrows(), field.ncols());
+    let vertex = |i: usize, j: usize| {
+        let y = field.heights()[(i, j)] * field.scale().y;
+        vector_to_kernel(Vector::new(field.x_at(j), y, field.z_at(i)))
+    };
+    let vertices = (0..=columns).flat_map(|j| (0..=rows).map(move |i| vertex(i, j))).collect();
+    let is_turned =
+        |i: usize, j: usize| field.cell_status(i, j).contains(HeightFieldCellStatus::ZIGZAG_SUBDIVISION);
+    Surface::grid(vertices, rows + 1, is_turned).ok().map(NativeShape::surface)
 }
 
 fn native_curved(shape: Result<Curved, ShapeError>) -> Option<NativeShape> {

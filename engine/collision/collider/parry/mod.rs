@@ -5,6 +5,7 @@
 //! `manifold` computes contacts of shapes that the kernel does not have.
 
 mod any_collider;
+mod cells;
 mod composite;
 mod constructors;
 pub mod contact_query;
