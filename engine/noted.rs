@@ -74,7 +74,6 @@ impl<T> Noted<T> {
     }
 
     /// The number of queued entities.
-    #[cfg(test)]
     pub(crate) fn len(&self) -> usize {
         self.len
     }

@@ -94,6 +94,7 @@ pub(crate) fn drain_lifecycle(
         tables.bodies.table.flipped.clear();
     }
     queue.is_within_step = true;
+    queue.restart_log();
     let Contacts { changed, met, parted, .. } = &mut *tables.contacts;
     [changed, met, parted].into_iter().for_each(BitSet::clear);
     remove_lost(&mut queue, &mut tables, &mut joints, &mut census);
@@ -134,6 +135,7 @@ pub(crate) fn remove_lost_late(
     }
     remove_lost(&mut queue, &mut tables, &mut joints, &mut census);
     queue.is_within_step = false;
+    queue.restart_log();
     // These are queued for the next step anyway.
     queue.bereft.clear();
 }

@@ -56,6 +56,10 @@ pub(crate) struct LifecycleQueue {
     pub(crate) lost_bodies: Vec<u32>,
     /// Collider ids whose component was removed or whose entity was despawned.
     pub(crate) lost_colliders: Vec<u32>,
+    /// All that was noted since the queue was last drained, for queries that follow it.
+    pub(crate) log: NoteLog,
+    /// Entities that are about to lose a component: noted before that, and logged after.
+    pub(crate) leaving: Vec<Note>,
     /// Colliders that were refused because their pose is not finite, and reported.
     pub(crate) refused: EntityIndexSet,
     /// Colliders of bodies that are not in the simulation. They use their own pose.
@@ -72,15 +76,83 @@ pub(crate) struct LifecycleQueue {
     pub(crate) shapeless: Vec<u32>,
 }
 
-impl LifecycleQueue {
-    fn note_body(&mut self, entity: Entity) {
-        self.bodies.note(entity);
+/// An entity that was queued.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Note {
+    Body(Entity),
+    Collider(Entity),
+}
+
+/// Notes in the order of time. An entity may be noted several times.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NoteLog {
+    notes: Vec<Note>,
+    number: u64,
+}
+
+/// Logs with fewer entries than this are not started anew.
+const SHORT: usize = 1024;
+
+/// A log is started anew when it has this number of entries for each entity in the queue. Fewer let queries read the queue more
+/// often, more take more memory while physics is paused.
+const NOTES: usize = 8;
+
+impl NoteLog {
+    /// The notes since the log was started.
+    pub(crate) fn notes(&self) -> &[Note] {
+        &self.notes
     }
 
-    fn note_collider(&mut self, entity: Entity) {
-        if let Some(gone) = self.colliders.note(entity) {
-            self.refused.swap_remove(&gone);
-            self.detached.swap_remove(&gone);
+    /// The number of times that the log was started anew. What is noted before is in the queue only.
+    pub(crate) fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Starts anew.
+    pub(crate) fn restart(&mut self) {
+        self.notes.clear();
+        self.number += 1;
+    }
+}
+
+impl LifecycleQueue {
+    /// Queues an entity.
+    fn note(&mut self, note: Note) {
+        self.queue(note);
+        self.record(note);
+    }
+
+    /// Queues an entity that still has the component that it loses.
+    fn note_leaving(&mut self, note: Note, commands: &mut Commands) {
+        self.queue(note);
+        if self.leaving.is_empty() {
+            commands.queue(log_leaving);
+        }
+        self.leaving.push(note);
+    }
+
+    /// Starts the log anew.
+    pub(crate) fn restart_log(&mut self) {
+        self.log.restart();
+        self.leaving.clear();
+    }
+
+    fn record(&mut self, note: Note) {
+        if self.log.notes.len() >= SHORT.max(NOTES * (self.bodies.len() + self.colliders.len())) {
+            self.log.restart();
+        }
+        self.log.notes.push(note);
+    }
+
+    fn queue(&mut self, note: Note) {
+        match note {
+            Note::Body(entity) => _ = self.bodies.note(entity),
+            Note::Collider(entity) => {
+                if let Some(gone) = self.colliders.note(entity) {
+                    self.refused.swap_remove(&gone);
+                    self.detached.swap_remove(&gone);
+                }
+            }
         }
     }
 }
@@ -113,9 +185,10 @@ pub(crate) fn watch(app: &mut App) {
         return;
     }
     app.init_resource::<LifecycleQueue>();
-    app.add_observer(note_body::<Insert>).add_observer(note_body::<Remove>);
-    app.add_observer(note_collider::<Insert>).add_observer(note_collider::<Remove>);
-    app.add_observer(note_essentials::<Add>).add_observer(note_essentials::<Remove>);
+    follow::<Insert, OfBodies>(app, Note::Body);
+    follow::<Insert, OfColliders>(app, Note::Collider);
+    follow::<Add, BodyEssentials>(app, Note::Body);
+    follow::<Add, BodyEssentials>(app, Note::Collider);
     app.add_observer(lose_body).add_observer(lose_collider);
 
     let world = app.world_mut();
@@ -146,18 +219,25 @@ type OfColliders = (
     Disabled,
 );
 
-// One observer for many components: each observer is compiled like a system.
-fn note_body<E: EntityEvent>(on: On<E, OfBodies>, mut queue: ResMut<LifecycleQueue>) {
-    queue.note_body(on.event_target());
+/// Queues entities that come by a component, or lose it. One observer for many components: each is compiled like a system.
+fn follow<Come: EntityEvent, B: Bundle>(app: &mut App, note: fn(Entity) -> Note) {
+    app.add_observer(move |on: On<Come, B>, mut queue: ResMut<LifecycleQueue>| {
+        queue.note(note(on.event_target()));
+    })
+    .add_observer(
+        move |on: On<Remove, B>, mut queue: ResMut<LifecycleQueue>, mut commands: Commands| {
+            queue.note_leaving(note(on.entity), &mut commands);
+        },
+    );
 }
 
-fn note_collider<E: EntityEvent>(on: On<E, OfColliders>, mut queue: ResMut<LifecycleQueue>) {
-    queue.note_collider(on.event_target());
-}
-
-fn note_essentials<E: EntityEvent>(on: On<E, BodyEssentials>, mut queue: ResMut<LifecycleQueue>) {
-    queue.note_body(on.event_target());
-    queue.note_collider(on.event_target());
+/// Logs entities that lost components.
+fn log_leaving(world: &mut World) {
+    if let Some(mut queue) = world.get_resource_mut::<LifecycleQueue>() {
+        for note in core::mem::take(&mut queue.leaving) {
+            queue.record(note);
+        }
+    }
 }
 
 /// Queues colliders that were mutated, and moved ones without a body in the simulation.
@@ -195,12 +275,13 @@ fn lose_body(
     on: On<Discard, BodyId>,
     ids: Query<&BodyId, Allow<Disabled>>,
     mut queue: ResMut<LifecycleQueue>,
+    mut commands: Commands,
 ) {
     if let Ok(BodyId(id)) = ids.get(on.entity)
         && *id != NONE
     {
         queue.lost_bodies.push(*id);
-        queue.note_body(on.entity);
+        queue.note_leaving(Note::Body(on.entity), &mut commands);
     }
 }
 
@@ -210,12 +291,13 @@ fn lose_collider(
     on: On<Discard, ColliderId>,
     ids: Query<&ColliderId, Allow<Disabled>>,
     mut queue: ResMut<LifecycleQueue>,
+    mut commands: Commands,
 ) {
     if let Ok(ColliderId(id)) = ids.get(on.entity)
         && *id != NONE
     {
         queue.lost_colliders.push(*id);
-        queue.note_collider(on.entity);
+        queue.note_leaving(Note::Collider(on.entity), &mut commands);
     }
 }
 

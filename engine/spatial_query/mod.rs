@@ -34,6 +34,8 @@ mod shape_caster;
 mod system_param;
 #[cfg(feature = "default-collider")]
 mod update;
+#[cfg(feature = "default-collider")]
+mod world;
 
 pub use diagnostics::SpatialQueryDiagnostics;
 pub use plugin::SpatialQueryPlugin;

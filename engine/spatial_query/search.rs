@@ -15,9 +15,6 @@ use crate::{
     physics_transform::{Position, Rotation, pose_from_kernel},
 };
 
-/// Numbers of colliders that changed begin here, above all ids.
-const RECENT: u32 = 1 << 31;
-
 /// A collider that a search comes near.
 #[derive(Clone, Copy)]
 pub(super) struct Candidate<'a> {
@@ -82,15 +79,14 @@ impl Scene<'_> {
         })
     }
 
-    fn of_recent(&self, index: u32) -> Candidate<'_> {
-        let collider = &self.recent.colliders[index as usize];
-        Candidate {
+    fn of_recent(&self, place: u32) -> Option<Candidate<'_>> {
+        self.recent.collider(place).map(|collider| Candidate {
             entity: collider.entity,
-            order: collider.id.min(RECENT | index),
+            order: collider.order(),
             shape: &collider.shape,
             pose: collider.pose,
             layers: collider.layers,
-        }
+        })
     }
 
     /// Visits both trees by one walk. `visit` returns the new limit.
@@ -108,8 +104,10 @@ impl Scene<'_> {
             }
             least
         });
-        walk(&self.recent.trees, &mut |index, limit| {
-            least = narrow(visit(&self.of_recent(index), narrow(least, limit)), least);
+        walk(&self.recent.trees, &mut |place, limit| {
+            if let Some(candidate) = self.of_recent(place) {
+                least = narrow(visit(&candidate, narrow(least, limit)), least);
+            }
             least
         });
     }
@@ -141,8 +139,8 @@ impl Scene<'_> {
             self.of_id(id).iter().for_each(&mut note);
             true
         });
-        visit_touching(&self.recent.trees, aabb, |index| {
-            note(&self.of_recent(index));
+        visit_touching(&self.recent.trees, aabb, |place| {
+            self.of_recent(place).iter().for_each(&mut note);
             true
         });
         found.sort_unstable();

@@ -2,8 +2,9 @@
 
 use super::{
     RayHitData, ShapeCastConfig, ShapeHitData, SpatialQueryFilter,
-    recent::{Recent, World},
+    recent::Recent,
     search::{Candidate, Found, Scene, Walk},
+    world::World,
 };
 use crate::{
     collision::collider::{Collider, ForeignCast, cast_foreign},

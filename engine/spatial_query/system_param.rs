@@ -12,9 +12,10 @@ use std::sync::Arc;
 
 use super::{
     RayHitData, ShapeCastConfig, ShapeHitData, SpatialQueryFilter,
-    recent::{Recent, World},
+    recent::Recent,
     search::{all, nearest, some},
     searches::{Search, is_foreign},
+    world::World,
 };
 use crate::{
     collision::collider::{Collider, ColliderAabb, overlaps_foreign},
