@@ -7,6 +7,7 @@ use bevy_transform::components::Transform;
 use super::{
     ApplyPosToTransform, PhysicsTransformConfig, PhysicsTransformSystems, Position, Rotation,
     aim::{InFixedLoop, aim, begin_frame, end_fixed_loop},
+    follow::Followed,
     position::Originals,
     spawned::{SpawnQueue, initialise_added, initialise_poses, note_rotation},
     sync::{
@@ -54,15 +55,24 @@ impl Plugin for PhysicsTransformPlugin {
             .init_resource::<SpawnQueue>()
             .init_resource::<Originals>()
             .init_resource::<InFixedLoop>()
-            .add_systems(RunFixedMainLoop, begin_frame.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop))
-            .add_systems(RunFixedMainLoop, end_fixed_loop.in_set(RunFixedMainLoopSystems::AfterFixedMainLoop))
+            .add_systems(
+                RunFixedMainLoop,
+                (
+                    begin_frame
+                        .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop)
+                        .run_if(any_with_component::<Followed>),
+                    end_fixed_loop
+                        .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop)
+                        .run_if(any_with_component::<Followed>),
+                ),
+            )
             .add_observer(initialise_added)
             .add_observer(note_rotation)
             .add_systems(
                 self.schedule,
                 (
                     initialise_poses,
-                    (aim, transform_to_position)
+                    (aim.run_if(any_with_component::<Followed>), transform_to_position)
                         .chain()
                         .run_if(|config: Res<PhysicsTransformConfig>| config.transform_to_position),
                 )
