@@ -101,6 +101,7 @@
 //! | let some pairs pass, or change their contacts | [`CollisionHooks`](prelude::CollisionHooks) |
 //! | let it sleep, or wake it | [`Sleeping`](prelude::Sleeping), [`SleepingDisabled`](prelude::SleepingDisabled), [`WakeBody`](prelude::WakeBody) |
 //! | cast rays and shapes, find what is near | [`spatial_query`], [`RayCaster`](prelude::RayCaster) |
+//! | let a character walk, or move a shape by hand | `CharacterController`, `MoveAndSlide` |
 //! | let pointers hover, click and drag it | `PhysicsPickingPlugin` |
 //! | take it out of the simulation | [`RigidBodyDisabled`](prelude::RigidBodyDisabled), [`ColliderDisabled`](prelude::ColliderDisabled) |
 //! | draw it smoothly between steps | [`TransformInterpolation`](prelude::TransformInterpolation), [`TransformExtrapolation`](prelude::TransformExtrapolation) |
@@ -117,7 +118,7 @@
 //!
 //! | | 2D | 3D |
 //! |---|---|---|
-//! | games | `moving_platform`, `one_way_platform` | `conveyor_belt`, `save_and_load`, `time_control` |
+//! | games | `character`, `moving_platform`, `one_way_platform` | `character`, `conveyor_belt`, `save_and_load`, `time_control` |
 //! | bodies | `locked_axes`, `sleeping`, `interpolation` | `hinged_door`, `child_colliders`, `materials`, `layers`, `dominoes` |
 //! | colliders and queries | `ray_caster`, `custom_collider` | `collider_constructors`, `spatial_queries`, `custom_broad_phase` |
 //! | tools | `step_times` | `debug_drawing`, `diagnostics` |
@@ -159,6 +160,8 @@ compile_error!("features `f32` and `f64` exclude each other");
 #[cfg(all(feature = "default-collider", not(any(feature = "parry-f32", feature = "parry-f64"))))]
 compile_error!("feature `default-collider` needs `parry-f32` or `parry-f64`, as the precision is");
 
+#[cfg(feature = "default-collider")]
+pub mod character_controller;
 pub mod collider_tree;
 pub mod collision;
 pub mod data_structures;
@@ -192,6 +195,8 @@ pub use type_registration::PhysicsTypeRegistrationPlugin;
 
 /// The names that most apps use.
 pub mod prelude {
+    #[cfg(feature = "default-collider")]
+    pub use crate::character_controller::prelude::*;
     #[cfg(feature = "debug-plugin")]
     pub use crate::debug_render::*;
     #[cfg(feature = "bevy_diagnostic")]

@@ -51,6 +51,7 @@ use crate::{
 /// | [`SolverPlugins`] | motion, contact response, sleep |
 /// | [`BroadPhaseCorePlugin`], [`BvhBroadPhasePlugin`] | pairs that might touch |
 /// | [`JointPlugin`] | joints |
+/// | `CharacterControllerPlugin` | characters that walk |
 /// | [`SpatialQueryPlugin`] | ray casters and shape casters |
 /// | [`PhysicsTransformPlugin`] | `Transform` to `Position` and `Rotation`, and back |
 /// | [`PhysicsInterpolationPlugin`] | smooth transforms between steps, for those who ask |
@@ -117,6 +118,8 @@ impl PhysicsPlugins {
             .add(ColliderTreePlugin::<Collider>::default())
             .add(NarrowPhasePlugin::<Collider, H>::default());
 
+        #[cfg(feature = "default-collider")]
+        let builder = builder.add(crate::character_controller::plugin::CharacterControllerPlugin);
         builder
             .add_group(
                 self.length_unit.map_or_else(SolverPlugins::default, SolverPlugins::new_with_length_unit),

@@ -199,6 +199,22 @@ fn register_collider_settings(app: &mut App) {
         ClosestPoints, ColliderConstructorHierarchy, ColliderConstructorHierarchyConfig,
     );
     constructor::register_types(app);
+    register_characters(app);
+}
+
+#[cfg(feature = "default-collider")]
+fn register_characters(app: &mut App) {
+    use crate::character_controller::{
+        controller::{
+            Carrier, CharacterController, CharacterInput, CharacterState, GroundState, SurfaceVelocity,
+        },
+        move_and_slide::{DepenetrationConfig, MoveAndSlideConfig, MoveAndSlideOutput, MoveHitData},
+    };
+
+    register!(app:
+        CharacterController, CharacterInput, CharacterState, GroundState, Carrier, SurfaceVelocity,
+        MoveAndSlideConfig, DepenetrationConfig, MoveAndSlideOutput, MoveHitData,
+    );
 }
 
 #[cfg(not(feature = "default-collider"))]

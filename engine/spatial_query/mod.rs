@@ -19,6 +19,8 @@ mod batch;
 mod diagnostics;
 #[cfg(feature = "default-collider")]
 mod frame;
+#[cfg(feature = "default-collider")]
+mod near_parts;
 mod plugin;
 mod query_filter;
 mod ray_caster;
@@ -38,6 +40,8 @@ mod update;
 mod world;
 
 pub use diagnostics::SpatialQueryDiagnostics;
+#[cfg(feature = "default-collider")]
+pub(crate) use near_parts::NearPart;
 pub use plugin::SpatialQueryPlugin;
 pub use query_filter::SpatialQueryFilter;
 pub use ray_caster::{RayCaster, RayHitData, RayHits};

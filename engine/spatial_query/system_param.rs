@@ -398,7 +398,16 @@ impl SpatialQuery<'_, '_> {
         self.world.body_of(collider)
     }
 
-    fn search<'a>(&'a self, recent: &'a Arc<Recent>, filter: &'a SpatialQueryFilter) -> Search<'a> {
+    /// What changed since the last step.
+    pub(super) fn recent(&self) -> Arc<Recent> {
+        self.world.recent()
+    }
+
+    pub(super) fn search<'a>(
+        &'a self,
+        recent: &'a Arc<Recent>,
+        filter: &'a SpatialQueryFilter,
+    ) -> Search<'a> {
         Search::new(&self.world, recent, filter)
     }
 }

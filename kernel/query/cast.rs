@@ -25,6 +25,9 @@ const MET_OF_LARGER: f64 = 1.0e-9;
 /// the radius of curvature.
 const FAR_ENOUGH: f64 = 300.0;
 
+/// Shapes that close at less than this share of their speed slide along each other: the rounding of normals.
+const SLIDING: f32 = 1.0e-6;
+
 /// How far shapes that overlap where they met are moved back, times how near they meet.
 const BACK: [f64; 5] = [4.0, 32.0, 256.0, 2048.0, 16384.0];
 
@@ -154,7 +157,7 @@ fn at_start(a: &Shape, b: &Shape, pose: &Pose, way: &Way) -> Option<CastHit> {
         return Some(unknown);
     }
     let Closest { points, normal, .. } = closest(a, b, pose, f32::MAX)?;
-    if config.ignore_origin_penetration && direction.dot(normal) >= 0.0 {
+    if config.ignore_origin_penetration && direction.dot(normal) >= -SLIDING {
         return None;
     }
     let known = CastHit { distance: 0.0, points, normal };

@@ -54,6 +54,24 @@ pub fn closest(a: &Shape, b: &Shape, pose_b_in_a: &Pose, limit: f32) -> Option<C
     (found.distance <= limit && found.is_finite()).then_some(found)
 }
 
+/// Calls `visit` with the nearest points of each convex part of shape `a` and each of shape `b` that are within `limit`
+/// metres, in an order that depends on the shapes and the pose only. Parts that overlap are found as by [`closest`].
+pub fn visit_closest(a: &Shape, b: &Shape, pose_b_in_a: &Pose, limit: f32, visit: &mut dyn FnMut(Closest)) {
+    match (a, b) {
+        (Shape::Composite(composite), b) => {
+            visit_parts(composite, b, pose_b_in_a, limit, |_, part, own, at, limit| {
+                visit_closest(part, b, at, limit, &mut |found| visit(found.moved(own)));
+                limit
+            });
+        }
+        (a, Shape::Composite(_)) => {
+            let back = pose_b_in_a.inverse();
+            visit_closest(b, a, &back, limit, &mut |found| visit(found.flipped(pose_b_in_a)));
+        }
+        (a, b) => closest(a, b, pose_b_in_a, limit).into_iter().for_each(visit),
+    }
+}
+
 /// Whether the shapes touch or overlap.
 pub fn overlaps(a: &Shape, b: &Shape, pose_b_in_a: &Pose) -> bool {
     match (a, b) {

@@ -1,6 +1,6 @@
 //! Spatial queries: rays, shape casts, nearest points and overlaps.
 //!
-//! Of two shapes at poses: [`closest`], [`overlaps`], [`cast_shape`], [`project_point`]. Of all colliders in trees: a
+//! Of two shapes at poses: [`closest`], [`visit_closest`], [`overlaps`], [`cast_shape`], [`project_point`]. Of all colliders in trees: a
 //! [`Ray`] or a [`ShapeCast`] is made once and visits what it may meet.
 //!
 //! All queries read only, take any numbers, and give the same bits for the same input. Distances are in metres.
@@ -16,7 +16,7 @@ mod sweep;
 pub(crate) mod tests;
 
 pub use cast::{CastConfig, CastHit, cast_shape};
-pub use closest::{Closest, closest, overlaps};
+pub use closest::{Closest, closest, overlaps, visit_closest};
 pub use hits::{Hit, Nearest, sort_hits};
 pub use near::{visit_near, visit_touching};
 pub use point::{Projection, contains_point, project_point};

@@ -1,5 +1,9 @@
 //! Tests of avian2d in an app. The files are shared with avian3d.
 
+#[path = "../../../../tests/characters/mod.rs"]
+mod characters;
+#[path = "../../../../tests/characters/dim2.rs"]
+mod characters_dim;
 #[path = "../../../../tests/collision_hits.rs"]
 mod collision_hits;
 #[path = "../../../../tests/collisions/mod.rs"]

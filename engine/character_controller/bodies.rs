@@ -1,0 +1,131 @@
+//! The bodies around characters: how they move in the step to come.
+
+use bevy_ecs::{prelude::*, system::SystemParam};
+
+use super::controller::{CharacterController, SurfaceVelocity};
+use crate::{
+    collision::collider::collider_hierarchy::{ColliderOf, RigidBodyColliders},
+    dynamics::rigid_body::{AngularVelocity, RigidBody, RigidBodyDisabled, RigidBodyQueryReadOnly},
+    math::{
+        AdjustPrecision, AngularVector, Scalar, Vector, angular_to_kernel, inv_inertia_to_kernel, to_f32,
+        vector_from_kernel, vector_to_kernel,
+    },
+    physics_transform::{Position, Rotation, pose_from_kernel, world_pose},
+};
+
+/// The bodies, and the colliders that belong to them.
+#[derive(SystemParam)]
+pub(super) struct BodiesAround<'w, 's> {
+    states: Query<'w, 's, RigidBodyQueryReadOnly, Without<RigidBodyDisabled>>,
+    owners: Query<'w, 's, &'static ColliderOf>,
+    colliders: Query<'w, 's, &'static RigidBodyColliders>,
+    surfaces: Query<'w, 's, (&'static Rotation, &'static SurfaceVelocity)>,
+    characters: Query<'w, 's, (), With<CharacterController>>,
+    movers:
+        Query<'w, 's, Entity, (With<RigidBody>, Without<CharacterController>, Without<RigidBodyDisabled>)>,
+}
+
+impl BodiesAround<'_, '_> {
+    /// The body of a collider.
+    pub(super) fn body_of(&self, collider: Entity) -> Option<Entity> {
+        self.owners.get(collider).ok().map(|of| of.body)
+    }
+
+    /// The colliders of a body.
+    pub(super) fn colliders_of(&self, body: Entity) -> impl Iterator<Item = Entity> + '_ {
+        self.colliders.get(body).into_iter().flat_map(|colliders| colliders.iter())
+    }
+
+    /// The motion of a body in the next step; `None` for what is no body.
+    pub(super) fn motion_of(&self, body: Entity, time: Scalar) -> Option<Motion> {
+        let state = self.states.get(body).ok()?;
+        let moves = !state.rb.is_static();
+        Some(Motion {
+            kind: *state.rb,
+            is_character: self.characters.contains(body),
+            position: *state.position,
+            rotation: *state.rotation,
+            center: state.position.0 + *state.rotation * state.center_of_mass.0,
+            velocity: if moves { state.linear_velocity.0 } else { Vector::ZERO },
+            spin: if moves { state.angular_velocity.0 } else { AngularVelocity::ZERO.0 },
+            time,
+        })
+    }
+
+    /// The inverse of the mass that a body has at a point along a direction, in 1/kg: zero for those that impulses do not move.
+    pub(super) fn inverse_mass_at(&self, body: Entity, point: Vector, direction: Vector) -> Scalar {
+        let Ok(state) = self.states.get(body) else { return 0.0 };
+        let center = state.position.0 + *state.rotation * state.center_of_mass.0;
+        let linear = (direction * direction * state.effective_inverse_mass()).element_sum();
+        let lever = vector_to_kernel(point - center).cross(vector_to_kernel(direction));
+        let inertia = inv_inertia_to_kernel(state.effective_global_angular_inertia().inverse());
+        linear + inertia.apply(lever).dot(lever).adjust_precision()
+    }
+
+    /// The velocity of the surface of a collider, in world axes, in m/s.
+    pub(super) fn surface_of(&self, collider: Entity) -> Vector {
+        self.surfaces.get(collider).map_or(Vector::ZERO, |(rotation, surface)| *rotation * surface.0)
+    }
+
+    /// The kinematic bodies other than characters that move in the next step.
+    pub(super) fn pushers(&self, time: Scalar) -> Vec<Motion> {
+        let moving = self.movers.iter().filter_map(|body| self.motion_of(body, time));
+        moving.filter(|body| body.kind.is_kinematic() && body.is_moving()).collect()
+    }
+}
+
+/// A body in the next step, if nothing changes its velocity.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) kind: RigidBody,
+    pub(super) is_character: bool,
+    pub(super) position: Position,
+    pub(super) rotation: Rotation,
+    center: Vector,
+    velocity: Vector,
+    pub(super) spin: AngularVector,
+    time: Scalar,
+}
+
+impl Motion {
+    /// Whether it moves in the step.
+    pub(super) fn is_moving(&self) -> bool {
+        self.velocity != Vector::ZERO || self.spin != AngularVelocity::ZERO.0
+    }
+
+    /// The greatest distance by which a point at most as far from the body's centre as `point` moves in the step.
+    pub(super) fn reach_at(&self, point: Vector) -> Scalar {
+        let spin: Scalar = angular_to_kernel(self.spin).length_squared().sqrt().adjust_precision();
+        (self.velocity.length() + spin * (point - self.center).length()) * self.time
+    }
+
+    /// The velocity of a point of the body, in m/s.
+    pub(super) fn velocity_at(&self, point: Vector) -> Vector {
+        let arm = vector_to_kernel(point - self.center);
+        self.velocity + vector_from_kernel(angular_to_kernel(self.spin).cross(arm))
+    }
+
+    /// Where the body is after the step.
+    pub(super) fn end(&self) -> (Position, Rotation) {
+        if !self.is_moving() {
+            return (self.position, self.rotation);
+        }
+        let now = world_pose(&self.position, &self.rotation);
+        let turn = angular_to_kernel(self.spin) * to_f32(self.time);
+        let rotation = now.rotation.turned_by(turn);
+        let (_, turned) = pose_from_kernel(kernel::math::WorldPose::new(now.position, rotation));
+        let arm = self.rotation.inverse() * (self.center - self.position.0);
+        (Position(self.center + self.velocity * self.time - turned * arm), turned)
+    }
+
+    /// The displacement of a point of the body in the step.
+    pub(super) fn displacement_at(&self, point: Vector) -> Vector {
+        let (position, rotation) = self.end();
+        position.0 + rotation * self.to_local(point) - point
+    }
+
+    /// A point in the frame of the body.
+    pub(super) fn to_local(&self, point: Vector) -> Vector {
+        self.rotation.inverse() * (point - self.position.0)
+    }
+}

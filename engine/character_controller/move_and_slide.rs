@@ -1,0 +1,482 @@
+//! [`MoveAndSlide`]: moves a shape by a velocity, and slides it along what it meets.
+
+use bevy_ecs::{prelude::*, system::SystemParam};
+use bevy_reflect::prelude::*;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use core::time::Duration;
+
+pub use super::velocity_project::{project_velocity, project_velocity_bruteforce};
+use super::{
+    mover::{Mover, Recovery, Sweep},
+    planes::{Plane, add_facing},
+    velocity_project::{along, vector},
+};
+use crate::{
+    collision::{
+        collider::{Collider, CollisionLayers, Sensor, collider_hierarchy::ColliderOf},
+        contact_types::ContactPoint,
+    },
+    dynamics::solver::PhysicsLengthUnit,
+    math::{AdjustPrecision, AsF32, Dir, RotationValue, Scalar, Vector},
+    physics_transform::{Position, Rotation},
+    spatial_query::{NearPart, SpatialQuery, SpatialQueryFilter},
+};
+
+/// The cosine of 5 degrees.
+pub const COS_5_DEGREES: Scalar = 0.996_194_7;
+
+/// The share of its speed at which a shape may part from what it still touches.
+const PARTING: Scalar = 1.0e-3;
+
+/// Moves a shape that the game drives, and slides it along what it meets; as a system parameter.
+///
+/// It is for kinematic characters that set their own [`Position`] or `Transform`, not for bodies that a velocity moves. It
+/// knows nothing of floors, slopes and stairs: [`character_controller`](crate::character_controller) says what does.
+///
+/// The shape keeps [`skin_width`](MoveAndSlideConfig::skin_width) from all colliders. It meets colliders of bodies; sensors and
+/// disabled colliders are passed by. Queries see the world as its components are.
+///
+/// ```
+/// # use avian::{math::*, prelude::*};
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_time::prelude::*;
+/// #[derive(Component)]
+/// struct Velocity(Vector);
+///
+/// fn walk(
+///     mut players: Query<(Entity, &Collider, &Position, &Rotation, &mut Velocity)>,
+///     mover: MoveAndSlide,
+///     time: Res<Time>,
+///     mut commands: Commands,
+/// ) {
+///     for (player, shape, from, turn, mut velocity) in &mut players {
+///         let filter = SpatialQueryFilter::from_excluded_entities([player]);
+///         let config = MoveAndSlideConfig::default();
+///         let (turn, dt) = ((*turn).into(), time.delta());
+///         let moved = mover.move_and_slide(shape, from.0, turn, velocity.0, dt, &config, &filter, |hit| {
+///             println!("{} is in the way", hit.entity);
+///             MoveAndSlideHitResponse::Accept
+///         });
+///         velocity.0 = moved.projected_velocity;
+///         // The mover reads positions, so that they are written later.
+///         commands.entity(player).insert(Position(moved.position));
+///     }
+/// }
+/// ```
+#[derive(SystemParam)]
+pub struct MoveAndSlide<'w, 's> {
+    /// Queries of all colliders.
+    pub spatial_query: SpatialQuery<'w, 's>,
+    /// The colliders that stop a shape.
+    pub colliders: Query<
+        'w,
+        's,
+        (&'static Collider, &'static Position, &'static Rotation, Option<&'static CollisionLayers>),
+        (With<ColliderOf>, Without<Sensor>),
+    >,
+    /// The length of a metre.
+    pub length_unit: Res<'w, PhysicsLengthUnit>,
+}
+
+/// Settings of [`MoveAndSlide::move_and_slide`].
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Default, PartialEq)]
+pub struct MoveAndSlideConfig {
+    /// The most sweeps of a move. After the last one the rest of the move is lost. 4 by default.
+    pub move_and_slide_iterations: usize,
+    /// The most rounds of depenetration before a move, and after it. 16 by default.
+    pub depenetration_iterations: usize,
+    /// The overlap with the skin that depenetration may leave, in metres, scaled by [`PhysicsLengthUnit`]. 0.0001 by default.
+    pub max_depenetration_error: Scalar,
+    /// The deepest overlap that depenetration solves, in metres, scaled by [`PhysicsLengthUnit`]. A shape that is deeper in a
+    /// collider stays. 0.5 by default.
+    pub penetration_rejection_threshold: Scalar,
+    /// The distance that the shape keeps, in metres, scaled by [`PhysicsLengthUnit`]. 0.01 by default.
+    pub skin_width: Scalar,
+    /// Outward normals of planes that the velocity never goes into. None by default.
+    pub planes: Vec<Dir>,
+    /// Planes with normals whose dot product is more than this count as one: the one that the velocity goes into more.
+    /// [`COS_5_DEGREES`] by default.
+    pub plane_similarity_dot_threshold: Scalar,
+    /// The most planes that a velocity is projected on at once, [`planes`](Self::planes) included. 20 by default.
+    pub max_planes: usize,
+}
+
+impl Default for MoveAndSlideConfig {
+    fn default() -> Self {
+        Self {
+            move_and_slide_iterations: 4,
+            depenetration_iterations: 16,
+            max_depenetration_error: 1.0e-4,
+            penetration_rejection_threshold: 0.5,
+            skin_width: 0.01,
+            planes: Vec::new(),
+            plane_similarity_dot_threshold: COS_5_DEGREES,
+            max_planes: 20,
+        }
+    }
+}
+
+/// Settings of [`MoveAndSlide::depenetrate`], as those of [`MoveAndSlideConfig`].
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Default, PartialEq)]
+pub struct DepenetrationConfig {
+    /// See [`MoveAndSlideConfig::depenetration_iterations`].
+    pub depenetration_iterations: usize,
+    /// See [`MoveAndSlideConfig::max_depenetration_error`].
+    pub max_depenetration_error: Scalar,
+    /// See [`MoveAndSlideConfig::penetration_rejection_threshold`].
+    pub penetration_rejection_threshold: Scalar,
+    /// See [`MoveAndSlideConfig::skin_width`].
+    pub skin_width: Scalar,
+}
+
+impl Default for DepenetrationConfig {
+    fn default() -> Self {
+        Self::from(&MoveAndSlideConfig::default())
+    }
+}
+
+impl From<&MoveAndSlideConfig> for DepenetrationConfig {
+    fn from(config: &MoveAndSlideConfig) -> Self {
+        Self {
+            depenetration_iterations: config.depenetration_iterations,
+            max_depenetration_error: config.max_depenetration_error,
+            penetration_rejection_threshold: config.penetration_rejection_threshold,
+            skin_width: config.skin_width,
+        }
+    }
+}
+
+/// Where a shape came to be.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, PartialEq)]
+pub struct MoveAndSlideOutput {
+    /// Its position in metres.
+    pub position: Vector,
+    /// Its velocity in m/s, without what went into the planes it met. A character that is to keep its speed along the floor
+    /// does not take this for its velocity, but the way it wants to go.
+    pub projected_velocity: Vector,
+}
+
+/// A plane that a shape met in [`MoveAndSlide::move_and_slide`], and the state of the move, which may be changed.
+#[derive(Debug, PartialEq)]
+pub struct MoveAndSlideHitData<'a> {
+    /// The collider of this plane.
+    pub entity: Entity,
+    /// How far the shape moved in this sweep until it was [`skin_width`](MoveAndSlideConfig::skin_width) away, in metres. 0 if
+    /// it touched from the start of the move.
+    pub distance: Scalar,
+    /// The nearest point of the collider, in the world, in metres.
+    pub point: Vector,
+    /// The outward normal of the collider. The velocity is projected on the plane with this normal.
+    pub normal: &'a mut Dir,
+    /// The position of the shape, in metres.
+    pub position: &'a mut Vector,
+    /// The velocity of the shape in m/s, before it is projected.
+    pub velocity: &'a mut Vector,
+    /// How far the shape would move until it touches the collider itself, in metres; along the normal where it slides.
+    pub collision_distance: Scalar,
+}
+
+impl MoveAndSlideHitData<'_> {
+    /// Whether the shape overlaps the collider.
+    pub fn intersects(&self) -> bool {
+        self.collision_distance == 0.0
+    }
+}
+
+/// What becomes of a move after a hit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MoveAndSlideHitResponse {
+    /// The shape slides along the plane.
+    #[default]
+    Accept,
+    /// The shape passes through the collider in the rest of this move.
+    Ignore,
+    /// The move ends here.
+    Abort,
+}
+
+/// The first collider on the way of a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, PartialEq)]
+pub struct MoveHitData {
+    /// The collider.
+    pub entity: Entity,
+    /// How far the shape can move until the collider is at the distance of the skin, in metres.
+    pub distance: Scalar,
+    /// The nearest point of the collider then, in the world, in metres.
+    pub point1: Vector,
+    /// The nearest point of the shape then, in the world, in metres.
+    pub point2: Vector,
+    /// The outward unit normal of the collider.
+    pub normal1: Vector,
+    /// The outward unit normal of the shape.
+    pub normal2: Vector,
+    /// How far the shape can move until it touches the plane of the collider at the hit, in metres.
+    pub collision_distance: Scalar,
+}
+
+impl MoveHitData {
+    /// Whether the shape overlaps the collider from the start.
+    pub fn intersects(self) -> bool {
+        self.collision_distance == 0.0
+    }
+}
+
+impl MoveAndSlide<'_, '_> {
+    /// Moves a shape by a velocity in m/s, for a time, and slides it along what it meets. `on_hit` is called for each plane
+    /// that it touches and does not leave, at the start of the move and where a sweep ends; the same plane may come more than
+    /// once.
+    ///
+    /// Before and after the move the shape is moved out of what it overlaps. A position or velocity that is infinite or NaN
+    /// moves nothing: the velocity is then zero.
+    #[expect(clippy::too_many_arguments, reason = "as in Avian")]
+    pub fn move_and_slide(
+        &self,
+        shape: &Collider,
+        shape_position: Vector,
+        shape_rotation: RotationValue,
+        mut velocity: Vector,
+        delta_time: Duration,
+        config: &MoveAndSlideConfig,
+        filter: &SpatialQueryFilter,
+        mut on_hit: impl FnMut(MoveAndSlideHitData) -> MoveAndSlideHitResponse,
+    ) -> MoveAndSlideOutput {
+        if !(velocity.is_finite() && shape_position.is_finite()) {
+            return MoveAndSlideOutput { position: shape_position, projected_velocity: Vector::ZERO };
+        }
+        let is_solid = |entity| self.colliders.contains(entity);
+        let mut mover = self.mover(&is_solid, shape, shape_rotation, config.skin_width, filter);
+        let recovery = self.recovery(&config.into());
+        let mut position = shape_position + mover.recovery(shape_position, &recovery);
+        let mut left: Scalar = delta_time.as_secs_f64().adjust_precision();
+        let mut planes: Vec<Plane> =
+            config.planes.iter().map(|normal| Plane::facing(vector(*normal))).collect();
+        let mut wanted = velocity;
+        let mut stopped_by: Option<Sweep> = None;
+        for round in 0..=config.move_and_slide_iterations {
+            let mut slide = Slide {
+                config,
+                mover: &mut mover,
+                planes: &mut planes,
+                wanted: &mut wanted,
+                position: &mut position,
+                velocity: &mut velocity,
+            };
+            if slide.meet(stopped_by, &mut on_hit) == MoveAndSlideHitResponse::Abort {
+                break;
+            }
+            let movement = velocity * left;
+            if round == config.move_and_slide_iterations || !(movement.length() > 0.0) {
+                break;
+            }
+            stopped_by = mover.sweep(position, movement);
+            let Some(hit) = stopped_by else {
+                position += movement;
+                break;
+            };
+            let share = (hit.distance / movement.length()).min(1.0);
+            position += movement * share;
+            left *= 1.0 - share;
+        }
+        position += mover.recovery(position, &recovery);
+        MoveAndSlideOutput { position, projected_velocity: velocity }
+    }
+
+    /// The first hit of a shape on its way, in metres. `skin_width` is scaled by [`PhysicsLengthUnit`].
+    ///
+    /// A collider that is nearer than the skin from the start is hit at distance 0, unless the way leads along it or off it.
+    /// `None` also if a number is infinite or NaN.
+    pub fn cast_move(
+        &self,
+        shape: &Collider,
+        shape_position: Vector,
+        shape_rotation: RotationValue,
+        movement: Vector,
+        skin_width: Scalar,
+        filter: &SpatialQueryFilter,
+    ) -> Option<MoveHitData> {
+        let is_solid = |entity| self.colliders.contains(entity);
+        let mover = self.mover(&is_solid, shape, shape_rotation, skin_width, filter);
+        let Sweep { part, distance, collision_distance } = mover.sweep(shape_position, movement)?;
+        let NearPart { entity, points: [point1, point2], normal, .. } = part;
+        let (normal1, normal2) = (normal, -normal);
+        Some(MoveHitData { entity, distance, point1, point2, normal1, normal2, collision_distance })
+    }
+
+    /// The displacement in metres that moves a shape out of what it overlaps with its skin, the shortest one where
+    /// colliders are flat. Between colliders that leave no room it is midway.
+    pub fn depenetrate(
+        &self,
+        shape: &Collider,
+        shape_position: Vector,
+        shape_rotation: RotationValue,
+        config: &DepenetrationConfig,
+        filter: &SpatialQueryFilter,
+    ) -> Vector {
+        let is_solid = |entity| self.colliders.contains(entity);
+        let mover = self.mover(&is_solid, shape, shape_rotation, config.skin_width, filter);
+        mover.recovery(shape_position, &self.recovery(config))
+    }
+
+    /// The displacement in metres that moves a shape by at least the given distances along the given normals, but for
+    /// [`max_depenetration_error`](DepenetrationConfig::max_depenetration_error).
+    ///
+    /// Planes are taken one after the other, again and again, so that it is near the shortest one.
+    pub fn depenetrate_intersections(
+        &self,
+        config: &DepenetrationConfig,
+        intersections: &[(Dir, Scalar)],
+    ) -> Vector {
+        let error = config.max_depenetration_error * self.length_unit.0;
+        let mut way = Vector::ZERO;
+        for _ in 0..config.depenetration_iterations {
+            let mut is_done = true;
+            for (normal, distance) in intersections {
+                let normal = vector(*normal);
+                let left = distance - way.dot(normal);
+                if left > error {
+                    way += normal * left;
+                    is_done = false;
+                }
+            }
+            if is_done {
+                break;
+            }
+        }
+        way
+    }
+
+    /// Calls `callback` with each convex part of a collider within `prediction_distance` metres of a shape, until it returns
+    /// `false`: the collider, the point midway between both, with its penetration, and the normal from the collider to the
+    /// shape. Parts of a collider with about the same normal are one.
+    ///
+    /// Anchors are from the positions of the shape and of the collider.
+    pub fn intersections(
+        &self,
+        shape: &Collider,
+        shape_position: Vector,
+        shape_rotation: RotationValue,
+        prediction_distance: Scalar,
+        filter: &SpatialQueryFilter,
+        mut callback: impl FnMut(Entity, &ContactPoint, Dir) -> bool,
+    ) {
+        let is_solid = |entity| self.colliders.contains(entity);
+        let mover = self.mover(&is_solid, shape, shape_rotation, 0.0, filter);
+        for part in mover.near(shape_position, prediction_distance) {
+            let Ok(normal) = Dir::new(part.normal.f32()) else { continue };
+            let point = part.points[0].midpoint(part.points[1]);
+            let origin = self.colliders.get(part.entity).map_or(point, |(_, position, ..)| position.0);
+            let contact = ContactPoint::new(point - shape_position, point - origin, point, -part.distance);
+            if !callback(part.entity, &contact, normal) {
+                return;
+            }
+        }
+    }
+
+    /// As [`project_velocity`].
+    #[must_use]
+    pub fn project_velocity(v: Vector, normals: &[Dir]) -> Vector {
+        project_velocity(v, normals)
+    }
+
+    fn mover<'a>(
+        &'a self,
+        is_solid: &'a dyn Fn(Entity) -> bool,
+        shape: &'a Collider,
+        rotation: RotationValue,
+        skin_width: Scalar,
+        filter: &'a SpatialQueryFilter,
+    ) -> Mover<'a> {
+        let unit = self.length_unit.0;
+        let skin = (skin_width * unit).max(0.0);
+        let queries = &self.spatial_query;
+        Mover { queries, is_solid, ignored: Vec::new(), shape, rotation, filter, skin, unit }
+    }
+
+    fn recovery(&self, config: &DepenetrationConfig) -> Recovery {
+        let unit = self.length_unit.0;
+        Recovery {
+            rounds: config.depenetration_iterations,
+            error: config.max_depenetration_error * unit,
+            deepest: config.penetration_rejection_threshold * unit,
+        }
+    }
+}
+
+/// A move between two sweeps.
+struct Slide<'a, 'm> {
+    config: &'a MoveAndSlideConfig,
+    mover: &'a mut Mover<'m>,
+    /// All planes met in this move. The velocity that was wanted is projected on them at once: one after the other they would
+    /// throw a shape from wall to wall in a corner.
+    planes: &'a mut Vec<Plane>,
+    wanted: &'a mut Vector,
+    position: &'a mut Vector,
+    velocity: &'a mut Vector,
+}
+
+impl Slide<'_, '_> {
+    /// Reports what is touched, and turns the velocity along it.
+    fn meet(
+        &mut self,
+        stopped_by: Option<Sweep>,
+        on_hit: &mut impl FnMut(MoveAndSlideHitData) -> MoveAndSlideHitResponse,
+    ) -> MoveAndSlideHitResponse {
+        let mut response = MoveAndSlideHitResponse::Accept;
+        let distance = stopped_by.map_or(0.0, |hit| hit.distance);
+        let parts = if *self.velocity == Vector::ZERO {
+            Vec::new()
+        } else {
+            self.mover.touching(*self.position, stopped_by.map(|hit| hit.part))
+        };
+        for part in parts {
+            if self.mover.ignored.contains(&part.entity)
+                || part.normal.dot(*self.velocity) > PARTING * self.velocity.length()
+            {
+                continue;
+            }
+            let Ok(mut normal) = Dir::new(part.normal.f32()) else { continue };
+            let gap = part.distance.max(0.0);
+            let before = *self.velocity;
+            response = on_hit(MoveAndSlideHitData {
+                entity: part.entity,
+                distance,
+                point: part.points[0],
+                normal: &mut normal,
+                position: &mut *self.position,
+                velocity: &mut *self.velocity,
+                collision_distance: if gap > 0.0 { distance + gap } else { 0.0 },
+            });
+            if *self.velocity != before {
+                *self.wanted = *self.velocity;
+            }
+            match response {
+                MoveAndSlideHitResponse::Accept => self.add_plane(vector(normal)),
+                MoveAndSlideHitResponse::Ignore => self.mover.ignored.push(part.entity),
+                MoveAndSlideHitResponse::Abort => break,
+            }
+        }
+        *self.velocity = along(*self.wanted, self.planes);
+        response
+    }
+
+    fn add_plane(&mut self, normal: Vector) {
+        let similarity = self.config.plane_similarity_dot_threshold;
+        let is_similar = |plane: &Plane| plane.normal.dot(normal) > similarity;
+        if self.planes.len() < self.config.max_planes || self.planes.iter().any(is_similar) {
+            add_facing(self.planes, normal, *self.wanted, similarity);
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! The point nearest to a given one that is above all of some planes.
+//!
+//! Planes are taken one after the other, as in R. Seidel, "Small-dimensional linear programming and convex hulls made easy"
+//! (1991). The nearest point is kept until a plane is above it. The new one is then on that plane, so that it is the same
+//! problem with the planes before, in one dimension less.
+
+use crate::math::{DIM, Scalar, Vector};
+
+/// Planes that meet at less than this angle, in radians, have no line in common: f32 does not know where it is.
+const PARALLEL: Scalar = 1.0e-5;
+
+/// The points `x` with `normal · x >= offset`, the normal being of unit length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    pub(super) normal: Vector,
+    pub(super) offset: Scalar,
+}
+
+impl Plane {
+    /// A plane through zero.
+    pub(super) fn facing(normal: Vector) -> Self {
+        Self { normal, offset: 0.0 }
+    }
+}
+
+/// Adds a plane through zero to planes that a velocity must not go into. Of planes whose normals have a dot product above
+/// `similarity` only the one that the velocity goes into most is kept: the line of two that are nearly parallel is noise.
+pub(super) fn add_facing(planes: &mut Vec<Plane>, normal: Vector, velocity: Vector, similarity: Scalar) {
+    match planes.iter_mut().find(|plane| plane.normal.dot(normal) > similarity) {
+        Some(plane) if normal.dot(velocity) < plane.normal.dot(velocity) => plane.normal = normal,
+        Some(_) => {}
+        None => planes.push(Plane::facing(normal)),
+    }
+}
+
+/// The intersection of some planes: orthogonal planes with the same intersection.
+#[derive(Clone, Copy, Default)]
+struct Flat {
+    planes: [Option<Plane>; DIM],
+}
+
+impl Flat {
+    /// The part of a plane's normal along the flat, and the offset along it.
+    fn reduced(&self, plane: Plane) -> (Vector, Scalar) {
+        let Plane { mut normal, mut offset } = plane;
+        // Once more for the rounding of the first time.
+        for _ in 0..2 {
+            for own in self.planes.iter().flatten() {
+                let share = normal.dot(own.normal);
+                normal -= own.normal * share;
+                offset -= own.offset * share;
+            }
+        }
+        (normal, offset)
+    }
+
+    /// The intersection with one more plane; `None` if that is parallel.
+    fn with(mut self, plane: Plane) -> Option<Self> {
+        let (normal, offset) = self.reduced(plane);
+        let length = normal.length();
+        let free = self.planes.iter_mut().find(|plane| plane.is_none())?;
+        *free = (length > PARALLEL).then(|| Plane { normal: normal / length, offset: offset / length });
+        free.is_some().then_some(self)
+    }
+
+    /// The nearest point of the flat.
+    fn nearest(&self, from: Vector) -> Vector {
+        let mut x = from;
+        for _ in 0..2 {
+            for own in self.planes.iter().flatten() {
+                x += own.normal * (own.offset - x.dot(own.normal));
+            }
+        }
+        x
+    }
+}
+
+/// The point nearest to `from` that is above all planes, or below them by `tolerance` at most. `None` if there is none.
+pub(super) fn nearest(planes: &[Plane], from: Vector, tolerance: Scalar) -> Option<Vector> {
+    nearest_on(Flat::default(), planes, from, tolerance)
+}
+
+fn nearest_on(flat: Flat, planes: &[Plane], from: Vector, tolerance: Scalar) -> Option<Vector> {
+    let mut x = flat.nearest(from);
+    for (i, plane) in planes.iter().enumerate() {
+        if plane.normal.dot(x) - plane.offset < -tolerance {
+            x = nearest_on(flat.with(*plane)?, &planes[..i], from, tolerance)?;
+        }
+    }
+    Some(x)
+}
+
+/// The rounds of [`compromise`]. Each leaves at most `1 - 1 / planes` of the difference between parallel planes.
+const ROUNDS: usize = 64;
+
+/// The point with the least sum of squares by which it is below planes that have no point in common: midway between two
+/// that face each other.
+pub(super) fn compromise(planes: &[Plane], from: Vector) -> Vector {
+    let mut x = from;
+    let share = 1.0 / planes.len().max(1) as Scalar;
+    for _ in 0..ROUNDS {
+        let below = |plane: &Plane| plane.normal * (plane.offset - plane.normal.dot(x)).max(0.0);
+        x += planes.iter().map(below).sum::<Vector>() * share;
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane(normal: Vector, offset: Scalar) -> Plane {
+        Plane { normal, offset }
+    }
+
+    #[test]
+    fn a_corner_is_the_nearest_point_of_its_planes() {
+        let planes = [plane(Vector::X, 1.0), plane(Vector::Y, 2.0)];
+        let x = nearest(&planes, Vector::ZERO, 1.0e-6).expect("they meet");
+        assert!((x - Vector::X - Vector::Y * 2.0).length() < 1.0e-6, "{x}");
+        assert_eq!(nearest(&planes, Vector::ONE * 3.0, 0.0), Some(Vector::ONE * 3.0));
+    }
+
+    #[test]
+    fn planes_without_a_common_point_are_missed_by_the_same_depth() {
+        let planes = [plane(Vector::X, 1.0), plane(-Vector::X, 0.0), plane(Vector::Y, 0.5)];
+        assert_eq!(nearest(&planes, Vector::ZERO, 1.0e-6), None);
+        let x = compromise(&planes, Vector::ZERO);
+        assert!((x - Vector::X * 0.5 - Vector::Y * 0.5).length() < 1.0e-4, "{x}");
+    }
+}

@@ -1,0 +1,393 @@
+//! The way of one character through the step to come.
+
+use bevy_ecs::prelude::*;
+
+use super::{
+    bodies::{BodiesAround, Motion},
+    controller::{
+        Carrier, CharacterClimbed, CharacterController, CharacterHit, CharacterInput, CharacterLanded,
+        CharacterLeftGround, CharacterState, GroundState,
+    },
+    move_and_slide::MoveAndSlide,
+    planes::{Plane, compromise, nearest},
+    walker::{Contact, Walker},
+};
+use crate::{
+    math::{AngularVector, Scalar, Vector},
+    spatial_query::NearPart,
+};
+
+/// The farthest that something moves into a character in one step, in metres, that it still makes way for.
+const FARTHEST_PUSH: Scalar = 1.0;
+
+/// The time in which a drawn character makes up for most of a step, in seconds.
+const SMOOTHING: Scalar = 0.08;
+
+/// What a character does in the step to come.
+#[derive(Component, Clone, Debug, Default)]
+pub(super) struct CharacterPlan {
+    pub(super) velocity: Vector,
+    pub(super) landed: Option<CharacterLanded>,
+    pub(super) left: Option<CharacterLeftGround>,
+    pub(super) climbed: Option<CharacterClimbed>,
+    pub(super) hits: Vec<CharacterHit>,
+    pub(super) pushes: Vec<Push>,
+}
+
+/// A force in N on a dynamic body during the step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Push {
+    pub(super) body: Entity,
+    pub(super) point: Vector,
+    pub(super) force: Vector,
+}
+
+/// What a character plans with.
+pub(super) struct Surroundings<'a> {
+    pub(super) moves: &'a MoveAndSlide<'a, 'a>,
+    pub(super) bodies: &'a BodiesAround<'a, 'a>,
+    pub(super) pushers: &'a [Motion],
+    pub(super) gravity: Scalar,
+    pub(super) time: Scalar,
+}
+
+/// The plan of one character as it is made.
+pub(super) struct Planning<'a> {
+    pub(super) around: &'a Surroundings<'a>,
+    pub(super) walker: Walker<'a>,
+    pub(super) state: CharacterState,
+    pub(super) plan: CharacterPlan,
+    pub(super) entity: Entity,
+    pub(super) controller: &'a CharacterController,
+    pub(super) input: CharacterInput,
+    pub(super) gravity: Vector,
+    pub(super) unit: Scalar,
+    /// Where its carrier brought it.
+    pub(super) ridden_to: Vector,
+}
+
+impl Planning<'_> {
+    /// Plans the step from a position.
+    pub(super) fn run(&mut self, from: Vector) {
+        let time = self.around.time;
+        let up = self.walker.up;
+        self.follow_carrier();
+        self.walker.recover();
+        let own = self.input.velocity - up * self.input.velocity.dot(up);
+        let was_grounded = self.state.is_grounded();
+        let floor = was_grounded.then(|| self.floor_below()).flatten();
+        match floor {
+            Some(floor) if self.input.jump > 0.0 => {
+                let normal = floor.floor.unwrap_or(up);
+                let rise = self.walker.lift(normal, own).max(0.0);
+                self.state.fall = self.state.ground_velocity + up * (self.input.jump + rise);
+                self.leave();
+                self.fall(own);
+            }
+            Some(floor) => self.walk(own, time, floor),
+            None => {
+                if was_grounded {
+                    self.state.fall = self.state.ground_velocity;
+                    self.leave();
+                }
+                self.fall(own);
+            }
+        }
+        self.ride(time);
+        self.make_way();
+        self.plan.velocity = (self.walker.position - from) / time;
+        self.note_hits();
+        self.weigh();
+        if let Some((collider, height)) = self.walker.climbed {
+            self.plan.climbed = Some(CharacterClimbed { character: self.entity, collider, height });
+            self.state.visual_offset -= height;
+        }
+        self.state.visual_offset *= SMOOTHING / (SMOOTHING + time);
+    }
+
+    /// Moves with what carries the character, as far as that did not come to where it was expected.
+    fn follow_carrier(&mut self) {
+        let Some(carrier) = self.state.carrier else { return };
+        let Some(body) = self.around.bodies.motion_of(carrier.body, self.around.time) else { return };
+        // A character that was put elsewhere is no longer carried.
+        let is_there = (self.walker.position - carrier.rider).length() <= self.walker.mover.skin;
+        if !is_there {
+            self.state.carrier = None;
+            return;
+        }
+        let is_as_expected = (carrier.position, carrier.rotation) == (body.position, body.rotation);
+        if !is_as_expected || body.is_moving() {
+            let way = body.position.0 + body.rotation * carrier.anchor - self.walker.foot();
+            self.shift_with(carrier.body, way);
+        }
+        self.ridden_to = self.walker.position;
+    }
+
+    /// Moves by a displacement, passing through the colliders of a body.
+    fn shift_with(&mut self, body: Entity, way: Vector) -> bool {
+        if way == Vector::ZERO {
+            return true;
+        }
+        let count = self.walker.mover.ignored.len();
+        self.walker.mover.ignored.extend(self.around.bodies.colliders_of(body));
+        let is_free = self.walker.shift(way);
+        self.walker.mover.ignored.truncate(count);
+        is_free
+    }
+
+    /// The ground that a character on the ground touches, or that is below it.
+    fn floor_below(&mut self) -> Option<Contact> {
+        let find = |walker: &Walker| Walker::ground(&walker.contacts(None, true), walker.up);
+        find(&self.walker).or_else(|| {
+            let reach = self.controller.snap_distance * self.unit;
+            self.walker.snap(reach).then(|| find(&self.walker)).flatten()
+        })
+    }
+
+    /// Walks for a time, and stays on the ground if there is ground.
+    fn walk(&mut self, own: Vector, time: Scalar, floor: Contact) {
+        let up = self.walker.up;
+        let normal = floor.floor.unwrap_or(up);
+        let before = self.walker.position;
+        let climbed = self.walker.climbed.map_or(0.0, |(_, height)| height);
+        let motion = self.walker.walk(own * time, normal);
+        let mut contacts = self.walker.contacts(None, true);
+        if Walker::ground(&contacts, up).is_none() {
+            // The steepest slope down is followed at any speed.
+            let moved = self.walker.position - before;
+            let across = (moved - up * moved.dot(up)).length();
+            let cosine = self.walker.least_cosine;
+            let steepest = (1.0 - cosine * cosine).max(0.0).sqrt() / cosine.max(0.1);
+            let reach = (self.controller.snap_distance * self.unit).max(across * steepest);
+            let height = self.walker.position.dot(up);
+            if self.walker.snap(reach) {
+                contacts = self.walker.contacts(None, true);
+                let along_slope = across * steepest + self.walker.mover.slack();
+                let dropped = height - self.walker.position.dot(up);
+                if dropped > along_slope {
+                    self.state.visual_offset += dropped;
+                }
+            }
+        }
+        match Walker::ground(&contacts, up) {
+            Some(ground) => self.stand_on(ground),
+            None => {
+                let climb = self.walker.climbed.map_or(0.0, |(_, height)| height) - climbed;
+                let rise = if climb > 0.0 { 0.0 } else { motion.dot(up) / time };
+                self.state.fall = self.state.ground_velocity + up * rise;
+                self.leave();
+                self.note_air(&contacts);
+            }
+        }
+    }
+
+    /// Falls through the step, and walks for the rest of it if it comes onto ground.
+    fn fall(&mut self, own: Vector) {
+        let time = self.around.time;
+        match self.walker.fly(&mut self.state.fall, own, self.gravity, time) {
+            Some((ground, speed, left)) => {
+                let character = self.entity;
+                self.plan.landed = Some(CharacterLanded { character, ground: ground.part.entity, speed });
+                self.stand_on(ground);
+                self.walk(own, left, ground);
+            }
+            None => {
+                let contacts = self.walker.contacts(None, false);
+                self.note_air(&contacts);
+            }
+        }
+    }
+
+    /// The state of a character that is not on the ground.
+    fn note_air(&mut self, contacts: &[Contact]) {
+        let up = self.walker.up;
+        let steepness = |contact: &&Contact| contact.part.normal.dot(up);
+        let flattest = contacts.iter().max_by(|a, b| steepness(a).total_cmp(&steepness(b)));
+        self.state.ground = match flattest {
+            None => GroundState::InAir,
+            Some(contact) if steepness(&contact) > 0.05 => GroundState::OnSteepGround,
+            Some(_) => GroundState::NotSupported,
+        };
+        self.note_ground(flattest.copied());
+        self.state.carrier = None;
+    }
+
+    /// The carrier is no longer the frame of the character's place after a move that is not its own.
+    fn moved_on(&mut self, way: Vector) {
+        if let Some(carrier) = &mut self.state.carrier
+            && way != Vector::ZERO
+            && let Some(body) = self.around.bodies.motion_of(carrier.body, self.around.time)
+        {
+            carrier.anchor += body.end().1.inverse() * way;
+        }
+    }
+
+    fn stand_on(&mut self, ground: Contact) {
+        self.state.ground = GroundState::OnGround;
+        self.state.fall = Vector::ZERO;
+        self.note_ground(Some(ground));
+    }
+
+    /// Notes the ground with its velocity.
+    fn note_ground(&mut self, ground: Option<Contact>) {
+        let state = &mut self.state;
+        state.ground_entity = ground.map(|ground| ground.part.entity);
+        state.ground_point = ground.map_or(Vector::ZERO, |ground| ground.part.points[0]);
+        state.ground_normal =
+            ground.map_or(Vector::ZERO, |ground| ground.floor.unwrap_or(ground.part.normal));
+        state.ground_velocity = Vector::ZERO;
+        state.ground_spin = AngularVector::default();
+        let Some(ground) = ground else { return };
+        let entity = ground.part.entity;
+        let body = self.around.bodies.body_of(entity);
+        if let Some(motion) = body.and_then(|body| self.around.bodies.motion_of(body, self.around.time)) {
+            state.ground_velocity = motion.velocity_at(self.walker.foot());
+            state.ground_spin = motion.spin;
+        }
+        state.ground_velocity += self.around.bodies.surface_of(entity);
+    }
+
+    /// Moves with the ground, as that moves in this step.
+    fn ride(&mut self, time: Scalar) {
+        let ground = self.state.ground_entity.filter(|_| self.state.is_grounded());
+        let Some(ground) = ground else {
+            self.state.carrier = None;
+            return;
+        };
+        let surface = self.around.bodies.surface_of(ground) * time;
+        let body = self.around.bodies.body_of(ground);
+        let motion = body.and_then(|body| self.around.bodies.motion_of(body, time));
+        let before = self.state.carrier;
+        self.state.carrier = body.zip(motion).map(|(body, motion)| {
+            let is_at_rest = self.walker.position == self.ridden_to;
+            let known = before.filter(|known| known.body == body && is_at_rest);
+            let anchor = known.map_or_else(|| motion.to_local(self.walker.foot()), |known| known.anchor);
+            let (position, rotation) = motion.end();
+            let way = if motion.is_moving() {
+                position.0 + rotation * anchor - self.walker.foot()
+            } else {
+                Vector::ZERO
+            };
+            let start = self.walker.position;
+            self.shift_with(body, way);
+            // What was in the way moved it on the body.
+            let slid = self.walker.position - start - way;
+            let anchor = if slid == Vector::ZERO { anchor } else { anchor + rotation.inverse() * slid };
+            Carrier { body, position, rotation, anchor, rider: Vector::ZERO }
+        });
+        if surface != Vector::ZERO {
+            let normal = self.state.ground_normal;
+            let start = self.walker.position;
+            self.walker.shift(surface - normal * surface.dot(normal));
+            self.moved_on(self.walker.position - start);
+        }
+        if let Some(carrier) = &mut self.state.carrier {
+            carrier.rider = self.walker.position;
+        }
+    }
+
+    /// Makes way for kinematic bodies that move into the character in this step.
+    fn make_way(&mut self) {
+        self.state.is_crushed = false;
+        let position = self.walker.position;
+        let reach = self.around.pushers.iter().map(|body| body.reach_at(position)).fold(0.0, Scalar::max);
+        if !(reach > 0.0) {
+            return;
+        }
+        let carrier = self.state.carrier.map(|carrier| carrier.body);
+        let skin = self.walker.mover.skin;
+        let mut planes = Vec::new();
+        let mut pushing = Vec::new();
+        for part in self.walker.mover.near(position, skin + reach.min(FARTHEST_PUSH * self.unit)) {
+            let Some(body) = self.around.bodies.body_of(part.entity).filter(|body| Some(*body) != carrier)
+            else {
+                continue;
+            };
+            let Some(motion) = self.around.bodies.motion_of(body, self.around.time) else { continue };
+            if !motion.kind.is_kinematic() || motion.is_character {
+                continue;
+            }
+            let closing = motion.displacement_at(part.points[0]).dot(part.normal);
+            let offset = skin - part.distance + closing;
+            if closing > 0.0 && offset > 0.0 {
+                planes.push(Plane { normal: part.normal, offset });
+                pushing.push(body);
+            }
+        }
+        if planes.is_empty() {
+            return;
+        }
+        let tolerance = 0.1 * self.walker.mover.slack();
+        let way = nearest(&planes, Vector::ZERO, tolerance);
+        let is_between = way.is_none();
+        let way = way.unwrap_or_else(|| compromise(&planes, Vector::ZERO));
+        let count = self.walker.mover.ignored.len();
+        for body in pushing {
+            self.walker.mover.ignored.extend(self.around.bodies.colliders_of(body));
+        }
+        self.walker.shift(way);
+        self.walker.mover.ignored.truncate(count);
+        let moved = self.walker.position - position;
+        let left = |plane: &Plane| plane.offset - plane.normal.dot(moved);
+        let is_stuck = planes.iter().any(|plane| left(plane) > skin);
+        self.state.is_crushed = is_between || is_stuck;
+        self.moved_on(moved);
+        if let Some(carrier) = &mut self.state.carrier {
+            carrier.rider = self.walker.position;
+        }
+    }
+
+    /// The character is no longer on the ground.
+    fn leave(&mut self) {
+        self.state.carrier = None;
+        self.plan.left = Some(CharacterLeftGround { character: self.entity, fall: self.state.fall });
+    }
+
+    /// Reports what the character moved into, each collider once, and pushes dynamic bodies.
+    fn note_hits(&mut self) {
+        let character = self.entity;
+        for (part, way) in core::mem::take(&mut self.walker.met) {
+            if self.plan.hits.iter().any(|hit| hit.collider == part.entity) {
+                continue;
+            }
+            let impulse = self.push(&part, way / self.around.time);
+            let (collider, point, normal) = (part.entity, part.points[0], part.normal);
+            self.plan.hits.push(CharacterHit { character, collider, point, normal, impulse });
+        }
+    }
+
+    /// Pushes a dynamic body: as a body of the character's mass would that loses its speed to it, by the greatest force at
+    /// most. Returns the impulse.
+    fn push(&mut self, part: &NearPart, velocity: Vector) -> Scalar {
+        let around = self.around;
+        let mass = self.controller.mass;
+        let Some(body) = around.bodies.body_of(part.entity) else { return 0.0 };
+        let Some(motion) = around.bodies.motion_of(body, around.time) else { return 0.0 };
+        if !(motion.kind.is_dynamic() && mass > 0.0) {
+            return 0.0;
+        }
+        // On the ground it pushes level, and does not lift.
+        let up = self.walker.up;
+        let is_level = self.state.is_grounded() && part.normal.dot(up).abs() < self.walker.least_cosine;
+        let normal = if is_level { part.normal - up * part.normal.dot(up) } else { part.normal };
+        let direction = -normal.normalize_or_zero();
+        let point = part.points[0];
+        let speed = (velocity - motion.velocity_at(point)).dot(direction);
+        let inverse = around.bodies.inverse_mass_at(body, point, direction) + 1.0 / mass;
+        let force = (speed / inverse / around.time).min(self.controller.max_push_force);
+        if !(force > 0.0) {
+            return 0.0;
+        }
+        self.plan.pushes.push(Push { body, point, force: direction * force });
+        force * around.time
+    }
+
+    /// Weighs on a dynamic body that the character stands on.
+    fn weigh(&mut self) {
+        let Some(ground) = self.state.ground_entity.filter(|_| self.state.is_grounded()) else { return };
+        if let Some(body) = self.around.bodies.body_of(ground) {
+            let force = self.gravity * self.controller.mass.max(0.0);
+            self.plan.pushes.push(Push { body, point: self.state.ground_point, force });
+        }
+    }
+}

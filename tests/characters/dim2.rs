@@ -1,0 +1,39 @@
+//! Shapes of the plane for the tests of characters.
+
+use avian::{math::*, prelude::*};
+
+/// A box with sides of the given lengths, in metres.
+pub fn block(size: Vector) -> Collider {
+    Collider::rectangle(size.x, size.y)
+}
+
+/// Characters 1.8 m tall.
+pub fn figures() -> Vec<(&'static str, Collider)> {
+    vec![("capsule", Collider::capsule(0.4, 1.0)), ("box", block(Vector::new(0.8, 1.8)))]
+}
+
+/// The rotation by an angle in radians from x to y.
+pub fn turned(angle: Scalar) -> Rotation {
+    Rotation::radians(angle)
+}
+
+/// A direction at an angle in radians from x to y.
+pub fn toward(angle: f32) -> Vector {
+    Vector::new(angle.cos(), angle.sin())
+}
+
+/// A wheel: in the plane nothing turns about `up`.
+pub mod spin {
+    use avian::{math::*, prelude::*};
+
+    pub const IS_LEVEL: bool = false;
+    pub const START: Vector = Vector::ZERO;
+
+    pub fn disc() -> Collider {
+        Collider::rectangle(20.0, 1.0)
+    }
+
+    pub fn velocity(speed: Scalar) -> Scalar {
+        speed
+    }
+}

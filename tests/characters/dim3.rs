@@ -1,0 +1,43 @@
+//! Shapes of space for the tests of characters.
+
+use avian::{math::*, prelude::*};
+
+/// A box with sides of the given lengths, in metres.
+pub fn block(size: Vector) -> Collider {
+    Collider::cuboid(size.x, size.y, size.z)
+}
+
+/// Characters 1.8 m tall.
+pub fn figures() -> Vec<(&'static str, Collider)> {
+    vec![
+        ("capsule", Collider::capsule(0.4, 1.0)),
+        ("cylinder", Collider::cylinder(0.4, 1.8)),
+        ("box", block(Vector::new(0.8, 1.8, 0.8))),
+    ]
+}
+
+/// The rotation by an angle in radians from x to y.
+pub fn turned(angle: Scalar) -> Rotation {
+    Rotation(Quaternion::from_rotation_z(angle))
+}
+
+/// A direction at an angle in radians from x to y.
+pub fn toward(angle: f32) -> Vector {
+    Vector::new(angle.cos(), angle.sin(), 0.0)
+}
+
+/// A carousel.
+pub mod spin {
+    use avian::{math::*, prelude::*};
+
+    pub const IS_LEVEL: bool = true;
+    pub const START: Vector = Vector::new(9.0, 0.0, 0.0);
+
+    pub fn disc() -> Collider {
+        Collider::cylinder(10.0, 1.0)
+    }
+
+    pub fn velocity(speed: Scalar) -> Vector {
+        Vector::Y * speed
+    }
+}
