@@ -2,7 +2,9 @@
 
 use super::batch::Batch;
 use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, Room, sort_contacts};
-use super::joint::{JOINT_BATCHES, JointRows, JointTable, JointView, Records, joints, sort_joints};
+use super::joint::{
+    JOINT_BATCHES, JointRows, JointTable, JointTrees, JointView, Records, joints, sort_joints,
+};
 use super::layer::{Layer, Sorter};
 use super::plan::{Plan, Planned};
 use crate::graph::{COLOR_COUNT, ColorGraph, OVERFLOW};
@@ -62,7 +64,7 @@ impl Layers {
     pub(super) fn sort(
         &mut self,
         colors: &ColorGraph,
-        table: &JointTable,
+        table: (&JointTable, &JointTrees),
         sorter: &Sorter,
         pool: &ThreadPool,
     ) {
@@ -115,7 +117,7 @@ fn layer(layers: &mut Vec<Layer>, number: usize) -> &mut Layer {
 /// Sorts the constraints of a colour into layers. Returns the number of layers.
 fn sort_color(
     (colors, color): (&ColorGraph, u8),
-    table: &JointTable,
+    table: (&JointTable, &JointTrees),
     sorter: &Sorter,
     layers: &mut Vec<Layer>,
 ) -> usize {
@@ -142,7 +144,12 @@ fn sort_color(
 /// momentum and adds no energy, at any ratio of masses; and a heavy hub, as most are, hardly notices. A row has four
 /// lanes on every CPU, because the result depends on how many bodies a hub is split into. In steps with deep overlap all
 /// contacts stay single, as they work against each other.
-fn sort_overflow(colors: &ColorGraph, table: &JointTable, sorter: &Sorter, layers: &mut Vec<Layer>) -> usize {
+fn sort_overflow(
+    colors: &ColorGraph,
+    table: (&JointTable, &JointTrees),
+    sorter: &Sorter,
+    layers: &mut Vec<Layer>,
+) -> usize {
     let joints = joints(colors, OVERFLOW);
     if colors.overflow().is_empty() && joints.is_empty() {
         return 0;

@@ -16,6 +16,7 @@
 //! back by the load, and such a tower shakes until it falls.
 
 use super::input::RowInput;
+use super::joint::JointTrees;
 use super::{BodyRows, SubstepParams};
 use crate::contact::{Contact, ContactFlags, ContactTable, Manifold};
 use crate::math::{DIM, Vector, max, min};
@@ -118,9 +119,10 @@ impl Bearing {
         input: &RowInput,
         bodies: &mut BodyRows,
         params: &SubstepParams,
+        trees: &JointTrees,
     ) -> bool {
         let sag_rate = sag_rate(params) / params.max_sag;
-        self.sum_up(input, bodies, params);
+        self.sum_up(input, bodies, params, trees);
         self.spread();
         let before = input.contacts.raised_masses();
         for body in input.bodies.awake_dynamic() {
@@ -161,8 +163,9 @@ impl Bearing {
     }
 
     /// Sums up the impulses of the last substep by body row, in the order of contacts, and lists contacts that press.
-    /// Deep overlap and fast bodies do not count: their impulses are no load at rest.
-    fn sum_up(&mut self, input: &RowInput, bodies: &BodyRows, params: &SubstepParams) {
+    /// Deep overlap and fast bodies do not count: their impulses are no load at rest. Nor do contacts within a tree of joints,
+    /// which presses its bodies on each other as well as a load.
+    fn sum_up(&mut self, input: &RowInput, bodies: &BodyRows, params: &SubstepParams, trees: &JointTrees) {
         self.loads.clear();
         self.loads.resize(bodies.rows.len(), Load::NONE);
         self.presses.clear();
@@ -173,6 +176,9 @@ impl Bearing {
                 continue;
             }
             let rows = contact.bodies.map(|body| input.row_of(body));
+            if trees.connects(rows) {
+                continue;
+            }
             for manifold in core::iter::once(&contact.manifold).chain(contacts.extra_of(contact)) {
                 if manifold.count > 0 && speed(contact, manifold, rows, bodies) <= params.max_push_speed {
                     self.add(manifold, rows, bodies, params);

@@ -59,8 +59,8 @@ pub use impact::ImpactRow;
 pub use input::RowInput;
 pub use inv_mass::InvMass;
 pub use joint::{
-    AXES, Axis, Drive, Give, JointDef, JointError, JointFrame, JointReaction, JointTable, Motor, Spring,
-    coordinate,
+    AXES, Axis, Drive, Give, JointDef, JointError, JointFrame, JointReaction, JointSolver, JointTable, Motor,
+    Spring, coordinate,
 };
 pub use row::{ContactRow, PointRow, SplitImpulseRow};
 pub use softness::{Softness, SubstepParams};

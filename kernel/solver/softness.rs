@@ -1,5 +1,6 @@
 //! Soft-constraint coefficients, and parameters of a substep.
 
+use super::JointSolver;
 use crate::math::min;
 
 /// Coefficients of a soft constraint for one substep.
@@ -76,6 +77,8 @@ pub struct SubstepParams {
     pub max_sag: f32,
     /// Rolling speed up to which rolling resistance is full, m/s. It is gone at twice that speed. 0 turns it off.
     pub roll_speed: f32,
+    /// How joints are solved.
+    pub joints: JointSolver,
 }
 
 impl SubstepParams {
@@ -99,6 +102,7 @@ impl SubstepParams {
             friction_fade: 0.02,
             max_sag: 0.005,
             roll_speed: 0.2,
+            joints: JointSolver::Auto,
         }
     }
 

@@ -9,7 +9,7 @@ use super::contact_batch::Room;
 use super::exclusive;
 use super::impact::Striking;
 use super::input::RowInput;
-use super::joint::JointTable;
+use super::joint::{JointTable, JointTrees};
 use super::layer::Sorter;
 use super::plan::{Block, Plan, Stage};
 use super::shares::Shares;
@@ -40,6 +40,8 @@ pub struct Solver {
     pub bodies: BodyRows,
     /// Joints.
     pub joints: JointTable,
+    /// Joints that are solved directly.
+    trees: JointTrees,
     /// Inertia that joints ask for, by row of the body.
     least_inertia: Vec<f32>,
     rows: AllRows,
@@ -71,6 +73,7 @@ impl Solver {
     /// without contacts.
     pub fn begin_step(&mut self, kinematic: usize, dynamic: usize) {
         self.plan.begin(0, 1, 0);
+        self.trees.clear();
         self.bodies.reset(kinematic, dynamic);
     }
 
@@ -92,7 +95,7 @@ impl Solver {
         params: &SubstepParams,
         pool: &ThreadPool,
     ) {
-        let Self { bodies, joints, least_inertia, shares, deep, first_dynamic, seen, .. } = self;
+        let Self { bodies, joints, trees, least_inertia, shares, deep, first_dynamic, seen, .. } = self;
         debug_assert!(params.is_valid(), "{params:?}");
         debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
         if cfg!(debug_assertions) {
@@ -101,21 +104,22 @@ impl Solver {
         *first_dynamic = bodies.first_dynamic;
         deep.count(input, bodies);
         bodies.find_fast_turns(input, colors, params.h);
+        trees.find(joints, input, colors, (params.joints, bodies));
         bodies.turn_inertia(0.5 * (params.dt + params.h));
         joints.stiffen(input, colors, params.h, &mut bodies.masses, least_inertia);
         shares.divide(pool.workers(), *first_dynamic, input, colors);
         self.plan_rows(input, colors, pool);
-        let Self { plan, .. } = self;
-        if plan.rows().iter().sum::<u32>() >= WORTH_WAKING {
+        let Self { plan, trees, .. } = self;
+        if plan.rows().iter().sum::<u32>() + trees.len() >= WORTH_WAKING {
             pool.wake();
         }
         self.bearing.clear();
         self.blows.begin_step();
         self.fill_rows(input, params, pool);
-        let Self { bodies, plan, bearing, .. } = self;
+        let Self { bodies, trees, plan, bearing, .. } = self;
         let any_overloaded = plan.blocks.iter().any(|block| block.passes.are_overloaded());
         let was_any = !input.contacts.raised_masses().is_empty();
-        if (any_overloaded || was_any) && bearing.raise_masses(input, bodies, params) {
+        if (any_overloaded || was_any) && bearing.raise_masses(input, bodies, params, trees) {
             // Rows of bodies with a mass for each axis are others.
             self.plan_rows(input, colors, pool);
             self.fill_rows(input, params, pool);
@@ -124,10 +128,10 @@ impl Solver {
 
     /// Sorts the constraints of all colours into rows, and makes room for them.
     fn plan_rows(&mut self, input: &RowInput, colors: &ColorGraph, pool: &ThreadPool) {
-        let Self { bodies, joints, rows, layers, plan, shares, deep, .. } = self;
+        let Self { bodies, joints, trees, rows, layers, plan, shares, deep, .. } = self;
         let workers = pool.workers();
         let sorter = &Sorter { input, axes: &bodies.axes, shares };
-        layers.sort(colors, joints, sorter, pool);
+        layers.sort(colors, (joints, trees), sorter, pool);
         plan.begin(if workers > 1 { BLOCK_ROWS } else { u32::MAX }, workers, AllRows::BATCHES);
         layers.plan(rows.width, sorter, plan);
         rows.make_room(plan.rows(), Room { any_deep: deep.any(), sums: input.contacts.sum_impulses });
@@ -135,7 +139,7 @@ impl Solver {
 
     /// Fills the rows of all blocks.
     fn fill_rows(&mut self, input: &RowInput, params: &SubstepParams, pool: &ThreadPool) {
-        let Self { bodies, joints, rows, layers, plan, deep, bearing, .. } = self;
+        let Self { bodies, joints, trees, rows, layers, plan, deep, bearing, .. } = self;
         let BodyRows { rows: body_rows, masses, axes, first_dynamic, .. } = bodies;
         let filling = &Filling {
             input,
@@ -147,6 +151,7 @@ impl Solver {
             bearing,
             axes,
         };
+        trees.fill(&joints.records(), filling, pool);
         let mut blocks = core::mem::take(&mut plan.blocks);
         rows.with(joints, |batches| {
             let blocks = Parts::of(&mut blocks);
@@ -277,7 +282,8 @@ impl Solver {
             self.manifold_count() == 0 || !contacts.is_empty(),
             "the rows came from these contacts"
         );
-        let Self { joints, rows, plan, layers, .. } = self;
+        let Self { joints, trees, rows, plan, layers, .. } = self;
+        trees.store(&joints.records());
         let manifolds = &contacts.manifolds_view();
         rows.with(joints, |batches| {
             for Stage { blocks, parts } in plan.stages() {
@@ -297,16 +303,23 @@ impl Solver {
         self.bearing.store(contacts);
         self.blows.store(contacts);
         self.plan.begin(0, 1, 0);
+        self.trees.clear();
     }
 
-    /// Runs a pass over all blocks that need it, stage by stage.
+    /// Runs a pass over all trees and blocks that need it, stage by stage.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
-        let Self { bodies, joints, rows, plan, first_dynamic, .. } = self;
+        let Self { bodies, joints, trees, rows, plan, first_dynamic, .. } = self;
         debug_assert!(
             plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),
             "bodies have the rows that rows of constraints were built for"
         );
+        if trees.len() > 0 {
+            // Trees follow the turns of bodies exactly.
+            bodies.leave_rows(pool);
+            trees.run(&Sweep { pass, bodies: bodies.view(*first_dynamic), params }, pool);
+            bodies.enter_rows(pool);
+        }
         let sweep = &Sweep { pass, bodies: bodies.view(*first_dynamic), params };
         rows.with(joints, |batches| {
             for Stage { blocks, parts } in plan.stages() {

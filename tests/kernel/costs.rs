@@ -13,6 +13,7 @@ use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{DIM, Rot, Vector};
 use kernel::shape::{Ball, Capsule, Cuboid, Shape};
+use kernel::solver::{Axis, JointDef};
 use kernel::table::{BodyKind, Velocity};
 use std::hint::black_box;
 
@@ -25,7 +26,7 @@ struct Scene {
     measured: usize,
 }
 
-const SCENES: [Scene; 8] = [
+const SCENES: [Scene; 10] = [
     Scene { name: "resting-pyramid", build: pyramid, settling: 45, measured: 30 },
     Scene { name: "resting-towers", build: towers, settling: 45, measured: 60 },
     Scene { name: "resting-bodies", build: bodies, settling: 60, measured: 60 },
@@ -33,6 +34,8 @@ const SCENES: [Scene; 8] = [
     Scene { name: "balls", build: balls, settling: 60, measured: 60 },
     Scene { name: "mixer", build: mixer, settling: 60, measured: 90 },
     Scene { name: "sliding-on-tiles", build: tiles, settling: 10, measured: 60 },
+    Scene { name: "chains", build: chains, settling: 10, measured: 30 },
+    Scene { name: "net", build: net, settling: 10, measured: 30 },
     Scene { name: "mesh", build: mesh, settling: 0, measured: 120 },
 ];
 
@@ -190,6 +193,48 @@ fn tiles() -> Sim {
         sim.bodies.set_velocity(id, Velocity { linear, ..Velocity::default() });
     }
     sim
+}
+
+/// 20 chains of 20 links that swing.
+fn chains() -> Sim {
+    let mut sim = empty();
+    for at in grid(by_dim(20, 5), 20, 30.0) {
+        let mut last = (sim.add(BodyKind::Static, block(Vector::ONE * 0.1), at, Rot::IDENTITY), Vector::ZERO);
+        for k in 0..20 {
+            let at = at + Vector::X * (k as f32 + 0.5);
+            let id = sim.add(BodyKind::Dynamic, block(sized(0.5, 0.1, 0.1)), at, Rot::IDENTITY);
+            sim.ghost(id);
+            pin(&mut sim, [last.0, id], [last.1, Vector::X * -0.5]);
+            last = (id, Vector::X * 0.5);
+        }
+    }
+    sim
+}
+
+/// A net of 20 by 20 balls that hangs on four of them.
+fn net() -> Sim {
+    let mut sim = empty();
+    let mut ids = Vec::new();
+    for y in 0..20 {
+        for x in 0..20 {
+            let at = sized(x as f32, -(y as f32), 0.0);
+            let kind = if y == 0 && x % 6 == 0 { BodyKind::Static } else { BodyKind::Dynamic };
+            let id = sim.add(kind, Shape::Ball(Ball { radius: 0.3 }), at, Rot::IDENTITY);
+            sim.ghost(id);
+            ids.push(id);
+            for (dx, dy) in [(1, 0), (0, 1)] {
+                if x >= dx && y >= dy {
+                    let half = sized(dx as f32, -(dy as f32), 0.0) * 0.5;
+                    pin(&mut sim, [ids[(y - dy) * 20 + x - dx], id], [half, half * -1.0]);
+                }
+            }
+        }
+    }
+    sim
+}
+
+fn pin(sim: &mut Sim, bodies: [u32; 2], anchors: [Vector; 2]) {
+    sim.join(JointDef::free(bodies, anchors).with(0..DIM, Axis::LOCKED)).unwrap();
 }
 
 /// 100 small mixed bodies that fall onto a hilly surface with a rim, and roll.

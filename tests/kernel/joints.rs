@@ -11,20 +11,20 @@ use kernel::table::{BodyKind, Velocity};
 use std::f32::consts::TAU;
 
 /// The coordinates of shifts.
-const SHIFTS: core::ops::Range<usize> = 0..DIM;
+pub(super) const SHIFTS: core::ops::Range<usize> = 0..DIM;
 /// A frame whose turning axis is out of the plane of x and y.
 fn hinge_frame(anchor: Vector) -> JointFrame {
     JointFrame { anchor, basis: super::dim::hinge_basis() }
 }
 
 /// A hinge in the plane of x and y.
-fn hinge(a: u32, b: u32, anchors: [Vector; 2]) -> JointDef {
+pub(super) fn hinge(a: u32, b: u32, anchors: [Vector; 2]) -> JointDef {
     let def = JointDef { frames: anchors.map(hinge_frame), ..JointDef::free([a, b], anchors) };
     def.with(SHIFTS, Axis::LOCKED).with(SWINGS, Axis::LOCKED)
 }
 
 /// A weld.
-fn weld(a: u32, b: u32, anchors: [Vector; 2]) -> JointDef {
+pub(super) fn weld(a: u32, b: u32, anchors: [Vector; 2]) -> JointDef {
     JointDef::free([a, b], anchors).with(SHIFTS, Axis::LOCKED).with(TURN..SWINGS.end, Axis::LOCKED)
 }
 
@@ -33,18 +33,18 @@ fn slider(a: u32, b: u32, axis: Axis) -> JointDef {
     weld(a, b, [Vector::ZERO; 2]).with([X], axis)
 }
 
-fn cuboid(half: Vector) -> Shape {
+pub(super) fn cuboid(half: Vector) -> Shape {
     Shape::Cuboid(Cuboid { half })
 }
 
 /// A simulation without contacts between what is joined: all shapes are in groups that do not meet.
-fn apart(sim: &mut Sim, kind: BodyKind, shape: Shape, at: Vector, rotation: Rot) -> u32 {
+pub(super) fn apart(sim: &mut Sim, kind: BodyKind, shape: Shape, at: Vector, rotation: Rot) -> u32 {
     let id = sim.add(kind, shape, at, rotation);
     sim.ghost(id);
     id
 }
 
-fn post(sim: &mut Sim, at: Vector) -> u32 {
+pub(super) fn post(sim: &mut Sim, at: Vector) -> u32 {
     apart(sim, BodyKind::Static, Shape::Ball(Ball { radius: 0.1 }), at, Rot::IDENTITY)
 }
 
@@ -55,7 +55,7 @@ fn angle(sim: &Sim, id: u32) -> f32 {
 }
 
 /// How far the anchors of a hinge are apart.
-fn gap(sim: &Sim, def: &JointDef) -> f32 {
+pub(super) fn gap(sim: &Sim, def: &JointDef) -> f32 {
     let [a, b] = [0, 1].map(|side| sim.bodies.frame(def.bodies[side]).transform(def.frames[side].anchor));
     (a - b).to_local().length()
 }
@@ -257,9 +257,7 @@ fn a_door_that_is_slammed_stops_at_its_limit() {
                 let case = format!("{} degrees at {rate} rad/s", (limit * sign).to_degrees());
                 let past = (most - limit).to_degrees();
                 assert!(past < 1.0 && past > -1.0, "{case}: {past} degrees past its limit");
-                // While it turns by ω h in a substep, its hinge opens by r ω² h² / 2, and shuts at 68/s.
-                let allowed = 0.001 + 1.5 * 0.75 * rate * rate * sim.dt / 4.0 / 2.0 / 68.0;
-                assert!(open < allowed, "{case}: the hinge opens by {open} m, not {allowed}");
+                assert!(open < 0.01, "{case}: the hinge opens by {open} m");
             }
         }
     }
@@ -288,7 +286,7 @@ fn a_slider_stops_at_its_limits() {
 }
 
 /// Links of a metre, and a ball at the end.
-fn chain(sim: &mut Sim, links: u32, load: f32, direction: Vector) -> (Vec<u32>, Vec<JointDef>) {
+pub(super) fn chain(sim: &mut Sim, links: u32, load: f32, direction: Vector) -> (Vec<u32>, Vec<JointDef>) {
     let rotation = turned(f64::from(direction.y).atan2(f64::from(direction.x)) as f32);
     let link = cuboid(sized(0.5, 0.05, 0.05));
     let mut last = (post(sim, Vector::ZERO), Vector::ZERO);
@@ -384,10 +382,9 @@ fn a_beam_of_welds_holds_its_load() {
     }
     sim.steps(1200);
     let sag = -sim.position(last.0).to_local().y;
-    // It still swings by some centimetres: rows one by one are soft over eight welds.
-    assert!(sag > 0.5 && sag < 0.95, "sags by {sag} m");
+    assert!(sag > 0.005 && sag < 0.05, "sags by {sag} m");
     let speed = sim.bodies.velocities[last.0 as usize].linear.length();
-    assert!(speed < 0.2, "{speed} m/s");
+    assert!(speed < 0.01, "{speed} m/s");
 }
 
 /// Damping takes relative velocity, and no momentum.

@@ -19,6 +19,7 @@ mod heavy;
 mod held;
 mod hubs;
 mod impulses;
+mod joint_trees;
 mod joints;
 mod memory;
 mod meshes;

@@ -13,14 +13,15 @@ use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::solver::{
-    BodyRow, BodyRows, JointDef, JointError, JointReaction, JointTable, Limits, MassRow, Motion, RowInput,
-    Solver, SubstepParams,
+    BodyRow, BodyRows, JointDef, JointError, JointReaction, JointSolver, JointTable, Limits, MassRow, Motion,
+    RowInput, Solver, SubstepParams,
 };
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
     RestSpeed, Surface,
 };
 use kernel::thread_pool::ThreadPool;
+use std::collections::BTreeSet;
 
 fn phase<'a>(
     bodies: &'a BodyTable,
@@ -61,6 +62,8 @@ pub struct Sim {
     pub gravity: Vector,
     pub dt: f32,
     pub substeps: u32,
+    /// How joints are solved.
+    pub joint_solver: JointSolver,
     pub sleeping: bool,
     pub recycle: bool,
     /// Whether the tables are checked after each step, where assertions are on.
@@ -72,6 +75,8 @@ pub struct Sim {
     pub locks: Vec<AxisLocks>,
     /// Colliders whose pairs are refused, as by a hook that filters pairs.
     pub unpaired: Vec<u32>,
+    /// Pairs of colliders that are refused.
+    pub apart: BTreeSet<[u32; 2]>,
     /// Colliders whose contacts are dropped after each update, as by a hook that changes contacts.
     pub dropped: Vec<u32>,
     /// Number of steps so far.
@@ -108,6 +113,7 @@ impl Sim {
             gravity: Vector::Y * -10.0,
             dt: 1.0 / 60.0,
             substeps: 4,
+            joint_solver: JointSolver::Auto,
             sleeping: false,
             recycle: true,
             checked: true,
@@ -115,6 +121,7 @@ impl Sim {
             sweeps: true,
             locks: Vec::new(),
             unpaired: Vec::new(),
+            apart: BTreeSet::new(),
             dropped: Vec::new(),
             steps_done: 0,
             shared: 0,
@@ -303,6 +310,13 @@ impl Sim {
         self.colliders.redefine(id, def, &mut self.bodies);
     }
 
+    /// Has a body touch only those that are as they were added.
+    pub fn meets_static_only(&mut self, id: u32) {
+        let layers = Layers { memberships: 2, filters: 1 };
+        let def = ColliderDef { layers, ..self.colliders[id].def.clone() };
+        self.colliders.redefine(id, def, &mut self.bodies);
+    }
+
     /// Adds a joint.
     pub fn join(&mut self, def: JointDef) -> Result<u32, JointError> {
         self.with_joints(|joints, link| joints.add(link, def))
@@ -344,7 +358,7 @@ impl Sim {
     }
 
     fn params(&self) -> SubstepParams {
-        SubstepParams::new(self.dt, self.substeps)
+        SubstepParams { joints: self.joint_solver, ..SubstepParams::new(self.dt, self.substeps) }
     }
 
     /// Builds rows from the colours of another simulation. Returns the number of shared stages.
@@ -383,7 +397,8 @@ impl Sim {
         found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.pool);
         self.movers.clear();
         for &(a, b) in found.pairs() {
-            let is_refused = [a, b].iter().any(|id| self.unpaired.contains(id));
+            let is_refused = [a, b].iter().any(|id| self.unpaired.contains(id))
+                || self.apart.contains(&[a.min(b), a.max(b)]);
             let [first, second] = [a, b].map(|id| &self.colliders[id].def);
             if !is_refused && first.body != second.body && first.layers.interacts_with(second.layers) {
                 self.link().create(a, b);

@@ -3,7 +3,7 @@
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use bevy_time::Time;
 use core::any::TypeId;
-use kernel::solver::{RowInput, Softness, Solver, SubstepParams};
+use kernel::solver::{JointSolver, RowInput, Softness, Solver, SubstepParams};
 
 use crate::{
     collision::narrow_phase::ContactResponse,
@@ -52,6 +52,7 @@ impl Default for StepSolver {
                 friction_fade: 0.02,
                 max_sag: 0.005,
                 roll_speed: 0.2,
+                joints: JointSolver::Auto,
             },
             substeps: 1,
         }
@@ -148,6 +149,7 @@ pub(crate) fn prepare_params(
         friction_fade: FRICTION_FADE * unit,
         max_sag: MAX_SAG * unit,
         roll_speed: ROLL_SPEED * unit,
+        joints: JointSolver::Auto,
     };
 }
 

@@ -7,9 +7,10 @@ use super::super::layer::{Layer, Sorter};
 use super::super::{BodyRow, MassRow, RowView, SubstepParams};
 use super::def::JointDef;
 use super::dim::{AXES, BLOCK};
-use super::row::Row;
+use super::row::{Hold, Row};
 use super::single::Single;
 use super::table::{JointTable, Records};
+use super::tree::JointTrees;
 use crate::contact::ManifoldsView;
 use crate::data::Parts;
 use crate::graph::{ColorGraph, ConstraintKind};
@@ -51,16 +52,16 @@ pub(in super::super) fn joints(colors: &ColorGraph, color: u8) -> &[u32] {
     colors.constraints(KIND, color)
 }
 
-/// Sorts joints into a layer, from batch `first` on.
+/// Sorts joints into a layer, from batch `first` on. Those of trees are left out.
 pub(in super::super) fn sort_joints(
     joints: &[u32],
     first: usize,
-    table: &JointTable,
+    (table, trees): (&JointTable, &JointTrees),
     sorter: &Sorter,
     layer: &mut Layer,
 ) {
     let parts = layer.parts();
-    for &id in joints {
+    for &id in joints.iter().filter(|id| !trees.holds(**id)) {
         let bodies = sorter.input.bodies.constraints(KIND).get(id).bodies;
         let batch = first + class_of(&table.record(id).def);
         layer.push(sorter.part(id, bodies, parts), batch, Item { id, index: 0 });
@@ -146,7 +147,7 @@ impl<N: Entry> Batch for JointView<'_, N> {
                 // SAFETY: a joint is in one row, so by the contract no other thread has its record.
                 let record = unsafe { self.records.0.one(item.id as usize) };
                 let singles = &mut singles[i * count..(i + 1) * count];
-                row.set(singles, lane, record, constraints.get(item.id).bodies, from);
+                row.set(singles, (lane, Hold::Row), record, constraints.get(item.id).bodies, from);
             }
         }
         // SAFETY: the job has no further condition.

@@ -44,8 +44,8 @@ impl<N: Lane> Locked<N> {
 /// The first `D` coordinates in a pass.
 pub(super) struct Block<N, const D: usize> {
     pub(super) gradients: [Gradient<N>; D],
-    values: [N; D],
-    responses: [Response<N>; D],
+    pub(super) values: [N; D],
+    pub(super) responses: [Response<N>; D],
 }
 
 /// A block whose matrix is factored.
@@ -85,7 +85,13 @@ impl<N: Lane, const D: usize> Block<N, D> {
 
     /// Solves the coordinates. With bias, or without it as in the relax pass, where springs are left out.
     #[inline(always)]
-    pub(super) fn solve(&self, rows: &mut [Locked<N>], pair: &mut Pair<N>, biased: bool) -> Solved<N, D> {
+    pub(super) fn solve(
+        &self,
+        rows: &mut [Locked<N>],
+        pair: &mut Pair<N>,
+        drift: Vector<N>,
+        biased: bool,
+    ) -> Solved<N, D> {
         let mut k = [[N::ZERO; D]; D];
         let mut wanted = [N::ZERO; D];
         let mut takes_part = [N::ZERO; D];
@@ -102,6 +108,7 @@ impl<N: Lane, const D: usize> Block<N, D> {
                 let softness = own * soft.share + soft.more;
                 diagonal = own + softness;
                 rate += soft.bias_rate * error + softness * row.impulse;
+                rate += drift.dot(self.gradients[i].normal);
             }
             wanted[i] = -(rate * takes_part[i]);
             // A coordinate that is free takes part as a row of its own.

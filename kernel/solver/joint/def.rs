@@ -1,6 +1,6 @@
 //! What a joint does: two frames, and a setting for each coordinate of B's frame relative to A's.
 
-use super::dim::{AXES, BLOCK};
+use super::dim::{AXES, BLOCK, parts_of};
 use crate::math::{Rot, Vector};
 use core::fmt;
 
@@ -182,11 +182,30 @@ impl JointDef {
         number < BLOCK && self.axes[number].locked_at().is_some()
     }
 
+    /// Whether a distance or an angle between axes is set, and one of the coordinates of which it is made: such settings may
+    /// contradict each other.
+    pub(super) fn sets_twice(&self) -> bool {
+        let is_set = |number: usize| self.axes[number] != Axis::FREE;
+        (BLOCK..AXES).any(|number| is_set(number) && parts_of(number).any(is_set))
+    }
+
     /// The coordinates that are solved one by one: those with a limit outside the block, or with a motor.
     pub(super) fn is_single(&self, number: usize) -> bool {
         let axis = &self.axes[number];
         !self.is_in_block(number) && (axis.limits.is_some() || axis.motor.is_some())
     }
+}
+
+/// How joints are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum JointSolver {
+    /// Trees of three joints and more directly, all others one by one.
+    #[default]
+    Auto,
+    /// One by one.
+    Rows,
+    /// Directly and without softness, for cranes and machines. Fast swings of light bodies that hold heavy ones may gain energy.
+    Rigid,
 }
 
 /// Why a joint cannot be added, changed or removed.

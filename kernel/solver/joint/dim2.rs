@@ -33,6 +33,31 @@ pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] 
     [(atan2_lanes(turn.sin, turn.cos), Angular { z: N::ONE })]
 }
 
+/// The coordinates of which one outside of the block is made: the shifts of the distance.
+pub(super) fn parts_of(_number: usize) -> core::ops::RangeInclusive<usize> {
+    coordinate::X..=coordinate::Y
+}
+
+/// Number of coordinates in which a body moves: shifts, then turns.
+pub(super) const DOF: usize = 3;
+
+/// A motion, or an impulse and its moment, as numbers.
+pub(super) fn screw(v: Vector, w: Angular) -> [f64; DOF] {
+    [v.x, v.y, w.z].map(f64::from)
+}
+
+/// The motion of which these are the numbers.
+pub(super) fn motion(screw: &[f64; DOF]) -> (Vector, Angular) {
+    let [x, y, z] = screw.map(|number| number as f32);
+    (Vector { x, y }, Angular { z })
+}
+
+/// M⁻¹ of a body.
+pub(super) fn inverse_of(mass: Vector, inertia: InvInertia) -> [[f64; DOF]; DOF] {
+    let diagonal = screw(mass, Angular { z: inertia.zz });
+    core::array::from_fn(|i| core::array::from_fn(|j| if i == j { diagonal[i] } else { 0.0 }))
+}
+
 /// Number of axes about which bodies turn.
 pub(super) const TURNS: usize = 1;
 

@@ -71,6 +71,40 @@ pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] 
     [(twist, twist_axis), (sy * factor, y), (sz * factor, z), (N::select(swings, cone, N::ZERO), axis)]
 }
 
+/// The coordinates of which one outside of the block is made: the shifts of the distance, the swings of the angle.
+pub(super) fn parts_of(number: usize) -> core::ops::RangeInclusive<usize> {
+    match number {
+        coordinate::DISTANCE => coordinate::X..=coordinate::Z,
+        _ => coordinate::SWING_Y..=coordinate::SWING_Z,
+    }
+}
+
+/// Number of coordinates in which a body moves: shifts, then turns.
+pub(super) const DOF: usize = 6;
+
+/// A motion, or an impulse and its moment, as numbers.
+pub(super) fn screw(v: Vector, w: Angular) -> [f64; DOF] {
+    [v.x, v.y, v.z, w.x, w.y, w.z].map(f64::from)
+}
+
+/// The motion of which these are the numbers.
+pub(super) fn motion(screw: &[f64; DOF]) -> (Vector, Angular) {
+    let [x, y, z, a, b, c] = screw.map(|number| number as f32);
+    (Vector { x, y, z }, Vector { x: a, y: b, z: c })
+}
+
+/// M⁻¹ of a body.
+pub(super) fn inverse_of(mass: Vector, i: InvInertia) -> [[f64; DOF]; DOF] {
+    let diagonal = screw(mass, Vector { x: i.xx, y: i.yy, z: i.zz });
+    let mut inverse: [[f64; DOF]; DOF] =
+        core::array::from_fn(|i| core::array::from_fn(|j| if i == j { diagonal[i] } else { 0.0 }));
+    for (row, column, number) in [(3, 4, i.xy), (3, 5, i.xz), (4, 5, i.yz)] {
+        inverse[row][column] = f64::from(number);
+        inverse[column][row] = f64::from(number);
+    }
+    inverse
+}
+
 /// Number of axes about which bodies turn.
 pub(super) const TURNS: usize = 3;
 

@@ -49,8 +49,8 @@ impl<N: Lane> Masses<N> {
 /// The changes of velocity by a unit impulse. Those of A are against it.
 #[derive(Clone, Copy)]
 pub(super) struct Response<N> {
-    v: [Vector<N>; 2],
-    w: [Angular<N>; 2],
+    pub(super) v: [Vector<N>; 2],
+    pub(super) w: [Angular<N>; 2],
 }
 
 impl<N: Lane> Response<N> {
@@ -131,6 +131,20 @@ impl<N: Lane> Place<N> {
     #[inline(always)]
     pub(super) fn arm(&self) -> Vector<N> {
         self.arms[1]
+    }
+
+    /// How fast the anchors part in a substep because bodies turn, beyond their velocities:
+    /// h/2 ω × (ω × r) + h²/6 ω × (ω × (ω × r)), up to the third order. It fades towards a radian in a substep, beyond which
+    /// it would drive what it follows.
+    #[inline(always)]
+    pub(super) fn drift(&self, pair: &Pair<N>, h: f32) -> Vector<N> {
+        let [wa, wb] = pair.w;
+        let bent = |w: Angular<N>, arm: Vector<N>| {
+            let (inward, turn) = (w.cross(w.cross(arm)), w.dot(w) * N::splat(h * h));
+            let weight = (N::ONE - turn * turn).max(N::ZERO);
+            (inward * N::splat(0.5 * h) + w.cross(inward) * N::splat(h * h / 6.0)) * weight
+        };
+        bent(wb, self.arms[1]) - bent(wa, self.arms[0] - self.between)
     }
 
     /// The gradient of a shift along a direction, and of a turn.

@@ -16,18 +16,36 @@ use crate::math::{Angular, DIM, Ids, Lane, Vector};
 const RIGID_DAMPING: f32 = 2.0;
 /// Share of the rate of the substeps that is the frequency of what is rigid.
 const RIGID_FREQUENCY: f32 = 0.25;
+/// The same for what is solved directly.
+const DIRECT_FREQUENCY: f32 = 2.0;
+/// Share of an error that is taken back in a substep where nothing is soft.
+const EXACT_SHARE: f32 = 0.2;
+/// Softness of what is not soft, as a share of the inverse mass: for joints that hold what others hold already.
+pub(super) const NOT_SOFT: f32 = 1.0e-6;
+
+/// How what is rigid is held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Hold {
+    /// By rows that are solved one by one.
+    #[default]
+    Row,
+    /// By a tree that is solved at once.
+    Tree,
+    /// The same, without softness.
+    Exact,
+}
 
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Row<N: Lane> {
-    ids: [N::Ids; 2],
-    start: Start<N>,
-    masses: Masses<N>,
+    pub(super) ids: [N::Ids; 2],
+    pub(super) start: Start<N>,
+    pub(super) masses: Masses<N>,
     /// Share of the relative velocity that is lost in a substep: linear and angular.
-    damping: [N; 2],
+    pub(super) damping: [N; 2],
     /// 1 where the block's axes are those of the world: if all shifts are locked alike.
     of_world: N,
-    block: [Locked<N>; BLOCK],
+    pub(super) block: [Locked<N>; BLOCK],
     force: Vector<N>,
     torque: Angular<N>,
     inv_h: f32,
@@ -50,14 +68,18 @@ impl<N: Lane> Default for Row<N> {
 }
 
 /// The coefficients of an oscillator: bias rate, share of the mass, and what is added besides.
-fn softening(give: Give, h: f32) -> (f32, f32, f32, bool) {
+fn softening(give: Give, hold: Hold, h: f32) -> (f32, f32, f32, bool) {
     let of_spring = |frequency: f32, damping_ratio: f32| {
         let s = Softness::new(frequency, damping_ratio, h);
         (s.bias_rate, if s.mass_scale > 0.0 { s.impulse_scale / s.mass_scale } else { 0.0 })
     };
     match give {
         Give::Rigid => {
-            let (rate, share) = of_spring(RIGID_FREQUENCY / h, RIGID_DAMPING);
+            let (rate, share) = match hold {
+                Hold::Row => of_spring(RIGID_FREQUENCY / h, RIGID_DAMPING),
+                Hold::Tree => of_spring(DIRECT_FREQUENCY / h, RIGID_DAMPING),
+                Hold::Exact => (EXACT_SHARE / h, NOT_SOFT),
+            };
             (rate, share, 0.0, false)
         }
         Give::Spring(spring) => {
@@ -69,8 +91,8 @@ fn softening(give: Give, h: f32) -> (f32, f32, f32, bool) {
 }
 
 impl<N: Lane> Softening<N> {
-    fn set(&mut self, lane: usize, give: Give, h: f32) {
-        let (rate, share, more, is_spring) = softening(give, h);
+    fn set(&mut self, lane: usize, give: Give, hold: Hold, h: f32) {
+        let (rate, share, more, is_spring) = softening(give, hold, h);
         self.bias_rate.set(lane, rate);
         self.share.set(lane, share);
         self.more.set(lane, more);
@@ -121,7 +143,7 @@ impl<N: Lane> Single<N> {
         let [min, max] = axis.limits.unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
         self.limits[0].set(lane, min);
         self.limits[1].set(lane, max);
-        self.softening.set(lane, axis.give, params.h);
+        self.softening.set(lane, axis.give, Hold::Row, params.h);
         let [lower, upper, motor] = record.singles[number].map(|impulse| impulse * params.warm_start);
         self.impulses[0].set(lane, lower);
         self.impulses[1].set(lane, upper);
@@ -154,7 +176,7 @@ impl<N: Lane> Row<N> {
     pub(super) fn set(
         &mut self,
         singles: &mut [Single<N>],
-        lane: usize,
+        (lane, hold): (usize, Hold),
         record: &Record,
         bodies: [u32; 2],
         from: &Filling,
@@ -180,7 +202,7 @@ impl<N: Lane> Row<N> {
         for (number, locked) in self.block.iter_mut().enumerate().filter(|(k, _)| def.is_in_block(*k)) {
             locked.is_locked.set(lane, 1.0);
             locked.target.set(lane, def.axes[number].locked_at().unwrap_or(0.0));
-            locked.softening.set(lane, def.axes[number].give, params.h);
+            locked.softening.set(lane, def.axes[number].give, hold, params.h);
             locked.impulse.set(lane, record.block[number] * params.warm_start);
         }
         let bases = self.start.bases.map(|basis| basis.get(lane));
@@ -201,7 +223,7 @@ impl<N: Lane> Row<N> {
         }
     }
 
-    fn of_world(&self) -> N::Mask {
+    pub(super) fn of_world(&self) -> N::Mask {
         N::ZERO.lt(self.of_world)
     }
 
@@ -232,8 +254,10 @@ impl<N: Lane> Row<N> {
             block.push(rows, &mut pair);
             None
         } else {
-            Some(block.solve(rows, &mut pair, biased))
+            let drift = place.drift(&pair, params.h);
+            Some(block.solve(rows, &mut pair, drift, biased))
         };
+        let has_singles = !singles.is_empty();
         for single in singles {
             let (gradient, value) = single.gradient(&place);
             let alone = self.masses.response(&gradient);
@@ -246,10 +270,15 @@ impl<N: Lane> Row<N> {
                 }
             }
         }
+        if biased && has_singles {
+            // A limit that was struck has changed how the bodies turn.
+            let drift = place.drift(&pair, params.h);
+            block.solve(rows, &mut pair, drift, biased);
+        }
         for (gradient, locked) in block.gradients.iter().zip(rows) {
             add(gradient, locked.impulse);
         }
-        (self.force, self.torque) = (force * N::splat(params.inv_h), torque * N::splat(params.inv_h));
+        self.bear(force, torque, params);
         if solved.is_none() && N::any(N::ZERO.lt(self.damping[0] + self.damping[1])) {
             self.damp(&mut pair);
         }
@@ -259,7 +288,7 @@ impl<N: Lane> Row<N> {
 
     /// Takes a share of the relative velocities of the centres of mass, and of the bodies' turning.
     #[inline(always)]
-    fn damp(&self, pair: &mut Pair<N>) {
+    pub(super) fn damp(&self, pair: &mut Pair<N>) {
         let [a, b] = self.masses.linear.map(|inverse| InvMass::diagonal(inverse));
         let masses = each(a + b, |k| {
             let moves = N::ZERO.lt(k);
@@ -279,6 +308,11 @@ impl<N: Lane> Row<N> {
             pair.w[0] += ia.apply(unit * moment);
             pair.w[1] -= ib.apply(unit * moment);
         }
+    }
+
+    /// Notes what the joint does: an impulse on B at its anchor, and its moment.
+    pub(super) fn bear(&mut self, impulse: Vector<N>, moment: Angular<N>, params: &SubstepParams) {
+        (self.force, self.torque) = (impulse * N::splat(params.inv_h), moment * N::splat(params.inv_h));
     }
 
     /// Copies a lane back into the joint.

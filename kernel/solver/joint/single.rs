@@ -110,6 +110,23 @@ impl<N: Lane> Single<N> {
         biased: bool,
     ) {
         let (response, kept) = block.beside(solved, alone);
+        let change = self.act((gradient, value), (&response, &alone), pair, params, biased);
+        for (row, share) in rows.iter_mut().zip(kept) {
+            row.impulse -= share * change;
+        }
+    }
+
+    /// Solves motor and limits by the response to a unit impulse, given the one without other joints. Returns the change of the
+    /// impulse.
+    #[inline(always)]
+    pub(super) fn act(
+        &mut self,
+        (gradient, value): (&Gradient<N>, N),
+        (response, alone): (&Response<N>, &Response<N>),
+        pair: &mut Pair<N>,
+        params: &SubstepParams,
+        biased: bool,
+    ) -> N {
         let k = response.along(gradient);
         // What the block holds already, a single row cannot move.
         let moves = (alone.along(gradient) * N::splat(NO_PIVOT)).lt(k);
@@ -117,7 +134,7 @@ impl<N: Lane> Single<N> {
         let before = self.impulse();
         let mass = N::select(moves, N::ONE / N::select(moves, k, N::ONE), N::ZERO);
         if biased {
-            self.drive(gradient, &response, (value, k, mass), pair, params.h);
+            self.drive(gradient, response, (value, k, mass), pair, params.h);
         }
         let both = self.limits[0].eq(self.limits[1]);
         for side in 0..2 {
@@ -146,10 +163,7 @@ impl<N: Lane> Single<N> {
             self.impulses[side] = after;
             response.push(pair, (after - before) * sign);
         }
-        let change = self.impulse() - before;
-        for (row, share) in rows.iter_mut().zip(kept) {
-            row.impulse -= share * change;
-        }
+        self.impulse() - before
     }
 
     #[inline(always)]
@@ -179,6 +193,16 @@ impl<N: Lane> Single<N> {
     #[inline(always)]
     pub(super) fn impulse(&self) -> N {
         self.impulses[0] - self.impulses[1] + self.motor.impulse
+    }
+}
+
+impl Single<f32> {
+    /// Whether a pass would change anything, at a rate of the coordinate: there is a motor, an impulse, or a limit ahead.
+    pub(super) fn may_act(&self, value: f32, rate: f32, h: f32) -> bool {
+        let [min, max] = self.limits;
+        let ahead = value + rate * h;
+        let is_between = |x: f32| min < x && x < max;
+        self.motor.most > 0.0 || self.impulses != [0.0; 2] || !(is_between(value) && is_between(ahead))
     }
 }
 

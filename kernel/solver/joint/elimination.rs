@@ -1,0 +1,354 @@
+//! The direct solution of a tree of joints: linear in their number.
+//!
+//! Bodies move by Δv = M⁻¹ Σ Jᵀ λ, joints ask for J Δv + Γ λ = r. Joints are eliminated from the leaves to the root. Let B be the
+//! inverse inertia of a body with all that is eliminated hanging on it, at first M⁻¹, and g its motion by that. A joint
+//! between a parent p and a child c, whose own joints are all eliminated, has
+//!
+//! E = J_c B_c J_cᵀ + Γ + J_p B_p J_pᵀ,  e = r − J_c g_c − J_p g_p,  λ = E⁻¹ (e − J_p B_p F)
+//!
+//! where F is the impulse on the parent by the joints that are eliminated later. So, with Y = E⁻¹ J_p B_p,
+//!
+//! B_p ← B_p − Yᵀ E Y,  g_p ← g_p + Yᵀ e
+//!
+//! and on the way back F is known. Only inverses of inertia are used: bodies with locked axes are nothing special. B is a
+//! difference of near numbers where a light body holds a heavy one, which takes `f64`.
+//!
+//! After Baraff, "Linear-time dynamics using Lagrange multipliers" (1996), and Featherstone's articulated bodies.
+
+use super::dim::{BLOCK, DOF};
+use super::forest::GROUND;
+
+/// A motion of a body, or an impulse on it.
+pub(super) type Screw = [f64; DOF];
+
+/// Share of a row's own inverse mass below which its pivot is rounding.
+const NO_PIVOT: f64 = 1.0e-10;
+
+fn dot(a: &Screw, b: &Screw) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..DOF {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
+/// Adds a multiple.
+pub(super) fn add(to: &mut Screw, a: &Screw, times: f64) {
+    for i in 0..DOF {
+        to[i] += a[i] * times;
+    }
+}
+
+fn product(matrix: &[Screw; DOF], a: &Screw) -> Screw {
+    core::array::from_fn(|i| dot(&matrix[i], a))
+}
+
+/// A body of a tree.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    /// M⁻¹.
+    pub(super) inverse: [Screw; DOF],
+    /// B, while joints are eliminated.
+    left: [Screw; DOF],
+    /// g, while joints are eliminated.
+    motion: Screw,
+    /// The impulse of its joints, after solving.
+    pub(super) impulse: Screw,
+}
+
+impl Node {
+    pub(super) fn new(inverse: [Screw; DOF]) -> Self {
+        Self { inverse, left: inverse, motion: [0.0; DOF], impulse: [0.0; DOF] }
+    }
+
+    /// What the impulse of its joints changes.
+    pub(super) fn change(&self) -> Screw {
+        self.moved(&self.impulse)
+    }
+
+    /// What an impulse changes.
+    pub(super) fn moved(&self, impulse: &Screw) -> Screw {
+        product(&self.inverse, impulse)
+    }
+}
+
+/// A joint of a tree: some rows between a parent and a child.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Link {
+    /// Parent and child among the bodies of the tree, or [`GROUND`].
+    pub(super) places: [u32; 2],
+    /// Number of rows.
+    pub(super) count: usize,
+    /// J of parent and child, by row.
+    pub(super) jacobians: [[Screw; BLOCK]; 2],
+    /// Γ.
+    pub(super) softness: [f64; BLOCK],
+    /// r.
+    pub(super) wanted: [f64; BLOCK],
+    /// λ.
+    pub(super) impulses: [f64; BLOCK],
+    /// E = L D Lᵀ: L below the diagonal.
+    lower: [[f64; BLOCK]; BLOCK],
+    /// D⁻¹.
+    inverse: [f64; BLOCK],
+    /// Y.
+    passed: [Screw; BLOCK],
+}
+
+impl Link {
+    pub(super) const NONE: Self = Self {
+        places: [GROUND; 2],
+        count: 0,
+        jacobians: [[[0.0; DOF]; BLOCK]; 2],
+        softness: [0.0; BLOCK],
+        wanted: [0.0; BLOCK],
+        impulses: [0.0; BLOCK],
+        lower: [[0.0; BLOCK]; BLOCK],
+        inverse: [0.0; BLOCK],
+        passed: [[0.0; DOF]; BLOCK],
+    };
+
+    /// Wants a motion of an end taken back.
+    pub(super) fn want_against(&mut self, end: usize, motion: &Screw) {
+        for i in 0..self.count {
+            self.wanted[i] -= dot(&self.jacobians[end][i], motion);
+        }
+    }
+
+    /// Replaces the lower half of E by its factors. Rows that depend on those before, or that nothing moves, are left out.
+    fn factor(&mut self) {
+        let Self { lower, inverse, .. } = self;
+        for j in 0..self.count {
+            let (own, mut pivot) = (lower[j][j], lower[j][j]);
+            for m in 0..j {
+                // It is still times D.
+                let scaled = lower[j][m] * inverse[m];
+                pivot -= scaled * lower[j][m];
+                lower[j][m] = scaled;
+            }
+            inverse[j] = if pivot > own * NO_PIVOT { 1.0 / pivot } else { 0.0 };
+            for i in j + 1..self.count {
+                for m in 0..j {
+                    lower[i][j] -= lower[i][m] * lower[j][m];
+                }
+            }
+        }
+    }
+
+    /// L⁻¹ x for one column.
+    fn forward(&self, x: &mut [f64; BLOCK]) {
+        for i in 0..self.count {
+            for m in 0..i {
+                x[i] -= self.lower[i][m] * x[m];
+            }
+        }
+    }
+
+    /// L⁻ᵀ D⁻¹ x for one column.
+    fn backward(&self, x: &mut [f64; BLOCK]) {
+        for i in (0..self.count).rev() {
+            x[i] *= self.inverse[i];
+            for m in i + 1..self.count {
+                x[i] -= self.lower[m][i] * x[m];
+            }
+        }
+    }
+}
+
+/// Eliminates the joints of a tree, which are in an order from the root on.
+pub(super) fn factor(links: &mut [Link], nodes: &mut [Node]) {
+    nodes.iter_mut().for_each(|node| node.left = node.inverse);
+    for link in links.iter_mut().rev() {
+        let ([parent, child], count) = (link.places, link.count);
+        for i in 0..count {
+            link.lower[i] = [0.0; BLOCK];
+            link.lower[i][i] = link.softness[i];
+        }
+        for (side, place) in [parent, child].into_iter().enumerate() {
+            let Some(node) = nodes.get(place as usize) else { continue };
+            for i in 0..count {
+                let response = product(&node.left, &link.jacobians[side][i]);
+                if side == 0 {
+                    link.passed[i] = response;
+                }
+                for j in i..count {
+                    link.lower[j][i] += dot(&response, &link.jacobians[side][j]);
+                }
+            }
+        }
+        link.factor();
+        let Some(node) = nodes.get_mut(parent as usize) else { continue };
+        // L⁻¹ W, then B − Wᵀ E⁻¹ W row by row, then Y.
+        for i in 0..count {
+            for m in 0..i {
+                let (of_m, times) = (link.passed[m], -link.lower[i][m]);
+                add(&mut link.passed[i], &of_m, times);
+            }
+        }
+        for i in 0..count {
+            let row = link.passed[i];
+            for k in 0..DOF {
+                add(&mut node.left[k], &row, -row[k] * link.inverse[i]);
+            }
+        }
+        for i in (0..count).rev() {
+            link.passed[i] = link.passed[i].map(|x| x * link.inverse[i]);
+            for m in i + 1..count {
+                let (of_m, times) = (link.passed[m], -link.lower[m][i]);
+                add(&mut link.passed[i], &of_m, times);
+            }
+        }
+    }
+}
+
+/// Solves a factored tree for what its joints want. Afterwards joints have their impulses, and bodies those of all their
+/// joints.
+pub(super) fn solve(links: &mut [Link], nodes: &mut [Node]) {
+    for node in nodes.iter_mut() {
+        (node.motion, node.impulse) = ([0.0; DOF], [0.0; DOF]);
+    }
+    for link in links.iter_mut().rev() {
+        let mut e = link.wanted;
+        for (side, place) in link.places.into_iter().enumerate() {
+            let Some(node) = nodes.get(place as usize) else { continue };
+            for i in 0..link.count {
+                e[i] -= dot(&link.jacobians[side][i], &node.motion);
+            }
+        }
+        if let Some(node) = nodes.get_mut(link.places[0] as usize) {
+            for i in 0..link.count {
+                add(&mut node.motion, &link.passed[i], e[i]);
+            }
+        }
+        link.forward(&mut e);
+        link.backward(&mut e);
+        link.impulses = e;
+    }
+    for link in links.iter_mut() {
+        if let Some(node) = nodes.get(link.places[0] as usize) {
+            for i in 0..link.count {
+                link.impulses[i] -= dot(&link.passed[i], &node.impulse);
+            }
+        }
+        for (side, place) in link.places.into_iter().enumerate() {
+            let Some(node) = nodes.get_mut(place as usize) else { continue };
+            for i in 0..link.count {
+                add(&mut node.impulse, &link.jacobians[side][i], link.impulses[i]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::DIM;
+    use proptest::prelude::*;
+
+    /// A tree by seeds: masses, parents, rows and directions.
+    fn tree(seeds: &[(f64, u32, u64)], ratio: f64) -> (Vec<Link>, Vec<Node>) {
+        let mut state = 1u64;
+        let mut any = |seed: u64| {
+            state = (state ^ seed).wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
+        };
+        let (mut links, mut nodes): (Vec<Link>, Vec<Node>) = (Vec::new(), Vec::new());
+        for (number, &(weight, parent, seed)) in seeds.iter().enumerate() {
+            let mut inverse = [[0.0; DOF]; DOF];
+            let inv_mass = 1.0 / ratio.powf(weight);
+            let roots: [Screw; DOF] = core::array::from_fn(|_| core::array::from_fn(|_| any(seed)));
+            for (i, row) in inverse.iter_mut().enumerate() {
+                for (j, x) in row.iter_mut().enumerate() {
+                    let turn = if i >= DIM && j >= DIM { 0.3 * dot(&roots[i], &roots[j]) } else { 0.0 };
+                    *x = inv_mass * (turn + if i == j { 0.5 } else { 0.0 });
+                }
+            }
+            nodes.push(Node::new(inverse));
+            let ends = if number == 0 || parent % 7 == 0 {
+                [number as u32, GROUND]
+            } else {
+                [parent % number as u32, number as u32]
+            };
+            let count = 1 + seed as usize % BLOCK;
+            let mut link = Link { places: ends, count, ..Link::NONE };
+            for i in 0..count {
+                link.jacobians = link.jacobians.map(|mut rows| {
+                    rows[i] = core::array::from_fn(|_| any(seed));
+                    rows
+                });
+                (link.softness[i], link.wanted[i]) = (1.0e-3 * inv_mass, any(seed));
+            }
+            links.push(link);
+            if ends[1] == GROUND && number > 0 {
+                // It hangs on an earlier body as well.
+                let places = [parent % number as u32, number as u32];
+                links.insert(links.len() - 1, Link { places, ..link });
+            }
+        }
+        (links, nodes)
+    }
+
+    /// J Δv + Γ λ − r, with Δv = M⁻¹ Σ Jᵀ λ.
+    fn residual(links: &[Link], nodes: &[Node]) -> f64 {
+        let mut impulses = vec![[0.0; DOF]; nodes.len()];
+        for link in links {
+            for (side, place) in link.places.into_iter().enumerate().filter(|(_, place)| *place != GROUND) {
+                for i in 0..link.count {
+                    add(&mut impulses[place as usize], &link.jacobians[side][i], link.impulses[i]);
+                }
+            }
+        }
+        let mut most = 0.0f64;
+        for link in links {
+            for i in 0..link.count {
+                let mut sum = link.softness[i] * link.impulses[i] - link.wanted[i];
+                for (side, place) in link.places.into_iter().enumerate().filter(|(_, place)| *place != GROUND)
+                {
+                    let change = product(&nodes[place as usize].inverse, &impulses[place as usize]);
+                    sum += dot(&link.jacobians[side][i], &change);
+                }
+                most = most.max(sum.abs());
+            }
+        }
+        for (node, impulse) in nodes.iter().zip(&impulses) {
+            let scale = impulse.iter().fold(1.0f64, |most, x| most.max(x.abs()));
+            for i in 0..DOF {
+                most = most.max((node.impulse[i] - impulse[i]).abs() / scale);
+            }
+        }
+        most
+    }
+
+    proptest! {
+        #[test]
+        fn all_joints_of_a_tree_get_what_they_want(
+            seeds in prop::collection::vec((0.0f64..1.0, any::<u32>(), any::<u64>()), 1..40),
+            ratio in prop::sample::select(vec![1.0, 100.0, 1.0e6]),
+        ) {
+            let (mut links, mut nodes) = tree(&seeds, ratio);
+            factor(&mut links, &mut nodes);
+            for _ in 0..2 {
+                solve(&mut links, &mut nodes);
+                let most = residual(&links, &nodes);
+                prop_assert!(most < 1.0e-6, "off by {most}");
+            }
+        }
+    }
+
+    #[test]
+    fn rows_that_nothing_moves_are_left_out() {
+        let mut rows = [[[0.0; DOF]; BLOCK]; 2];
+        rows[0][0][0] = 1.0;
+        rows[0][1][1] = 1.0;
+        rows[0][2][1] = 1.0;
+        let mut held = [[0.0; DOF]; DOF];
+        held[1][1] = 2.0;
+        let wanted = core::array::from_fn(|_| 4.0);
+        let link = Link { places: [0, GROUND], count: 3, jacobians: rows, wanted, ..Link::NONE };
+        let (mut links, mut nodes) = ([link], [Node::new(held)]);
+        factor(&mut links, &mut nodes);
+        solve(&mut links, &mut nodes);
+        assert_eq!(links[0].impulses[..3], [0.0, 2.0, 0.0]);
+        assert_eq!(nodes[0].change()[1], 4.0);
+    }
+}
