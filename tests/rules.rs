@@ -539,6 +539,19 @@ fn examples_are_listed() {
     assert_none(&unlisted, "examples/README.md lists all examples");
 }
 
+/// An example says on the screen what to look at. The first example of the README is its snippet.
+#[test]
+fn examples_have_a_hint() {
+    let mut silent = Vec::new();
+    for source in sources(&["examples/examples2d/examples", "examples/examples3d/examples"]) {
+        let says = ["with_hint(", "Hint(", "Text::new("].iter().any(|text| source.text.contains(text));
+        if !says && !source.path.ends_with("/readme.rs") {
+            silent.push(source.path);
+        }
+    }
+    assert_none(&silent, "examples say what to look at");
+}
+
 /// Paths between backticks or in links, with `{a,b}` written out.
 fn paths_in(document: &str) -> Vec<String> {
     let ticks = document.split('`').skip(1).step_by(2);

@@ -1,20 +1,32 @@
-//! What most examples share: a camera and a floor. `hello` is a whole program without it.
+//! What most examples share: a camera, a floor and a hint on the screen. `hello` is a whole program without it.
 //!
 //! One idea each: `cargo run -p examples2d --example hello`.
 
 use avian2d::prelude::*;
 use bevy::prelude::*;
 
-/// A plugin that adds a camera, and a floor if wanted. Sizes are in metres; the camera shows 50 pixels for each.
+#[path = "../hint.rs"]
+mod hint;
+
+pub use hint::{Hint, Readout};
+
+/// A plugin that adds a camera, and a floor and a hint if wanted. Sizes are in metres; the camera shows 50 pixels for
+/// each.
 #[derive(Default)]
 pub struct Scenery {
     has_floor: bool,
+    hint: Option<&'static str>,
 }
 
 impl Scenery {
     /// With a floor: a static box 24 m wide, whose top is at y = 0.
     pub fn with_floor() -> Self {
-        Self { has_floor: true }
+        Self { has_floor: true, ..default() }
+    }
+
+    /// With a text on the screen: what to look at, and which keys there are.
+    pub fn with_hint(self, hint: &'static str) -> Self {
+        Self { hint: Some(hint), ..self }
     }
 }
 
@@ -23,6 +35,9 @@ impl Plugin for Scenery {
         app.add_systems(Startup, add_camera);
         if self.has_floor {
             app.add_systems(Startup, add_floor);
+        }
+        if let Some(hint) = self.hint {
+            app.add_plugins(Hint(hint));
         }
     }
 }

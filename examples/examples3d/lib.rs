@@ -1,26 +1,37 @@
-//! What most examples share: a camera, a light and a floor. `hello` is a whole program without it.
+//! What most examples share: a camera, a light, a floor and a hint on the screen. `hello` is a whole program without it.
 //!
 //! One idea each: `cargo run -p examples3d --example hello`.
 
 use avian3d::prelude::*;
 use bevy::prelude::*;
 
-/// A plugin that adds a camera and a light, and a floor if wanted.
+#[path = "../hint.rs"]
+mod hint;
+
+pub use hint::{Hint, Readout};
+
+/// A plugin that adds a camera and a light, and a floor and a hint if wanted.
 pub struct Scenery {
     eye: Vec3,
     target: Vec3,
     has_floor: bool,
+    hint: Option<&'static str>,
 }
 
 impl Scenery {
     /// A camera at `eye` that looks at `target`, and a light.
     pub fn new(eye: Vec3, target: Vec3) -> Self {
-        Self { eye, target, has_floor: false }
+        Self { eye, target, has_floor: false, hint: None }
     }
 
     /// With a floor: a static box of 30 m by 30 m, whose top is at y = 0.
     pub fn with_floor(self) -> Self {
         Self { has_floor: true, ..self }
+    }
+
+    /// With a text on the screen: what to look at, and which keys there are.
+    pub fn with_hint(self, hint: &'static str) -> Self {
+        Self { hint: Some(hint), ..self }
     }
 }
 
@@ -36,6 +47,9 @@ impl Plugin for Scenery {
         });
         if self.has_floor {
             app.add_systems(Startup, add_floor);
+        }
+        if let Some(hint) = self.hint {
+            app.add_plugins(Hint(hint));
         }
     }
 }

@@ -12,9 +12,12 @@ const LINK: f32 = 0.4;
 /// Length and number of planks.
 const PLANK: (f32, usize) = (0.6, 16);
 
+/// On the screen.
+const HINT: &str = "Links stay together, although the ball weighs fifty times as much.";
+
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default().with_hint(HINT)))
         .add_systems(Startup, (hang_chain, build_bridge))
         .run();
 }

@@ -7,6 +7,9 @@ use avian2d::{math::*, prelude::*};
 use bevy::prelude::*;
 use examples2d::Scenery;
 
+/// On the screen.
+const HINT: &str = "Circles of a collider type of the app. The color tells how hard a circle is pushed.";
+
 fn main() {
     App::new()
         .add_plugins((
@@ -19,7 +22,7 @@ fn main() {
             ColliderBackendPlugin::<CircleCollider>::default(),
             ColliderTreePlugin::<CircleCollider>::default(),
             NarrowPhasePlugin::<CircleCollider>::default(),
-            Scenery::default(),
+            Scenery::default().with_hint(HINT),
         ))
         .add_systems(Startup, setup)
         .add_systems(Update, paint)

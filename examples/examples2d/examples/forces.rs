@@ -24,9 +24,13 @@ struct Pulsing;
 #[derive(Component, Default)]
 struct Trail(Vec<Vec2>);
 
+/// On the screen.
+const HINT: &str = "\
+The same thrust in three ways: along an axis of the world, along the rocket's own axis, in impulses.";
+
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default().with_hint(HINT)))
         .insert_resource(Gravity::ZERO)
         .add_systems(Startup, setup)
         .add_systems(FixedUpdate, push.run_if(on_timer(Duration::from_secs(1))))

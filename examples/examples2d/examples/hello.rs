@@ -25,6 +25,8 @@ fn setup(
         Transform::from_xyz(0.0, 5.0, 0.0),
     ));
 
+    commands.spawn(Text::new("The pile falls, comes to rest, and sleeps."));
+
     // The floor: static, so nothing moves it. Its top is at y = 0.
     commands.spawn((
         RigidBody::Static,

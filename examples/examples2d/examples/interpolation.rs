@@ -7,9 +7,12 @@ use avian2d::prelude::*;
 use bevy::prelude::*;
 use examples2d::Scenery;
 
+/// On the screen.
+const HINT: &str = "Physics takes ten steps a second. The lower disc jumps, the upper one is interpolated.";
+
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default().with_hint(HINT)))
         .insert_resource(Time::<Fixed>::from_hz(10.0))
         .insert_resource(Gravity::ZERO)
         .add_systems(Startup, setup)

@@ -11,9 +11,18 @@ use examples2d::Scenery;
 #[derive(Component)]
 struct Lift;
 
+/// On the screen.
+const HINT: &str = "\
+From the left: a weld, a rope, a lift between limits, a wheel with a motor, a flap held by a motor.";
+
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), PhysicsDebugPlugin, Scenery::default()))
+        .add_plugins((
+            DefaultPlugins,
+            PhysicsPlugins::default(),
+            PhysicsDebugPlugin,
+            Scenery::default().with_hint(HINT),
+        ))
         .add_systems(Startup, setup)
         .add_systems(FixedUpdate, call_lift)
         .run();

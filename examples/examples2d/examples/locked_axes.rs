@@ -7,9 +7,12 @@ use avian2d::prelude::*;
 use bevy::prelude::*;
 use examples2d::Scenery;
 
+/// On the screen.
+const HINT: &str = "What each box may do: move freely, not turn, move along y only.";
+
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::with_floor()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::with_floor().with_hint(HINT)))
         .add_systems(Startup, setup)
         .run();
 }

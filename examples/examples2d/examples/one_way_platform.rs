@@ -8,9 +8,13 @@ use bevy::{ecs::system::SystemParam, prelude::*};
 use examples2d::Scenery;
 use std::collections::HashSet;
 
+/// On the screen.
+const HINT: &str = "The ball rises through the platforms and lands on them.
+Left, Right or A, D: walk. Space or Up: jump. Down or S: fall through.";
+
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, Scenery::with_floor()))
+        .add_plugins((DefaultPlugins, Scenery::with_floor().with_hint(HINT)))
         .add_plugins(PhysicsPlugins::default().with_collision_hooks::<OneWay>())
         .add_systems(Startup, setup)
         .add_systems(Update, control)

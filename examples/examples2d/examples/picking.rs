@@ -5,10 +5,14 @@
 
 use avian2d::prelude::*;
 use bevy::prelude::*;
+use examples2d::Hint;
+
+/// On the screen.
+const HINT: &str = "Drag the boxes with the mouse.";
 
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), PhysicsPickingPlugin))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), PhysicsPickingPlugin, Hint(HINT)))
         .add_systems(Startup, setup)
         .add_systems(FixedUpdate, follow)
         .add_observer(grab)

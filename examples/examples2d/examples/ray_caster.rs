@@ -8,9 +8,13 @@ use avian2d::prelude::*;
 use bevy::prelude::*;
 use examples2d::Scenery;
 
+/// On the screen.
+const HINT: &str = "\
+The red ray stops at the first box. The blue disc stops where it first touches something.";
+
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::with_floor()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::with_floor().with_hint(HINT)))
         .add_systems(Startup, setup)
         .add_systems(Update, (draw_ray, draw_disc))
         .run();

@@ -7,9 +7,13 @@ use avian2d::prelude::*;
 use bevy::prelude::*;
 use examples2d::Scenery;
 
+/// On the screen.
+const HINT: &str = "Dark bodies sleep. The pile falls asleep as a whole, after half a second of rest.
+Click: throw a ball that wakes what it touches.";
+
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::with_floor()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::with_floor().with_hint(HINT)))
         .add_systems(Startup, setup)
         .add_systems(Update, (throw, paint))
         .run();
@@ -35,11 +39,12 @@ fn throw(mut commands: Commands, buttons: Res<ButtonInput<MouseButton>>, look: R
     }
 }
 
+/// Static bodies are neither awake nor asleep.
 fn paint(
-    mut bodies: Query<(&mut MeshMaterial2d<ColorMaterial>, Has<Sleeping>), With<LinearVelocity>>,
+    mut bodies: Query<(&RigidBody, &mut MeshMaterial2d<ColorMaterial>, Has<Sleeping>)>,
     look: Res<Look>,
 ) {
-    for (mut material, asleep) in &mut bodies {
+    for (_, mut material, asleep) in bodies.iter_mut().filter(|(body, ..)| body.is_dynamic()) {
         let color = if asleep { &look.asleep } else { &look.awake };
         if material.0 != *color {
             material.0 = color.clone();

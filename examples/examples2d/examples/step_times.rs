@@ -1,24 +1,27 @@
-//! Two thousand discs rain into a bowl. Look at the console: once a second it prints how long each part of a step took.
+//! Two thousand discs rain into a bowl. Look at the numbers: once a second they tell how long each part of a step took.
 //!
 //! `cargo run --release -p examples2d --example step_times`
 
 use avian2d::{prelude::*, schedule::StepTimes};
 use bevy::{prelude::*, time::common_conditions::on_timer};
 use core::time::Duration;
-use examples2d::Scenery;
+use examples2d::{Readout, Scenery};
+
+/// On the screen.
+const HINT: &str = "How long each part of a step takes, once a second.";
 
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::default().with_hint(HINT)))
         .add_systems(Startup, setup)
-        .add_systems(Update, print.run_if(on_timer(Duration::from_secs(1))))
+        .add_systems(Update, show.run_if(on_timer(Duration::from_secs(1))))
         .run();
 }
 
-fn print(times: Res<StepTimes>) {
-    info!("{:?} in one step", times.total());
+fn show(times: Res<StepTimes>, mut readout: Single<&mut Text, With<Readout>>) {
+    readout.0 = format!("{:.1?} in one step", times.total());
     for (part, time) in times.parts() {
-        info!("    {part}: {time:?}");
+        readout.0 += &format!("\n    {part}: {time:.1?}");
     }
 }
 

@@ -1,48 +1,62 @@
-//! Continuous collision, three modes side by side. Look at the cubes that are shot at a thin turning plate: without prediction and
-//! sweep many fly through. Behind is a static wall of 1 cm, which nothing passes in any mode. Space changes the speed.
+//! Continuous collision, three modes side by side. Look at the cubes that are shot at a thin turning plate, and at the counts:
+//! without prediction and sweep most fly through. Behind is a static wall of 1 cm, which nothing passes in any mode. Space
+//! changes the speed.
 //!
 //! `cargo run --release -p examples3d --example ccd`
 
 use avian3d::prelude::*;
 use bevy::prelude::*;
-use examples3d::Scenery;
+use examples3d::{Readout, Scenery};
+
+/// On the screen.
+const HINT: &str = "\
+Cubes are shot at thin turning plates: without prediction and sweep, with prediction, with a sweep.
+The static wall behind stops all of them.
+Space: speed of the cubes.";
 
 fn main() {
     App::new().add_plugins((DefaultPlugins, plugin)).run();
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    let scenery = Scenery::new(Vec3::new(7.0, 6.0, 13.0), Vec3::new(0.0, 0.5, -1.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(5.0, 5.0, 8.5), Vec3::new(0.0, 1.2, -1.0)).with_floor().with_hint(HINT);
     app.add_plugins((PhysicsPlugins::default(), scenery))
         .insert_resource(Speed(100.0))
         .add_systems(Startup, setup)
-        .add_systems(Update, change_speed)
-        .add_systems(FixedUpdate, (shoot, remove_fallen));
+        .add_systems(Update, (change_speed, draw_trails))
+        .add_systems(FixedUpdate, (shoot, remove_old));
 }
 
 /// Of new cubes, in m/s.
 #[derive(Resource)]
 struct Speed(f32);
 
+/// A cube of a mode, with its age.
 #[derive(Component)]
-pub(crate) struct Bullet;
+pub(crate) struct Bullet {
+    mode: usize,
+    steps: u32,
+}
 
 #[derive(Resource)]
 struct Look(Handle<Mesh>, [Handle<StandardMaterial>; 3]);
 
-/// The place of each mode: neither, prediction (the default), sweep alone.
-const PLACES: [f32; 3] = [-4.0, 0.0, 4.0];
+/// Name and place of each mode.
+const MODES: [(&str, f32); 3] = [("neither", -4.0), ("prediction (default)", 0.0), ("sweep", 4.0)];
+/// Side of a cube in metres.
+const SIDE: f32 = 0.25;
 
 fn shoot(mut commands: Commands, look: Res<Look>, speed: Res<Speed>, mut steps: Local<u32>) {
     *steps += 1;
     if !steps.is_multiple_of(8) {
         return;
     }
-    for (mode, x) in PLACES.into_iter().enumerate() {
+    for (mode, (_, x)) in MODES.into_iter().enumerate() {
         let mut cube = commands.spawn((
-            Bullet,
+            Bullet { mode, steps: 0 },
             RigidBody::Dynamic,
-            Collider::cuboid(0.1, 0.1, 0.1),
+            Collider::cuboid(SIDE, SIDE, SIDE),
             LinearVelocity(Vec3::new(0.0, 1.0, -speed.0)),
             AngularVelocity(Vec3::new(9.0, -7.0, 5.0)),
             Transform::from_xyz(x + 0.05 * (*steps % 48) as f32 - 1.2, 1.5, 8.0),
@@ -57,8 +71,31 @@ fn shoot(mut commands: Commands, look: Res<Look>, speed: Res<Speed>, mut steps: 
     }
 }
 
-fn remove_fallen(mut commands: Commands, cubes: Query<(Entity, &Position), With<Bullet>>) {
-    cubes.iter().filter(|(_, at)| at.y < -10.0).for_each(|(cube, _)| commands.entity(cube).despawn());
+/// Removes cubes after two seconds, and counts those that are behind their plate.
+fn remove_old(
+    mut commands: Commands,
+    mut cubes: Query<(Entity, &mut Bullet, &Position)>,
+    mut counts: Local<[(u32, u32); 3]>,
+    mut readout: Single<&mut Text, With<Readout>>,
+) {
+    for (cube, mut bullet, at) in &mut cubes {
+        bullet.steps += 1;
+        if bullet.steps == 128 {
+            let (passed, all) = &mut counts[bullet.mode];
+            *passed += u32::from(at.z < -0.5);
+            *all += 1;
+            commands.entity(cube).despawn();
+        }
+    }
+    let line = |((name, _), (passed, all))| format!("{name}: {passed} of {all} passed\n");
+    readout.0 = MODES.into_iter().zip(*counts).map(line).collect();
+}
+
+/// A line along the way of a tick.
+fn draw_trails(cubes: Query<(&Position, &LinearVelocity), With<Bullet>>, mut gizmos: Gizmos) {
+    for (at, velocity) in cubes.iter().filter(|(_, velocity)| velocity.length() > 10.0) {
+        gizmos.line(at.0 - velocity.0 / 64.0, at.0, Color::srgb(1.0, 0.8, 0.4));
+    }
 }
 
 fn change_speed(keys: Res<ButtonInput<KeyCode>>, mut speed: ResMut<Speed>) {
@@ -79,7 +116,7 @@ fn setup(
         (body, collider, Transform::from_translation(place), mesh, MeshMaterial3d(grey.clone()))
     };
     commands.spawn(fixed(Vec3::new(14.0, 4.0, 0.01), Vec3::new(0.0, 2.0, -5.0), RigidBody::Static));
-    for (mode, x) in PLACES.into_iter().enumerate() {
+    for (mode, (_, x)) in MODES.into_iter().enumerate() {
         let plate = fixed(Vec3::new(3.0, 3.0, 0.01), Vec3::new(x, 1.6, 0.0), RigidBody::Kinematic);
         let mut plate = commands.spawn((plate, AngularVelocity(Vec3::Z * 2.0)));
         if mode != 1 {
@@ -87,5 +124,5 @@ fn setup(
         }
     }
     let colors = [0.0, 120.0, 240.0].map(|hue| materials.add(Color::hsl(hue, 0.5, 0.6)));
-    commands.insert_resource(Look(meshes.add(Cuboid::from_length(0.1)), colors));
+    commands.insert_resource(Look(meshes.add(Cuboid::from_length(SIDE)), colors));
 }

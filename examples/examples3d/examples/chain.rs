@@ -12,8 +12,12 @@ const LINK: (f32, usize) = (0.5, 12);
 /// Radius of the ball in metres.
 const BALL: f32 = 0.7;
 
+/// On the screen.
+const HINT: &str = "Links stay together, although the ball weighs a hundred times as much.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(3.0, 5.0, 16.0), Vec3::new(0.0, 4.0, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(3.0, 5.0, 16.0), Vec3::new(0.0, 4.0, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, (hang_chain, build_wall))

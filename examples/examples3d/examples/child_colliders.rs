@@ -7,8 +7,13 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "\
+The hammers tumble about their heads: mass comes from the shapes and densities of both colliders.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(-6.0, 5.0, 12.0), Vec3::new(0.0, 2.0, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(-6.0, 5.0, 12.0), Vec3::new(0.0, 2.0, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, setup)

@@ -8,8 +8,13 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "\
+All colliders come from meshes. Everything falls through the glass. Gold rings can hang on something.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(6.0, 6.0, 14.0), Vec3::new(0.0, 2.5, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(6.0, 6.0, 14.0), Vec3::new(0.0, 2.5, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), PhysicsDebugPlugin, scenery))
         .add_systems(Startup, spawn_arch)

@@ -8,8 +8,13 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "\
+Bodies flash white at each new contact, and redden with the impulse. The gate is brighter with more in it.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 6.0, 13.0), Vec3::new(0.0, 2.0, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(0.0, 6.0, 13.0), Vec3::new(0.0, 2.0, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, setup)

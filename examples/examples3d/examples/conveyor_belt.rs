@@ -7,8 +7,11 @@ use avian3d::prelude::*;
 use bevy::{ecs::system::SystemParam, prelude::*};
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "Each belt is static, and carries boxes at the speed of its arrow.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 9.0, 10.0), Vec3::ZERO).with_floor();
+    let scenery = Scenery::new(Vec3::new(0.0, 9.0, 10.0), Vec3::ZERO).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, scenery))
         .add_plugins(PhysicsPlugins::default().with_collision_hooks::<Belts>())

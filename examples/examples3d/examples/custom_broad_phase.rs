@@ -7,12 +7,15 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "A heap of boxes whose pairs are found by a system of the app.";
+
 fn main() {
     App::new()
         .add_plugins((
             DefaultPlugins,
             PhysicsPlugins::default().build().disable::<BvhBroadPhasePlugin>(),
-            Scenery::new(Vec3::new(-8.0, 6.0, 12.0), Vec3::Y * 2.0).with_floor(),
+            Scenery::new(Vec3::new(-8.0, 6.0, 12.0), Vec3::Y * 2.0).with_floor().with_hint(HINT),
         ))
         .add_systems(PhysicsSchedule, find_pairs.in_set(BroadPhaseSystems::CollectCollisions))
         .add_systems(Startup, setup)

@@ -8,12 +8,18 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "\
+Outlines are orange while a body is awake, dark when it sleeps, gray if it is static.
+1: boxes. 2: contacts. 3: trees. 4: islands. 5: hide meshes. 0: no lines.";
+
 fn main() {
     App::new().add_plugins((DefaultPlugins, plugin)).run();
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    let scenery = Scenery::new(Vec3::new(0.0, 5.0, 10.0), Vec3::new(0.0, 1.0, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(0.0, 5.0, 10.0), Vec3::new(0.0, 1.0, 0.0)).with_floor().with_hint(HINT);
     app.add_plugins((PhysicsPlugins::default(), PhysicsDebugPlugin, scenery))
         .insert_gizmo_config(
             PhysicsGizmos::default()

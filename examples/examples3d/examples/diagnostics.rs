@@ -7,8 +7,14 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "\
+The panel tells how many bodies and contacts there are, and how long each part of a step takes.
+Space: hide the panel.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 6.0, 14.0), Vec3::new(0.0, 2.0, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(0.0, 6.0, 14.0), Vec3::new(0.0, 2.0, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), PhysicsDiagnosticsUiPlugin, scenery))
         .add_systems(Startup, load)

@@ -6,8 +6,11 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "The wave runs on at a constant speed. Bodies behind it fall asleep.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 12.0, 14.0), Vec3::ZERO).with_floor();
+    let scenery = Scenery::new(Vec3::new(0.0, 12.0, 14.0), Vec3::ZERO).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, setup)

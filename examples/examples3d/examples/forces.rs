@@ -21,8 +21,12 @@ struct Hovering;
 #[derive(Resource, Default)]
 struct Crates(u32);
 
+/// On the screen.
+const HINT: &str = "The platform hovers on four thrusters: it tilts where a crate lands, and levels again.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 7.0, 14.0), Vec3::new(0.0, 2.5, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(0.0, 7.0, 14.0), Vec3::new(0.0, 2.5, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .init_resource::<Crates>()

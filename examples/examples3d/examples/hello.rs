@@ -24,6 +24,8 @@ fn setup(
         Transform::from_xyz(-3.0, 8.0, 5.0).looking_at(Vec3::ZERO, Vec3::Y),
     ));
 
+    commands.spawn(Text::new("The pile falls, comes to rest, and sleeps."));
+
     // The floor: static, so nothing moves it. Its top is at y = 0.
     commands.spawn((
         RigidBody::Static,

@@ -15,8 +15,13 @@ const RANGE: f32 = 1.4;
 /// Turns of the swing in rad/s.
 const PACE: f32 = 1.5;
 
+/// On the screen.
+const HINT: &str = "\
+Doors that turn about their edge: by Transform, by center of mass, and by a joint that balls push open.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 7.0, 11.0), Vec3::new(0.0, 0.5, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(0.0, 7.0, 11.0), Vec3::new(0.0, 0.5, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, setup)

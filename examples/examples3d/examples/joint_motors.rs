@@ -15,8 +15,13 @@ struct Lift;
 #[derive(Component)]
 struct Door;
 
+/// On the screen.
+const HINT: &str = "\
+From the left: a weld, a rope, a lift between limits, a wheel and a door with motors, an arm in a socket.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 6.0, 17.0), Vec3::new(0.0, 3.0, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(0.0, 6.0, 17.0), Vec3::new(0.0, 3.0, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), PhysicsDebugPlugin, scenery))
         .add_systems(Startup, setup)

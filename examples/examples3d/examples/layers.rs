@@ -7,8 +7,11 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "The upper floor stops red balls only. Balls of different colors pass through each other.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 6.0, 14.0), Vec3::new(0.0, 2.5, 0.0));
+    let scenery = Scenery::new(Vec3::new(0.0, 6.0, 14.0), Vec3::new(0.0, 2.5, 0.0)).with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, setup)

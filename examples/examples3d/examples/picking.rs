@@ -7,8 +7,12 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "Point at a box, and click: it is pushed where you clicked, away from you.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 4.0, 12.0), Vec3::new(0.0, 2.5, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(-6.0, 4.5, 9.0), Vec3::new(0.0, 2.2, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), PhysicsPickingPlugin, scenery))
         .add_systems(Startup, setup)
@@ -36,10 +40,13 @@ fn setup(
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
     let cube = meshes.add(Cuboid::default());
-    let plain = materials.add(Color::srgb(0.8, 0.45, 0.3));
+    // Like a chessboard, so that boxes tell apart.
+    let shades =
+        [Color::srgb(0.8, 0.45, 0.3), Color::srgb(0.55, 0.35, 0.3)].map(|color| materials.add(color));
     let pointed_at = materials.add(Color::srgb(1.0, 0.9, 0.3));
     for i in 0..30 {
         let (column, row) = (i % 6, i / 6);
+        let plain = &shades[(column + row) % 2];
         let (over, out) = (pointed_at.clone(), plain.clone());
         commands
             .spawn((

@@ -8,8 +8,14 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "\
+The red ray ends at what it hits. The blue ball is drawn where it would land.
+What is in the white ball is lit.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 6.0, 11.0), Vec3::new(0.0, 0.5, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(0.0, 6.0, 11.0), Vec3::new(0.0, 0.5, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, setup)

@@ -1,14 +1,18 @@
-//! A tower is hit by a ball. Space pauses physics, Enter takes one step, the arrow keys make time slower and faster. Look at the
-//! console for the speed.
+//! A tower is hit by a ball. Look at it in slow motion: Space pauses physics, Enter takes one step, the arrow keys make time
+//! slower and faster.
 //!
 //! `cargo run --release -p examples3d --example time_control`
 
 use avian3d::prelude::*;
 use bevy::prelude::*;
-use examples3d::Scenery;
+use examples3d::{Readout, Scenery};
+
+/// On the screen.
+const HINT: &str = "Space: pause. Enter: one step. Up, Down: faster and slower.";
 
 fn main() {
-    let scenery = Scenery::new(Vec3::new(-8.0, 6.0, 14.0), Vec3::new(0.0, 4.0, 0.0)).with_floor();
+    let scenery =
+        Scenery::new(Vec3::new(-8.0, 6.0, 14.0), Vec3::new(0.0, 4.0, 0.0)).with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, setup)
@@ -17,7 +21,12 @@ fn main() {
 }
 
 /// Physics has a clock of its own.
-fn control(keys: Res<ButtonInput<KeyCode>>, mut time: ResMut<Time<Physics>>, mut commands: Commands) {
+fn control(
+    keys: Res<ButtonInput<KeyCode>>,
+    mut time: ResMut<Time<Physics>>,
+    mut commands: Commands,
+    mut readout: Single<&mut Text, With<Readout>>,
+) {
     if keys.just_pressed(KeyCode::Space) {
         if time.is_paused() {
             time.unpause();
@@ -35,11 +44,12 @@ fn control(keys: Res<ButtonInput<KeyCode>>, mut time: ResMut<Time<Physics>>, mut
     let factor = match () {
         () if keys.just_pressed(KeyCode::ArrowUp) => 2.0,
         () if keys.just_pressed(KeyCode::ArrowDown) => 0.5,
-        () => return,
+        () => 1.0,
     };
     let speed = (time.relative_speed() * factor).clamp(0.125, 4.0);
     time.set_relative_speed(speed);
-    info!("speed {speed}");
+    let paused = if time.is_paused() { ", paused" } else { "" };
+    readout.0 = format!("speed {speed}{paused}, {:.2} s", time.elapsed_secs());
 }
 
 fn setup(
