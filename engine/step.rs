@@ -71,7 +71,7 @@ use crate::{
 macro_rules! stages {
     ($(
         $(#[$doc:meta])*
-        $stage:ident $(.$place:ident($set:expr))+ => { $($owner:ident: $systems:expr),+ $(,)? }
+        $stage:ident $(.$place:ident($set:expr))+ => { $($owner:ident: $systems:expr),* $(,)? }
     )+) => {
         /// The stages of a step, in order.
         #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -98,7 +98,7 @@ macro_rules! stages {
                     place(app, Stage::$stage);
                     add_systems(app, schedule, ($systems).in_set(Stage::$stage));
                 }
-            )+)+
+            )*)+
         }
     };
 }
@@ -143,6 +143,8 @@ stages! {
     UpdateMassProperties.before(PhysicsStepSystems::First) => {
         MassProperties: (recompute, warn_of_missing_mass).chain_ignore_deferred(),
     }
+    /// Moves characters. Systems: `CharacterControllerPlugin`.
+    MoveCharacters.before(PhysicsStepSystems::First) => {}
     /// Resets counters and timers, and wakes the thread pool.
     ResetDiagnostics.in_set(PhysicsStepSystems::First) => {
         Step: wake_workers,

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     schedule::{PhysicsSchedule, PhysicsStepSystems},
-    step::add_systems,
+    step::{self, Stage},
 };
 
 /// Moves characters with a [`CharacterController`], at the start of each step.
@@ -24,13 +24,17 @@ pub struct CharacterSystems;
 
 impl Plugin for CharacterControllerPlugin {
     fn build(&self, app: &mut App) {
+        step::install(app);
         app.register_required_components::<CharacterController, CharacterPlan>();
         app.add_message::<CharacterLanded>()
             .add_message::<CharacterLeftGround>()
             .add_message::<CharacterHit>()
             .add_message::<CharacterClimbed>();
         app.configure_sets(PhysicsSchedule, CharacterSystems.before(PhysicsStepSystems::First));
-        let systems = (plan_characters, drive_characters).chain().in_set(CharacterSystems);
-        add_systems(app, PhysicsSchedule, systems);
+        let systems = (plan_characters, drive_characters)
+            .chain()
+            .in_set(CharacterSystems)
+            .in_set(Stage::MoveCharacters);
+        step::add_systems(app, PhysicsSchedule, systems);
     }
 }

@@ -16,7 +16,6 @@
 //! back by the load, and such a tower shakes until it falls.
 
 use super::input::RowInput;
-use super::joint::JointTrees;
 use super::{BodyRows, SubstepParams};
 use crate::contact::{Contact, ContactFlags, ContactTable, Manifold};
 use crate::math::{DIM, Vector, max, min};
@@ -113,16 +112,17 @@ impl Bearing {
         self.raised.clear();
     }
 
-    /// Raises the masses of overloaded bodies, as contacts see them. Returns whether there are any.
+    /// Raises the masses of overloaded bodies, as contacts see them. Returns whether there are any. `are_joined` tells whether two
+    /// body rows are of one tree of joints.
     pub(super) fn raise_masses(
         &mut self,
         input: &RowInput,
         bodies: &mut BodyRows,
         params: &SubstepParams,
-        trees: &JointTrees,
+        are_joined: impl Fn([u32; 2]) -> bool,
     ) -> bool {
         let sag_rate = sag_rate(params) / params.max_sag;
-        self.sum_up(input, bodies, params, trees);
+        self.sum_up(input, bodies, params, are_joined);
         self.spread();
         let before = input.contacts.raised_masses();
         for body in input.bodies.awake_dynamic() {
@@ -165,7 +165,13 @@ impl Bearing {
     /// Sums up the impulses of the last substep by body row, in the order of contacts, and lists contacts that press.
     /// Deep overlap and fast bodies do not count: their impulses are no load at rest. Nor do contacts within a tree of joints,
     /// which presses its bodies on each other as well as a load.
-    fn sum_up(&mut self, input: &RowInput, bodies: &BodyRows, params: &SubstepParams, trees: &JointTrees) {
+    fn sum_up(
+        &mut self,
+        input: &RowInput,
+        bodies: &BodyRows,
+        params: &SubstepParams,
+        are_joined: impl Fn([u32; 2]) -> bool,
+    ) {
         self.loads.clear();
         self.loads.resize(bodies.rows.len(), Load::NONE);
         self.presses.clear();
@@ -176,7 +182,7 @@ impl Bearing {
                 continue;
             }
             let rows = contact.bodies.map(|body| input.row_of(body));
-            if trees.connects(rows) {
+            if are_joined(rows) {
                 continue;
             }
             for manifold in core::iter::once(&contact.manifold).chain(contacts.extra_of(contact)) {

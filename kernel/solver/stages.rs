@@ -119,7 +119,9 @@ impl Solver {
         let Self { bodies, trees, plan, bearing, .. } = self;
         let any_overloaded = plan.blocks.iter().any(|block| block.passes.are_overloaded());
         let was_any = !input.contacts.raised_masses().is_empty();
-        if (any_overloaded || was_any) && bearing.raise_masses(input, bodies, params, trees) {
+        if (any_overloaded || was_any)
+            && bearing.raise_masses(input, bodies, params, |rows| trees.connects(rows))
+        {
             // Rows of bodies with a mass for each axis are others.
             self.plan_rows(input, colors, pool);
             self.fill_rows(input, params, pool);

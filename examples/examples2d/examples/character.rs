@@ -7,9 +7,14 @@ use avian2d::prelude::*;
 use bevy::prelude::*;
 use examples2d::Scenery;
 
+/// On the screen.
+const HINT: &str = "Walk: A, D, arrows or left stick. Jump: space or south button.\n\
+    Take the stairs at full speed, push the crates, jump from the lift as it rises.";
+
 fn main() {
+    let scenery = Scenery::with_floor().with_hint(HINT);
     App::new()
-        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), Scenery::with_floor()))
+        .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, setup)
         .add_systems(Update, walk)
         .add_systems(FixedUpdate, turn_lift_round)

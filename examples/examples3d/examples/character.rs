@@ -7,8 +7,13 @@ use avian3d::prelude::*;
 use bevy::prelude::*;
 use examples3d::Scenery;
 
+/// On the screen.
+const HINT: &str = "Walk: WASD, arrows or left stick. Jump: space or south button.\n\
+    Take the stairs at full speed, push the crates, stand on the carousel and on the lift.";
+
 fn main() {
-    let scenery = Scenery::new(Vec3::new(0.0, 9.0, 16.0), Vec3::new(0.0, 1.0, 0.0)).with_floor();
+    let scenery = Scenery::new(Vec3::new(0.0, 9.0, 16.0), Vec3::new(0.0, 1.0, 0.0));
+    let scenery = scenery.with_floor().with_hint(HINT);
     App::new()
         .add_plugins((DefaultPlugins, PhysicsPlugins::default(), scenery))
         .add_systems(Startup, setup)
