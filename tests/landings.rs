@@ -30,7 +30,7 @@ fn spawn_ground(app: &mut App, kind: &str) {
     let world = app.world_mut();
     match kind {
         "box" => {
-            _ = world.spawn((RigidBody::Static, block(20.0, 2.0, 20.0), Transform::from_xyz(0.0, -1.0, 0.0)))
+            _ = world.spawn((RigidBody::Static, block(20.0, 2.0, 20.0), Transform::from_xyz(0.0, -1.0, 0.0)));
         }
         "tiles" => {
             for x in -3..=3_i8 {

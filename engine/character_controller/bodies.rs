@@ -125,7 +125,7 @@ impl Motion {
     }
 
     /// A point in the frame of the body.
-    pub(super) fn to_local(&self, point: Vector) -> Vector {
+    pub(super) fn to_local(self, point: Vector) -> Vector {
         self.rotation.inverse() * (point - self.position.0)
     }
 }
