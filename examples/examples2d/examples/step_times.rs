@@ -8,7 +8,7 @@ use core::time::Duration;
 use examples2d::{Readout, Scenery};
 
 /// On the screen.
-const HINT: &str = "How long each part of a step takes, once a second.";
+const HINT: &str = "Parts of a step that take a hundredth of it or more, once a second.";
 
 fn main() {
     App::new()
@@ -19,9 +19,11 @@ fn main() {
 }
 
 fn show(times: Res<StepTimes>, mut readout: Single<&mut Text, With<Readout>>) {
-    readout.0 = format!("{:.1?} in one step", times.total());
-    for (part, time) in times.parts() {
-        readout.0 += &format!("\n    {part}: {time:.1?}");
+    let milliseconds = |time: Duration| 1e3 * time.as_secs_f32();
+    let total = times.total();
+    readout.0 = format!("{:6.2} ms in one step", milliseconds(total));
+    for (part, time) in times.parts().filter(|(_, time)| *time > total / 100) {
+        readout.0 += &format!("\n{:6.2} ms {part}", milliseconds(time));
     }
 }
 

@@ -59,7 +59,12 @@ fn shoot(mut commands: Commands, look: Res<Look>, speed: Res<Speed>, mut steps: 
             Collider::cuboid(SIDE, SIDE, SIDE),
             LinearVelocity(Vec3::new(0.0, 1.0, -speed.0)),
             AngularVelocity(Vec3::new(9.0, -7.0, 5.0)),
-            Transform::from_xyz(x + 0.05 * (*steps % 48) as f32 - 1.2, 1.5, 8.0),
+            // From other distances, so that not all are in the plate at the end of a step.
+            Transform::from_xyz(
+                x + 0.05 * (*steps % 48) as f32 - 1.2,
+                1.5,
+                8.0 + 0.03 * (*steps % 56) as f32,
+            ),
             Mesh3d(look.0.clone()),
             MeshMaterial3d(look.1[mode].clone()),
         ));
@@ -87,8 +92,8 @@ fn remove_old(
             commands.entity(cube).despawn();
         }
     }
-    let line = |((name, _), (passed, all))| format!("{name}: {passed} of {all} passed\n");
-    readout.0 = MODES.into_iter().zip(*counts).map(line).collect();
+    let line = |((name, _), (passed, all))| format!("{name}: {passed} of {all} passed");
+    readout.0 = MODES.into_iter().zip(*counts).map(line).collect::<Vec<_>>().join("\n");
 }
 
 /// A line along the way of a tick.

@@ -8,7 +8,9 @@ use bevy::prelude::*;
 use examples3d::{Readout, Scenery};
 
 /// On the screen.
-const HINT: &str = "Space: pause. Enter: one step. Up, Down: faster and slower.";
+const HINT: &str = "\
+A ball hits a tower: see it in slow motion.
+Space: pause. Enter: one step. Up, Down: faster and slower.";
 
 fn main() {
     let scenery =
