@@ -114,11 +114,11 @@
 //! # Examples
 //!
 //! `cargo run --release -p examples3d --example hello`, or `-p examples2d`. In both: `hello`, `readme`, `forces`,
-//! `collision_events`, `picking`, `ccd`.
+//! `collision_events`, `picking`, `ccd`, `chain`, `joint_motors`, `player`.
 //!
 //! | | 2D | 3D |
 //! |---|---|---|
-//! | games | `character`, `moving_platform`, `one_way_platform` | `character`, `conveyor_belt`, `save_and_load`, `time_control` |
+//! | games | `character`, `player`, `moving_platform`, `one_way_platform` | `character`, `player`, `car`, `shooting`, `explosion`, `conveyor_belt`, `save_and_load`, `time_control` |
 //! | bodies | `locked_axes`, `sleeping`, `interpolation` | `hinged_door`, `child_colliders`, `materials`, `layers`, `dominoes` |
 //! | colliders and queries | `ray_caster`, `custom_collider` | `collider_constructors`, `spatial_queries`, `custom_broad_phase` |
 //! | tools | `step_times` | `debug_drawing`, `diagnostics` |
