@@ -8,7 +8,10 @@ use bevy_math::{Quat, Vec2, Vec3};
 use bevy_transform::components::Transform;
 
 use crate::scene::{Bounds, Scene, Watch, at, spawn_block, spawn_body};
-use crate::{card_house, dominoes, pile, pyramid, slopes, towers, tumbler};
+use crate::{
+    belts, blast, bridge, bullets, card_house, dominoes, growing, pile, pyramid, scaled, sensors, slopes,
+    terrain, towers, tumbler,
+};
 
 /// Density of the bodies in kg/m².
 pub const DENSITY: f32 = 1.0;
@@ -27,8 +30,11 @@ pub const TUMBLER_SPACE: f32 = 1.0;
 /// Side and pitch of the tumbler's boxes in metres.
 pub const TUMBLER_BOX: (f32, f32) = (0.25, 0.4);
 
+/// No rotation.
+pub const NO_TURN: f32 = 0.0;
+
 /// The scenes of the tour.
-pub static SCENES: [Scene; 8] = [
+pub static SCENES: [Scene; 16] = [
     Scene {
         name: "large_pyramid",
         about: "5,050 unit boxes, 100 at the base, sleeping off",
@@ -103,6 +109,78 @@ pub static SCENES: [Scene; 8] = [
         eye: Vec3::Z,
         watch: Watch::Rest,
     },
+    Scene {
+        name: "terrain",
+        about: "every shape falls over a height field and a mesh",
+        steps: 600,
+        build: |world| terrain::terrain(world, 3),
+        bounds: Bounds::new([-8.0, -1.5, 0.0], [8.0, 12.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "sensors",
+        about: "balls bob at the surface of a pool: a sensor and its events",
+        steps: 600,
+        build: |world| sensors::pool(world),
+        bounds: Bounds::new([-8.0, -1.5, 0.0], [8.0, 14.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "belts",
+        about: "belts carry boxes to and fro, by the velocity of their surface",
+        steps: 900,
+        build: |world| belts::belts(world),
+        bounds: Bounds::new([-8.0, -1.5, 0.0], [8.0, 15.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "bullets",
+        about: "fast balls between walls of 2 cm",
+        steps: 300,
+        build: |world| bullets::bullets(world, 100),
+        bounds: Bounds::new([-6.5, -6.5, 0.0], [6.5, 6.5, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "bridge",
+        about: "a bridge of planks on joints, and heavy balls on chains",
+        steps: 600,
+        build: |world| bridge::bridge(world, 14),
+        bounds: Bounds::new([-14.0, -1.5, 0.0], [14.0, 9.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "blasts",
+        about: "what a query finds near the middle is blown away, every two seconds",
+        steps: 600,
+        build: |world| blast::blasts(world),
+        bounds: Bounds::new([-8.0, -1.5, 0.0], [8.0, 14.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "growing",
+        about: "balls grow while they lie on each other",
+        steps: 600,
+        build: |world| growing::growing(world),
+        bounds: Bounds::new([-8.0, -1.5, 0.0], [8.0, 14.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "scaled",
+        about: "ramps and pieces scaled by their transforms",
+        steps: 600,
+        build: |world| scaled::scaled(world),
+        bounds: Bounds::new([-8.0, -1.5, 0.0], [8.0, 23.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
 ];
 
 /// Parry's pose for a transform in the plane: a turn by φ about z is the quaternion (0, 0, sin φ/2, cos φ/2).
@@ -115,6 +193,11 @@ pub fn pose(transform: &Transform) -> Pose {
 /// A vector along y.
 pub fn upwards(length: f32) -> Vector {
     Vector::new(0.0, length)
+}
+
+/// The part of a vector in the plane.
+pub fn vector(of: Vec3) -> Vector {
+    of.truncate()
 }
 
 /// A velocity of turning in the plane, counter-clockwise, in rad/s.
@@ -130,6 +213,23 @@ pub fn block(width: f32, height: f32, _depth: f32) -> Collider {
 /// A circle.
 pub fn ball(radius: f32) -> Collider {
     Collider::circle(radius)
+}
+
+/// A box whose only part can have a material of its own.
+pub fn belt(width: f32, height: f32, depth: f32) -> Collider {
+    Collider::compound(vec![(Vec2::ZERO, 0.0, block(width, height, depth))])
+}
+
+/// A height field by its width and its height at x and z.
+pub fn hills(width: f32, height: impl Fn(f32, f32) -> f32) -> Collider {
+    let at = |i: u8| width * (f32::from(i) / 40.0 - 0.5);
+    Collider::heightfield((0..=40).map(|i| height(at(i), 0.0)).collect(), Vec2::new(width, 1.0))
+}
+
+/// A roof by its width and height: a closed line.
+pub fn roof(width: f32, height: f32) -> Collider {
+    let corners = vec![Vec2::new(-0.5 * width, 0.0), Vec2::new(0.5 * width, 0.0), Vec2::new(0.0, height)];
+    Collider::polyline(corners, Some(vec![[0, 1], [1, 2], [2, 0]]))
 }
 
 /// The 2D version of a rolling cylinder: a circle.

@@ -9,7 +9,10 @@ use bevy_transform::components::Transform;
 
 use crate::numbers::{Rng, half_turn_parts, sin_cos};
 use crate::scene::{Bounds, Scene, Watch, at, spawn_block, spawn_body};
-use crate::{card_house, dominoes, pile, pyramid, slopes, towers, tumbler};
+use crate::{
+    belts, blast, bridge, bullets, card_house, dominoes, growing, pile, pyramid, scaled, sensors, slopes,
+    terrain, towers, tumbler,
+};
 
 /// Density of the bodies in kg/m³.
 pub const DENSITY: f32 = 100.0;
@@ -28,8 +31,11 @@ pub const TUMBLER_SPACE: f32 = 6.0;
 /// Side and pitch of the tumbler's boxes in metres.
 pub const TUMBLER_BOX: (f32, f32) = (0.6, 1.0);
 
+/// No rotation.
+pub const NO_TURN: Quat = Quat::IDENTITY;
+
 /// The scenes of the tour.
-pub static SCENES: [Scene; 8] = [
+pub static SCENES: [Scene; 16] = [
     Scene {
         name: "large_pyramid",
         about: "5,050 unit boxes, 100 at the base, sleeping off",
@@ -104,6 +110,78 @@ pub static SCENES: [Scene; 8] = [
         eye: Vec3::new(0.6, 0.25, 1.0),
         watch: Watch::Rest,
     },
+    Scene {
+        name: "terrain",
+        about: "every shape falls over a height field and a mesh",
+        steps: 600,
+        build: |world| terrain::terrain(world, 3),
+        bounds: Bounds::new([-8.0, -1.0, -8.0], [8.0, 10.0, 8.0]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "sensors",
+        about: "balls bob at the surface of a pool: a sensor and its events",
+        steps: 600,
+        build: |world| sensors::pool(world),
+        bounds: Bounds::new([-8.0, -1.0, -8.0], [8.0, 14.0, 8.0]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "belts",
+        about: "belts carry boxes to and fro, by the velocity of their surface",
+        steps: 900,
+        build: |world| belts::belts(world),
+        bounds: Bounds::new([-8.0, -1.0, -8.0], [8.0, 14.0, 8.0]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "bullets",
+        about: "fast balls between walls of 2 cm",
+        steps: 300,
+        build: |world| bullets::bullets(world, 100),
+        bounds: Bounds::new([-6.5, -6.5, -6.5], [6.5, 6.5, 6.5]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "bridge",
+        about: "a bridge of planks on joints, and heavy balls on chains",
+        steps: 600,
+        build: |world| bridge::bridge(world, 14),
+        bounds: Bounds::new([-14.0, -1.0, -6.0], [14.0, 8.0, 6.0]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "blasts",
+        about: "what a query finds near the middle is blown away, every two seconds",
+        steps: 600,
+        build: |world| blast::blasts(world),
+        bounds: Bounds::new([-8.0, -1.0, -8.0], [8.0, 14.0, 8.0]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "growing",
+        about: "balls grow while they lie on each other",
+        steps: 600,
+        build: |world| growing::growing(world),
+        bounds: Bounds::new([-8.0, -1.0, -8.0], [8.0, 14.0, 8.0]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "scaled",
+        about: "ramps and pieces scaled by their transforms",
+        steps: 600,
+        build: |world| scaled::scaled(world),
+        bounds: Bounds::new([-8.0, -1.0, -8.0], [8.0, 23.0, 8.0]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
 ];
 
 /// Parry's pose for a transform without scale.
@@ -114,6 +192,11 @@ pub fn pose(transform: &Transform) -> Pose {
 /// A vector along y.
 pub fn upwards(length: f32) -> Vector {
     Vector::new(0.0, length, 0.0)
+}
+
+/// A vector of space is one already.
+pub fn vector(of: Vec3) -> Vector {
+    of
 }
 
 /// A velocity of turning about z, counter-clockwise, in rad/s.
@@ -129,6 +212,28 @@ pub fn block(width: f32, height: f32, depth: f32) -> Collider {
 /// A sphere.
 pub fn ball(radius: f32) -> Collider {
     Collider::sphere(radius)
+}
+
+/// A box whose only part can have a material of its own.
+pub fn belt(width: f32, height: f32, depth: f32) -> Collider {
+    Collider::compound(vec![(Vec3::ZERO, Quat::IDENTITY, block(width, height, depth))])
+}
+
+/// A square height field by its width and its height at x and z.
+pub fn hills(width: f32, height: impl Fn(f32, f32) -> f32) -> Collider {
+    let at = |i: u8| width * (f32::from(i) / 40.0 - 0.5);
+    let heights = (0..=40).map(|i| (0..=40).map(|j| height(at(i), at(j))).collect()).collect();
+    Collider::heightfield(heights, Vec3::new(width, 1.0, width))
+}
+
+/// A roof by its width and height: a pyramid of triangles.
+pub fn roof(width: f32, height: f32) -> Collider {
+    let half = 0.5 * width;
+    let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
+    let mut points: Vec<Vector> = corners.map(|(x, z)| Vec3::new(x, 0.0, z)).to_vec();
+    points.push(Vec3::Y * height);
+    let sides = [[1, 0, 4], [2, 1, 4], [3, 2, 4], [0, 3, 4], [0, 1, 2], [0, 2, 3]];
+    Collider::trimesh(points, sides.to_vec())
 }
 
 /// A rolling body: a cylinder along y, see [`roller_turn`].

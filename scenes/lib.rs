@@ -6,13 +6,21 @@
 //! [`sin_cos`].
 
 pub mod app;
+pub mod belts;
+pub mod blast;
+pub mod bridge;
+pub mod bullets;
 pub mod card_house;
 pub mod dominoes;
+pub mod growing;
 pub mod numbers;
 pub mod pile;
 pub mod pyramid;
+pub mod scaled;
 pub mod scene;
+pub mod sensors;
 pub mod slopes;
+pub mod terrain;
 pub mod towers;
 pub mod tumbler;
 

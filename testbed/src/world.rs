@@ -8,6 +8,7 @@ use bevy_ecs::prelude::*;
 use bevy_transform::components::GlobalTransform;
 
 use super::avian::collision::CollisionDiagnostics;
+use super::avian::parry::shape::SharedShape;
 use super::avian::prelude::*;
 use super::overlap::{Body, deepest_overlap};
 use super::scenes::{self, Glass, Scene, Watch, Watched};
@@ -37,8 +38,8 @@ struct Running {
     scene: &'static Scene,
     /// Forms by their bits, so that equal shapes share one.
     forms: HashMap<Vec<u32>, Arc<Form>>,
-    /// The form of each collider's shape.
-    known: HashMap<Entity, Arc<Form>>,
+    /// Each collider's shape, as it was last seen, with its form.
+    known: HashMap<Entity, (SharedShape, Arc<Form>)>,
     /// Bodies in the order they were first seen in.
     numbers: HashMap<Entity, u32>,
 }
@@ -53,12 +54,15 @@ impl Running {
     }
 
     fn form(&mut self, entity: Entity, collider: &Collider) -> Arc<Form> {
-        if let Some(form) = self.known.get(&entity) {
+        let shape = collider.shape_scaled();
+        if let Some((seen, form)) = self.known.get(&entity)
+            && Arc::ptr_eq(&seen.0, &shape.0)
+        {
             return form.clone();
         }
-        let form = space::form(&**collider.shape_scaled());
+        let form = space::form(&**shape);
         let form = self.forms.entry(form.key()).or_insert_with(|| Arc::new(form)).clone();
-        self.known.insert(entity, form.clone());
+        self.known.insert(entity, (shape.clone(), form.clone()));
         form
     }
 
@@ -163,7 +167,9 @@ impl Simulation for Running {
         let mut positions = world.query_filtered::<&Position, With<RigidBody>>();
         let broken = positions.iter(world).filter(|position| !position.is_finite()).count();
         let kinds = world.query::<&RigidBody>();
-        let mut colliders = world.query::<(Entity, &Collider, &GlobalTransform, Option<&ColliderOf>)>();
+        // Sensors may overlap.
+        let mut colliders = world
+            .query_filtered::<(Entity, &Collider, &GlobalTransform, Option<&ColliderOf>), Without<Sensor>>();
         let parts: Vec<Body> = colliders
             .iter(world)
             .map(|(entity, collider, pose, of)| {

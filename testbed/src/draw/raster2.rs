@@ -50,7 +50,7 @@ fn draw_outline(
     // Lines of about a pixel of the result, thinner where a shape has only a few pixels.
     let line_width = (0.14 * (high - low).max_element()).clamp(0.7, 1.25 * OVERSAMPLING as f32);
     let ink = color::stored_bytes(paint.lerp(color::INK, 0.72));
-    if outline.filled {
+    if outline.filled && !drawable.glass {
         fill_polygon(canvas, &points, color::stored_bytes(paint));
     }
     let closing = usize::from(outline.filled);
