@@ -18,7 +18,7 @@ pub fn bridge(world: &mut World, planks: u32) {
     let reach = 0.5 * pitch * planks as f32;
     spawn_block(world, [4.0 * reach, 1.0, 12.0], at(0.0, -0.5, 0.0));
     let [left, right] =
-        [-reach, reach].map(|x| spawn_block(world, [0.4, 0.4, 2.0], at(x * 1.02, 6.0, 0.0)).id());
+        [-reach - 0.2, reach + 0.2].map(|x| spawn_block(world, [0.4, 0.4, 2.0], at(x, 6.0, 0.0)).id());
 
     let mut last = left;
     for i in 0..planks {
@@ -37,7 +37,7 @@ pub fn bridge(world: &mut World, planks: u32) {
     for (side, post) in [(-1.0, left), (1.0, right)] {
         let mut last = post;
         // Level, so that the chain swings down.
-        let mut joint = Vec3::new(side * (reach * 1.02 + 0.3), 6.0, 0.0);
+        let mut joint = Vec3::new(side * (reach + 0.4), 6.0, 0.0);
         for _ in 0..6 {
             let middle = joint + Vec3::X * side * 0.25;
             let link = dim::block(0.4, 0.15, 0.15);
