@@ -246,9 +246,8 @@ impl RayHitData {
     /// [`RayCaster::get_global_point`] does the same for the hits of a caster.
     ///
     /// ```
-    /// # use avian::prelude::*;
+    /// # use avian::{math::Dir, prelude::*};
     /// # use bevy_ecs::prelude::*;
-    /// # use bevy_math::Dir;
     /// fn shoot(queries: SpatialQuery, gun: Single<&Position, With<Gun>>) {
     ///     let (origin, direction) = (gun.0, Dir::X);
     ///     if let Some(hit) = queries.cast_ray(origin, direction, 100.0, true, &SpatialQueryFilter::default()) {
