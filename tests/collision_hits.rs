@@ -170,7 +170,7 @@ fn an_observer_may_despawn_what_was_hit() {
 }
 
 /// A hull of random corners that falls without turning onto a floor of tiles. Each first blow has the speed of the fall,
-/// and no pair is told twice of one blow.
+/// and each pair reports a blow once.
 #[test]
 fn issue_a_hull_that_struck_tiles_was_told_of_blows_with_other_speeds() {
     let mut seed = 1_u32;

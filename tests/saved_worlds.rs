@@ -88,7 +88,7 @@ fn load(app: &mut App, text: &str, saved: &[Entity], sorts: bool) -> Vec<Entity>
     saved.iter().map(|entity| map[entity]).collect()
 }
 
-/// The bits of bodies, and what the sensor is told of.
+/// The state of all bodies as bits, and the places in `entities` of what is in the sensor.
 fn state(app: &App, entities: &[Entity]) -> (Vec<String>, Vec<usize>) {
     let place = |entity: &Entity| entities.iter().position(|e| e == entity).expect("one of them");
     let colliding = entities.iter().filter_map(|entity| app.world().get::<CollidingEntities>(*entity));

@@ -1,8 +1,8 @@
 //! The tables and the components that they follow, as a system parameter, and what changed since the last step.
 //!
-//! What changed is known from the life-cycle queue and its log, and by a scan of change ticks. The first query in a run of a
-//! system or observer adds what is new since the last such run in the world. So many observers that each spawn and query
-//! read each new collider once, not each all of them. Nothing is done where no system asks.
+//! What changed is known from the life-cycle queue and its log, and by a scan of change ticks. All systems and
+//! observers share the result. The first query of a run reads only colliders that changed since the last run that queried.
+//! Without queries nothing is read.
 
 use bevy_ecs::{change_detection::Tick, prelude::*, system::SystemChangeTick, system::SystemParam};
 use kernel::{math::Pose, table::NONE};

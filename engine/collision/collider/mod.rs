@@ -65,8 +65,8 @@ pub struct ColliderDisabled;
 
 /// Makes a collider a sensor: it detects contacts, but does not collide and has no mass.
 ///
-/// It is told of what dynamic and kinematic bodies carry, and on such a body of static colliders, too. Without a body it is
-/// told of other colliders without one, and not of static floors and walls.
+/// A sensor detects the colliders of dynamic and kinematic bodies. A sensor on such a body detects static colliders as well. A
+/// sensor without a body detects other colliders without a body, but not static floors and walls.
 ///
 /// ```
 /// # use avian::prelude::*;

@@ -16,7 +16,7 @@ Click: shoot a ball.";
 const RADIUS: f32 = 0.25;
 /// Speed of a ball in m/s.
 const SPEED: f32 = 30.0;
-/// Balls and flashes are taken away after so many seconds.
+/// Lifetimes of a ball and of a flash, in seconds.
 const LIFE: (f32, f32) = (10.0, 0.4);
 
 fn main() {
