@@ -146,6 +146,26 @@ pub(crate) fn oriented(triangle: &Triangle) -> Result<([Vector; 3], [Vector; 3])
     }
 }
 
+/// A ray that is cast against many segments. None passes between segments that share an end: the heights of an end over
+/// the ray's line are the same number for both.
+pub(super) struct FacetRay {
+    origin: Vector,
+    direction: Vector,
+}
+
+impl FacetRay {
+    /// The ray along the unit vector `direction`.
+    pub(super) fn new(origin: Vector, direction: Vector) -> Self {
+        Self { origin, direction }
+    }
+
+    /// The hit within `max_distance`, as [`cast_ray_segment`] has it.
+    #[inline]
+    pub(super) fn hit(&self, segment: &Segment, max_distance: f32) -> Option<RayHit> {
+        cast_ray_segment(segment, self.origin, self.direction, max_distance)
+    }
+}
+
 /// Where a ray along the unit vector `direction` crosses a segment, from either side. A ray along the
 /// segment's own line hits its nearer end.
 pub(super) fn cast_ray_segment(

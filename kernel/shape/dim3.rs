@@ -150,9 +150,6 @@ pub fn mass_of_triangle(_: &Triangle) -> MassProperties {
 
 /// Where a ray meets a triangle, from either side; the normal faces the origin of the ray. Rays in the
 /// plane of the triangle and degenerate triangles are never hit.
-///
-/// The point o + t d equals a + u (b − a) + v (c − a); Cramer's rule gives t, u and v (Möller and
-/// Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
 pub fn cast_ray_triangle(
     triangle: &Triangle,
     origin: Vector,
@@ -160,23 +157,61 @@ pub fn cast_ray_triangle(
     max_distance: f32,
     _solid: bool,
 ) -> Option<RayHit> {
-    let (e1, e2) = (triangle.b - triangle.a, triangle.c - triangle.a);
-    let p = direction.cross(e2);
-    let determinant = e1.dot(p);
-    if !(determinant.abs() > 1.0e-7 * e1.length() * e2.length()) {
-        return None;
+    FacetRay::new(origin, direction).hit(triangle, max_distance)
+}
+
+/// A ray that is cast against many triangles. None passes between triangles that share an edge or a vertex.
+///
+/// Space is sheared so that the ray becomes the z axis, and the three edges are tested in the xy plane (Woop, Benthin and
+/// Wald, "Watertight Ray/Triangle Intersection", 2013). The shear depends on the vertex alone, and products of two `f32` are
+/// exact in `f64`, so neighbours see the same sign at their edge.
+pub(super) struct FacetRay {
+    origin: Vector,
+    direction: Vector,
+    /// The axes that become x, y and z; z is the one along which the direction is largest.
+    axes: [usize; 3],
+    /// The shear of x and y, and the scale of z.
+    shear: [f32; 3],
+}
+
+impl FacetRay {
+    /// The ray along the unit vector `direction`.
+    pub(super) fn new(origin: Vector, direction: Vector) -> Self {
+        let d = direction.to_array();
+        let z = (1..3).fold(0, |best, i| if d[i].abs() > d[best].abs() { i } else { best });
+        let [x, y] = [(z + 1) % 3, (z + 2) % 3];
+        Self { origin, direction, axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
     }
-    let from_a = origin - triangle.a;
-    let q = from_a.cross(e1);
-    let (u, v) = (from_a.dot(p) / determinant, direction.dot(q) / determinant);
-    let distance = e2.dot(q) / determinant;
-    if !(u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance >= 0.0 && distance <= max_distance) {
-        return None;
+
+    /// The hit within `max_distance`, as [`cast_ray_triangle`] has it.
+    #[inline]
+    pub(super) fn hit(&self, triangle: &Triangle, max_distance: f32) -> Option<RayHit> {
+        let [x, y, z] = self.axes;
+        let corners = [triangle.a, triangle.b, triangle.c];
+        let [a, b, c] = corners.map(|corner| {
+            let from = (corner - self.origin).to_array();
+            let sheared = [from[x] - self.shear[0] * from[z], from[y] - self.shear[1] * from[z]];
+            (sheared.map(f64::from), f64::from(self.shear[2] * from[z]))
+        });
+        let twice_area = |(p, _): ([f64; 2], f64), (q, _): ([f64; 2], f64)| p[0] * q[1] - p[1] * q[0];
+        // The weights of the corners, times the determinant.
+        let weights = [twice_area(b, c), twice_area(c, a), twice_area(a, b)];
+        if weights.iter().any(|w| *w < 0.0) && weights.iter().any(|w| *w > 0.0) {
+            return None;
+        }
+        let determinant = weights.iter().sum::<f64>();
+        let heights = [a.1, b.1, c.1];
+        let along = weights.iter().zip(heights).map(|(weight, height)| weight * height).sum::<f64>();
+        let distance = (along / determinant) as f32;
+        // NaN if the determinant is 0.
+        if !(distance >= 0.0 && distance <= max_distance) {
+            return None;
+        }
+        // A facet that the ray meets has an area, but it may be too small for `f32`.
+        let normal = face_normal(corners).unwrap_or(-self.direction);
+        let is_behind = normal.dot(self.direction) > 0.0;
+        Some(RayHit { distance, normal: if is_behind { -normal } else { normal } })
     }
-    let normal = e1.cross(e2);
-    let length = normal.length();
-    let sign = if normal.dot(direction) > 0.0 { -1.0 } else { 1.0 };
-    (length > 0.0).then(|| RayHit { distance, normal: normal * (sign / length) })
 }
 
 /// Always `None`: in space a segment has no surface to hit.

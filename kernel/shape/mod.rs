@@ -344,11 +344,11 @@ fn cast_ray_composite(
     max_distance: f32,
     solid: bool,
 ) -> Option<RayHit> {
-    let inverse = Vector::from_array(direction.to_array().map(|c| 1.0 / c));
+    let ray = FacetRay::new(origin, direction);
     let mut best: Option<(RayHit, u32)> = None;
-    composite.tree().cast_ray(origin, inverse, max_distance, |part, limit| {
+    composite.tree().cast_ray(origin, direction, max_distance, |part, limit| {
         let hit = match composite.part(part) {
-            Part::Facet(facet) => Shape::from(facet).cast_ray(origin, direction, limit, solid),
+            Part::Facet(facet) => ray.hit(&facet, limit),
             Part::Solid(pose, shape) => {
                 let (from, along) = (pose.inverse_transform(origin), pose.rotation.inverse_rotate(direction));
                 let hit = shape.cast_ray(from, along, limit, solid);

@@ -12,6 +12,10 @@ const MAX_FREE_DEPTH: u32 = 24;
 /// The capacity of a walk's stack: the free depth, and halvings of 2³² parts.
 const STACK: usize = MAX_FREE_DEPTH as usize + 40;
 
+/// Boxes are larger by this share of the distance of the farthest one when rays are cast, so that no facet is missed whose
+/// own test, rounded to `f32`, the ray passes.
+const ROOM_FOR_ROUNDING: f32 = 8.0 * f32::EPSILON;
+
 /// A static tree of boxes. Its shape depends on the boxes alone, in their order.
 #[derive(Clone, Debug, Default)]
 pub struct PartTree {
@@ -120,20 +124,15 @@ impl PartTree {
         least
     }
 
-    /// Visits the parts in leaves whose boxes a ray enters before a limit. `hit` gets a part and the present limit, and returns
-    /// the new one. `inverse` is the componentwise inverse of the direction.
-    pub fn cast_ray(
-        &self,
-        origin: Vector,
-        inverse: Vector,
-        limit: f32,
-        mut hit: impl FnMut(u32, f32) -> f32,
-    ) {
-        let limit = core::cell::Cell::new(limit);
-        self.walk(
-            |b| b.ray_entry(origin, inverse, limit.get()).is_some(),
-            |parts| parts.iter().for_each(|part| limit.set(hit(*part, limit.get()))),
-        );
+    /// Visits the parts in leaves whose boxes a ray enters before a limit, nearer branches first. `hit` gets a part and the present
+    /// limit, and returns the new one.
+    pub fn cast_ray(&self, origin: Vector, direction: Vector, limit: f32, hit: impl FnMut(u32, f32) -> f32) {
+        let bounds = self.bounds();
+        let farthest = (bounds.min - origin).abs().max((bounds.max - origin).abs()).max_element();
+        let room = ROOM_FOR_ROUNDING * farthest;
+        let inverse = Vector::from_array(direction.to_array().map(|c| 1.0 / c));
+        let entry = |b: &Aabb| b.grown(room).ray_entry(origin, inverse, f32::MAX).unwrap_or(f32::INFINITY);
+        self.visit(limit, entry, hit);
     }
 
     /// Visits the parts of leaves by a distance of their boxes, nearer branches first, up to a limit. `entry` gives the distance

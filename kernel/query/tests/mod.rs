@@ -8,6 +8,7 @@
 mod dim;
 mod many;
 mod pairs;
+mod rays;
 mod world;
 
 use crate::math::{DIM, Pose, Rot, Vector};
