@@ -2,9 +2,9 @@
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
 use super::bearing::Bearing;
-use super::impact::{Striking, Struck};
 use super::input::{Item, RowInput};
 use super::split::DeepCounts;
+use super::struck::{Striking, Struck};
 use super::{BodyRow, MassRow, RowView, SubstepParams};
 use crate::contact::ManifoldsView;
 use crate::data::BitSet;

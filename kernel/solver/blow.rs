@@ -5,41 +5,22 @@
 //! and a ball that hits two others gives both the same. What an impact sets in motion may strike others, in the next round, as
 //! in Newton's cradle (Smith, Kaufman, Vouga, Tamstorf, Grinspun, "Reflections on Simultaneous Impact", 2012).
 //!
-//! A round has two phases (Poisson). Compression stops the approach of all points, with λ ≥ 0 and Coulomb's cone; it
-//! never gains energy, and the velocities after it do not depend on the order of points. Restitution returns a
-//! share of each impulse.
+//! A round solves each [group](super::group) that bodies connect by itself.
 //!
 //! Bodies move with their old velocity until they touch: each is displaced by the time until then, times the change of its velocity.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::impact::{Striking, Struck};
+use super::group::{StruckBody, movable, solve};
 use super::input::Item;
-use super::{BodyRow, RowView};
+use super::struck::{Striking, Struck};
 use crate::contact::ContactTable;
 use crate::data::BitSet;
 use crate::graph::DisjointSets;
-use crate::math::{Angular, MAX_POINTS, Vector, max, min};
+use crate::math::{MAX_POINTS, Vector};
 use crate::thread_pool::ThreadPool;
 
 /// Maximum number of rounds in a substep. Fewer stop a chain of impacts sooner: each round reaches one body further.
 pub(super) const ROUNDS: usize = 32;
-
-/// Maximum number of sweeps over a group. Fewer tilt what lands on many pieces.
-const SWEEPS: usize = 96;
-
-/// When sweeps end.
-#[derive(Clone, Copy)]
-struct Ending {
-    /// They change velocities by less than this share of the fastest approach. More tilts what falls flat.
-    tolerance: f32,
-    /// This many make the least change smaller by less than a hundredth: a body is jammed between others that do not yield.
-    /// Fewer end sweeps that would still converge.
-    hopeless: usize,
-}
-
-/// Where something bounces, its height depends on the rest.
-const BOUNCING: Ending = Ending { tolerance: 2.0e-6, hopeless: 8 };
-const DULL: Ending = Ending { tolerance: 1.0e-4, hopeless: 8 };
 
 /// The manifolds that are struck in a substep. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
@@ -80,16 +61,6 @@ pub struct ManifoldBlow {
     pub impulse: Vector,
     /// The approach speed along the normal that accelerations of the bodies added since the start of the step, m/s.
     pub gained: f32,
-}
-
-/// A body of a group.
-#[derive(Clone, Copy, Debug)]
-struct StruckBody {
-    row: u32,
-    /// The velocity before the round.
-    before: (Vector, Angular),
-    /// The time until the first of its points touches, in seconds.
-    time: f32,
 }
 
 impl Blows {
@@ -202,120 +173,4 @@ impl Blows {
 /// Whether a manifold of a group touches in time.
 fn is_due(group: &[Struck]) -> bool {
     group.iter().any(|one| one.is_due && !one.is_jammed)
-}
-
-/// The body rows of a manifold that may be written.
-fn movable(one: &Struck, first_dynamic: u32) -> impl Iterator<Item = u32> + use<> {
-    one.row.ids.into_iter().map(|[row]| row).filter(move |row| *row >= first_dynamic)
-}
-
-/// Solves the impacts of a group.
-///
-/// # Safety
-/// Until it returns, no other thread reads or writes the bodies of the group that may be written, or writes the others.
-unsafe fn solve(group: &mut [Struck], bodies: &mut Vec<StruckBody>, first_dynamic: u32, striking: &Striking) {
-    let rows = &striking.bodies;
-    bodies.clear();
-    for one in group.iter() {
-        let time = if one.speed > 0.0 { one.time } else { f32::MAX };
-        for row in movable(one, first_dynamic) {
-            // SAFETY: by the contract.
-            let before = unsafe { rows.get(row) }.velocity();
-            bodies.push(StruckBody { row, before, time });
-        }
-    }
-    bodies.sort_unstable_by(|a, b| a.row.cmp(&b.row).then(a.time.total_cmp(&b.time)));
-    bodies.dedup_by_key(|body| body.row);
-
-    let fastest = group.iter().fold(0.0, |fastest, one| max(fastest, one.speed));
-    let bounces = group.iter().any(|one| one.bounces);
-    let ending = if bounces { &BOUNCING } else { &DULL };
-    // SAFETY: by the contract.
-    let is_hopeless =
-        sweep(group, fastest, ending, |one, is_backward| unsafe { one.compress(rows, is_backward) });
-    if is_hopeless {
-        // SAFETY: by the contract.
-        group.iter_mut().for_each(|one| unsafe { one.find_jam(rows, striking.params) });
-    }
-    let [least, most] =
-        group.iter().map(Struck::shares).fold([f32::MAX, 0.0], |a, b| [min(a[0], b[0]), max(a[1], b[1])]);
-    if most > 0.0 {
-        // SAFETY: by the contract.
-        unsafe { restitute(group, [least, most], rows) };
-        // SAFETY: by the contract.
-        sweep(group, fastest, ending, |one, _| unsafe { one.rub(rows) });
-    }
-
-    for body in bodies.iter().filter(|body| body.time < f32::MAX) {
-        let change = |row: &mut BodyRow| {
-            let ((v, w), (position, rotation)) = (row.velocity(), row.delta());
-            let time = min(body.time, striking.time);
-            let turn = (body.before.1 - w) * time;
-            row.set_delta(position + (body.before.0 - v) * time, rotation.turned_by(turn));
-        };
-        // SAFETY: by the contract.
-        unsafe { rows.put(body.row, change) };
-    }
-}
-
-/// Returns to each point its share of the impulse that stopped it, but no more energy than if all returned the greatest
-/// share. That one gains none: compression is a projection. In a narrow wedge of two restitutions, large impulses that
-/// cancelled each other would not any more.
-///
-/// # Safety
-/// As [`solve`].
-unsafe fn restitute(group: &mut [Struck], [least, most]: [f32; 2], rows: &RowView<BodyRow>) {
-    for one in group.iter_mut() {
-        // SAFETY: by the contract.
-        unsafe { one.stop(rows) };
-    }
-    let mut add = |share: &dyn Fn(f32) -> f32| -> f32 {
-        for one in group.iter_mut() {
-            // SAFETY: by the contract.
-            unsafe { one.restitute(rows, share) };
-        }
-        // SAFETY: by the contract.
-        group.iter().map(|one| unsafe { one.added(rows) }).sum()
-    };
-    if least < most {
-        let (even, uneven) = (add(&|_| most), add(&|share| share));
-        if uneven > even {
-            let less = (max(even, 0.0) / uneven).sqrt();
-            add(&|share| share * less);
-        }
-    } else {
-        add(&|_| most);
-    }
-}
-
-/// Sweeps over a group, forward and backward in turns, until velocities hardly change. Returns whether more sweeps would not help.
-fn sweep(
-    group: &mut [Struck],
-    fastest: f32,
-    ending: &Ending,
-    mut solve: impl FnMut(&mut Struck, bool) -> f32,
-) -> bool {
-    // The least change of these sweeps and of those before.
-    let [mut least, mut earlier] = [f32::INFINITY; 2];
-    for count in 0..SWEEPS {
-        let is_backward = count % 2 == 1;
-        let mut change = 0.0;
-        let mut one = |one: &mut Struck| change = max(change, solve(one, is_backward));
-        if is_backward {
-            group.iter_mut().rev().for_each(&mut one);
-        } else {
-            group.iter_mut().for_each(&mut one);
-        }
-        if change <= ending.tolerance * fastest {
-            return false;
-        }
-        least = min(least, change);
-        if count % ending.hopeless == ending.hopeless - 1 {
-            if least > 0.99 * earlier {
-                return true;
-            }
-            (earlier, least) = (least, f32::INFINITY);
-        }
-    }
-    false
 }

@@ -4,9 +4,9 @@
 use super::batch::{Batch, Filling, Pass, Passes, Seek, Sweep};
 use super::blow::Blows;
 use super::contact_fill::{BlockRows, PREFETCH_DISTANCE, fill_rows};
-use super::impact::{Striking, Struck};
 use super::input::Item;
 use super::layer::{Layer, Sorter};
+use super::struck::{Striking, Struck};
 use super::{BodyRow, ContactRow, ImpactRow, InvMass, RowView, SplitImpulseRow, SubstepParams};
 use crate::contact::{Manifold, ManifoldsView};
 use crate::data::Parts;

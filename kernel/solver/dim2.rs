@@ -211,6 +211,10 @@ impl<N: Lane, const P: usize> Twist<N, P> {
     pub(super) fn impulse(&self, _i: usize) -> f32 {
         0.0
     }
+    /// The accumulated impulse times the relative spin, J: none in 2D.
+    pub(super) fn power(&self, _normal: Vector<N>, _w: &[Angular<N>; 2]) -> N {
+        N::ZERO
+    }
     /// Sets the accumulated impulse of lane `i`, N·m·s.
     pub(super) fn set_impulse(&mut self, _i: usize, _value: f32) {}
 }

@@ -307,6 +307,10 @@ impl<N: Lane, const P: usize> Twist<N, P> {
     pub(super) fn impulse(&self, i: usize) -> f32 {
         self.impulse.get(i)
     }
+    /// The accumulated impulse times the relative spin, J.
+    pub(super) fn power(&self, normal: Vector<N>, w: &[Angular<N>; 2]) -> N {
+        self.impulse * normal.dot(w[1] - w[0])
+    }
     /// Sets the accumulated impulse of lane `i`, N·m·s.
     pub(super) fn set_impulse(&mut self, i: usize, value: f32) {
         self.impulse.set(i, value);

@@ -27,6 +27,7 @@ mod fast_turn;
 mod fill;
 mod finish;
 mod friction;
+mod group;
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]
 #[cfg_attr(feature = "3d", path = "gyro3.rs")]
 mod gyro;
@@ -47,6 +48,7 @@ mod softness;
 mod spin;
 mod split;
 mod stages;
+mod struck;
 mod sweep;
 mod view;
 

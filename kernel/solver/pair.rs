@@ -5,7 +5,7 @@ use super::{BodyRow, RowView, Softness};
 use crate::math::{Angular, Ids, Lane, Vector};
 
 /// The velocities of a row's two bodies.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pair<N> {
     pub(super) v: [Vector<N>; 2],
     pub(super) w: [Angular<N>; 2],

@@ -23,6 +23,7 @@ mod joint_trees;
 mod joints;
 mod memory;
 mod meshes;
+mod oblique;
 mod passing;
 mod physics;
 mod pushed;

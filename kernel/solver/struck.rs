@@ -1,0 +1,331 @@
+//! One manifold that is struck, and what the impact does to its two bodies. A [group](super::group) of them is solved together.
+#![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
+
+use super::bearing::Bearing;
+use super::impact::{Motions, NEARLY};
+use super::input::Item;
+use super::pair::Pair;
+use super::{BodyRow, ContactRow, Motion, PointRow, RowView, SubstepParams};
+use crate::math::{Angular, MAX_POINTS, Tangent, TangentFrame, Vector, max, min};
+use core::cmp::Ordering;
+
+/// Points that would touch within this many substeps are due: what touches at the end of a substep is struck before the solve
+/// pass may stop it.
+const DUE: f32 = 1.005;
+
+/// Points that are apart by less than this share of the fade of friction (1 mm) take part in an impact: they touch.
+const TOUCHING: f32 = 0.05;
+
+/// A manifold that is struck.
+#[derive(Clone, Debug)]
+pub(super) struct Struck {
+    /// The contact, and the number of its manifold.
+    pub(super) item: Item,
+    /// Its row. Impulses are those of the present phase.
+    pub(super) row: ContactRow<f32, Vector, MAX_POINTS>,
+    /// The bodies that are connected by impacts have the same number.
+    pub(super) group: u32,
+    /// The speed at which the fastest point closes, m/s. 0 if none is struck in this round.
+    pub(super) speed: f32,
+    /// Whether a point that closes fast touches in time.
+    pub(super) is_due: bool,
+    /// Whether it was struck in an earlier round.
+    pub(super) is_old: bool,
+    /// Whether no impulse stopped it in an earlier round: its bodies are jammed. Further rounds would do no better.
+    pub(super) is_jammed: bool,
+    /// Whether a point bounces.
+    pub(super) bounces: bool,
+    /// The time from the start of the substep until the first point touches, in seconds. Negative if it has touched before.
+    pub(super) time: f32,
+    /// The approach speed along the normal that accelerations added since the start of the step, m/s.
+    pub(super) gained: f32,
+    moments: [[Angular; 2]; MAX_POINTS],
+    /// The ratio of the impulse that a point returns to the one that stops it. Negative for points that do not take part.
+    returned: [f32; MAX_POINTS],
+    /// The normal impulses that stopped the points, N·s, in the phase of restitution.
+    stopped: [f32; MAX_POINTS],
+    /// The velocities before the present phase.
+    before: Pair<f32>,
+}
+
+/// A point that takes no part in an impact.
+const ABSENT: f32 = -1.0;
+
+/// Operands of [`Struck::of`] that all manifolds have in common.
+#[derive(Clone, Copy)]
+pub(super) struct Striking<'a> {
+    pub(super) bodies: RowView<'a, BodyRow>,
+    pub(super) motions: &'a [Motion],
+    pub(super) bearing: &'a Bearing,
+    pub(super) params: &'a SubstepParams,
+    /// The time within which points are struck, in seconds.
+    pub(super) time: f32,
+    /// The time from the start of the step to the end of the substep, in seconds.
+    pub(super) elapsed: f32,
+}
+
+impl Struck {
+    /// A manifold by its row, as it closes now.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread writes the bodies of the row.
+    pub(super) unsafe fn of(
+        item: Item,
+        mut row: ContactRow<f32, Vector, MAX_POINTS>,
+        restitution: f32,
+        striking: &Striking,
+    ) -> Self {
+        let Striking { params, time, elapsed, .. } = *striking;
+        row.take_true_masses(striking.bearing);
+        // SAFETY: by the contract.
+        let Motions { mut moments, mut speeds, gaps } = unsafe { row.motions(&striking.bodies) };
+        // SAFETY: by the contract.
+        if let Some(turned) = unsafe { row.turn_with_paddle(&striking.bodies, &speeds, &gaps, time) } {
+            (moments, speeds) = turned;
+        }
+        let [a, b] = [0, 1].map(|side: usize| striking.motions[row.ids[side][0] as usize].acceleration);
+        let closing = (a - b).dot(row.normal);
+        let gained = closing * params.h;
+        let bounce = Bounce { restitution, gained, inv_h: params.inv_h };
+        // Contacts are predicted by velocities alone: what closes by acceleration may be this deep when it is found.
+        let unforeseen = 0.5 * max(gained, 0.0) * params.inv_h * params.dt * params.dt;
+        let mut struck = Self {
+            item,
+            row,
+            group: 0,
+            speed: 0.0,
+            is_due: false,
+            is_old: false,
+            is_jammed: false,
+            bounces: false,
+            time: f32::MAX,
+            gained: closing * elapsed,
+            moments,
+            returned: [ABSENT; MAX_POINTS],
+            stopped: [0.0; MAX_POINTS],
+            before: Pair::default(),
+        };
+        for i in (0..MAX_POINTS).filter(|i| row.points[*i].mass > 0.0) {
+            let (speed, gap) = (-speeds[i], gaps[i]);
+            if speed > params.blow_speed && gap <= speed * time * NEARLY {
+                struck.is_due |= gap <= speed * time * DUE;
+                struck.speed = max(struck.speed, speed);
+                let touch = max(gap, -unforeseen) / speed;
+                struck.time = min(struck.time, touch);
+                // After the last substep, time is counted from its end.
+                let touch = if time > 0.0 { touch } else { params.h + touch };
+                let approach = speed - gained;
+                let is_elastic = approach > params.restitution_threshold;
+                struck.bounces |= is_elastic && restitution > 0.0;
+                struck.returned[i] =
+                    if is_elastic { bounce.parting(touch, approach, speed) / speed } else { 0.0 };
+            } else if gap <= TOUCHING * params.friction_fade {
+                struck.returned[i] = 0.0;
+            }
+        }
+        struck
+    }
+
+    /// An order of manifolds by their bodies and places. Ids of contacts depend on what else was there before.
+    pub(super) fn in_order(&self, other: &Self) -> Ordering {
+        let places = [self, other].map(|one| one.row.points[0].anchor.to_array());
+        let by_place = || {
+            let all = places[0].iter().zip(&places[1]).map(|(a, b)| a.total_cmp(b));
+            all.fold(Ordering::Equal, Ordering::then)
+        };
+        let by_id = || (self.item.id, self.item.index).cmp(&(other.item.id, other.item.index));
+        self.row.ids.cmp(&other.row.ids).then_with(by_place).then_with(by_id)
+    }
+
+    /// One sweep of compression: stops a share of the approach of each point, then rubs. Returns the largest change of
+    /// velocity, m/s.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread reads or writes the bodies of the manifold that may be written, or writes the others.
+    pub(super) unsafe fn compress(&mut self, rows: &RowView<BodyRow>, is_backward: bool, share: f32) -> f32 {
+        // SAFETY: by the contract.
+        let mut pair = unsafe { Pair::load(rows, &self.row.ids) };
+        let (n, mut change) = (self.row.normal, 0.0f32);
+        for k in 0..MAX_POINTS {
+            let i = if is_backward { MAX_POINTS - 1 - k } else { k };
+            let PointRow { mass, impulse, .. } = self.row.points[i];
+            if self.returned[i] < 0.0 {
+                continue;
+            }
+            let new = max(impulse - share * mass * pair.along(n, self.moments[i]), 0.0);
+            let delta = new - impulse;
+            self.row.points[i].impulse = new;
+            change = max(change, delta.abs() / mass);
+            self.row.push(&mut pair, n * delta, self.moments[i].map(|moment| moment * delta));
+        }
+        change = max(change, self.row.rub(&mut pair));
+        // SAFETY: by the contract.
+        unsafe { pair.store(rows, &self.row.ids) };
+        change
+    }
+
+    /// Starts compression.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread writes the bodies of the manifold.
+    pub(super) unsafe fn begin(&mut self, rows: &RowView<BodyRow>) {
+        // SAFETY: by the contract.
+        self.before = unsafe { Pair::load(rows, &self.row.ids) };
+    }
+
+    /// Ends compression: from here on impulses are those of restitution, which begins without friction.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread writes the bodies of the manifold.
+    pub(super) unsafe fn stop(&mut self, rows: &RowView<BodyRow>) {
+        self.stopped = self.row.points.map(|point| point.impulse);
+        self.row.forget();
+        // SAFETY: by the contract.
+        unsafe { self.begin(rows) };
+    }
+
+    /// Returns to each point its share of the impulse that stopped it.
+    ///
+    /// # Safety
+    /// As [`compress`](Self::compress).
+    pub(super) unsafe fn restitute(&mut self, rows: &RowView<BodyRow>) {
+        // SAFETY: by the contract.
+        let mut pair = unsafe { Pair::load(rows, &self.row.ids) };
+        for i in (0..MAX_POINTS).filter(|i| self.stopped[*i] > 0.0) {
+            let impulse = self.stopped[i] * self.returned[i];
+            self.row.points[i].impulse = impulse;
+            self.row.push(
+                &mut pair,
+                self.row.normal * impulse,
+                self.moments[i].map(|moment| moment * impulse),
+            );
+        }
+        // SAFETY: by the contract.
+        unsafe { pair.store(rows, &self.row.ids) };
+    }
+
+    /// The work of the impulses of the present phase, J: that at the velocities before it, and what the velocities that all
+    /// impulses change add. With a share s of all impulses of a group it is s times the first and s² times the second.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread writes the bodies of the manifold.
+    pub(super) unsafe fn work(&self, rows: &RowView<BodyRow>) -> [f32; 2] {
+        // SAFETY: by the contract.
+        let now = unsafe { Pair::load(rows, &self.row.ids) };
+        let [before, now] = [self.before, now].map(|pair| self.power(&pair));
+        [before, 0.5 * (now - before)]
+    }
+
+    /// The impulses of the present phase times velocities at the contact, J.
+    fn power(&self, pair: &Pair<f32>) -> f32 {
+        let Self { row, moments, .. } = self;
+        let normal = row.points.iter().zip(moments);
+        let normal: f32 =
+            normal.map(|(point, moments)| point.impulse * pair.along(row.normal, *moments)).sum();
+        let frame = TangentFrame::new(row.normal);
+        let [slip, impulse] = [row.slip(pair, &frame), row.tangent_impulse].map(|along| frame.expand(along));
+        normal + impulse.dot(slip) + row.twist.power(row.normal, &pair.w)
+    }
+
+    /// Scales the normal impulses of the present phase.
+    pub(super) fn scale(&mut self, share: f32) {
+        self.row.points.iter_mut().for_each(|point| point.impulse *= share);
+    }
+
+    /// The normal velocities of the points, m/s.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread writes the bodies of the manifold.
+    unsafe fn speeds(&self, rows: &RowView<BodyRow>) -> [f32; MAX_POINTS] {
+        // SAFETY: by the contract.
+        let pair = unsafe { Pair::load(rows, &self.row.ids) };
+        self.moments.map(|moments| pair.along(self.row.normal, moments))
+    }
+
+    /// One sweep of friction alone. Returns the largest change of velocity, m/s.
+    ///
+    /// # Safety
+    /// As [`compress`](Self::compress).
+    pub(super) unsafe fn rub(&mut self, rows: &RowView<BodyRow>) -> f32 {
+        // SAFETY: by the contract.
+        let mut pair = unsafe { Pair::load(rows, &self.row.ids) };
+        let change = self.row.rub(&mut pair);
+        // SAFETY: by the contract.
+        unsafe { pair.store(rows, &self.row.ids) };
+        change
+    }
+
+    /// Notes whether it still closes fast.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread writes the bodies of the manifold.
+    pub(super) unsafe fn find_jam(&mut self, rows: &RowView<BodyRow>, params: &SubstepParams) {
+        // SAFETY: by the contract.
+        let speeds = unsafe { self.speeds(rows) };
+        let closes = |(speed, share): (&f32, &f32)| *share >= 0.0 && *speed < -params.blow_speed;
+        self.is_jammed |= speeds.iter().zip(&self.returned).any(closes);
+    }
+
+    /// The greatest share that stopped points return.
+    pub(super) fn share(&self) -> f32 {
+        let is_stopped = |(_, point): &(&f32, &PointRow<f32>)| point.impulse > 0.0;
+        let stopped = self.returned.iter().zip(&self.row.points).filter(is_stopped);
+        stopped.fold(0.0, |most, (share, _)| max(most, *share))
+    }
+
+    /// The normal impulses of this round, N·s.
+    pub(super) fn impulses(&self) -> [f32; MAX_POINTS] {
+        core::array::from_fn(|i| self.stopped[i] + self.row.points[i].impulse)
+    }
+
+    /// Ends the round: the next one begins without impulses, and strikes nothing of this manifold by itself.
+    pub(super) fn rest(&mut self) {
+        self.row.forget();
+        self.stopped = [0.0; MAX_POINTS];
+        (self.speed, self.is_due, self.is_old, self.bounces) = (0.0, false, true, false);
+        self.returned = self.returned.map(|share| if share < 0.0 { share } else { 0.0 });
+    }
+}
+
+impl ContactRow<f32, Vector, MAX_POINTS> {
+    /// Starts a phase without impulses.
+    fn forget(&mut self) {
+        self.points.iter_mut().for_each(|point| point.impulse = 0.0);
+        self.tangent_impulse = Tangent::ZERO;
+        self.twist.set_impulse(0, 0.0);
+    }
+
+    /// Friction of an impact. Returns the change of the slip, m/s, about.
+    fn rub(&mut self, pair: &mut Pair<f32>) -> f32 {
+        let (before, pressure) = (self.tangent_impulse, self.pressure());
+        if self.friction * pressure == 0.0 && before == Tangent::ZERO {
+            return 0.0;
+        }
+        self.solve_friction(pair, Vector::ZERO, pressure);
+        (self.tangent_impulse - before).length() * self.tangent_mass.mean_inverse()
+    }
+}
+
+/// How a point rebounds within a substep.
+struct Bounce {
+    restitution: f32,
+    /// Approach speed that accelerations add in a substep, m/s.
+    gained: f32,
+    inv_h: f32,
+}
+
+impl Bounce {
+    /// The speed at which a point leaves that touches `time` seconds after the start of the substep. `approach` is the speed
+    /// before the substep's accelerations, `speed` the one after.
+    ///
+    /// Symplectic Euler conserves E = ½ v² + g y − ½ g h v of a free fall exactly (v upward). The speed w makes E after
+    /// the substep, at y = w (h − t), e² times the E before. The rebound height is e² of the fall height at any step
+    /// length, and no energy is gained.
+    fn parting(&self, time: f32, approach: f32, speed: f32) -> f32 {
+        // g h and g t.
+        let (gh, gt) = (self.gained, self.gained * self.inv_h * time);
+        let kept = 0.5 * approach * approach + speed * gt + 0.5 * gh * approach;
+        let b = 0.5 * gh - gt;
+        (b * b + 2.0 * self.restitution * self.restitution * max(kept, 0.0)).sqrt() - b
+    }
+}
