@@ -3,7 +3,7 @@
 use super::batch::Batch;
 use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, Room, sort_contacts};
 use super::joint::{
-    JOINT_BATCHES, JointRows, JointTable, JointTrees, JointView, Records, joints, sort_joints,
+    JOINT_BATCHES, JointRows, JointTable, JointTrees, JointViews, Records, joints, sort_joints,
 };
 use super::layer::{Layer, Sorter};
 use super::plan::{Plan, Planned};
@@ -221,13 +221,13 @@ impl<N: Entry> KindRows<N> {
 /// A view of [`KindRows`] whose blocks are changed by several threads.
 struct KindViews<'a, N: Entry> {
     contacts: ContactView<'a, N>,
-    joints: [JointView<'a, N>; JOINT_BATCHES],
+    joints: JointViews<'a, N>,
 }
 
 impl<N: Entry> KindViews<'_, N> {
     fn batches(&self) -> [&dyn Batch; BATCHES] {
         let contacts = self.contacts.batches();
-        core::array::from_fn(|i| if i < JOINT { contacts[i] } else { &self.joints[i - JOINT] })
+        core::array::from_fn(|i| if i < JOINT { contacts[i] } else { self.joints.batch(i - JOINT) })
     }
 
     /// Calls a function with these batches, then those that share bodies, then the wide ones.

@@ -61,8 +61,9 @@ pub use impact::ImpactRow;
 pub use input::RowInput;
 pub use inv_mass::InvMass;
 pub use joint::{
-    AXES, Axis, Drive, Give, JointDef, JointError, JointFrame, JointReaction, JointSolver, JointTable, Motor,
-    Spring, coordinate,
+    AXES, Axis, AxisSpring, CouplingDef, CouplingEnd, Drive, EndCoordinate, Give, JointDef, JointError,
+    JointFrame, JointGap, JointReaction, JointSolver, JointTable, Motor, OrientationMotor, Spring,
+    coordinate,
 };
 pub use row::{ContactRow, PointRow, SplitImpulseRow};
 pub use softness::{Softness, SubstepParams};

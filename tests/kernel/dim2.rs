@@ -174,3 +174,13 @@ pub const SWINGS: core::ops::Range<usize> = TURN + 1..TURN + 1;
 pub fn hinge_basis() -> Rot {
     Rot::IDENTITY
 }
+
+/// A rotation by an angle about some axis.
+pub fn any_axis_turn(angle: f32) -> Rot {
+    Rot::from_angle(angle)
+}
+
+/// The angle of a rotation along its axis.
+pub fn turn_vector(turn: Rot) -> Angular {
+    Angular { z: f64::from(turn.sin).atan2(f64::from(turn.cos)) as f32 }
+}

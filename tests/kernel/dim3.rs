@@ -214,3 +214,17 @@ pub const SWINGS: core::ops::Range<usize> = TURN + 1..TURN + 3;
 pub fn hinge_basis() -> Rot {
     Rot::from_axis_angle(Vector::Y, -core::f32::consts::FRAC_PI_2)
 }
+
+/// A rotation by an angle about some axis.
+pub fn any_axis_turn(angle: f32) -> Rot {
+    Rot::from_axis_angle(Vector { x: 2.0 / 7.0, y: -3.0 / 7.0, z: 6.0 / 7.0 }, angle)
+}
+
+/// The angle of a rotation along its axis.
+pub fn turn_vector(turn: Rot) -> Angular {
+    let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
+    let axis = Vector { x: turn.x, y: turn.y, z: turn.z } * sign;
+    let sine = f64::from(axis.length_squared()).sqrt();
+    let angle = 2.0 * sine.atan2(f64::from(turn.w * sign));
+    if sine > 0.0 { axis * (angle / sine) as f32 } else { axis }
+}

@@ -29,7 +29,7 @@ pub(super) fn weld(a: u32, b: u32, anchors: [Vector; 2]) -> JointDef {
 }
 
 /// A slider along x.
-fn slider(a: u32, b: u32, axis: Axis) -> JointDef {
+pub(super) fn slider(a: u32, b: u32, axis: Axis) -> JointDef {
     weld(a, b, [Vector::ZERO; 2]).with([X], axis)
 }
 
@@ -61,7 +61,7 @@ pub(super) fn gap(sim: &Sim, def: &JointDef) -> f32 {
 }
 
 /// Moment of inertia in the plane of x and y about the centre of mass.
-fn inertia(sim: &Sim, id: u32) -> f32 {
+pub(super) fn inertia(sim: &Sim, id: u32) -> f32 {
     spin_momentum(sim.masses[id as usize].1, sim.bodies.poses[id as usize].rotation, spin(1.0)).z
 }
 
@@ -130,7 +130,7 @@ fn a_joint_tells_the_force_and_torque_that_it_bears() {
     assert!(sag < 2.0e-3, "sags by {sag} m");
 }
 
-fn motor(target_velocity: f32, max_force: f32) -> Motor {
+pub(super) fn motor(target_velocity: f32, max_force: f32) -> Motor {
     let drive = Drive::Acceleration { stiffness: 0.0, damping: 1.0e4 };
     Motor { target_velocity, target_position: 0.0, max_force, drive }
 }

@@ -4,8 +4,8 @@ use super::super::extreme::Dice;
 use super::super::sim::Sim;
 use crate::kernel::math::{Rot, Vector};
 use crate::kernel::shape::{Ball, Cuboid, Shape};
-use crate::kernel::solver::coordinate::{CONE, TWIST, X, Z};
-use crate::kernel::solver::{Axis, JointDef, JointFrame};
+use crate::kernel::solver::coordinate::{CONE, SWING_Y, SWING_Z, TWIST, X, Z};
+use crate::kernel::solver::{Axis, Drive, JointDef, JointFrame, JointSolver, Motor};
 use crate::kernel::table::{BodyKind, Velocity};
 
 /// Swing and twist of a body whose axis is its x axis, which hangs down at rest.
@@ -66,5 +66,59 @@ fn a_limb_keeps_within_cone_and_twist() {
         let most = past.map(f32::to_degrees).into_iter().fold(f32::MIN, f32::max);
         assert!(most < 2.0, "seed {seed}: {past:?} rad past cone {cone} and twist {twist}");
         assert!(most_swing > 0.2, "seed {seed}: it swings by {most_swing} rad only");
+    }
+}
+
+/// Twist and swings are driven apart, and stop at the cone: alone, in a row of joints, and in trees.
+#[test]
+fn twist_and_swings_are_driven_within_a_cone() {
+    for solver in [JointSolver::Auto, JointSolver::Rows, JointSolver::Rigid] {
+        for links in [1, 4] {
+            for (cone, swing) in [(1.2f32, [0.5f32, -0.4]), (0.4, [0.8, 0.6])] {
+                let mut sim = Sim::new();
+                (sim.joint_solver, sim.gravity) = (solver, Vector::ZERO);
+                // By force: springs per mass differ with the inertia that each swing moves.
+                let drive = Drive::Force { stiffness: 1.5, damping: 0.1 };
+                let to = |target_position: f32| {
+                    let motor = Motor { target_velocity: 0.0, target_position, max_force: 1.0e6, drive };
+                    Axis { motor: Some(motor), ..Axis::FREE }
+                };
+                let twist = 0.9;
+                let shape = Shape::Cuboid(Cuboid { half: Vector { x: 0.3, y: 0.08, z: 0.1 } });
+                let mut last =
+                    sim.add(BodyKind::Static, Shape::Ball(Ball { radius: 0.1 }), Vector::ZERO, Rot::IDENTITY);
+                sim.ghost(last);
+                let mut pairs = Vec::new();
+                for k in 0..links {
+                    let at = Vector::X * (0.3 + 0.6 * k as f32);
+                    let limb = sim.add(BodyKind::Dynamic, shape.clone(), at, Rot::IDENTITY);
+                    sim.ghost(limb);
+                    let anchors = [Vector::X * if k == 0 { 0.0 } else { 0.3 }, Vector::X * -0.3];
+                    let def = JointDef::free([last, limb], anchors)
+                        .with(X..=Z, Axis::LOCKED)
+                        .with([TWIST], to(twist))
+                        .with([SWING_Y], to(swing[0]))
+                        .with([SWING_Z], to(swing[1]))
+                        .with([CONE], Axis::limited(0.0, cone));
+                    pairs.push((sim.join(def).unwrap(), def));
+                    last = limb;
+                }
+                sim.steps(240);
+                for (id, def) in &pairs {
+                    let [a, b] = def.bodies.map(|id| sim.bodies.frame(id).rotation);
+                    let (angle, turn) = swing_and_twist(b, a);
+                    let case = format!("{solver:?}, {links} links, cone {cone}");
+                    assert!((turn - twist).abs() < 0.01, "{case}: twist {turn}");
+                    let wanted = swing[0].hypot(swing[1]).min(cone);
+                    assert!((angle - wanted).abs() < 0.01, "{case}: swing {angle}, not {wanted}");
+                    let axis = a.inverse().mul(b).rotate(Vector::X);
+                    // About y the x axis goes to −z, about z to y.
+                    let along = axis.y * swing[0] + axis.z * swing[1];
+                    assert!(along.abs() < 0.01, "{case}: it swings aside, {axis:?}");
+                    let gap = sim.gap(*id).unwrap();
+                    assert!(gap.length < 1.0e-3 && gap.angle < 0.01, "{case}: {gap:?}");
+                }
+            }
+        }
     }
 }

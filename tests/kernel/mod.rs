@@ -6,6 +6,7 @@ mod bounce;
 mod carried;
 #[allow(unused, reason = "its scenes are for `tools/cost.sh`")]
 pub mod costs;
+mod couplings;
 mod crowds;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -23,6 +24,7 @@ mod joint_trees;
 mod joints;
 mod memory;
 mod meshes;
+mod motors;
 mod oblique;
 mod passing;
 mod physics;

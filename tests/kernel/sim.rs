@@ -13,8 +13,8 @@ use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::solver::{
-    BodyRow, BodyRows, JointDef, JointError, JointReaction, JointSolver, JointTable, Limits, MassRow, Motion,
-    RowInput, Solver, SubstepParams,
+    BodyRow, BodyRows, CouplingDef, JointDef, JointError, JointGap, JointReaction, JointSolver, JointTable,
+    Limits, MassRow, Motion, RowInput, Solver, SubstepParams,
 };
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
@@ -337,6 +337,26 @@ impl Sim {
         let result = f(&mut joints, &mut self.link());
         self.solver.joints = joints;
         result
+    }
+
+    /// Adds a coupling.
+    pub fn couple(&mut self, def: CouplingDef) -> Result<u32, JointError> {
+        self.with_joints(|joints, link| joints.add_coupling(link, def))
+    }
+
+    /// Changes a coupling.
+    pub fn recouple(&mut self, id: u32, def: CouplingDef) -> Result<(), JointError> {
+        self.with_joints(|joints, link| joints.set_coupling(link, id, def))
+    }
+
+    /// The force of a coupling along its coordinate at A.
+    pub fn coupling_force(&self, id: u32) -> f32 {
+        self.solver.joints.coupling_force(id)
+    }
+
+    /// How far a joint is off.
+    pub fn gap(&self, id: u32) -> Option<JointGap> {
+        self.solver.joints.gap(id, &self.bodies)
     }
 
     /// What a joint did in the last substep.

@@ -32,7 +32,7 @@ pub(super) fn define(joint: &impl JointKind) -> JointDef {
 /// Whether an axis is locked at 0 with a compliance.
 pub(super) fn is_locked(axis: Axis, compliance: f32) -> bool {
     let give = if compliance == 0.0 { Give::Rigid } else { Give::Compliance(compliance) };
-    axis == Axis { limits: Some([0.0; 2]), give, motor: None }
+    axis == Axis { limits: Some([0.0; 2]), give, ..Axis::FREE }
 }
 
 fn quarter() -> Rotation {

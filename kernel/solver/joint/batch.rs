@@ -5,8 +5,10 @@ use super::super::batch::{Batch, Filling, Pass, Passes, Sweep};
 use super::super::input::Item;
 use super::super::layer::{Layer, Sorter};
 use super::super::{BodyRow, MassRow, RowView, SubstepParams};
+use super::coupling_row::{CouplingRow, CouplingView};
 use super::def::JointDef;
 use super::dim::{AXES, BLOCK};
+use super::orientation::OrientationRow;
 use super::row::{Hold, Row};
 use super::single::Single;
 use super::table::{JointTable, Records};
@@ -19,31 +21,44 @@ use core::ops::Range;
 
 const KIND: ConstraintKind = ConstraintKind::Joint;
 
-/// Number of batches of joints in one width.
-pub(in super::super) const JOINT_BATCHES: usize = CLASSES.len();
+/// Number of batches of joints in one width: one for each class, and couplings.
+pub(in super::super) const JOINT_BATCHES: usize = COUPLINGS + 1;
+/// The batch of couplings.
+const COUPLINGS: usize = CLASSES.len();
 
-/// The size of the block and the number of single coordinates that the joints of a batch have room for.
+/// The size of the block and the number of single coordinates that the joints of a batch have room for, and whether they may
+/// have an orientation motor.
 #[derive(Clone, Copy, Debug)]
 struct Class {
     block: usize,
     singles: usize,
+    turns: bool,
 }
 
 /// The class of each batch. A joint is in the first that it fits in.
-const CLASSES: [Class; 6] = [
-    Class { block: DIM, singles: 0 },
-    Class { block: 0, singles: 1 },
-    Class { block: DIM, singles: 2 },
-    Class { block: BLOCK, singles: 0 },
-    Class { block: BLOCK, singles: 1 },
-    Class { block: BLOCK, singles: AXES },
+const CLASSES: [Class; 8] = [
+    Class::new(DIM, 0),
+    Class::new(0, 1),
+    Class::new(DIM, 2),
+    Class::new(BLOCK, 0),
+    Class::new(BLOCK, 1),
+    Class::new(BLOCK, AXES),
+    Class { turns: true, ..Class::new(DIM, 2) },
+    Class { turns: true, ..Class::new(BLOCK, AXES) },
 ];
+
+impl Class {
+    const fn new(block: usize, singles: usize) -> Self {
+        Self { block, singles, turns: false }
+    }
+}
 
 /// The batch of a joint.
 fn class_of(def: &JointDef) -> usize {
     let block = (0..BLOCK).rev().find(|k| def.is_in_block(*k)).map_or(0, |last| last + 1);
     let singles = (0..AXES).filter(|k| def.is_single(*k)).count();
-    let fits = |class: &Class| class.block >= block && class.singles >= singles;
+    let turns = def.orientation.is_some();
+    let fits = |class: &Class| class.block >= block && class.singles >= singles && class.turns >= turns;
     CLASSES.iter().position(fits).expect("the last one has room for all")
 }
 
@@ -63,37 +78,50 @@ pub(in super::super) fn sort_joints(
     let parts = layer.parts();
     for &id in joints.iter().filter(|id| !trees.holds(**id)) {
         let bodies = sorter.input.bodies.constraints(KIND).get(id).bodies;
-        let batch = first + class_of(&table.record(id).def);
+        let record = table.record(id);
+        let of_kind = if record.coupling.is_some() { COUPLINGS } else { class_of(&record.def) };
+        let batch = first + of_kind;
         layer.push(sorter.part(id, bodies, parts), batch, Item { id, index: 0 });
     }
 }
 
 /// The rows of one width, by class. The last ones may be unused.
 #[derive(Clone, Debug)]
-pub(in super::super) struct JointRows<N: Lane>([ClassRows<N>; JOINT_BATCHES]);
+pub(in super::super) struct JointRows<N: Lane> {
+    classes: [ClassRows<N>; COUPLINGS],
+    couplings: Vec<CouplingRow<N>>,
+}
 
 #[derive(Clone, Debug)]
 struct ClassRows<N: Lane> {
     rows: Vec<Row<N>>,
     /// For each row as many as its class has.
     singles: Vec<Single<N>>,
+    /// One for each row if its class has orientation motors.
+    turns: Vec<OrientationRow<N>>,
 }
 
 impl<N: Lane> Default for JointRows<N> {
     fn default() -> Self {
-        Self(core::array::from_fn(|_| ClassRows { rows: Vec::new(), singles: Vec::new() }))
+        let rows = |_| ClassRows { rows: Vec::new(), singles: Vec::new(), turns: Vec::new() };
+        Self { classes: core::array::from_fn(rows), couplings: Vec::new() }
     }
 }
 
 impl<N: Entry> JointRows<N> {
     /// Resizes the rows of each batch. Their content is stale.
     pub(in super::super) fn make_room(&mut self, rows: &[u32]) {
-        for ((class, of), count) in self.0.iter_mut().zip(CLASSES).zip(rows) {
+        for ((class, of), count) in self.classes.iter_mut().zip(CLASSES).zip(rows) {
             let count = *count as usize;
             if class.rows.len() < count {
                 class.rows.resize(count, Row::default());
                 class.singles.resize(count * of.singles, Single::NONE);
+                class.turns.resize(if of.turns { count } else { 0 }, OrientationRow::NONE);
             }
+        }
+        let count = rows[COUPLINGS] as usize;
+        if self.couplings.len() < count {
+            self.couplings.resize(count, CouplingRow::default());
         }
     }
 
@@ -101,78 +129,127 @@ impl<N: Entry> JointRows<N> {
         &'a mut self,
         proof: N::Proof,
         records: &'a Records<'a>,
-    ) -> [JointView<'a, N>; JOINT_BATCHES] {
+    ) -> JointViews<'a, N> {
         let mut classes = CLASSES.into_iter();
-        self.0.each_mut().map(|rows| JointView {
-            proof,
-            class: classes.next().expect("as many classes as batches"),
-            rows: Parts::of(&mut rows.rows),
-            singles: Parts::of(&mut rows.singles),
-            records,
-        })
+        JointViews {
+            classes: self.classes.each_mut().map(|rows| JointView {
+                proof,
+                class: classes.next().expect("as many classes as batches"),
+                rows: Parts::of(&mut rows.rows),
+                singles: Parts::of(&mut rows.singles),
+                turns: Parts::of(&mut rows.turns),
+                records,
+            }),
+            couplings: CouplingView { proof, rows: Parts::of(&mut self.couplings), records },
+        }
+    }
+}
+
+/// Views of all batches.
+pub(in super::super) struct JointViews<'a, N: Entry> {
+    classes: [JointView<'a, N>; COUPLINGS],
+    couplings: CouplingView<'a, N>,
+}
+
+impl<N: Entry> JointViews<'_, N> {
+    /// A batch by its number among those of joints.
+    pub(in super::super) fn batch(&self, number: usize) -> &dyn Batch {
+        if number == COUPLINGS { &self.couplings } else { &self.classes[number] }
     }
 }
 
 /// A view of the rows of one class whose blocks are changed by several threads.
-pub(in super::super) struct JointView<'a, N: Entry> {
+struct JointView<'a, N: Entry> {
     proof: N::Proof,
     class: Class,
     rows: Parts<'a, Row<N>>,
     singles: Parts<'a, Single<N>>,
+    turns: Parts<'a, OrientationRow<N>>,
     records: &'a Records<'a>,
 }
 
+/// Rows of a class.
+struct Taken<'a, N: Lane> {
+    class: Class,
+    rows: &'a mut [Row<N>],
+    singles: &'a mut [Single<N>],
+    turns: &'a mut [OrientationRow<N>],
+}
+
+impl<N: Lane> Taken<'_, N> {
+    /// Each row with its single coordinates and its orientation motor.
+    #[inline(always)]
+    #[expect(clippy::type_complexity, reason = "it is taken apart at once")]
+    fn each(
+        &mut self,
+    ) -> impl Iterator<Item = (&mut Row<N>, (&mut [Single<N>], Option<&mut OrientationRow<N>>))> {
+        let count = self.class.singles;
+        let (mut singles, mut turns) = (&mut *self.singles, self.turns.iter_mut());
+        self.rows.iter_mut().map(move |row| {
+            let (of_row, others) = core::mem::take(&mut singles).split_at_mut(count);
+            singles = others;
+            (row, (of_row, turns.next()))
+        })
+    }
+}
+
 impl<'a, N: Entry> JointView<'a, N> {
-    /// The rows of a range, and their single coordinates.
+    /// The rows of a range.
     ///
     /// # Safety
     /// While the rows are in use, no range that overlaps theirs may be taken.
-    unsafe fn take(&self, rows: Range<usize>) -> (&'a mut [Row<N>], &'a mut [Single<N>]) {
-        let count = self.class.singles;
+    unsafe fn take(&self, rows: Range<usize>) -> Taken<'a, N> {
+        let (class, count) = (self.class, self.class.singles);
+        let turns = if class.turns { rows.clone() } else { 0..0 };
         // SAFETY: by the contract.
-        unsafe { (self.rows.take(rows.clone()), self.singles.take(rows.start * count..rows.end * count)) }
+        unsafe {
+            Taken {
+                class,
+                rows: self.rows.take(rows.clone()),
+                singles: self.singles.take(rows.start * count..rows.end * count),
+                turns: self.turns.take(turns),
+            }
+        }
     }
 }
 
 impl<N: Entry> Batch for JointView<'_, N> {
     unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes {
         let constraints = from.input.bodies.constraints(KIND);
-        let count = self.class.singles;
         // SAFETY: by the contract.
-        let (rows, singles) = unsafe { self.take(rows) };
-        singles.fill(Single::NONE);
-        for (i, (row, lanes)) in rows.iter_mut().zip(items.chunks(N::WIDTH)).enumerate() {
-            *row = Row::default();
+        let mut taken = unsafe { self.take(rows) };
+        taken.rows.fill(Row::default());
+        taken.singles.fill(Single::NONE);
+        taken.turns.fill(OrientationRow::NONE);
+        for ((row, (singles, mut turns)), lanes) in taken.each().zip(items.chunks(N::WIDTH)) {
             for (lane, item) in lanes.iter().enumerate() {
                 // SAFETY: a joint is in one row, so by the contract no other thread has its record.
                 let record = unsafe { self.records.0.one(item.id as usize) };
-                let singles = &mut singles[i * count..(i + 1) * count];
-                row.set(singles, (lane, Hold::Row), record, constraints.get(item.id).bodies, from);
+                let bodies = constraints.get(item.id).bodies;
+                row.set((singles, turns.as_deref_mut()), (lane, Hold::Row), record, bodies, from);
             }
         }
         // SAFETY: the job has no further condition.
-        unsafe { N::enter(self.proof, FinishJob { rows, masses: from.masses }) };
+        unsafe { N::enter(self.proof, FinishJob { rows: taken.rows, masses: from.masses }) };
         Passes::BASIC
     }
 
     unsafe fn run(&self, rows: Range<usize>, _: Passes, sweep: &Sweep) {
         // SAFETY: by the contract.
         unsafe {
-            let (rows, singles) = self.take(rows);
             let Sweep { bodies, params, pass } = *sweep;
-            N::enter(self.proof, RunJob { class: self.class, rows, singles, bodies, params, pass });
+            N::enter(self.proof, RunJob { taken: self.take(rows), bodies, params, pass });
         }
     }
 
     unsafe fn store(&self, rows: Range<usize>, items: &[Item], _: &ManifoldsView) {
-        let count = self.class.singles;
         // SAFETY: by the contract.
-        let (rows, singles) = unsafe { self.take(rows) };
-        for (i, (row, lanes)) in rows.iter().zip(items.chunks(N::WIDTH)).enumerate() {
+        let mut taken = unsafe { self.take(rows) };
+        for ((row, (singles, turns)), lanes) in taken.each().zip(items.chunks(N::WIDTH)) {
             for (lane, item) in lanes.iter().enumerate() {
                 // SAFETY: a joint is in one row, so by the contract no other thread has its record.
                 let record = unsafe { self.records.0.one(item.id as usize) };
-                row.store(&singles[i * count..(i + 1) * count], lane, record);
+                row.store((singles, turns.as_deref()), lane, record);
             }
         }
     }
@@ -195,9 +272,7 @@ impl<N: Lane> Job for FinishJob<'_, N> {
 }
 
 struct RunJob<'a, N: Lane> {
-    class: Class,
-    rows: &'a mut [Row<N>],
-    singles: &'a mut [Single<N>],
+    taken: Taken<'a, N>,
     bodies: RowView<'a, BodyRow>,
     params: &'a SubstepParams,
     pass: Pass,
@@ -210,7 +285,7 @@ impl<N: Lane> Job for RunJob<'_, N> {
     unsafe fn run(self) {
         // SAFETY: by the contract.
         unsafe {
-            match self.class.block {
+            match self.taken.class.block {
                 0 => self.pass::<0>(),
                 DIM => self.pass::<DIM>(),
                 _ => self.pass::<BLOCK>(),
@@ -223,12 +298,10 @@ impl<N: Lane> RunJob<'_, N> {
     /// # Safety
     /// As [`Batch::run`].
     #[inline(always)]
-    unsafe fn pass<const D: usize>(self) {
-        let count = self.class.singles;
-        for (i, row) in self.rows.iter_mut().enumerate() {
-            let singles = &mut self.singles[i * count..(i + 1) * count];
+    unsafe fn pass<const D: usize>(mut self) {
+        for (row, more) in self.taken.each() {
             // SAFETY: by the contract.
-            unsafe { row.run::<D>(singles, &self.bodies, self.params, self.pass) };
+            unsafe { row.run::<D>(more, &self.bodies, self.params, self.pass) };
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The coordinates of a joint that are locked in A's frame, solved at once.
 
+use super::super::SubstepParams;
 use super::super::pair::Pair;
 use super::dim::ANGLE_AXES;
 use super::place::{Gradient, Masses, Place, Response};
@@ -21,6 +22,35 @@ pub(super) struct Softening<N> {
 impl<N: Lane> Softening<N> {
     pub(super) const NONE: Self =
         Self { bias_rate: N::ZERO, share: N::ZERO, more: N::ZERO, is_spring: N::ZERO };
+
+    /// The impulse of the lower limit, side 0, or the upper one, given how far the value is above it, its rate, and what a unit
+    /// impulse adds to that. Where both limits are one, the lower one acts both ways.
+    #[inline(always)]
+    pub(super) fn limit(
+        &self,
+        side: usize,
+        both: N::Mask,
+        (gap, rate, k): (N, N, N),
+        before: N,
+        params: &SubstepParams,
+        biased: bool,
+    ) -> N {
+        let is_open = N::ZERO.lt(N::select(both, N::ZERO, gap));
+        let softness = if biased { k * self.share + self.more } else { N::ZERO };
+        let softness = N::select(is_open, N::ZERO, softness);
+        let bias = if biased { self.bias_rate * gap } else { N::ZERO };
+        let bias = N::select(is_open, gap * N::splat(params.inv_h), bias);
+        let stiff = k + softness;
+        let gives = N::ZERO.lt(stiff);
+        let inverse = N::select(gives, N::ONE / N::select(gives, stiff, N::ONE), N::ZERO);
+        let after = before - (rate + bias + softness * before) * inverse;
+        let after = if side == 0 {
+            N::select(both, after, after.max(N::ZERO))
+        } else {
+            N::select(both, N::ZERO, after.max(N::ZERO))
+        };
+        if biased { after } else { N::select(N::ZERO.lt(self.is_spring), before, after) }
+    }
 }
 
 /// A coordinate of the block.

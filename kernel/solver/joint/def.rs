@@ -1,7 +1,7 @@
 //! What a joint does: two frames, and a setting for each coordinate of B's frame relative to A's.
 
 use super::dim::{AXES, BLOCK, parts_of};
-use crate::math::{Rot, Vector};
+use crate::math::{Angular, Rot, Vector};
 use core::fmt;
 
 /// Stiffness and damping as those of an oscillator with the mass that the coordinate moves.
@@ -59,6 +59,30 @@ pub struct Motor {
     pub drive: Drive,
 }
 
+/// A spring along or about one coordinate, beside a motor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisSpring {
+    /// The value at which it bears nothing, in m or rad. An angle without limits is pulled the shorter way round.
+    pub rest: f32,
+    /// The law, with this target and no velocity.
+    pub law: Drive,
+}
+
+/// A motor of all angles at once: it turns B's frame to a rotation in A's frame along the shortest arc.
+///
+/// The error is the rotation vector from the target to the rotation now. In 2D it is the angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrientationMotor {
+    /// Target of the rotation of B's frame in A's.
+    pub target_rotation: Rot,
+    /// Target of B's angular velocity relative to A, in A's frame, rad/s.
+    pub target_velocity: Angular,
+    /// Greatest length of the torque, N·m. May be infinite.
+    pub max_torque: f32,
+    /// The law.
+    pub drive: Drive,
+}
+
 /// What a joint does with one coordinate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Axis {
@@ -66,13 +90,57 @@ pub struct Axis {
     pub limits: Option<[f32; 2]>,
     /// How far limits give way.
     pub give: Give,
-    /// The motor.
+    /// The spring. It has no effect where the coordinate is locked and rigid.
+    pub spring: Option<AxisSpring>,
+    /// The motor. It has no effect where the coordinate is locked and rigid.
     pub motor: Option<Motor>,
 }
 
+impl Drive {
+    pub(super) fn is_valid(&self) -> bool {
+        match self {
+            Self::Spring(spring) => spring.is_valid(),
+            Self::Acceleration { stiffness, damping } | Self::Force { stiffness, damping } => {
+                [stiffness, damping].iter().all(|x| x.is_finite() && **x >= 0.0)
+            }
+        }
+    }
+}
+
+impl Spring {
+    fn is_valid(&self) -> bool {
+        let [frequency, damping] = [self.frequency, self.damping_ratio];
+        frequency.is_finite() && frequency > 0.0 && damping.is_finite() && damping >= 0.0
+    }
+}
+
+impl Give {
+    pub(super) fn is_valid(&self) -> bool {
+        match self {
+            Self::Rigid => true,
+            Self::Compliance(compliance) => compliance.is_finite() && *compliance > 0.0,
+            Self::Spring(spring) => spring.is_valid(),
+        }
+    }
+}
+
+impl OrientationMotor {
+    fn is_valid(&self) -> bool {
+        self.target_rotation.is_finite()
+            && self.target_velocity.is_finite()
+            && self.max_torque >= 0.0
+            && self.drive.is_valid()
+    }
+}
+
+/// Whether limits are in order.
+pub(super) fn are_in_order([min, max]: [f32; 2]) -> bool {
+    min <= max && min < f32::INFINITY && max > f32::NEG_INFINITY
+}
+
 impl Axis {
-    /// Neither limits nor a motor.
-    pub const FREE: Self = Self { limits: None, give: Give::Rigid, motor: None };
+    /// Neither limits, nor a spring, nor a motor.
+    pub const FREE: Self = Self { limits: None, give: Give::Rigid, spring: None, motor: None };
     /// Held at 0.
     pub const LOCKED: Self = Self::limited(0.0, 0.0);
 
@@ -92,28 +160,15 @@ impl Axis {
     }
 
     fn is_valid(&self) -> bool {
-        let is_in_order = |[min, max]: [f32; 2]| min <= max && min < f32::INFINITY && max > f32::NEG_INFINITY;
-        let is_spring = |s: &Spring| {
-            let [frequency, damping] = [s.frequency, s.damping_ratio];
-            frequency.is_finite() && frequency > 0.0 && damping.is_finite() && damping >= 0.0
-        };
-        let gives = match &self.give {
-            Give::Rigid => true,
-            Give::Compliance(compliance) => compliance.is_finite() && *compliance > 0.0,
-            Give::Spring(spring) => is_spring(spring),
-        };
         let drives = self.motor.as_ref().is_none_or(|motor| {
-            let law = match &motor.drive {
-                Drive::Spring(spring) => is_spring(spring),
-                Drive::Acceleration { stiffness, damping } | Drive::Force { stiffness, damping } => {
-                    [stiffness, damping].iter().all(|x| x.is_finite() && **x >= 0.0)
-                }
-            };
-            law && motor.target_velocity.is_finite()
+            motor.drive.is_valid()
+                && motor.target_velocity.is_finite()
                 && motor.target_position.is_finite()
                 && motor.max_force >= 0.0
         });
-        self.limits.is_none_or(is_in_order) && gives && drives
+        let springs =
+            self.spring.as_ref().is_none_or(|spring| spring.law.is_valid() && spring.rest.is_finite());
+        self.limits.is_none_or(are_in_order) && self.give.is_valid() && springs && drives
     }
 }
 
@@ -137,6 +192,8 @@ pub struct JointDef {
     pub frames: [JointFrame; 2],
     /// What it does with each coordinate, by number.
     pub axes: [Axis; AXES],
+    /// A motor of all angles at once, beside those of single ones.
+    pub orientation: Option<OrientationMotor>,
     /// Rate at which the bodies lose relative velocity: linear and angular, 1/s. Not negative.
     pub damping: [f32; 2],
 }
@@ -145,7 +202,7 @@ impl JointDef {
     /// A joint at two points that leaves all coordinates free.
     pub fn free(bodies: [u32; 2], anchors: [Vector; 2]) -> Self {
         let frames = anchors.map(|anchor| JointFrame { anchor, ..JointFrame::default() });
-        Self { bodies, frames, axes: [Axis::FREE; AXES], damping: [0.0; 2] }
+        Self { bodies, frames, axes: [Axis::FREE; AXES], orientation: None, damping: [0.0; 2] }
     }
 
     /// This joint with a setting for some coordinates.
@@ -171,28 +228,35 @@ impl JointDef {
         if let Some(number) = (BLOCK..AXES).find(is_below) {
             return Err(JointError::Axis(number));
         }
+        if self.orientation.as_ref().is_some_and(|motor| !motor.is_valid()) {
+            return Err(JointError::Orientation);
+        }
         match self.damping.iter().find(|damping| !(damping.is_finite() && **damping >= 0.0)) {
             Some(damping) => Err(JointError::Damping(*damping)),
             None => Ok(()),
         }
     }
 
-    /// The coordinates that are solved as one block: those of the frame that are locked.
+    /// The coordinates that are solved as one block: those of the frame that are locked. A lock that gives way and is driven
+    /// besides is solved by itself.
     pub(super) fn is_in_block(&self, number: usize) -> bool {
-        number < BLOCK && self.axes[number].locked_at().is_some()
+        let axis = &self.axes[number];
+        let is_driven = axis.give != Give::Rigid && (axis.motor.is_some() || axis.spring.is_some());
+        number < BLOCK && axis.locked_at().is_some() && !is_driven
     }
 
-    /// Whether a distance or an angle between axes is set, and one of the coordinates of which it is made: such settings may
-    /// contradict each other.
+    /// Whether a distance or an angle between axes has limits, and one of the coordinates of which it is made: such settings
+    /// may contradict each other.
     pub(super) fn sets_twice(&self) -> bool {
-        let is_set = |number: usize| self.axes[number] != Axis::FREE;
+        let is_set = |number: usize| self.axes[number].limits.is_some();
         (BLOCK..AXES).any(|number| is_set(number) && parts_of(number).any(is_set))
     }
 
-    /// The coordinates that are solved one by one: those with a limit outside the block, or with a motor.
+    /// The coordinates that are solved one by one: outside the block those with limits, a spring or a motor.
     pub(super) fn is_single(&self, number: usize) -> bool {
         let axis = &self.axes[number];
-        !self.is_in_block(number) && (axis.limits.is_some() || axis.motor.is_some())
+        let is_set = axis.limits.is_some() || axis.spring.is_some() || axis.motor.is_some();
+        !self.is_in_block(number) && is_set
     }
 }
 
@@ -221,6 +285,12 @@ pub enum JointError {
     Frame(JointFrame),
     /// The setting of the coordinate with this number has limits in the wrong order, or a number that is not finite, or negative.
     Axis(usize),
+    /// The orientation motor has a number that is not finite, or negative.
+    Orientation,
+    /// A frame of this end of a coupling is not finite.
+    End(usize),
+    /// Ratio, limits or give of a coupling are not finite, not in order, or zero.
+    Coupling,
     /// A damping is not finite, or negative.
     Damping(f32),
 }
@@ -233,7 +303,15 @@ impl fmt::Display for JointError {
             Self::NoJoint(id) => write!(f, "there is no joint {id}"),
             Self::Frame(frame) => write!(f, "{frame:?} is not finite"),
             Self::Axis(number) => {
-                write!(f, "limits, give or motor of coordinate {number} are not in order or not finite")
+                write!(
+                    f,
+                    "limits, give, spring or motor of coordinate {number} are not in order or not finite"
+                )
+            }
+            Self::Orientation => write!(f, "a number of the orientation motor is not finite, or negative"),
+            Self::End(number) => write!(f, "a frame of end {number} is not finite"),
+            Self::Coupling => {
+                write!(f, "ratio, limits or give are not in order or not finite, or the ratio is 0")
             }
             Self::Damping(damping) => write!(f, "a damping of {damping} is not finite and positive"),
         }

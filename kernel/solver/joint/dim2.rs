@@ -67,6 +67,18 @@ pub(super) fn units<N: Lane>() -> [Angular<N>; TURNS] {
     [Angular { z: N::ONE }]
 }
 
+/// The axes of a frame about which bodies turn.
+#[inline(always)]
+pub(super) fn turn_axes<N: Lane>(_basis: Rot<N>) -> [Angular<N>; TURNS] {
+    units()
+}
+
+/// The angle of a rotation, from −π to π, about its axis.
+#[inline(always)]
+pub(super) fn rotation_vector<N: Lane>(turn: Rot<N>) -> Angular<N> {
+    Angular { z: atan2_lanes(turn.sin, turn.cos) }
+}
+
 /// A vector of a function of each component.
 #[inline(always)]
 pub(super) fn each<N: Lane>(v: Vector<N>, f: impl Fn(N) -> N) -> Vector<N> {

@@ -114,6 +114,24 @@ pub(super) fn units<N: Lane>() -> [Angular<N>; TURNS] {
     Vector::AXES.map(Vector::splat)
 }
 
+/// The axes of a frame about which bodies turn.
+#[inline(always)]
+pub(super) fn turn_axes<N: Lane>(basis: Rot<N>) -> [Angular<N>; TURNS] {
+    units().map(|unit| basis.rotate(unit))
+}
+
+/// The angle of a rotation, up to π, along its axis.
+#[inline(always)]
+pub(super) fn rotation_vector<N: Lane>(turn: Rot<N>) -> Angular<N> {
+    let sign = N::select(turn.w.lt(N::ZERO), -N::ONE, N::ONE);
+    let axis = Vector { x: turn.x, y: turn.y, z: turn.z } * sign;
+    let square = axis.length_squared();
+    let turns = N::splat(NO_SWING).lt(square);
+    let sine = N::select(turns, square, N::ONE).sqrt();
+    let angle = N::splat(2.0) * atan2_lanes(sine, turn.w * sign);
+    axis * N::select(turns, angle / sine, N::splat(2.0))
+}
+
 /// A vector of a function of each component.
 #[inline(always)]
 pub(super) fn each<N: Lane>(v: Vector<N>, f: impl Fn(N) -> N) -> Vector<N> {

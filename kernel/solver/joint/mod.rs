@@ -7,27 +7,38 @@
 //! k x / (c + h k). What is rigid has the highest frequency that the substeps resolve. Directions follow the exact motion
 //! of the bodies in every pass, so that long swings keep their length.
 //!
+//! Couplings are limits of the sum of a coordinate at each of two bodies, in frames of the world (`coupling.rs`).
+//!
 //! Joints that form trees are solved at once, before all rows (`tree.rs`).
 //!
 //! After Catto, "Soft Constraints" (GDC 2011), and his Box2D v3.
 
 mod batch;
 mod block;
+mod coupling;
+mod coupling_row;
 mod def;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 mod elimination;
 mod forest;
+mod gap;
+mod orientation;
 mod place;
 mod row;
 mod single;
 mod table;
 mod tree;
 
-pub(super) use batch::{JOINT_BATCHES, JointRows, JointView, joints, sort_joints};
-pub use def::{Axis, Drive, Give, JointDef, JointError, JointFrame, JointSolver, Motor, Spring};
+pub(super) use batch::{JOINT_BATCHES, JointRows, JointViews, joints, sort_joints};
+pub use coupling::{CouplingDef, CouplingEnd, EndCoordinate};
+pub use def::{
+    Axis, AxisSpring, Drive, Give, JointDef, JointError, JointFrame, JointSolver, Motor, OrientationMotor,
+    Spring,
+};
 pub use dim::{AXES, coordinate};
+pub use gap::JointGap;
 pub(super) use table::Records;
 pub use table::{JointReaction, JointTable};
 pub(super) use tree::JointTrees;

@@ -2,7 +2,7 @@
 
 use super::super::pair::Pair;
 use super::super::{BodyRow, InvMass, RowView};
-use super::dim::{ANGLES, angles};
+use super::dim::{ANGLES, TURNS, angles, turn_axes};
 use crate::math::{Angular, DIM, InvInertia, Lane, Rot, Vector};
 
 /// The direction in which a coordinate grows: as a change of the bodies' velocities.
@@ -160,6 +160,12 @@ impl<N: Lane> Place<N> {
             let axis = Vector::splat(axis);
             Vector::select(of_world, axis, self.bases[0].rotate(axis))
         })
+    }
+
+    /// The axes of A about which bodies turn.
+    #[inline(always)]
+    pub(super) fn turn_axes(&self) -> [Angular<N>; TURNS] {
+        turn_axes(self.bases[0])
     }
 
     /// The distance of the anchors, and the direction from A's to B's.

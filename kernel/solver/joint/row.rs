@@ -5,10 +5,12 @@ use super::super::batch::{Filling, Pass};
 use super::super::pair::Pair;
 use super::super::{BodyRow, InvMass, MassRow, RowView, Softness, SubstepParams};
 use super::block::{Block, Factors, Locked, Softening};
-use super::def::{Axis, Drive, Give, JointDef, Motor};
+use super::def::{Axis, AxisSpring, Give, JointDef, Motor};
+
 use super::dim::{ANGLE_AXES, AXES, BLOCK, TURNING, TURNS, coordinate, each, units};
+use super::orientation::OrientationRow;
 use super::place::{Gradient, Masses, Start};
-use super::single::{MotorRow, Single, turns_near};
+use super::single::{MotorRow, Single, laws, turns_near};
 use super::table::{JointReaction, Record};
 use crate::math::{Angular, DIM, Ids, Lane, Vector};
 
@@ -48,6 +50,8 @@ pub(super) struct Row<N: Lane> {
     pub(super) block: [Locked<N>; BLOCK],
     force: Vector<N>,
     torque: Angular<N>,
+    /// The impulse of the orientation motor, N·m·s.
+    pub(super) turning: Angular<N>,
     inv_h: f32,
 }
 
@@ -62,6 +66,7 @@ impl<N: Lane> Default for Row<N> {
             block: [Locked::FREE; BLOCK],
             force: Vector::ZERO,
             torque: Angular::ZERO,
+            turning: Angular::ZERO,
             inv_h: 0.0,
         }
     }
@@ -91,7 +96,7 @@ fn softening(give: Give, hold: Hold, h: f32) -> (f32, f32, f32, bool) {
 }
 
 impl<N: Lane> Softening<N> {
-    fn set(&mut self, lane: usize, give: Give, hold: Hold, h: f32) {
+    pub(super) fn set(&mut self, lane: usize, give: Give, hold: Hold, h: f32) {
         let (rate, share, more, is_spring) = softening(give, hold, h);
         self.bias_rate.set(lane, rate);
         self.share.set(lane, share);
@@ -102,14 +107,7 @@ impl<N: Lane> Softening<N> {
 
 impl<N: Lane> MotorRow<N> {
     fn set(&mut self, lane: usize, motor: &Motor, h: f32) {
-        let (of_mass, besides) = match motor.drive {
-            Drive::Spring(spring) => {
-                let omega = core::f32::consts::TAU * spring.frequency;
-                ([omega * omega, 2.0 * spring.damping_ratio * omega], [0.0; 2])
-            }
-            Drive::Acceleration { stiffness, damping } => ([stiffness, damping], [0.0; 2]),
-            Drive::Force { stiffness, damping } => ([0.0; 2], [stiffness, damping]),
-        };
+        let (of_mass, besides) = laws(&motor.drive);
         for i in 0..2 {
             self.of_mass[i].set(lane, of_mass[i]);
             self.besides[i].set(lane, besides[i]);
@@ -144,15 +142,22 @@ impl<N: Lane> Single<N> {
         self.limits[0].set(lane, min);
         self.limits[1].set(lane, max);
         self.softening.set(lane, axis.give, Hold::Row, params.h);
-        let [lower, upper, motor] = record.singles[number].map(|impulse| impulse * params.warm_start);
+        let [lower, upper, spring, motor] = record.singles[number].map(|impulse| impulse * params.warm_start);
         self.impulses[0].set(lane, lower);
         self.impulses[1].set(lane, upper);
+        if let Some(AxisSpring { rest, law }) = axis.spring {
+            let (target_position, target_velocity, max_force) = (rest, 0.0, f32::INFINITY);
+            let as_motor = Motor { target_position, target_velocity, max_force, drive: law };
+            self.spring.set(lane, &as_motor, params.h);
+            self.spring.impulse.set(lane, spring);
+        }
         if let Some(of) = &axis.motor {
             self.motor.set(lane, of, params.h);
             self.motor.impulse.set(lane, motor);
         }
         if number == ANGLE_AXES[TURNING] {
-            let target = axis.motor.map_or(0.0, |motor| motor.target_position);
+            let of_motor = axis.motor.map_or(0.0, |motor| motor.target_position);
+            let target = axis.spring.map_or(of_motor, |spring| spring.rest);
             let near = match axis.limits {
                 Some(limits) if record.angle.is_nan() => first_guess(angle, limits),
                 Some(_) => record.angle,
@@ -175,7 +180,7 @@ impl<N: Lane> Row<N> {
     /// Copies a joint into a lane.
     pub(super) fn set(
         &mut self,
-        singles: &mut [Single<N>],
+        (singles, orientation): (&mut [Single<N>], Option<&mut OrientationRow<N>>),
         (lane, hold): (usize, Hold),
         record: &Record,
         bodies: [u32; 2],
@@ -211,6 +216,10 @@ impl<N: Lane> Row<N> {
         for (number, single) in numbers.zip(singles) {
             single.set(lane, number, record, angle, params);
         }
+        if let (Some(row), Some(motor)) = (orientation, &def.orientation) {
+            let impulses = record.orientation.map(|impulse| impulse * params.warm_start);
+            row.set(lane, motor, impulses, params.h);
+        }
     }
 
     /// Computes derived values, for all lanes at once.
@@ -234,7 +243,7 @@ impl<N: Lane> Row<N> {
     #[inline(always)]
     pub(super) unsafe fn run<const D: usize>(
         &mut self,
-        singles: &mut [Single<N>],
+        (singles, orientation): (&mut [Single<N>], Option<&mut OrientationRow<N>>),
         bodies: &RowView<BodyRow>,
         params: &SubstepParams,
         pass: Pass,
@@ -257,7 +266,27 @@ impl<N: Lane> Row<N> {
             let drift = place.drift(&pair, params.h);
             Some(block.solve(rows, &mut pair, drift, biased))
         };
-        let has_singles = !singles.is_empty();
+        let has_more = !singles.is_empty() || orientation.is_some();
+        if let Some(motor) = orientation {
+            let turning = motor.look(&place);
+            match &solved {
+                None => {
+                    for (gradient, impulse) in turning.gradients.iter().zip(motor.impulses) {
+                        self.masses.response(gradient).push(&mut pair, impulse);
+                    }
+                }
+                Some(solved) => {
+                    if biased {
+                        motor.solve(&turning, &self.masses, (&block, solved, rows), &mut pair, params.h);
+                    }
+                    self.turning = Angular::ZERO;
+                    for (gradient, impulse) in turning.gradients.iter().zip(motor.impulses) {
+                        add(gradient, impulse);
+                        self.turning += gradient.moments[1] * impulse;
+                    }
+                }
+            }
+        }
         for single in singles {
             let (gradient, value) = single.gradient(&place);
             let alone = self.masses.response(&gradient);
@@ -270,7 +299,7 @@ impl<N: Lane> Row<N> {
                 }
             }
         }
-        if biased && has_singles {
+        if biased && has_more {
             // A limit that was struck has changed how the bodies turn.
             let drift = place.drift(&pair, params.h);
             block.solve(rows, &mut pair, drift, biased);
@@ -316,11 +345,17 @@ impl<N: Lane> Row<N> {
     }
 
     /// Copies a lane back into the joint.
-    pub(super) fn store(&self, singles: &[Single<N>], lane: usize, record: &mut Record) {
+    pub(super) fn store(
+        &self,
+        (singles, orientation): (&[Single<N>], Option<&OrientationRow<N>>),
+        lane: usize,
+        record: &mut Record,
+    ) {
         let def = &record.def;
         let mut reaction = JointReaction {
             force: self.force.get(lane),
             torque: self.torque.get(lane),
+            orientation: self.turning.get(lane) * self.inv_h,
             ..JointReaction::default()
         };
         for (number, locked) in self.block.iter().enumerate().filter(|(k, _)| def.is_in_block(*k)) {
@@ -329,12 +364,15 @@ impl<N: Lane> Row<N> {
         let numbers = (0..AXES).filter(|k| def.is_single(*k));
         for (number, single) in numbers.zip(singles) {
             let [lower, upper] = single.impulses.map(|impulse| impulse.get(lane));
-            let motor = single.motor.impulse.get(lane);
-            record.singles[number] = [lower, upper, motor];
+            let [spring, motor] = [&single.spring, &single.motor].map(|row| row.impulse.get(lane));
+            record.singles[number] = [lower, upper, spring, motor];
             reaction.motors[number] = motor * self.inv_h;
             if number == ANGLE_AXES[TURNING] && single.counts_turns.get(lane) > 0.0 {
                 record.angle = single.near.get(lane);
             }
+        }
+        if let Some(motor) = orientation {
+            record.orientation = motor.impulses.map(|impulse| impulse.get(lane));
         }
         record.reaction = reaction;
     }

@@ -3,11 +3,12 @@
 use super::super::SubstepParams;
 use super::super::pair::Pair;
 use super::block::{Block, Locked, NO_PIVOT, Softening, Solved};
+use super::def::Drive;
 use super::dim::{ANGLES, TURNING};
 use super::place::{Gradient, Place, Response};
 use crate::math::{Angular, DIM, Lane};
 
-/// A motor of `N::WIDTH` lanes.
+/// A motor of `N::WIDTH` lanes, or a spring.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct MotorRow<N> {
@@ -20,6 +21,33 @@ pub(super) struct MotorRow<N> {
     /// Greatest impulse of a substep, N·s or N·m·s. 0 without a motor.
     pub(super) most: N,
     pub(super) impulse: N,
+}
+
+impl<N: Lane> MotorRow<N> {
+    const NONE: Self = Self {
+        of_mass: [N::ZERO; 2],
+        besides: [N::ZERO; 2],
+        target_velocity: N::ZERO,
+        target_position: N::ZERO,
+        most: N::ZERO,
+        impulse: N::ZERO,
+    };
+
+    /// Solves the motor at a rate and value of the coordinate. `k` is what a unit impulse adds to the rate, `mass` the inverse of
+    /// that without a spring. Returns the change of the impulse, and the share of another impulse that the motor would take.
+    #[inline(always)]
+    fn drive(&mut self, (rate, value): (N, N), (k, mass): (N, N), h: f32) -> (N, N) {
+        let [stiffness, damping] = core::array::from_fn(|i| self.of_mass[i] * mass + self.besides[i]);
+        let resistance = damping + stiffness * N::splat(h);
+        let drives = N::and(N::ZERO.lt(resistance), N::ZERO.lt(k));
+        let safe = N::select(drives, resistance, N::ONE);
+        let softness = N::ONE / (safe * N::splat(h));
+        let bias = (stiffness * (value - self.target_position) - damping * self.target_velocity) / safe;
+        let before = self.impulse;
+        let after = before - (rate + bias + softness * before) / (k + softness);
+        self.impulse = N::select(drives, after, N::ZERO).max(-self.most).min(self.most);
+        (self.impulse - before, N::select(drives, k / (k + softness), N::ZERO))
+    }
 }
 
 /// One coordinate of `N::WIDTH` lanes.
@@ -35,6 +63,7 @@ pub(super) struct Single<N> {
     pub(super) softening: Softening<N>,
     /// Impulses of the lower and the upper limit, N·s or N·m·s. Not negative, but where both limits are one.
     pub(super) impulses: [N; 2],
+    pub(super) spring: MotorRow<N>,
     pub(super) motor: MotorRow<N>,
     /// What is added to the angle for the turns that it has made: a multiple of 2π.
     pub(super) turns: N,
@@ -53,14 +82,8 @@ impl<N: Lane> Single<N> {
         limits: [N::ZERO; 2],
         softening: Softening::NONE,
         impulses: [N::ZERO; 2],
-        motor: MotorRow {
-            of_mass: [N::ZERO; 2],
-            besides: [N::ZERO; 2],
-            target_velocity: N::ZERO,
-            target_position: N::ZERO,
-            most: N::ZERO,
-            impulse: N::ZERO,
-        },
+        spring: MotorRow::NONE,
+        motor: MotorRow::NONE,
         turns: N::ZERO,
         near: N::ZERO,
         counts_turns: N::ZERO,
@@ -97,7 +120,7 @@ impl<N: Lane> Single<N> {
         self.turns
     }
 
-    /// Solves motor and limits, and changes the impulses of the block so that it stays solved. With bias, or without it as in
+    /// Solves spring, motor and limits, and changes the impulses of the block so that it stays solved. With bias, or without it as in
     /// the relax pass, where motors and springs are left out.
     #[inline(always)]
     pub(super) fn solve<const D: usize>(
@@ -116,7 +139,7 @@ impl<N: Lane> Single<N> {
         }
     }
 
-    /// Solves motor and limits by the response to a unit impulse, given the one without other joints. Returns the change of the
+    /// Solves spring, motor and limits by the response to a unit impulse, given the one without other joints. Returns the change of the
     /// impulse.
     #[inline(always)]
     pub(super) fn act(
@@ -140,25 +163,9 @@ impl<N: Lane> Single<N> {
         for side in 0..2 {
             let sign = if side == 0 { N::ONE } else { -N::ONE };
             let gap = (value - self.limits[side]) * sign;
-            let soft = &self.softening;
-            let is_open = N::ZERO.lt(N::select(both, N::ZERO, gap));
-            let softness = if biased { k * soft.share + soft.more } else { N::ZERO };
-            let softness = N::select(is_open, N::ZERO, softness);
-            let bias = if biased { soft.bias_rate * gap } else { N::ZERO };
-            let bias = N::select(is_open, gap * N::splat(params.inv_h), bias);
-            let rate = gradient.rate(pair) * sign;
-            let stiff = k + softness;
-            let gives = N::ZERO.lt(stiff);
-            let inverse = N::select(gives, N::ONE / N::select(gives, stiff, N::ONE), N::ZERO);
             let before = self.impulses[side];
-            let after = before - (rate + bias + softness * before) * inverse;
-            // One row holds a coordinate whose limits are one, both ways.
-            let after = if side == 0 {
-                N::select(both, after, after.max(N::ZERO))
-            } else {
-                N::select(both, N::ZERO, after.max(N::ZERO))
-            };
-            let after = if biased { after } else { N::select(N::ZERO.lt(soft.is_spring), before, after) };
+            let at = (gap, gradient.rate(pair) * sign, k);
+            let after = self.softening.limit(side, both, at, before, params, biased);
             let after = N::select(moves, after, N::ZERO);
             self.impulses[side] = after;
             response.push(pair, (after - before) * sign);
@@ -166,6 +173,7 @@ impl<N: Lane> Single<N> {
         self.impulse() - before
     }
 
+    /// Solves the spring, then the motor, which moves the spring as well.
     #[inline(always)]
     fn drive(
         &mut self,
@@ -175,34 +183,43 @@ impl<N: Lane> Single<N> {
         pair: &mut Pair<N>,
         h: f32,
     ) {
-        let motor = &mut self.motor;
-        let [stiffness, damping] = core::array::from_fn(|i| motor.of_mass[i] * mass + motor.besides[i]);
-        let resistance = damping + stiffness * N::splat(h);
-        let drives = N::and(N::ZERO.lt(resistance), N::ZERO.lt(k));
-        let safe = N::select(drives, resistance, N::ONE);
-        let softness = N::ONE / (safe * N::splat(h));
-        let bias = (stiffness * (value - motor.target_position) - damping * motor.target_velocity) / safe;
-        let change = (gradient.rate(pair) + bias + softness * motor.impulse) / (k + softness);
-        let after = N::select(drives, motor.impulse - change, N::ZERO);
-        let after = after.max(-motor.most).min(motor.most);
-        response.push(pair, after - motor.impulse);
-        motor.impulse = after;
+        let (change, taken) = self.spring.drive((gradient.rate(pair), value), (k, mass), h);
+        response.push(pair, change);
+        let left = N::ONE - taken;
+        let (change, _) = self.motor.drive((gradient.rate(pair), value), (k * left, mass), h);
+        response.push(pair, change * left);
+        self.spring.impulse -= change * taken;
     }
 
     /// The impulse along the coordinate.
     #[inline(always)]
     pub(super) fn impulse(&self) -> N {
-        self.impulses[0] - self.impulses[1] + self.motor.impulse
+        self.impulses[0] - self.impulses[1] + self.spring.impulse + self.motor.impulse
     }
 }
 
 impl Single<f32> {
-    /// Whether a pass would change anything, at a rate of the coordinate: there is a motor, an impulse, or a limit ahead.
+    /// Whether a pass would change anything, at a rate of the coordinate: there is a motor, a spring, an
+    /// impulse, or a limit ahead.
     pub(super) fn may_act(&self, value: f32, rate: f32, h: f32) -> bool {
         let [min, max] = self.limits;
         let ahead = value + rate * h;
         let is_between = |x: f32| min < x && x < max;
-        self.motor.most > 0.0 || self.impulses != [0.0; 2] || !(is_between(value) && is_between(ahead))
+        self.motor.most + self.spring.most > 0.0
+            || self.impulses != [0.0; 2]
+            || !(is_between(value) && is_between(ahead))
+    }
+}
+
+/// Stiffness and damping of a law per effective mass, and besides.
+pub(super) fn laws(drive: &Drive) -> ([f32; 2], [f32; 2]) {
+    match *drive {
+        Drive::Spring(spring) => {
+            let omega = core::f32::consts::TAU * spring.frequency;
+            ([omega * omega, 2.0 * spring.damping_ratio * omega], [0.0; 2])
+        }
+        Drive::Acceleration { stiffness, damping } => ([stiffness, damping], [0.0; 2]),
+        Drive::Force { stiffness, damping } => ([0.0; 2], [stiffness, damping]),
     }
 }
 

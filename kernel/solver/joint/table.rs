@@ -1,12 +1,15 @@
 //! All joints between steps.
 
 use super::super::{MassRow, RowInput};
+use super::coupling::{CouplingDef, CouplingRecord};
 use super::def::{JointDef, JointError};
-use super::dim::{AXES, BLOCK, with_least_inertia};
+use super::dim::{AXES, BLOCK, TURNS, with_least_inertia};
+use super::gap::JointGap;
 use crate::contact::Link;
 use crate::data::Parts;
 use crate::graph::{COLOR_COUNT, ColorGraph, ConstraintKind};
 use crate::math::{Angular, Vector};
+use crate::table::BodyTable;
 
 /// What a joint did to body B in the last substep, and against which it pushed A.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,6 +20,8 @@ pub struct JointReaction {
     pub torque: Angular,
     /// Forces in N, or torques in N·m, of the motors, by number of the coordinate.
     pub motors: [f32; AXES],
+    /// Torque of the orientation motor on B, in world axes, in N·m. It is part of `torque`.
+    pub orientation: Angular,
 }
 
 /// State of a joint between steps.
@@ -25,17 +30,27 @@ pub(super) struct Record {
     pub(super) def: JointDef,
     /// Impulses of what is locked in A's frame, N·s or N·m·s, by number of the coordinate.
     pub(super) block: [f32; BLOCK],
-    /// Impulses of lower limit, upper limit and motor, by number of the coordinate.
-    pub(super) singles: [[f32; 3]; AXES],
+    /// Impulses of lower limit, upper limit, spring and motor, by number of the coordinate.
+    pub(super) singles: [[f32; 4]; AXES],
+    /// Impulses of the orientation motor along A's axes, N·m·s.
+    pub(super) orientation: [f32; TURNS],
     /// The angle that counts turns, at the end of the last step. NaN before the first.
     pub(super) angle: f32,
     pub(super) reaction: JointReaction,
+    /// Set if it is a coupling. Then the definition has its bodies and anchors only.
+    pub(super) coupling: Option<Box<CouplingRecord>>,
 }
 
 impl Record {
     fn new(def: JointDef) -> Self {
-        let (block, singles) = ([0.0; BLOCK], [[0.0; 3]; AXES]);
-        Self { def, block, singles, angle: f32::NAN, reaction: JointReaction::default() }
+        let (block, singles, orientation) = ([0.0; BLOCK], [[0.0; 4]; AXES], [0.0; TURNS]);
+        let (angle, reaction) = (f32::NAN, JointReaction::default());
+        Self { def, block, singles, orientation, angle, reaction, coupling: None }
+    }
+
+    fn of_coupling(def: CouplingDef) -> Self {
+        let joint = JointDef::free(def.bodies, def.ends.map(|end| end.frame.anchor));
+        Self { coupling: Some(Box::new(CouplingRecord::new(def))), ..Self::new(joint) }
     }
 }
 
@@ -52,15 +67,58 @@ impl JointTable {
     /// Adds a joint and wakes its bodies. They are in one island if both are dynamic.
     pub fn add(&mut self, link: &mut Link, def: JointDef) -> Result<u32, JointError> {
         def.check()?;
-        if let Some(dead) = def.bodies.into_iter().find(|body| !link.bodies.ids.is_live(*body)) {
+        self.enter(link, Record::new(def))
+    }
+
+    /// Adds a coupling, as a joint with an id among joints, and wakes its bodies.
+    pub fn add_coupling(&mut self, link: &mut Link, def: CouplingDef) -> Result<u32, JointError> {
+        def.check()?;
+        self.enter(link, Record::of_coupling(def))
+    }
+
+    fn enter(&mut self, link: &mut Link, record: Record) -> Result<u32, JointError> {
+        let bodies = record.def.bodies;
+        if let Some(dead) = bodies.into_iter().find(|body| !link.bodies.ids.is_live(*body)) {
             return Err(JointError::NoBody(dead));
         }
-        let id = link.connect(KIND, def.bodies);
+        let id = link.connect(KIND, bodies);
         match self.records.get_mut(id as usize) {
-            Some(place) => *place = Record::new(def),
-            None => self.records.push(Record::new(def)),
+            Some(place) => *place = record,
+            None => self.records.push(record),
         }
         Ok(id)
+    }
+
+    /// Changes all of a coupling but its bodies, and wakes them if anything is different. Turns are counted on.
+    pub fn set_coupling(&mut self, link: &mut Link, id: u32, def: CouplingDef) -> Result<(), JointError> {
+        def.check()?;
+        let is_live = link.bodies.constraints(KIND).is_live(id);
+        let record = self.records.get_mut(id as usize).filter(|_| is_live);
+        let Some(coupling) = record.and_then(|record| record.coupling.as_deref_mut()) else {
+            return Err(JointError::NoJoint(id));
+        };
+        if let Some(other) = (0..2).find(|side| coupling.def.bodies[*side] != def.bodies[*side]) {
+            return Err(JointError::NoBody(def.bodies[other]));
+        }
+        if coupling.def == def {
+            return Ok(());
+        }
+        coupling.def = def;
+        def.bodies.into_iter().for_each(|body| link.wake_body(body));
+        Ok(())
+    }
+
+    /// The force of a coupling along the coordinate at A in the last substep, N or N·m: positive where it increases the coordinate.
+    /// Along the one at B it is the ratio times that. 0 for an unknown id.
+    pub fn coupling_force(&self, id: u32) -> f32 {
+        let coupling = self.records.get(id as usize).and_then(|record| record.coupling.as_deref());
+        coupling.map_or(0.0, |coupling| coupling.force)
+    }
+
+    /// How far locked coordinates and limits of a joint or coupling are off, by the bodies' present poses. `None` for an unknown
+    /// id.
+    pub fn gap(&self, id: u32, bodies: &BodyTable) -> Option<JointGap> {
+        bodies.constraints(KIND).is_live(id).then(|| self.records[id as usize].gap(bodies))
     }
 
     /// Changes all of a joint but its bodies, and wakes them if anything is different. What is kept has its impulses.
@@ -70,6 +128,9 @@ impl JointTable {
             return Err(JointError::NoJoint(id));
         }
         let record = &mut self.records[id as usize];
+        if record.coupling.is_some() {
+            return Err(JointError::NoJoint(id));
+        }
         if let Some(other) = (0..2).find(|side| record.def.bodies[*side] != def.bodies[*side]) {
             return Err(JointError::NoBody(def.bodies[other]));
         }
@@ -81,8 +142,11 @@ impl JointTable {
                 record.block[number] = 0.0;
             }
             if def.is_single(number) != record.def.is_single(number) {
-                record.singles[number] = [0.0; 3];
+                record.singles[number] = [0.0; 4];
             }
+        }
+        if def.orientation.is_none() {
+            record.orientation = [0.0; TURNS];
         }
         record.def = def;
         def.bodies.into_iter().for_each(|body| link.wake_body(body));

@@ -16,6 +16,7 @@ use super::def::JointSolver;
 use super::dim::{AXES, BLOCK, DOF, inverse_of, motion, screw, with_least_inertia};
 use super::elimination::{self, Link, Node, Screw};
 use super::forest::{Edge, Forest, GROUND, Span};
+use super::orientation::OrientationRow;
 use super::place::{Gradient, Response};
 use super::row::{Hold, NOT_SOFT, Row};
 use super::single::Single;
@@ -96,6 +97,8 @@ struct TreeJoint {
     load: f32,
     /// The impulse on B and its moment of what is not locked.
     besides: Screw,
+    /// The orientation motor, if it has one.
+    orientation: Option<OrientationRow<f32>>,
 }
 
 impl JointTrees {
@@ -209,9 +212,15 @@ impl JointTrees {
                 let singles = &mut tree.singles[tree.joints[k].singles_from(tree.first_single)];
                 let joint = &mut tree.joints[k];
                 let row = &mut joint.row;
-                row.set(singles, (0, hold), record, constraints.get(branch.id).bodies, from);
+                row.set(
+                    (singles, joint.orientation.as_mut()),
+                    (0, hold),
+                    record,
+                    constraints.get(branch.id).bodies,
+                    from,
+                );
                 row.finish(from.masses);
-                joint.is_warm = !singles.is_empty() || row.damping != [0.0; 2];
+                joint.is_warm = !singles.is_empty() || joint.orientation.is_some() || row.damping != [0.0; 2];
                 let place = |place: u32| if place == GROUND { GROUND } else { place - span.bodies[0] };
                 let places = branch.places.map(place);
                 tree.links[k].places = places;
@@ -240,6 +249,7 @@ impl JointTrees {
                 arms: [0.0; 2],
                 load: 0.0,
                 besides: [0.0; DOF],
+                orientation: def.orientation.is_some().then_some(OrientationRow::NONE),
             });
         }
         singles.clear();
@@ -281,7 +291,7 @@ impl JointTrees {
         for (branch, joint) in self.forest.branches.iter().zip(&self.joints) {
             // SAFETY: no other thread runs.
             let record = unsafe { records.0.one(branch.id as usize) };
-            joint.row.store(&self.singles[range(joint.singles)], 0, record);
+            joint.row.store((&self.singles[range(joint.singles)], joint.orientation.as_ref()), 0, record);
         }
     }
 }
@@ -388,6 +398,7 @@ impl Tree<'_> {
         unsafe {
             self.apply(1.0, sweep, sweep.pass == Pass::Solve);
             for k in 0..self.joints.len() {
+                self.turn(k, sweep);
                 self.solve_singles(k, sweep);
             }
         }
@@ -420,6 +431,38 @@ impl Tree<'_> {
         }
     }
 
+    /// Solves the orientation motor of a joint, and changes the impulses of all joints so that they stay solved.
+    ///
+    /// # Safety
+    /// As [`solve`](Self::solve).
+    unsafe fn turn(&mut self, k: usize, sweep: &Sweep) {
+        self.joints[k].besides = [0.0; DOF];
+        let Some(mut motor) = self.joints[k].orientation else { return };
+        let (row, Sweep { bodies, params, .. }) = (&self.joints[k].row, sweep);
+        // SAFETY: by the contract.
+        let (place, pair) = unsafe { (row.start.now(bodies, &row.ids), Pair::<f32>::load(bodies, &row.ids)) };
+        let turning = motor.look(&place);
+        if sweep.pass == Pass::Solve {
+            let alone = turning.gradients.map(|gradient| row.masses.response(&gradient));
+            let responses = turning.gradients.map(|gradient| self.beside(k, &gradient));
+            let changes = motor.act(&turning, (&responses, &alone), &pair, params.h);
+            self.joints[k].orientation = Some(motor);
+            let mut sum = Angular::ZERO;
+            for (gradient, change) in turning.gradients.iter().zip(changes) {
+                sum += gradient.moments[1] * change;
+            }
+            self.beside(k, &place.gradient(Vector::ZERO, sum));
+            // SAFETY: by the contract.
+            unsafe { self.apply(1.0, sweep, false) };
+        }
+        let joint = &mut self.joints[k];
+        joint.row.turning = Angular::ZERO;
+        for (gradient, impulse) in turning.gradients.iter().zip(motor.impulses) {
+            joint.row.turning += gradient.moments[1] * impulse;
+        }
+        joint.besides = screw(Vector::ZERO, joint.row.turning);
+    }
+
     /// Solves limits and motors of a joint, and changes the impulses of all joints so that they stay solved.
     ///
     /// # Safety
@@ -427,7 +470,6 @@ impl Tree<'_> {
     unsafe fn solve_singles(&mut self, k: usize, sweep: &Sweep) {
         let Sweep { pass, bodies, params } = sweep;
         let biased = *pass == Pass::Solve;
-        self.joints[k].besides = [0.0; DOF];
         for number in self.joints[k].singles_from(self.first_single) {
             let (joint, single) = (&mut self.joints[k], &mut self.singles[number]);
             let row = &joint.row;
@@ -490,7 +532,10 @@ impl Tree<'_> {
             let range = joint.singles_from(self.first_single);
             joint.row.block.iter_mut().for_each(|locked| locked.impulse = 0.0);
             // SAFETY: by the contract.
-            unsafe { joint.row.run::<0>(&mut self.singles[range], &sweep.bodies, sweep.params, sweep.pass) };
+            unsafe {
+                let more = (&mut self.singles[range], joint.orientation.as_mut());
+                joint.row.run::<0>(more, &sweep.bodies, sweep.params, sweep.pass);
+            }
         }
     }
 

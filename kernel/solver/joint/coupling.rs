@@ -1,0 +1,145 @@
+//! What a coupling does: gears, racks, pulleys. One coordinate of each of two bodies in frames of the world, and limits of their
+//! weighted sum.
+
+use super::def::{Give, JointError, JointFrame, are_in_order};
+use super::dim::{TURNING, angles};
+use crate::math::{Rot, Vector, WorldPose, WorldVector};
+use crate::table::BodyTable;
+
+/// A coordinate of a frame of a body in a frame of the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EndCoordinate {
+    /// The angle about the x axes in 3D, in 2D the angle: rad. It counts turns.
+    Turn,
+    /// The way of the anchor along the x axis of the world frame, m.
+    Shift,
+    /// The distance of the anchor from the origin of the world frame, m.
+    Distance,
+}
+
+/// One end of a coupling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CouplingEnd {
+    /// Which coordinate of the body's frame.
+    pub coordinate: EndCoordinate,
+    /// The frame on the body.
+    pub frame: JointFrame,
+    /// The frame of the world.
+    pub ground: WorldPose,
+}
+
+/// Definition of a coupling: limits of the sum of a coordinate at A and `ratio` times one at B.
+///
+/// - Gears: two turns. With radii r and s of wheels that mesh outside, the ratio is s / r; inside, −s / r.
+/// - Rack and pinion: a turn and a shift, ratio ±1 / r.
+/// - Pulley: two distances. A rope has no lower limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CouplingDef {
+    /// A and B: two different bodies.
+    pub bodies: [u32; 2],
+    /// The ends at A and at B.
+    pub ends: [CouplingEnd; 2],
+    /// The weight of the coordinate at B. Not 0.
+    pub ratio: f32,
+    /// Least and greatest sum, in units of the coordinate at A; equal where the coordinates are tied both ways.
+    pub limits: [f32; 2],
+    /// How far limits give way.
+    pub give: Give,
+}
+
+impl CouplingEnd {
+    /// The frame on the body in the world: the arm from the centre of mass to the anchor, and the axes.
+    pub(super) fn place(&self, bodies: &BodyTable, body: u32) -> (Vector, Rot) {
+        let rotation = bodies.poses[body as usize].rotation;
+        let arm = self.frame.anchor - bodies[body].local_center;
+        (rotation.rotate(arm), rotation.mul(self.frame.basis).normalized())
+    }
+
+    /// From the origin of the world frame to a body's centre of mass.
+    pub(super) fn offset(&self, bodies: &BodyTable, body: u32) -> WorldVector {
+        bodies.poses[body as usize].center - self.ground.position
+    }
+
+    /// The coordinate now; of angles the one nearest to another.
+    pub(super) fn value(&self, bodies: &BodyTable, body: u32, near: f64) -> f64 {
+        let (arm, basis) = self.place(bodies, body);
+        let from = self.offset(bodies, body) + arm.to_world();
+        match self.coordinate {
+            EndCoordinate::Turn => {
+                let (angle, full) =
+                    (f64::from(angles([self.ground.rotation, basis])[TURNING].0), core::f64::consts::TAU);
+                angle + ((near - angle) / full).round() * full
+            }
+            EndCoordinate::Shift => {
+                let axis = self.ground.rotation.rotate(Vector::X);
+                f64::from(from.to_local().dot(axis))
+            }
+            EndCoordinate::Distance => f64::from(from.to_local().length()),
+        }
+    }
+
+    fn is_valid(&self) -> bool {
+        let Self { frame, ground, .. } = self;
+        frame.anchor.is_finite()
+            && frame.basis.is_finite()
+            && ground.position.is_finite_world()
+            && ground.rotation.is_finite()
+    }
+}
+
+impl CouplingDef {
+    /// The sum of the coordinates now, with angles from −π to π. Limits equal to it hold the bodies as they are.
+    ///
+    /// # Panics
+    /// If a body is not in the table.
+    pub fn sum(&self, bodies: &BodyTable) -> f32 {
+        let [a, b] = core::array::from_fn(|side| self.ends[side].value(bodies, self.bodies[side], 0.0));
+        (a + f64::from(self.ratio) * b) as f32
+    }
+
+    /// Whether it and a pair of bodies can be used. Bodies are not looked at.
+    pub(super) fn check(&self) -> Result<(), JointError> {
+        let [a, b] = self.bodies;
+        if a == b {
+            return Err(JointError::SameBody(a));
+        }
+        if let Some(number) = self.ends.iter().position(|end| !end.is_valid()) {
+            return Err(JointError::End(number));
+        }
+        let has_ratio = self.ratio.is_finite() && self.ratio != 0.0;
+        if !(has_ratio && are_in_order(self.limits) && self.give.is_valid()) {
+            return Err(JointError::Coupling);
+        }
+        Ok(())
+    }
+}
+
+/// State of a coupling between steps.
+#[derive(Clone, Debug)]
+pub(super) struct CouplingRecord {
+    pub(super) def: CouplingDef,
+    /// Impulses of the lower and the upper limit, N·s or N·m·s.
+    pub(super) impulses: [f32; 2],
+    /// The coordinates at the end of the last step, in which angles count turns.
+    pub(super) values: [f64; 2],
+    /// The force along the coordinate at A in the last substep, N or N·m.
+    pub(super) force: f32,
+}
+
+impl CouplingRecord {
+    pub(super) fn new(def: CouplingDef) -> Self {
+        Self { def, impulses: [0.0; 2], values: [0.0; 2], force: 0.0 }
+    }
+
+    /// The coordinates now, with the turns since the coupling began.
+    pub(super) fn values_now(&self, bodies: &BodyTable) -> [f64; 2] {
+        let Self { def, values, .. } = self;
+        core::array::from_fn(|side| def.ends[side].value(bodies, def.bodies[side], values[side]))
+    }
+
+    /// The limit from which the sum is counted.
+    pub(super) fn zero(&self) -> f64 {
+        let [min, max] = self.def.limits;
+        f64::from(if min.is_finite() { min } else { max })
+    }
+}
