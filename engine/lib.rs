@@ -94,6 +94,8 @@
 //! | change how it falls | [`Gravity`](prelude::Gravity), [`GravityScale`](prelude::GravityScale), [`LinearDamping`](prelude::LinearDamping), [`MaxLinearSpeed`](prelude::MaxLinearSpeed) |
 //! | hold it along or about axes | [`LockedAxes`](prelude::LockedAxes) |
 //! | join it to another: hinges, sliders, ropes, motors | [joints](dynamics::joints), [`RevoluteJoint`](prelude::RevoluteJoint), [`DistanceJoint`](prelude::DistanceJoint) |
+//! | put it on wheels, drag it, choose each axis of a joint | [`WheelJoint`](prelude::WheelJoint), [`MouseJoint`](prelude::MouseJoint), [`GenericJoint`](prelude::GenericJoint) |
+//! | let it tear off | [`JointBreakThreshold`](prelude::JointBreakThreshold) |
 //! | make it slide or bounce | [`Friction`](prelude::Friction), [`Restitution`](prelude::Restitution) |
 //! | choose what it collides with | [`CollisionLayers`](prelude::CollisionLayers), [`Sensor`](prelude::Sensor), [`Dominance`](prelude::Dominance) |
 //! | know what touches what | [`CollisionStart`](prelude::CollisionStart), [`CollisionEnd`](prelude::CollisionEnd), [`CollidingEntities`](prelude::CollidingEntities), [`Collisions`](prelude::Collisions) |
@@ -107,7 +109,7 @@
 //! | draw it smoothly between steps | [`TransformInterpolation`](prelude::TransformInterpolation), [`TransformExtrapolation`](prelude::TransformExtrapolation) |
 //! | pause, slow down or step by hand | [`Time<Physics>`](schedule::Physics), [`PhysicsSchedule`](prelude::PhysicsSchedule) |
 //! | run a system within the step | [`PhysicsStepSystems`](schedule::PhysicsStepSystems), [`SubstepSchedule`](prelude::SubstepSchedule) |
-//! | make it more accurate | [`SubstepCount`](prelude::SubstepCount), [`SolverConfig`](dynamics::solver::SolverConfig), [`SpeculativeMargin`](prelude::SpeculativeMargin) |
+//! | make it more accurate | [`SubstepCount`](prelude::SubstepCount), [`JointSolver`](prelude::JointSolver), [`SolverConfig`](dynamics::solver::SolverConfig), [`SpeculativeMargin`](prelude::SpeculativeMargin) |
 //! | see shapes, contacts and casts as lines | `PhysicsDebugPlugin`, `PhysicsGizmos`, `DebugRender` |
 //! | see where time goes | [`StepTimes`](schedule::StepTimes), [`diagnostics`] |
 //!

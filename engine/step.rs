@@ -30,7 +30,8 @@ use crate::{
         drain::{drain_lifecycle, remove_lost_late},
         integrator::IntegrationSystems,
         joints::{
-            forces::store_joint_forces, lifecycle::note_changed_joints, settle::settle_joints, table::Joints,
+            JointSolver, breaking::send_broken, forces::store_joint_forces, lifecycle::note_changed_joints,
+            settle::settle_joints, table::Joints,
         },
         lifecycle::{self, note_changed_colliders},
         materials::refresh_surfaces,
@@ -237,9 +238,10 @@ stages! {
     RemoveLost.in_set(PhysicsStepSystems::Finalize) => {
         Step: (remove_lost_late.pipe(forget_views), fill_graph).chain(),
     }
-    /// Sends collision events.
+    /// Sends events of joints and collisions.
     SendEvents.in_set(CollisionEventSystems) => {
         NarrowPhase: (send_hits, send_collision_events).chain(),
+        Joints: send_broken.before(send_hits),
     }
     /// Updates [`Sleeping`](crate::dynamics::rigid_body::sleeping::Sleeping) components.
     MirrorSleep.in_set(PhysicsStepSystems::Finalize) => { Sleeping: mirror_sleeping }
@@ -277,6 +279,7 @@ pub(crate) fn install(app: &mut App) {
         .init_resource::<CustomContacts>()
         .init_resource::<StepSolver>()
         .init_resource::<Joints>()
+        .init_resource::<JointSolver>()
         .init_resource::<WorkerCount>()
         .init_resource::<RowWidth>()
         .init_resource::<StepTimes>()

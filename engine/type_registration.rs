@@ -89,16 +89,17 @@ fn register_dynamics(app: &mut App) {
 fn register_joints(app: &mut App) {
     use crate::dynamics::{
         joints::{
-            AngleLimit, AngularMotor, DistanceLimit, JointAnchor, JointBasis, JointCollisionDisabled,
-            JointDamping, JointDisabled, JointForces, JointFrame, LinearMotor, MotorModel, dim,
+            AngleLimit, AngularMotor, AxisMotor, DistanceLimit, JointAnchor, JointAxis, JointBasis,
+            JointBreakThreshold, JointCollisionDisabled, JointDamping, JointDisabled, JointForces,
+            JointFrame, JointSoftness, JointSolver, LinearMotor, MotorModel, dim,
         },
         solver::joint_graph::{JointComponentId, JointGraphEdge, JointId},
     };
 
     dim::register_kinds(app);
     register!(app:
-        AngleLimit, AngularMotor, DistanceLimit, JointAnchor, JointBasis, JointCollisionDisabled, JointDamping,
-        JointDisabled, JointForces, JointFrame, LinearMotor, MotorModel, JointComponentId, JointGraphEdge, JointId,
+        AngleLimit, AngularMotor, AxisMotor, DistanceLimit, JointAnchor, JointAxis, JointSoftness, JointBasis, JointBreakThreshold, JointCollisionDisabled, JointDamping,
+        JointDisabled, JointForces, JointFrame, JointSolver, LinearMotor, MotorModel, JointComponentId, JointGraphEdge, JointId,
     );
 }
 

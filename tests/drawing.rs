@@ -324,6 +324,22 @@ fn joints_are_drawn_with_their_anchors_gap_and_limits() {
     app.world_mut().spawn(PrismaticJoint::new(post, door).with_limits(-1.0, 1.0));
     app.world_mut().spawn(DistanceJoint::new(post, door).with_max_distance(5.0));
     app.world_mut().spawn(FixedJoint::new(post, door).with_anchor(Vector::X * 2.0));
+    let marks = |app: &App| drawn(app).len();
+    let mut before = marks(&app);
+    let mut more = |app: &mut App, what: &str| {
+        frame(app);
+        frame(app);
+        assert!(marks(app) > before, "{what} draws nothing");
+        before = marks(app);
+    };
+    more(&mut app, "a slider");
+    let generic = GenericJoint::new(post, door).with_local_anchor1(Vector::X);
+    app.world_mut().spawn(generic.with_limits(JointCoordinate::Y, -1.0, Scalar::INFINITY));
+    more(&mut app, "a generic joint");
+    app.world_mut().spawn(WheelJoint::new(post, door).with_suspension_limits(-0.2, 0.2));
+    more(&mut app, "a wheel");
+    app.world_mut().spawn((MouseJoint::new(door), Transform::from_xyz(0.0, 1.0, 0.0)));
+    more(&mut app, "a mouse joint");
     app.world_mut()
         .spawn(PrismaticJoint::new(post, door).with_slider_axis(Vector::NAN).with_limits(0.0, 1.0));
     app.world_mut().spawn(RevoluteJoint::new(post, door).with_local_anchor1(Vector::NAN));

@@ -99,7 +99,7 @@ fn settings_come_back() {
     comes_back(PhysicsTransformConfig { propagate_before_physics: false, ..Default::default() });
     comes_back(ColliderTreeOptimization::default());
     comes_back(TreeOptimizationMode::Adaptive { reinsert_threshold: 0.1, partial_rebuild_threshold: 0.7 });
-    comes_back((WorkerCount(3), RowWidth::Four));
+    comes_back((WorkerCount(3), RowWidth::Four, JointSolver::Rigid));
 }
 
 #[test]
@@ -126,6 +126,10 @@ fn components_come_back() {
     comes_back(DistanceJoint::new(body, collider).with_limits(0.1, 0.7));
     comes_back(PrismaticJoint::new(body, collider).with_limits(0.1, 0.7).with_motor(LinearMotor::default()));
     comes_back(RevoluteJoint::new(body, collider).with_angle_limits(0.1, 0.7).with_local_anchor2(Vector::Y));
+    comes_back(GenericJoint::new(body, collider).with_limits(JointCoordinate::Y, 0.1, 0.7));
+    comes_back(WheelJoint::new(body, collider).with_suspension_limits(0.1, 0.7));
+    comes_back(MouseJoint::new(body).with_max_force(0.3));
+    comes_back(JointBreakThreshold::new(0.1, 0.7));
     comes_back((JointDamping { linear: 0.1, angular: 0.3 }, JointForces::new(), JointDisabled));
     comes_back(JointCollisionDisabled);
     let mut world = World::new();

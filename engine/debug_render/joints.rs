@@ -16,8 +16,8 @@ use super::{
 };
 use crate::{
     dynamics::joints::{
-        AngleLimit, DistanceJoint, DistanceLimit, EntityConstraint, FixedJoint, JointDisabled,
-        PrismaticJoint, kind::JointKind, space::rotation_of,
+        AngleLimit, DistanceJoint, DistanceLimit, EntityConstraint, FixedJoint, GenericJoint,
+        JointCoordinate, JointDisabled, MouseJoint, PrismaticJoint, kind::JointKind, space::rotation_of,
     },
     math::{Vector, to_f32},
     physics_transform::{Position, Rotation},
@@ -105,13 +105,7 @@ impl DrawnJoint {
     }
 
     /// Draws an axis of the first frame between two positions, with a mark at each that is a limit.
-    pub(super) fn draw_slider(
-        &self,
-        axis: Vec3,
-        limits: Option<DistanceLimit>,
-        color: Color,
-        gizmos: &mut Gizmos<PhysicsGizmos>,
-    ) {
+    pub(super) fn draw_slider(&self, axis: Vec3, limits: Option<DistanceLimit>, pen: &mut Pen) {
         let Some(axis) = axis.try_normalize() else { return };
         let (size, mut lines) = (self.size(), Strips::default());
         let (min, max) = limits.map_or((-size, size), |limits| (to_f32(limits.min), to_f32(limits.max)));
@@ -124,17 +118,11 @@ impl DrawnJoint {
             lines.push([axis * min - mark, axis * min + mark]);
             lines.push([axis * max - mark, axis * max + mark]);
         }
-        lines.draw(&self.frames[0], color.into(), gizmos);
+        pen.draw(&lines, &self.frames[0]);
     }
 
     /// Draws the axis of a hinge, the range of its angle, and a line at its angle.
-    pub(super) fn draw_hinge(
-        &self,
-        axis: Vec3,
-        limits: Option<AngleLimit>,
-        color: Color,
-        gizmos: &mut Gizmos<PhysicsGizmos>,
-    ) {
+    pub(super) fn draw_hinge(&self, axis: Vec3, limits: Option<AngleLimit>, pen: &mut Pen) {
         let Some(axis) = axis.try_normalize() else { return };
         let size = self.size();
         let zero = axis.any_orthonormal_vector() * size;
@@ -145,8 +133,21 @@ impl DrawnJoint {
             push_sector(&mut range, axis, zero, min, max);
         }
         pointer.push([Vec3::ZERO, zero]);
-        range.draw(&self.frames[0], color.into(), gizmos);
-        pointer.draw(&self.frames[1], color.into(), gizmos);
+        pen.draw(&range, &self.frames[0]);
+        pen.draw(&pointer, &self.frames[1]);
+    }
+}
+
+/// Draws lines in the color of anchors.
+pub(super) struct Pen<'a, 'w, 's> {
+    color: Color,
+    gizmos: &'a mut Gizmos<'w, 's, PhysicsGizmos>,
+}
+
+impl Pen<'_, '_, '_> {
+    /// Draws lines in a frame.
+    pub(super) fn draw(&mut self, lines: &Strips, frame: &Affine3A) {
+        lines.draw(frame, self.color.into(), self.gizmos);
     }
 }
 
@@ -166,55 +167,74 @@ pub(super) fn push_sector(lines: &mut Strips, axis: Vec3, zero: Vec3, min: f32, 
 /// The number of lines of an arc.
 pub(super) const ARC: u32 = 24;
 
-impl DebugRenderConstraint<2> for FixedJoint {
-    type Context = ();
-
-    fn debug_render(
-        &self,
-        positions: [Vector; 2],
-        rotations: [Rotation; 2],
-        _: &mut (),
-        gizmos: &mut Gizmos<PhysicsGizmos>,
-        config: &PhysicsGizmos,
-    ) {
-        if let Some(joint) = DrawnJoint::new(self, positions, rotations) {
-            joint.draw_anchors(gizmos, config);
-        }
+/// Draws a joint of the engine: its anchors, and by `draw` what it leaves free.
+pub(super) fn draw_kind(
+    joint: &impl JointKind,
+    (positions, rotations): ([Vector; 2], [Rotation; 2]),
+    gizmos: &mut Gizmos<PhysicsGizmos>,
+    config: &PhysicsGizmos,
+    draw: impl FnOnce(&DrawnJoint, &mut Pen),
+) {
+    let Some(drawn) = DrawnJoint::new(joint, positions, rotations) else { return };
+    drawn.draw_anchors(gizmos, config);
+    if let Some(color) = config.joint_anchor_color {
+        draw(&drawn, &mut Pen { color, gizmos });
     }
 }
 
-impl DebugRenderConstraint<2> for DistanceJoint {
-    type Context = ();
-
-    fn debug_render(
-        &self,
-        positions: [Vector; 2],
-        rotations: [Rotation; 2],
-        _: &mut (),
-        gizmos: &mut Gizmos<PhysicsGizmos>,
-        config: &PhysicsGizmos,
-    ) {
-        if let Some(joint) = DrawnJoint::new(self, positions, rotations) {
-            joint.draw_anchors(gizmos, config);
+/// Implements drawing for kinds of joints, and lists their systems. Each comes with what draws its axes and limits.
+macro_rules! drawn_kinds {
+    ($(#[$doc:meta])* $list:ident: $($joint:ident => |$self:ident, $drawn:pat_param, $pen:pat_param| $draw:expr;)+) => {
+        $(#[$doc])*
+        pub(in crate::debug_render) fn $list() -> bevy_ecs::schedule::ScheduleConfigs<bevy_ecs::system::ScheduleSystem> {
+            use bevy_ecs::schedule::IntoScheduleConfigs;
+            ($($crate::debug_render::joints::debug_render_constraint::<$joint, 2>,)+).into_configs()
         }
-    }
+
+        $(impl $crate::debug_render::joints::DebugRenderConstraint<2> for $joint {
+            type Context = ();
+
+            fn debug_render(
+                &self,
+                positions: [$crate::math::Vector; 2],
+                rotations: [$crate::physics_transform::Rotation; 2],
+                _: &mut (),
+                gizmos: &mut bevy_gizmos::gizmos::Gizmos<$crate::debug_render::PhysicsGizmos>,
+                config: &$crate::debug_render::PhysicsGizmos,
+            ) {
+                let $self = self;
+                let draw = |$drawn: &$crate::debug_render::joints::DrawnJoint,
+                            $pen: &mut $crate::debug_render::joints::Pen| $draw;
+                $crate::debug_render::joints::draw_kind(self, (positions, rotations), gizmos, config, draw);
+            }
+        })+
+    };
 }
 
-impl DebugRenderConstraint<2> for PrismaticJoint {
-    type Context = ();
+pub(super) use drawn_kinds;
 
-    fn debug_render(
-        &self,
-        positions: [Vector; 2],
-        rotations: [Rotation; 2],
-        _: &mut (),
-        gizmos: &mut Gizmos<PhysicsGizmos>,
-        config: &PhysicsGizmos,
-    ) {
-        let Some(joint) = DrawnJoint::new(self, positions, rotations) else { return };
-        joint.draw_anchors(gizmos, config);
-        if let Some(color) = config.joint_anchor_color {
-            joint.draw_slider(dim::point(self.slider_axis), self.limits, color, gizmos);
+drawn_kinds! {
+    /// The systems that draw the joints of both dimensions.
+    draw_joints:
+    FixedJoint => |_joint, _, _| {};
+    DistanceJoint => |_joint, _, _| {};
+    MouseJoint => |_joint, _, _| {};
+    PrismaticJoint => |joint, drawn, pen| drawn.draw_slider(dim::point(joint.slider_axis), joint.limits, pen);
+    GenericJoint => |joint, drawn, pen| draw_axes(joint, drawn, pen);
+}
+
+/// Draws the axes of a joint that are not locked.
+fn draw_axes(joint: &GenericJoint, drawn: &DrawnJoint, pen: &mut Pen) {
+    for coordinate in JointCoordinate::ALL {
+        let axis = joint.axis(coordinate);
+        if axis.is_locked() {
+            continue;
+        }
+        let direction = dim::joints::direction(coordinate);
+        if JointCoordinate::TRANSLATIONS.contains(&coordinate) {
+            drawn.draw_slider(direction, axis.limits.map(DistanceLimit::from), pen);
+        } else {
+            drawn.draw_hinge(direction, axis.limits.map(AngleLimit::from), pen);
         }
     }
 }

@@ -12,6 +12,7 @@ use super::{
     contacts::draw_contacts,
     dim,
     draw::{draw_aabbs, draw_axes, draw_islands, draw_trees, is_enabled},
+    joints::draw_joints,
     meshes::hide_meshes,
 };
 use crate::{collision::contact_types::views::ContactViews, schedule::PhysicsSystems};
@@ -49,7 +50,7 @@ impl Plugin for PhysicsDebugPlugin {
                 )
                     .in_set(Drawing),
             )
-            .add_systems(PostUpdate, dim::joints::draw_joints().in_set(Drawing))
+            .add_systems(PostUpdate, (draw_joints(), dim::joints::draw_own_joints()).in_set(Drawing))
             .add_systems(PostUpdate, hide_meshes.before(VisibilitySystems::VisibilityPropagate))
             .configure_sets(
                 PostUpdate,

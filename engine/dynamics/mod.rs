@@ -31,9 +31,11 @@ pub mod prelude {
         ccd::{CcdPlugin, SpeculativeMargin, SweepMode, SweptCcd},
         integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity, IntegratorPlugin},
         joints::{
-            AngleLimit, AngularMotor, DistanceJoint, DistanceLimit, FixedJoint, JointAnchor, JointBasis,
-            JointCollisionDisabled, JointDamping, JointDisabled, JointForces, JointFrame, JointPlugin,
-            LinearMotor, MotorModel, PrismaticJoint, RevoluteJoint,
+            AngleLimit, AngularMotor, AxisMotor, DistanceJoint, DistanceLimit, FixedJoint, GenericJoint,
+            JointAnchor, JointAxis, JointBasis, JointBreakThreshold, JointBroken, JointCollisionDisabled,
+            JointCoordinate, JointDamping, JointDisabled, JointForces, JointFrame, JointPlugin,
+            JointSoftness, JointSolver, LinearMotor, MotorModel, MouseJoint, PrismaticJoint, RevoluteJoint,
+            WheelJoint,
         },
         rigid_body::{
             forces::{
@@ -65,7 +67,7 @@ pub mod prelude {
     };
     #[cfg(feature = "3d")]
     pub use super::{
-        joints::SphericalJoint,
+        joints::{AngularDrive, SphericalDrive, SphericalJoint, SphericalMotor},
         rigid_body::forces::{ConstantLocalAngularAcceleration, ConstantLocalTorque},
     };
 }

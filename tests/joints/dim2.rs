@@ -20,3 +20,8 @@ pub fn angle_of(rotation: Rotation) -> Scalar {
 pub fn spin_of(velocity: AngularVelocity) -> Scalar {
     velocity.0
 }
+
+/// A wheel that spins about z.
+pub fn dim_wheel(wheel: WheelJoint) -> WheelJoint {
+    wheel
+}

@@ -8,7 +8,7 @@ use avian::{
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 
-use super::joints::{INERTIA, MASS, Rig};
+use super::joints::{G, INERTIA, MASS, Rig};
 
 /// A body without a collider.
 pub fn rod() -> impl Bundle {
@@ -23,6 +23,11 @@ pub fn angle_of(rotation: Rotation) -> Scalar {
 /// The component about z.
 pub fn spin_of(velocity: AngularVelocity) -> Scalar {
     velocity.0.z
+}
+
+/// A wheel that spins about z.
+pub fn dim_wheel(wheel: WheelJoint) -> WheelJoint {
+    wheel.with_axle(Vector::Z)
 }
 
 /// The angle between a body's y axis and the world's.
@@ -98,4 +103,90 @@ fn a_second_joint_of_an_entity_replaces_the_first() {
     rig.remove::<DistanceJoint>(joint);
     rig.steps(8);
     assert!(!rig.acts(joint));
+}
+
+/// The turn that a body has made, in its own axes.
+fn apart(rotation: Quaternion, other: Quaternion) -> Scalar {
+    rotation.angle_between(other)
+}
+
+#[test]
+fn a_ball_turns_to_its_target_and_follows_a_new_one() {
+    let mut rig = Rig::weightless();
+    let (post, arm) = (rig.post(0.0, 0.0), rig.rod(0.0, 0.0));
+    let basis = Quaternion::from_rotation_z(0.5);
+    let target = Quaternion::from_scaled_axis(Vector::new(0.7, -1.1, 0.4));
+    let motor = SphericalMotor::default().with_target_rotation(Rotation(target));
+    let joint = SphericalJoint::new(post, arm).with_local_basis1(basis).with_motor(motor);
+    let joint = rig.spawn(joint);
+    rig.steps(128);
+    let now = rig.get::<Rotation>(arm).0;
+    assert!(apart(now, basis * target) < 1e-3, "{}", apart(now, basis * target));
+    let target = Quaternion::from_scaled_axis(Vector::new(-0.3, 2.0, 0.9));
+    rig.app.world_mut().get_mut::<SphericalJoint>(joint).expect("a joint").motor.target_rotation = target;
+    rig.steps(128);
+    let now = rig.get::<Rotation>(arm).0;
+    assert!(apart(now, basis * target) < 1e-3, "{}", apart(now, basis * target));
+}
+
+#[test]
+fn a_ball_reaches_a_velocity_about_its_twist_axis() {
+    let mut rig = Rig::weightless();
+    let (post, arm) = (rig.post(0.0, 0.0), rig.rod(0.0, 0.0));
+    let model = MotorModel::AccelerationBased { stiffness: 0.0, damping: 20.0 };
+    let motor = SphericalMotor::new(model).with_target_velocity(Vector::Y * 3.0);
+    rig.spawn(SphericalJoint::new(post, arm).with_motor(motor));
+    rig.steps(128);
+    let spin = rig.get::<AngularVelocity>(arm).0;
+    assert!((spin - Vector::Y * 3.0).length() < 0.03, "{spin}");
+}
+
+/// An arm of length L needs the torque m g L to stay level.
+#[test]
+fn a_swing_motor_stalls_where_a_twist_motor_would_not() {
+    for (share, stays) in [(0.5, false), (1.5, true)] {
+        let mut rig = Rig::new();
+        let (post, arm) = (rig.post(0.0, 0.0), rig.rod(1.0, 0.0));
+        let model = MotorModel::SpringDamper { frequency: 10.0, damping_ratio: 1.0 };
+        let swing = AngularDrive::new(model).with_max_torque(share * MASS * G);
+        let motor = SphericalMotor::default().with_twist_and_swing(AngularDrive::new(model), swing);
+        rig.spawn(SphericalJoint::new(post, arm).with_local_anchor2(Vector::NEG_X).with_motor(motor));
+        rig.steps(48);
+        assert_eq!(rig.angle(arm) > -0.05, stays, "{share}: {} rad", rig.angle(arm));
+    }
+}
+
+#[test]
+fn a_motor_without_a_rotation_has_no_effect() {
+    let mut rig = Rig::new();
+    let (post, arm) = (rig.post(0.0, 0.0), rig.rod(0.0, 0.0));
+    for motor in [
+        SphericalMotor { target_rotation: Quaternion::from_xyzw(0.0, 0.0, 0.0, 0.0), ..Default::default() },
+        SphericalMotor::default().with_target_velocity(Vector::NAN),
+        SphericalMotor::default().with_max_torque(-1.0),
+    ] {
+        rig.spawn(SphericalJoint::new(post, arm).with_motor(motor));
+    }
+    rig.steps(64);
+    assert!((rig.place(arm).y + 5.0).abs() < 0.1, "it falls: {}", rig.place(arm));
+}
+
+#[test]
+fn a_wheel_is_steered_about_its_suspension() {
+    let mut rig = Rig::weightless();
+    let (chassis, wheel) = (rig.post(0.0, 0.0), rig.rod(0.0, 0.0));
+    let model = MotorModel::AccelerationBased { stiffness: 0.0, damping: 20.0 };
+    let spin = AngularMotor::new(model).with_target_velocity(5.0);
+    let steering = AngularMotor::default().with_target_position(0.5);
+    let joint = WheelJoint::new(chassis, wheel).with_motor(spin).with_steering(steering);
+    let joint = rig.spawn(joint.with_steering_limits(-0.4, 0.4));
+    rig.steps(128);
+    let axle = *rig.get::<Rotation>(wheel) * Vector::X;
+    let wanted = Quaternion::from_rotation_y(0.4) * Vector::X;
+    assert!(axle.angle_between(wanted) < 0.01, "its limit holds it: {axle}");
+    assert!(rig.get::<AngularVelocity>(wheel).0.dot(axle) > 4.9, "and it spins");
+    rig.app.world_mut().get_mut::<WheelJoint>(joint).expect("a wheel").steering.set_enabled(false);
+    rig.steps(128);
+    let axle = *rig.get::<Rotation>(wheel) * Vector::X;
+    assert!(axle.angle_between(Vector::X) < 0.01, "without steering it is straight: {axle}");
 }

@@ -1,11 +1,16 @@
 //! Joints in an app: their life cycle in every order, what they do to bodies, and where they are listed.
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
+mod breaking;
+mod generic;
 mod graph;
 mod life;
 mod motors;
+mod mouse;
 mod physics;
 mod random;
+mod solver;
+mod wheel;
 
 use avian::{
     math::{Scalar, Vector},
@@ -18,7 +23,7 @@ use bevy_time::Time;
 use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
 
-use super::joints_dim::{angle_of, rod, spin_of};
+use super::joints_dim::{angle_of, dim_wheel, rod, spin_of};
 
 /// The length of a step, in s.
 pub const DT: Scalar = 1.0 / 64.0;

@@ -1,48 +1,28 @@
 //! Drawing of 2D joints. `dim3` exports the same names.
 
-use bevy_ecs::{
-    schedule::{IntoScheduleConfigs, ScheduleConfigs},
-    system::ScheduleSystem,
-};
-use bevy_gizmos::gizmos::Gizmos;
 use bevy_math::Vec3;
 
+use super::point;
 use crate::{
-    debug_render::{
-        configuration::PhysicsGizmos,
-        joints::{DebugRenderConstraint, DrawnJoint, debug_render_constraint},
-    },
-    dynamics::joints::{DistanceJoint, FixedJoint, PrismaticJoint, RevoluteJoint},
-    math::Vector,
-    physics_transform::Rotation,
+    debug_render::joints::drawn_kinds,
+    dynamics::joints::{JointCoordinate, RevoluteJoint, WheelJoint},
 };
 
-/// The systems that draw each kind of joint.
-pub(in crate::debug_render) fn draw_joints() -> ScheduleConfigs<ScheduleSystem> {
-    (
-        debug_render_constraint::<FixedJoint, 2>,
-        debug_render_constraint::<DistanceJoint, 2>,
-        debug_render_constraint::<PrismaticJoint, 2>,
-        debug_render_constraint::<RevoluteJoint, 2>,
-    )
-        .into_configs()
+drawn_kinds! {
+    /// The systems that draw the joints of this dimension.
+    draw_own_joints:
+    RevoluteJoint => |joint, drawn, pen| drawn.draw_hinge(Vec3::Z, joint.angle_limit, pen);
+    WheelJoint => |joint, drawn, pen| {
+        drawn.draw_slider(point(joint.suspension_axis), joint.suspension_limits, pen);
+        drawn.draw_hinge(Vec3::Z, None, pen);
+    };
 }
 
-impl DebugRenderConstraint<2> for RevoluteJoint {
-    type Context = ();
-
-    fn debug_render(
-        &self,
-        positions: [Vector; 2],
-        rotations: [Rotation; 2],
-        _: &mut (),
-        gizmos: &mut Gizmos<PhysicsGizmos>,
-        config: &PhysicsGizmos,
-    ) {
-        let Some(joint) = DrawnJoint::new(self, positions, rotations) else { return };
-        joint.draw_anchors(gizmos, config);
-        if let Some(color) = config.joint_anchor_color {
-            joint.draw_hinge(Vec3::Z, self.angle_limit, color, gizmos);
-        }
+/// The direction of a coordinate's axis in a frame.
+pub(in crate::debug_render) fn direction(coordinate: JointCoordinate) -> Vec3 {
+    match coordinate {
+        JointCoordinate::X => Vec3::X,
+        JointCoordinate::Y => Vec3::Y,
+        JointCoordinate::Angle => Vec3::Z,
     }
 }

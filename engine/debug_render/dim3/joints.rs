@@ -1,87 +1,41 @@
 //! Drawing of 3D joints. `dim2` exports the same names.
 
-use bevy_color::Color;
-use bevy_ecs::{
-    schedule::{IntoScheduleConfigs, ScheduleConfigs},
-    system::ScheduleSystem,
-};
-use bevy_gizmos::gizmos::Gizmos;
 use bevy_math::{Quat, Vec3};
 use core::f32::consts::TAU;
 
 use super::point;
 use crate::{
     debug_render::{
-        configuration::PhysicsGizmos,
-        joints::{ARC, DebugRenderConstraint, DrawnJoint, debug_render_constraint, push_sector},
+        joints::{ARC, DrawnJoint, Pen, drawn_kinds, push_sector},
         lines::Strips,
     },
-    dynamics::joints::{
-        AngleLimit, DistanceJoint, FixedJoint, PrismaticJoint, RevoluteJoint, SphericalJoint,
-    },
-    math::{Vector, to_f32},
-    physics_transform::Rotation,
+    dynamics::joints::{AngleLimit, JointCoordinate, RevoluteJoint, SphericalJoint, WheelJoint},
+    math::to_f32,
 };
 
-/// The systems that draw each kind of joint.
-pub(in crate::debug_render) fn draw_joints() -> ScheduleConfigs<ScheduleSystem> {
-    (
-        debug_render_constraint::<FixedJoint, 2>,
-        debug_render_constraint::<DistanceJoint, 2>,
-        debug_render_constraint::<PrismaticJoint, 2>,
-        debug_render_constraint::<RevoluteJoint, 2>,
-        debug_render_constraint::<SphericalJoint, 2>,
-    )
-        .into_configs()
+drawn_kinds! {
+    /// The systems that draw the joints of this dimension.
+    draw_own_joints:
+    RevoluteJoint => |joint, drawn, pen| drawn.draw_hinge(point(joint.hinge_axis), joint.angle_limit, pen);
+    SphericalJoint => |joint, drawn, pen| drawn.draw_socket(point(joint.twist_axis), joint.swing_limit, pen);
+    WheelJoint => |joint, drawn, pen| {
+        drawn.draw_slider(point(joint.suspension_axis), joint.suspension_limits, pen);
+        drawn.draw_hinge(point(joint.axle), None, pen);
+    };
 }
 
-impl DebugRenderConstraint<2> for RevoluteJoint {
-    type Context = ();
-
-    fn debug_render(
-        &self,
-        positions: [Vector; 2],
-        rotations: [Rotation; 2],
-        _: &mut (),
-        gizmos: &mut Gizmos<PhysicsGizmos>,
-        config: &PhysicsGizmos,
-    ) {
-        let Some(joint) = DrawnJoint::new(self, positions, rotations) else { return };
-        joint.draw_anchors(gizmos, config);
-        if let Some(color) = config.joint_anchor_color {
-            joint.draw_hinge(point(self.hinge_axis), self.angle_limit, color, gizmos);
-        }
-    }
-}
-
-impl DebugRenderConstraint<2> for SphericalJoint {
-    type Context = ();
-
-    fn debug_render(
-        &self,
-        positions: [Vector; 2],
-        rotations: [Rotation; 2],
-        _: &mut (),
-        gizmos: &mut Gizmos<PhysicsGizmos>,
-        config: &PhysicsGizmos,
-    ) {
-        let Some(joint) = DrawnJoint::new(self, positions, rotations) else { return };
-        joint.draw_anchors(gizmos, config);
-        if let Some(color) = config.joint_anchor_color {
-            joint.draw_socket(point(self.twist_axis), self.swing_limit, color, gizmos);
-        }
+/// The direction of a coordinate's axis in a frame.
+pub(in crate::debug_render) fn direction(coordinate: JointCoordinate) -> Vec3 {
+    match coordinate {
+        JointCoordinate::X | JointCoordinate::Twist => Vec3::X,
+        JointCoordinate::Y | JointCoordinate::SwingY => Vec3::Y,
+        JointCoordinate::Z | JointCoordinate::SwingZ => Vec3::Z,
     }
 }
 
 impl DrawnJoint {
     /// Draws the twist axes of a ball and its socket, and the cone of swings.
-    fn draw_socket(
-        &self,
-        axis: Vec3,
-        swing: Option<AngleLimit>,
-        color: Color,
-        gizmos: &mut Gizmos<PhysicsGizmos>,
-    ) {
+    fn draw_socket(&self, axis: Vec3, swing: Option<AngleLimit>, pen: &mut Pen) {
         let Some(axis) = axis.try_normalize() else { return };
         let size = self.size();
         let (mut socket, mut ball) = (Strips::default(), Strips::default());
@@ -90,8 +44,8 @@ impl DrawnJoint {
             _ => socket.push([Vec3::ZERO, axis * size]),
         }
         ball.push([Vec3::ZERO, axis * size]);
-        socket.draw(&self.frames[0], color.into(), gizmos);
-        ball.draw(&self.frames[1], color.into(), gizmos);
+        pen.draw(&socket, &self.frames[0]);
+        pen.draw(&ball, &self.frames[1]);
     }
 }
 

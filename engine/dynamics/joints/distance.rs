@@ -28,7 +28,7 @@ use crate::math::{Scalar, Vector};
 /// # use bevy_ecs::prelude::*;
 /// fn hang(mut commands: Commands, ceiling: Entity, lamp: Entity) {
 ///     // A rope of 2 m.
-///     commands.spawn(DistanceJoint::new(ceiling, lamp).with_local_anchor2(Vector::Y * 0.5).with_limits(0.0, 2.0));
+///     commands.spawn(DistanceJoint::rope(ceiling, lamp, 2.0).with_local_anchor2(Vector::Y * 0.5));
 /// }
 /// ```
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
@@ -62,6 +62,11 @@ impl DistanceJoint {
             limits: DistanceLimit::ZERO,
             compliance: 0.0,
         }
+    }
+
+    /// A rope: the origins of two bodies are no further apart than a length in metres, and may come nearer. Beyond Avian.
+    pub const fn rope(body1: Entity, body2: Entity, length: Scalar) -> Self {
+        Self::new(body1, body2).with_limits(0.0, length)
     }
 
     /// Sets both anchors to a point in the world, in metres.

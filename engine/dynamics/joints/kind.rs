@@ -17,7 +17,7 @@ use kernel::{
 use super::{
     frame::JointFrame,
     limits::{AngleLimit, DistanceLimit},
-    motor::{AngularMotor, LinearMotor, MotorModel},
+    motor::{AngularMotor, AxisMotor, LinearMotor, MotorModel},
     settings::JointDamping,
     space::rotation_of,
 };
@@ -183,6 +183,15 @@ pub(super) fn linear_motor(motor: &LinearMotor) -> Option<Motor> {
     kernel_motor(
         motor.enabled,
         [motor.target_velocity, motor.target_position, motor.max_force],
+        motor.motor_model,
+    )
+}
+
+/// The kernel's motor for one of any axis.
+pub(super) fn axis_motor(motor: &AxisMotor) -> Option<Motor> {
+    kernel_motor(
+        motor.enabled,
+        [motor.target_velocity, motor.target_position, motor.max_effort],
         motor.motor_model,
     )
 }

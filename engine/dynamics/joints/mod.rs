@@ -8,9 +8,13 @@
 //! | [`DistanceJoint`] | everything within a range of distances of two points |
 //! | [`PrismaticJoint`] | a movement along an axis, with limits and a motor |
 //! | [`RevoluteJoint`] | a turn about a point (2D) or an axis (3D), with limits and a motor |
+//! | [`GenericJoint`] | what its axes say |
+//! | [`WheelJoint`] | a movement along an axis by a spring, and a spin with a motor; in 3D steering |
+//! | [`MouseJoint`] | everything: it pulls a body to the pose of its entity |
 //! | `SphericalJoint` (3D) | all turns about a point, with limits of swing and twist |
 //!
-//! Beside it may be [`JointDisabled`], [`JointCollisionDisabled`], [`JointDamping`] and [`JointForces`].
+//! Beside it may be [`JointDisabled`], [`JointCollisionDisabled`], [`JointDamping`], [`JointForces`] and
+//! [`JointBreakThreshold`]. [`JointSolver`] chooses how all are solved.
 //!
 //! ```
 //! # use avian::{math::Vector, prelude::*};
@@ -32,6 +36,8 @@
 //! A compliance of 0 is rigid: it gives way as little as the substeps resolve. A compliance of α gives way by α times the force
 //! or torque, without damping of its own: it is a spring of stiffness 1/α. [`JointDamping`] damps it.
 
+mod axis;
+pub(crate) mod breaking;
 mod changes;
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
@@ -40,14 +46,18 @@ mod distance;
 mod fixed;
 pub(crate) mod forces;
 mod frame;
+mod generic;
 pub(crate) mod kind;
+mod kinds;
 pub(crate) mod lifecycle;
 mod limits;
 mod motor;
+mod mouse;
 mod plugin;
 mod prismatic;
 mod settings;
 pub(crate) mod settle;
+mod solver;
 #[cfg_attr(feature = "2d", path = "space2.rs")]
 #[cfg_attr(feature = "3d", path = "space3.rs")]
 pub(crate) mod space;
@@ -55,16 +65,22 @@ pub(crate) mod table;
 #[cfg(test)]
 mod tests;
 
+pub use axis::{JointAxis, JointSoftness};
+pub use breaking::{JointBreakThreshold, JointBroken};
 pub use dim::*;
 pub use distance::DistanceJoint;
 pub use fixed::FixedJoint;
 pub use frame::{JointAnchor, JointBasis, JointFrame};
+pub use generic::GenericJoint;
 pub use kind::EntityConstraint;
 pub use limits::{AngleLimit, DistanceLimit};
-pub use motor::{AngularMotor, LinearMotor, MotorModel};
+pub use motor::{AngularMotor, AxisMotor, LinearMotor, MotorModel};
+pub use mouse::MouseJoint;
 pub use plugin::JointPlugin;
 pub use prismatic::PrismaticJoint;
 pub use settings::{JointCollisionDisabled, JointDamping, JointDisabled, JointForces};
+pub use solver::JointSolver;
+pub use space::JointCoordinate;
 
 use bevy_ecs::schedule::SystemSet;
 

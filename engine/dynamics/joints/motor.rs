@@ -163,3 +163,28 @@ motor! {
     /// ```
     LinearMotor, max_force, with_max_force, velocity in "m/s", position in "metres", "force, in N"
 }
+
+motor! {
+    /// A motor along or about an axis of a [`GenericJoint`](super::GenericJoint): a [`LinearMotor`] or an [`AngularMotor`].
+    AxisMotor, max_effort, with_max_effort, velocity in "m/s or rad/s", position in "metres or radians",
+    "force in N, or torque in N·m"
+}
+
+impl AxisMotor {
+    /// A motor that is disabled.
+    pub const DISABLED: Self = Self::new_disabled(MotorModel::DEFAULT);
+}
+
+/// Makes an [`AxisMotor`] of a motor.
+macro_rules! to_axis_motor {
+    ($($motor:ident: $max:ident),+) => {$(
+        impl From<$motor> for AxisMotor {
+            fn from(motor: $motor) -> Self {
+                let $motor { enabled, target_velocity, target_position, $max: max_effort, motor_model } = motor;
+                Self { enabled, target_velocity, target_position, max_effort, motor_model }
+            }
+        }
+    )+};
+}
+
+to_axis_motor!(LinearMotor: max_force, AngularMotor: max_torque);

@@ -3,7 +3,7 @@
 use bevy_app::{App, Plugin};
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 
-use super::{JointSystems, lifecycle};
+use super::{JointBroken, JointSystems, lifecycle};
 use crate::{
     dynamics::solver::schedule::SolverSystems,
     schedule::PhysicsSchedule,
@@ -17,6 +17,7 @@ impl Plugin for JointPlugin {
     fn build(&self, app: &mut App) {
         step::install(app);
         lifecycle::watch(app);
+        app.add_message::<JointBroken>();
         app.configure_sets(
             PhysicsSchedule,
             JointSystems::PrepareLocalFrames

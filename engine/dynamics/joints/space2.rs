@@ -7,7 +7,7 @@ use kernel::{
 };
 
 use crate::{
-    math::{AdjustPrecision, AngularVector, AsF32, Vector, vector_to_kernel},
+    math::{AdjustPrecision, AngularVector, AsF32, Scalar, Vector, vector_to_kernel},
     physics_transform::Rotation,
 };
 
@@ -25,6 +25,11 @@ pub(super) const ROTATIONS: [usize; 1] = [ANGLE];
 
 /// No torque.
 pub(super) const NO_TORQUE: AngularVector = 0.0;
+
+/// The amount of a torque, in N·m.
+pub(super) fn magnitude(torque: AngularVector) -> Scalar {
+    torque.abs()
+}
 
 /// The rotation of a basis, with its operations.
 pub(crate) fn rotation_of(basis: Rot) -> Rotation {
@@ -50,4 +55,27 @@ pub(super) fn isometry(translation: Vector, rotation: Rot) -> Isometry {
 pub(super) fn turn_to(axis: Vector) -> k::Rot {
     let axis = vector_to_kernel(axis.normalize());
     k::Rot { cos: axis.x, sin: axis.y }
+}
+
+/// A coordinate of a joint: where its second frame is in its first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum JointCoordinate {
+    /// Along the first frame's x axis, in m.
+    X = X as isize,
+    /// Along the first frame's y axis, in m.
+    Y = Y as isize,
+    /// The angle from the first frame to the second, counter-clockwise, in rad. Between limits it counts turns.
+    Angle = ANGLE as isize,
+}
+
+/// The number of coordinates.
+pub(super) const COORDINATES: usize = JointCoordinate::ALL.len();
+
+impl JointCoordinate {
+    /// All coordinates.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Angle];
+    /// Those of the position.
+    pub const TRANSLATIONS: [Self; 2] = [Self::X, Self::Y];
+    /// Those of the rotation.
+    pub const ROTATIONS: [Self; 1] = [Self::Angle];
 }

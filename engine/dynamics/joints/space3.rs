@@ -7,7 +7,10 @@ use kernel::{
 };
 
 use crate::{
-    math::{AdjustPrecision, AngularVector, AsF32, Quaternion, Scalar, Vector, orthonormal_basis_from_vec},
+    math::{
+        AdjustPrecision, AngularVector, AsF32, Quaternion, Scalar, Vector, orthonormal_basis,
+        orthonormal_basis_from_vec,
+    },
     physics_transform::Rotation,
 };
 
@@ -25,6 +28,11 @@ pub(super) const ROTATIONS: [usize; 3] = [TWIST, SWING_Y, SWING_Z];
 
 /// No torque.
 pub(super) const NO_TORQUE: AngularVector = Vector::ZERO;
+
+/// The length of a torque, in N·m.
+pub(super) fn magnitude(torque: AngularVector) -> Scalar {
+    torque.length()
+}
 
 /// The rotation of a basis, with its operations.
 pub(crate) fn rotation_of(basis: Rot) -> Rotation {
@@ -54,4 +62,47 @@ pub(super) fn turn_to(axis: Vector) -> k::Rot {
         None => Quaternion::from_xyzw(0.0, 0.0, 0.0, Scalar::NAN),
     };
     Rotation(turn).to_kernel().admitted()
+}
+
+/// The rotation that takes the x axis to an axis, and the y axis to what a second one has across it; not finite if both span no
+/// plane.
+pub(super) fn turn_to_plane(x: Vector, y: Vector) -> k::Rot {
+    let along = x.try_normalize();
+    let normal = along.and_then(|along| along.cross(y).try_normalize());
+    let turn = match (along, normal) {
+        (Some(x), Some(z)) => orthonormal_basis([x, z.cross(x), z]),
+        _ => Quaternion::from_xyzw(0.0, 0.0, 0.0, Scalar::NAN),
+    };
+    Rotation(turn).to_kernel().admitted()
+}
+
+/// A coordinate of a joint: where its second frame is in its first.
+///
+/// A rotation is a twist about the x axis, then a swing about an axis across it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum JointCoordinate {
+    /// Along the first frame's x axis, in m.
+    X = X as isize,
+    /// Along the first frame's y axis, in m.
+    Y = Y as isize,
+    /// Along the first frame's z axis, in m.
+    Z = Z as isize,
+    /// The angle about the x axes, in rad. Between limits it counts turns.
+    Twist = TWIST as isize,
+    /// The part about the first frame's y axis of the swing from the first x axis to the second, as a rotation vector, in rad.
+    SwingY = SWING_Y as isize,
+    /// The part about the first frame's z axis of that swing, in rad.
+    SwingZ = SWING_Z as isize,
+}
+
+/// The number of coordinates.
+pub(super) const COORDINATES: usize = JointCoordinate::ALL.len();
+
+impl JointCoordinate {
+    /// All coordinates.
+    pub const ALL: [Self; 6] = [Self::X, Self::Y, Self::Z, Self::Twist, Self::SwingY, Self::SwingZ];
+    /// Those of the position.
+    pub const TRANSLATIONS: [Self; 3] = [Self::X, Self::Y, Self::Z];
+    /// Those of the rotation.
+    pub const ROTATIONS: [Self; 3] = [Self::Twist, Self::SwingY, Self::SwingZ];
 }

@@ -6,6 +6,7 @@ use bevy_ecs::{
     system::SystemParam,
 };
 
+use super::breaking::JointBroken;
 use crate::{
     dynamics::{solver::substeps::StepSolver, tables::Tables},
     noted::Noted,
@@ -18,6 +19,8 @@ pub(crate) struct Joints {
     pub(crate) noted: Noted,
     /// Known joints that were despawned, and whose place in the queue another entity took.
     pub(crate) gone: Vec<Entity>,
+    /// Joints that broke in this step.
+    pub(crate) broken: Vec<JointBroken>,
     /// Whether joints are watched: without their plugin they have no effect.
     #[cfg(feature = "validate")]
     pub(crate) is_watched: bool,

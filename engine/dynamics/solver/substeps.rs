@@ -3,11 +3,12 @@
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use bevy_time::Time;
 use core::any::TypeId;
-use kernel::solver::{JointSolver, RowInput, Softness, Solver, SubstepParams};
+use kernel::solver::{self as k, RowInput, Softness, Solver, SubstepParams};
 
 use crate::{
     collision::narrow_phase::ContactResponse,
     dynamics::{
+        joints::JointSolver,
         solver::{
             config::{ContactSoftnessCoefficients, LINEAR_SLOP, PhysicsLengthUnit, SolverConfig},
             diagnostics::SolverDiagnostics,
@@ -52,7 +53,7 @@ impl Default for StepSolver {
                 friction_fade: 0.02,
                 max_sag: 0.005,
                 roll_speed: 0.2,
-                joints: JointSolver::Auto,
+                joints: k::JointSolver::Auto,
             },
             substeps: 1,
         }
@@ -125,7 +126,7 @@ pub(crate) fn prepare_params(
     config: Option<Res<SolverConfig>>,
     soft: Option<Res<ContactSoftnessCoefficients>>,
     unit: Res<PhysicsLengthUnit>,
-    count: Res<SubstepCount>,
+    (count, joints): (Res<SubstepCount>, Res<JointSolver>),
     time: Res<Time<Physics>>,
 ) {
     let config = config.map(|c| c.clone()).unwrap_or_default();
@@ -149,7 +150,7 @@ pub(crate) fn prepare_params(
         friction_fade: FRICTION_FADE * unit,
         max_sag: MAX_SAG * unit,
         roll_speed: ROLL_SPEED * unit,
-        joints: JointSolver::Auto,
+        joints: (*joints).into(),
     };
 }
 

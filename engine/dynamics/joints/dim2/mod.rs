@@ -1,86 +1,25 @@
 //! The kinds of joints in 2D, and what limits and bases have there only. `dim3` exports the same names.
 
 mod revolute;
+mod wheel;
 
 pub use revolute::RevoluteJoint;
-
-use bevy_app::App;
-use bevy_ecs::{prelude::*, query::QueryData, system::SystemParam};
+pub use wheel::WheelJoint;
 
 use super::{
-    changes::each_changed,
-    distance::DistanceJoint,
-    fixed::FixedJoint,
-    frame::JointBasis,
-    kind::{JointMut, KindVisitor},
-    limits::AngleLimit,
-    prismatic::PrismaticJoint,
+    distance::DistanceJoint, fixed::FixedJoint, frame::JointBasis, generic::GenericJoint, kinds::joint_kinds,
+    limits::AngleLimit, mouse::MouseJoint, prismatic::PrismaticJoint,
 };
-use crate::{
-    math::{Scalar, Vector, orthonormal_basis_from_vec},
-    scan::Since,
-};
+use crate::math::{Scalar, Vector, orthonormal_basis_from_vec};
 
-/// Visits each kind of joint.
-pub(crate) fn each_kind(visitor: &mut impl KindVisitor) {
-    visitor.visit::<FixedJoint>();
-    visitor.visit::<DistanceJoint>();
-    visitor.visit::<PrismaticJoint>();
-    visitor.visit::<RevoluteJoint>();
-}
-
-/// Registers each kind of joint for reflection.
-pub(crate) fn register_kinds(app: &mut App) {
-    app.register_type::<Kinds>();
-}
-
-/// All kinds of joints.
-pub(crate) type Kinds = (FixedJoint, DistanceJoint, PrismaticJoint, RevoluteJoint);
-
-/// The filter for entities with a joint.
-pub(crate) type IsJoint =
-    Or<(With<FixedJoint>, With<DistanceJoint>, With<PrismaticJoint>, With<RevoluteJoint>)>;
-
-/// The joint of an entity.
-#[derive(QueryData)]
-#[query_data(mutable)]
-pub(crate) struct AnyJoint {
-    fixed: Option<&'static mut FixedJoint>,
-    distance: Option<&'static mut DistanceJoint>,
-    prismatic: Option<&'static mut PrismaticJoint>,
-    revolute: Option<&'static mut RevoluteJoint>,
-}
-
-impl AnyJointItem<'_, '_> {
-    /// The joint; if there are several for a moment, the first.
-    pub(crate) fn joint(&mut self) -> Option<&mut dyn JointMut> {
-        match self {
-            Self { fixed: Some(joint), .. } => Some(joint),
-            Self { distance: Some(joint), .. } => Some(joint),
-            Self { prismatic: Some(joint), .. } => Some(joint),
-            Self { revolute: Some(joint), .. } => Some(joint),
-            _ => None,
-        }
-    }
-}
-
-/// Queries for joints that changed.
-#[derive(SystemParam)]
-pub(crate) struct ChangedJoints<'w, 's> {
-    fixed: Query<'w, 's, (Entity, Ref<'static, FixedJoint>)>,
-    distance: Query<'w, 's, (Entity, Ref<'static, DistanceJoint>)>,
-    prismatic: Query<'w, 's, (Entity, Ref<'static, PrismaticJoint>)>,
-    revolute: Query<'w, 's, (Entity, Ref<'static, RevoluteJoint>)>,
-}
-
-impl ChangedJoints<'_, '_> {
-    /// Calls `found` with each entity whose joint changed.
-    pub(crate) fn each(&self, since: Since, mut found: impl FnMut(Entity)) {
-        each_changed(&self.fixed, since, &mut found);
-        each_changed(&self.distance, since, &mut found);
-        each_changed(&self.prismatic, since, &mut found);
-        each_changed(&self.revolute, since, &mut found);
-    }
+joint_kinds! {
+    fixed: FixedJoint,
+    distance: DistanceJoint,
+    prismatic: PrismaticJoint,
+    revolute: RevoluteJoint,
+    generic: GenericJoint,
+    mouse: MouseJoint,
+    wheel: WheelJoint,
 }
 
 impl JointBasis {

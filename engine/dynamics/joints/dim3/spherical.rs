@@ -20,14 +20,16 @@ use super::super::{
     frame::{JointAnchor, JointBasis, JointFrame, frame_methods},
     kind::{EntityConstraint, JointKind, between_two_bodies, limited, locked, own_frames},
     limits::AngleLimit,
+    motor::MotorModel,
     space::{Isometry, Rot, TRANSLATIONS, rotation_of, turn_to},
 };
+use super::spherical_motor::SphericalMotor;
 use crate::math::{Scalar, Vector};
 
 /// Holds a point of one body at a point of another, and lets them turn in any way: shoulders, chains, trailers.
 ///
 /// Swing is the angle between the twist axes of both frames, from 0 to π. Twist is the angle about them. Both may have
-/// limits.
+/// limits, and a motor turns the ball to a rotation.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -67,6 +69,8 @@ pub struct SphericalJoint {
     pub swing_compliance: Scalar,
     /// How far the limits of twist give way, in rad/(N·m). 0 for not at all.
     pub twist_compliance: Scalar,
+    /// The motor. Disabled by default.
+    pub motor: SphericalMotor,
 }
 
 crate::type_path::type_path!(SphericalJoint, "dynamics::joints::spherical");
@@ -88,6 +92,7 @@ impl SphericalJoint {
             point_compliance: 0.0,
             swing_compliance: 0.0,
             twist_compliance: 0.0,
+            motor: SphericalMotor::new_disabled(MotorModel::DEFAULT),
         }
     }
 
@@ -145,6 +150,12 @@ impl SphericalJoint {
         self.twist_compliance = compliance;
         self
     }
+
+    /// Sets the motor.
+    pub const fn with_motor(mut self, motor: SphericalMotor) -> Self {
+        self.motor = motor;
+        self
+    }
 }
 
 frame_methods!(SphericalJoint);
@@ -159,6 +170,7 @@ impl JointKind for SphericalJoint {
 
     fn set_axes(&self, mut def: JointDef) -> JointDef {
         def.axes[TWIST] = limited(self.twist_limit, self.twist_compliance);
+        self.motor.set_motors(&mut def, self.turn());
         match self.swing_limit {
             // A swing of 0 has no direction.
             Some(AngleLimit { min, max: 0.0 }) if min <= 0.0 => {

@@ -1,0 +1,153 @@
+//! [`MouseJoint`]: a body pulled to a pose.
+
+use bevy_ecs::{
+    component::Component,
+    entity::{Entity, EntityMapper, MapEntities},
+    lifecycle::HookContext,
+    reflect::{ReflectComponent, ReflectMapEntities},
+    world::DeferredWorld,
+};
+use bevy_reflect::Reflect;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use kernel::solver::{Axis, JointDef};
+
+use super::{
+    frame::{JointAnchor, JointFrame},
+    kind::{EntityConstraint, JointKind, axis_motor},
+    motor::{AxisMotor, MotorModel},
+    space::{ROTATIONS, TRANSLATIONS},
+};
+use crate::{
+    dynamics::rigid_body::RigidBody,
+    math::{Scalar, Vector},
+};
+
+/// Pulls a point of a body to where this entity is, by a damped spring with a greatest force: to drag bodies with the mouse, or
+/// to carry them before a camera. Beyond Avian.
+///
+/// The pose of the joint's own entity is the target: move it by its `Transform` or
+/// [`Position`](crate::physics_transform::Position) in any frame, or make it the child of another entity. For that the entity
+/// is a kinematic body. With a [`max_torque`](Self::max_torque) the body turns to the entity's rotation, too.
+///
+/// To let another body be dragged, change [`body`](Self::body) or insert the component again. An entity that overwrites the
+/// component in place with a new one has no effect, as the new one does not know its entity.
+///
+/// ```
+/// # use avian::{math::Vector, prelude::*};
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_transform::components::Transform;
+/// fn pick(mut commands: Commands, barrel: Entity, cursor: Transform) {
+///     // At the point of the barrel that is under the cursor now.
+///     commands.spawn((MouseJoint::new(barrel).with_anchor(Vector::X).with_max_force(500.0), cursor));
+/// }
+///
+/// fn drag(mut targets: Query<&mut Transform, With<MouseJoint>>) {
+///     for mut target in &mut targets {
+///         target.translation.x += 0.1;
+///     }
+/// }
+/// ```
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Component, MapEntities, PartialEq)]
+#[component(map_entities, on_insert = note_own_entity)]
+#[require(RigidBody = RigidBody::Kinematic)]
+pub struct MouseJoint {
+    /// The entity of this component.
+    target: Entity,
+    /// The body that is pulled.
+    pub body: Entity,
+    /// The point on it. The body's origin by default.
+    pub anchor: JointAnchor,
+    /// How strongly it pulls. A critically damped spring of 5 Hz by default.
+    pub motor_model: MotorModel,
+    /// The greatest force along each axis of the target, in N. [`Scalar::MAX`] by default, for no maximum.
+    pub max_force: Scalar,
+    /// The greatest torque about each axis, in N·m. 0 by default: the body turns freely.
+    pub max_torque: Scalar,
+}
+
+/// Stores the entity of a component that was inserted.
+fn note_own_entity(mut world: DeferredWorld, context: HookContext) {
+    if let Some(mut joint) = world.get_mut::<MouseJoint>(context.entity) {
+        joint.target = context.entity;
+    }
+}
+
+impl MouseJoint {
+    /// A joint at the origin of a body, without a greatest force.
+    pub const fn new(body: Entity) -> Self {
+        Self {
+            target: Entity::PLACEHOLDER,
+            body,
+            anchor: JointAnchor::ZERO,
+            motor_model: MotorModel::DEFAULT,
+            max_force: Scalar::MAX,
+            max_torque: 0.0,
+        }
+    }
+
+    /// Sets the point on the body to the one that is at a point in the world, in metres.
+    pub const fn with_anchor(mut self, anchor: Vector) -> Self {
+        self.anchor = JointAnchor::FromGlobal(anchor);
+        self
+    }
+
+    /// Sets the point on the body, relative to it, in metres.
+    pub const fn with_local_anchor(mut self, anchor: Vector) -> Self {
+        self.anchor = JointAnchor::Local(anchor);
+        self
+    }
+
+    /// Sets how strongly it pulls.
+    pub const fn with_motor_model(mut self, motor_model: MotorModel) -> Self {
+        self.motor_model = motor_model;
+        self
+    }
+
+    /// Sets the greatest force, in N.
+    pub const fn with_max_force(mut self, max_force: Scalar) -> Self {
+        self.max_force = max_force;
+        self
+    }
+
+    /// Sets the greatest torque, in N·m.
+    pub const fn with_max_torque(mut self, max_torque: Scalar) -> Self {
+        self.max_torque = max_torque;
+        self
+    }
+}
+
+impl EntityConstraint<2> for MouseJoint {
+    fn entities(&self) -> [Entity; 2] {
+        [self.target, self.body]
+    }
+}
+
+impl MapEntities for MouseJoint {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        self.target = mapper.get_mapped(self.target);
+        self.body = mapper.get_mapped(self.body);
+    }
+}
+
+impl JointKind for MouseJoint {
+    fn frames(&self) -> [JointFrame; 2] {
+        [JointFrame::IDENTITY, self.anchor.into()]
+    }
+
+    fn set_frames(&mut self, [_, frame]: [JointFrame; 2]) {
+        self.anchor = frame.anchor;
+    }
+
+    fn set_axes(&self, def: JointDef) -> JointDef {
+        let driven = |max: Scalar| {
+            let motor = AxisMotor::new(self.motor_model).with_max_effort(max);
+            Axis { motor: axis_motor(&motor), ..Axis::FREE }
+        };
+        let def = def.with(TRANSLATIONS, driven(self.max_force));
+        if self.max_torque == 0.0 { def } else { def.with(ROTATIONS, driven(self.max_torque)) }
+    }
+}
