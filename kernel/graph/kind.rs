@@ -7,11 +7,13 @@ pub enum ConstraintKind {
     Contact,
     /// A joint.
     Joint,
+    /// A constraint of the embedder.
+    Custom,
 }
 
 impl ConstraintKind {
     /// All kinds, in the order of their numbers.
-    pub const ALL: [Self; 2] = [Self::Contact, Self::Joint];
+    pub const ALL: [Self; 3] = [Self::Contact, Self::Joint, Self::Custom];
     /// The number of kinds.
     pub const COUNT: usize = Self::ALL.len();
 }

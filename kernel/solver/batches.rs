@@ -2,6 +2,7 @@
 
 use super::batch::Batch;
 use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, Room, sort_contacts};
+use super::custom::{self, CUSTOM_BATCHES, CustomRows, CustomTable, CustomView, customs, sort_customs};
 use super::joint::{
     JOINT_BATCHES, JointRows, JointTable, JointTrees, JointViews, Records, joints, sort_joints,
 };
@@ -30,12 +31,15 @@ pub(super) struct AllRows {
 struct KindRows<N: Lane> {
     contacts: ContactRows<N>,
     joints: JointRows<N>,
+    customs: CustomRows,
 }
 
 /// Number of batches of one width.
-const BATCHES: usize = JOINT + JOINT_BATCHES;
+const BATCHES: usize = CUSTOM + CUSTOM_BATCHES;
 /// The first batch of joints. Those before are of contacts.
 const JOINT: usize = CONTACT_BATCHES;
+/// The first batch of custom constraints.
+const CUSTOM: usize = JOINT + JOINT_BATCHES;
 
 /// The first batch of rows that share bodies. Those before are of single constraints of the overflow.
 const SHARED: usize = BATCHES;
@@ -45,6 +49,13 @@ const WIDE: usize = SHARED + CONTACT_BATCHES;
 /// Minimum number of contacts of the overflow for which they share rows. Fewer are solved one by one, which converges
 /// faster.
 const WORTH_SHARED_ROWS: usize = 32;
+
+/// The tables that constraints are sorted by.
+#[derive(Clone, Copy)]
+pub(super) struct SortedTables<'a> {
+    pub(super) joints: (&'a JointTable, &'a JointTrees),
+    pub(super) customs: &'a CustomTable,
+}
 
 /// The layers of each colour. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
@@ -64,7 +75,7 @@ impl Layers {
     pub(super) fn sort(
         &mut self,
         colors: &ColorGraph,
-        table: (&JointTable, &JointTrees),
+        tables: SortedTables,
         sorter: &Sorter,
         pool: &ThreadPool,
     ) {
@@ -73,9 +84,9 @@ impl Layers {
         let layers = self.colors.iter_mut().zip(&mut self.used).zip(0..);
         pool.each(layers, |((layers, used), color)| {
             *used = if color == OVERFLOW {
-                sort_overflow(colors, table, sorter, layers)
+                sort_overflow(colors, tables, sorter, layers)
             } else {
-                sort_color((colors, color), table, sorter, layers)
+                sort_color((colors, color), tables, sorter, layers)
             };
         });
     }
@@ -117,18 +128,19 @@ fn layer(layers: &mut Vec<Layer>, number: usize) -> &mut Layer {
 /// Sorts the constraints of a colour into layers. Returns the number of layers.
 fn sort_color(
     (colors, color): (&ColorGraph, u8),
-    table: (&JointTable, &JointTrees),
+    tables: SortedTables,
     sorter: &Sorter,
     layers: &mut Vec<Layer>,
 ) -> usize {
-    let (contacts, joints) = (colors.contacts(color), joints(colors, color));
-    let (mut left, mut number) = (contacts.len() + joints.len(), 0);
+    let (contacts, joints, customs) = (colors.contacts(color), joints(colors, color), customs(colors, color));
+    let (mut left, mut number) = (contacts.len() + joints.len() + customs.len(), 0);
     while left > 0 {
         let layer = layer(layers, number);
         layer.begin(BATCHES, sorter.shares.parts(left));
         left = sort_contacts(contacts, number as u32, sorter, layer);
         if number == 0 {
-            sort_joints(joints, JOINT, table, sorter, layer);
+            sort_joints(joints, JOINT, tables.joints, sorter, layer);
+            sort_customs(customs, CUSTOM, tables.customs, sorter, layer);
         }
         number += 1;
     }
@@ -146,19 +158,20 @@ fn sort_color(
 /// contacts stay single, as they work against each other.
 fn sort_overflow(
     colors: &ColorGraph,
-    table: (&JointTable, &JointTrees),
+    tables: SortedTables,
     sorter: &Sorter,
     layers: &mut Vec<Layer>,
 ) -> usize {
-    let joints = joints(colors, OVERFLOW);
-    if colors.overflow().is_empty() && joints.is_empty() {
+    let (joints, customs) = (joints(colors, OVERFLOW), customs(colors, OVERFLOW));
+    if colors.overflow().is_empty() && joints.is_empty() && customs.is_empty() {
         return 0;
     }
     layers.resize_with(layers.len().max(2), Layer::default);
     let [singles, shared, ..] = &mut layers[..] else { return 0 };
     singles.begin_ordered(BATCHES);
     shared.begin(CONTACT_BATCHES, 1);
-    sort_joints(joints, JOINT, table, sorter, singles);
+    sort_joints(joints, JOINT, tables.joints, sorter, singles);
+    sort_customs(customs, CUSTOM, tables.customs, sorter, singles);
     let many = colors.overflow().len() >= WORTH_SHARED_ROWS && !sorter.input.contacts.any_deep();
     for contact in colors.overflow() {
         let layer = if many { &mut *shared } else { &mut *singles };
@@ -194,8 +207,13 @@ impl AllRows {
     }
 
     /// Calls a function with all batches, by number.
-    pub(super) fn with<R>(&mut self, joints: &mut JointTable, f: impl FnOnce(&[&dyn Batch]) -> R) -> R {
-        let records = &joints.records();
+    pub(super) fn with<R>(
+        &mut self,
+        joints: &mut JointTable,
+        customs: &mut CustomTable,
+        f: impl FnOnce(&[&dyn Batch]) -> R,
+    ) -> R {
+        let records = &AllRecords { joints: joints.records(), customs: customs.records() };
         let overflow = self.overflow.view((), records);
         let shared = self.shared.view(());
         match self.width {
@@ -206,15 +224,26 @@ impl AllRows {
     }
 }
 
+/// The records of constraints that have any.
+struct AllRecords<'a> {
+    joints: Records<'a>,
+    customs: custom::Records<'a>,
+}
+
 impl<N: Entry> KindRows<N> {
     fn make_room(&mut self, rows: &[u32], room: Room) {
         self.contacts.make_room(rows, room);
-        self.joints.make_room(&rows[JOINT..BATCHES]);
+        self.joints.make_room(&rows[JOINT..CUSTOM]);
+        self.customs.make_room(rows[CUSTOM], N::WIDTH);
     }
 
-    fn view<'a>(&'a mut self, proof: N::Proof, records: &'a Records<'a>) -> KindViews<'a, N> {
-        let Self { contacts, joints } = self;
-        KindViews { contacts: contacts.view(proof), joints: joints.view(proof, records) }
+    fn view<'a>(&'a mut self, proof: N::Proof, records: &'a AllRecords<'a>) -> KindViews<'a, N> {
+        let Self { contacts, joints, customs } = self;
+        KindViews {
+            contacts: contacts.view(proof),
+            joints: joints.view(proof, &records.joints),
+            customs: customs.view(N::WIDTH, &records.customs),
+        }
     }
 }
 
@@ -222,12 +251,17 @@ impl<N: Entry> KindRows<N> {
 struct KindViews<'a, N: Entry> {
     contacts: ContactView<'a, N>,
     joints: JointViews<'a, N>,
+    customs: CustomView<'a>,
 }
 
 impl<N: Entry> KindViews<'_, N> {
     fn batches(&self) -> [&dyn Batch; BATCHES] {
         let contacts = self.contacts.batches();
-        core::array::from_fn(|i| if i < JOINT { contacts[i] } else { self.joints.batch(i - JOINT) })
+        core::array::from_fn(|i| match i {
+            _ if i < JOINT => contacts[i],
+            _ if i < CUSTOM => self.joints.batch(i - JOINT),
+            _ => &self.customs,
+        })
     }
 
     /// Calls a function with these batches, then those that share bodies, then the wide ones.

@@ -19,6 +19,7 @@ mod blow;
 mod body;
 mod contact_batch;
 mod contact_fill;
+mod custom;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
@@ -54,6 +55,7 @@ mod view;
 
 pub use blow::ManifoldBlow;
 pub use body::{BodyRows, Limits, Motion, Thrust};
+pub use custom::{CustomBody, CustomConstraint, CustomError, CustomTable};
 pub use dim::{BodyRow, MassRow, Twist};
 use dim::{about, resist_rolling};
 pub use fill::{BodyFiller, FilledBody, SpecialBodies};

@@ -2,10 +2,11 @@
 #![expect(unsafe_code, reason = "blocks of a stage are changed at once, each by one worker")]
 
 use super::batch::{Filling, Pass, Seek, Sweep};
-use super::batches::{AllRows, Layers};
+use super::batches::{AllRows, Layers, SortedTables};
 use super::bearing::Bearing;
 use super::blow::{Blows, ManifoldBlow, ROUNDS};
 use super::contact_batch::Room;
+use super::custom::CustomTable;
 use super::exclusive;
 use super::input::RowInput;
 use super::joint::{JointTable, JointTrees};
@@ -40,6 +41,8 @@ pub struct Solver {
     pub bodies: BodyRows,
     /// Joints.
     pub joints: JointTable,
+    /// Constraints of the embedder.
+    pub customs: CustomTable,
     /// Joints that are solved directly.
     trees: JointTrees,
     /// Inertia that joints ask for, by row of the body.
@@ -77,7 +80,8 @@ impl Solver {
         self.bodies.reset(kinematic, dynamic);
     }
 
-    /// Builds the rows of all constraints in the colours: touching contacts, and [`joints`](Self::joints).
+    /// Builds the rows of all constraints in the colours: touching contacts, [`joints`](Self::joints),
+    /// and [`customs`](Self::customs).
     ///
     /// # Safety
     /// No two constraints of a colour other than the overflow share a body whose row is dynamic, and no constraint is
@@ -130,10 +134,10 @@ impl Solver {
 
     /// Sorts the constraints of all colours into rows, and makes room for them.
     fn plan_rows(&mut self, input: &RowInput, colors: &ColorGraph, pool: &ThreadPool) {
-        let Self { bodies, joints, trees, rows, layers, plan, shares, deep, .. } = self;
+        let Self { bodies, joints, customs, trees, rows, layers, plan, shares, deep, .. } = self;
         let workers = pool.workers();
         let sorter = &Sorter { input, axes: &bodies.axes, shares };
-        layers.sort(colors, (joints, trees), sorter, pool);
+        layers.sort(colors, SortedTables { joints: (joints, trees), customs }, sorter, pool);
         plan.begin(if workers > 1 { BLOCK_ROWS } else { u32::MAX }, workers, AllRows::BATCHES);
         layers.plan(rows.width, sorter, plan);
         rows.make_room(plan.rows(), Room { any_deep: deep.any(), sums: input.contacts.sum_impulses });
@@ -141,7 +145,7 @@ impl Solver {
 
     /// Fills the rows of all blocks.
     fn fill_rows(&mut self, input: &RowInput, params: &SubstepParams, pool: &ThreadPool) {
-        let Self { bodies, joints, trees, rows, layers, plan, deep, bearing, .. } = self;
+        let Self { bodies, joints, customs, trees, rows, layers, plan, deep, bearing, .. } = self;
         let BodyRows { rows: body_rows, masses, axes, first_dynamic, .. } = bodies;
         let filling = &Filling {
             input,
@@ -155,7 +159,7 @@ impl Solver {
         };
         trees.fill(&joints.records(), filling, pool);
         let mut blocks = core::mem::take(&mut plan.blocks);
-        rows.with(joints, |batches| {
+        rows.with(joints, customs, |batches| {
             let blocks = Parts::of(&mut blocks);
             pool.run(blocks.len(), |block, _| {
                 // SAFETY: each block is run once, and no two share a row. Bodies and contacts are only read.
@@ -234,7 +238,7 @@ impl Solver {
 
     /// Strikes what closes fast and touches within `time` seconds.
     fn strike(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) {
-        let Self { bodies, joints, rows, plan, layers, blows, bearing, first_dynamic, .. } = self;
+        let Self { bodies, joints, customs, rows, plan, layers, blows, bearing, first_dynamic, .. } = self;
         blows.elapsed += time;
         let is_watched = plan.blocks.iter().any(|block| block.passes.are_watched());
         if !is_watched && blows.reached.is_empty() {
@@ -246,7 +250,7 @@ impl Solver {
         let striking =
             Striking { bodies: bodies_view, motions, bearing, params, time, elapsed: blows.elapsed };
         let mut blocks = core::mem::take(&mut plan.blocks);
-        rows.with(joints, |batches| {
+        rows.with(joints, customs, |batches| {
             for _ in 0..ROUNDS {
                 let Blows { found, reached, .. } = blows;
                 let seek = &Seek { striking, reached };
@@ -284,10 +288,10 @@ impl Solver {
             self.manifold_count() == 0 || !contacts.is_empty(),
             "the rows came from these contacts"
         );
-        let Self { joints, trees, rows, plan, layers, .. } = self;
+        let Self { joints, customs, trees, rows, plan, layers, .. } = self;
         trees.store(&joints.records());
         let manifolds = &contacts.manifolds_view();
-        rows.with(joints, |batches| {
+        rows.with(joints, customs, |batches| {
             for Stage { blocks, parts } in plan.stages() {
                 // SAFETY: each block is run once, no two share a row, and by the contract of `build_rows` no constraint
                 // is there twice.
@@ -311,7 +315,7 @@ impl Solver {
     /// Runs a pass over all trees and blocks that need it, stage by stage.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
-        let Self { bodies, joints, trees, rows, plan, first_dynamic, .. } = self;
+        let Self { bodies, joints, customs, trees, rows, plan, first_dynamic, .. } = self;
         debug_assert!(
             plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),
             "bodies have the rows that rows of constraints were built for"
@@ -323,7 +327,7 @@ impl Solver {
             bodies.enter_rows(pool);
         }
         let sweep = &Sweep { pass, bodies: bodies.view(*first_dynamic), params };
-        rows.with(joints, |batches| {
+        rows.with(joints, customs, |batches| {
             for Stage { blocks, parts } in plan.stages() {
                 let solve = |block: usize, _| {
                     let block = &blocks[block];

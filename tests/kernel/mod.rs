@@ -8,6 +8,7 @@ mod carried;
 pub mod costs;
 mod couplings;
 mod crowds;
+mod customs;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;

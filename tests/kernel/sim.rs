@@ -13,8 +13,9 @@ use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::solver::{
-    BodyRow, BodyRows, CouplingDef, JointDef, JointError, JointGap, JointReaction, JointSolver, JointTable,
-    Limits, MassRow, Motion, RowInput, Solver, SubstepParams,
+    BodyRow, BodyRows, CouplingDef, CustomConstraint, CustomError, CustomTable, JointDef, JointError,
+    JointGap, JointReaction, JointSolver, JointTable, Limits, MassRow, Motion, RowInput, Solver,
+    SubstepParams,
 };
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
@@ -357,6 +358,32 @@ impl Sim {
     /// How far a joint is off.
     pub fn gap(&self, id: u32) -> Option<JointGap> {
         self.solver.joints.gap(id, &self.bodies)
+    }
+
+    /// Adds a custom constraint.
+    pub fn tie(
+        &mut self,
+        bodies: [u32; 2],
+        act: Option<Box<dyn CustomConstraint>>,
+    ) -> Result<u32, CustomError> {
+        self.with_customs(|customs, link| customs.add(link, bodies, act))
+    }
+
+    /// Removes a custom constraint.
+    pub fn untie(&mut self, id: u32) -> Result<(), CustomError> {
+        self.with_customs(|customs, link| customs.remove(link, id))
+    }
+
+    fn with_customs<R>(&mut self, f: impl FnOnce(&mut CustomTable, &mut Link) -> R) -> R {
+        let mut customs = core::mem::take(&mut self.solver.customs);
+        let result = f(&mut customs, &mut self.link());
+        self.solver.customs = customs;
+        result
+    }
+
+    /// All custom constraints.
+    pub fn customs(&self) -> &CustomTable {
+        &self.solver.customs
     }
 
     /// What a joint did in the last substep.

@@ -1,0 +1,10 @@
+//! Constraints of the embedder: objects that change the velocities of two bodies, in colours and islands as all others.
+
+mod batch;
+mod body;
+mod table;
+
+pub(super) use batch::{CUSTOM_BATCHES, CustomRows, CustomView, customs, sort_customs};
+pub use body::CustomBody;
+pub(super) use table::Records;
+pub use table::{CustomConstraint, CustomError, CustomTable};

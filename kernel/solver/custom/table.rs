@@ -1,0 +1,150 @@
+//! All custom constraints between steps.
+
+use super::super::SubstepParams;
+use super::body::CustomBody;
+use crate::contact::Link;
+use crate::data::Parts;
+use crate::graph::ConstraintKind;
+use core::any::Any;
+use core::fmt;
+
+const KIND: ConstraintKind = ConstraintKind::Custom;
+
+/// A constraint between two bodies that the embedder defines.
+///
+/// It changes velocities only, those of its two bodies only, and computes the same from the same input. Then results do not
+/// depend on threads. Changes of a body that is not dynamic have no effect.
+pub trait CustomConstraint: Send + Sync {
+    /// Prepares for a step. Called again, with the same impulses, if masses change before the first substep.
+    fn prepare(&mut self, bodies: [&CustomBody; 2], params: &SubstepParams);
+
+    /// Applies the impulses of the last substep.
+    fn warm_start(&mut self, bodies: [&mut CustomBody; 2], params: &SubstepParams);
+
+    /// Changes velocities so that the constraint holds. With `use_bias` also so that errors of the positions get smaller.
+    fn solve(&mut self, bodies: [&mut CustomBody; 2], params: &SubstepParams, use_bias: bool);
+
+    /// Keeps the impulses of the last substep for the next step.
+    fn store(&mut self);
+
+    /// A copy.
+    fn boxed(&self) -> Box<dyn CustomConstraint>;
+
+    /// Itself, to be changed by whoever knows its type.
+    fn as_any_mut(&mut self) -> &mut dyn Any;
+
+    /// Itself, to be read by whoever knows its type.
+    fn as_any(&self) -> &dyn Any;
+}
+
+/// Why a custom constraint is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CustomError {
+    /// A body with this id does not exist.
+    NoBody(u32),
+    /// Both bodies are one.
+    SameBody,
+    /// A constraint with this id does not exist.
+    NoConstraint(u32),
+}
+
+impl fmt::Display for CustomError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::NoBody(id) => write!(f, "there is no body {id}"),
+            Self::SameBody => write!(f, "both bodies are one"),
+            Self::NoConstraint(id) => write!(f, "there is no constraint {id}"),
+        }
+    }
+}
+
+impl core::error::Error for CustomError {}
+
+/// State of a constraint between steps.
+pub(super) struct Record {
+    /// What it does; nothing if it only connects its bodies.
+    pub(super) act: Option<Box<dyn CustomConstraint>>,
+    /// Whether it gave a velocity that is not finite, which was ignored.
+    pub(super) is_faulty: bool,
+}
+
+impl Clone for Record {
+    fn clone(&self) -> Self {
+        Self { act: self.act.as_ref().map(|act| act.boxed()), is_faulty: self.is_faulty }
+    }
+}
+
+impl fmt::Debug for Record {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { act, is_faulty } = self;
+        f.debug_struct("Record").field("acts", &act.is_some()).field("is_faulty", is_faulty).finish()
+    }
+}
+
+/// All custom constraints by id. Their bodies are in [`BodyTable::constraints`](crate::table::BodyTable::constraints).
+#[derive(Clone, Debug, Default)]
+pub struct CustomTable {
+    /// Records by id. Those of free ids are stale.
+    records: Vec<Record>,
+}
+
+impl CustomTable {
+    /// Connects two bodies, and wakes them. They are in one island if both are dynamic. Without `act` that is all.
+    pub fn add(
+        &mut self,
+        link: &mut Link,
+        bodies: [u32; 2],
+        act: Option<Box<dyn CustomConstraint>>,
+    ) -> Result<u32, CustomError> {
+        if bodies[0] == bodies[1] {
+            return Err(CustomError::SameBody);
+        }
+        if let Some(dead) = bodies.into_iter().find(|body| !link.bodies.ids.is_live(*body)) {
+            return Err(CustomError::NoBody(dead));
+        }
+        let id = link.connect(KIND, bodies);
+        let record = Record { act, is_faulty: false };
+        match self.records.get_mut(id as usize) {
+            Some(place) => *place = record,
+            None => self.records.push(record),
+        }
+        Ok(id)
+    }
+
+    /// Removes a constraint and wakes its bodies.
+    pub fn remove(&mut self, link: &mut Link, id: u32) -> Result<(), CustomError> {
+        if !link.bodies.constraints(KIND).is_live(id) {
+            return Err(CustomError::NoConstraint(id));
+        }
+        link.disconnect(KIND, id);
+        self.records[id as usize].act = None;
+        Ok(())
+    }
+
+    /// What a constraint does, to be changed. The caller wakes its bodies if that matters to them.
+    pub fn act_mut(&mut self, id: u32) -> Option<&mut (dyn CustomConstraint + 'static)> {
+        self.records.get_mut(id as usize)?.act.as_deref_mut()
+    }
+
+    /// What a constraint does.
+    pub fn act(&self, id: u32) -> Option<&(dyn CustomConstraint + 'static)> {
+        self.records.get(id as usize)?.act.as_deref()
+    }
+
+    /// Whether a constraint gave a velocity that is not finite. Such velocities are ignored.
+    pub fn is_faulty(&self, id: u32) -> bool {
+        self.records.get(id as usize).is_some_and(|record| record.is_faulty)
+    }
+
+    /// Whether a constraint does anything.
+    pub(super) fn acts(&self, id: u32) -> bool {
+        self.records[id as usize].act.is_some()
+    }
+
+    pub(in super::super) fn records(&mut self) -> Records<'_> {
+        Records(Parts::of(&mut self.records))
+    }
+}
+
+/// The records of all constraints, changed by several threads.
+pub(in super::super) struct Records<'a>(pub(super) Parts<'a, Record>);
