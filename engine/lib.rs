@@ -96,6 +96,7 @@
 //! | join it to another: hinges, sliders, ropes, motors | [joints](dynamics::joints), [`RevoluteJoint`](prelude::RevoluteJoint), [`DistanceJoint`](prelude::DistanceJoint) |
 //! | put it on wheels, drag it, choose each axis of a joint | [`WheelJoint`](prelude::WheelJoint), [`MouseJoint`](prelude::MouseJoint), [`GenericJoint`](prelude::GenericJoint) |
 //! | let it tear off | [`JointBreakThreshold`](prelude::JointBreakThreshold) |
+//! | join it by a law of my own | [`Constraint`](dynamics::solver::constraint::Constraint) |
 //! | make it slide or bounce | [`Friction`](prelude::Friction), [`Restitution`](prelude::Restitution) |
 //! | choose what it collides with | [`CollisionLayers`](prelude::CollisionLayers), [`Sensor`](prelude::Sensor), [`Dominance`](prelude::Dominance) |
 //! | know what touches what | [`CollisionStart`](prelude::CollisionStart), [`CollisionEnd`](prelude::CollisionEnd), [`CollidingEntities`](prelude::CollidingEntities), [`Collisions`](prelude::Collisions) |
@@ -122,7 +123,7 @@
 //! |---|---|---|
 //! | games | `character`, `player`, `moving_platform`, `one_way_platform` | `character`, `player`, `car`, `shooting`, `explosion`, `conveyor_belt`, `save_and_load`, `time_control` |
 //! | bodies | `locked_axes`, `sleeping`, `interpolation` | `hinged_door`, `child_colliders`, `materials`, `layers`, `dominoes` |
-//! | colliders and queries | `ray_caster`, `custom_collider` | `collider_constructors`, `spatial_queries`, `custom_broad_phase` |
+//! | colliders and queries | `ray_caster`, `custom_collider`, `custom_constraint` | `collider_constructors`, `spatial_queries`, `custom_broad_phase`, `custom_constraint` |
 //! | tools | `step_times` | `debug_drawing`, `diagnostics` |
 //!
 //! # When it runs
@@ -149,7 +150,8 @@
 //! | `bevy_diagnostic`, `diagnostic_ui` | timers and counters in Bevy's diagnostics, and in a panel |
 //! | `serialize` | serde for components, resources and `Collider`, which Bevy's `DynamicWorldBuilder` then saves, too |
 //! | `validate` | expensive checks of whole tables, for tests |
-//! | `simd`, `enhanced-determinism`, `xpbd_joints` (default) | empty, so that crates resolve: the first two are always on, joints are not there yet |
+//! | `xpbd_joints` (default) | constraints of the app by XPBD, [`dynamics::solver::xpbd`] |
+//! | `simd`, `enhanced-determinism` | empty, so that crates resolve: both are always on |
 
 #[cfg(not(any(feature = "2d", feature = "3d")))]
 compile_error!("enable feature `2d` of avian2d or `3d` of avian3d: one dimension is needed");

@@ -53,6 +53,7 @@ use crate::{
             joint_graph::SyncEdges,
             scatter::{finish_bodies, keep_moved_within, note_moved_late, note_moved_within, scatter_bodies},
             schedule::{SolverSystems, SubstepSchedule, SubstepSolverSystems, start_substep_clock},
+            solver_body::lend::{end_lending, lend_bodies, take_back},
             substeps::{
                 OwnSubstepSystems, StepSolver, apply_restitution, integrate_positions, integrate_velocities,
                 prepare_params, prepare_rows, relax_contacts, run_substeps, solve_contacts, store_impulses,
@@ -161,6 +162,8 @@ stages! {
     SettleJoints.in_set(PhysicsStepSystems::First) => {
         Joints: (note_changed_joints, settle_joints.pipe(forget_views)).chain().after(SyncEdges),
     }
+    /// Adds and removes constraints of the app. Systems: `ConstraintPlugin`, `XpbdSolverPlugin`.
+    SettleConstraints.in_set(PhysicsStepSystems::First) => {}
     /// Updates friction, restitution and margins from components.
     RefreshSurfaces.in_set(PhysicsStepSystems::First) => { NarrowPhase: refresh_surfaces }
     /// Puts islands to sleep and wakes them, as requested by the app.
@@ -196,8 +199,10 @@ stages! {
     }
     /// Fills the rows of awake bodies.
     Gather.in_set(SolverSystems::PrepareSolverBodies) => {
-        SolverBodies: (wake_kinematic_late, gather_bodies).chain(),
+        SolverBodies: ((wake_kinematic_late, gather_bodies).chain(), lend_bodies).chain_ignore_deferred(),
     }
+    /// Makes room for the displacements of bodies by constraints. Systems: `XpbdSolverPlugin`.
+    PreparePositionSolve.in_set(SolverSystems::PrepareSolverBodies) => {}
     /// Adds forces to the rows of awake bodies.
     ApplyForces.in_set(ForceSystems::ApplyConstantForces) => { Forces: apply_forces }
     /// Computes the parameters of the substeps, also for bodies without contacts.
@@ -208,6 +213,8 @@ stages! {
     Substeps.in_set(SolverSystems::Substep) => { SolverSchedule: run_substeps }
     /// Ends the forces of this step.
     ClearForces.in_set(ForceSystems::Clear) => { Forces: clear_forces }
+    /// Takes over what the app did to bodies after the substeps.
+    TakeBack.after(SolverSystems::PostSubstep).before(SweptCcdSystems) => { SolverBodies: take_back }
     /// Puts bodies back that got into something.
     Sweep.in_set(SweptCcdSystems) => { Ccd: sweep_bodies }
     /// Applies restitution.
@@ -245,6 +252,8 @@ stages! {
     }
     /// Updates [`Sleeping`](crate::dynamics::rigid_body::sleeping::Sleeping) components.
     MirrorSleep.in_set(PhysicsStepSystems::Finalize) => { Sleeping: mirror_sleeping }
+    /// Takes [`SolverBody`](crate::dynamics::solver::solver_body::SolverBody) from bodies that fell asleep or left.
+    EndLending.in_set(PhysicsStepSystems::Finalize) => { SolverBodies: end_lending }
 }
 
 /// Adds systems of the engine to [`PhysicsSchedule`] or one that replaces it.

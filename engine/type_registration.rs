@@ -72,9 +72,10 @@ fn register_dynamics(app: &mut App) {
                 WorkerCount,
                 schedule::SubstepCount,
                 softness_parameters::{SoftnessCoefficients, SoftnessParameters},
+                solver_body::{InertiaFlags, SolverBody, SolverBodyFlags, SolverBodyInertia},
             },
         },
-        physics_transform::PhysicsTransformConfig,
+        physics_transform::{PhysicsTransformConfig, PreSolveDeltaPosition, PreSolveDeltaRotation},
     };
 
     register!(app:
@@ -83,6 +84,8 @@ fn register_dynamics(app: &mut App) {
         PhysicsLengthUnit, SolverConfig, SolverDiagnostics, ContactSoftnessCoefficients, SubstepCount, WorkerCount,
         RowWidth,
         SoftnessParameters, SoftnessCoefficients, TimeToSleep, PhysicsTransformConfig,
+        SolverBody, SolverBodyFlags, SolverBodyInertia, InertiaFlags,
+        PreSolveDeltaPosition, PreSolveDeltaRotation,
     );
 }
 

@@ -36,8 +36,15 @@ use core::{fmt::Debug, time::Duration};
 use scenes::dim::{ball, block, spin};
 use serde::{Serialize, de::DeserializeOwned, de::DeserializeSeed};
 
-/// Types that are not stored: measurements of a step, ticks and ids of a world, and settings of what is shown.
-const NOT_STORED: [&str; 18] = [
+/// Types that are not stored: measurements of a step and the state within it, ticks and ids of a world, and settings of what is
+/// shown.
+const NOT_STORED: [&str; 24] = [
+    "SolverBody",
+    "SolverBodyFlags",
+    "SolverBodyInertia",
+    "InertiaFlags",
+    "PreSolveDeltaPosition",
+    "PreSolveDeltaRotation",
     "PhysicsGizmos",
     "PhysicsPickingSettings",
     "PhysicsPickable",

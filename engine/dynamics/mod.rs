@@ -21,6 +21,8 @@ pub(crate) mod validate;
 pub mod prelude {
     #[cfg(feature = "default-collider")]
     pub use super::solver::LengthUnitCheckPlugin;
+    #[cfg(feature = "xpbd_joints")]
+    pub use super::solver::xpbd::XpbdSolverPlugin;
     #[expect(deprecated, reason = "former names stay importable")]
     pub use super::{
         ccd::SweptCcdSet,

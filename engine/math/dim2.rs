@@ -23,6 +23,10 @@ pub(crate) type Ray = Ray2d;
 pub(crate) type RotationValue = Scalar;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Scalar;
+/// No angular velocity.
+pub(crate) const NO_SPIN: AngularVector = 0.0;
+/// The inverse of an infinite angular inertia.
+pub(crate) const NO_INERTIA: SymmetricTensor = 0.0;
 /// A vector in the tangent space of a normal.
 pub(crate) type TangentVector = Scalar;
 /// An angular inertia.
@@ -79,6 +83,12 @@ pub(crate) fn angular_from_kernel(v: k::Angular) -> AngularVector {
 #[inline]
 pub(crate) fn inv_inertia_to_kernel(inverse: SymmetricTensor) -> k::InvInertia {
     k::InvInertia { zz: inverse as f32 }
+}
+
+/// An inverse angular inertia, widened to the public precision.
+#[inline]
+pub(crate) fn inv_inertia_from_kernel(inverse: k::InvInertia) -> SymmetricTensor {
+    inverse.zz.adjust_precision()
 }
 
 #[cfg(test)]

@@ -23,6 +23,10 @@ pub(crate) type Ray = Ray3d;
 pub(crate) type RotationValue = super::Quaternion;
 /// An angular velocity, torque or moment.
 pub(crate) type AngularVector = Vector;
+/// No angular velocity.
+pub(crate) const NO_SPIN: AngularVector = Vector::ZERO;
+/// The inverse of an infinite angular inertia.
+pub(crate) const NO_INERTIA: SymmetricTensor = SymmetricTensor::ZERO;
 /// A vector in the tangent space of a normal.
 pub(crate) type TangentVector = super::Vector2;
 /// An angular inertia.
@@ -90,6 +94,14 @@ pub(crate) fn angular_from_kernel(v: k::Angular) -> AngularVector {
 pub(crate) fn inv_inertia_to_kernel(inverse: SymmetricTensor) -> k::InvInertia {
     let m = inverse.f32();
     k::InvInertia { xx: m.m00, yy: m.m11, zz: m.m22, xy: m.m01, xz: m.m02, yz: m.m12 }
+}
+
+/// An inverse angular inertia, widened to the public precision.
+#[inline]
+pub(crate) fn inv_inertia_from_kernel(inverse: k::InvInertia) -> SymmetricTensor {
+    let k::InvInertia { xx, yy, zz, xy, xz, yz } = inverse;
+    let [m00, m11, m22, m01, m02, m12] = [xx, yy, zz, xy, xz, yz].map(Scalar::from);
+    SymmetricTensor { m00, m01, m02, m11, m12, m22 }
 }
 
 #[cfg(test)]

@@ -41,6 +41,7 @@ mod helper;
 mod kernel_pose;
 pub(crate) mod plugin;
 mod position;
+mod pre_solve;
 mod rotation64;
 mod rotation_ops;
 pub(crate) mod spawned;
@@ -55,6 +56,7 @@ pub use helper::PhysicsTransformHelper;
 pub(crate) use kernel_pose::{filled_in, pose_from_kernel, said_pose, unit_rotation, world_pose};
 pub use plugin::PhysicsTransformPlugin;
 pub use position::Position;
+pub use pre_solve::{PreSolveDeltaPosition, PreSolveDeltaRotation};
 pub use sync::{position_to_transform, transform_to_position};
 
 use bevy_ecs::{prelude::*, reflect::ReflectResource};

@@ -335,6 +335,13 @@ impl BodyRows {
         }
     }
 
+    /// After the embedder changed rotations between two stages of a substep: free spin starts from the present ones.
+    pub fn restart_spins(&mut self, turned: &BitSet) {
+        for (_, spin) in self.spins.list_mut().iter_mut().filter(|(row, _)| turned.contains(*row)) {
+            spin.restart();
+        }
+    }
+
     /// Turns the inertia of bodies to that `time` seconds after the start of the step. With that of the start, contacts add to
     /// the spin of bodies whose axes are askew to it. Bodies that turn far keep it: their constraints see the start.
     ///

@@ -9,7 +9,7 @@ use derive_more::From;
 
 use super::{LockedAxes, mass_properties::components::ComputedAngularInertia};
 use crate::{
-    math::{AdjustPrecision, SymmetricMatrix, Vector, inv_inertia_to_kernel},
+    math::{Vector, inv_inertia_from_kernel, inv_inertia_to_kernel},
     physics_transform::Rotation,
 };
 
@@ -60,7 +60,5 @@ pub(super) fn world_inertia(
         return world;
     }
     let inverse = inv_inertia_to_kernel(world.inverse()).locked(locks);
-    let [m00, m01, m02] = [inverse.xx, inverse.xy, inverse.xz].map(|m| m.adjust_precision());
-    let [m11, m12, m22] = [inverse.yy, inverse.yz, inverse.zz].map(|m| m.adjust_precision());
-    ComputedAngularInertia::from_inverse_tensor(SymmetricMatrix { m00, m01, m02, m11, m12, m22 })
+    ComputedAngularInertia::from_inverse_tensor(inv_inertia_from_kernel(inverse))
 }

@@ -1,10 +1,13 @@
 //! The solver: its [configuration](SolverConfig), its [schedule] and its plugins.
 
+pub mod constraint;
 pub mod islands;
 pub mod joint_graph;
 pub mod schedule;
 pub mod softness_parameters;
 pub mod solver_body;
+#[cfg(feature = "xpbd_joints")]
+pub mod xpbd;
 
 pub(crate) mod config;
 pub(crate) mod diagnostics;
@@ -14,6 +17,7 @@ pub(crate) mod gather;
 mod length_unit;
 mod plugin;
 pub(crate) mod scatter;
+pub(crate) mod step_solver;
 pub(crate) mod substeps;
 pub(crate) mod workers;
 

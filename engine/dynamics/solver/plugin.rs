@@ -6,6 +6,8 @@ use bevy_ecs::{
     schedule::ScheduleLabel,
 };
 
+#[cfg(feature = "xpbd_joints")]
+use super::xpbd::XpbdSolverPlugin;
 use super::{
     config::{ContactSoftnessCoefficients, PhysicsLengthUnit, SolverConfig},
     diagnostics::SolverDiagnostics,
@@ -41,6 +43,7 @@ use crate::{
 /// | [`CcdPlugin`] | sweeps of fast bodies |
 /// | [`IslandPlugin`] | which bodies rest on which |
 /// | [`IslandSleepingPlugin`] | sleep |
+/// | `XpbdSolverPlugin` | constraints of the app, solved by XPBD |
 /// | `LengthUnitCheckPlugin` | a warning if the length unit was forgotten |
 /// | [`JointGraphPlugin`], for each type of joint | which joints hold which bodies |
 #[derive(Debug, Default)]
@@ -65,6 +68,8 @@ impl PluginGroup for SolverPlugins {
             .add(CcdPlugin)
             .add(IslandPlugin)
             .add(IslandSleepingPlugin);
+        #[cfg(feature = "xpbd_joints")]
+        let group = group.add(XpbdSolverPlugin);
         #[cfg(feature = "default-collider")]
         let group = group.add(LengthUnitCheckPlugin);
         let mut graphs = Graphs(group);

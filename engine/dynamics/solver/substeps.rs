@@ -2,9 +2,9 @@
 
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use bevy_time::Time;
-use core::any::TypeId;
-use kernel::solver::{self as k, RowInput, Softness, Solver, SubstepParams};
+use kernel::solver::{RowInput, Softness, SubstepParams};
 
+pub(crate) use super::step_solver::{OwnSubstepSystems, StepSolver};
 use crate::{
     collision::narrow_phase::ContactResponse,
     dynamics::{
@@ -14,6 +14,7 @@ use crate::{
             diagnostics::SolverDiagnostics,
             schedule::{SubstepCount, SubstepSchedule, advance_substep, substep_delta},
             softness_parameters::SoftnessCoefficients,
+            solver_body::lend::{lend_again, take_back},
             workers::{RowWidth, WorkerCount},
         },
         tables::{Bodies, Colliders, Contacts},
@@ -23,72 +24,9 @@ use crate::{
     threads::Threads,
 };
 
-/// The kernel's solver, and the parameters of this step.
-#[derive(Resource, Clone)]
-pub(crate) struct StepSolver {
-    pub(crate) kernel: Solver,
-    pub(crate) params: SubstepParams,
-    pub(crate) substeps: u32,
-}
-
 /// Wakes the threads at the start of a step if the last one had much to do: waking takes longer than most stages.
 pub(crate) fn wake_workers(mut threads: ResMut<Threads>, contacts: Res<Contacts>, workers: Res<WorkerCount>) {
     threads.wake(contacts.table.active_len(), workers.0, || workers.resolve());
-}
-
-impl Default for StepSolver {
-    fn default() -> Self {
-        Self {
-            kernel: Solver::default(),
-            params: SubstepParams {
-                h: 1.0 / 360.0,
-                inv_h: 360.0,
-                dt: 1.0 / 60.0,
-                soft: Softness::RIGID,
-                stiff: Softness::RIGID,
-                max_push_speed: 4.0,
-                warm_start: 1.0,
-                restitution_threshold: 1.0,
-                blow_speed: BLOW_SPEED,
-                friction_fade: 0.02,
-                max_sag: 0.005,
-                roll_speed: 0.2,
-                joints: k::JointSolver::Auto,
-            },
-            substeps: 1,
-        }
-    }
-}
-
-/// The engine's own systems in [`SubstepSchedule`]. While the schedule holds no others and has no run conditions, one call
-/// of the kernel per substep replaces it.
-#[derive(Resource, Clone, Debug, Default)]
-pub(crate) struct OwnSubstepSystems {
-    /// Whether bodies are integrated in this schedule, and whether contacts are solved.
-    pub(crate) integrates: bool,
-    pub(crate) solves: bool,
-    systems: Vec<TypeId>,
-}
-
-impl OwnSubstepSystems {
-    /// Records a system that is added.
-    pub(crate) fn note<M>(&mut self, system: impl IntoSystem<(), (), M>) {
-        self.systems.push(system.system_type_id());
-    }
-
-    /// Whether a schedule holds exactly these systems, without run conditions. False for a schedule that was built already,
-    /// since its conditions cannot be read: running the schedule gives the same bits.
-    fn are_all_of(&self, schedule: &Schedule) -> bool {
-        if schedule.systems().is_ok() {
-            return false;
-        }
-        let graph = schedule.graph();
-        graph.systems.len() == self.systems.len()
-            && graph.systems.iter().all(|(_, system, conditions)| {
-                conditions.is_empty() && self.systems.contains(&system.system_type())
-            })
-            && graph.system_sets.iter().all(|(.., conditions)| conditions.is_empty())
-    }
 }
 
 /// The friction centre fades out a separated point over this distance, times the length unit. Less makes friction jump as
@@ -194,8 +132,10 @@ pub(crate) fn run_substeps(world: &mut World) {
     let delta = substep_delta(world.resource::<Time<Physics>>().delta(), SubstepCount(substeps));
     let next = |world: &mut World| advance_substep(&mut world.resource_mut::<Time<Substeps>>(), delta);
     if !fused {
-        return run_schedule(world, substeps, next);
+        run_schedule(world, substeps, next);
+        return take_back(world);
     }
+    take_back(world);
     let start = bevy_platform::time::Instant::now();
     // A clone shares the threads.
     let pool = &world.resource::<Threads>().pool.clone();
@@ -218,6 +158,7 @@ pub(crate) fn run_substeps(world: &mut World) {
     }
     (1..substeps).for_each(|_| next(world));
     world.resource_mut::<SolverDiagnostics>().solve_constraints += start.elapsed();
+    lend_again(world);
 }
 
 /// Runs the schedule for each substep. The generic clock is the substeps' meanwhile.
@@ -236,15 +177,16 @@ fn run_schedule(world: &mut World, substeps: u32, mut next: impl FnMut(&mut Worl
 macro_rules! stage {
     ($(#[$doc:meta])* $system:ident => $stage:ident, $timer:ident) => {
         $(#[$doc])*
-        pub(crate) fn $system(
-            mut solver: ResMut<StepSolver>,
-            threads: Res<Threads>,
-            mut diagnostics: ResMut<SolverDiagnostics>,
-        ) {
+        pub(crate) fn $system(world: &mut World) {
+            take_back(world);
             let start = bevy_platform::time::Instant::now();
+            // A clone shares the threads.
+            let pool = &world.resource::<Threads>().pool.clone();
+            let mut solver = world.resource_mut::<StepSolver>();
             let StepSolver { kernel, params, .. } = &mut *solver;
-            kernel.$stage(params, &threads.pool);
-            diagnostics.$timer += start.elapsed();
+            kernel.$stage(params, pool);
+            world.resource_mut::<SolverDiagnostics>().$timer += start.elapsed();
+            lend_again(world);
         }
     };
 }

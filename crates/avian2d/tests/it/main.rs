@@ -82,5 +82,9 @@ mod stored;
 mod switching;
 #[path = "../../../../tests/type_paths.rs"]
 mod type_paths;
+#[path = "../../../../tests/users/mod.rs"]
+mod users;
+#[path = "../../../../tests/users/dim2.rs"]
+mod users_dim;
 #[path = "../../../../tests/walls.rs"]
 mod walls;

@@ -84,5 +84,9 @@ mod stored;
 mod switching;
 #[path = "../../../../tests/type_paths.rs"]
 mod type_paths;
+#[path = "../../../../tests/users/mod.rs"]
+mod users;
+#[path = "../../../../tests/users/dim3.rs"]
+mod users_dim;
 #[path = "../../../../tests/walls.rs"]
 mod walls;

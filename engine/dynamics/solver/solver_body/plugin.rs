@@ -3,7 +3,7 @@
 use bevy_app::{App, Plugin};
 use bevy_ecs::schedule::ScheduleLabel;
 
-use super::config::PhysicsLengthUnit;
+use super::super::config::PhysicsLengthUnit;
 use crate::{
     dynamics::integrator::Gravity,
     schedule::PhysicsSchedule,
