@@ -60,7 +60,7 @@
 //! }
 //!
 //! # let mut app = App::new();
-//! # app.add_plugins(PhysicsPlugins::default());
+//! # app.add_plugins((bevy_transform::TransformPlugin, PhysicsPlugins::default()));
 //! app.add_plugins(ConstraintPlugin::<Spring>::default());
 //! ```
 

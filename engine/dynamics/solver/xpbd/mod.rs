@@ -72,7 +72,7 @@
 //!     app.add_systems(PhysicsSchedule, prepare_xpbd_joint::<Rod>.in_set(SolverSystems::PrepareJoints));
 //!     app.add_systems(SubstepSchedule, solve_xpbd_joint::<Rod>.in_set(XpbdSolverSystems::SolveUserConstraints));
 //! }
-//! # App::new().add_plugins((PhysicsPlugins::default(), plugin));
+//! # App::new().add_plugins((bevy_transform::TransformPlugin, PhysicsPlugins::default(), plugin));
 //! ```
 //!
 //! Each substep ends with these positions, and velocities are what moved the bodies there (Müller, Macklin et al., "Detailed
@@ -174,9 +174,9 @@ pub trait XpbdConstraint<const ENTITY_COUNT: usize> {
 
 /// The change Δλ of a multiplier λ: Δλ = (−C − α̃ λ) / (Σ wᵢ |∇Cᵢ|² + α̃) with α̃ = α / dt².
 ///
-/// `c` is the error C of the constraint in m or rad, `gradients` its gradients ∇Cᵢ, `inverse_masses` the wᵢ and `compliance` the
-/// α in m/N or rad/(N·m). 0 where nothing can move: where the denominator is zero or not finite. Gradients without a mass, and
-/// masses without a gradient, are ignored.
+/// `c` is the error C of the constraint in m or rad, `gradients` its gradients ∇Cᵢ, `inverse_masses` the wᵢ and
+/// `compliance` the α in m/N or rad/(N·m). 0 where nothing can move: where the denominator is zero or not finite. Gradients
+/// without a mass, and masses without a gradient, are ignored.
 pub fn compute_lagrange_update_with_gradients(
     lagrange: Scalar,
     c: Scalar,

@@ -29,7 +29,8 @@ pub trait PositionConstraint {
         }
     }
 
-    /// The displacement of the point at `r` along the unit vector `n` per impulse along it, in 1/kg: 1/m + (r × n) · I⁻¹ (r × n).
+    /// The displacement of the point at `r` along the unit vector `n` per impulse along it, in 1/kg:
+    /// 1/m + (r × n) · I⁻¹ (r × n).
     fn compute_generalized_inverse_mass(
         &self,
         inverse_mass: Scalar,
