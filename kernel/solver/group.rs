@@ -31,7 +31,8 @@ struct Ending {
 const BOUNCING: Ending = Ending { tolerance: 2.0e-6, hopeless: 8 };
 const DULL: Ending = Ending { tolerance: 1.0e-4, hopeless: 8 };
 
-/// Number of sweeps in which impulses of several manifolds with friction rise to what stops the approach. Fewer favour the first.
+/// Number of sweeps in which impulses of several manifolds with friction rise to what stops the approach, where they are returned.
+/// Fewer favour the first.
 const RISE: usize = 8;
 
 /// A body of a group.
@@ -77,7 +78,8 @@ pub(super) unsafe fn solve(
     let fastest = group.iter().fold(0.0, |fastest, one| max(fastest, one.speed));
     let bounces = group.iter().any(|one| one.bounces);
     let ending = if bounces { &BOUNCING } else { &DULL };
-    let rise = if group.len() > 1 && group.iter().any(|one| one.row.friction > 0.0) { RISE } else { 1 };
+    let shares = bounces && group.len() > 1 && group.iter().any(|one| one.row.friction > 0.0);
+    let rise = if shares { RISE } else { 1 };
     // SAFETY: by the contract.
     group.iter_mut().for_each(|one| unsafe { one.begin(rows) });
     // SAFETY: by the contract.
