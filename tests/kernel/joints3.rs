@@ -78,7 +78,7 @@ fn twist_and_swings_are_driven_within_a_cone() {
                 let mut sim = Sim::new();
                 (sim.joint_solver, sim.gravity) = (solver, Vector::ZERO);
                 // By force: springs per mass differ with the inertia that each swing moves.
-                let drive = Drive::Force { stiffness: 1.5, damping: 0.1 };
+                let drive = Drive::Force { stiffness: 1.5, damping: 0.5 };
                 let to = |target_position: f32| {
                     let motor = Motor { target_velocity: 0.0, target_position, max_force: 1.0e6, drive };
                     Axis { motor: Some(motor), ..Axis::FREE }
@@ -103,7 +103,7 @@ fn twist_and_swings_are_driven_within_a_cone() {
                     pairs.push((sim.join(def).unwrap(), def));
                     last = limb;
                 }
-                sim.steps(240);
+                sim.steps(480);
                 for (id, def) in &pairs {
                     let [a, b] = def.bodies.map(|id| sim.bodies.frame(id).rotation);
                     let (angle, turn) = swing_and_twist(b, a);

@@ -1,9 +1,9 @@
 //! How far joints are off.
 
-use super::coupling::EndCoordinate;
+use super::coupling::{CouplingRecord, EndCoordinate};
+use super::def::JointDef;
 use super::dim::{ANGLE_AXES, AXES, TURNING, angles, coordinate};
 use super::single::turns_near;
-use super::table::Record;
 use crate::math::{DIM, Vector};
 use crate::table::BodyTable;
 
@@ -21,37 +21,39 @@ fn past([min, max]: [f32; 2], value: f32) -> f32 {
     (min - value).max(value - max).max(0.0)
 }
 
-impl Record {
-    /// How far the joint is off now. Of several coordinates the root of the sum of squares.
-    pub(super) fn gap(&self, bodies: &BodyTable) -> JointGap {
-        if let Some(coupling) = &self.coupling {
-            let def = &coupling.def;
-            let [a, b] = coupling.values_now(bodies);
-            let zero = coupling.zero();
-            let sum = (a + f64::from(def.ratio) * b - zero) as f32;
-            let off = past(def.limits.map(|limit| (f64::from(limit) - zero) as f32), sum);
-            return match def.ends[0].coordinate {
-                EndCoordinate::Turn => JointGap { length: 0.0, angle: off },
-                _ => JointGap { length: off, angle: 0.0 },
-            };
+impl JointGap {
+    /// How far a coupling is off now.
+    pub(super) fn of_coupling(coupling: &CouplingRecord, bodies: &BodyTable) -> Self {
+        let def = &coupling.def;
+        let [a, b] = coupling.values_now(bodies);
+        let zero = coupling.zero();
+        let sum = (a + f64::from(def.ratio) * b - zero) as f32;
+        let off = past(def.limits.map(|limit| (f64::from(limit) - zero) as f32), sum);
+        match def.ends[0].coordinate {
+            EndCoordinate::Turn => Self { length: 0.0, angle: off },
+            _ => Self { length: off, angle: 0.0 },
         }
-        let def = &self.def;
+    }
+
+    /// How far a joint is off now, given the angle that counts turns at the end of the last step. Of several coordinates the root of
+    /// the sum of squares.
+    pub(super) fn of_joint(def: &JointDef, angle: f32, bodies: &BodyTable) -> Self {
         let [(a, of_a), (b, of_b)] = [0, 1].map(|side| {
             let (frame, pose) = (&def.frames[side], bodies.frame(def.bodies[side]));
             (pose.transform(frame.anchor), pose.rotation.mul(frame.basis).normalized())
         });
-        let (between, angles) = ((b - a).to_local(), angles([of_a, of_b]));
+        let (between, turns) = ((b - a).to_local(), angles([of_a, of_b]));
         let mut values = [0.0; AXES];
         for (value, axis) in values[..DIM].iter_mut().zip(Vector::AXES) {
             *value = of_a.rotate(axis).dot(between);
         }
         values[coordinate::DISTANCE] = between.length();
-        for (number, (angle, _)) in ANGLE_AXES.into_iter().zip(angles) {
-            values[number] = angle;
+        for (number, (value, _)) in ANGLE_AXES.into_iter().zip(turns) {
+            values[number] = value;
         }
         let turning = ANGLE_AXES[TURNING];
         if let Some([min, max]) = def.axes[turning].limits {
-            let near = if self.angle.is_nan() { 0.5 * (min + max) } else { self.angle };
+            let near = if angle.is_nan() { 0.5 * (min + max) } else { angle };
             values[turning] += turns_near(values[turning], near);
         }
         let mut squares = [0.0f32; 2];
@@ -60,6 +62,6 @@ impl Record {
             squares[usize::from(ANGLE_AXES.contains(&number))] += off * off;
         }
         let [length, angle] = squares.map(f32::sqrt);
-        JointGap { length, angle }
+        Self { length, angle }
     }
 }

@@ -118,7 +118,13 @@ impl JointTable {
     /// How far locked coordinates and limits of a joint or coupling are off, by the bodies' present poses. `None` for an unknown
     /// id.
     pub fn gap(&self, id: u32, bodies: &BodyTable) -> Option<JointGap> {
-        bodies.constraints(KIND).is_live(id).then(|| self.records[id as usize].gap(bodies))
+        bodies.constraints(KIND).is_live(id).then(|| {
+            let Record { def, angle, coupling, .. } = &self.records[id as usize];
+            match coupling {
+                Some(coupling) => JointGap::of_coupling(coupling, bodies),
+                None => JointGap::of_joint(def, *angle, bodies),
+            }
+        })
     }
 
     /// Changes all of a joint but its bodies, and wakes them if anything is different. What is kept has its impulses.
