@@ -38,6 +38,9 @@ pub(super) struct Blows {
     groups: Vec<Vec<StruckBody>>,
     /// Of all rounds of the step.
     given: Vec<Given>,
+    /// Struck body rows since the caller last emptied this list, and when they were struck, in seconds from the start of the
+    /// substep.
+    pub(super) times: Vec<(u32, f32)>,
     /// The time from the start of the step to the end of this substep, in seconds.
     pub(super) elapsed: f32,
 }
@@ -74,6 +77,7 @@ impl Blows {
     /// Starts a substep.
     pub(super) fn begin(&mut self) {
         self.struck.clear();
+        self.times.clear();
     }
 
     /// The blows of the step, in the order of time. A manifold may be struck several times.
@@ -98,7 +102,7 @@ impl Blows {
         }
         self.merge_found();
         self.find_groups(first_dynamic);
-        let Self { struck, groups, given, reached, .. } = self;
+        let Self { struck, groups, given, reached, times, .. } = self;
         let mut any = false;
         for group in struck.chunk_by(|a, b| a.group == b.group).filter(|group| is_due(group)) {
             any = true;
@@ -113,6 +117,9 @@ impl Blows {
             let impulses = one.impulses();
             if impulses.iter().any(|impulse| *impulse > 0.0) {
                 let (normal, gained) = (one.row.normal, one.gained);
+                if one.speed > 0.0 {
+                    times.extend(movable(one, first_dynamic).map(|row| (row, one.time)));
+                }
                 given.push(Given { item: one.item, impulses, normal, gained });
             }
             one.rest();

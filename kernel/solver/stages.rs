@@ -9,13 +9,13 @@ use super::contact_batch::Room;
 use super::custom::CustomTable;
 use super::exclusive;
 use super::input::RowInput;
-use super::joint::{JointTable, JointTrees};
+use super::joint::{JointTable, JointTrees, TreeBlows};
 use super::layer::Sorter;
 use super::plan::{Block, Plan, Stage};
 use super::shares::Shares;
 use super::split::DeepCounts;
 use super::struck::Striking;
-use super::{BodyRows, RowView, SubstepParams};
+use super::{BodyRow, BodyRows, RowView, SubstepParams};
 use crate::contact::ContactTable;
 use crate::data::Parts;
 use crate::graph::ColorGraph;
@@ -28,6 +28,9 @@ const BLOCK_ROWS: u32 = 32;
 
 /// Minimum number of rows for which waking workers pays.
 const WORTH_WAKING: u32 = 256;
+
+/// Maximum number of turns between trees of joints and contacts in a blow. Fewer leave joints that open at the blow.
+const JOINT_ROUNDS: usize = 8;
 
 /// The bodies and rows of one step.
 ///
@@ -45,6 +48,8 @@ pub struct Solver {
     pub customs: CustomTable,
     /// Joints that are solved directly.
     trees: JointTrees,
+    /// What blows do to them.
+    tree_blows: TreeBlows,
     /// Inertia that joints ask for, by row of the body.
     least_inertia: Vec<f32>,
     rows: AllRows,
@@ -236,17 +241,51 @@ impl Solver {
         self.bodies.leave_rows(pool);
     }
 
-    /// Strikes what closes fast and touches within `time` seconds.
+    /// Strikes what closes fast and touches within `time` seconds. Joints of trees take part, in turns with contacts.
     fn strike(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) {
-        let Self { bodies, joints, customs, rows, plan, layers, blows, bearing, first_dynamic, .. } = self;
-        blows.elapsed += time;
-        let is_watched = plan.blocks.iter().any(|block| block.passes.are_watched());
-        if !is_watched && blows.reached.is_empty() {
+        self.blows.elapsed += time;
+        let is_watched = self.plan.blocks.iter().any(|block| block.passes.are_watched());
+        if !is_watched && self.blows.reached.is_empty() {
             return;
         }
+        self.blows.begin();
+        let is_jointed = self.trees.len() > 0;
+        if is_jointed {
+            self.with_true_turns(pool, |blows, trees, bodies| blows.begin(trees, &bodies));
+        }
+        self.strike_contacts(time, params, pool);
+        if is_jointed {
+            for _ in 0..JOINT_ROUNDS {
+                let Self { trees, tree_blows, blows, .. } = self;
+                if !tree_blows.mark(trees, &mut blows.times, &mut blows.reached) {
+                    break;
+                }
+                self.with_true_turns(pool, |blows, trees, bodies| {
+                    blows.follow(trees, &Sweep { pass: Pass::Relax, bodies, params }, time, pool);
+                });
+                self.strike_contacts(time, params, pool);
+            }
+            self.with_true_turns(pool, |blows, trees, bodies| blows.end(trees, &bodies, time));
+        }
+        self.bodies.follow_blows(&self.blows.reached, params.h);
+    }
+
+    /// Calls a function with the trees and bodies, which have their true angular velocities.
+    fn with_true_turns(
+        &mut self,
+        pool: &ThreadPool,
+        f: impl FnOnce(&mut TreeBlows, &mut JointTrees, RowView<BodyRow>),
+    ) {
+        self.bodies.leave_rows(pool);
+        f(&mut self.tree_blows, &mut self.trees, self.bodies.view(self.first_dynamic));
+        self.bodies.enter_rows(pool);
+    }
+
+    /// Strikes the contacts that close fast, and those that are reached then, in rounds.
+    fn strike_contacts(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) {
+        let Self { bodies, joints, customs, rows, plan, layers, blows, bearing, first_dynamic, .. } = self;
         let BodyRows { rows: body_rows, motions, .. } = bodies;
         let bodies_view = RowView::over(body_rows, *first_dynamic);
-        blows.begin();
         let striking =
             Striking { bodies: bodies_view, motions, bearing, params, time, elapsed: blows.elapsed };
         let mut blocks = core::mem::take(&mut plan.blocks);
@@ -269,7 +308,6 @@ impl Solver {
             }
         });
         plan.blocks = blocks;
-        bodies.follow_blows(&blows.reached, params.h);
     }
 
     /// The blows of the step, in the order of time. A manifold may be struck several times. They are kept until the next step.

@@ -184,3 +184,18 @@ pub fn any_axis_turn(angle: f32) -> Rot {
 pub fn turn_vector(turn: Rot) -> Angular {
     Angular { z: f64::from(turn.sin).atan2(f64::from(turn.cos)) as f32 }
 }
+
+/// The coordinates of a limb's twist: none.
+pub const LIMB: core::ops::Range<usize> = TURN..TURN;
+/// The coordinate of a limb's swing, and how far the other way its limits go.
+pub const SWING: (usize, f32) = (TURN, -1.0);
+
+/// The basis of a frame whose x axis is along a limb that hangs down.
+pub fn limb_basis() -> Rot {
+    Rot::IDENTITY
+}
+
+/// Places side by side, a unit apart.
+pub fn plot(number: usize) -> Vector {
+    Vector { x: number as f32, y: 0.0 }
+}

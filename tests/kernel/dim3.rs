@@ -228,3 +228,18 @@ pub fn turn_vector(turn: Rot) -> Angular {
     let angle = 2.0 * sine.atan2(f64::from(turn.w * sign));
     if sine > 0.0 { axis * (angle / sine) as f32 } else { axis }
 }
+
+/// The coordinates of a limb's twist.
+pub const LIMB: core::ops::Range<usize> = TURN..TURN + 1;
+/// The coordinate of a limb's swing, and how far the other way its limits go.
+pub const SWING: (usize, f32) = (crate::kernel::solver::coordinate::CONE, 0.0);
+
+/// The basis of a frame whose x axis is along a limb that hangs down.
+pub fn limb_basis() -> Rot {
+    Rot::from_axis_angle(Vector::Z, -core::f32::consts::FRAC_PI_2)
+}
+
+/// Places side by side, a unit apart, in rows of three.
+pub fn plot(number: usize) -> Vector {
+    Vector { x: (number % 3) as f32, y: 0.0, z: (number / 3) as f32 }
+}

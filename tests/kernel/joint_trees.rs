@@ -6,7 +6,7 @@ use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Rot, Vector};
 use kernel::shape::{Ball, Shape};
-use kernel::solver::{Axis, JointDef, JointSolver};
+use kernel::solver::{Axis, JointDef, JointFrame, JointSolver};
 use kernel::table::{BodyKind, Velocity};
 
 const LOADS: [f32; 4] = [1.0, 10.0, 100.0, 1000.0];
@@ -144,8 +144,12 @@ fn a_mobile_holds_its_leaves() {
 
 #[test]
 fn a_cantilever_of_welds_bears_a_load() {
-    for (solver, most) in [(JointSolver::Auto, 0.5), (JointSolver::Rigid, 0.001)] {
+    let rigid = JointSolver::Rigid;
+    for (solver, rate, substeps, most) in
+        [(JointSolver::Auto, 60.0f32, 4, 0.5), (rigid, 60.0, 4, 0.001), (rigid, 64.0, 6, 0.001)]
+    {
         let mut sim = sim(solver);
+        (sim.dt, sim.substeps) = (1.0 / rate, substeps);
         let mut last = (post(&mut sim, Vector::ZERO), Vector::ZERO);
         for k in 0..9 {
             let at = Vector::X * (k as f32 + 0.5).min(8.0);
@@ -235,6 +239,7 @@ fn a_bridge_of_planks_sways_ever_less() {
 /// Contacts win. Neighbours that touch press on each other as well, and are no load.
 #[test]
 fn a_chain_that_falls_comes_to_rest_on_the_floor() {
+    let mut wide = Vec::new();
     for load in LOADS {
         for neighbours in [false, true] {
             if neighbours && load > 100.0 {
@@ -258,7 +263,9 @@ fn a_chain_that_falls_comes_to_rest_on_the_floor() {
             }
             let (open, gained) = watch(&mut sim, &joints, 1200);
             let case = format!("{load} kg, neighbours touch: {neighbours}");
-            assert!(open < 0.06, "{case}: a joint is open by {open} m");
+            if open >= 0.02 {
+                wide.push(format!("{case}: a joint is open by {open} m"));
+            }
             assert!(gained < 0.01, "{case}: gains {gained} J");
             let corners = [[-0.5, -0.1], [-0.5, 0.1], [0.5, -0.1], [0.5, 0.1]];
             let corners = corners.map(|[x, y]| sized(x, y, 0.1)).into_iter();
@@ -271,6 +278,7 @@ fn a_chain_that_falls_comes_to_rest_on_the_floor() {
             assert!(fastest(&sim, &ids) < 0.05, "{case}: {} m/s", fastest(&sim, &ids));
         }
     }
+    assert!(wide.is_empty(), "{wide:#?}");
 }
 
 fn corners_behind() -> impl Iterator<Item = Vector> {
@@ -311,8 +319,8 @@ fn limits_of_a_tree_open_no_joint() {
             }
         }
         assert!(sim.energy() < before, "{rate} rad/s: gains energy");
-        assert!(open < 0.01, "{rate} rad/s: a joint is open by {open} m");
-        assert!(past.to_degrees() < 0.35 * rate, "{rate} rad/s: {} degrees past a limit", past.to_degrees());
+        assert!(open < 0.015, "{rate} rad/s: a joint is open by {open} m");
+        assert!(past.to_degrees() < 0.2 * rate, "{rate} rad/s: {} degrees past a limit", past.to_degrees());
     }
 }
 
@@ -424,5 +432,58 @@ fn trees_do_not_depend_on_workers() {
     let one = run(1, false);
     for workers in [2, 5] {
         assert!(run(workers, workers == 5) == one, "{workers} workers");
+    }
+}
+
+/// A mast and a jib of welds bear a load on a cable, and hold to the millimetre; the foot tells weight and moment.
+#[test]
+fn a_crane_holds_in_rigid_mode() {
+    for (rate, substeps) in [(60.0f32, 4u32), (64.0, 6)] {
+        let mut sim = sim(JointSolver::Rigid);
+        (sim.dt, sim.substeps) = (1.0 / rate, substeps);
+        let link = cuboid(sized(0.5, 0.1, 0.1));
+        let up = turned(core::f32::consts::FRAC_PI_2);
+        let mut last = (post(&mut sim, Vector::ZERO), Vector::ZERO);
+        let mut welds = Vec::new();
+        let mut add = |sim: &mut Sim, at: Vector, turn: Rot, kg: f32, is_weld: bool| {
+            let id = apart(sim, BodyKind::Dynamic, link.clone(), at, turn);
+            sim.load(id, kg / sim.mass(id) as f32);
+            let anchors = [last.1, Vector::X * -0.5];
+            let def = if is_weld {
+                // The frames are those of the body before.
+                let basis = [last.0, id].map(|body| sim.bodies.frame(body).rotation.inverse());
+                let def = weld(last.0, id, anchors);
+                let frames = [0, 1].map(|side| JointFrame { basis: basis[side], ..def.frames[side] });
+                JointDef { frames, ..def }
+            } else {
+                JointDef::free([last.0, id], anchors).with(SHIFTS, Axis::LOCKED)
+            };
+            welds.push((sim.join(def).unwrap(), is_weld));
+            last = (id, Vector::X * 0.5);
+            id
+        };
+        (0..4).for_each(|k| _ = add(&mut sim, Vector::Y * (k as f32 + 0.5), up, 5.0, true));
+        for k in 0..4 {
+            add(&mut sim, Vector::Y * 4.0 + Vector::X * (k as f32 + 0.5), Rot::IDENTITY, 5.0, true);
+        }
+        let down = turned(-core::f32::consts::FRAC_PI_2);
+        let mut hook = 0;
+        for k in 0..3 {
+            let at = Vector::X * 4.0 + Vector::Y * (3.5 - k as f32);
+            hook = add(&mut sim, at, down, if k == 2 { 200.0 } else { 1.0 }, false);
+        }
+        let before = sim.position(hook).to_local();
+        sim.steps(900);
+        let case = format!("{rate} Hz in {substeps}");
+        let moved = (sim.position(hook).to_local() - before).length();
+        assert!(moved < 2.0e-3, "{case}: the load moves by {moved} m");
+        for (id, is_weld) in &welds {
+            let gap = sim.gap(*id).unwrap();
+            assert!(gap.length < 1.0e-3 && (!is_weld || gap.angle < 1.0e-3), "{case}, joint {id}: {gap:?}");
+        }
+        let foot = sim.reaction(welds[0].0);
+        let (weight, moment) = (10.0 * (8.0 * 5.0 + 202.0), 10.0 * (4.0 * 5.0 * 2.0 + 202.0 * 4.0));
+        assert!((foot.force.y / weight - 1.0).abs() < 0.02, "{case}: {:?}, not {weight} N", foot.force);
+        assert!((foot.torque.z / moment - 1.0).abs() < 0.02, "{case}: {:?}, not {moment} N·m", foot.torque);
     }
 }

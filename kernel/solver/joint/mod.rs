@@ -30,6 +30,8 @@ mod row;
 mod single;
 mod table;
 mod tree;
+mod tree_blow;
+mod tree_pass;
 
 pub(super) use batch::{JOINT_BATCHES, JointRows, JointViews, joints, sort_joints};
 pub use coupling::{CouplingDef, CouplingEnd, EndCoordinate};
@@ -42,3 +44,4 @@ pub use gap::JointGap;
 pub(super) use table::Records;
 pub use table::{JointReaction, JointTable};
 pub(super) use tree::JointTrees;
+pub(super) use tree_blow::TreeBlows;

@@ -199,6 +199,11 @@ impl<N: Lane> Single<N> {
 }
 
 impl Single<f32> {
+    /// Whether its values are limited.
+    pub(super) fn has_limits(&self) -> bool {
+        self.limits != [f32::NEG_INFINITY, f32::INFINITY]
+    }
+
     /// Whether a pass would change anything, at a rate of the coordinate: there is a motor, a spring, an
     /// impulse, or a limit ahead.
     pub(super) fn may_act(&self, value: f32, rate: f32, h: f32) -> bool {

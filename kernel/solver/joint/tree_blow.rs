@@ -1,0 +1,131 @@
+//! What a blow does to a tree of joints.
+//!
+//! A blow changes velocities of single bodies. The tree passes it on to all its bodies at once, which may strike other contacts, and so
+//! on in turns: each is a projection, so no energy is gained. Bodies move with their old velocities until the first blow of their
+//! tree, all of them: otherwise a joint would open by the way between the start of the substep and the blow, up to 4 cm at 10 m/s.
+#![expect(unsafe_code, reason = "bodies and joints of different trees are changed at once")]
+
+use super::super::batch::Sweep;
+use super::super::{BodyRow, RowView};
+use super::forest::GROUND;
+use super::tree::JointTrees;
+use super::tree_pass::range;
+use crate::data::BitSet;
+use crate::math::{Angular, Rot, Vector, min};
+use crate::thread_pool::ThreadPool;
+
+/// State of the trees while blows are solved. Buffers are kept between steps.
+#[derive(Clone, Debug, Default)]
+pub(in super::super) struct TreeBlows {
+    /// By tree, the time of its first blow from the start of the substep, in seconds. `f32::MAX` if it was not struck.
+    times: Vec<f32>,
+    /// By tree, whether it was struck since it was last solved.
+    is_due: Vec<bool>,
+    /// By body of the trees, velocity and way before all blows.
+    before: Vec<Motion>,
+    /// By body, velocity before the tree was last solved.
+    earlier: Vec<(Vector, Angular)>,
+    /// By single coordinate, its impulses before all blows.
+    impulses: Vec<[f32; 2]>,
+}
+
+/// Velocity, and displacement and rotation since the start of the step.
+type Motion = ((Vector, Angular), (Vector, Rot));
+
+/// Moves a body as if its velocity had changed after a time, and not at once.
+fn displace(row: &mut BodyRow, (v, w): (Vector, Angular), (position, rotation): (Vector, Rot), time: f32) {
+    let now = row.velocity();
+    row.set_delta(position + (v - now.0) * time, rotation.turned_by((w - now.1) * time));
+}
+
+impl TreeBlows {
+    /// Starts the blows of a substep. Limits begin without impulses.
+    pub(in super::super) fn begin(&mut self, trees: &mut JointTrees, bodies: &RowView<BodyRow>) {
+        let JointTrees { forest, singles, bodies: listed, .. } = trees;
+        let Self { times, is_due, before, earlier, impulses } = self;
+        times.clear();
+        times.resize(forest.trees.len(), f32::MAX);
+        is_due.clear();
+        is_due.resize(forest.trees.len(), false);
+        before.clear();
+        // SAFETY: no other thread writes bodies.
+        before.extend(listed.iter().map(|body| unsafe {
+            let row = bodies.get(body.row);
+            (row.velocity(), row.delta())
+        }));
+        earlier.clear();
+        earlier.extend(before.iter().map(|(velocity, _)| *velocity));
+        impulses.clear();
+        impulses.extend(singles.iter_mut().map(|single| core::mem::take(&mut single.impulses)));
+    }
+
+    /// Marks the trees of struck body rows, given with the times of their blows. Returns whether there are any, and adds their bodies.
+    pub(in super::super) fn mark(
+        &mut self,
+        trees: &JointTrees,
+        struck: &mut Vec<(u32, f32)>,
+        reached: &mut BitSet,
+    ) -> bool {
+        let mut any = false;
+        for (row, time) in struck.drain(..) {
+            let node = trees.numbers.get(row as usize).copied().unwrap_or(GROUND);
+            let Some(tree) = trees.forest.owners.get(node as usize).copied().filter(|tree| *tree != GROUND)
+            else {
+                continue;
+            };
+            any = true;
+            self.is_due[tree as usize] = true;
+            let first = &mut self.times[tree as usize];
+            if *first == f32::MAX {
+                let of_tree = &trees.bodies[range(trees.forest.trees[tree as usize].bodies)];
+                of_tree.iter().for_each(|body| _ = reached.insert(body.row));
+            }
+            *first = min(*first, time);
+        }
+        any
+    }
+
+    /// Solves the trees that were struck, without bias.
+    pub(in super::super) fn follow(
+        &mut self,
+        trees: &mut JointTrees,
+        sweep: &Sweep,
+        time: f32,
+        pool: &ThreadPool,
+    ) {
+        let due: Vec<usize> = (0..self.is_due.len()).filter(|tree| self.is_due[*tree]).collect();
+        for tree in &due {
+            for k in range(trees.forest.trees[*tree].bodies) {
+                // SAFETY: no other thread writes bodies.
+                self.earlier[k] = unsafe { sweep.bodies.get(trees.bodies[k].row) }.velocity();
+            }
+        }
+        // SAFETY: each tree is run once, and no two share a joint or a dynamic body. Of the bodies only dynamic ones are written.
+        trees.each(pool, due.len(), |k| due[k], |mut tree| unsafe { tree.project(sweep) });
+        for tree in due {
+            self.is_due[tree] = false;
+            let time = min(self.times[tree], time);
+            for k in range(trees.forest.trees[tree].bodies) {
+                let change = |row: &mut BodyRow| displace(row, self.earlier[k], row.delta(), time);
+                // SAFETY: no other thread uses bodies.
+                unsafe { sweep.bodies.put(trees.bodies[k].row, change) };
+            }
+        }
+    }
+
+    /// Ends the blows of a substep: the bodies of a tree that was struck have moved with their old velocities until its first blow.
+    pub(in super::super) fn end(&self, trees: &mut JointTrees, bodies: &RowView<BodyRow>, time: f32) {
+        let JointTrees { forest, singles, bodies: listed, .. } = trees;
+        for (span, first) in forest.trees.iter().zip(&self.times).filter(|(_, first)| **first < f32::MAX) {
+            for k in range(span.bodies) {
+                let (velocity, delta) = self.before[k];
+                let change = |row: &mut BodyRow| displace(row, velocity, delta, min(*first, time));
+                // SAFETY: no other thread uses bodies.
+                unsafe { bodies.put(listed[k].row, change) };
+            }
+        }
+        for (single, impulses) in singles.iter_mut().zip(&self.impulses) {
+            single.impulses = *impulses;
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Ragdolls: humans of eleven capsules that fall.
+
+use super::dim::{LIMB, SWING, TURN, any_rotation, plot, sized, spin};
+use super::extreme::Dice;
+use super::joints::{SHIFTS, hinge};
+use super::sim::Sim;
+use crate::kernel;
+use kernel::math::{Rot, Vector};
+use kernel::shape::{Capsule, Shape};
+use kernel::solver::{Axis, Drive, JointDef, JointFrame, OrientationMotor};
+use kernel::table::BodyKind;
+
+/// A body: the middle of its capsule, half of its axis, and its radius, in metres. Sides are ahead, up, left.
+const PARTS: [([f32; 3], [f32; 3], f32); 11] = [
+    ([0.0, 0.0, 0.0], [0.0, 0.0, 0.08], 0.10),
+    ([0.0, 0.35, 0.0], [0.0, 0.0, 0.10], 0.14),
+    ([0.0, 0.68, 0.0], [0.0, 0.03, 0.0], 0.10),
+    ([0.0, 0.29, -0.30], [0.0, 0.13, 0.0], 0.05),
+    ([0.0, -0.02, -0.30], [0.0, 0.12, 0.0], 0.045),
+    ([0.0, 0.29, 0.30], [0.0, 0.13, 0.0], 0.05),
+    ([0.0, -0.02, 0.30], [0.0, 0.12, 0.0], 0.045),
+    ([0.0, -0.31, -0.10], [0.0, 0.15, 0.0], 0.07),
+    ([0.0, -0.73, -0.10], [0.0, 0.17, 0.0], 0.06),
+    ([0.0, -0.31, 0.10], [0.0, 0.15, 0.0], 0.07),
+    ([0.0, -0.73, 0.10], [0.0, 0.17, 0.0], 0.06),
+];
+
+/// What a joint lets turn, rad.
+enum Bends {
+    /// A hinge between two angles.
+    Hinge(f32, f32),
+    /// A ball with a cone and a twist.
+    Ball(f32, f32),
+}
+
+/// Parts that are joined, and where.
+const JOINTS: [(usize, usize, [f32; 3], Bends); 10] = [
+    (0, 1, [0.0, 0.18, 0.0], Bends::Ball(0.5, 0.4)),
+    (1, 2, [0.0, 0.54, 0.0], Bends::Ball(0.6, 0.6)),
+    (1, 3, [0.0, 0.44, -0.28], Bends::Ball(1.3, 0.8)),
+    (3, 4, [0.0, 0.13, -0.30], Bends::Hinge(0.0, 2.3)),
+    (1, 5, [0.0, 0.44, 0.28], Bends::Ball(1.3, 0.8)),
+    (5, 6, [0.0, 0.13, 0.30], Bends::Hinge(0.0, 2.3)),
+    (0, 7, [0.0, -0.12, -0.10], Bends::Ball(1.0, 0.5)),
+    (7, 8, [0.0, -0.51, -0.10], Bends::Hinge(-2.3, 0.0)),
+    (0, 9, [0.0, -0.12, 0.10], Bends::Ball(1.0, 0.5)),
+    (9, 10, [0.0, -0.51, 0.10], Bends::Hinge(-2.3, 0.0)),
+];
+
+fn at([x, y, z]: [f32; 3]) -> Vector {
+    sized(x, y, z)
+}
+
+/// Adds a human whose pelvis is at a place. Parts of one body pass through each other. `friction` is the torque in
+/// N·m that joints resist turning with, fully from 0.5 rad/s on.
+pub fn human(sim: &mut Sim, place: Vector, turn: Rot, friction: f32) -> (Vec<u32>, Vec<u32>) {
+    let ids: Vec<u32> = PARTS
+        .iter()
+        .map(|(middle, half, radius)| {
+            let capsule = Capsule { a: at(*half) * -1.0, b: at(*half), radius: *radius };
+            let place = place + turn.rotate(at(*middle));
+            let id = sim.add(BodyKind::Dynamic, Shape::Capsule(capsule), place, turn);
+            sim.load(id, 1000.0);
+            id
+        })
+        .collect();
+    for (k, a) in ids.iter().enumerate() {
+        ids[k + 1..].iter().for_each(|b| _ = sim.apart.insert([*a, *b]));
+    }
+    let joints = JOINTS.iter().map(|(a, b, joint, bends)| {
+        let anchors = [*a, *b].map(|part| at(*joint) - at(PARTS[part].0));
+        let (a, b) = (ids[*a], ids[*b]);
+        let def = match bends {
+            Bends::Hinge(min, max) => hinge(a, b, anchors).with([TURN], Axis::limited(*min, *max)),
+            Bends::Ball(cone, twist) => {
+                let frames = anchors.map(|anchor| JointFrame { anchor, basis: super::dim::limb_basis() });
+                let def = JointDef { frames, ..JointDef::free([a, b], anchors) }.with(SHIFTS, Axis::LOCKED);
+                def.with(LIMB, Axis::limited(-*twist, *twist))
+                    .with([SWING.0], Axis::limited(SWING.1 * cone, *cone))
+            }
+        };
+        let drive = Drive::Force { stiffness: 0.0, damping: 2.0 * friction };
+        let (target_rotation, target_velocity) = (Rot::IDENTITY, spin(0.0));
+        let motor = OrientationMotor { target_rotation, target_velocity, max_torque: friction, drive };
+        sim.join(JointDef { orientation: (friction > 0.0).then_some(motor), ..def }).unwrap()
+    });
+    let joints = joints.collect();
+    (ids, joints)
+}
+
+/// Steps until all sleep. Returns the number of steps, the widest gap, m, and the farthest limit passed, degrees.
+fn settle(sim: &mut Sim, joints: &[u32], steps: usize) -> (usize, f32, f32) {
+    let (mut open, mut past) = (0.0f32, 0.0f32);
+    for step in 0..steps {
+        sim.step();
+        for id in joints {
+            let gap = sim.gap(*id).unwrap();
+            (open, past) = (open.max(gap.length), past.max(gap.angle.to_degrees()));
+        }
+        if sim.bodies.awake_dynamic().next().is_none() {
+            return (step, open, past);
+        }
+    }
+    (steps, open, past)
+}
+
+#[test]
+fn a_human_that_falls_holds_together_and_sleeps() {
+    let mut failed = Vec::new();
+    for (rate, substeps) in [(60.0f32, 4u32), (64.0, 6)] {
+        for height in [1.0f32, 3.0, 30.0] {
+            for seed in 0..4 {
+                let mut dice = Dice::new(seed);
+                let mut sim = Sim::new();
+                (sim.sleeping, sim.checked) = (true, false);
+                (sim.dt, sim.substeps) = (1.0 / rate, substeps);
+                sim.floor();
+                let turn = any_rotation(&mut dice);
+                let (_, joints) = human(&mut sim, Vector::Y * (1.0 + height), turn, 0.0);
+                let before = sim.energy();
+                let (steps, open, past) = settle(&mut sim, &joints, (12.0 * rate) as usize);
+                let gained = sim.energy() - before;
+                let seconds = steps as f32 / rate;
+                if open > 0.015 || past > 3.5 || seconds > 10.0 || gained > 0.0 {
+                    let case = format!("{height} m, {rate} Hz in {substeps}, seed {seed}");
+                    failed
+                        .push(format!("{case}: open {open} m, past {past} degrees, {seconds} s, {gained} J"));
+                }
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{failed:#?}");
+}
+
+/// Whether it falls asleep, see docs/design/limits.md.
+#[test]
+fn a_heap_of_humans_comes_to_rest() {
+    let mut failed = Vec::new();
+    for friction in [0.0f32, 3.0] {
+        let mut dice = Dice::new(7);
+        let mut sim = Sim::new();
+        (sim.sleeping, sim.checked) = (true, false);
+        sim.floor();
+        let mut joints = Vec::new();
+        for k in 0..63 {
+            let (column, layer) = (k % 9, k / 9);
+            let aside = sized(0.3 * dice.signed(), 0.0, 0.3 * dice.signed());
+            let place = plot(column) * 2.0 + Vector::Y * (2.0 + 2.0 * layer as f32) + aside;
+            let turn = any_rotation(&mut dice);
+            joints.extend(human(&mut sim, place, turn, friction).1);
+        }
+        let (steps, open, past) = settle(&mut sim, &joints, 720);
+        let seconds = steps as f32 / 60.0;
+        let mut speeds: Vec<f32> =
+            sim.bodies.awake_dynamic().map(|id| sim.bodies.velocities[id as usize].linear.length()).collect();
+        speeds.sort_by(f32::total_cmp);
+        let most = speeds.get(speeds.len() * 99 / 100).copied().unwrap_or(0.0);
+        if open > 0.05 || past > 12.0 || most > 0.1 {
+            failed.push(format!(
+                "friction {friction}: open {open} m, past {past} degrees, after {seconds} s {} awake, {most} m/s",
+                speeds.len()
+            ));
+        }
+    }
+    assert!(failed.is_empty(), "{failed:#?}");
+}
