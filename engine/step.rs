@@ -145,6 +145,8 @@ stages! {
     UpdateMassProperties.before(PhysicsStepSystems::First) => {
         MassProperties: (recompute, warn_of_missing_mass).chain_ignore_deferred(),
     }
+    /// Sets velocities of kinematic bodies that follow their transform.
+    FollowTargets.before(PhysicsStepSystems::First) => { Transforms: follow_transforms }
     /// Moves characters. Systems: `CharacterControllerPlugin`.
     MoveCharacters.before(PhysicsStepSystems::First) => {}
     /// Resets counters and timers, and wakes the thread pool.
@@ -170,8 +172,6 @@ stages! {
     FollowSleep.in_set(PhysicsStepSystems::First) => { Sleeping: follow_requests }
     /// Wakes bodies with forces.
     FollowForces.in_set(PhysicsStepSystems::First) => { Forces: (release_forces, follow_forces).chain() }
-    /// Sets velocities of kinematic bodies that follow their transform.
-    FollowTargets.in_set(PhysicsStepSystems::First) => { Transforms: follow_transforms }
     /// Wakes bodies that the app moved or pushed.
     FollowApp.in_set(PhysicsStepSystems::First) => { SolverBodies: (wake_changed, rest_kinematic).chain() }
     /// Reads poses and velocities of awake bodies.

@@ -3,6 +3,7 @@
 use super::{Course, SKIN, block, figures, fixed, floor, rates, spin};
 use avian::{character_controller::controller::GroundState, math::*, prelude::*};
 use bevy_ecs::prelude::*;
+use bevy_transform::components::Transform;
 
 const STANDING: Scalar = 0.9 + SKIN;
 
@@ -37,6 +38,42 @@ fn feet_stay_on_a_lift_that_turns_round() {
                         assert!((sample.state.ground_velocity.y - way).abs() < 1.0e-5, "{what:?}");
                     }
                 }
+            }
+        }
+    }
+}
+
+/// By its transform, with turns at up to 7 m/s²; and a carousel.
+#[test]
+fn feet_stay_on_a_lift_that_follows_its_transform() {
+    for (name, shape) in figures() {
+        for &rate in rates(name) {
+            let mut course = Course::new(rate, shape.clone(), spin::START * 0.5 + Vector::Y * STANDING);
+            let bundle =
+                (RigidBody::Kinematic, FollowTransform, spin::disc(), Transform::from_xyz(0.0, -0.5, 0.0));
+            let lift = course.app.world_mut().spawn(bundle).id();
+            course.walk(Vector::ZERO, 0.2);
+            let what = (name, rate);
+            for i in 1..=rate {
+                let t = i as f32 / rate as f32;
+                let height = 1.5 * (1.0 - (2.2 * t).cos());
+                let turn = if spin::IS_LEVEL {
+                    bevy_math::Quat::from_rotation_y(2.0 * t)
+                } else {
+                    Default::default()
+                };
+                set(&mut course, lift, Transform::from_xyz(0.0, height - 0.5, 0.0).with_rotation(turn));
+                let sample = course.tick();
+                let lift = course.get::<Position>(lift).0;
+                assert!(
+                    (lift.y - (height as Scalar) + 0.5).abs() < 1.0e-4,
+                    "{what:?}: it is there in the step"
+                );
+                let gap = sample.position.y - lift.y - 0.5 - 0.9;
+                assert!((gap - SKIN).abs() < 2.0e-4, "{what:?}, tick {i}: a gap of {gap}");
+                assert!(sample.state.is_grounded(), "{what:?}: {:?}", sample.state);
+                let radius = (sample.position - Vector::Y * sample.position.y).length();
+                assert!((radius - 0.5 * spin::START.length()).abs() < 2.0e-4, "{what:?}: {radius}");
             }
         }
     }

@@ -43,11 +43,11 @@ pub(crate) fn follow_transforms(
 ) {
     let dt = time.delta_seconds_adjusted();
     for (id, mut followed, mut position, mut rotation, mut linear, mut angular, center) in &mut followers {
-        if id.0 == NONE {
-            continue;
-        }
         if !followed.is_led() {
             followed.lead = Lead::Pose;
+            continue;
+        }
+        if id.0 == NONE {
             continue;
         }
         let (mut v, mut w) = (LinearVelocity::ZERO, AngularVelocity::ZERO);
