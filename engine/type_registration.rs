@@ -212,12 +212,14 @@ fn register_characters(app: &mut App) {
         controller::{
             Carrier, CharacterController, CharacterInput, CharacterState, GroundState, SurfaceVelocity,
         },
+        crouch::CharacterCrouch,
+        dynamic_mover::DynamicMover,
         move_and_slide::{DepenetrationConfig, MoveAndSlideConfig, MoveAndSlideOutput, MoveHitData},
     };
 
     register!(app:
         CharacterController, CharacterInput, CharacterState, GroundState, Carrier, SurfaceVelocity,
-        MoveAndSlideConfig, DepenetrationConfig, MoveAndSlideOutput, MoveHitData,
+        CharacterCrouch, DynamicMover, MoveAndSlideConfig, DepenetrationConfig, MoveAndSlideOutput, MoveHitData,
     );
 }
 

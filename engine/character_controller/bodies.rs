@@ -31,6 +31,16 @@ impl BodiesAround<'_, '_> {
         self.owners.get(collider).ok().map(|of| of.body)
     }
 
+    /// Whether a body is a kinematic character.
+    pub(super) fn is_character(&self, body: Entity) -> bool {
+        self.characters.contains(body)
+    }
+
+    /// The position of the body of a collider.
+    pub(super) fn position_of(&self, collider: Entity) -> Option<Vector> {
+        self.states.get(self.body_of(collider)?).ok().map(|state| state.position.0)
+    }
+
     /// The colliders of a body.
     pub(super) fn colliders_of(&self, body: Entity) -> impl Iterator<Item = Entity> + '_ {
         self.colliders.get(body).into_iter().flat_map(|colliders| colliders.iter())
@@ -42,7 +52,7 @@ impl BodiesAround<'_, '_> {
         let moves = !state.rb.is_static();
         Some(Motion {
             kind: *state.rb,
-            is_character: self.characters.contains(body),
+            is_character: self.is_character(body),
             position: *state.position,
             rotation: *state.rotation,
             center: state.position.0 + *state.rotation * state.center_of_mass.0,

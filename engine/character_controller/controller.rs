@@ -6,6 +6,7 @@ use bevy_reflect::prelude::*;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::{
+    collision::collider::LayerMask,
     dynamics::rigid_body::RigidBody,
     math::{AngularVector, Dir, Scalar, Vector},
     physics_transform::{Position, Rotation},
@@ -70,6 +71,12 @@ pub struct CharacterController {
     pub max_push_force: Scalar,
     /// What the character collides with. Its own colliders need not be excluded.
     pub filter: SpatialQueryFilter,
+    /// The layers of its friends: other characters that do not stop it. Those that overlap yield to each other, each by half
+    /// of the way. None by default.
+    pub friends: LayerMask,
+    /// The speed at which it yields to friends, in m/s. Slower than half of its own speed, or
+    /// friends push each other along instead of passing. 0.5 by default.
+    pub yield_speed: Scalar,
 }
 
 impl Default for CharacterController {
@@ -84,6 +91,8 @@ impl Default for CharacterController {
             mass: 70.0,
             max_push_force: 500.0,
             filter: SpatialQueryFilter::DEFAULT,
+            friends: LayerMask::NONE,
+            yield_speed: 0.5,
         }
     }
 }
@@ -101,6 +110,8 @@ pub struct CharacterInput {
     /// The speed at which it is to leave the ground, in m/s; 0 for none. The next step sets it back to 0, also if there is no
     /// ground to leave.
     pub jump: Scalar,
+    /// Whether it is to crouch, if it has a [`CharacterCrouch`](super::crouch::CharacterCrouch).
+    pub crouch: bool,
 }
 
 /// What a character stands on.
@@ -147,6 +158,8 @@ pub struct CharacterState {
     pub fall: Vector,
     /// How far a drawn character is to be moved along [`up`](CharacterController::up) so that it climbs steps smoothly, in metres.
     pub visual_offset: Scalar,
+    /// Whether it crouches: also where there is no room to stand up.
+    pub is_crouching: bool,
     /// Whether it has no room between something that moves and something that does not.
     pub is_crushed: bool,
     /// What carries it.

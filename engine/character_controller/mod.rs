@@ -3,13 +3,19 @@
 //! | I want to | use |
 //! |---|---|
 //! | have a character walk: floors, slopes, stairs, platforms | [`CharacterController`](controller::CharacterController) |
+//! | have one that crouches | [`CharacterCrouch`](crouch::CharacterCrouch) |
+//! | have a character that forces move: a dynamic body | [`DynamicMover`](dynamic_mover::DynamicMover) |
 //! | write a controller of my own | [`MoveAndSlide`](move_and_slide::MoveAndSlide), a system parameter that moves a shape |
 
 pub mod controller;
+pub mod crouch;
+pub mod dynamic_mover;
 pub mod move_and_slide;
 pub mod plugin;
 
 mod bodies;
+mod friends;
+mod hovering;
 mod mover;
 mod planes;
 mod planning;
@@ -24,6 +30,8 @@ pub mod prelude {
             CharacterClimbed, CharacterController, CharacterHit, CharacterInput, CharacterLanded,
             CharacterLeftGround, CharacterState, GroundState, SurfaceVelocity,
         },
+        crouch::CharacterCrouch,
+        dynamic_mover::DynamicMover,
         move_and_slide::{
             MoveAndSlide, MoveAndSlideConfig, MoveAndSlideHitData, MoveAndSlideHitResponse,
             MoveAndSlideOutput,

@@ -315,6 +315,21 @@ impl MoveAndSlide<'_, '_> {
         Some(MoveHitData { entity, distance, point1, point2, normal1, normal2, collision_distance })
     }
 
+    /// Whether a shape has room at a position: no collider is nearer than `skin_width`, which is in metres, scaled by
+    /// [`PhysicsLengthUnit`]. For a character that is to stand up, or to appear somewhere. Exclude its own colliders in the
+    /// filter. `false` if a number is infinite or NaN. Beyond Avian.
+    pub fn fits(
+        &self,
+        shape: &Collider,
+        shape_position: Vector,
+        shape_rotation: RotationValue,
+        skin_width: Scalar,
+        filter: &SpatialQueryFilter,
+    ) -> bool {
+        let is_solid = |entity| self.colliders.contains(entity);
+        self.mover(&is_solid, shape, shape_rotation, skin_width, filter).fits(shape_position)
+    }
+
     /// The displacement in metres that moves a shape out of what it overlaps with its skin, the shortest one where
     /// colliders are flat. Between colliders that leave no room it is midway.
     pub fn depenetrate(

@@ -161,6 +161,12 @@ impl Mover<'_> {
         parts
     }
 
+    /// Whether the shape has room: nothing is nearer than its skin.
+    pub(super) fn fits(&self, position: Vector) -> bool {
+        let least = self.skin - self.slack();
+        position.is_finite() && self.near(position, self.skin).iter().all(|part| part.distance >= least)
+    }
+
     /// Whether a part is met at an edge that is flush with the plane of another: the shape moves over it along that plane.
     ///
     /// The union of both has no such edge there. Each of two parts with about the same normal may seem flush with the plane of

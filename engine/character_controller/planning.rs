@@ -13,6 +13,7 @@ use super::{
     walker::{Contact, Walker},
 };
 use crate::{
+    collision::collider::LayerMask,
     math::{AngularVector, Scalar, Vector},
     spatial_query::NearPart,
 };
@@ -49,6 +50,26 @@ pub(super) struct Surroundings<'a> {
     pub(super) pushers: &'a [Motion],
     pub(super) gravity: Scalar,
     pub(super) time: Scalar,
+}
+
+impl Surroundings<'_> {
+    /// Whether a collider is that of a character in one of some layers.
+    pub(super) fn is_friend(&self, friends: LayerMask, entity: Entity) -> bool {
+        is_friend(self.moves, self.bodies, friends, entity)
+    }
+}
+
+/// Whether a collider is that of a character in one of some layers.
+pub(super) fn is_friend(
+    moves: &MoveAndSlide,
+    bodies: &BodiesAround,
+    friends: LayerMask,
+    entity: Entity,
+) -> bool {
+    let Ok((.., layers)) = moves.colliders.get(entity) else { return false };
+    let memberships = layers.copied().unwrap_or_default().memberships;
+    memberships & friends != LayerMask::NONE
+        && bodies.body_of(entity).is_some_and(|body| bodies.is_character(body))
 }
 
 /// The plan of one character as it is made.
@@ -94,6 +115,7 @@ impl Planning<'_> {
             }
         }
         self.ride(time);
+        self.yield_to_friends();
         self.make_way();
         self.plan.velocity = (self.walker.position - from) / time;
         self.note_hits();
@@ -212,10 +234,11 @@ impl Planning<'_> {
         self.state.carrier = None;
     }
 
-    /// The carrier is no longer the frame of the character's place after a move that is not its own.
-    fn moved_on(&mut self, way: Vector) {
-        if let Some(carrier) = &mut self.state.carrier
-            && way != Vector::ZERO
+    /// The place of the character on its carrier, after a move that is not its own.
+    pub(super) fn moved_on(&mut self, way: Vector) {
+        let Some(carrier) = &mut self.state.carrier else { return };
+        carrier.rider = self.walker.position;
+        if way != Vector::ZERO
             && let Some(body) = self.around.bodies.motion_of(carrier.body, self.around.time)
         {
             carrier.anchor += body.end().1.inverse() * way;
@@ -281,9 +304,7 @@ impl Planning<'_> {
             self.walker.shift(surface - normal * surface.dot(normal));
             self.moved_on(self.walker.position - start);
         }
-        if let Some(carrier) = &mut self.state.carrier {
-            carrier.rider = self.walker.position;
-        }
+        self.moved_on(Vector::ZERO);
     }
 
     /// Makes way for kinematic bodies that move into the character in this step.
@@ -332,9 +353,6 @@ impl Planning<'_> {
         let is_stuck = planes.iter().any(|plane| left(plane) > skin);
         self.state.is_crushed = is_between || is_stuck;
         self.moved_on(moved);
-        if let Some(carrier) = &mut self.state.carrier {
-            carrier.rider = self.walker.position;
-        }
     }
 
     /// The character is no longer on the ground.
@@ -387,7 +405,9 @@ impl Planning<'_> {
         let Some(ground) = self.state.ground_entity.filter(|_| self.state.is_grounded()) else { return };
         if let Some(body) = self.around.bodies.body_of(ground) {
             let force = self.gravity * self.controller.mass.max(0.0);
-            self.plan.pushes.push(Push { body, point: self.state.ground_point, force });
+            // A flat foot touches at any of its points.
+            let point = self.walker.below_foot(ground).unwrap_or(self.state.ground_point);
+            self.plan.pushes.push(Push { body, point, force });
         }
     }
 }

@@ -5,6 +5,9 @@ use bevy_ecs::prelude::*;
 
 use super::{
     controller::{CharacterClimbed, CharacterController, CharacterHit, CharacterLanded, CharacterLeftGround},
+    crouch::{CharacterCrouch, change_stances},
+    dynamic_mover::DynamicMover,
+    hovering::{MoverPlan, drive_movers, plan_movers},
     planning::CharacterPlan,
     system::{drive_characters, plan_characters},
 };
@@ -26,12 +29,18 @@ impl Plugin for CharacterControllerPlugin {
     fn build(&self, app: &mut App) {
         step::install(app);
         app.register_required_components::<CharacterController, CharacterPlan>();
+        app.register_required_components::<DynamicMover, MoverPlan>();
         app.add_message::<CharacterLanded>()
             .add_message::<CharacterLeftGround>()
             .add_message::<CharacterHit>()
             .add_message::<CharacterClimbed>();
         app.configure_sets(PhysicsSchedule, CharacterSystems.before(PhysicsStepSystems::First));
-        let systems = (plan_characters, drive_characters)
+        let systems = (
+            change_stances.run_if(any_with_component::<CharacterCrouch>),
+            plan_characters,
+            drive_characters,
+            (plan_movers, drive_movers).chain().run_if(any_with_component::<DynamicMover>),
+        )
             .chain()
             .in_set(CharacterSystems)
             .in_set(Stage::MoveCharacters);

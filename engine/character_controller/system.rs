@@ -13,13 +13,13 @@ use super::{
         CharacterLeftGround, CharacterState,
     },
     move_and_slide::{MoveAndSlide, MoveAndSlideConfig},
-    mover::{Mover, Recovery},
-    planning::{CharacterPlan, Planning, Push, Surroundings},
+    mover::Mover,
+    planning::{CharacterPlan, Planning, Push, Surroundings, is_friend},
     velocity_project::vector,
     walker::Walker,
 };
 use crate::{
-    collision::collider::{Collider, CollisionLayers, SimpleCollider},
+    collision::collider::{Collider, CollisionLayers, LayerMask, SimpleCollider},
     dynamics::{
         ids::BodyId,
         integrator::Gravity,
@@ -28,7 +28,7 @@ use crate::{
             forces::{Forces, WriteRigidBodyForces},
         },
     },
-    math::{AdjustPrecision, Scalar, Vector, to_f32, vector_from_kernel, vector_to_kernel},
+    math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to_kernel},
     physics_transform::{Position, Rotation, world_pose},
     schedule::Physics,
 };
@@ -77,39 +77,25 @@ fn plan(character: &mut CharacterItem, around: &Surroundings) {
         return;
     }
     let controller = character.controller;
-    let layers = character.layers.copied();
-    let solids = &around.moves.colliders;
-    let is_solid = |entity: Entity| match solids.get(entity) {
-        Ok((.., other)) => layers.is_none_or(|own| own.interacts_with(other.copied().unwrap_or_default())),
-        Err(_) => false,
-    };
+    let is_solid = solidity(around.moves, around.bodies, controller.friends, character.layers);
     let unit = around.moves.length_unit.0;
     let config = MoveAndSlideConfig::default();
     let up = vector(controller.up);
+    let mover = Mover {
+        queries: &around.moves.spatial_query,
+        is_solid: &is_solid,
+        ignored: around.bodies.colliders_of(character.entity).collect(),
+        shape: character.shape,
+        rotation: (*character.rotation).into(),
+        filter: &controller.filter,
+        skin: (controller.skin_width * unit).max(0.0),
+        unit,
+    };
+    let feet = feet_of(character.shape, character.rotation, up);
     let walker = Walker {
-        mover: Mover {
-            queries: &around.moves.spatial_query,
-            is_solid: &is_solid,
-            ignored: around.bodies.colliders_of(character.entity).collect(),
-            shape: character.shape,
-            rotation: (*character.rotation).into(),
-            filter: &controller.filter,
-            skin: (controller.skin_width * unit).max(0.0),
-            unit,
-        },
-        position: from,
-        feet: feet_of(character.shape, character.rotation, up),
-        up,
-        least_cosine: kernel::math::cos(f64::from(to_f32(controller.max_slope))).adjust_precision(),
         step_height: controller.step_height * unit,
         step_depth: controller.step_depth * unit,
-        recovery: Recovery {
-            rounds: config.depenetration_iterations,
-            error: config.max_depenetration_error * unit,
-            deepest: config.penetration_rejection_threshold * unit,
-        },
-        met: Vec::new(),
-        climbed: None,
+        ..Walker::new(mover, from, (up, feet), controller.max_slope, &config)
     };
     let gravity = around.gravity * character.gravity_scale.map_or(1.0, |scale| scale.0);
     let mut planning = Planning {
@@ -129,8 +115,25 @@ fn plan(character: &mut CharacterItem, around: &Surroundings) {
     *character.plan = planning.plan;
 }
 
+/// Which colliders stop a character: those that its own layers interact with, without friends.
+pub(super) fn solidity<'a>(
+    moves: &'a MoveAndSlide<'a, 'a>,
+    bodies: &'a BodiesAround<'a, 'a>,
+    friends: LayerMask,
+    layers: Option<&CollisionLayers>,
+) -> impl Fn(Entity) -> bool + use<'a> {
+    let own = layers.copied().unwrap_or_default();
+    move |entity| {
+        let is_met = |(.., other): (_, _, _, Option<&CollisionLayers>)| {
+            own.interacts_with(other.copied().unwrap_or_default())
+        };
+        moves.colliders.get(entity).is_ok_and(is_met)
+            && !(friends != LayerMask::NONE && is_friend(moves, bodies, friends, entity))
+    }
+}
+
 /// How far below its position a shape reaches, as a negative height.
-fn feet_of(shape: &Collider, rotation: &Rotation, up: Vector) -> Scalar {
+pub(super) fn feet_of(shape: &Collider, rotation: &Rotation, up: Vector) -> Scalar {
     let pose = world_pose(&Position(Vector::ZERO), rotation);
     let down = pose.rotation.inverse_rotate(vector_to_kernel(-up));
     match shape.native().support(down) {

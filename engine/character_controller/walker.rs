@@ -4,12 +4,13 @@
 //! horizontal plane alone, and floors then tell how far it is lifted. So neither slopes nor walls change its speed.
 
 use super::{
+    move_and_slide::MoveAndSlideConfig,
     mover::{Mover, Recovery, Sweep},
     planes::{Plane, add_facing},
     velocity_project::along,
 };
 use crate::{
-    math::{AsF32, Dir, Scalar, Vector},
+    math::{AdjustPrecision, AsF32, Dir, Scalar, Vector, to_f32},
     spatial_query::NearPart,
 };
 use bevy_ecs::prelude::*;
@@ -62,8 +63,37 @@ pub(super) struct Walker<'a> {
     pub(super) climbed: Option<(Entity, Scalar)>,
 }
 
+impl<'a> Walker<'a> {
+    /// One that climbs no steps, at a position, with the height of its feet along `up`, and its steepest slope in radians.
+    pub(super) fn new(
+        mover: Mover<'a>,
+        position: Vector,
+        (up, feet): (Vector, Scalar),
+        max_slope: Scalar,
+        config: &MoveAndSlideConfig,
+    ) -> Self {
+        let unit = mover.unit;
+        Self {
+            mover,
+            position,
+            feet,
+            up,
+            least_cosine: kernel::math::cos(f64::from(to_f32(max_slope))).adjust_precision(),
+            step_height: 0.0,
+            step_depth: 0.0,
+            recovery: Recovery {
+                rounds: config.depenetration_iterations,
+                error: config.max_depenetration_error * unit,
+                deepest: config.penetration_rejection_threshold * unit,
+            },
+            met: Vec::new(),
+            climbed: None,
+        }
+    }
+}
+
 impl Walker<'_> {
-    fn horizontal(&self, v: Vector) -> Vector {
+    pub(super) fn horizontal(&self, v: Vector) -> Vector {
         v - self.up * v.dot(self.up)
     }
 
@@ -84,7 +114,7 @@ impl Walker<'_> {
     }
 
     /// The normal of the ground at a part: none where it is too steep.
-    fn floor_of(&self, part: &NearPart, is_walking: bool) -> Option<Vector> {
+    pub(super) fn floor_of(&self, part: &NearPart, is_walking: bool) -> Option<Vector> {
         let rise = part.normal.dot(self.up);
         if rise >= self.least_cosine {
             return Some(part.normal);
@@ -108,6 +138,17 @@ impl Walker<'_> {
             &is_it,
         )?;
         (hit.normal.dot(self.up) >= self.least_cosine).then_some(hit.normal)
+    }
+
+    /// The point of a collider that it stands on below the middle of its foot, if there is one.
+    pub(super) fn below_foot(&self, ground: Entity) -> Option<Vector> {
+        let aside = self.mover.skin.max(self.mover.slack());
+        let from = self.foot() + self.up * aside;
+        let down = Dir::new(-self.up.f32()).ok()?;
+        let is_it = |entity| entity == ground;
+        let queries = self.mover.queries;
+        let hit = queries.cast_ray_predicate(from, down, 4.0 * aside, true, self.mover.filter, &is_it)?;
+        Some(from - self.up * hit.distance)
     }
 
     /// The best ground of some contacts: the flattest face, or else an edge.

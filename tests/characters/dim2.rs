@@ -12,6 +12,19 @@ pub fn figures() -> Vec<(&'static str, Collider)> {
     vec![("capsule", Collider::capsule(0.4, 1.0)), ("box", block(Vector::new(0.8, 1.8)))]
 }
 
+/// The figures when they crouch: 1 m tall.
+pub fn crouched(name: &str) -> Collider {
+    if name == "capsule" { Collider::capsule(0.4, 0.2) } else { block(Vector::new(0.8, 1.0)) }
+}
+
+/// A surface through some points from left to right.
+pub fn terrain(points: &[Vector]) -> Collider {
+    Collider::polyline(points.to_vec(), None)
+}
+
+/// A direction across the way of the course.
+pub const ASIDE: Vector = Vector::ZERO;
+
 /// The rotation by an angle in radians from x to y.
 pub fn turned(angle: Scalar) -> Rotation {
     Rotation::radians(angle)

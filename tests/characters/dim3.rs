@@ -16,6 +16,26 @@ pub fn figures() -> Vec<(&'static str, Collider)> {
     ]
 }
 
+/// The figures when they crouch: 1 m tall.
+pub fn crouched(name: &str) -> Collider {
+    match name {
+        "capsule" => Collider::capsule(0.4, 0.2),
+        "cylinder" => Collider::cylinder(0.4, 1.0),
+        _ => block(Vector::new(0.8, 1.0, 0.8)),
+    }
+}
+
+/// A surface 8 m wide through some points from left to right, of triangles.
+pub fn terrain(points: &[Vector]) -> Collider {
+    let sides = |p: &Vector| [*p - Vector::Z * 4.0, *p + Vector::Z * 4.0];
+    let quads = 0..points.len() as u32 - 1;
+    let triangles = quads.flat_map(|i| [[2 * i, 2 * i + 1, 2 * i + 2], [2 * i + 1, 2 * i + 3, 2 * i + 2]]);
+    Collider::trimesh(points.iter().flat_map(sides).collect(), triangles.collect())
+}
+
+/// A direction across the way of the course.
+pub const ASIDE: Vector = Vector::Z;
+
 /// The rotation by an angle in radians from x to y.
 pub fn turned(angle: Scalar) -> Rotation {
     Rotation(Quaternion::from_rotation_z(angle))

@@ -1,6 +1,12 @@
 //! Characters: shapes that slide along what they meet.
 
 mod carried;
+mod course;
+mod crouch;
+mod friends;
+mod mover;
+mod own;
+mod passing;
 mod slide;
 mod state;
 mod walk;

@@ -102,7 +102,7 @@ fn two_that_meet_stay_apart() {
         let mut course = Course::new(60, shape.clone(), Vector::X * -2.0 + Vector::Y * STANDING);
         floor(&mut course.app);
         let place = Position(Vector::X * 2.0 + Vector::Y * STANDING);
-        let input = CharacterInput { velocity: Vector::NEG_X * 3.0, jump: 0.0 };
+        let input = CharacterInput { velocity: Vector::NEG_X * 3.0, ..Default::default() };
         let other = course.app.world_mut().spawn((CharacterController::default(), input, shape, place)).id();
         let path = course.walk(Vector::X * 3.0, 2.0);
         let end = course.position();

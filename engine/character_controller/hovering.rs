@@ -1,0 +1,311 @@
+//! The systems that drive dynamic movers: each finds the ground below, and gets the force of the spring and of its drive.
+//!
+//! The spring is integrated implicitly, so that it is stable at any rate: with x the distance above the height of rest, v its
+//! rate, and h the length of the step, the acceleration is that at the end of the step,
+//!
+//! ```text
+//! a = -k (x + h (v + h a)) - c (v + h a),   k = (2π f)²,   c = 2 ζ (2π f)
+//! ```
+//!
+//! (E. Catto, "Soft Constraints", GDC 2011). It is applied as an impulse at the start of the step, so that the whole of the step
+//! has the velocity at its end: a platform that turns is followed exactly. Gravity acts throughout the step, and is balanced
+//! by a force, so that the spring does not sag.
+
+use bevy_ecs::prelude::*;
+use bevy_time::Time;
+
+use super::{
+    bodies::{BodiesAround, Motion},
+    controller::{CharacterInput, CharacterLanded, CharacterLeftGround, CharacterState, GroundState},
+    dynamic_mover::DynamicMover,
+    move_and_slide::{MoveAndSlide, MoveAndSlideConfig},
+    mover::{Mover, Sweep},
+    system::{feet_of, solidity},
+    velocity_project::vector,
+    walker::Walker,
+};
+use crate::{
+    collision::collider::{Collider, CollisionLayers, LayerMask},
+    dynamics::{
+        ids::BodyId,
+        integrator::Gravity,
+        rigid_body::{
+            GravityScale, LinearVelocity, RigidBody, RigidBodyDisabled,
+            forces::{Forces, WriteRigidBodyForces},
+            mass_properties::components::ComputedMass,
+        },
+    },
+    math::{AdjustPrecision, AngularVector, Scalar, TAU, Vector},
+    physics_transform::{Position, Rotation},
+    schedule::Physics,
+};
+
+/// The distance up to which a mover without a spring touches the ground, in metres: contacts of the solver rest within it.
+const TOUCHING: Scalar = 0.02;
+
+/// What acts on a mover in the step to come.
+#[derive(Component, Clone, Debug, Default)]
+pub(super) struct MoverPlan {
+    /// In N.
+    force: Vector,
+    /// In N·s.
+    impulse: Vector,
+    /// The body that gets the opposite, and the point there.
+    ground: Option<(Entity, Vector)>,
+    landed: Option<CharacterLanded>,
+    left: Option<CharacterLeftGround>,
+}
+
+/// A mover and its components.
+type Hovering = (
+    Entity,
+    &'static DynamicMover,
+    &'static CharacterInput,
+    &'static mut CharacterState,
+    &'static mut MoverPlan,
+    (&'static Collider, &'static Position, &'static Rotation, Option<&'static CollisionLayers>),
+    (&'static RigidBody, &'static LinearVelocity, &'static ComputedMass, Option<&'static GravityScale>),
+);
+
+/// The ground below a mover.
+struct Below {
+    entity: Entity,
+    body: Option<Entity>,
+    motion: Option<Motion>,
+    point: Vector,
+    normal: Vector,
+    /// Whether it can be walked on.
+    is_floor: bool,
+    /// From the collider to the ground.
+    gap: Scalar,
+    /// The mean velocity of its point and surface in the step.
+    velocity: Vector,
+}
+
+/// Plans the forces of each mover.
+pub(super) fn plan_movers(
+    mut movers: Query<Hovering, Without<RigidBodyDisabled>>,
+    moves: MoveAndSlide,
+    bodies: BodiesAround,
+    gravity: Res<Gravity>,
+    clock: Res<Time<Physics>>,
+) {
+    let time = clock.delta_secs_f64().adjust_precision();
+    if !(time > 0.0) {
+        return;
+    }
+    movers.par_iter_mut().for_each(|(entity, mover, input, mut state, mut plan, place, body)| {
+        let (shape, position, rotation, layers) = place;
+        let (kind, velocity, mass, scale) = body;
+        *plan = MoverPlan::default();
+        let is_finite = position.is_finite() && velocity.is_finite() && input.velocity.is_finite();
+        if !kind.is_dynamic() || !is_finite || !(mass.value() > 0.0) {
+            return;
+        }
+        let up = vector(mover.up);
+        let unit = moves.length_unit.0;
+        let was_grounded = state.is_grounded();
+        let rest = (mover.float_height * unit).max(0.0);
+        let reach = if rest > 0.0 { mover.snap_distance * unit } else { TOUCHING * unit };
+        let is_solid = solidity(&moves, &bodies, LayerMask::NONE, layers);
+        let config = MoveAndSlideConfig::default();
+        let walker = Walker::new(
+            Mover {
+                queries: &moves.spatial_query,
+                is_solid: &is_solid,
+                ignored: bodies.colliders_of(entity).collect(),
+                shape,
+                rotation: (*rotation).into(),
+                filter: &mover.filter,
+                skin: 0.0,
+                unit,
+            },
+            position.0,
+            (up, feet_of(shape, rotation, up)),
+            mover.max_slope,
+            &config,
+        );
+        let gravity = gravity.0 * scale.map_or(1.0, |scale| scale.0);
+        let hover = Hover { walker, mover, velocity: velocity.0, gravity, time, rest, mass: mass.value() };
+        let below = hover.below(rest + reach.max(0.0), &bodies);
+        hover.plan(entity, (&bodies, below), input, &mut state, &mut plan);
+        if was_grounded && !state.is_grounded() {
+            plan.left = Some(CharacterLeftGround { character: entity, fall: state.fall });
+        }
+    });
+}
+
+/// A mover in the step to come.
+struct Hover<'a> {
+    walker: Walker<'a>,
+    mover: &'a DynamicMover,
+    velocity: Vector,
+    gravity: Vector,
+    time: Scalar,
+    /// The height of rest.
+    rest: Scalar,
+    mass: Scalar,
+}
+
+impl Hover<'_> {
+    /// The ground within reach below the collider.
+    fn below(&self, reach: Scalar, bodies: &BodiesAround) -> Option<Below> {
+        let walker = &self.walker;
+        let hit: Sweep = walker.mover.sweep(walker.position, -walker.up * reach)?;
+        let floor = walker.floor_of(&hit.part, true);
+        let (entity, point) = (hit.part.entity, hit.part.points[0]);
+        let body = bodies.body_of(entity);
+        let motion = body.and_then(|body| bodies.motion_of(body, self.time));
+        let carried = motion.map_or(Vector::ZERO, |motion| motion.displacement_at(point) / self.time);
+        Some(Below {
+            entity,
+            body,
+            motion,
+            point,
+            normal: floor.unwrap_or(hit.part.normal),
+            is_floor: floor.is_some(),
+            gap: hit.distance,
+            velocity: carried + bodies.surface_of(entity),
+        })
+    }
+
+    fn plan(
+        &self,
+        entity: Entity,
+        (bodies, below): (&BodiesAround, Option<Below>),
+        input: &CharacterInput,
+        state: &mut CharacterState,
+        plan: &mut MoverPlan,
+    ) {
+        let up = self.walker.up;
+        let own = self.walker.horizontal(input.velocity);
+        note_ground(state, below.as_ref());
+        let Some(ground) = below.filter(|ground| self.is_caught(ground, state.is_grounded())) else {
+            if state.is_grounded() {
+                state.fall = state.ground_velocity;
+            }
+            state.ground = match state.ground_entity {
+                Some(_) => GroundState::OnSteepGround,
+                None => GroundState::InAir,
+            };
+            let missing = own + self.walker.horizontal(state.fall) - self.walker.horizontal(self.velocity);
+            plan.impulse = self.drive(missing, self.mover.max_air_acceleration) * self.time;
+            return;
+        };
+        if !state.is_grounded() {
+            let speed = (ground.velocity - self.velocity).dot(up);
+            plan.landed = Some(CharacterLanded { character: entity, ground: ground.entity, speed });
+        }
+        state.ground = GroundState::OnGround;
+        state.fall = Vector::ZERO;
+        let is_dynamic = ground.motion.is_some_and(|motion| motion.kind.is_dynamic());
+        plan.ground = ground.body.filter(|_| is_dynamic).map(|body| (body, ground.point));
+        if input.jump > 0.0 {
+            let speed = ground.velocity.dot(up) + self.walker.lift(ground.normal, own).max(0.0) + input.jump;
+            plan.impulse = up * ((speed - self.velocity.dot(up)) * self.mass);
+            state.ground = GroundState::InAir;
+            state.fall = ground.velocity;
+            return;
+        }
+        let missing = own + ground.velocity - self.velocity;
+        if self.rest > 0.0 {
+            let drive = self.drive(self.walker.horizontal(missing), self.mover.max_acceleration);
+            plan.impulse = (self.spring(&ground, bodies) + drive) * self.time;
+            plan.force = -up * self.gravity.dot(up) * self.mass;
+        } else {
+            let along = |v: Vector| v - ground.normal * v.dot(ground.normal);
+            let climb = up * self.walker.lift(ground.normal, own);
+            plan.impulse = self.drive(along(missing + climb), self.mover.max_acceleration) * self.time;
+            plan.force = -along(self.gravity) * self.mass;
+        }
+    }
+
+    /// Whether the ground carries: what is in the air is caught as it comes down.
+    fn is_caught(&self, ground: &Below, was_grounded: bool) -> bool {
+        let touching = if self.rest > 0.0 { self.rest } else { TOUCHING * self.walker.mover.unit };
+        ground.is_floor && (was_grounded || (ground.gap <= touching && self.rate(ground) <= 0.0))
+    }
+
+    /// The rate at which the gap grows, in m/s, as it moves along a slope.
+    fn rate(&self, ground: &Below) -> Scalar {
+        let relative = self.velocity - ground.velocity;
+        let across = self.walker.horizontal(relative);
+        relative.dot(self.walker.up) - self.walker.lift(ground.normal, across)
+    }
+
+    /// The force of the spring, in N.
+    fn spring(&self, ground: &Below, bodies: &BodiesAround) -> Vector {
+        let up = self.walker.up;
+        let h = self.time;
+        let omega = TAU * self.mover.frequency.max(0.0);
+        let (k, c) = (omega * omega, 2.0 * self.mover.damping_ratio.max(0.0) * omega);
+        let (x, v) = (ground.gap - self.rest, self.rate(ground));
+        let acceleration = -(k * x + (c + h * k) * v) / (1.0 + h * c + h * h * k);
+        let inverse = ground.body.map_or(0.0, |body| bodies.inverse_mass_at(body, ground.point, up));
+        up * (acceleration / (1.0 / self.mass + inverse))
+    }
+
+    /// The force that adds a velocity in the step, in N, up to a largest acceleration.
+    fn drive(&self, missing: Vector, largest: Scalar) -> Vector {
+        let largest = if largest > 0.0 { largest } else { 0.0 };
+        (missing / self.time).clamp_length_max(largest) * self.mass
+    }
+}
+
+/// Notes the ground below.
+fn note_ground(state: &mut CharacterState, below: Option<&Below>) {
+    let before = (state.ground_velocity, state.is_grounded());
+    state.carrier = None;
+    state.ground_entity = below.map(|ground| ground.entity);
+    state.ground_point = below.map_or(Vector::ZERO, |ground| ground.point);
+    state.ground_normal = below.map_or(Vector::ZERO, |ground| ground.normal);
+    state.ground_spin = below.and_then(|ground| ground.motion).map_or(AngularVector::default(), |m| m.spin);
+    state.ground_velocity = match below {
+        Some(ground) => ground.velocity,
+        // The velocity of the ground that is left.
+        None if before.1 => before.0,
+        None => Vector::ZERO,
+    };
+}
+
+/// What is driven of a mover.
+type Driven = (Entity, &'static BodyId, &'static mut MoverPlan, &'static mut CharacterInput);
+
+/// Applies the forces of movers, and the opposite to the ground, and sends their events in the order of their ids.
+pub(super) fn drive_movers(
+    mut movers: Query<Driven, Without<RigidBodyDisabled>>,
+    mut bodies: Query<Forces>,
+    mut landed: MessageWriter<CharacterLanded>,
+    mut left: MessageWriter<CharacterLeftGround>,
+    mut commands: Commands,
+) {
+    let mut plans = Vec::new();
+    for (entity, id, mut plan, mut input) in &mut movers {
+        let plan = core::mem::take(&mut *plan);
+        if input.jump != 0.0 {
+            input.jump = 0.0;
+        }
+        plans.push((id.0, entity, plan));
+    }
+    plans.sort_by_key(|(id, ..)| *id);
+    for (_, entity, plan) in plans {
+        if let Ok(mut forces) = bodies.get_mut(entity) {
+            forces.apply_force(plan.force);
+            forces.apply_linear_impulse(plan.impulse);
+        }
+        if let Some((ground, point)) = plan.ground
+            && let Ok(mut forces) = bodies.get_mut(ground)
+        {
+            forces.apply_force_at_point(-plan.force, point);
+            forces.apply_linear_impulse_at_point(-plan.impulse, point);
+        }
+        if let Some(event) = plan.left {
+            left.write(event);
+            commands.trigger(event);
+        }
+        if let Some(event) = plan.landed {
+            landed.write(event);
+            commands.trigger(event);
+        }
+    }
+}

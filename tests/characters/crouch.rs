@@ -1,0 +1,121 @@
+//! Characters that crouch.
+
+use super::{Course, SKIN, ask, block, crouched, figures, fixed, floor, rates};
+use avian::{math::*, prelude::*};
+
+/// Half the heights of the figures, with the skin.
+const STANDING: Scalar = 0.9 + SKIN;
+const LOW: Scalar = 0.5 + SKIN;
+
+fn crouches(course: &mut Course, crouch: bool) {
+    let player = course.player;
+    course.app.world_mut().get_mut::<CharacterInput>(player).expect("a character").crouch = crouch;
+}
+
+/// A tunnel 1.2 m high and 4 m long, from 2 m on.
+fn tunnel(rate: u32, name: &str, standing: &Collider) -> Course {
+    let mut course = Course::new(rate, standing.clone(), Vector::Y * STANDING);
+    let crouch = CharacterCrouch { standing: standing.clone(), crouching: crouched(name) };
+    let player = course.player;
+    course.app.world_mut().entity_mut(player).insert(crouch);
+    floor(&mut course.app);
+    let at = Vector::X * 4.0 + Vector::Y * 3.2;
+    fixed(&mut course.app, block(Vector::ONE * 4.0), at, Rotation::IDENTITY);
+    course.walk(Vector::ZERO, 0.2);
+    course
+}
+
+#[test]
+fn a_low_tunnel_is_for_those_that_crouch() {
+    for (name, shape) in figures() {
+        for &rate in rates(name) {
+            let what = (name, rate);
+            let mut course = tunnel(rate, name, &shape);
+            course.walk(Vector::X * 3.0, 1.0);
+            let end = course.position();
+            assert!((end.x - 1.6 + SKIN).abs() < 2.0e-3, "{what:?}: it stands before the tunnel, at {end}");
+            crouches(&mut course, true);
+            let inside = course.walk(Vector::X * 3.0, 0.6);
+            let low = |p: &super::Sample| (p.position.y - LOW).abs() < 2.0e-4 && p.state.is_grounded();
+            assert!(inside.iter().all(low), "{what:?}: {:?}", inside.iter().find(|p| !low(p)));
+            assert!(
+                (course.position().x - end.x - 1.8).abs() < 3.0 / rate as Scalar,
+                "{what:?}: {}",
+                course.position()
+            );
+            // No room to stand up, until it is out.
+            crouches(&mut course, false);
+            let path = course.walk(Vector::X * 3.0, 1.8);
+            for p in &path {
+                let is_out = p.position.x > 6.45;
+                assert!(p.state.is_grounded(), "{what:?}: {p:?}");
+                let expected = if p.state.is_crouching { LOW } else { STANDING };
+                assert!((p.position.y - expected).abs() < 2.0e-4, "{what:?}: {p:?}");
+                assert!(p.state.is_crouching || p.position.x > 6.3, "{what:?}: {p:?}");
+                let late = p.position.x > 6.45 + 3.0 / rate as Scalar;
+                assert!(!(is_out && late && p.state.is_crouching), "{what:?}: {p:?}");
+            }
+            let last = path.last().expect("it walks");
+            assert!(!last.state.is_crouching && last.position.x > 7.0, "{what:?}: {last:?}");
+        }
+    }
+}
+
+/// Feet stay on a lift, in the air, and with another `up`; a copy of the components goes on with the same bits.
+#[test]
+fn feet_stay_where_they_are() {
+    for (name, shape) in figures() {
+        let mut course = tunnel(60, name, &shape);
+        let player = course.player;
+        let start = Vector::X * -6.0 + Vector::Y * (2.0 + STANDING);
+        let lift = (
+            RigidBody::Kinematic,
+            block(Vector::ONE * 4.0),
+            Position(Vector::X * -6.0),
+            LinearVelocity(Vector::Y),
+        );
+        let lift = course.app.world_mut().spawn(lift).id();
+        course.app.world_mut().entity_mut(player).insert(Position(start));
+        course.walk(Vector::ZERO, 0.2);
+        for i in 0..6 {
+            crouches(&mut course, i % 2 == 0);
+            for _ in 0..6 {
+                let sample = course.tick();
+                let half = if i % 2 == 0 { 0.5 } else { 0.9 };
+                let gap = sample.position.y - half - course.get::<Position>(lift).0.y - 2.0;
+                assert!((gap - SKIN).abs() < 2.0e-4, "{name}, {i}: a gap of {gap}");
+                assert!(sample.state.is_grounded(), "{name}: {sample:?}");
+            }
+        }
+        course.jump(5.0);
+        let before = course.walk(Vector::ZERO, 0.1).pop().expect("it flies");
+        crouches(&mut course, true);
+        let after = course.tick();
+        let expected = before.position.y - 0.4 + (before.state.fall.y - 0.5 * 9.81 / 60.0) / 60.0;
+        assert!((after.position.y - expected).abs() < 1.0e-4, "{name}: {after:?}, not {expected}");
+        assert!(after.state.is_crouching);
+    }
+}
+
+#[test]
+fn room_for_a_shape_can_be_asked_for() {
+    for (name, shape) in figures() {
+        let mut course = tunnel(60, name, &shape);
+        let player = course.player;
+        let low = crouched(name);
+        for (x, shape, half, expected) in [
+            (0.0, shape.clone(), STANDING, true),
+            (4.0, shape.clone(), STANDING, false),
+            (4.0, low.clone(), LOW, true),
+            (4.0, low.clone(), LOW - 0.5 * SKIN, false),
+            (Scalar::NAN, low.clone(), LOW, false),
+        ] {
+            let filter = SpatialQueryFilter::from_excluded_entities([player]);
+            let at = Vector::X * x + Vector::Y * half;
+            let fits = ask(&mut course.app, move |mover| {
+                mover.fits(&shape, at, Rotation::IDENTITY.into(), SKIN, &filter)
+            });
+            assert_eq!(fits, expected, "{name} at {x}, {half}");
+        }
+    }
+}
