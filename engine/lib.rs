@@ -97,6 +97,7 @@
 //! | put it on wheels, drag it, choose each axis of a joint | [`WheelJoint`](prelude::WheelJoint), [`MouseJoint`](prelude::MouseJoint), [`GenericJoint`](prelude::GenericJoint) |
 //! | let it tear off | [`JointBreakThreshold`](prelude::JointBreakThreshold) |
 //! | join it by a law of my own | [`Constraint`](dynamics::solver::constraint::Constraint) |
+//! | make a human fall | `HumanRagdoll` |
 //! | make it slide or bounce | [`Friction`](prelude::Friction), [`Restitution`](prelude::Restitution) |
 //! | choose what it collides with | [`CollisionLayers`](prelude::CollisionLayers), [`Sensor`](prelude::Sensor), [`Dominance`](prelude::Dominance) |
 //! | know what touches what | [`CollisionStart`](prelude::CollisionStart), [`CollisionEnd`](prelude::CollisionEnd), [`CollidingEntities`](prelude::CollidingEntities), [`Collisions`](prelude::Collisions) |
@@ -117,12 +118,12 @@
 //! # Examples
 //!
 //! `cargo run --release -p examples3d --example hello`, or `-p examples2d`. In both: `hello`, `readme`, `forces`,
-//! `collision_events`, `picking`, `ccd`, `chain`, `joint_motors`, `player`.
+//! `collision_events`, `picking`, `ccd`, `chain`, `joint_motors`, `wheels`, `ragdolls`, `player`.
 //!
 //! | | 2D | 3D |
 //! |---|---|---|
 //! | games | `character`, `player`, `moving_platform`, `one_way_platform` | `character`, `player`, `car`, `shooting`, `explosion`, `conveyor_belt`, `save_and_load`, `time_control` |
-//! | bodies | `locked_axes`, `sleeping`, `interpolation` | `hinged_door`, `child_colliders`, `materials`, `layers`, `dominoes` |
+//! | bodies | `locked_axes`, `sleeping`, `interpolation`, `bridge` | `hinged_door`, `crane`, `breakable_wall`, `spherical_motors`, `generic_joint`, `child_colliders`, `materials`, `layers`, `dominoes` |
 //! | colliders and queries | `ray_caster`, `custom_collider`, `custom_constraint` | `collider_constructors`, `spatial_queries`, `custom_broad_phase`, `custom_constraint` |
 //! | tools | `step_times` | `debug_drawing`, `diagnostics` |
 //!
@@ -178,6 +179,8 @@ pub mod math;
 pub mod physics_transform;
 #[cfg(all(feature = "bevy_picking", feature = "default-collider"))]
 pub mod picking;
+#[cfg(feature = "default-collider")]
+pub mod ragdoll;
 pub mod schedule;
 pub mod spatial_query;
 
@@ -211,6 +214,8 @@ pub mod prelude {
     pub use crate::picking::{
         PhysicsPickable, PhysicsPickingFilter, PhysicsPickingPlugin, PhysicsPickingSettings,
     };
+    #[cfg(feature = "default-collider")]
+    pub use crate::ragdoll::{Bone, HumanRagdoll, Ragdoll, RagdollJoints};
     #[expect(deprecated, reason = "former names stay importable")]
     pub use crate::schedule::{PhysicsSet, PhysicsStepSet};
     pub use crate::{

@@ -30,8 +30,12 @@ use crate::{
         drain::{drain_lifecycle, remove_lost_late},
         integrator::IntegrationSystems,
         joints::{
-            JointSolver, breaking::send_broken, forces::store_joint_forces, lifecycle::note_changed_joints,
-            settle::settle_joints, table::Joints,
+            JointSolver,
+            error::store_joint_errors,
+            forces::{send_broken, store_joint_forces},
+            lifecycle::note_changed_joints,
+            settle::settle_joints,
+            table::Joints,
         },
         lifecycle::{self, note_changed_colliders},
         materials::refresh_surfaces,
@@ -235,8 +239,10 @@ stages! {
     NoteTouching.in_set(SolverSystems::StoreContactImpulses) => {
         NarrowPhase: (note_touching.pipe(forget_views), fill_graph).chain(),
     }
-    /// Writes the forces of joints.
-    StoreJointForces.in_set(SolverSystems::StoreContactImpulses) => { Joints: store_joint_forces }
+    /// Writes the forces and errors of joints.
+    StoreJointForces.in_set(SolverSystems::StoreContactImpulses) => {
+        Joints: (store_joint_forces, store_joint_errors).chain(),
+    }
     /// Puts islands at rest to sleep.
     Sleep.in_set(PhysicsStepSystems::Sleeping) => { Sleeping: sleep_islands }
     /// Updates boxes of moved colliders, and the trees.

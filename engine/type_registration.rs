@@ -92,17 +92,17 @@ fn register_dynamics(app: &mut App) {
 fn register_joints(app: &mut App) {
     use crate::dynamics::{
         joints::{
-            AngleLimit, AngularMotor, AxisMotor, DistanceLimit, JointAnchor, JointAxis, JointBasis,
-            JointBreakThreshold, JointCollisionDisabled, JointDamping, JointDisabled, JointForces,
-            JointFrame, JointSoftness, JointSolver, LinearMotor, MotorModel, dim,
+            AngleLimit, AngularMotor, AxisMotor, AxisSpring, DistanceLimit, JointAnchor, JointAxis,
+            JointBasis, JointBreakThreshold, JointCollisionDisabled, JointDamping, JointDisabled, JointError,
+            JointForces, JointFrame, JointSoftness, JointSolver, LinearMotor, MotorModel, dim,
         },
         solver::joint_graph::{JointComponentId, JointGraphEdge, JointId},
     };
 
     dim::register_kinds(app);
     register!(app:
-        AngleLimit, AngularMotor, AxisMotor, DistanceLimit, JointAnchor, JointAxis, JointSoftness, JointBasis, JointBreakThreshold, JointCollisionDisabled, JointDamping,
-        JointDisabled, JointForces, JointFrame, JointSolver, LinearMotor, MotorModel, JointComponentId, JointGraphEdge, JointId,
+        AngleLimit, AngularMotor, AxisMotor, AxisSpring, DistanceLimit, JointAnchor, JointAxis, JointSoftness, JointBasis, JointBreakThreshold, JointCollisionDisabled, JointDamping,
+        JointDisabled, JointError, JointForces, JointFrame, JointSolver, LinearMotor, MotorModel, JointComponentId, JointGraphEdge, JointId,
     );
 }
 

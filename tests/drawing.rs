@@ -340,6 +340,11 @@ fn joints_are_drawn_with_their_anchors_gap_and_limits() {
     more(&mut app, "a wheel");
     app.world_mut().spawn((MouseJoint::new(door), Transform::from_xyz(0.0, 1.0, 0.0)));
     more(&mut app, "a mouse joint");
+    app.world_mut().spawn(PulleyJoint::new(post, door, [Vector::Y, Vector::Y * 2.0]));
+    more(&mut app, "a pulley");
+    app.world_mut().spawn(GearJoint::new(post, door));
+    more(&mut app, "a gear");
+    app.world_mut().spawn(PulleyJoint::new(post, door, [Vector::NAN, Vector::Y]));
     app.world_mut()
         .spawn(PrismaticJoint::new(post, door).with_slider_axis(Vector::NAN).with_limits(0.0, 1.0));
     app.world_mut().spawn(RevoluteJoint::new(post, door).with_local_anchor1(Vector::NAN));

@@ -135,6 +135,10 @@ fn components_come_back() {
     comes_back(RevoluteJoint::new(body, collider).with_angle_limits(0.1, 0.7).with_local_anchor2(Vector::Y));
     comes_back(GenericJoint::new(body, collider).with_limits(JointCoordinate::Y, 0.1, 0.7));
     comes_back(WheelJoint::new(body, collider).with_suspension_limits(0.1, 0.7));
+    comes_back(GearJoint::new(body, collider).with_ratio(0.3));
+    comes_back(RackAndPinionJoint::new(body, collider).with_radius(0.3));
+    comes_back(PulleyJoint::new(body, collider, [Vector::X * 0.1, Vector::Y * 0.3]).with_length(0.7));
+    comes_back(JointError { length: 0.1, angle: 0.3 });
     comes_back(MouseJoint::new(body).with_max_force(0.3));
     comes_back(JointBreakThreshold::new(0.1, 0.7));
     comes_back((JointDamping { linear: 0.1, angular: 0.3 }, JointForces::new(), JointDisabled));

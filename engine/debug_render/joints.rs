@@ -16,8 +16,9 @@ use super::{
 };
 use crate::{
     dynamics::joints::{
-        AngleLimit, DistanceJoint, DistanceLimit, EntityConstraint, FixedJoint, GenericJoint,
-        JointCoordinate, JointDisabled, MouseJoint, PrismaticJoint, kind::JointKind, space::rotation_of,
+        AngleLimit, DistanceJoint, DistanceLimit, EntityConstraint, FixedJoint, GearJoint, GenericJoint,
+        JointCoordinate, JointDisabled, MouseJoint, PrismaticJoint, PulleyJoint, RackAndPinionJoint,
+        kind::JointKind, space::rotation_of,
     },
     math::{Vector, to_f32},
     physics_transform::{Position, Rotation},
@@ -149,6 +150,13 @@ impl Pen<'_, '_, '_> {
     pub(super) fn draw(&mut self, lines: &Strips, frame: &Affine3A) {
         lines.draw(frame, self.color.into(), self.gizmos);
     }
+
+    /// Draws a line in the world, if it is finite.
+    fn line(&mut self, ends: [Vec3; 2]) {
+        if ends.iter().all(|end| end.is_finite()) {
+            draw_strip(ends, self.color, self.gizmos);
+        }
+    }
 }
 
 /// Adds an arc about an axis from the angles `min` to `max`, at most a full turn, and the lines from the centre to its ends.
@@ -176,7 +184,10 @@ pub(super) fn draw_kind(
     draw: impl FnOnce(&DrawnJoint, &mut Pen),
 ) {
     let Some(drawn) = DrawnJoint::new(joint, positions, rotations) else { return };
-    drawn.draw_anchors(gizmos, config);
+    // What is tied is not held at a point.
+    if joint.coupling().is_none() {
+        drawn.draw_anchors(gizmos, config);
+    }
     if let Some(color) = config.joint_anchor_color {
         draw(&drawn, &mut Pen { color, gizmos });
     }
@@ -220,6 +231,14 @@ drawn_kinds! {
     DistanceJoint => |_joint, _, _| {};
     MouseJoint => |_joint, _, _| {};
     PrismaticJoint => |joint, drawn, pen| drawn.draw_slider(dim::point(joint.slider_axis), joint.limits, pen);
+    PulleyJoint => |joint, drawn, pen| {
+        for (anchor, pulley) in drawn.frames.iter().zip(joint.pulleys) {
+            pen.line([anchor.translation.into(), dim::point(pulley)]);
+        }
+        pen.line(joint.pulleys.map(dim::point));
+    };
+    GearJoint => |_joint, drawn, pen| pen.line(drawn.bodies);
+    RackAndPinionJoint => |_joint, drawn, pen| pen.line(drawn.bodies);
     GenericJoint => |joint, drawn, pen| draw_axes(joint, drawn, pen);
 }
 
@@ -230,7 +249,7 @@ fn draw_axes(joint: &GenericJoint, drawn: &DrawnJoint, pen: &mut Pen) {
         if axis.is_locked() {
             continue;
         }
-        let direction = dim::joints::direction(coordinate);
+        let direction = dim::direction(coordinate);
         if JointCoordinate::TRANSLATIONS.contains(&coordinate) {
             drawn.draw_slider(direction, axis.limits.map(DistanceLimit::from), pen);
         } else {

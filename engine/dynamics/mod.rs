@@ -33,11 +33,11 @@ pub mod prelude {
         ccd::{CcdPlugin, SpeculativeMargin, SweepMode, SweptCcd},
         integrator::{CustomPositionIntegration, CustomVelocityIntegration, Gravity, IntegratorPlugin},
         joints::{
-            AngleLimit, AngularMotor, AxisMotor, DistanceJoint, DistanceLimit, FixedJoint, GenericJoint,
-            JointAnchor, JointAxis, JointBasis, JointBreakThreshold, JointBroken, JointCollisionDisabled,
-            JointCoordinate, JointDamping, JointDisabled, JointForces, JointFrame, JointPlugin,
-            JointSoftness, JointSolver, LinearMotor, MotorModel, MouseJoint, PrismaticJoint, RevoluteJoint,
-            WheelJoint,
+            AngleLimit, AngularMotor, AxisMotor, AxisSpring, DistanceJoint, DistanceLimit, FixedJoint,
+            GearJoint, GenericJoint, JointAnchor, JointAxis, JointBasis, JointBreakThreshold, JointBroken,
+            JointCollisionDisabled, JointCoordinate, JointDamping, JointDisabled, JointError, JointForces,
+            JointFrame, JointPlugin, JointSoftness, JointSolver, LinearMotor, MotorModel, MouseJoint,
+            PrismaticJoint, PulleyJoint, RackAndPinionJoint, RevoluteJoint, WheelJoint,
         },
         rigid_body::{
             forces::{

@@ -190,3 +190,78 @@ fn a_wheel_is_steered_about_its_suspension() {
     let axle = *rig.get::<Rotation>(wheel) * Vector::X;
     assert!(axle.angle_between(Vector::X) < 0.01, "without steering it is straight: {axle}");
 }
+
+/// The anchors of a ragdoll's joint.
+pub fn anchors(rig: &Rig, joint: Entity) -> [Vector; 2] {
+    let world = rig.app.world();
+    let ball = world.get::<SphericalJoint>(joint).map(|ball| [ball.local_anchor1(), ball.local_anchor2()]);
+    let hinge = world.get::<RevoluteJoint>(joint).map(|hinge| [hinge.local_anchor1(), hinge.local_anchor2()]);
+    ball.or(hinge).expect("a joint").map(|anchor| anchor.expect("it is local"))
+}
+
+fn relative(rig: &Rig, ragdoll: &Ragdoll, bone: Bone) -> Quaternion {
+    let Some(parent) = bone.parent() else { return Quaternion::IDENTITY };
+    let [a, b] = [parent, bone].map(|bone| rig.get::<Rotation>(ragdoll.bone(bone)).0);
+    a.inverse() * b
+}
+
+/// How far a bone is turned against its parent, in rad.
+pub fn bone_turn(rig: &Rig, ragdoll: &Ragdoll, bone: Bone) -> Scalar {
+    apart(relative(rig, ragdoll, bone), Quaternion::IDENTITY)
+}
+
+/// How far a bone is beyond its limits of swing or angle, in rad.
+pub fn swing_beyond(rig: &Rig, ragdoll: &Ragdoll, bone: Bone) -> Scalar {
+    let Some(joint) = ragdoll.joint(bone) else { return 0.0 };
+    let turn = relative(rig, ragdoll, bone);
+    if let Some(ball) = rig.app.world().get::<SphericalJoint>(joint) {
+        let (axis, limit) =
+            (ball.local_twist_axis1().expect("it is local"), ball.swing_limit.expect("it has limits"));
+        return (axis.angle_between(turn * Vector::Y) - limit.max).max(0.0);
+    }
+    let limit = rig.get::<RevoluteJoint>(joint).angle_limit.expect("it has limits");
+    let angle = 2.0 * turn.x.atan2(turn.w);
+    (angle - limit.max).max(limit.min - angle).max(0.0)
+}
+
+/// A turn of a bone: forearms about x, others outwards.
+pub fn bend(bone: Bone, angle: Scalar) -> Rotation {
+    let is_elbow = matches!(bone, Bone::LeftForearm | Bone::RightForearm);
+    let axis = if is_elbow { Vector::X } else { Vector::Z };
+    Rotation(Quaternion::from_axis_angle(axis, angle))
+}
+
+/// On the shortest arc the axis of the turn stays.
+#[test]
+fn by_default_a_ball_takes_the_shortest_arc() {
+    let mut rig = Rig::weightless();
+    let (post, arm) = (rig.post(0.0, 0.0), rig.rod(0.0, 0.0));
+    let axis = Vector::new(1.0, 2.0, -2.0) / 3.0;
+    let target = Quaternion::from_axis_angle(axis, 2.5);
+    let model = MotorModel::SpringDamper { frequency: 1.0, damping_ratio: 1.0 };
+    let motor = SphericalMotor::new(model).with_target_rotation(Rotation(target));
+    rig.spawn(SphericalJoint::new(post, arm).with_motor(motor));
+    for _ in 0..48 {
+        rig.step();
+        let turn = rig.get::<Rotation>(arm).0.to_scaled_axis();
+        assert!(turn.length() < 1e-3 || turn.normalize().dot(axis) > 0.9999, "{turn}");
+    }
+    rig.steps(128);
+    assert!(apart(rig.get::<Rotation>(arm).0, target) < 1e-3);
+}
+
+/// With a torque τ the spin is τ t / I, about any axis, and the reported torque is τ.
+#[test]
+fn the_greatest_torque_is_that_about_any_axis() {
+    for axis in [Vector::X, Vector::Y, Vector::new(0.6, 0.0, 0.8)] {
+        let mut rig = Rig::weightless();
+        let (post, arm) = (rig.post(0.0, 0.0), rig.rod(0.0, 0.0));
+        let model = MotorModel::AccelerationBased { stiffness: 0.0, damping: 20.0 };
+        let motor = SphericalMotor::new(model).with_target_velocity(axis * 100.0).with_max_torque(0.25);
+        let joint = rig.spawn((SphericalJoint::new(post, arm).with_motor(motor), JointForces::new()));
+        rig.steps(64);
+        let spin = rig.get::<AngularVelocity>(arm).0;
+        assert!((spin - axis * 0.25 / INERTIA).length() < 0.01, "{spin}");
+        assert!((rig.get::<JointForces>(joint).motor_force() - 0.25).abs() < 0.005);
+    }
+}

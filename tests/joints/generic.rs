@@ -35,7 +35,7 @@ fn springs_and_compliance_sag_by_their_law() {
     let by_spring = G / (2.0 * avian::math::PI * frequency).powi(2);
     let compliance = 0.002;
     for (axis, sag) in [
-        (held.with_spring(frequency, 1.0), by_spring),
+        (held.with_soft_limits(frequency, 1.0), by_spring),
         (held.with_compliance(compliance), compliance * MASS * G),
     ] {
         let mut rig = Rig::new();
@@ -92,11 +92,8 @@ fn axes_that_are_no_numbers_have_no_effect() {
         GenericJoint::new(post, body)
             .with_limits(JointCoordinate::Y, 0.0, 0.0)
             .with_compliance(JointCoordinate::Y, -1.0),
-        GenericJoint::new(post, body).with_limits(JointCoordinate::Y, 0.0, 0.0).with_spring(
-            JointCoordinate::Y,
-            0.0,
-            1.0,
-        ),
+        GenericJoint::new(post, body)
+            .with_axis(JointCoordinate::Y, JointAxis::LOCKED.with_soft_limits(0.0, 1.0)),
         GenericJoint::new(post, body).with_motor(turn, motor.with_target_position(Scalar::NAN)),
         GenericJoint::new(post, body).with_motor(turn, motor.with_max_torque(-1.0)),
     ] {

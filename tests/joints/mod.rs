@@ -2,12 +2,14 @@
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
 mod breaking;
+mod coupled;
 mod generic;
 mod graph;
 mod life;
 mod motors;
 mod mouse;
 mod physics;
+mod ragdoll;
 mod random;
 mod solver;
 mod wheel;

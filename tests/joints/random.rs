@@ -44,7 +44,7 @@ fn change() -> impl Strategy<Value = Change> {
         1 => (body.clone(), any::<bool>()).prop_map(|(body, off)| Change::Switch(body, off)),
         1 => (body.clone(), any::<bool>()).prop_map(|(body, off)| Change::Freeze(body, off)),
         1 => body.prop_map(Change::Push),
-        4 => (joint.clone(), pair.clone(), 0..9u8).prop_map(|(joint, pair, kind)| Change::Join(joint, pair, kind)),
+        4 => (joint.clone(), pair.clone(), 0..11u8).prop_map(|(joint, pair, kind)| Change::Join(joint, pair, kind)),
         2 => (joint.clone(), pair).prop_map(|(joint, pair)| Change::Swap(joint, pair)),
         1 => (joint.clone(), -2..4i8).prop_map(|(joint, to)| Change::Tighten(joint, to)),
         1 => joint.clone().prop_map(Change::Drop),
@@ -109,6 +109,8 @@ impl Crowd {
                     JointBreakThreshold::force(5.0),
                 )),
                 6 => joint.insert(MouseJoint::new(b).with_max_torque(1.0)),
+                8 => joint.insert((GearJoint::new(a, b), JointError::default())),
+                9 => joint.insert(PulleyJoint::new(a, b, [xy(0.0, 2.0), xy(1.0, 2.0)])),
                 7 => joint.insert(WheelJoint::new(a, b).with_suspension_limits(-0.5, 0.5)),
                 _ => joint.insert(DistanceJoint::new(a, b).with_limits(2.0, Scalar::NAN)),
             };

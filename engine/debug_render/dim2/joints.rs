@@ -5,7 +5,7 @@ use bevy_math::Vec3;
 use super::point;
 use crate::{
     debug_render::joints::drawn_kinds,
-    dynamics::joints::{JointCoordinate, RevoluteJoint, WheelJoint},
+    dynamics::joints::{RevoluteJoint, WheelJoint},
 };
 
 drawn_kinds! {
@@ -16,13 +16,4 @@ drawn_kinds! {
         drawn.draw_slider(point(joint.suspension_axis), joint.suspension_limits, pen);
         drawn.draw_hinge(Vec3::Z, None, pen);
     };
-}
-
-/// The direction of a coordinate's axis in a frame.
-pub(in crate::debug_render) fn direction(coordinate: JointCoordinate) -> Vec3 {
-    match coordinate {
-        JointCoordinate::X => Vec3::X,
-        JointCoordinate::Y => Vec3::Y,
-        JointCoordinate::Angle => Vec3::Z,
-    }
 }

@@ -11,6 +11,7 @@ use bevy_math::{Affine3A, Quat, Vec3};
 use bevy_transform::components::GlobalTransform;
 
 use crate::{
+    dynamics::joints::JointCoordinate,
     math::{AsF32, Vector},
     physics_transform::Rotation,
 };
@@ -52,4 +53,13 @@ pub(in crate::debug_render) fn axes(lengths: Vector) -> [(Vec3, Color); 2] {
 pub(in crate::debug_render) fn spread(direction: Vec3) -> [Vec3; 2] {
     let side = Vec3::new(-direction.y, direction.x, 0.0);
     [side, -side]
+}
+
+/// The direction of a coordinate's axis in a frame.
+pub(super) fn direction(coordinate: JointCoordinate) -> Vec3 {
+    match coordinate {
+        JointCoordinate::X => Vec3::X,
+        JointCoordinate::Y => Vec3::Y,
+        JointCoordinate::Angle => Vec3::Z,
+    }
 }

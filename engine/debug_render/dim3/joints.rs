@@ -9,7 +9,7 @@ use crate::{
         joints::{ARC, DrawnJoint, Pen, drawn_kinds, push_sector},
         lines::Strips,
     },
-    dynamics::joints::{AngleLimit, JointCoordinate, RevoluteJoint, SphericalJoint, WheelJoint},
+    dynamics::joints::{AngleLimit, RevoluteJoint, SphericalJoint, WheelJoint},
     math::to_f32,
 };
 
@@ -22,15 +22,6 @@ drawn_kinds! {
         drawn.draw_slider(point(joint.suspension_axis), joint.suspension_limits, pen);
         drawn.draw_hinge(point(joint.axle), None, pen);
     };
-}
-
-/// The direction of a coordinate's axis in a frame.
-pub(in crate::debug_render) fn direction(coordinate: JointCoordinate) -> Vec3 {
-    match coordinate {
-        JointCoordinate::X | JointCoordinate::Twist => Vec3::X,
-        JointCoordinate::Y | JointCoordinate::SwingY => Vec3::Y,
-        JointCoordinate::Z | JointCoordinate::SwingZ => Vec3::Z,
-    }
 }
 
 impl DrawnJoint {

@@ -11,6 +11,7 @@ use bevy_math::{Affine3A, Quat, Vec3};
 use bevy_transform::components::GlobalTransform;
 
 use crate::{
+    dynamics::joints::JointCoordinate,
     math::{AsF32, Vector},
     physics_transform::Rotation,
 };
@@ -53,4 +54,13 @@ pub(in crate::debug_render) fn axes(lengths: Vector) -> [(Vec3, Color); 3] {
 pub(in crate::debug_render) fn spread(direction: Vec3) -> [Vec3; 4] {
     let (a, b) = direction.any_orthonormal_pair();
     [a, -a, b, -b]
+}
+
+/// The direction of a coordinate's axis in a frame.
+pub(super) fn direction(coordinate: JointCoordinate) -> Vec3 {
+    match coordinate {
+        JointCoordinate::X | JointCoordinate::Twist => Vec3::X,
+        JointCoordinate::Y | JointCoordinate::SwingY => Vec3::Y,
+        JointCoordinate::Z | JointCoordinate::SwingZ => Vec3::Z,
+    }
 }

@@ -5,7 +5,11 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use kernel::solver::{Axis, Give, Spring};
 
-use super::{kind::axis_motor, motor::AxisMotor};
+use super::{
+    kind::axis_motor,
+    laws::law,
+    motor::{AxisMotor, MotorModel},
+};
 use crate::math::{Scalar, to_f32};
 
 /// What a joint does along or about one axis: free by default.
@@ -13,7 +17,7 @@ use crate::math::{Scalar, to_f32};
 /// ```
 /// # use avian::prelude::*;
 /// // Between -10 cm and 10 cm, with soft ends.
-/// let axis = JointAxis::limited(-0.1, 0.1).with_spring(8.0, 0.5);
+/// let axis = JointAxis::limited(-0.1, 0.1).with_soft_limits(8.0, 0.5);
 /// assert!(!axis.is_locked() && JointAxis::LOCKED.is_locked());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
@@ -26,7 +30,9 @@ pub struct JointAxis {
     pub limits: Option<[Scalar; 2]>,
     /// How far the axis gives way at its limits, or where it is locked.
     pub softness: JointSoftness,
-    /// The motor. Disabled by default. An axis that is locked has none.
+    /// A spring besides. It has no effect where the axis is locked and rigid.
+    pub spring: Option<AxisSpring>,
+    /// The motor. Disabled by default. It has no effect where the axis is locked and rigid.
     pub motor: AxisMotor,
 }
 
@@ -38,7 +44,8 @@ impl Default for JointAxis {
 
 impl JointAxis {
     /// Without limits and motor.
-    pub const FREE: Self = Self { limits: None, softness: JointSoftness::Rigid, motor: AxisMotor::DISABLED };
+    pub const FREE: Self =
+        Self { limits: None, softness: JointSoftness::Rigid, spring: None, motor: AxisMotor::DISABLED };
 
     /// Held at 0.
     pub const LOCKED: Self = Self::limited(0.0, 0.0);
@@ -59,8 +66,14 @@ impl JointAxis {
         self
     }
 
-    /// Makes the limits a spring with a frequency in Hz and a damping ratio, whatever the masses.
-    pub const fn with_spring(mut self, frequency: Scalar, damping_ratio: Scalar) -> Self {
+    /// Adds a spring that bears nothing at `rest`, in m or rad.
+    pub const fn with_spring(mut self, rest: Scalar, model: MotorModel) -> Self {
+        self.spring = Some(AxisSpring { rest, model });
+        self
+    }
+
+    /// Makes the limits, or where it is locked, a spring with a frequency in Hz and a damping ratio, whatever the masses.
+    pub const fn with_soft_limits(mut self, frequency: Scalar, damping_ratio: Scalar) -> Self {
         self.softness = JointSoftness::Spring { frequency, damping_ratio };
         self
     }
@@ -74,8 +87,23 @@ impl JointAxis {
     /// The kernel's axis.
     pub(super) fn to_kernel(self) -> Axis {
         let limits = self.limits.map(|limits| limits.map(to_f32));
-        Axis { limits, give: self.softness.to_kernel(), motor: axis_motor(&self.motor) }
+        let spring = self.spring.and_then(|AxisSpring { rest, model }| {
+            Some(kernel::solver::AxisSpring { rest: to_f32(rest), law: law(model)? })
+        });
+        Axis { limits, give: self.softness.to_kernel(), spring, motor: axis_motor(&self.motor) }
     }
+}
+
+/// A spring along or about an axis of a joint.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Debug, Default, PartialEq)]
+pub struct AxisSpring {
+    /// Where it bears nothing, in m or rad.
+    pub rest: Scalar,
+    /// Its stiffness and damping.
+    pub model: MotorModel,
 }
 
 /// How far an axis of a joint gives way.

@@ -1,22 +1,18 @@
 //! [`JointBreakThreshold`]: joints that break under load, and [`JointBroken`].
 
-use bevy_ecs::{message::Messages, prelude::*, reflect::ReflectComponent};
+use bevy_ecs::{prelude::*, reflect::ReflectComponent};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
-use super::{
-    settings::{JointDisabled, JointForces},
-    space::magnitude,
-    table::Joints,
-};
+use super::{settings::JointForces, space::magnitude};
 use crate::math::{AngularVector, Scalar, Vector};
 
 /// The load above which the joint of its entity breaks. Beyond Avian.
 ///
 /// At the end of a step the joint's [`JointForces`], which the component brings along, are compared with it. A joint that bears
-/// more gets [`JointDisabled`] and is reported by [`JointBroken`]: it has no effect from the next step on. Removing
-/// [`JointDisabled`] mends it.
+/// more gets [`JointDisabled`](super::JointDisabled) and is reported by [`JointBroken`]: it has no effect from the next step on. Removing
+/// [`JointDisabled`](super::JointDisabled) mends it.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -72,7 +68,7 @@ impl JointBreakThreshold {
     }
 }
 
-/// A joint broke, and has [`JointDisabled`] now. Written as a message, and triggered at the joint's entity.
+/// A joint broke, and has [`JointDisabled`](super::JointDisabled) now. Written as a message, and triggered at the joint's entity.
 ///
 /// Breaks are sent at the end of a step, in
 /// [`CollisionEventSystems`](crate::collision::narrow_phase::CollisionEventSystems): the messages, then the triggers, in the
@@ -90,27 +86,4 @@ pub struct JointBroken {
     pub force: Vector,
     /// The torque on the second body that broke it, about the world's axes, in N·m.
     pub torque: AngularVector,
-}
-
-/// Disables the joints that broke in the step, and sends the events.
-pub(crate) fn send_broken(world: &mut World) {
-    if world.resource::<Joints>().broken.is_empty() {
-        return;
-    }
-    let mut broken = core::mem::take(&mut world.resource_mut::<Joints>().broken);
-    // Systems of the app may have despawned it since.
-    broken.retain(|event| world.get_entity(event.joint).is_ok());
-    for event in &broken {
-        world.entity_mut(event.joint).insert(JointDisabled);
-    }
-    if let Some(mut messages) = world.get_resource_mut::<Messages<JointBroken>>() {
-        messages.write_batch(broken.iter().copied());
-    }
-    for event in broken {
-        if world.get_entity(event.joint).is_ok() {
-            world.trigger(event);
-            // The next observer sees what the commands of this one did.
-            world.flush();
-        }
-    }
 }

@@ -12,7 +12,8 @@ use kernel::solver::{Axis, JointDef, coordinate::DISTANCE};
 
 use super::{
     frame::{JointAnchor, JointFrame},
-    kind::{EntityConstraint, JointKind, between_two_bodies, give, locked},
+    kind::{EntityConstraint, JointKind, between_two_bodies, locked},
+    laws::give,
     limits::DistanceLimit,
     space::TRANSLATIONS,
 };

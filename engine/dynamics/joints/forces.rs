@@ -1,11 +1,11 @@
-//! Writes the forces of joints to [`JointForces`], and finds the joints that break.
+//! Writes the forces of joints to [`JointForces`], and breaks joints.
 
-use bevy_ecs::prelude::*;
+use bevy_ecs::{message::Messages, prelude::*};
 
 use super::{
     breaking::{JointBreakThreshold, JointBroken},
-    settings::JointForces,
-    table::Joints,
+    settings::{JointDisabled, JointForces},
+    table::{Held, Joints},
 };
 use crate::{
     dynamics::solver::substeps::StepSolver,
@@ -25,12 +25,40 @@ pub(crate) fn store_joint_forces(
             let reaction = solver.kernel.joints.reaction(held.id);
             now.set_force(vector_from_kernel(reaction.force));
             now.set_torque(angular_from_kernel(reaction.torque));
-            now.set_motor_force(Scalar::from(held.motor.map_or(0.0, |motor| reaction.motors[motor])));
+            let motor_force = match held {
+                Held { coupling: Some(_), .. } => solver.kernel.joints.coupling_force(held.id),
+                Held { motor: Some(motor), .. } => reaction.motors[motor],
+                _ => reaction.orientation.length(),
+            };
+            now.set_motor_force(Scalar::from(motor_force));
             if threshold.is_some_and(|threshold| threshold.is_exceeded_by(&now)) {
                 let (force, torque) = (now.force(), now.torque());
                 joints.broken.push(JointBroken { joint: entity, body1, body2, force, torque });
             }
         }
         forces.set_if_neq(now);
+    }
+}
+
+/// Disables the joints that broke in the step, and sends the events.
+pub(crate) fn send_broken(world: &mut World) {
+    if world.resource::<Joints>().broken.is_empty() {
+        return;
+    }
+    let mut broken = core::mem::take(&mut world.resource_mut::<Joints>().broken);
+    // Systems of the app may have despawned it since.
+    broken.retain(|event| world.get_entity(event.joint).is_ok());
+    for event in &broken {
+        world.entity_mut(event.joint).insert(JointDisabled);
+    }
+    if let Some(mut messages) = world.get_resource_mut::<Messages<JointBroken>>() {
+        messages.write_batch(broken.iter().copied());
+    }
+    for event in broken {
+        if world.get_entity(event.joint).is_ok() {
+            world.trigger(event);
+            // The next observer sees what the commands of this one did.
+            world.flush();
+        }
     }
 }

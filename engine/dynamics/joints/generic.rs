@@ -14,7 +14,7 @@ use super::{
     axis::JointAxis,
     frame::{JointAnchor, JointBasis, JointFrame, frame_methods},
     kind::{EntityConstraint, JointKind, between_two_bodies, own_frames},
-    motor::AxisMotor,
+    motor::{AxisMotor, MotorModel},
     space::{COORDINATES, Isometry, JointCoordinate, Rot},
 };
 use crate::math::{Scalar, Vector};
@@ -100,14 +100,9 @@ impl GenericJoint {
         self
     }
 
-    /// Makes the limits of an axis a spring with a frequency in Hz and a damping ratio.
-    pub const fn with_spring(
-        mut self,
-        coordinate: JointCoordinate,
-        frequency: Scalar,
-        damping_ratio: Scalar,
-    ) -> Self {
-        *self.axis_mut(coordinate) = self.axis(coordinate).with_spring(frequency, damping_ratio);
+    /// Adds a spring to an axis that bears nothing at `rest`, in m or rad.
+    pub const fn with_spring(mut self, coordinate: JointCoordinate, rest: Scalar, model: MotorModel) -> Self {
+        *self.axis_mut(coordinate) = self.axis(coordinate).with_spring(rest, model);
         self
     }
 

@@ -10,12 +10,14 @@ use bevy_ecs::{
     entity::{Entity, MapEntities},
 };
 use kernel::{
-    math::Rot,
-    solver::{Axis, Drive, Give, JointDef, Motor, Spring},
+    math::{Angular, Rot},
+    solver::{Axis, JointDef, Motor, OrientationMotor},
 };
 
 use super::{
+    coupling::Coupling,
     frame::JointFrame,
+    laws::{effort, give, law},
     limits::{AngleLimit, DistanceLimit},
     motor::{AngularMotor, AxisMotor, LinearMotor, MotorModel},
     settings::JointDamping,
@@ -33,6 +35,11 @@ pub trait EntityConstraint<const ENTITY_COUNT: usize>: MapEntities {
 pub(crate) trait JointKind {
     /// The coordinate that its motor drives.
     fn motor(&self) -> Option<usize> {
+        None
+    }
+
+    /// What it ties, if it is no joint of two frames.
+    fn coupling(&self) -> Option<Coupling> {
         None
     }
 
@@ -141,14 +148,6 @@ pub(super) fn locked(compliance: Scalar) -> Axis {
     Axis::LOCKED.with_give(give(compliance))
 }
 
-/// How far a limit with a compliance gives way.
-pub(super) fn give(compliance: Scalar) -> Give {
-    match to_f32(compliance) {
-        0.0 => Give::Rigid,
-        compliance => Give::Compliance(compliance),
-    }
-}
-
 /// A coordinate with limits, if there are any.
 pub(super) fn limited(limits: Option<impl Into<[f32; 2]>>, compliance: Scalar) -> Axis {
     limits.map_or(Axis::FREE, |limits| {
@@ -196,25 +195,22 @@ pub(super) fn axis_motor(motor: &AxisMotor) -> Option<Motor> {
     )
 }
 
+/// The kernel's motor that turns the second frame to the first, with a greatest torque.
+pub(super) fn orientation_motor(model: MotorModel, max_torque: Scalar) -> Option<OrientationMotor> {
+    Some(OrientationMotor {
+        target_rotation: Rot::IDENTITY,
+        target_velocity: Angular::ZERO,
+        max_torque: effort(max_torque),
+        drive: law(model)?,
+    })
+}
+
 fn kernel_motor(enabled: bool, [velocity, position, max]: [Scalar; 3], model: MotorModel) -> Option<Motor> {
-    let drive = match model {
-        // Without a frequency there is neither stiffness nor damping.
-        MotorModel::SpringDamper { frequency: 0.0, .. } => return None,
-        MotorModel::SpringDamper { frequency, damping_ratio } => {
-            Drive::Spring(Spring { frequency: to_f32(frequency), damping_ratio: to_f32(damping_ratio) })
-        }
-        MotorModel::ForceBased { stiffness, damping } => {
-            Drive::Force { stiffness: to_f32(stiffness), damping: to_f32(damping) }
-        }
-        MotorModel::AccelerationBased { stiffness, damping } => {
-            Drive::Acceleration { stiffness: to_f32(stiffness), damping: to_f32(damping) }
-        }
-    };
-    let max = to_f32(max);
+    let drive = law(model)?;
     enabled.then_some(Motor {
         target_velocity: to_f32(velocity),
         target_position: to_f32(position),
-        max_force: if max == f32::MAX { f32::INFINITY } else { max },
+        max_force: effort(max),
         drive,
     })
 }

@@ -10,10 +10,12 @@
 //! | [`RevoluteJoint`] | a turn about a point (2D) or an axis (3D), with limits and a motor |
 //! | [`GenericJoint`] | what its axes say |
 //! | [`WheelJoint`] | a movement along an axis by a spring, and a spin with a motor; in 3D steering |
+//! | [`GearJoint`], [`RackAndPinionJoint`] | turns and ways of two bodies that are tied to each other |
+//! | [`PulleyJoint`] | everything, on a rope over two pulleys |
 //! | [`MouseJoint`] | everything: it pulls a body to the pose of its entity |
 //! | `SphericalJoint` (3D) | all turns about a point, with limits of swing and twist |
 //!
-//! Beside it may be [`JointDisabled`], [`JointCollisionDisabled`], [`JointDamping`], [`JointForces`] and
+//! Beside it may be [`JointDisabled`], [`JointCollisionDisabled`], [`JointDamping`], [`JointForces`], [`JointError`] and
 //! [`JointBreakThreshold`]. [`JointSolver`] chooses how all are solved.
 //!
 //! ```
@@ -37,24 +39,28 @@
 //! or torque, without damping of its own: it is a spring of stiffness 1/α. [`JointDamping`] damps it.
 
 mod axis;
-pub(crate) mod breaking;
+mod breaking;
 mod changes;
+pub(crate) mod coupling;
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
 pub(crate) mod dim;
 mod distance;
+pub(crate) mod error;
 mod fixed;
 pub(crate) mod forces;
 mod frame;
 mod generic;
 pub(crate) mod kind;
 mod kinds;
+mod laws;
 pub(crate) mod lifecycle;
 mod limits;
 mod motor;
 mod mouse;
 mod plugin;
 mod prismatic;
+mod pulley;
 mod settings;
 pub(crate) mod settle;
 mod solver;
@@ -65,10 +71,11 @@ pub(crate) mod table;
 #[cfg(test)]
 mod tests;
 
-pub use axis::{JointAxis, JointSoftness};
+pub use axis::{AxisSpring, JointAxis, JointSoftness};
 pub use breaking::{JointBreakThreshold, JointBroken};
 pub use dim::*;
 pub use distance::DistanceJoint;
+pub use error::JointError;
 pub use fixed::FixedJoint;
 pub use frame::{JointAnchor, JointBasis, JointFrame};
 pub use generic::GenericJoint;
@@ -78,6 +85,7 @@ pub use motor::{AngularMotor, AxisMotor, LinearMotor, MotorModel};
 pub use mouse::MouseJoint;
 pub use plugin::JointPlugin;
 pub use prismatic::PrismaticJoint;
+pub use pulley::PulleyJoint;
 pub use settings::{JointCollisionDisabled, JointDamping, JointDisabled, JointForces};
 pub use solver::JointSolver;
 pub use space::JointCoordinate;

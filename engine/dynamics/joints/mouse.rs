@@ -14,9 +14,9 @@ use kernel::solver::{Axis, JointDef};
 
 use super::{
     frame::{JointAnchor, JointFrame},
-    kind::{EntityConstraint, JointKind, axis_motor},
+    kind::{EntityConstraint, JointKind, axis_motor, orientation_motor},
     motor::{AxisMotor, MotorModel},
-    space::{ROTATIONS, TRANSLATIONS},
+    space::TRANSLATIONS,
 };
 use crate::{
     dynamics::rigid_body::RigidBody,
@@ -65,7 +65,7 @@ pub struct MouseJoint {
     pub motor_model: MotorModel,
     /// The greatest force along each axis of the target, in N. [`Scalar::MAX`] by default, for no maximum.
     pub max_force: Scalar,
-    /// The greatest torque about each axis, in N·m. 0 by default: the body turns freely.
+    /// The greatest torque, in N·m. 0 by default: the body turns freely.
     pub max_torque: Scalar,
 }
 
@@ -143,11 +143,11 @@ impl JointKind for MouseJoint {
     }
 
     fn set_axes(&self, def: JointDef) -> JointDef {
-        let driven = |max: Scalar| {
-            let motor = AxisMotor::new(self.motor_model).with_max_effort(max);
-            Axis { motor: axis_motor(&motor), ..Axis::FREE }
-        };
-        let def = def.with(TRANSLATIONS, driven(self.max_force));
-        if self.max_torque == 0.0 { def } else { def.with(ROTATIONS, driven(self.max_torque)) }
+        let motor = AxisMotor::new(self.motor_model).with_max_effort(self.max_force);
+        let mut def = def.with(TRANSLATIONS, Axis { motor: axis_motor(&motor), ..Axis::FREE });
+        if self.max_torque != 0.0 {
+            def.orientation = orientation_motor(self.motor_model, self.max_torque);
+        }
+        def
     }
 }

@@ -94,7 +94,9 @@ impl JointForces {
         self.torque
     }
 
-    /// The force of the motor in N, or its torque in N·m. Positive if it pushes towards greater positions.
+    /// The force of the motor in N, or its torque in N·m. Positive if it pushes towards greater positions. Of a motor that turns
+    /// about any axis it is the amount. Of gears, racks and pulleys it is the torque or the force on the first body along its
+    /// coordinate: negative where a rope pulls.
     pub const fn motor_force(&self) -> Scalar {
         self.motor_force
     }

@@ -120,19 +120,31 @@ fn hold(
     localize(joint, found);
     let bodies = found.map(|(id, ..)| id.0);
     let kind = joint.kind();
-    let Some(def) = definition(kind, bodies, damping) else { return Ok(()) };
+    let coupling = kind.coupling();
     let held = own.joints.get(entity).and_then(|record| record.held).filter(|held| held.bodies == bodies);
+    // Couplings are counted from where they begin, so one that is different begins anew.
+    let held = held.filter(|held| held.coupling == coupling);
     if held.is_none() {
         own.release(entity, tables);
     }
     let table = &mut own.solver.kernel.joints;
-    let result = match held {
-        Some(held) => table.set(&mut tables.link(), held.id, def).map(|()| held.id),
-        None => table.add(&mut tables.link(), def),
+    let result = match (coupling, held) {
+        (Some(_), Some(held)) => Ok(held.id),
+        (Some(coupling), None) => {
+            let poses = found.map(|(_, position, rotation)| (position.0, *rotation));
+            table.add_coupling(&mut tables.link(), coupling.definition(bodies, poses))
+        }
+        (None, held) => {
+            let Some(def) = definition(kind, bodies, damping) else { return Ok(()) };
+            match held {
+                Some(held) => table.set(&mut tables.link(), held.id, def).map(|()| held.id),
+                None => table.add(&mut tables.link(), def),
+            }
+        }
     };
     let id = result.map_err(|error| (Complaint::Number, error.to_string()))?;
     let is_apart = held.is_some_and(|held| held.is_apart);
-    own.joints.set_held(entity, Held { id, bodies, motor: kind.motor(), is_apart });
+    own.joints.set_held(entity, Held { id, bodies, motor: kind.motor(), coupling, is_apart });
     Ok(())
 }
 

@@ -57,6 +57,11 @@ pub(super) fn turn_to(axis: Vector) -> k::Rot {
     k::Rot { cos: axis.x, sin: axis.y }
 }
 
+/// The axes of a turn. In 2D there is one axis.
+pub(super) fn turn_about(_axis: Vector) -> k::Rot {
+    k::Rot::IDENTITY
+}
+
 /// A coordinate of a joint: where its second frame is in its first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum JointCoordinate {

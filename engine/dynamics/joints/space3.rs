@@ -76,6 +76,11 @@ pub(super) fn turn_to_plane(x: Vector, y: Vector) -> k::Rot {
     Rotation(turn).to_kernel().admitted()
 }
 
+/// The axes of a turn about an axis.
+pub(super) fn turn_about(axis: Vector) -> k::Rot {
+    turn_to(axis)
+}
+
 /// A coordinate of a joint: where its second frame is in its first.
 ///
 /// A rotation is a twist about the x axis, then a swing about an axis across it.

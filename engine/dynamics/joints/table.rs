@@ -6,7 +6,7 @@ use bevy_ecs::{
     system::SystemParam,
 };
 
-use super::breaking::JointBroken;
+use super::{breaking::JointBroken, coupling::Coupling};
 use crate::{
     dynamics::{solver::substeps::StepSolver, tables::Tables},
     noted::Noted,
@@ -47,6 +47,8 @@ pub(crate) struct Held {
     pub(crate) bodies: [u32; 2],
     /// The coordinate that its motor drives.
     pub(crate) motor: Option<usize>,
+    /// Its settings, if it is a coupling.
+    pub(crate) coupling: Option<Coupling>,
     /// Whether it keeps its bodies from colliding.
     pub(crate) is_apart: bool,
 }

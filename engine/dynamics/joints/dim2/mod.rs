@@ -1,14 +1,18 @@
 //! The kinds of joints in 2D, and what limits and bases have there only. `dim3` exports the same names.
 
+mod gear;
+mod rack_and_pinion;
 mod revolute;
 mod wheel;
 
+pub use gear::GearJoint;
+pub use rack_and_pinion::RackAndPinionJoint;
 pub use revolute::RevoluteJoint;
 pub use wheel::WheelJoint;
 
 use super::{
     distance::DistanceJoint, fixed::FixedJoint, frame::JointBasis, generic::GenericJoint, kinds::joint_kinds,
-    limits::AngleLimit, mouse::MouseJoint, prismatic::PrismaticJoint,
+    limits::AngleLimit, mouse::MouseJoint, prismatic::PrismaticJoint, pulley::PulleyJoint,
 };
 use crate::math::{Scalar, Vector, orthonormal_basis_from_vec};
 
@@ -20,6 +24,9 @@ joint_kinds! {
     generic: GenericJoint,
     mouse: MouseJoint,
     wheel: WheelJoint,
+    gear: GearJoint,
+    rack: RackAndPinionJoint,
+    pulley: PulleyJoint,
 }
 
 impl JointBasis {

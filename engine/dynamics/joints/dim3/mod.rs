@@ -1,10 +1,14 @@
 //! The kinds of joints in 3D, and what limits and bases have there only. `dim2` exports the same names.
 
+mod gear;
+mod rack_and_pinion;
 mod revolute;
 mod spherical;
 mod spherical_motor;
 mod wheel;
 
+pub use gear::GearJoint;
+pub use rack_and_pinion::RackAndPinionJoint;
 pub use revolute::RevoluteJoint;
 pub use spherical::SphericalJoint;
 pub use spherical_motor::{AngularDrive, SphericalDrive, SphericalMotor};
@@ -12,7 +16,7 @@ pub use wheel::WheelJoint;
 
 use super::{
     distance::DistanceJoint, fixed::FixedJoint, frame::JointBasis, generic::GenericJoint, kinds::joint_kinds,
-    limits::AngleLimit, mouse::MouseJoint, prismatic::PrismaticJoint,
+    limits::AngleLimit, mouse::MouseJoint, prismatic::PrismaticJoint, pulley::PulleyJoint,
 };
 use crate::math::{Quaternion, Scalar, Vector, orthonormal_basis};
 
@@ -24,6 +28,9 @@ joint_kinds! {
     generic: GenericJoint,
     mouse: MouseJoint,
     wheel: WheelJoint,
+    gear: GearJoint,
+    rack: RackAndPinionJoint,
+    pulley: PulleyJoint,
     spherical: SphericalJoint,
 }
 

@@ -6,13 +6,13 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use kernel::{
     math::{Rot as KernelRot, atan2},
     solver::{
-        JointDef,
+        JointDef, OrientationMotor,
         coordinate::{SWING_Y, SWING_Z, TWIST},
     },
 };
 
 use super::super::{
-    kind::angular_motor,
+    kind::{angular_motor, orientation_motor},
     motor::{AngularMotor, MotorModel},
 };
 use crate::{
@@ -62,6 +62,8 @@ crate::type_path::type_path!(SphericalMotor, "dynamics::joints::spherical");
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Debug, PartialEq)]
 pub enum SphericalDrive {
+    /// Along the shortest arc, by one torque about any axis (SLERP). The default.
+    Slerp(AngularDrive),
     /// The twist, about the twist axis, and the swing, about the two axes across it, on their own.
     TwistAndSwing {
         /// How strongly it twists.
@@ -81,7 +83,7 @@ crate::type_path::type_path!(SphericalDrive, "dynamics::joints::spherical");
 pub struct AngularDrive {
     /// Stiffness and damping.
     pub motor_model: MotorModel,
-    /// The greatest torque about an axis, in N·m. [`Scalar::MAX`] for no maximum.
+    /// The greatest torque, in N·m. [`Scalar::MAX`] for no maximum.
     pub max_torque: Scalar,
 }
 
@@ -113,14 +115,13 @@ impl Default for SphericalMotor {
 }
 
 impl SphericalMotor {
-    /// A motor that is enabled, with one law for twist and swing, towards equal frames at rest.
+    /// A motor that is enabled, along the shortest arc, towards equal frames at rest.
     pub const fn new(motor_model: MotorModel) -> Self {
-        let drive = AngularDrive::new(motor_model);
         Self {
             enabled: true,
             target_rotation: Quaternion::IDENTITY,
             target_velocity: Vector::ZERO,
-            drive: SphericalDrive::TwistAndSwing { twist: drive, swing: drive },
+            drive: SphericalDrive::Slerp(AngularDrive::new(motor_model)),
         }
     }
 
@@ -147,9 +148,10 @@ impl SphericalMotor {
         self
     }
 
-    /// Sets the greatest torque about each axis, in N·m.
+    /// Sets the greatest torque, in N·m: along the shortest arc that about any axis, else that about each axis.
     pub const fn with_max_torque(mut self, max_torque: Scalar) -> Self {
         match &mut self.drive {
+            SphericalDrive::Slerp(drive) => drive.max_torque = max_torque,
             SphericalDrive::TwistAndSwing { twist, swing } => {
                 twist.max_torque = max_torque;
                 swing.max_torque = max_torque;
@@ -170,13 +172,22 @@ impl SphericalMotor {
             return;
         }
         let target = Rotation(self.target_rotation).to_kernel().admitted();
-        let [twist, y, z] = twist_and_swing(turn.inverse().mul(target).mul(turn));
-        let velocity = turn.inverse_rotate(vector_to_kernel(self.target_velocity));
-        let SphericalDrive::TwistAndSwing { twist: twisting, swing: swinging } = self.drive;
+        let target_rotation = turn.inverse().mul(target).mul(turn);
+        let target_velocity = turn.inverse_rotate(vector_to_kernel(self.target_velocity));
+        let (twisting, swinging) = match self.drive {
+            SphericalDrive::Slerp(drive) => {
+                let motor = orientation_motor(drive.motor_model, drive.max_torque);
+                def.orientation =
+                    motor.map(|motor| OrientationMotor { target_rotation, target_velocity, ..motor });
+                return;
+            }
+            SphericalDrive::TwistAndSwing { twist, swing } => (twist, swing),
+        };
+        let [twist, y, z] = twist_and_swing(target_rotation);
         for (coordinate, drive, position, velocity) in [
-            (TWIST, twisting, twist, velocity.x),
-            (SWING_Y, swinging, y, velocity.y),
-            (SWING_Z, swinging, z, velocity.z),
+            (TWIST, twisting, twist, target_velocity.x),
+            (SWING_Y, swinging, y, target_velocity.y),
+            (SWING_Z, swinging, z, target_velocity.z),
         ] {
             let motor = AngularMotor::new(drive.motor_model)
                 .with_max_torque(drive.max_torque)

@@ -1,0 +1,109 @@
+//! [`GearJoint`]: wheels that mesh.
+
+use bevy_ecs::{
+    component::Component,
+    entity::{Entity, EntityMapper, MapEntities},
+    reflect::{ReflectComponent, ReflectMapEntities},
+};
+use bevy_reflect::Reflect;
+#[cfg(feature = "serialize")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
+use kernel::solver::JointDef;
+
+use super::super::{
+    coupling::{CoupledEnd, Coupling, Sum},
+    frame::JointFrame,
+    kind::{EntityConstraint, JointKind, between_two_bodies},
+};
+use crate::math::{Scalar, Vector};
+
+/// Lets two wheels turn together, as if they meshed: the angle of the first and `ratio` times that of the second keep their sum.
+/// Beyond Avian.
+///
+/// It ties turns only: each wheel needs a hinge of its own, such as a [`RevoluteJoint`](super::RevoluteJoint) to a post, about an axis that is fixed in the world.
+/// Turns are counted, and nothing slips. Where the wheels are as the joint begins to act is where they mesh.
+///
+/// ```
+/// # use avian::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// fn mesh(mut commands: Commands, small: Entity, large: Entity) {
+///     // The small wheel makes three turns for one of the large, the other way round.
+///     commands.spawn((GearJoint::new(small, large).with_radii(0.5, 1.5), JointCollisionDisabled));
+/// }
+/// ```
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(type_path = false, Debug, Component, MapEntities, PartialEq)]
+#[component(map_entities)]
+pub struct GearJoint {
+    /// The first wheel.
+    pub body1: Entity,
+    /// The second wheel.
+    pub body2: Entity,
+    /// The axis in the world about which the first wheel turns. Its length does not matter.
+    pub axis1: Vector,
+    /// The axis in the world about which the second wheel turns. Its length does not matter.
+    pub axis2: Vector,
+    /// The weight of the second angle. Positive for wheels that turn in opposite ways, negative for a chain or a wheel inside of a
+    /// ring. Not 0.
+    pub ratio: Scalar,
+    /// How far the teeth give way, in rad/(N·m) at the first wheel. 0 for not at all.
+    pub compliance: Scalar,
+}
+
+crate::type_path::type_path!(GearJoint, "dynamics::joints::gear");
+
+impl GearJoint {
+    /// Two wheels of one size that turn about z axes.
+    pub const fn new(body1: Entity, body2: Entity) -> Self {
+        Self { body1, body2, axis1: Vector::Z, axis2: Vector::Z, ratio: 1.0, compliance: 0.0 }
+    }
+
+    /// Sets the axes in the world about which the wheels turn, right-handed.
+    pub const fn with_axes(mut self, axis1: Vector, axis2: Vector) -> Self {
+        self.axis1 = axis1;
+        self.axis2 = axis2;
+        self
+    }
+
+    /// Sets the weight of the second angle.
+    pub const fn with_ratio(mut self, ratio: Scalar) -> Self {
+        self.ratio = ratio;
+        self
+    }
+
+    /// Sets the ratio by the radii of two wheels that mesh outside, in metres: the second over the first.
+    pub const fn with_radii(self, radius1: Scalar, radius2: Scalar) -> Self {
+        self.with_ratio(radius2 / radius1)
+    }
+
+    /// Sets how far the teeth give way, in rad/(N·m) at the first wheel.
+    pub const fn with_compliance(mut self, compliance: Scalar) -> Self {
+        self.compliance = compliance;
+        self
+    }
+}
+
+between_two_bodies!(GearJoint);
+
+impl JointKind for GearJoint {
+    fn frames(&self) -> [JointFrame; 2] {
+        [JointFrame::IDENTITY; 2]
+    }
+
+    fn set_frames(&mut self, _: [JointFrame; 2]) {}
+
+    fn set_axes(&self, def: JointDef) -> JointDef {
+        def
+    }
+
+    fn coupling(&self) -> Option<Coupling> {
+        Some(Coupling {
+            ends: [CoupledEnd::Turn(self.axis1), CoupledEnd::Turn(self.axis2)],
+            ratio: self.ratio,
+            sum: Sum::Kept,
+            compliance: self.compliance,
+        })
+    }
+}
