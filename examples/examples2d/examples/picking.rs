@@ -1,5 +1,5 @@
-//! Boxes to drag, seen in perspective. Press on a box and move the pointer: the box follows, and pushes the others. The
-//! camera looks at the plane from the side.
+//! Boxes to drag by a mouse joint, seen in perspective. Press on a box and move the pointer: the box follows, and pushes the others.
+//! The camera looks at the plane from the side.
 //!
 //! `cargo run --release -p examples2d --example picking`
 
@@ -20,45 +20,41 @@ fn main() {
         .run();
 }
 
-/// A body that follows the pointer, held where it was pressed.
+/// A joint that pulls a body to the pointer.
 #[derive(Component)]
 struct Held {
     camera: Entity,
-    /// The point in the frame of the body.
-    at: Vec2,
 }
 
-fn grab(press: On<Pointer<Press>>, bodies: Query<(&RigidBody, &GlobalTransform)>, mut commands: Commands) {
-    if let Ok((RigidBody::Dynamic, transform)) = bodies.get(press.entity)
+fn grab(press: On<Pointer<Press>>, bodies: Query<&RigidBody>, mut commands: Commands) {
+    if let Ok(RigidBody::Dynamic) = bodies.get(press.entity)
         && let Some(point) = press.hit.position
     {
-        let at = transform.affine().inverse().transform_point3(point).truncate();
-        commands.entity(press.entity).insert(Held { camera: press.hit.camera, at });
+        // By the point that was pressed, with 50 times the weight of a box at most.
+        let joint = MouseJoint::new(press.entity).with_anchor(point.truncate()).with_max_force(500.0);
+        commands.spawn((joint, Transform::from_translation(point), Held { camera: press.hit.camera }));
     }
 }
 
 fn let_go(_: On<Pointer<Release>>, held: Query<Entity, With<Held>>, mut commands: Commands) {
-    for body in &held {
-        commands.entity(body).remove::<Held>();
+    for joint in &held {
+        commands.entity(joint).despawn();
     }
 }
 
-/// A damped spring between the body and the pointer: it closes a tenth of the gap in each tick.
+/// Moves the joint's entity, to which it pulls.
 fn follow(
     window: Single<&Window>,
     cameras: Query<(&Camera, &GlobalTransform)>,
-    mut held: Query<(&Held, Forces)>,
-    time: Res<Time>,
+    mut held: Query<(&Held, &mut Transform)>,
 ) {
     let Some(cursor) = window.cursor_position() else { return };
-    for (held, mut body) in &mut held {
+    for (held, mut target) in &mut held {
         let Ok((camera, pose)) = cameras.get(held.camera) else { continue };
         let Ok(ray) = camera.viewport_to_world(pose, cursor) else { continue };
-        let Some(distance) = ray.intersect_plane(Vec3::ZERO, InfinitePlane3d::new(Vec3::Z)) else { continue };
-        let at = body.position().0 + *body.rotation() * held.at;
-        let wanted = (ray.get_point(distance).truncate() - at) * (0.1 / time.delta_secs());
-        let change = wanted - body.velocity_at_point(at);
-        body.apply_linear_impulse_at_point(change * 0.3, at);
+        if let Some(distance) = ray.intersect_plane(Vec3::ZERO, InfinitePlane3d::new(Vec3::Z)) {
+            target.translation = ray.get_point(distance);
+        }
     }
 }
 
