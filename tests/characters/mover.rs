@@ -4,6 +4,7 @@ use super::{SKIN, app, block, fixed, floor, spin, step, toward, turned};
 use avian::{math::*, prelude::*};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
+use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use core::time::Duration;
 
 /// Half the height of the shape, with the height of rest.
@@ -303,4 +304,41 @@ fn a_mover_and_a_walker_meet() {
     let between = hall.get::<Position>(walker).0.x - hall.position().x;
     assert!(between > 0.75 && between < 0.9, "{between} m between them");
     assert!(path.iter().all(|(p, _)| p.y.is_finite() && p.y < HOVERING + 0.1));
+}
+
+/// At the ticks of a game, between walls, for long enough to fall asleep.
+#[test]
+fn it_walks_to_and_fro_in_the_fixed_schedule() {
+    for float_height in [0.0, 0.3] {
+        let mut app = App::new();
+        app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, TimePlugin, PhysicsPlugins::default()));
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 60.0)));
+        app.finish();
+        app.cleanup();
+        floor(&mut app);
+        for side in [-1.0, 1.0] {
+            let wall = block(Vector::ONE * 4.0);
+            fixed(&mut app, wall, Vector::X * (side * 8.0) + Vector::Y * 2.0, Rotation::IDENTITY);
+        }
+        let mover = DynamicMover { float_height, ..Default::default() };
+        let at = Position(Vector::Y * rest(float_height));
+        let player = app.world_mut().spawn((mover, Collider::capsule(0.4, 0.7), Mass(70.0), at)).id();
+        let turn_round = |mut walkers: Query<(&Position, &mut CharacterInput)>, mut way: Local<Scalar>| {
+            for (position, mut input) in &mut walkers {
+                if position.x.abs() > 4.0 || *way == 0.0 {
+                    *way = if position.x > 0.0 { -1.0 } else { 1.0 };
+                }
+                input.velocity = Vector::X * (3.0 * *way);
+            }
+        };
+        app.add_systems(FixedUpdate, turn_round);
+        let (mut before, mut stood) = (0.0, 0);
+        for frame in 0..600 {
+            app.update();
+            let x = app.world().get::<Position>(player).expect("a mover").x;
+            stood = if x == before { stood + 1 } else { 0 };
+            assert!(stood < 3 || frame < 4, "height {float_height}, frame {frame}: it stands at {x}");
+            before = x;
+        }
+    }
 }

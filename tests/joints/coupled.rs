@@ -153,6 +153,8 @@ fn couplings_that_are_no_numbers_have_no_effect() {
 fn the_error_of_a_joint_is_how_far_it_gives_way() {
     let mut rig = Rig::new();
     let (post, body) = (rig.post(0.0, 0.0), rig.rod(0.0, -1.0));
+    // It would fall asleep where it turns.
+    rig.insert(body, SleepingDisabled);
     let compliance = 0.001;
     let rope = DistanceJoint::rope(post, body, 1.0).with_compliance(compliance);
     let rope = rig.spawn((rope, JointDamping { linear: 2.0, angular: 0.0 }, JointError::default()));
@@ -177,6 +179,7 @@ fn the_error_of_a_joint_is_how_far_it_gives_way() {
 fn a_motor_stretches_the_spring_on_its_axis() {
     let mut rig = Rig::weightless();
     let (post, body) = (rig.post(0.0, 0.0), rig.rod(0.0, 0.0));
+    rig.insert(body, SleepingDisabled);
     let spring = MotorModel::ForceBased { stiffness: 50.0, damping: 20.0 };
     let motor = LinearMotor::new(TOWARDS).with_target_velocity(10.0).with_max_force(10.0);
     let axis = JointAxis::limited(-1.0, 1.0).with_spring(0.1, spring).with_motor(motor);
