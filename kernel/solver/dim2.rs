@@ -101,10 +101,9 @@ impl BodyRow {
         v: Vector<N>,
         w: Angular<N>,
     ) {
+        let values = [v.x, v.y, w.z, N::ZERO];
         // SAFETY: by the contract.
-        N::scatter([v.x, v.y, w.z, N::ZERO], ids, |id, quad| unsafe {
-            rows.put(id, |row| row.velocity = quad);
-        });
+        unsafe { rows.scatter(values, ids, rows.are_writable(ids), |row, quad| row.velocity = quad) };
     }
     /// Adds to the velocities of one body for each lane, where the body may be written. A body may be in several lanes.
     ///
@@ -128,8 +127,9 @@ impl BodyRow {
     /// Until it returns, no other thread reads or writes those of these rows that may be written.
     #[inline(always)]
     pub(super) unsafe fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
+        let values = [p.x, p.y, q.cos, q.sin];
         // SAFETY: by the contract.
-        N::scatter([p.x, p.y, q.cos, q.sin], ids, |id, quad| unsafe { rows.put(id, |row| row.delta = quad) });
+        unsafe { rows.scatter(values, ids, rows.are_writable(ids), |row, quad| row.delta = quad) };
     }
 }
 

@@ -119,14 +119,12 @@ impl BodyRow {
         v: Vector<N>,
         w: Angular<N>,
     ) {
+        let all = rows.are_writable(ids);
         // SAFETY: by the contract.
-        N::scatter([v.x, v.y, v.z, N::ZERO], ids, |id, quad| unsafe {
-            rows.put(id, |row| row.linear = quad);
-        });
-        // SAFETY: by the contract.
-        N::scatter([w.x, w.y, w.z, N::ZERO], ids, |id, quad| unsafe {
-            rows.put(id, |row| row.angular = quad);
-        });
+        unsafe {
+            rows.scatter([v.x, v.y, v.z, N::ZERO], ids, all, |row, quad| row.linear = quad);
+            rows.scatter([w.x, w.y, w.z, N::ZERO], ids, all, |row, quad| row.angular = quad);
+        }
     }
     /// Adds to the velocities of one body for each lane, where the body may be written. A body may be in several lanes.
     ///
@@ -154,12 +152,12 @@ impl BodyRow {
     /// Until it returns, no other thread reads or writes those of these rows that may be written.
     #[inline(always)]
     pub(super) unsafe fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
+        let all = rows.are_writable(ids);
         // SAFETY: by the contract.
-        N::scatter([p.x, p.y, p.z, N::ZERO], ids, |id, quad| unsafe {
-            rows.put(id, |row| row.position = quad);
-        });
-        // SAFETY: by the contract.
-        N::scatter([q.x, q.y, q.z, q.w], ids, |id, quad| unsafe { rows.put(id, |row| row.rotation = quad) });
+        unsafe {
+            rows.scatter([p.x, p.y, p.z, N::ZERO], ids, all, |row, quad| row.position = quad);
+            rows.scatter([q.x, q.y, q.z, q.w], ids, all, |row, quad| row.rotation = quad);
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Body rows, shared by constraint rows of different bodies.
 #![expect(unsafe_code, reason = "rows of disjoint bodies are written through shared views")]
 
+use crate::math::{Ids, Lane, Quad};
 use core::cell::UnsafeCell;
 
 /// Body rows, shared by the batches of one colour.
@@ -51,6 +52,34 @@ impl<'a, T> RowView<'a, T> {
         if id >= self.first_writable {
             // SAFETY: by the contract.
             change(unsafe { &mut *self.cells[id as usize].get() });
+        }
+    }
+
+    /// Whether the rows of all lanes may be written.
+    #[inline(always)]
+    pub(super) fn are_writable(&self, ids: &impl Ids) -> bool {
+        ids.lanes().iter().fold(true, |all, id| all & (*id >= self.first_writable))
+    }
+
+    /// Changes the rows of all lanes, each by its quad of `values`. `are_writable` tells of these lanes that
+    /// [all may be written](Self::are_writable); else those are changed that may be.
+    ///
+    /// # Safety
+    /// As [`put`](Self::put).
+    #[inline(always)]
+    pub(super) unsafe fn scatter<N: Lane>(
+        &self,
+        values: [N; 4],
+        ids: &N::Ids,
+        are_writable: bool,
+        set: impl Fn(&mut T, Quad),
+    ) {
+        if are_writable {
+            // SAFETY: by the contract.
+            N::scatter(values, ids, |id, quad| unsafe { set(&mut *self.cells[id as usize].get(), quad) });
+        } else {
+            // SAFETY: by the contract.
+            N::scatter(values, ids, |id, quad| unsafe { self.put(id, |row| set(row, quad)) });
         }
     }
 }
