@@ -11,6 +11,8 @@ pub trait InvMass<N: Lane>: Copy + Send + Sync {
     fn apply(self, impulse: Vector<N>) -> Vector<N>;
     /// The inverse mass along each world axis.
     fn diagonal(self) -> Vector<N>;
+    /// The inverse mass along a unit vector.
+    fn along(self, n: Vector<N>) -> N;
     /// Whether no impulse moves the body.
     fn is_zero(self) -> N::Mask;
     /// From the inverse mass, and 1 along free, 0 along locked axes.
@@ -26,6 +28,10 @@ impl<N: Lane> InvMass<N> for N {
     #[inline(always)]
     fn diagonal(self) -> Vector<N> {
         Vector::splat(Vector::ONE) * self
+    }
+    #[inline(always)]
+    fn along(self, _: Vector<N>) -> N {
+        self
     }
     #[inline(always)]
     fn is_zero(self) -> N::Mask {
@@ -46,6 +52,10 @@ impl<N: Lane> InvMass<N> for Vector<N> {
     #[inline(always)]
     fn diagonal(self) -> Vector<N> {
         self
+    }
+    #[inline(always)]
+    fn along(self, n: Vector<N>) -> N {
+        n.dot(n.scale(self))
     }
     #[inline(always)]
     fn is_zero(self) -> N::Mask {

@@ -278,6 +278,10 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let n = self.normal;
         let (inv_h, slowest) = (N::splat(params.inv_h), -self.push_speed);
         let shift = (pb - pa).dot(n);
+        // All points push along one normal, so they change one relative velocity of the centres of mass.
+        let mut approach = (pair.v[1] - pair.v[0]).dot(n);
+        let yielding = self.inv_mass[0].along(n) + self.inv_mass[1].along(n);
+        let mut pushed = N::ZERO;
         for k in 0..P {
             // The relax pass begins with the other half of four points, so that over both passes neither half comes
             // first, and a box that lands flat is hardly tilted. The first point differs from contact to contact (see
@@ -297,7 +301,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
                 ),
                 None => (N::select(apart, s * inv_h, N::ZERO), N::ONE, N::ZERO),
             };
-            let vn = pair.along(n, [ma, mb]);
+            let vn = approach + pair.w[1].dot(mb) - pair.w[0].dot(ma);
             let change = point.mass * (mass_scale * vn + bias) + impulse_scale * point.impulse;
             let mut new = (point.impulse - change).max(N::ZERO);
             if let Some(watched) = watched {
@@ -307,8 +311,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             }
             let delta = new - point.impulse;
             self.points[i].impulse = new;
-            self.push(pair, n * delta, [ma * delta, mb * delta]);
+            approach += yielding * delta;
+            pushed += delta;
+            pair.w[0] -= self.inv_inertia[0].apply(ma * delta);
+            pair.w[1] += self.inv_inertia[1].apply(mb * delta);
         }
+        pair.v[0] -= self.inv_mass[0].apply(n * pushed);
+        pair.v[1] += self.inv_mass[1].apply(n * pushed);
     }
 
     /// Computes the effective mass of friction.
