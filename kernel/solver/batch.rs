@@ -22,6 +22,8 @@ pub(super) enum Pass {
     UndoSplit,
     /// Solve without bias.
     Relax,
+    /// Measure the gaps of contacts where blows displaced bodies.
+    Measure,
 }
 
 /// A set of passes, as bits, and whether the rows may have an overloaded body, or a point that may be struck.

@@ -232,6 +232,7 @@ impl<N: Entry, M: InvMass<N>, const P: usize> Batch for RowsView<'_, N, M, P> {
                 Pass::UndoSplit => self.enter::<UndoSplit>(rows, passes, sweep),
                 Pass::Relax if passes.are_watched() => self.enter::<RelaxWatched>(rows, passes, sweep),
                 Pass::Relax => self.enter::<Relax>(rows, passes, sweep),
+                Pass::Measure => self.enter::<Measure>(rows, passes, sweep),
             }
         }
     }
@@ -343,6 +344,18 @@ impl ContactPass for Solve {
         for row in all.block.rows.iter_mut() {
             // SAFETY: by the contract.
             unsafe { row.solve(&all.bodies, &all.params) };
+        }
+    }
+}
+
+struct Measure;
+
+impl ContactPass for Measure {
+    #[inline(always)]
+    unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) {
+        for row in all.block.rows.iter_mut() {
+            // SAFETY: by the contract.
+            unsafe { row.measure(&all.bodies) };
         }
     }
 }

@@ -60,7 +60,7 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
             impact.watched = N::select(N::ZERO.lt(split.deep), N::splat(-1.0), impact.watched);
         }
     }
-    let mut passes = Passes::BASIC;
+    let mut passes = Passes::BASIC.with(Pass::Measure);
     if watched {
         passes = passes.watched();
     }
@@ -250,6 +250,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             let point = &mut row.points[i];
             point.anchor.set(lane, p.anchor);
             point.separation.set(lane, p.separation);
+            point.gap.set(lane, p.separation);
             point.impulse.set(lane, p.impulse * params.warm_start);
             // 1 marks the point as present until its mass is computed.
             point.mass.set(lane, 1.0);

@@ -98,7 +98,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
                 anchor: point.anchor.get(i),
                 separation: point.separation.get(i),
                 mass: point.mass.get(i),
-                impulse: 0.0,
+                ..PointRow::default()
             })
         });
         let mut row = ContactRow {

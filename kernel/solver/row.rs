@@ -14,6 +14,8 @@ pub struct PointRow<N> {
     pub anchor: Vector<N>,
     /// Separation at the start of the step, in metres.
     pub separation: N,
+    /// Separation after the last substep, in metres.
+    pub gap: N,
     /// The effective mass along the normal, kg.
     pub mass: N,
     /// The accumulated normal impulse, N·s, ≥ 0.
@@ -150,7 +152,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         unsafe { pair.store(rows, &self.ids) };
     }
 
-    /// The solve pass: non-penetration with soft bias.
+    /// The solve pass: non-penetration with soft bias. Gaps are those of the last relax pass: nothing has moved since, and
+    /// where blows did, they were [measured](Self::measure) again.
     ///
     /// # Safety
     /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
@@ -160,8 +163,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let mut pair = unsafe { Pair::load(rows, &self.ids) };
         let immovable = N::or(self.inv_mass[0].is_zero(), self.inv_mass[1].is_zero());
         let soft = SoftLanes::select(immovable, &params.stiff, &params.soft);
-        // SAFETY: by the contract.
-        unsafe { self.solve_normals(rows, &mut pair, params, Some(soft), None) };
+        self.solve_normals(&mut pair, params, Some(soft), None);
         // SAFETY: by the contract.
         unsafe { pair.store(rows, &self.ids) };
     }
@@ -194,7 +196,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         self.solve_friction(&mut pair, carried, load);
         self.resist_rolling(&mut pair, load, params);
         // SAFETY: by the contract.
-        unsafe { self.solve_normals(rows, &mut pair, params, None, watched) };
+        unsafe { self.measure(rows) };
+        self.solve_normals(&mut pair, params, None, watched);
         self.owed = self.pressure() - pressure;
         // SAFETY: by the contract.
         unsafe { pair.store(rows, &self.ids) };
@@ -257,27 +260,37 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
     }
 
-    /// One normal row per point: λ' = max(λ − m (k_m (v_n + b)) − k_i λ, 0). b is s/h for a separated point (it may
-    /// close exactly that far), the soft bias for an overlapping point if `soft` is given, else 0.
+    /// Computes the gaps.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
+    /// Until it returns, no other thread writes the bodies of the row.
     #[inline(always)]
-    unsafe fn solve_normals(
-        &mut self,
-        rows: &RowView<BodyRow>,
-        pair: &mut Pair<N>,
-        params: &SubstepParams,
-        soft: Option<SoftLanes<N>>,
-        watched: Option<N>,
-    ) {
+    pub(super) unsafe fn measure(&mut self, rows: &RowView<BodyRow>) {
         // SAFETY: by the contract.
         let [(pa, qa), (pb, qb)] = unsafe {
             [BodyRow::gather_delta::<N>(rows, &self.ids[0]), BodyRow::gather_delta::<N>(rows, &self.ids[1])]
         };
         let n = self.normal;
-        let (inv_h, slowest) = (N::splat(params.inv_h), -self.push_speed);
         let shift = (pb - pa).dot(n);
+        for point in &mut self.points {
+            let (ra, rb) = (point.anchor, point.anchor - self.offset);
+            let moved = shift + qb.shift_along(rb, rb.cross(n), n) - qa.shift_along(ra, ra.cross(n), n);
+            point.gap = point.separation + moved;
+        }
+    }
+
+    /// One normal row per point: λ' = max(λ − m (k_m (v_n + b)) − k_i λ, 0). b is s/h for a separated point (it may
+    /// close exactly that far), the soft bias for an overlapping point if `soft` is given, else 0.
+    #[inline(always)]
+    fn solve_normals(
+        &mut self,
+        pair: &mut Pair<N>,
+        params: &SubstepParams,
+        soft: Option<SoftLanes<N>>,
+        watched: Option<N>,
+    ) {
+        let n = self.normal;
+        let (inv_h, slowest) = (N::splat(params.inv_h), -self.push_speed);
         // All points push along one normal, so they change one relative velocity of the centres of mass.
         let mut approach = (pair.v[1] - pair.v[0]).dot(n);
         let yielding = self.inv_mass[0].along(n) + self.inv_mass[1].along(n);
@@ -288,10 +301,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
             // the narrow phase).
             let i = if soft.is_some() || P < 4 { k } else { k ^ 2 };
             let point = self.points[i];
-            let (ra, rb) = (point.anchor, point.anchor - self.offset);
-            let (ma, mb) = (ra.cross(n), rb.cross(n));
-            let moved = shift + qb.shift_along(rb, mb, n) - qa.shift_along(ra, ma, n);
-            let s = point.separation + moved;
+            let (ma, mb) = (point.anchor.cross(n), (point.anchor - self.offset).cross(n));
+            let s = point.gap;
             let apart = N::ZERO.lt(s);
             let (bias, mass_scale, impulse_scale) = match soft {
                 Some(k) => (

@@ -197,7 +197,9 @@ impl Solver {
     /// Strikes what closes fast in this substep, then applies the accumulated impulses.
     pub fn warm_start(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         self.bodies.enter_rows(pool);
-        self.strike(params.h, params, pool);
+        if self.strike(params.h, params, pool) {
+            self.sweep(Pass::Measure, params, pool);
+        }
         self.sweep(Pass::WarmStart, params, pool);
         self.bodies.leave_rows(pool);
     }
@@ -241,19 +243,20 @@ impl Solver {
         self.bodies.leave_rows(pool);
     }
 
-    /// Strikes what closes fast and touches within `time` seconds. Joints of trees take part, in turns with contacts.
-    fn strike(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) {
+    /// Strikes what closes fast and touches within `time` seconds. Joints of trees take part, in turns with contacts. Returns whether
+    /// bodies were displaced by it.
+    fn strike(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) -> bool {
         self.blows.elapsed += time;
         let is_watched = self.plan.blocks.iter().any(|block| block.passes.are_watched());
         if !is_watched && self.blows.reached.is_empty() {
-            return;
+            return false;
         }
         self.blows.begin();
         let is_jointed = self.trees.len() > 0;
         if is_jointed {
             self.with_true_turns(pool, |blows, trees, bodies| blows.begin(trees, &bodies));
         }
-        self.strike_contacts(time, params, pool);
+        let any = self.strike_contacts(time, params, pool);
         if is_jointed {
             for _ in 0..JOINT_ROUNDS {
                 let Self { trees, tree_blows, blows, .. } = self;
@@ -268,6 +271,7 @@ impl Solver {
             self.with_true_turns(pool, |blows, trees, bodies| blows.end(trees, &bodies, time));
         }
         self.bodies.follow_blows(&self.blows.reached, params.h);
+        any
     }
 
     /// Calls a function with the trees and bodies, which have their true angular velocities.
@@ -281,13 +285,14 @@ impl Solver {
         self.bodies.enter_rows(pool);
     }
 
-    /// Strikes the contacts that close fast, and those that are reached then, in rounds.
-    fn strike_contacts(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) {
+    /// Strikes the contacts that close fast, and those that are reached then, in rounds. Returns whether there were any.
+    fn strike_contacts(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) -> bool {
         let Self { bodies, joints, customs, rows, plan, layers, blows, bearing, first_dynamic, .. } = self;
         let BodyRows { rows: body_rows, motions, .. } = bodies;
         let bodies_view = RowView::over(body_rows, *first_dynamic);
         let striking =
             Striking { bodies: bodies_view, motions, bearing, params, time, elapsed: blows.elapsed };
+        let mut any = false;
         let mut blocks = core::mem::take(&mut plan.blocks);
         rows.with(joints, customs, |batches| {
             for _ in 0..ROUNDS {
@@ -305,9 +310,11 @@ impl Solver {
                 if !blows.strike(*first_dynamic, &striking, pool) {
                     break;
                 }
+                any = true;
             }
         });
         plan.blocks = blocks;
+        any
     }
 
     /// The blows of the step, in the order of time. A manifold may be struck several times. They are kept until the next step.
@@ -358,7 +365,7 @@ impl Solver {
             plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),
             "bodies have the rows that rows of constraints were built for"
         );
-        if trees.len() > 0 {
+        if trees.len() > 0 && pass != Pass::Measure {
             // Trees follow the turns of bodies exactly.
             bodies.leave_rows(pool);
             trees.run(&Sweep { pass, bodies: bodies.view(*first_dynamic), params }, pool);
