@@ -17,6 +17,15 @@ impl AddAssign for Quad {
     }
 }
 
+impl SubAssign for Quad {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a -= b;
+        }
+    }
+}
+
 /// Proof that the CPU has AVX2. Only [`find`](Self::find) makes one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Avx2(());

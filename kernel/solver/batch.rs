@@ -5,7 +5,7 @@ use super::bearing::Bearing;
 use super::input::{Item, RowInput};
 use super::split::DeepCounts;
 use super::struck::{Striking, Struck};
-use super::{BodyRow, MassRow, RowView, SubstepParams};
+use super::{BodyRow, GainRow, MassRow, RowView, SubstepParams};
 use crate::contact::ManifoldsView;
 use crate::data::BitSet;
 use crate::math::Vector;
@@ -101,6 +101,7 @@ pub(super) struct Seek<'a> {
 pub(super) struct Sweep<'a> {
     pub(super) pass: Pass,
     pub(super) bodies: RowView<'a, BodyRow>,
+    pub(super) gains: RowView<'a, GainRow>,
     pub(super) params: &'a SubstepParams,
 }
 

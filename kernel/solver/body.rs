@@ -1,6 +1,6 @@
 //! The dense body rows of one step, which constraint rows refer to by index.
 
-use super::{BodyRow, MassRow, RowView, fast_turn::FastTurn, gyro::*, input::RowInput, spin::Spin};
+use super::{BodyRow, GainRow, MassRow, RowView, fast_turn::FastTurn, gyro::*, input::RowInput, spin::Spin};
 use crate::data::{BitSet, Parts};
 use crate::graph::{ColorGraph, ConstraintKind, OVERFLOW};
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
@@ -142,7 +142,7 @@ impl<T> OnceEach<T> {
     }
 
     /// Whether a row has an item.
-    fn contains(&self, row: u32) -> bool {
+    pub(super) fn contains(&self, row: u32) -> bool {
         self.rows.contains(row)
     }
 
@@ -150,6 +150,18 @@ impl<T> OnceEach<T> {
     pub(super) fn parts(&mut self) -> Parts<'_, (u32, T)> {
         Parts::of(&mut self.list)
     }
+}
+
+/// What is known of the gains ([`GainRow`]) in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Gains {
+    /// Impulses are applied by rows in each substep.
+    #[default]
+    Unused,
+    /// There was no substep yet.
+    Unknown,
+    /// Those of the last substep.
+    Known,
 }
 
 /// Flags of rows that are filled. Row 0, the dummy, always is.
@@ -184,6 +196,9 @@ pub struct BodyRows {
     pub masses: Vec<MassRow>,
     /// Acceleration and damping.
     pub motions: Vec<Motion>,
+    /// What impulses give each body in a substep.
+    pub(super) gains: Vec<GainRow>,
+    pub(super) gains_known: Gains,
     /// Limits of the bodies that have any.
     pub(super) limits: OnceEach<Limits>,
     /// Bodies with free spin. None in 2D.
@@ -212,6 +227,8 @@ impl BodyRows {
         self.rows.resize(count, BodyRow::REST);
         self.masses.resize(count, MassRow::default());
         self.motions.resize(count, Motion::FREE);
+        self.gains.resize(count, GainRow::default());
+        self.gains_known = Gains::Unused;
         self.limits.clear();
         self.spins.clear();
         self.fast_turns.clear();
@@ -382,9 +399,9 @@ impl BodyRows {
         self.motions[row] = Motion::FREE;
     }
 
-    /// A view that reads all rows and writes those from `first_dynamic` on.
-    pub(super) fn view(&mut self, first_dynamic: u32) -> RowView<'_, BodyRow> {
-        RowView::over(&mut self.rows, first_dynamic)
+    /// Views of rows and gains that read all and write those from `first_dynamic` on.
+    pub(super) fn views(&mut self, first_dynamic: u32) -> (RowView<'_, BodyRow>, RowView<'_, GainRow>) {
+        (RowView::over(&mut self.rows, first_dynamic), RowView::over(&mut self.gains, first_dynamic))
     }
 
     /// A view that writes kinematic rows as well, for integrating positions.

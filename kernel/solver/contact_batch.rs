@@ -7,7 +7,7 @@ use super::contact_fill::{BlockRows, PREFETCH_DISTANCE, fill_rows};
 use super::input::Item;
 use super::layer::{Layer, Sorter};
 use super::struck::{Striking, Struck};
-use super::{BodyRow, ContactRow, ImpactRow, InvMass, RowView, SplitImpulseRow, SubstepParams};
+use super::{BodyRow, ContactRow, GainRow, ImpactRow, InvMass, RowView, SplitImpulseRow, SubstepParams};
 use crate::contact::{Manifold, ManifoldsView};
 use crate::data::Parts;
 use crate::math::{Entry, Ids, Job, Lane, NormalMoment, TangentFrame, Vector};
@@ -208,10 +208,10 @@ impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
     /// # Safety
     /// As [`Batch::run`].
     unsafe fn enter<S: ContactPass>(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) {
-        let Sweep { bodies, params, .. } = *sweep;
+        let Sweep { bodies, gains, params, .. } = *sweep;
         // SAFETY: by the contract.
         unsafe {
-            let rows = Swept { block: self.take(rows), passes, bodies, params: *params };
+            let rows = Swept { block: self.take(rows), passes, bodies, gains, params: *params };
             N::enter(self.proof, RunJob::<S, N, M, P> { rows, pass: PhantomData });
         }
     }
@@ -280,6 +280,7 @@ struct Swept<'a, N: Lane, M, const P: usize> {
     block: BlockRows<'a, N, M, P>,
     passes: Passes,
     bodies: RowView<'a, BodyRow>,
+    gains: RowView<'a, GainRow>,
     params: SubstepParams,
 }
 
@@ -379,7 +380,7 @@ impl ContactPass for Relax {
     unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) {
         for row in all.block.rows.iter_mut() {
             // SAFETY: by the contract.
-            unsafe { row.relax(&all.bodies, &all.params, None) };
+            unsafe { row.relax(&all.bodies, &all.gains, &all.params, None) };
         }
         for (row, sum) in all.block.rows.iter().zip(all.block.sums) {
             row.sum_impulses(sum);
@@ -395,7 +396,7 @@ impl ContactPass for RelaxWatched {
     unsafe fn over<N: Lane, M: InvMass<N>, const P: usize>(all: Swept<N, M, P>) {
         for (row, impact) in all.block.rows.iter_mut().zip(&*all.block.impacts) {
             // SAFETY: by the contract.
-            unsafe { row.relax(&all.bodies, &all.params, Some(impact.watched)) };
+            unsafe { row.relax(&all.bodies, &all.gains, &all.params, Some(impact.watched)) };
         }
         for (row, sum) in all.block.rows.iter().zip(all.block.sums) {
             row.sum_impulses(sum);

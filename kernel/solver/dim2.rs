@@ -133,6 +133,50 @@ impl BodyRow {
     }
 }
 
+/// The velocity of a body before the impulses of a substep, and after them what they gave it. 16 bytes.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(16))]
+pub(super) struct GainRow {
+    /// v.x, v.y, ω, unused.
+    velocity: Quad,
+}
+
+impl GainRow {
+    /// Takes the velocity of a body. If `adds`, the body then gains what this was.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, row: &mut BodyRow, adds: bool) {
+        let before = row.velocity;
+        if adds {
+            row.velocity += self.velocity;
+        }
+        self.velocity = before;
+    }
+    /// Becomes what a body gained.
+    #[inline(always)]
+    pub(super) fn end(&mut self, row: &BodyRow) {
+        let mut now = row.velocity;
+        now -= self.velocity;
+        self.velocity = now;
+    }
+    /// Adds a velocity.
+    pub(super) fn add(&mut self, linear: Vector, angular: Angular) {
+        self.velocity += Quad([linear.x, linear.y, angular.z, 0.0]);
+    }
+    /// Adds to the angular velocity of one body for each lane, where the body may be written and the change is not 0.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    #[inline(always)]
+    pub(super) unsafe fn add_angular<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, w: Angular<N>) {
+        // SAFETY: by the contract.
+        N::scatter([N::ZERO, N::ZERO, w.z, N::ZERO], ids, |id, quad| unsafe {
+            if quad != Quad::default() {
+                rows.put(id, |row| row.velocity += quad);
+            }
+        });
+    }
+}
+
 impl MassRow {
     /// Inverse mass in 1/kg and inverse inertia in world axes. Zeros make the body immovable.
     pub fn new(inv_mass: f32, inv_inertia: InvInertia) -> Self {

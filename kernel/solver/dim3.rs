@@ -161,6 +161,55 @@ impl BodyRow {
     }
 }
 
+/// The velocity of a body before the impulses of a substep, and after them what they gave it. 32 bytes.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(32))]
+pub(super) struct GainRow {
+    /// v, unused.
+    linear: Quad,
+    /// ω, unused.
+    angular: Quad,
+}
+
+impl GainRow {
+    /// Takes the velocity of a body. If `adds`, the body then gains what this was.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, row: &mut BodyRow, adds: bool) {
+        let (linear, angular) = (row.linear, row.angular);
+        if adds {
+            row.linear += self.linear;
+            row.angular += self.angular;
+        }
+        *self = Self { linear, angular };
+    }
+    /// Becomes what a body gained.
+    #[inline(always)]
+    pub(super) fn end(&mut self, row: &BodyRow) {
+        let (mut linear, mut angular) = (row.linear, row.angular);
+        linear -= self.linear;
+        angular -= self.angular;
+        *self = Self { linear, angular };
+    }
+    /// Adds a velocity.
+    pub(super) fn add(&mut self, v: Vector, w: Angular) {
+        self.linear += Quad([v.x, v.y, v.z, 0.0]);
+        self.angular += Quad([w.x, w.y, w.z, 0.0]);
+    }
+    /// Adds to the angular velocity of one body for each lane, where the body may be written and the change is not 0.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    #[inline(always)]
+    pub(super) unsafe fn add_angular<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, w: Angular<N>) {
+        // SAFETY: by the contract.
+        N::scatter([w.x, w.y, w.z, N::ZERO], ids, |id, quad| unsafe {
+            if quad != Quad::default() {
+                rows.put(id, |row| row.angular += quad);
+            }
+        });
+    }
+}
+
 impl MassRow {
     /// Inverse mass in 1/kg and inverse inertia in world axes. Zeros make the body immovable.
     pub fn new(inv_mass: f32, i: InvInertia) -> Self {

@@ -1,10 +1,10 @@
 //! The friction of a contact row: central friction with its limit, torsional friction, and rolling resistance.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::pair::Pair;
+use super::pair::{Pair, lanes_of_body};
 use super::resistance::ROLL_FRICTION;
 use super::row::ContactRow;
-use super::{BodyRow, InvMass, RowView, SubstepParams, about, resist_rolling};
+use super::{BodyRow, GainRow, InvMass, RowView, SubstepParams, about, resist_rolling};
 use crate::math::{DIM, Lane, TangentFrame, Vector, max};
 
 impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
@@ -62,14 +62,32 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         self.twist.solve(n, spin, self.inv_inertia, &mut pair.w);
     }
 
-    /// The rolling resistance of round cores that move slowly.
+    /// The rolling resistance of round cores that move slowly. It is not accumulated, so `gains` leave it out.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread reads or writes those gains of the row's bodies that may be written.
     #[inline(always)]
-    pub(super) fn resist_rolling(&self, pair: &mut Pair<N>, load: N, params: &SubstepParams) {
+    pub(super) unsafe fn resist_rolling(
+        &self,
+        pair: &mut Pair<N>,
+        gains: &RowView<GainRow>,
+        load: N,
+        params: &SubstepParams,
+    ) {
         // Contacts with more points bear on a face, which does not roll.
         if P < DIM && params.roll_speed > 0.0 {
             let scale = self.rolling_arm() * N::splat(1.0 / max(params.roll_speed, 1.0e-9));
             let limit = self.friction.min(N::splat(ROLL_FRICTION)) * load * self.roll_lever;
+            let before = pair.w;
             resist_rolling(self.normal, scale, limit, self.inv_inertia, &mut pair.w);
+            for side in 0..2 {
+                let change = pair.w[side] - before[side];
+                if N::any(N::ZERO.lt(change.length_squared())) {
+                    let share = if N::SHARES { N::ONE / lanes_of_body(&self.ids, side) } else { N::ONE };
+                    // SAFETY: by the contract.
+                    unsafe { GainRow::add_angular::<N>(gains, &self.ids[side], change * share) };
+                }
+            }
         }
     }
 }

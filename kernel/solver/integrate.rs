@@ -116,6 +116,7 @@ impl BodyRows {
     /// same rotation as their arms. If contacts came after a step of the gyroscopic torque, the axis of a fast spinner
     /// would have moved, and contacts would throw it back.
     pub(super) fn integrate_positions(&mut self, h: f32, pool: &ThreadPool) {
+        self.add_to_gains(-1.0, pool);
         self.hold_back(pool);
         self.spins.begin_turns(&mut self.rows, pool, h);
         self.hold_back(pool);
@@ -136,6 +137,7 @@ impl BodyRows {
         });
         self.spins.end_turns(&mut self.rows, pool);
         self.hold_back(pool);
+        self.add_to_gains(1.0, pool);
     }
 
     /// Before a sweep: bodies that turn far have the angular velocity that rows see.

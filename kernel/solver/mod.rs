@@ -28,6 +28,7 @@ mod fast_turn;
 mod fill;
 mod finish;
 mod friction;
+mod gain;
 mod group;
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]
 #[cfg_attr(feature = "3d", path = "gyro3.rs")]
@@ -57,7 +58,7 @@ pub use blow::ManifoldBlow;
 pub use body::{BodyRows, Limits, Motion, Thrust};
 pub use custom::{CustomBody, CustomConstraint, CustomError, CustomTable};
 pub use dim::{BodyRow, MassRow, Twist};
-use dim::{about, resist_rolling};
+use dim::{GainRow, about, resist_rolling};
 pub use fill::{BodyFiller, FilledBody, SpecialBodies};
 pub use impact::ImpactRow;
 pub use input::RowInput;

@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::pair::{Pair, SoftLanes};
-use super::{BodyRow, InvMass, RowView, SubstepParams, Twist};
+use super::{BodyRow, GainRow, InvMass, RowView, SubstepParams, Twist};
 use crate::math::{Angular, DIM, Ids, InvInertia, Lane, Tangent, TangentFrame, TangentMass, Vector};
 
 /// One point of a manifold.
@@ -184,6 +184,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     pub(super) unsafe fn relax(
         &mut self,
         rows: &RowView<BodyRow>,
+        gains: &RowView<GainRow>,
         params: &SubstepParams,
         watched: Option<N>,
     ) {
@@ -194,7 +195,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let pressure = self.pressure();
         let load = (pressure + self.owed).max(N::ZERO);
         self.solve_friction(&mut pair, carried, load);
-        self.resist_rolling(&mut pair, load, params);
+        // SAFETY: by the contract.
+        unsafe { self.resist_rolling(&mut pair, gains, load, params) };
         // SAFETY: by the contract.
         unsafe { self.measure(rows) };
         self.solve_normals(&mut pair, params, None, watched);

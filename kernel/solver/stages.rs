@@ -5,6 +5,7 @@ use super::batch::{Filling, Pass, Seek, Sweep};
 use super::batches::{AllRows, Layers, SortedTables};
 use super::bearing::Bearing;
 use super::blow::{Blows, ManifoldBlow, ROUNDS};
+use super::body::Gains;
 use super::contact_batch::Room;
 use super::custom::CustomTable;
 use super::exclusive;
@@ -15,7 +16,7 @@ use super::plan::{Block, Plan, Stage};
 use super::shares::Shares;
 use super::split::DeepCounts;
 use super::struck::Striking;
-use super::{BodyRow, BodyRows, RowView, SubstepParams};
+use super::{BodyRow, BodyRows, GainRow, RowView, SubstepParams};
 use crate::contact::ContactTable;
 use crate::data::Parts;
 use crate::graph::ColorGraph;
@@ -62,6 +63,8 @@ pub struct Solver {
     blows: Blows,
     /// The first body row that constraint rows may write, kept from when they were built.
     first_dynamic: u32,
+    /// Whether the embedder changed bodies since gaps were measured.
+    gaps_are_old: bool,
 }
 
 impl Solver {
@@ -82,6 +85,7 @@ impl Solver {
     pub fn begin_step(&mut self, kinematic: usize, dynamic: usize) {
         self.plan.begin(0, 1, 0);
         self.trees.clear();
+        self.gaps_are_old = false;
         self.bodies.reset(kinematic, dynamic);
     }
 
@@ -134,6 +138,11 @@ impl Solver {
             // Rows of bodies with a mass for each axis are others.
             self.plan_rows(input, colors, pool);
             self.fill_rows(input, params, pool);
+        }
+        let has_joints = self.trees.len() > 0
+            || self.plan.item_counts().iter().sum::<u32>() as usize > self.manifold_count();
+        if !has_joints && !self.deep.any() {
+            self.bodies.gains_known = Gains::Unknown;
         }
     }
 
@@ -197,16 +206,22 @@ impl Solver {
     /// Strikes what closes fast in this substep, then applies the accumulated impulses.
     pub fn warm_start(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         self.bodies.enter_rows(pool);
-        if self.strike(params.h, params, pool) {
+        let was_struck = self.strike(params.h, params, pool);
+        if core::mem::take(&mut self.gaps_are_old) || was_struck {
             self.sweep(Pass::Measure, params, pool);
         }
-        self.sweep(Pass::WarmStart, params, pool);
+        if !self.bodies.begin_gains(pool) {
+            self.sweep(Pass::WarmStart, params, pool);
+        }
         self.bodies.leave_rows(pool);
     }
 
     /// Solves constraints with soft bias.
     pub fn solve(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         self.bodies.enter_rows(pool);
+        if core::mem::take(&mut self.gaps_are_old) {
+            self.sweep(Pass::Measure, params, pool);
+        }
         self.sweep(Pass::Solve, params, pool);
         self.bodies.leave_rows(pool);
     }
@@ -224,7 +239,15 @@ impl Solver {
             self.sweep(Pass::UndoSplit, params, pool);
         }
         self.sweep(Pass::Relax, params, pool);
+        self.bodies.end_gains(pool);
         self.bodies.leave_rows(pool);
+    }
+
+    /// Has to be called when the embedder changed velocities or displacements of [`bodies`](Self::bodies) between two calls of a step.
+    pub fn follow_changes(&mut self) {
+        self.gaps_are_old = true;
+        // What the embedder gives is no impulse to be repeated.
+        self.bodies.gains_known = Gains::Unused;
     }
 
     /// Runs one substep.
@@ -254,7 +277,7 @@ impl Solver {
         self.blows.begin();
         let is_jointed = self.trees.len() > 0;
         if is_jointed {
-            self.with_true_turns(pool, |blows, trees, bodies| blows.begin(trees, &bodies));
+            self.with_true_turns(pool, |blows, trees, (bodies, _)| blows.begin(trees, &bodies));
         }
         let any = self.strike_contacts(time, params, pool);
         if is_jointed {
@@ -263,12 +286,13 @@ impl Solver {
                 if !tree_blows.mark(trees, &mut blows.times, &mut blows.reached) {
                     break;
                 }
-                self.with_true_turns(pool, |blows, trees, bodies| {
-                    blows.follow(trees, &Sweep { pass: Pass::Relax, bodies, params }, time, pool);
+                self.with_true_turns(pool, |blows, trees, (bodies, gains)| {
+                    let sweep = Sweep { pass: Pass::Relax, bodies, gains, params };
+                    blows.follow(trees, &sweep, time, pool);
                 });
                 self.strike_contacts(time, params, pool);
             }
-            self.with_true_turns(pool, |blows, trees, bodies| blows.end(trees, &bodies, time));
+            self.with_true_turns(pool, |blows, trees, (bodies, _)| blows.end(trees, &bodies, time));
         }
         self.bodies.follow_blows(&self.blows.reached, params.h);
         any
@@ -278,10 +302,10 @@ impl Solver {
     fn with_true_turns(
         &mut self,
         pool: &ThreadPool,
-        f: impl FnOnce(&mut TreeBlows, &mut JointTrees, RowView<BodyRow>),
+        f: impl FnOnce(&mut TreeBlows, &mut JointTrees, (RowView<BodyRow>, RowView<GainRow>)),
     ) {
         self.bodies.leave_rows(pool);
-        f(&mut self.tree_blows, &mut self.trees, self.bodies.view(self.first_dynamic));
+        f(&mut self.tree_blows, &mut self.trees, self.bodies.views(self.first_dynamic));
         self.bodies.enter_rows(pool);
     }
 
@@ -368,10 +392,12 @@ impl Solver {
         if trees.len() > 0 && pass != Pass::Measure {
             // Trees follow the turns of bodies exactly.
             bodies.leave_rows(pool);
-            trees.run(&Sweep { pass, bodies: bodies.view(*first_dynamic), params }, pool);
+            let (rows, gains) = bodies.views(*first_dynamic);
+            trees.run(&Sweep { pass, bodies: rows, gains, params }, pool);
             bodies.enter_rows(pool);
         }
-        let sweep = &Sweep { pass, bodies: bodies.view(*first_dynamic), params };
+        let (bodies, gains) = bodies.views(*first_dynamic);
+        let sweep = &Sweep { pass, bodies, gains, params };
         rows.with(joints, customs, |batches| {
             for Stage { blocks, parts } in plan.stages() {
                 let solve = |block: usize, _| {

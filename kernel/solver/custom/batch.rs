@@ -118,7 +118,7 @@ impl Batch for CustomView<'_> {
                 Pass::WarmStart => act.warm_start([a, b], sweep.params),
                 Pass::Solve => act.solve([a, b], sweep.params, true),
                 Pass::Relax => act.solve([a, b], sweep.params, false),
-                Pass::UndoSplit => continue,
+                Pass::UndoSplit | Pass::Measure => continue,
             }
             // SAFETY: by the contract.
             record.is_faulty |= !unsafe { row.save(&sweep.bodies) };

@@ -237,7 +237,7 @@ impl<N: Entry> Batch for JointView<'_, N> {
     unsafe fn run(&self, rows: Range<usize>, _: Passes, sweep: &Sweep) {
         // SAFETY: by the contract.
         unsafe {
-            let Sweep { bodies, params, pass } = *sweep;
+            let Sweep { bodies, params, pass, .. } = *sweep;
             N::enter(self.proof, RunJob { taken: self.take(rows), bodies, params, pass });
         }
     }

@@ -312,7 +312,7 @@ impl<N: Lane> Job for RunJob<'_, N> {
 
     #[inline(always)]
     unsafe fn run(self) {
-        let Sweep { bodies, params, pass } = self.sweep;
+        let Sweep { bodies, params, pass, .. } = self.sweep;
         for row in self.rows.iter_mut() {
             // SAFETY: by the contract.
             unsafe { row.run(bodies, params, *pass) };

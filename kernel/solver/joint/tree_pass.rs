@@ -232,7 +232,7 @@ impl Tree<'_> {
     /// # Safety
     /// As [`solve`](Self::solve).
     unsafe fn solve_singles(&mut self, k: usize, sweep: &Sweep, again: bool) -> (f32, u32) {
-        let Sweep { pass, bodies, params } = sweep;
+        let Sweep { pass, bodies, params, .. } = sweep;
         let biased = *pass == Pass::Solve;
         let (mut most, mut acting) = (0.0f32, 0);
         for number in self.joints[k].singles_from(self.first_single) {

@@ -131,6 +131,7 @@ pub(crate) fn take_back(world: &mut World) {
     world.resource_scope(|world, mut lending: Mut<Lending>| {
         let Lending { lent, turned, .. } = &mut *lending;
         turned.clear();
+        let mut is_any_changed = false;
         let mut lost = Vec::new();
         {
             let Ok((lent, mut solver, tables)) = lent.get_mut(world) else { return };
@@ -144,6 +145,7 @@ pub(crate) fn take_back(world: &mut World) {
                 if body.is_of_row(old) {
                     continue;
                 }
+                is_any_changed = true;
                 let new = body.to_row();
                 if old.delta().1 != new.delta().1 {
                     turned.insert(row);
@@ -158,6 +160,9 @@ pub(crate) fn take_back(world: &mut World) {
                 rows.set_at_rest(*row as usize);
             }
             rows.restart_spins(turned);
+            if is_any_changed {
+                solver.kernel.follow_changes();
+            }
         }
         lost.sort_unstable_by_key(|(row, ..)| *row);
         for (_, entity, frame) in lost {
