@@ -26,6 +26,17 @@ impl SubAssign for Quad {
     }
 }
 
+impl Mul for Quad {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(mut self, other: Self) -> Self {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a *= b;
+        }
+        self
+    }
+}
+
 /// Proof that the CPU has AVX2. Only [`find`](Self::find) makes one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Avx2(());

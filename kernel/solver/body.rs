@@ -3,7 +3,7 @@
 use super::{BodyRow, GainRow, MassRow, RowView, fast_turn::FastTurn, gyro::*, input::RowInput, spin::Spin};
 use crate::data::{BitSet, Parts};
 use crate::graph::{ColorGraph, ConstraintKind, OVERFLOW};
-use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector};
+use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector, Width};
 use core::sync::atomic::AtomicBool;
 
 /// Bodies that turn by less than this in half a step, in rad, keep their inertia through it. More lets them gain spin in
@@ -214,6 +214,8 @@ pub struct BodyRows {
     /// Factors of the inverse mass along each axis, by row: 0 where an axis is locked. Empty if all are 1.
     pub(super) axes: Vec<Vector>,
     pub(super) claims: Claims,
+    /// How many bodies are moved side by side.
+    pub(super) width: Width,
     /// Row of the first dynamic body.
     pub(super) first_dynamic: u32,
 }

@@ -67,6 +67,13 @@ impl BodyRow {
         self.delta.0 = [position.x, position.y, rotation.cos, rotation.sin];
     }
 
+    /// Multiplies the velocity by factors, and adds accelerations over `h` seconds.
+    #[inline(always)]
+    pub(super) fn accelerate(&mut self, [linear, angular]: [f32; 2], (a, w): (Vector, Angular), h: f32) {
+        self.velocity = self.velocity * Quad([linear, linear, angular, 0.0]);
+        self.velocity += Quad([a.x, a.y, w.z, 0.0]) * Quad([h; 4]);
+    }
+
     /// Loads the velocities of one body for each lane.
     ///
     /// # Safety

@@ -81,6 +81,15 @@ impl BodyRow {
         self.rotation.0 = [rotation.x, rotation.y, rotation.z, rotation.w];
     }
 
+    /// Multiplies the velocity by factors, and adds accelerations over `h` seconds.
+    #[inline(always)]
+    pub(super) fn accelerate(&mut self, [linear, angular]: [f32; 2], (a, w): (Vector, Angular), h: f32) {
+        self.linear = self.linear * Quad([linear; 4]);
+        self.linear += Quad([a.x, a.y, a.z, 0.0]) * Quad([h; 4]);
+        self.angular = self.angular * Quad([angular; 4]);
+        self.angular += Quad([w.x, w.y, w.z, 0.0]) * Quad([h; 4]);
+    }
+
     /// Loads the velocities of one body for each lane.
     ///
     /// # Safety

@@ -3,8 +3,13 @@
 
 use super::body::OnceEach;
 use super::{BodyRow, BodyRows, RowView, gyro::*, spin::Spin};
-use crate::math::{Angular, F32x4, Lane, Rot};
+use crate::data::Parts;
+#[cfg(target_arch = "x86_64")]
+use crate::math::F32x8;
+use crate::math::{Angular, Entry, F32x4, Ids, Job, Lane, Rot, Width};
 use crate::thread_pool::ThreadPool;
+use core::marker::PhantomData;
+use core::ops::Range;
 
 /// Number of bodies in a block of the job, a multiple of the widest lanes. More leaves workers idle at the end, fewer cost
 /// more claims.
@@ -90,20 +95,18 @@ impl BodyRows {
         debug_assert_eq!(rows.len(), motions.len(), "each row has its motion");
         debug_assert!(*first_dynamic as usize <= rows.len(), "dynamic rows begin within the rows");
         let (first, count) = (*first_dynamic as usize, rows.len());
-        let view = RowView::over(rows, 0);
+        let rows = Parts::of(rows);
         pool.run((count - first).div_ceil(BLOCK), |block, _| {
             let start = first + block * BLOCK;
-            for id in start..count.min(start + BLOCK) {
-                let motion = &motions[id];
-                let change = |row: &mut BodyRow| {
-                    let (v, w) = row.velocity();
-                    row.set_velocity(
-                        v * (1.0 / (1.0 + motion.linear_damping * h)) + motion.acceleration * h,
-                        w * (1.0 / (1.0 + motion.angular_damping * h)) + motion.angular_acceleration * h,
-                    );
-                };
-                // SAFETY: a row is in one block.
-                unsafe { view.put(id as u32, change) };
+            let range = start..count.min(start + BLOCK);
+            // SAFETY: a row is in one block.
+            let rows = unsafe { rows.take(range.clone()) };
+            for (row, motion) in rows.iter_mut().zip(&motions[range]) {
+                let gained = (motion.acceleration, motion.angular_acceleration);
+                let damping = [motion.linear_damping, motion.angular_damping];
+                // Divisions are dear, and most bodies are not damped.
+                let kept = if damping == [0.0; 2] { [1.0; 2] } else { damping.map(|c| 1.0 / (1.0 + c * h)) };
+                row.accelerate(kept, gained, h);
             }
         });
         self.thrusts.each(&mut self.rows, pool, |thrust, row| thrust.accelerate(row, h));
@@ -120,19 +123,17 @@ impl BodyRows {
         self.hold_back(pool);
         self.spins.begin_turns(&mut self.rows, pool, h);
         self.hold_back(pool);
-        let count = self.rows.len();
+        let (count, width) = (self.rows.len(), self.width);
         let view = self.view_all();
         pool.run(count.div_ceil(BLOCK), |block, _| {
-            let (mut id, end) = (block * BLOCK, count.min((block + 1) * BLOCK));
-            while id + F32x4::WIDTH <= end {
-                let ids = core::array::from_fn(|k| (id + k) as u32);
-                // SAFETY: a row is in one block.
-                unsafe { move_bodies::<F32x4>(&view, &ids, h) };
-                id += F32x4::WIDTH;
-            }
-            for id in id..end {
-                // SAFETY: as above.
-                unsafe { move_bodies::<f32>(&view, &[id as u32], h) };
+            let rows = block * BLOCK..count.min((block + 1) * BLOCK);
+            // SAFETY: a row is in one block.
+            unsafe {
+                match width {
+                    #[cfg(target_arch = "x86_64")]
+                    Width::Eight(avx2) => F32x8::enter(avx2, MoveJob::<F32x8>::new(view, rows, h)),
+                    _ => F32x4::enter((), MoveJob::<F32x4>::new(view, rows, h)),
+                }
             }
         });
         self.spins.end_turns(&mut self.rows, pool);
@@ -161,6 +162,43 @@ impl BodyRows {
                 w * limit_factor(w.length(), limits.max_angular_speed),
             );
         });
+    }
+}
+
+/// Moves the bodies of some rows.
+struct MoveJob<'a, N> {
+    view: RowView<'a, BodyRow>,
+    rows: Range<usize>,
+    h: f32,
+    lane: PhantomData<N>,
+}
+
+impl<'a, N> MoveJob<'a, N> {
+    fn new(view: RowView<'a, BodyRow>, rows: Range<usize>, h: f32) -> Self {
+        Self { view, rows, h, lane: PhantomData }
+    }
+}
+
+impl<N: Lane> Job for MoveJob<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    unsafe fn run(self) {
+        let Self { view, rows, h, .. } = self;
+        let (mut id, end) = (rows.start, rows.end);
+        let mut ids = N::Ids::splat(0);
+        while id + N::WIDTH <= end {
+            for lane in 0..N::WIDTH {
+                ids.set(lane, (id + lane) as u32);
+            }
+            // SAFETY: by the contract.
+            unsafe { move_bodies::<N>(&view, &ids, h) };
+            id += N::WIDTH;
+        }
+        for id in id..end {
+            // SAFETY: as above.
+            unsafe { move_bodies::<f32>(&view, &[id as u32], h) };
+        }
     }
 }
 

@@ -72,6 +72,7 @@ impl Solver {
     /// comparison.
     pub fn set_narrow(&mut self, narrow: bool) {
         self.rows.width = Width::of(narrow);
+        self.bodies.width = self.rows.width;
     }
 
     /// Sets the minimum number of constraints per worker for which a colour is shared, from the next
