@@ -215,7 +215,7 @@ pub(crate) fn refresh_surfaces(
                 let colliders = &mut **colliders;
                 let entry = &mut colliders.table[id.0];
                 (entry.def.margin, entry.def.speculative) = (margin, speculative);
-                colliders.table.update_reach(id.0, &bodies.table);
+                colliders.table.update_reach(id.0, &mut bodies.table);
                 colliders.stale.insert(id.0);
             }
         }

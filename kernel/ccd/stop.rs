@@ -213,7 +213,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             (Some(path), _) => (path, def.local),
             (None, NONE) => {
                 let WorldPose { position, rotation } = self.colliders.poses[collider as usize];
-                let pose = BodyPose { center: position, rotation, speed: 0.0, revision: 0 };
+                let pose = BodyPose { center: position, rotation, ..BodyPose::default() };
                 (Path::still(pose, Vector::ZERO), crate::math::Pose::IDENTITY)
             }
             (None, body) => {

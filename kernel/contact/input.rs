@@ -101,7 +101,7 @@ impl<S> NarrowPhaseInput<'_, S> {
         match contact.bodies[side] {
             NONE => {
                 let WorldPose { position, rotation } = self.colliders.poses[contact.colliders[side] as usize];
-                fixed.insert(BodyPose { center: position, rotation, speed: 0.0, revision: 0 })
+                fixed.insert(BodyPose { center: position, rotation, ..BodyPose::default() })
             }
             body => &self.bodies.poses[body as usize],
         }

@@ -5,6 +5,7 @@
 //! its helpers and do not know it. `modify` takes what the embedder makes of its results.
 
 mod buffers;
+mod calm;
 mod constraint;
 mod flags;
 mod input;
@@ -27,6 +28,7 @@ pub use input::{ManifoldSource, NarrowPhaseInput};
 pub use link::{Link, Status};
 pub use narrow_phase::{Outcome, update_contact};
 pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint, ManifoldSurface};
+pub(crate) use recycle::{CHORD, RECYCLE_COS};
 pub use table::ContactTable;
 pub(crate) use view::ManifoldsView;
 

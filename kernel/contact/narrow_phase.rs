@@ -47,6 +47,8 @@ enum Class {
     Recyclable,
     /// The manifold cannot be kept.
     Stale,
+    /// The bodies have moved too little for anything to be done.
+    Calm,
 }
 
 impl ContactTable {
@@ -156,7 +158,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
             match classify(self.input, id, contact, &mut worker.batch) {
                 // SAFETY: as above.
                 Class::Separated => unsafe { self.separate(id, contact, worker) },
-                Class::Recyclable => {}
+                Class::Recyclable | Class::Calm => {}
                 // SAFETY: as above.
                 Class::Stale => self.recompute(id, contact, unsafe { self.points.one(id as usize) }, worker),
             }
@@ -275,6 +277,7 @@ pub fn update_contact<S: ManifoldSource>(
                 return Outcome::Recycled;
             }
         }
+        Class::Calm => return Outcome::Recycled,
         Class::Stale => {}
     }
     recompute(input, contact, extra, crowded, buffers);
@@ -283,12 +286,22 @@ pub fn update_contact<S: ManifoldSource>(
 
 /// Classifies a contact; one that may be recycled is put into the batch.
 #[inline(always)]
-fn classify<S>(input: &NarrowPhaseInput<S>, id: u32, contact: &Contact, batch: &mut RecycleBatch) -> Class {
+fn classify<S>(
+    input: &NarrowPhaseInput<S>,
+    id: u32,
+    contact: &mut Contact,
+    batch: &mut RecycleBatch,
+) -> Class {
     let [a, b] = contact.colliders;
     if !input.colliders.fat[a as usize].overlaps(&input.colliders.fat[b as usize]) {
         return Class::Separated;
     }
-    let is_waiting = batch.push(input, id, contact, input.poses(contact, &mut [None; 2]));
+    let mut fixed = [None; 2];
+    let poses = input.poses(contact, &mut fixed);
+    if input.is_calm(contact, poses) {
+        return Class::Calm;
+    }
+    let is_waiting = batch.push(input, id, contact, poses);
     if is_waiting { Class::Recyclable } else { Class::Stale }
 }
 
@@ -304,6 +317,8 @@ fn recycle<S>(
     let is_kept = batch.apply(place, contact, extra);
     if is_kept {
         flags::recycled(input, contact);
+        let [allowed, moved] = batch.ways(place);
+        contact.calm_down(input.poses(contact, &mut [None; 2]), allowed, moved);
     }
     is_kept
 }
@@ -325,6 +340,7 @@ fn recompute<S: ManifoldSource>(
         contact.cache = FeatureCache::NONE;
     }
     contact.revisions = revisions;
+    contact.excite(poses);
     buffers.local.clear();
     let mut search = if contact.flags.has(ContactFlags::FOREIGN) {
         search_foreign(input, contact, buffers)

@@ -47,6 +47,10 @@ impl ContactFlags {
     /// A shape is a hull. As it turns, faces come near that a full manifold has no points of.
     pub const HULL: Self = Self(1 << 14);
 
+    /// The separations, if there are any, are those at the end of the last step, and the bodies' travels are compared with those up to
+    /// which there is no look.
+    pub const CALM: Self = Self(1 << 15);
+
     /// Whether all bits of `other` are set.
     #[inline(always)]
     pub fn has(self, other: Self) -> bool {
@@ -200,6 +204,8 @@ pub struct Contact {
     pub flags: ContactFlags,
     /// The number of manifolds in the side pool.
     pub extra_count: u16,
+    /// The sum of both bodies' [travels](crate::table::BodyPose::travel) up to which the contact needs no look.
+    pub calm_until: u32,
     /// The pose at which the manifold was computed.
     pub frozen: Frozen,
     /// The last separating axis or reference feature.
@@ -225,6 +231,7 @@ impl Contact {
             bodies,
             flags,
             extra_count: 0,
+            calm_until: 0,
             extra: NONE,
             slot: None,
             surface: [0.0; 2],

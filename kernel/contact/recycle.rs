@@ -32,7 +32,7 @@ const RECYCLE_SHARE: f32 = 0.25;
 const ROUND_SHARE: f32 = 0.005;
 
 /// The least cosine of a body's turn since the manifold was computed: 10°. Beyond it the small-angle bounds below fail.
-const RECYCLE_COS: f32 = 0.985;
+pub(crate) const RECYCLE_COS: f32 = 0.985;
 
 /// The frozen pose does not turn with a platform that turned by less than this, in radians. A frictionless body slides on
 /// the platform as on a plane whose tilt is too small by that angle.
@@ -44,7 +44,7 @@ const PLATFORM_A: f32 = 1.0;
 const PLATFORM_B: f32 = 2.0;
 
 /// An upper bound of the ratio of a chord to twice [`small_turn`](Rot::small_turn), for turns up to [`RECYCLE_COS`].
-const CHORD: f32 = 1.016;
+pub(crate) const CHORD: f32 = 1.016;
 
 /// What recycling reads of a contact, or of several side by side: the numbers are in the same order.
 #[derive(Clone, Copy, Debug, Default)]
@@ -141,6 +141,8 @@ pub(super) struct RecycleBatch {
     turned: u32,
     /// The present separations of each contact's points.
     separations: [Quad; Self::SIZE],
+    /// How far the surfaces of each contact may move, if nothing closes, and how far they have.
+    ways: [[f32; 2]; Self::SIZE],
 }
 
 impl RecycleBatch {
@@ -221,6 +223,13 @@ impl RecycleBatch {
         self.evaluate_at(&Settings { dt, tolerance, recycle_distance }, Width::of(input.narrow));
     }
 
+    /// How far the surfaces of a contact may move against each other until its manifold is to be computed anew, if they do not close
+    /// within a step, and how far they have. `place` is the contact's index in the batch, which was evaluated.
+    #[inline(always)]
+    pub(super) fn ways(&self, place: usize) -> [f32; 2] {
+        self.ways[place]
+    }
+
     /// Lets a contact that keeps its manifold follow the motion of its bodies; `false` if it does not keep it. `place` is
     /// the contact's index in the batch, which was evaluated.
     #[inline(always)]
@@ -270,7 +279,11 @@ impl RecycleBatch {
             let mut places = N::Ids::splat(0);
             (0..N::WIDTH).for_each(|i| places.set(i, (start + i) as u32));
             let numbers = RecycleRow::<N>::side_by_side(&self.rows, &places);
-            self.kept |= N::bits(numbers.is_kept(settings)) << start;
+            let (kept, ways) = numbers.is_kept(settings);
+            self.kept |= N::bits(kept) << start;
+            for lane in 0..N::WIDTH {
+                self.ways[start + lane] = ways.map(|way| way.get(lane));
+            }
             self.turned |= N::bits(numbers.is_turned()) << start;
             N::scatter(numbers.separations(), &places, |place, quad| self.separations[place as usize] = quad);
         }
@@ -298,12 +311,13 @@ impl RecycleRow {
 }
 
 impl<N: Lane> RecycleRow<N> {
-    /// Whether the bodies moved little enough against each other.
+    /// Whether the bodies moved little enough against each other. Also how far their surfaces may move while nothing closes, and how
+    /// far they have.
     ///
     /// No point of one surface moved further against the other than `moved`. So shapes that were `prediction` apart are
     /// still `prediction - moved` apart, and keep that they have no points until the rest may close in the step.
     #[inline(always)]
-    fn is_kept(&self, settings: &Settings) -> N::Mask {
+    fn is_kept(&self, settings: &Settings) -> (N::Mask, [N; 2]) {
         let &Self { offset, prediction, count, extents, turning, .. } = self;
         // In world axes, the turn of each body since freezing is R Rᶠ⁻¹.
         let turns = self.turns();
@@ -335,8 +349,10 @@ impl<N: Lane> RecycleRow<N> {
         let is_full = count.eq(N::splat(MAX_POINTS as f32));
         let with_points = N::select(is_full, errors, errors.min(prediction - closing));
         let allowed = N::select(count.eq(N::ZERO), without_points, with_points);
+        let all =
+            N::select(count.eq(N::ZERO), prediction - N::splat(settings.tolerance), errors.min(prediction));
         // A NaN fails the comparison.
-        N::and(is_straight, moved.lt(allowed))
+        (N::and(is_straight, moved.lt(allowed)), [all, moved])
     }
 
     /// Whether the frozen pose turns with its platform.
@@ -513,8 +529,8 @@ mod tests {
                 batch.evaluate_at(&SETTINGS, width);
                 for (place, row) in rows.iter().enumerate() {
                     let kept = batch.kept & 1 << place != 0;
-                    prop_assert_eq!(row.numbers.is_kept(&SETTINGS), kept);
-                    prop_assert_eq!(row.with_unset().numbers.is_kept(&SETTINGS), kept);
+                    prop_assert_eq!(row.numbers.is_kept(&SETTINGS).0, kept);
+                    prop_assert_eq!(row.with_unset().numbers.is_kept(&SETTINGS).0, kept);
                     prop_assert_eq!(row.numbers.is_turned(), batch.turned & 1 << place != 0);
                     for (alone, beside) in row.numbers.separations().into_iter().zip(batch.separations[place].0) {
                         prop_assert!(alone.to_bits() == beside.to_bits() || alone.is_nan() && beside.is_nan());
@@ -532,7 +548,7 @@ mod tests {
             let rows = (0..1000).map(|_| row().new_tree(&mut runner).expect("nothing is filtered").current());
             let mut rows: Vec<PackedRow> = rows.collect();
             rows.iter_mut().for_each(|row| row.numbers.count = count);
-            let kept = rows.iter().filter(|row| row.numbers.is_kept(&SETTINGS)).count();
+            let kept = rows.iter().filter(|row| row.numbers.is_kept(&SETTINGS).0).count();
             assert!((100..900).contains(&kept), "{kept} of 1000 with {count} points");
         }
     }
@@ -551,11 +567,11 @@ mod tests {
             ..RecycleRow::default()
         };
         let good = PackedRow { numbers, ..PackedRow::default() };
-        assert!(good.numbers.is_kept(&SETTINGS));
+        assert!(good.numbers.is_kept(&SETTINGS).0);
         for odd in 0..core::mem::offset_of!(RecycleRow, prediction) / size_of::<f32>() {
             let mut row = good;
             row.floats()[odd] = f32::NAN;
-            assert!(!row.numbers.is_kept(&SETTINGS), "{odd}");
+            assert!(!row.numbers.is_kept(&SETTINGS).0, "{odd}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! All contacts by id, the map from pairs to contacts, and the set of awake contacts.
 
-use super::record::{Contact, Lost, Manifold, ManifoldSurface};
+use super::record::{Contact, ContactFlags, Lost, Manifold, ManifoldSurface};
 use crate::data::{BitSet, IdPool, PairSet, prefetch};
 use crate::math::DIM;
 use crate::table::{ColliderTable, NONE};
@@ -295,6 +295,8 @@ impl ContactTable {
     pub(super) fn activate(&mut self, id: u32) {
         debug_assert!(self.is_live(id), "contact {id} is in use");
         self.active_count += usize::from(self.active.insert(id));
+        // Bodies have travelled meanwhile, perhaps around the whole count.
+        self.contacts[id as usize].flags.set(ContactFlags::CALM, false);
     }
 
     pub(super) fn deactivate(&mut self, id: u32) {

@@ -36,7 +36,7 @@ impl Body {
         let frame = &self.frame;
         let shape = WorldPose { position: frame.position.to_world(), rotation: frame.rotation };
         let center = self.center(0.0).to_world();
-        let body = BodyPose { center, rotation: frame.rotation, speed: 0.0, revision: 0 };
+        let body = BodyPose { center, rotation: frame.rotation, ..BodyPose::default() };
         Placed { body, turn: Rot::IDENTITY, shape }
     }
 

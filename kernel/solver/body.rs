@@ -213,6 +213,8 @@ pub struct BodyRows {
     pub(super) turn_locked: BitSet,
     /// Factors of the inverse mass along each axis, by row: 0 where an axis is locked. Empty if all are 1.
     pub(super) axes: Vec<Vector>,
+    /// Rows of bodies that were displaced after the last relax pass.
+    pub(super) moved: BitSet,
     pub(super) claims: Claims,
     /// How many bodies are moved side by side.
     pub(super) width: Width,
@@ -235,6 +237,7 @@ impl BodyRows {
         self.spins.clear();
         self.fast_turns.clear();
         self.turn_locked.clear();
+        self.moved.clear();
         self.thrusts.clear();
         self.axes.clear();
         self.first_dynamic = 1 + kinematic as u32;

@@ -468,7 +468,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for StoreJob<'_, N, M, P> {
             let friction = TangentFrame::new(row.normal).expand(row.tangent_impulse);
             for (lane, item) in lanes.iter().enumerate() {
                 // SAFETY: by the contract; the manifold of the previous item is not used any more.
-                let manifold = unsafe { contacts.manifold(item.id, item.index) };
+                let (manifold, is_calm) = unsafe { contacts.at_end(item.id, item.index) };
                 manifold.friction_impulse = friction.get(lane);
                 manifold.twist_impulse = NormalMoment::new(row.twist.impulse(lane));
                 manifold.friction_owed = row.owed.get(lane);
@@ -478,6 +478,9 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for StoreJob<'_, N, M, P> {
                 for ((p, point), sum) in manifold.points[..count].iter_mut().zip(&row.points).zip(sum) {
                     p.impulse = point.impulse.get(lane);
                     p.total_impulse = sum.get(lane);
+                    if is_calm {
+                        p.separation = point.gap.get(lane);
+                    }
                 }
             }
         }

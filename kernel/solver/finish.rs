@@ -2,9 +2,10 @@
 #![expect(unsafe_code, reason = "bodies are changed by several threads, each its own")]
 
 use super::{BodyRow, RowView, Solver};
-use crate::data::Parts;
+use crate::contact::{CHORD, RECYCLE_COS};
+use crate::data::{BitSet, Parts};
 use crate::math::{F32x4, Ids, Lane, Rot, Vector, WorldPose};
-use crate::table::{BodyParts, BodyTable, Velocity};
+use crate::table::{BodyParts, BodyTable, FAR, Velocity, travelled};
 use crate::thread_pool::ThreadPool;
 use std::sync::{Mutex, PoisonError};
 
@@ -37,6 +38,7 @@ impl Solver {
             bodies: bodies.parts(),
             frames: Parts::of(frames),
             dt,
+            moved: &self.bodies.moved,
             lost: Mutex::new(Vec::new()),
         };
         pool.each(listed.chunks(BLOCK).enumerate(), |(block, ids)| {
@@ -60,6 +62,8 @@ struct Finish<'a> {
     bodies: BodyParts<'a>,
     frames: Parts<'a, WorldPose>,
     dt: f32,
+    /// As in [`BodyRows`](super::BodyRows).
+    moved: &'a BitSet,
     lost: Mutex<Vec<u32>>,
 }
 
@@ -83,13 +87,14 @@ impl Finish<'_> {
             before.set(i, unsafe { bodies.poses.one(*id as usize) }.rotation);
         }
         // SAFETY: no row is written through this view.
-        let ((v, _), (displacement, turn)) = unsafe {
-            (BodyRow::gather_velocity::<N>(rows, &lanes), BodyRow::gather_delta::<N>(rows, &lanes))
-        };
+        let (displacement, turn) = unsafe { BodyRow::gather_delta::<N>(rows, &lanes) };
         let rotation = turn.mul(before).renormalized();
-        let (speed, displacement_squared) = (v.length(), displacement.length_squared());
-        let turn = turn.small_turn();
+        let displacement_squared = displacement.length_squared();
+        let delta = turn;
+        let turn = delta.small_turn();
         let angle_squared = turn.length_squared();
+        let (way, angle) = (displacement.length(), angle_squared.sqrt());
+        let is_near = N::bits(N::splat(RECYCLE_COS).le(delta.cos_angle()));
         for (i, id) in ids.iter().enumerate() {
             let (row, id) = (first + i as u32, *id as usize);
             // SAFETY: as above.
@@ -101,14 +106,21 @@ impl Finish<'_> {
                 (pose.center + Vector::get(&displacement, i).to_world(), Rot::get(&rotation, i));
             let placed = center.is_finite_world() & rotation.is_finite();
             if !(placed & linear.is_finite() & angular.is_finite()) {
+                pose.travel = pose.travel.wrapping_add(FAR);
                 self.lost.lock().unwrap_or_else(PoisonError::into_inner).push(row);
                 continue;
             }
             if row >= self.first_dynamic {
-                pose.speed = speed.get(i);
+                let velocity = Velocity { linear, angular };
+                pose.speed = velocity.surface_speed(body.extent);
                 // SAFETY: as above.
-                *unsafe { bodies.velocities.one(id) } = Velocity { linear, angular };
+                *unsafe { bodies.velocities.one(id) } = velocity;
             }
+            let way = way.get(i) + CHORD * body.extent * angle.get(i);
+            let is_far = is_near >> i & 1 == 0 || self.moved.contains(row);
+            // One more, for what is rounded down.
+            let travel = if is_far { FAR } else { travelled(way) + u32::from(way > 0.0) };
+            pose.travel = pose.travel.wrapping_add(travel);
             if motion.is_moved() {
                 (pose.center, pose.rotation) = (center, rotation);
                 // SAFETY: as above.

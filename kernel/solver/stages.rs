@@ -263,7 +263,10 @@ impl Solver {
     /// Strikes what closes fast and touches, after the last substep.
     pub fn restitute(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         self.bodies.enter_rows(pool);
-        self.strike(0.0, params, pool);
+        if self.strike(0.0, params, pool) {
+            let BodyRows { moved, .. } = &mut self.bodies;
+            self.blows.reached.iter().for_each(|row| _ = moved.insert(row));
+        }
         self.bodies.leave_rows(pool);
     }
 

@@ -1,11 +1,12 @@
 //! Bodies that moved far stop where they meet something; see [`ccd`](crate::ccd).
 #![expect(unsafe_code, reason = "rows of bodies are changed by several threads, each its own")]
 
-use super::{BodyRow, RowView, Solver, gyro::*};
+use super::{BodyRow, BodyRows, RowView, Solver, gyro::*};
 use crate::ccd::{Path, SweepBuffers, SweepInput, Swept};
 use crate::contact::ManifoldSource;
 use crate::math::{Vector, max};
 use crate::thread_pool::ThreadPool;
+use std::sync::{Mutex, PoisonError};
 
 /// Number of bodies in a block of the job. More leaves workers idle at the end, fewer cost more claims.
 const BLOCK: usize = 64;
@@ -25,8 +26,9 @@ impl Solver {
     ) {
         let first_dynamic = self.bodies.first_dynamic();
         let listed = &listed[..listed.len().min(self.bodies.rows.len().saturating_sub(1))];
-        let motions = &self.bodies.motions;
-        let rows = &RowView::over(&mut self.bodies.rows, first_dynamic);
+        let BodyRows { motions, rows, moved, .. } = &mut self.bodies;
+        let rows = &RowView::over(rows, first_dynamic);
+        let stopped = Mutex::new(Vec::new());
         pool.each_into(workers, listed.chunks(BLOCK).enumerate(), |buffers, (block, ids)| {
             for (i, &body) in ids.iter().enumerate() {
                 let row = (1 + block * BLOCK + i) as u32;
@@ -47,9 +49,12 @@ impl Solver {
                     let acceleration = motions[row as usize].acceleration;
                     // SAFETY: as above; the copy is no reference.
                     unsafe { rows.put(row, |row| put_back(row, &path, fraction, acceleration)) };
+                    stopped.lock().unwrap_or_else(PoisonError::into_inner).push(row);
                 }
             }
         });
+        let stopped = stopped.into_inner().unwrap_or_else(PoisonError::into_inner);
+        stopped.into_iter().for_each(|row| _ = moved.insert(row));
     }
 
     /// Puts bodies back that are swept against what moves, and what they met, kinematic bodies too. Each stops at the first of
@@ -81,6 +86,7 @@ impl Solver {
                 let row = input.bodies.row(body) as usize;
                 let acceleration = self.bodies.motions[row].acceleration;
                 put_back(&mut self.bodies.rows[row], &path, fraction, acceleration);
+                self.bodies.moved.insert(row as u32);
             }
         }
     }

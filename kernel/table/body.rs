@@ -59,6 +59,8 @@ pub struct Body {
     pub sleep_timer: f32,
     /// The velocity of the last steps on average, measured by displacement.
     pub mean_velocity: Velocity,
+    /// How far its colliders have reached from its centre of mass, in metres.
+    pub(crate) extent: f32,
 }
 
 /// The time over which velocities are averaged, in seconds. More lets bodies sleep that shake in longer cycles, but also
@@ -90,8 +92,10 @@ pub struct BodyPose {
     pub center: WorldVector,
     /// The rotation.
     pub rotation: Rot,
-    /// Speed of the centre of mass, m/s.
+    /// An upper bound of the speed of the surface, m/s.
     pub speed: f32,
+    /// An upper bound of the way of the surface so far, in units of 2⁻²⁴ m. It overflows.
+    pub travel: u32,
     /// Counter of changes that invalidate cached contacts: kind, centre of mass, teleports.
     pub revision: u32,
 }
@@ -112,6 +116,32 @@ pub struct Velocity {
     pub linear: Vector,
     /// Angular velocity, rad/s.
     pub angular: Angular,
+}
+
+impl Velocity {
+    /// An upper bound of the speed of a surface that reaches that far from the centre of mass, m/s.
+    #[inline(always)]
+    pub(crate) fn surface_speed(&self, extent: f32) -> f32 {
+        self.linear.length() + extent * self.angular.length()
+    }
+}
+
+/// Travels are counted in this many units per metre. More overflows sooner, fewer count too much for what hardly moves.
+const TRAVEL_UNITS: f32 = (1 << 24) as f32;
+
+/// The travel of a way of any length that counts as far: a quarter of the count, so that the sum of two does not overflow.
+pub(crate) const FAR: u32 = 1 << 30;
+
+/// The travel of a way in metres, at most [`FAR`]; 0 if it is negative or NaN.
+#[inline(always)]
+pub(crate) fn travelled(way: f32) -> u32 {
+    ((way * TRAVEL_UNITS) as u32).min(FAR)
+}
+
+/// The way of a difference of travels, in metres.
+#[inline(always)]
+pub(crate) fn way_of(travel: i32) -> f32 {
+    travel as f32 * (1.0 / TRAVEL_UNITS)
 }
 
 /// All bodies of the simulation, sleeping ones included.
@@ -159,11 +189,13 @@ impl BodyTable {
             rest_speed: RestSpeed::NEVER,
             sleep_timer: 0.0,
             mean_velocity: Velocity::default(),
+            extent: 0.0,
         };
         let mut placed = BodyPose {
             center: pose.transform(local_center),
             rotation: pose.rotation,
             speed: 0.0,
+            travel: 0,
             revision: 0,
         };
         let i = id as usize;
@@ -311,7 +343,20 @@ impl BodyTable {
             self.pushed.insert(id);
         }
         self.velocities[id as usize] = velocity;
-        self.poses[id as usize].speed = velocity.linear.length();
+        self.bound_speed(id);
+    }
+
+    /// Notes that a collider of a body reaches that far from its centre of mass, in metres.
+    pub(super) fn reach_out(&mut self, id: u32, extent: f32) {
+        if extent > self[id].extent {
+            self[id].extent = extent;
+            self.bound_speed(id);
+        }
+    }
+
+    fn bound_speed(&mut self, id: u32) {
+        let i = id as usize;
+        self.poses[i].speed = self.velocities[i].surface_speed(self.bodies[i].extent);
     }
 
     fn revise(&mut self, id: u32) {

@@ -284,7 +284,7 @@ impl ColliderTable {
 
     /// Recomputes the reach of a collider, and invalidates its cached contacts. Call it after the shape, the margins,
     /// or the body's kind or centre of mass changed.
-    pub fn update_reach(&mut self, id: u32, bodies: &BodyTable) {
+    pub fn update_reach(&mut self, id: u32, bodies: &mut BodyTable) {
         let def = &self.colliders[id as usize].def;
         let center = if def.body == NONE {
             Vector::ZERO
@@ -298,6 +298,7 @@ impl ColliderTable {
             let size = &mut self.sizes[def.body as usize];
             size.core = min(size.core, def.shape.core().1);
             size.arm = max(size.arm, arm);
+            bodies.reach_out(def.body, extent);
         }
         let reach = &mut self.reaches[id as usize];
         *reach = Reach {

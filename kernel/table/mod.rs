@@ -6,8 +6,8 @@ mod constraint;
 mod facets;
 mod material;
 
-pub(crate) use body::BodyParts;
 pub use body::{Body, BodyKind, BodyPose, BodyTable, RestSpeed, Velocity};
+pub(crate) use body::{BodyParts, FAR, travelled, way_of};
 pub use collider::{BodySize, Collider, ColliderDef, ColliderFlags, ColliderTable, Fattening, Layers, Reach};
 pub(crate) use collider::{MOST_TURN, is_swinging, turn};
 pub use constraint::{Constraint, ConstraintTable};
