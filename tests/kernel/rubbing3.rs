@@ -108,7 +108,10 @@ impl Stop {
     }
 }
 
-/// Both motions of a disc share one friction, and end at once.
+/// Starts that differ by 10⁻⁵ of the speed: over seams, one of them ends up to 9 % farther than another.
+const STARTS: [i8; 9] = [-4, -3, -2, -1, 0, 1, 2, 3, 4];
+
+/// Both motions of a disc share one friction, and end at once. On average over [`STARTS`].
 #[test]
 fn a_disc_that_slides_and_spins_stops_by_the_closed_form_for_even_pressure() {
     let mut bad = Vec::new();
@@ -116,8 +119,12 @@ fn a_disc_that_slides_and_spins_stops_by_the_closed_form_for_even_pressure() {
         let want = Stop::of_even_pressure(v.into(), w.into());
         for floor in ["one box", "boxes", "mesh"] {
             for clock in CLOCKS {
-                let mut sim = on_floor(floor, clock, MU, 0.0).expect("it is laid");
-                let got = Stop::seen(&mut sim, v, w);
+                let seen = STARTS.map(|start| {
+                    let mut sim = on_floor(floor, clock, MU, 0.0).expect("it is laid");
+                    Stop::seen(&mut sim, v * (1.0 + 1.0e-5 * f32::from(start)), w)
+                });
+                let mean = |of: fn(&Stop) -> f64| seen.iter().map(of).sum::<f64>() / seen.len() as f64;
+                let got = Stop { slide: mean(|s| s.slide), spin: mean(|s| s.spin), way: mean(|s| s.way) };
                 let shares = [got.slide / want.slide, got.spin / want.spin, got.way / want.way];
                 // Of several manifolds each has a friction centre of its own, with a budget for what spins about it.
                 let most = if floor == "one box" { 0.1 } else { 0.15 };
