@@ -5,6 +5,7 @@ use avian::{math::*, prelude::*};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
+use bevy_transform::TransformPlugin;
 use core::time::Duration;
 
 /// Half the height of the shape, with the height of rest.

@@ -79,11 +79,8 @@
 //! Rigid Body Simulation with Extended Position Based Dynamics", 2020). Two bodies that a constraint holds are in one island:
 //! they sleep and wake together.
 
-#[cfg_attr(feature = "2d", path = "angular_constraint2.rs")]
-#[cfg_attr(feature = "3d", path = "angular_constraint3.rs")]
-mod angular_constraint;
-#[cfg_attr(feature = "2d", path = "dim2.rs")]
-#[cfg_attr(feature = "3d", path = "dim3.rs")]
+#[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
+#[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
 mod dim;
 mod links;
 mod plugin;
@@ -91,7 +88,7 @@ mod positional_constraint;
 mod project;
 mod systems;
 
-pub use angular_constraint::AngularConstraint;
+pub use dim::angular_constraint::AngularConstraint;
 pub use plugin::XpbdSolverPlugin;
 pub use positional_constraint::PositionConstraint;
 pub use systems::{prepare_xpbd_joint, solve_xpbd_joint, warm_start_xpbd_motors};

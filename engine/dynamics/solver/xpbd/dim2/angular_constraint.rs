@@ -1,6 +1,7 @@
 //! [`AngularConstraint`] in 2D: angular impulses, applied to rotations.
 
-use super::{compute_lagrange_update, dim::turn_by};
+use super::super::compute_lagrange_update;
+use super::turn_by;
 use crate::{
     dynamics::solver::solver_body::SolverBody,
     math::{AngularVector, Scalar, SymmetricTensor, Vector3},

@@ -1,4 +1,6 @@
-//! Turns of bodies by angular impulses in 3D. `dim2.rs` exports the same names.
+//! Turns of bodies by angular impulses in 3D. `dim2` exports the same names.
+
+pub(super) mod angular_constraint;
 
 use crate::{
     dynamics::solver::solver_body::SolverBody,

@@ -1,9 +1,7 @@
 //! [`AngularConstraint`] in 3D: angular impulses, applied to rotations.
 
-use super::{
-    compute_lagrange_update,
-    dim::{delta_of, rotation_vector, turn_by},
-};
+use super::super::compute_lagrange_update;
+use super::{delta_of, rotation_vector, turn_by};
 use crate::{
     dynamics::solver::solver_body::SolverBody,
     math::{AngularVector, Quaternion, Scalar, SymmetricTensor, Vector, Vector3},
