@@ -6,22 +6,22 @@ use std::sync::Arc;
 
 /// For each scene the hash with world positions in `f32`, and in `f64`.
 pub const GOLDEN: [(&str, u64, u64); 16] = [
-    ("pyramid", 0x69d5cf729fa0d148, 0xd44a668998527000),
-    ("towers", 0x451e5fd3833ce5e5, 0x8224992f97c3a103),
-    ("pairs", 0xb8801ef6bc257a57, 0xb0538a5713ace1c0),
-    ("heap", 0xd1cf125eaf44c8bf, 0xd4f9c95281928010),
-    ("terrain", 0x79cdd5e4e9f2c1c2, 0xd8df42971a704c21),
-    ("slopes", 0xf185e5609834d203, 0x6a07a83159f32601),
-    ("composites", 0xd82171423f2c30a9, 0x25841fb8009d49f5),
-    ("bounces", 0x242ee769447ff8f3, 0x26452e71491ff34a),
-    ("crowd", 0x616a4b767dec6efb, 0x26e91e44e83432ad),
-    ("sleepers", 0x0bb7d60363846a8f, 0x2067ef1aff2a5f3f),
-    ("held", 0xaa7e160275ee8b7a, 0xc484d778e7ffa891),
-    ("dominance", 0x48c21194cb45004c, 0xd63b06690ecc5ae9),
-    ("spin", 0xcd1a030fb2e538d9, 0x505616878f5604ff),
-    ("mixer", 0xb8a32f26388960a8, 0x4b7fa7a7bf74d7b7),
-    ("changes", 0x7c70aac3a9880d5f, 0xdc42b17385d07e3f),
-    ("wall", 0x1a14414069ea5647, 0xa1f501d3b4dff5f3),
+    ("pyramid", 0x69d5cf729fa0d148, 0x294d44d24881ffea),
+    ("towers", 0x451e5fd3833ce5e5, 0x729959ddee3c20d0),
+    ("pairs", 0xb8801ef6bc257a57, 0x294590feb2873c76),
+    ("heap", 0xd1cf125eaf44c8bf, 0xfe19683e72cb7e14),
+    ("terrain", 0x79cdd5e4e9f2c1c2, 0x66354e51aef917ea),
+    ("slopes", 0xf185e5609834d203, 0x02ccd7effdd89ba1),
+    ("composites", 0xd82171423f2c30a9, 0x900e5b8961348f4a),
+    ("bounces", 0x242ee769447ff8f3, 0x50624c4cfb2343bf),
+    ("crowd", 0x616a4b767dec6efb, 0x346682d82f27dad5),
+    ("sleepers", 0x0bb7d60363846a8f, 0x1e1e4adc8b7f808a),
+    ("held", 0xaa7e160275ee8b7a, 0xfb1a0edadd0c0caa),
+    ("dominance", 0x48c21194cb45004c, 0x6c0a5c2eeba72cbb),
+    ("spin", 0xcd1a030fb2e538d9, 0x0e87de6244bd70c1),
+    ("mixer", 0xb8a32f26388960a8, 0x16c8206e6929870a),
+    ("changes", 0x7c70aac3a9880d5f, 0x656da7a304fec832),
+    ("wall", 0x1a14414069ea5647, 0x0e9f3179e745a925),
 ];
 
 /// Every native shape with bounds, each about a metre across.

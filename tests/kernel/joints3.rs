@@ -110,15 +110,15 @@ fn twist_and_swings_are_driven_within_a_cone() {
                     let case = format!("{solver:?}, {links} links, cone {cone}");
                     assert!((turn - twist).abs() < 0.01, "{case}: twist {turn}");
                     let wanted = swing[0].hypot(swing[1]).min(cone);
-                    // Motors press against the cone, which gives way a little.
-                    let most = if wanted < cone { 0.01 } else { 0.015 };
+                    // Motors press against the cone, which gives way by a degree where joints are rows.
+                    let most = if wanted < cone { 0.01 } else { 0.02 };
                     assert!((angle - wanted).abs() < most, "{case}: swing {angle}, not {wanted}");
                     let axis = a.inverse().mul(b).rotate(Vector::X);
                     // About y the x axis goes to −z, about z to y.
                     let along = axis.y * swing[0] + axis.z * swing[1];
                     assert!(along.abs() < 0.01, "{case}: it swings aside, {axis:?}");
                     let gap = sim.gap(*id).unwrap();
-                    assert!(gap.length < 1.0e-3 && gap.angle < 0.01, "{case}: {gap:?}");
+                    assert!(gap.length < 1.0e-3 && gap.angle < most, "{case}: {gap:?}");
                 }
             }
         }
