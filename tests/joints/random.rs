@@ -2,7 +2,7 @@
 //! step.
 
 use super::*;
-use avian::dynamics::solver::joint_graph::JointGraph;
+use avian::dynamics::{joints::EntityConstraint, solver::joint_graph::JointGraph};
 use bevy_ecs::entity_disabling::Disabled;
 use proptest::prelude::*;
 use scenes::dim::ball;
@@ -165,6 +165,7 @@ impl Crowd {
             }),
             Change::Drop(i) => self.with(self.joints[i], |joint| {
                 joint.remove::<(FixedJoint, DistanceJoint, PrismaticJoint, RevoluteJoint)>();
+                joint.remove::<(GenericJoint, MouseJoint, WheelJoint, GearJoint, PulleyJoint)>();
             }),
             Change::Unjoin(i) => self.despawn(self.joints[i]),
             Change::Disable(i, off) => self.toggle::<JointDisabled>(self.joints[i], off),
@@ -182,11 +183,19 @@ impl Crowd {
         if joint.contains::<JointDisabled>() || joint.contains::<Disabled>() {
             return None;
         }
-        let fixed = joint.get::<FixedJoint>().map(|j| [j.body1, j.body2]);
-        let distance = joint.get::<DistanceJoint>().map(|j| [j.body1, j.body2]);
-        let prismatic = joint.get::<PrismaticJoint>().map(|j| [j.body1, j.body2]);
-        let revolute = joint.get::<RevoluteJoint>().map(|j| [j.body1, j.body2]);
-        fixed.or(distance).or(prismatic).or(revolute)
+        // In the order in which the graph looks for kinds on one entity.
+        let of = [
+            joint.get::<FixedJoint>().map(EntityConstraint::entities),
+            joint.get::<DistanceJoint>().map(EntityConstraint::entities),
+            joint.get::<PrismaticJoint>().map(EntityConstraint::entities),
+            joint.get::<RevoluteJoint>().map(EntityConstraint::entities),
+            joint.get::<GenericJoint>().map(EntityConstraint::entities),
+            joint.get::<MouseJoint>().map(EntityConstraint::entities),
+            joint.get::<WheelJoint>().map(EntityConstraint::entities),
+            joint.get::<GearJoint>().map(EntityConstraint::entities),
+            joint.get::<PulleyJoint>().map(EntityConstraint::entities),
+        ];
+        of.into_iter().flatten().next()
     }
 }
 
