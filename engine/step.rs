@@ -413,7 +413,11 @@ mod tests {
             let count = schedule.systems_len();
             assert!(others.len() == 1 && others[0].0 == count - 1, "in no stage: {others:?} of {count}");
             ran.dedup();
-            assert_eq!(ran, Stage::ALL.iter().map(|(stage, _)| *stage).collect::<Vec<_>>());
+            let is_of_xpbd =
+                |stage: &Stage| matches!(stage, Stage::SettleConstraints | Stage::PreparePositionSolve);
+            let wanted = Stage::ALL.iter().map(|(stage, _)| *stage);
+            let has_xpbd = cfg!(feature = "xpbd_joints");
+            assert_eq!(ran, wanted.filter(|stage| has_xpbd || !is_of_xpbd(stage)).collect::<Vec<_>>());
         });
     }
 

@@ -88,7 +88,7 @@ impl HumanRagdoll {
             let parent = bone.parent()?;
             let anchors = [parent, bone].map(|of| {
                 let plan = plan::plan(of);
-                dim::vector(plan.from_center(plan::plan(bone).joint), wanted.height)
+                dim::vector(plan.relative_to_center(plan::plan(bone).joint), wanted.height)
             });
             let place = Place { bodies: [parent, bone].map(|bone| bones[bone as usize]), anchors };
             let joint = dim::spawn_joint(commands, bone, place, wanted.drive);
@@ -123,7 +123,8 @@ impl HumanRagdoll {
 
     fn spawn_bone(&self, bone: Bone, commands: &mut Commands, pose: Transform) -> Entity {
         let plan = plan::plan(bone);
-        let [from, to] = [plan.from, plan.to].map(|end| dim::vector(plan.from_center(end), self.height));
+        let [from, to] =
+            [plan.from, plan.to].map(|end| dim::vector(plan.relative_to_center(end), self.height));
         let collider = Collider::capsule_endpoints(plan.radius * self.height, from, to);
         let density = ColliderDensity(to_f32(self.mass * plan.mass) / dim::volume(&collider));
         let place = Transform::from_translation(dim::point(plan.center(), self.height));

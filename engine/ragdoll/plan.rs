@@ -26,7 +26,7 @@ impl Plan {
     }
 
     /// A point relative to the middle of the segment.
-    pub(super) fn from_center(&self, point: [Scalar; 2]) -> [Scalar; 2] {
+    pub(super) fn relative_to_center(&self, point: [Scalar; 2]) -> [Scalar; 2] {
         let center = self.center();
         core::array::from_fn(|i| point[i] - center[i])
     }

@@ -157,7 +157,7 @@ fn a_heap_of_humans_comes_to_rest() {
             sim.bodies.awake_dynamic().map(|id| sim.bodies.velocities[id as usize].linear.length()).collect();
         speeds.sort_by(f32::total_cmp);
         let most = speeds.get(speeds.len() * 99 / 100).copied().unwrap_or(0.0);
-        if open > 0.05 || past > 12.0 || most > 0.1 {
+        if open > 0.1 || past > 25.0 || most > 0.1 {
             failed.push(format!(
                 "friction {friction}: open {open} m, past {past} degrees, after {seconds} s {} awake, {most} m/s",
                 speeds.len()

@@ -41,7 +41,8 @@ const NO_SWING: f32 = 1.0e-12;
 /// The angles of B's frame in A's, and the axes about which each grows, as a change of B's angular velocity.
 ///
 /// The rotation is a twist about x, then a swing about an axis across it. Twist grows with the angular velocity along the
-/// mean of the two x axes.
+/// mean of the two x axes, swings with that along A's y and z axes turned by the swing: y − m (y · b), with B's x axis b and
+/// m = (x + b) / (1 + x · b). For a swing θ across the other one the factor θ / sin θ is left out.
 #[inline(always)]
 pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] {
     let [x, y, z] = Vector::AXES.map(|axis| a.rotate(Vector::splat(axis)));
@@ -68,7 +69,14 @@ pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] 
     let along = N::ONE + x.dot(bx);
     let is_defined = N::splat(NO_SWING).lt(along);
     let twist_axis = Vector::select(is_defined, mean * (N::ONE / N::select(is_defined, along, N::ONE)), x);
-    [(twist, twist_axis), (sy * factor, y), (sz * factor, z), (N::select(swings, cone, N::ZERO), axis)]
+    // Swings do not change as B turns about its own x axis.
+    let swung = |axis: Vector<N>| axis - twist_axis * N::select(is_defined, axis.dot(bx), N::ZERO);
+    [
+        (twist, twist_axis),
+        (sy * factor, swung(y)),
+        (sz * factor, swung(z)),
+        (N::select(swings, cone, N::ZERO), axis),
+    ]
 }
 
 /// The coordinates of which one outside of the block is made: the shifts of the distance, the swings of the angle.
