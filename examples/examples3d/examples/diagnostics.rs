@@ -45,7 +45,7 @@ fn toggle(keys: Res<ButtonInput<KeyCode>>, mut settings: ResMut<PhysicsDiagnosti
 /// Drops a box every eighth of a second, until there are 200.
 fn rain(mut commands: Commands, look: Res<Look>, mut count: Local<u32>) {
     *count += 1;
-    if *count % 8 != 0 || *count > 1600 {
+    if !(*count).is_multiple_of(8) || *count > 1600 {
         return;
     }
     let angle = *count as f32;
