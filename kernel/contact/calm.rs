@@ -6,7 +6,7 @@
 
 use super::input::NarrowPhaseInput;
 use super::record::{Contact, ContactFlags};
-use crate::table::{BodyPose, travelled, way_of};
+use crate::table::{BodyPose, TravelScale};
 
 /// The share of the allowed way up to which there is no look. Separations that the solver adds up from step to step are wrong by
 /// half the square of a body's turn, so that more makes them worse: by a tenth of a millimetre with half.
@@ -37,9 +37,9 @@ impl Contact {
     /// After a look. Until the manifold is to be computed anew, surfaces may move by `allowed` metres, of which they have
     /// `moved`.
     #[inline(always)]
-    pub(super) fn calm_down(&mut self, poses: [&BodyPose; 2], allowed: f32, moved: f32) {
+    pub(super) fn calm_down(&mut self, poses: [&BodyPose; 2], scale: TravelScale, allowed: f32, moved: f32) {
         let way = allowed * SHARE - moved;
-        self.calm_until = travel(poses).wrapping_add(travelled(way));
+        self.calm_until = travel(poses).wrapping_add(scale.travelled(way));
         // Separations are followed by the solver, if there are any.
         let is_followed = self.manifold.count == 0 && self.may_be_calm();
         self.flags.set(ContactFlags::CALM, is_followed);
@@ -64,7 +64,7 @@ impl<S> NarrowPhaseInput<'_, S> {
         contact.flags.set(ContactFlags::CALM, !touches);
         let speed = poses[0].speed + poses[1].speed;
         let left = contact.calm_until.wrapping_sub(travel(poses)) as i32;
-        let is_near = speed * self.dt < way_of(left);
+        let is_near = speed * self.dt < self.bodies.travel_scale.way_of(left);
         if !(is_near && self.recycle_distance > 0.0) || contact.revisions != self.revisions(contact, poses) {
             return false;
         }

@@ -20,14 +20,14 @@ use crate::shape::{Ball, Shape};
 use crate::table::{BodyKind, NONE};
 use crate::thread_pool::ThreadPool;
 
-/// How far above a plane a point may lie that counts as on it, in metres. More would hide kerbs; less is below the rounding of
+/// How far above a plane a point may lie that counts as on it, in length units. More would hide kerbs; less is below the rounding of
 /// positions some kilometres from the origin.
 const FLUSH: f32 = 2.5e-4;
 
 /// Faces are clipped beyond their edges by this share of the smaller shape's extent, and so are points on them.
 const CLIPPED: f32 = 1.0e-3;
 
-/// How far below a plane the collider may reach, besides how deep the plane's own contact is, in metres. What reaches farther
+/// How far below a plane the collider may reach, besides how deep the plane's own contact is, in length units. What reaches farther
 /// down is another part of a concave collider, which a pit may hold.
 const BELOW: f32 = 0.005;
 
@@ -48,13 +48,13 @@ const PARALLEL: f32 = 1.2e-5;
 /// The same for a point of round shapes, and across the line of two: there points move with the normal.
 const ROUND_PARALLEL: f32 = 1.0e-8;
 
-/// Bodies slower than this against ground that does not move slide over nothing, in m/s.
+/// Bodies slower than this against ground that does not move slide over nothing, in length units per second.
 const MOVING: f32 = 0.02;
 
-/// Dynamic bodies slower than this are ground, in m/s ...
+/// Dynamic bodies slower than this are ground, in length units per second ...
 const RESTING: f32 = 0.05;
 
-/// ... for those that move faster than this against them, in m/s.
+/// ... for those that move faster than this against them, in length units per second.
 const SLIDING: f32 = 0.25;
 
 /// How many contacts a worker takes at a time.
@@ -69,6 +69,8 @@ struct Seen<'a> {
     origin: Vector,
     /// How far above a plane its points may lie.
     flush: f32,
+    /// How far below the plane the collider may reach.
+    below: f32,
     /// How far the collider moves against the ground until they meet here; 0 where it is now.
     motion: Vector,
     place: Place,
@@ -111,7 +113,9 @@ impl<'a> Seen<'a> {
             let placed_on = usize::from(matches!(shapes[0], Shape::Composite(_)));
             place = if placed_on == side { Place::Collider } else { Place::Ground };
         }
-        Self { manifold, normal: manifold.normal * sign, origin, flush: FLUSH + clipped, motion, place }
+        let unit = input.bodies.length_unit();
+        let (flush, below) = (FLUSH * unit + clipped, BELOW * unit);
+        Self { manifold, normal: manifold.normal * sign, origin, flush, below, motion, place }
     }
 
     /// The points on the ground, and those across on the collider, when they meet.
@@ -154,7 +158,7 @@ impl<'a> Seen<'a> {
         // Until they meet the collider goes down to the plane, not into it.
         let down = self.motion.dot(other.normal);
         let held = max(-max(nearest, 0.0) - down, 0.0);
-        lowest + held - other.plane() >= min(nearest, 0.0) - BELOW
+        lowest + held - other.plane() >= min(nearest, 0.0) - self.below
     }
 }
 
@@ -206,19 +210,19 @@ impl<S> NarrowPhaseInput<'_, S> {
 
     /// The side of a contact whose collider slides over the other one as over ground.
     pub(super) fn sliding_side(&self, contact: &Contact) -> Option<usize> {
+        let unit = self.bodies.length_unit();
+        let square = |speed: f32| (speed * unit) * (speed * unit);
         let relative = (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length_squared();
         // Most do not move. And deep overlap is pushed out from all sides.
-        if !(relative > min(SLIDING, MOVING) * min(SLIDING, MOVING)) || contact.flags.has(ContactFlags::DEEP)
-        {
+        if !(relative > square(min(SLIDING, MOVING))) || contact.flags.has(ContactFlags::DEEP) {
             return None;
         }
         match contact.bodies.map(|body| self.is_dynamic(body)) {
             [false, false] => None,
             [true, true] => (0..2).find(|side| {
-                relative > SLIDING * SLIDING
-                    && self.speed_squared(contact.bodies[1 - side]) < RESTING * RESTING
+                relative > square(SLIDING) && self.speed_squared(contact.bodies[1 - side]) < square(RESTING)
             }),
-            [is_of_a, _] => (relative > MOVING * MOVING).then_some(usize::from(!is_of_a)),
+            [is_of_a, _] => (relative > square(MOVING)).then_some(usize::from(!is_of_a)),
         }
     }
 

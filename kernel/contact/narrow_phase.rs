@@ -318,7 +318,7 @@ fn recycle<S>(
     if is_kept {
         flags::recycled(input, contact);
         let [allowed, moved] = batch.ways(place);
-        contact.calm_down(input.poses(contact, &mut [None; 2]), allowed, moved);
+        contact.calm_down(input.poses(contact, &mut [None; 2]), input.bodies.travel_scale, allowed, moved);
     }
     is_kept
 }

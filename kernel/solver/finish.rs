@@ -5,7 +5,7 @@ use super::{BodyRow, RowView, Solver};
 use crate::contact::{CHORD, RECYCLE_COS};
 use crate::data::{BitSet, Parts};
 use crate::math::{F32x4, Ids, Lane, Rot, Vector, WorldPose};
-use crate::table::{BodyParts, BodyTable, FAR, Velocity, travelled};
+use crate::table::{BodyParts, BodyTable, FAR, Velocity};
 use crate::thread_pool::ThreadPool;
 use std::sync::{Mutex, PoisonError};
 
@@ -119,7 +119,7 @@ impl Finish<'_> {
             let way = way.get(i) + CHORD * body.extent * angle.get(i);
             let is_far = is_near >> i & 1 == 0 || self.moved.contains(row);
             // One more, for what is rounded down.
-            let travel = if is_far { FAR } else { travelled(way) + u32::from(way > 0.0) };
+            let travel = if is_far { FAR } else { bodies.travel_scale.travelled(way) + u32::from(way > 0.0) };
             pose.travel = pose.travel.wrapping_add(travel);
             if motion.is_moved() {
                 (pose.center, pose.rotation) = (center, rotation);

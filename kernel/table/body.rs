@@ -94,7 +94,7 @@ pub struct BodyPose {
     pub rotation: Rot,
     /// An upper bound of the speed of the surface, m/s.
     pub speed: f32,
-    /// An upper bound of the way of the surface so far, in units of 2⁻²⁴ m. It overflows.
+    /// An upper bound of the way of the surface so far, in units of 2⁻²⁴ length units. It overflows.
     pub travel: u32,
     /// Counter of changes that invalidate cached contacts: kind, centre of mass, teleports.
     pub revision: u32,
@@ -126,22 +126,44 @@ impl Velocity {
     }
 }
 
-/// Travels are counted in this many units per metre. More overflows sooner, fewer count too much for what hardly moves.
+/// Travels are counted in this many units per length unit. More overflows sooner, fewer count too much for what hardly moves.
 const TRAVEL_UNITS: f32 = (1 << 24) as f32;
 
 /// The travel of a way of any length that counts as far: a quarter of the count, so that the sum of two does not overflow.
 pub(crate) const FAR: u32 = 1 << 30;
 
-/// The travel of a way in metres, at most [`FAR`]; 0 if it is negative or NaN.
-#[inline(always)]
-pub(crate) fn travelled(way: f32) -> u32 {
-    ((way * TRAVEL_UNITS) as u32).min(FAR)
+/// How the travels of all bodies of a table are counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TravelScale {
+    /// Units per metre.
+    units: f32,
+    /// Metres per unit.
+    metres: f32,
 }
 
-/// The way of a difference of travels, in metres.
-#[inline(always)]
-pub(crate) fn way_of(travel: i32) -> f32 {
-    travel as f32 * (1.0 / TRAVEL_UNITS)
+impl Default for TravelScale {
+    fn default() -> Self {
+        Self::new(1.0)
+    }
+}
+
+impl TravelScale {
+    /// For a length unit in metres.
+    fn new(length_unit: f32) -> Self {
+        Self { units: TRAVEL_UNITS / length_unit, metres: length_unit / TRAVEL_UNITS }
+    }
+
+    /// The travel of a way in metres, at most [`FAR`]; 0 if it is negative or NaN.
+    #[inline(always)]
+    pub(crate) fn travelled(self, way: f32) -> u32 {
+        ((way * self.units) as u32).min(FAR)
+    }
+
+    /// The way of a difference of travels, in metres.
+    #[inline(always)]
+    pub(crate) fn way_of(self, travel: i32) -> f32 {
+        travel as f32 * self.metres
+    }
 }
 
 /// All bodies of the simulation, sleeping ones included.
@@ -156,6 +178,7 @@ pub struct BodyTable {
     pub velocities: Vec<Velocity>,
     /// Solver row of each body in this step. Bodies without a row have 0, the row of the immovable dummy.
     pub(crate) rows: Vec<u32>,
+    pub(crate) travel_scale: TravelScale,
     /// Bodies whose velocity was set by hand since the embedder last emptied this set. Their boxes must be swept before
     /// pairs are found.
     pub pushed: BitSet,
@@ -317,6 +340,22 @@ impl BodyTable {
             poses: Parts::of(&mut self.poses),
             velocities: Parts::of(&mut self.velocities),
             rows: &self.rows,
+            travel_scale: self.travel_scale,
+        }
+    }
+
+    /// About how long things are, in metres. 1 if never set.
+    #[inline(always)]
+    pub fn length_unit(&self) -> f32 {
+        self.travel_scale.metres * TRAVEL_UNITS
+    }
+
+    /// Sets about how long things are, in metres. Where it changes, all contacts are looked at in the next step.
+    pub fn set_length_unit(&mut self, length_unit: f32) {
+        debug_assert!(length_unit > 0.0 && length_unit.is_finite(), "a length unit of {length_unit} m");
+        let scale = TravelScale::new(length_unit);
+        if core::mem::replace(&mut self.travel_scale, scale) != scale {
+            self.poses.iter_mut().for_each(|pose| pose.travel = pose.travel.wrapping_add(FAR));
         }
     }
 
@@ -372,6 +411,7 @@ pub(crate) struct BodyParts<'a> {
     pub(crate) velocities: Parts<'a, Velocity>,
     /// Row of each body in this step. No two bodies share a row other than 0.
     pub(crate) rows: &'a [u32],
+    pub(crate) travel_scale: TravelScale,
 }
 
 impl core::ops::Index<u32> for BodyTable {

@@ -7,7 +7,7 @@ mod facets;
 mod material;
 
 pub use body::{Body, BodyKind, BodyPose, BodyTable, RestSpeed, Velocity};
-pub(crate) use body::{BodyParts, FAR, travelled, way_of};
+pub(crate) use body::{BodyParts, FAR, TravelScale};
 pub use collider::{BodySize, Collider, ColliderDef, ColliderFlags, ColliderTable, Fattening, Layers, Reach};
 pub(crate) use collider::{MOST_TURN, is_swinging, turn};
 pub use constraint::{Constraint, ConstraintTable};

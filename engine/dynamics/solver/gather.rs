@@ -367,6 +367,7 @@ pub(crate) fn read_awake(
     system: SystemChangeTick,
 ) {
     tables.bodies.read = system.this_run();
+    tables.bodies.table.set_length_unit(unit.metres());
     let mut changed = core::mem::take(&mut tables.bodies.ids);
     changed.clear();
     let (unit, since) = (unit.metres(), Since::last_run(system));
