@@ -5,7 +5,7 @@ use crate::math::Vector;
 use crate::shape::{Hull, farthest};
 
 /// The weights of the corners of the point of a simplex that is nearest to the origin. `None` if the origin is inside.
-pub(crate) fn nearest_weights(corners: &[Vector<f64>]) -> Option<Weights> {
+pub(super) fn nearest_weights(corners: &[Vector<f64>]) -> Option<Weights> {
     match *corners {
         [_] => Some([1.0, 0.0, 0.0, 0.0]),
         [a, b] => Some(on_segment(a, b)),

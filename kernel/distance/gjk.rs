@@ -1,17 +1,25 @@
 //! The closest points of two convex cores (Gilbert, Johnson and Keerthi, "A Fast Procedure for Computing the Distance
 //! Between Complex Objects in Three-Dimensional Space", 1988), in `f64`.
 
-use super::{Convex, nearest_weights};
+use super::Convex;
+use super::dim::nearest_weights;
 use crate::math::{DIM, Pose, Rot, Vector};
 
 /// The most iterations. Polytopes need a few; curved cores gain about a digit every two.
 const MAX_ITERATIONS: usize = 64;
-/// Cores nearer than this share of the simplex's size touch: the rounding of `f64`, with room.
-const TOUCHING: f64 = 1.0e-10;
-/// The relative accuracy of distances, where it is more than what was asked for.
-const RELATIVE: f64 = 1.0e-7;
 
 type Wide = Vector<f64>;
+
+/// The Minkowski difference A − B of two cores, by its farthest points.
+pub(crate) trait Difference {
+    /// Cores nearer than this share of the simplex's size touch: the rounding of vertices, with room.
+    const TOUCHING: f64;
+    /// The relative accuracy of distances, where it is more than what was asked for.
+    const RELATIVE: f64;
+
+    /// The vertex farthest along a direction of about unit length.
+    fn vertex(&self, direction: Wide) -> Vertex;
+}
 
 /// The pose of one core in the frame of the other.
 #[derive(Clone, Copy)]
@@ -52,20 +60,52 @@ pub(crate) struct Cores {
 
 /// A vertex of the Minkowski difference A − B.
 #[derive(Clone, Copy, Default)]
-struct Vertex {
+pub(crate) struct Vertex {
     a: Wide,
     b: Wide,
     w: Wide,
     weight: f64,
+    /// The numbers of the features of A and B that it is made of; 0 if nobody asks.
+    pub(crate) features: [u32; 2],
 }
 
-/// A search for the closest points of core A and core B. It keeps its simplex, so that the search after a small motion of
-/// B is short.
-pub(crate) struct Search<'a> {
+impl Vertex {
+    /// The difference of a point of A and one of B.
+    #[inline]
+    pub(crate) fn new(a: Wide, b: Wide, features: [u32; 2]) -> Self {
+        Self { a, b, w: a - b, weight: 1.0, features }
+    }
+}
+
+/// Two cores, one of which moves.
+pub(crate) struct Moving<'a> {
     a: &'a Convex<'a>,
     b: &'a Convex<'a>,
     /// The pose of B in A's frame.
     frame: Frame,
+}
+
+impl Difference for Moving<'_> {
+    const TOUCHING: f64 = 1.0e-10;
+    const RELATIVE: f64 = 1.0e-7;
+
+    #[inline]
+    fn vertex(&self, direction: Wide) -> Vertex {
+        let a = self.a.farthest(direction.narrow()).widen();
+        let b = if self.b.is_point() {
+            self.frame.position
+        } else {
+            let inner = self.frame.rotation.inverse_rotate(-direction);
+            self.frame.position + self.frame.rotation.rotate(self.b.farthest(inner.narrow()).widen())
+        };
+        Vertex::new(a, b, [0; 2])
+    }
+}
+
+/// A search for the closest points of core A and core B. It keeps its simplex, so that the search after a small motion of
+/// B is short.
+pub(crate) struct Search<D> {
+    difference: D,
     simplex: [Vertex; DIM + 1],
     count: usize,
     /// The point of the simplex that is nearest to the origin.
@@ -90,35 +130,18 @@ pub(crate) fn closest_cores(
     guess: Wide,
     accuracy: Accuracy,
 ) -> Option<Cores> {
-    Search::new(a, b, *frame, guess).closest(accuracy)
+    Search::of_cores(a, b, *frame, guess).closest(accuracy)
 }
 
-impl<'a> Search<'a> {
+impl<'a> Search<Moving<'a>> {
     /// `guess` as in [`closest_cores`].
-    pub(crate) fn new(a: &'a Convex<'a>, b: &'a Convex<'a>, frame: Frame, guess: Wide) -> Self {
-        let mut search =
-            Self { a, b, frame, simplex: [Vertex::default(); DIM + 1], count: 1, nearest: Wide::ZERO };
-        search.simplex[0] = search.vertex(guess);
-        search.nearest = search.simplex[0].w;
-        search
+    pub(crate) fn of_cores(a: &'a Convex<'a>, b: &'a Convex<'a>, frame: Frame, guess: Wide) -> Self {
+        Self::new(Moving { a, b, frame }, guess)
     }
 
     /// The pose of B in A's frame.
     pub(crate) fn frame(&self) -> Frame {
-        self.frame
-    }
-
-    /// The vertex of A − B farthest along a direction of about unit length.
-    #[inline]
-    fn vertex(&self, direction: Wide) -> Vertex {
-        let a = self.a.farthest(direction.narrow()).widen();
-        let b = if self.b.is_point() {
-            self.frame.position
-        } else {
-            let inner = self.frame.rotation.inverse_rotate(-direction);
-            self.frame.position + self.frame.rotation.rotate(self.b.farthest(inner.narrow()).widen())
-        };
-        Vertex { a, b, w: a - b, weight: 1.0 }
+        self.difference.frame
     }
 
     /// Moves B, and finds the nearest point of the simplex again.
@@ -128,7 +151,7 @@ impl<'a> Search<'a> {
     }
 
     fn shift(&mut self, offset: Wide) {
-        self.frame.position += offset;
+        self.difference.frame.position += offset;
         for vertex in &mut self.simplex[..self.count] {
             vertex.b += offset;
             vertex.w = vertex.a - vertex.b;
@@ -144,45 +167,6 @@ impl<'a> Search<'a> {
                 (self.count, self.nearest) = (1, self.simplex[0].w);
             }
         }
-    }
-
-    /// The closest points. `None` if a number is not finite.
-    pub(crate) fn closest(&mut self, accuracy: Accuracy) -> Option<Cores> {
-        let mut gap = f64::NEG_INFINITY;
-        for _ in 0..MAX_ITERATIONS {
-            let square = self.nearest.length_squared();
-            if self.touches(square) {
-                return Some(touching(&self.simplex[..self.count]));
-            }
-            if !(square < f64::INFINITY) {
-                return None;
-            }
-            let distance = square.sqrt();
-            let new = self.vertex(self.nearest * (-1.0 / distance));
-            gap = self.nearest.dot(new.w) / distance;
-            let near = distance - gap <= accuracy.tolerance + RELATIVE * distance;
-            if self.has(&new) || near || gap > accuracy.beyond || self.count > DIM {
-                break;
-            }
-            let before = (self.simplex, self.count);
-            self.simplex[self.count] = new;
-            let Some((count, point)) = reduced(&mut self.simplex, self.count + 1) else {
-                return Some(touching(&self.simplex[..self.count + 1]));
-            };
-            if !(point.length_squared() < square) {
-                (self.simplex, self.count) = before;
-                break;
-            }
-            (self.count, self.nearest) = (count, point);
-            gap = f64::NEG_INFINITY;
-        }
-        let distance = self.nearest.length();
-        let normal = self.nearest * (-1.0 / distance);
-        if gap == f64::NEG_INFINITY {
-            gap = -normal.dot(self.vertex(normal).w);
-        }
-        let [a, b] = witness(&self.simplex[..self.count]);
-        Some(Cores { a, b, normal, distance, gap })
     }
 
     /// Moves B along the unit vector `direction` while planes are known to be farther than `target` between it and A, up
@@ -204,7 +188,7 @@ impl<'a> Search<'a> {
             }
             let distance = square.sqrt();
             let normal = self.nearest * (-1.0 / distance);
-            let mut new = self.vertex(normal);
+            let mut new = self.difference.vertex(normal);
             let gap = -normal.dot(new.w);
             let is_apart = gap > target + tolerance;
             if is_apart {
@@ -228,7 +212,7 @@ impl<'a> Search<'a> {
                     self.renew();
                     continue;
                 }
-            } else if self.has(&new) || distance - gap <= tolerance + RELATIVE * distance {
+            } else if self.has(&new) || distance - gap <= tolerance + Moving::RELATIVE * distance {
                 break;
             }
             if self.count > DIM {
@@ -250,16 +234,69 @@ impl<'a> Search<'a> {
         }
         Some(free)
     }
+}
+
+impl<D: Difference> Search<D> {
+    /// Begins with the vertex along a direction from A to B, of about unit length or zero.
+    pub(crate) fn new(difference: D, start: Wide) -> Self {
+        let first = difference.vertex(start);
+        let mut simplex = [Vertex::default(); DIM + 1];
+        simplex[0] = first;
+        Self { difference, simplex, count: 1, nearest: first.w }
+    }
+
+    /// The vertices that the closest points lie between.
+    pub(crate) fn simplex(&self) -> &[Vertex] {
+        &self.simplex[..self.count]
+    }
+
+    /// The closest points. `None` if a number is not finite.
+    pub(crate) fn closest(&mut self, accuracy: Accuracy) -> Option<Cores> {
+        let mut gap = f64::NEG_INFINITY;
+        for _ in 0..MAX_ITERATIONS {
+            let square = self.nearest.length_squared();
+            if self.touches(square) {
+                return Some(touching(self.simplex()));
+            }
+            if !(square < f64::INFINITY) {
+                return None;
+            }
+            let distance = square.sqrt();
+            let new = self.difference.vertex(self.nearest * (-1.0 / distance));
+            gap = self.nearest.dot(new.w) / distance;
+            let near = distance - gap <= accuracy.tolerance + D::RELATIVE * distance;
+            if self.has(&new) || near || gap > accuracy.beyond || self.count > DIM {
+                break;
+            }
+            let before = (self.simplex, self.count);
+            self.simplex[self.count] = new;
+            let Some((count, point)) = reduced(&mut self.simplex, self.count + 1) else {
+                return Some(touching(&self.simplex[..self.count + 1]));
+            };
+            if !(point.length_squared() < square) {
+                (self.simplex, self.count) = before;
+                break;
+            }
+            (self.count, self.nearest) = (count, point);
+            gap = f64::NEG_INFINITY;
+        }
+        let distance = self.nearest.length();
+        let normal = self.nearest * (-1.0 / distance);
+        if gap == f64::NEG_INFINITY {
+            gap = -normal.dot(self.difference.vertex(normal).w);
+        }
+        let [a, b] = witness(self.simplex());
+        Some(Cores { a, b, normal, distance, gap })
+    }
 
     /// Whether the simplex, whose nearest point has that squared distance, touches the origin.
     fn touches(&self, square: f64) -> bool {
-        let vertices = &self.simplex[..self.count];
-        let scale = vertices.iter().fold(0.0, |most: f64, v| most.max(v.w.length_squared()));
-        square <= TOUCHING * TOUCHING * scale
+        let scale = self.simplex().iter().fold(0.0, |most: f64, v| most.max(v.w.length_squared()));
+        square <= D::TOUCHING * D::TOUCHING * scale
     }
 
     fn has(&self, new: &Vertex) -> bool {
-        self.simplex[..self.count].iter().any(|v| v.w == new.w)
+        self.simplex().iter().any(|v| v.w == new.w && v.features == new.features)
     }
 }
 

@@ -7,9 +7,8 @@ mod convex;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
-mod gjk;
+pub(crate) mod gjk;
 mod simplex;
 
 pub(crate) use convex::Convex;
-pub(crate) use dim::nearest_weights;
 pub(crate) use gjk::{Accuracy, Cores, Frame, Search, closest_cores};

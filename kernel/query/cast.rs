@@ -182,7 +182,7 @@ fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, way: &Way, limit: f3
     let target = f64::from(a.radius) + f64::from(b.radius) + f64::from(max(way.config.target_distance, 0.0));
     let met = met_distance([(shape_a, &a), (shape_b, &b)]);
     let accuracy = Accuracy { tolerance: 0.1 * met, beyond: f64::INFINITY };
-    let mut search = Search::new(&a, &b, Frame::from(pose), direction * -1.0);
+    let mut search = Search::of_cores(&a, &b, Frame::from(pose), direction * -1.0);
     let free = search.advance(direction, target, met, f64::from(limit))?;
     let (mut way_done, mut normal) = (free.length, free.normal);
     for _ in 0..MAX_ROUNDS {

@@ -1,21 +1,12 @@
-//! The closest points of two separated polyhedra (Gilbert, Johnson and Keerthi, "A Fast Procedure
-//! for Computing the Distance Between Complex Objects in Three-Dimensional Space", 1988).
+//! The closest points of two separated cores, by the search of [`distance`](crate::distance).
 //!
-//! Used where separating axes understate the distance: between two vertices, or a vertex and an edge. The simplex is solved in
-//! `f64`, since tetrahedra may be thin.
+//! Used where separating axes understate the distance: between two vertices, or a vertex and an edge.
 
 use super::view::{MatrixPose, View};
-use crate::distance::nearest_weights;
+use crate::distance::gjk::{Accuracy, Difference, Search, Vertex};
 use crate::manifold::LocalManifold;
 use crate::math::{Vector, max};
 use crate::shape::Curved;
-
-/// The most iterations. No tested hull needs as many; it only ends the loop.
-const MAX_ITERATIONS: usize = 48;
-/// The loop stops at this relative gap between the upper and the lower bound of the squared distance.
-const GAP: f64 = 1.0e-6;
-
-type Wide = Vector<f64>;
 
 /// A convex core by its farthest points.
 pub(super) trait Core {
@@ -80,14 +71,25 @@ impl Closest {
     }
 }
 
-/// A vertex of the Minkowski difference A − B.
-#[derive(Clone, Copy, Default)]
-struct Vertex {
-    a: Wide,
-    b: Wide,
-    w: Wide,
-    ids: (u32, u32),
-    weight: f64,
+/// The Minkowski difference of two cores.
+struct Pair<'a, A, B> {
+    a: &'a A,
+    b: &'a B,
+    frame: &'a MatrixPose,
+}
+
+impl<A: Core, B: Core> Difference for Pair<'_, A, B> {
+    // Vertices are rounded to `f32`.
+    const TOUCHING: f64 = 3.2e-7;
+    const RELATIVE: f64 = 1.0e-6;
+
+    #[inline(always)]
+    fn vertex(&self, direction: Vector<f64>) -> Vertex {
+        let direction = direction.narrow();
+        let (a, i) = self.a.farthest_point(direction);
+        let (b, j) = self.b.farthest_point(-self.frame.direction_in(direction));
+        Vertex::new(a.widen(), self.frame.point(b).widen(), [i, j])
+    }
 }
 
 /// The closest points, or `None` if the cores touch or overlap.
@@ -115,80 +117,21 @@ pub(super) fn closest_within<A: Core, B: Core>(
     start: Vector,
     limit: f32,
 ) -> Option<Closest> {
+    let mut search = Search::new(Pair { a, b, frame }, start.widen());
     let limit = f64::from(limit);
-    let vertex = |direction: Vector| {
-        let (p, i) = a.farthest_point(direction);
-        let (q, j) = b.farthest_point(-frame.direction_in(direction));
-        let (p, q) = (p.widen(), frame.point(q).widen());
-        Vertex { a: p, b: q, w: p - q, ids: (i, j), weight: 1.0 }
+    let found =
+        search.closest(Accuracy { tolerance: 0.0, beyond: limit }).filter(|found| found.distance > 0.0)?;
+    // Numbers of both features, independent of the order of vertices. They are only compared from step to step.
+    let mask = |side: usize| {
+        search.simplex().iter().fold(0u32, |bits, vertex| bits | 1 << (vertex.features[side] % 15))
     };
-    let mut simplex = [Vertex::default(); 4];
-    simplex[0] = vertex(start);
-    let mut count = 1;
-    let mut nearest = simplex[0].w;
-    let mut scale = nearest.length_squared();
-    for _ in 0..MAX_ITERATIONS {
-        let square = nearest.length_squared();
-        // Distances below the rounding of the vertices count as touching.
-        if !(square > 1.0e-13 * scale) {
-            return None;
-        }
-        let new = vertex((nearest * (-1.0 / square.sqrt())).narrow());
-        scale = if new.w.length_squared() > scale { new.w.length_squared() } else { scale };
-        let bound = nearest.dot(new.w) / square.sqrt();
-        if bound > limit {
-            return Some(Closest { distance: bound as f32, ..witness(&simplex[..count], nearest) });
-        }
-        let known = simplex[..count].iter().any(|v| v.ids == new.ids && v.w == new.w);
-        if known || square - nearest.dot(new.w) <= GAP * square {
-            break;
-        }
-        let mut next = simplex;
-        next[count] = new;
-        let (next_count, point) = solve(&mut next, count + 1)?;
-        if !(point.length_squared() < square) {
-            break;
-        }
-        (simplex, count, nearest) = (next, next_count, point);
-    }
-    Some(witness(&simplex[..count], nearest))
-}
-
-fn witness(simplex: &[Vertex], nearest: Wide) -> Closest {
-    let sum = |f: fn(&Vertex) -> Wide| simplex.iter().fold(Wide::ZERO, |s, v| s + f(v) * v.weight);
-    let distance = nearest.length();
-    // Ids of both features, independent of the order of vertices. They are only compared from step to step.
-    let mask = |f: fn(&Vertex) -> u32| {
-        let mut bits = 0u32;
-        for v in simplex {
-            bits |= 1 << (f(v) % 15);
-        }
-        bits
-    };
-    Closest {
-        a: sum(|v| v.a).narrow(),
-        b: sum(|v| v.b).narrow(),
-        normal: (nearest * (-1.0 / distance)).narrow(),
-        distance: distance as f32,
-        feature: mask(|v| v.ids.0) << 15 | mask(|v| v.ids.1),
-    }
-}
-
-/// Reduces the simplex to its face nearest to the origin and returns the face's size and closest point. `None` if the origin
-/// is inside.
-fn solve(simplex: &mut [Vertex; 4], count: usize) -> Option<(usize, Wide)> {
-    let corners = simplex.map(|v| v.w);
-    let weights = nearest_weights(&corners[..count])?;
-    let mut kept = 0;
-    let mut point = Wide::ZERO;
-    for (i, weight) in weights.into_iter().enumerate().take(count) {
-        if weight > 0.0 {
-            simplex[kept] = Vertex { weight, ..simplex[i] };
-            point += simplex[kept].w * weight;
-            kept += 1;
-        }
-    }
-    Some((kept, point))
+    Some(Closest {
+        a: found.a.narrow(),
+        b: found.b.narrow(),
+        normal: found.normal.narrow(),
+        distance: if found.gap > limit { found.gap } else { found.distance } as f32,
+        feature: mask(0) << 15 | mask(1),
+    })
 }
 
 /// The distance below which closest points of shapes of these extents have no direction. Separating axes are used there.
