@@ -1,9 +1,7 @@
-//! Any two polyhedra, with radii: the separating axis, then the points.
-//!
-//! The axis of the last step is tested first (after Gregorius, "Robust Contact Creation for Physics Simulations", GDC 2015).
-//! Faces are preferred to edges unless edges are clearly better, so that the choice of points is the same from step to step.
+//! Any two polyhedra, with radii: the points along their separating axis.
 
 use super::across;
+use super::axis::{self, Axis, EDGES, EXACT, FACE_A, FACE_B, Pair as _, Sizes};
 use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference, clip};
 use super::gjk;
 use super::sat::{self, EdgeAxis, FaceAxis, Known};
@@ -13,21 +11,6 @@ use crate::math::{Pose, Vector, clamp, max};
 
 /// The number of faces of a triangle, which no solid has.
 const TRIANGLE_FACES: usize = 2;
-/// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of a face of A.
-pub(super) const FACE_A: u8 = 1;
-/// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of a face of B.
-pub(super) const FACE_B: u8 = 2;
-/// [`FeatureCache::kind`](crate::manifold::FeatureCache::kind) of an edge of each.
-pub(super) const EDGES: u8 = 3;
-/// A cached axis is kept if its separation changed by less than this share of the smaller shape's extent since the full
-/// search: 5 mm for a shape of 1 m. More keeps worse axes; less searches more often.
-pub(super) const CACHE_TOLERANCE: f32 = 0.005;
-/// An edge axis must beat the faces by this share of the smaller shape's extent, and the faces of B
-/// those of A by a tenth of it.
-pub(super) const PREFER_FACES: f32 = 0.002;
-/// An axis counts as exact if the nearest point is farther than its separation by at most this share of the smaller shape's
-/// extent.
-pub(super) const EXACT: f32 = 1.0e-3;
 
 /// Two polyhedra and their relative pose.
 struct Pair<'a> {
@@ -35,27 +18,7 @@ struct Pair<'a> {
     b: &'a View<'a>,
     b_in_a: MatrixPose,
     a_in_b: MatrixPose,
-    prediction: f32,
-    radius: f32,
-    smaller: f32,
-    larger: f32,
-}
-
-/// A feature that separates the pair.
-#[derive(Clone, Copy)]
-enum Axis {
-    FaceA(FaceAxis),
-    FaceB(FaceAxis),
-    Edges(EdgeAxis),
-}
-
-impl Axis {
-    fn separation(&self) -> f32 {
-        match self {
-            Self::FaceA(face) | Self::FaceB(face) => face.separation,
-            Self::Edges(edges) => edges.separation,
-        }
-    }
+    sizes: Sizes,
 }
 
 /// A reference face, and the incident polyhedron.
@@ -83,26 +46,12 @@ pub(super) fn collide(
     if a.faces.is_empty() && b.faces.is_empty() {
         return pair.build_faceless(out);
     }
-    if pair.try_cached(cache, out) {
+    if pair.cached(cache).is_some_and(|axis| pair.try_known(&axis, cache.separation, out)) {
         return;
     }
-    out.count = 0;
-    let axis = pair.search();
-    let separation = axis.separation();
-    *cache = remember(axis);
-    // Sizes that are NaN give no axis, or one with a NaN separation.
-    if !(separation <= pair.limit()) || separation == f32::NEG_INFINITY {
-        out.gap = max(separation - pair.radius, 0.0);
-        return;
-    }
-    let exact = pair.build(axis, out);
-    if separation > gjk::resolution(pair.larger, pair.smaller) {
-        if !exact {
-            pair.build_apart(separation, out);
-        }
-    } else if out.count == 0 {
-        pair.push_deepest(axis, out);
-    }
+    let axis = pair.search(sat::best_face(a, b, &pair.b_in_a, pair.sizes.limit()));
+    *cache = axis.cache();
+    pair.decide(&axis, out);
 }
 
 /// One point between the closest features of two separated polyhedra, where the axis understates the distance. Keeps present
@@ -115,20 +64,46 @@ pub(super) fn collide_apart(
     prediction: f32,
     out: &mut LocalManifold,
 ) {
-    Pair::new(a, b, pose, prediction).build_apart(separation, out);
+    Pair::new(a, b, pose, prediction).fill_apart(separation, out);
 }
 
-/// The cache for the next step. Features with an index above a byte are not cached.
-fn remember(axis: Axis) -> FeatureCache {
-    let separation = axis.separation();
-    let (kind, a, b) = match axis {
-        Axis::FaceA(f) => (FACE_A, f.face, 0),
-        Axis::FaceB(f) => (FACE_B, 0, f.face),
-        Axis::Edges(e) => (EDGES, e.a, e.b),
-    };
-    match (u8::try_from(a), u8::try_from(b)) {
-        (Ok(a), Ok(b)) => FeatureCache { kind, a, b, separation },
-        _ => FeatureCache::NONE,
+impl axis::Pair for Pair<'_> {
+    fn sizes(&self) -> &Sizes {
+        &self.sizes
+    }
+
+    fn best_face_of_b(&self) -> FaceAxis {
+        sat::best_face(self.b, self.a, &self.a_in_b, self.sizes.limit())
+    }
+
+    fn best_edges(&self, of_a: &FaceAxis, of_b: &FaceAxis, separation: f32) -> Option<EdgeAxis> {
+        let of_b_in_a = self.b_in_a.point(self.b.vertices[of_a.lowest]);
+        let of_a_in_b = self.a_in_b.point(self.a.vertices[of_b.lowest]);
+        let known = Known { of_b_in_a, of_a_in_b, separation };
+        sat::best_edges(self.a, self.b, &self.b_in_a, &known, self.sizes.limit())
+    }
+
+    fn build(&self, axis: &Axis, out: &mut LocalManifold) -> bool {
+        match axis {
+            Axis::FaceA(face) => self.build_face(face, false, out),
+            Axis::FaceB(face) => self.build_face(face, true, out),
+            Axis::Edges(edges) => self.build_edges(edges, out),
+        }
+    }
+
+    fn build_apart(&self, axis: &Axis, out: &mut LocalManifold) {
+        self.fill_apart(axis.separation(), out);
+    }
+
+    fn push_deepest(&self, axis: &Axis, out: &mut LocalManifold) {
+        let (axis, of_b) = match axis {
+            Axis::FaceA(face) => (face, false),
+            Axis::FaceB(face) => (face, true),
+            Axis::Edges(_) => return,
+        };
+        let (incident, frame) = if of_b { (self.a, &self.a_in_b) } else { (self.b, &self.b_in_a) };
+        let corner = frame.point(incident.vertices[axis.lowest]);
+        self.reference(axis, of_b).push_deepest(corner, axis.separation, out);
     }
 }
 
@@ -136,76 +111,24 @@ impl<'a> Pair<'a> {
     fn new(a: &'a View<'a>, b: &'a View<'a>, pose: &Pose, prediction: f32) -> Self {
         let b_in_a = MatrixPose::new(pose);
         let (larger, smaller) = extents(a, b);
-        let radius = a.radius + b.radius;
-        Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), prediction, radius, smaller, larger }
+        let sizes = Sizes { prediction, radius: a.radius + b.radius, smaller, larger };
+        Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), sizes }
     }
 
-    /// Cores farther apart than this have no contact.
-    fn limit(&self) -> f32 {
-        self.prediction + self.radius
-    }
-
-    /// Whether the cached axis decides the contact.
-    fn try_cached(&self, cache: &FeatureCache, out: &mut LocalManifold) -> bool {
+    /// The cached axis as it is now.
+    fn cached(&self, cache: &FeatureCache) -> Option<Axis> {
         let (i, j) = (cache.a as usize, cache.b as usize);
-        let axis = match cache.kind {
+        match cache.kind {
             FACE_A if i < self.a.faces.len() => {
-                Axis::FaceA(sat::face_separation(self.a, i, self.b, &self.b_in_a))
+                Some(Axis::FaceA(sat::face_separation(self.a, i, self.b, &self.b_in_a)))
             }
             FACE_B if j < self.b.faces.len() => {
-                Axis::FaceB(sat::face_separation(self.b, j, self.a, &self.a_in_b))
+                Some(Axis::FaceB(sat::face_separation(self.b, j, self.a, &self.a_in_b)))
             }
             EDGES if i < self.a.edges.len() && j < self.b.edges.len() => {
-                let Some(edges) = sat::edge_separation(self.a, i, self.b, j, &self.b_in_a) else {
-                    return false;
-                };
-                Axis::Edges(edges)
+                sat::edge_separation(self.a, i, self.b, j, &self.b_in_a).map(Axis::Edges)
             }
-            _ => return false,
-        };
-        let separation = axis.separation();
-        if separation > self.limit() {
-            out.gap = separation - self.radius;
-            return true;
-        }
-        if !((separation - cache.separation).abs() < CACHE_TOLERANCE * self.smaller) {
-            return false;
-        }
-        let exact = self.build(axis, out);
-        exact || (out.count > 0 && separation <= gjk::resolution(self.larger, self.smaller))
-    }
-
-    /// The axis of least penetration or largest separation, or the first beyond the limit.
-    fn search(&self) -> Axis {
-        let of_a = sat::best_face(self.a, self.b, &self.b_in_a, self.limit());
-        if of_a.separation > self.limit() {
-            return Axis::FaceA(of_a);
-        }
-        let of_b = sat::best_face(self.b, self.a, &self.a_in_b, self.limit());
-        if of_b.separation > self.limit() {
-            return Axis::FaceB(of_b);
-        }
-        let preference = PREFER_FACES * self.smaller;
-        let face = if of_b.separation > of_a.separation + 0.1 * preference {
-            Axis::FaceB(of_b)
-        } else {
-            Axis::FaceA(of_a)
-        };
-        let known = Known {
-            of_b_in_a: self.b_in_a.point(self.b.vertices[of_a.lowest]),
-            of_a_in_b: self.a_in_b.point(self.a.vertices[of_b.lowest]),
-            separation: face.separation() + preference,
-        };
-        sat::best_edges(self.a, self.b, &self.b_in_a, &known, self.limit()).map_or(face, Axis::Edges)
-    }
-
-    /// Fills the manifold from an axis. Returns whether its nearest point is as near as the separation along the axis, which is
-    /// then the true distance.
-    fn build(&self, axis: Axis, out: &mut LocalManifold) -> bool {
-        match axis {
-            Axis::FaceA(face) => self.build_face(&face, false, out),
-            Axis::FaceB(face) => self.build_face(&face, true, out),
-            Axis::Edges(edges) => self.build_edges(&edges, out),
+            _ => None,
         }
     }
 
@@ -239,11 +162,11 @@ impl<'a> Pair<'a> {
         let (mut polygon, mut spare) = (Polygon::<N>::new(), Polygon::<N>::new());
         clip::incident_polygon(incident, face, |v| (frame.point(v), ()), &mut polygon);
         let outline = reference.outline(axis.face).iter().map(|i| reference.vertices[*i as usize]);
-        let polygon = clip(normal, outline, [&mut polygon, &mut spare], self.smaller);
+        let polygon = clip(normal, outline, [&mut polygon, &mut spare], self.sizes.smaller);
         out.normal = if of_b { -self.b_in_a.direction(normal) } else { normal };
         let reference = self.reference(axis, of_b);
         let least = reference.fill(polygon, |corner| reference.height(corner.point), out);
-        least <= axis.separation + EXACT * self.smaller
+        least <= axis.separation + EXACT * self.sizes.smaller
     }
 
     /// The face of an axis.
@@ -255,23 +178,10 @@ impl<'a> Pair<'a> {
             normal: plane.normal,
             offset: plane.offset,
             radii: [reference.radius, incident.radius],
-            prediction: self.prediction,
+            prediction: self.sizes.prediction,
             to_a: of_b.then_some(&self.b_in_a),
             feature: Reference::feature_of(of_b, axis.face),
         }
-    }
-
-    /// Adds the deepest vertex under a face alone, where the shapes overlap beside the face. Only for the best of all
-    /// axes: under the cached face of an earlier step there may be nothing left.
-    fn push_deepest(&self, axis: Axis, out: &mut LocalManifold) {
-        let (axis, of_b) = match axis {
-            Axis::FaceA(face) => (face, false),
-            Axis::FaceB(face) => (face, true),
-            Axis::Edges(_) => return,
-        };
-        let (incident, frame) = if of_b { (self.a, &self.a_in_b) } else { (self.b, &self.b_in_a) };
-        let corner = frame.point(incident.vertices[axis.lowest]);
-        self.reference(&axis, of_b).push_deepest(corner, axis.separation, out);
     }
 
     fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {
@@ -283,8 +193,8 @@ impl<'a> Pair<'a> {
         let between = (point_a + normal * self.a.radius + point_b - normal * self.b.radius) * 0.5;
         let feature = 2 << 30 | (axis.a as u32 & 0x7fff) << 15 | axis.b as u32 & 0x7fff;
         (out.count, out.normal) = (0, normal);
-        if axis.separation - self.radius <= self.prediction {
-            out.push(between, axis.separation - self.radius, feature);
+        if axis.separation - self.sizes.radius <= self.sizes.prediction {
+            out.push(between, axis.separation - self.sizes.radius, feature);
             self.push_far_ends(axis, [ends_a, ends_b], out);
         }
         inside
@@ -298,9 +208,9 @@ impl<'a> Pair<'a> {
         }
         let normal = axis.normal;
         let mut push = |on_a: Vector, on_b: Vector, gap: f32, feature: u32| {
-            if gap > axis.separation && gap - self.radius <= self.prediction {
+            if gap > axis.separation && gap - self.sizes.radius <= self.sizes.prediction {
                 let point = (on_a + normal * self.a.radius + on_b - normal * self.b.radius) * 0.5;
-                out.push(point, gap - self.radius, 7 << 29 | feature);
+                out.push(point, gap - self.sizes.radius, 7 << 29 | feature);
             }
         };
         if let Some((on_b, gap)) = across::far_end(self.a, &self.a.edges[axis.a], ends_b, normal) {
@@ -318,18 +228,18 @@ impl<'a> Pair<'a> {
     fn build_faceless(&self, out: &mut LocalManifold) {
         out.count = 0;
         match gjk::closest(self.a, self.b, &self.b_in_a) {
-            Some(closest) => closest.fill_apart(self.radii(), f32::NEG_INFINITY, self.prediction, out),
+            Some(closest) => closest.fill_apart(self.radii(), f32::NEG_INFINITY, self.sizes.prediction, out),
             None => {
                 out.normal = Vector::Y;
-                out.push(self.a.center, -self.radius, 3 << 30);
+                out.push(self.a.center, -self.sizes.radius, 3 << 30);
             }
         }
     }
 
     /// See [`collide_apart`].
-    fn build_apart(&self, separation: f32, out: &mut LocalManifold) {
+    fn fill_apart(&self, separation: f32, out: &mut LocalManifold) {
         if let Some(closest) = gjk::closest(self.a, self.b, &self.b_in_a) {
-            closest.fill_apart(self.radii(), separation, self.prediction, out);
+            closest.fill_apart(self.radii(), separation, self.sizes.prediction, out);
         }
     }
 

@@ -1,11 +1,12 @@
 //! Two boxes, the most frequent pair, with a separating-axis test and clipping of its own.
 //!
 //! Fifteen axes (Gottschalk, Lin and Manocha, "OBBTree", 1996): three face normals each, nine products
-//! of edges. The rules of choice are those of [`convex`](super::convex).
+//! of edges. The rules of choice are those of [`axis`](super::axis).
 
-use super::convex::{self, CACHE_TOLERANCE, EDGES, EXACT, FACE_A, FACE_B, PREFER_FACES};
-use super::gjk;
+use super::axis::{self, Axis, EDGES, EXACT, FACE_A, FACE_B, Pair as _, Sizes};
+use super::convex;
 use super::reduce::Patch;
+use super::sat::{EdgeAxis, FaceAxis};
 use super::view::{MatrixPose, Small};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{F32x4, Lane, Num, Pose, Vector, clamp, max, min};
@@ -19,14 +20,14 @@ const MARGIN: f32 = 1.0e-3;
 const NEXT: [usize; 3] = [1, 2, 0];
 
 /// Two boxes and their relative pose.
-struct Pair {
+struct Pair<'a> {
     half_a: Vector,
     half_b: Vector,
     frame: MatrixPose,
     /// The centre of B in A's frame, and minus that of A in B's frame.
     offset: [Vector; 2],
-    prediction: f32,
-    smaller: f32,
+    pose: &'a Pose,
+    sizes: Sizes,
 }
 
 /// The contact of two boxes with the given half extents; see the module.
@@ -42,39 +43,77 @@ pub(super) fn collide(
     let (size_a, size_b) = (half_a.max_element(), half_b.max_element());
     let (larger, smaller) = (max(size_a, size_b), min(size_a, size_b));
     let offset = [frame.position, frame.direction_in(frame.position)];
-    let pair = Pair { half_a, half_b, frame, offset, prediction, smaller };
-    let exact = match pair.cached(cache) {
-        Some(separation) if separation > prediction => {
-            out.gap = separation;
-            return;
-        }
-        Some(separation) if (separation - cache.separation).abs() < CACHE_TOLERANCE * smaller => {
-            let exact = pair.build(cache.kind, cache.a, cache.b, separation, out);
-            exact || (out.count > 0 && separation <= gjk::resolution(larger, smaller))
-        }
-        _ => false,
-    };
-    if exact {
+    let sizes = Sizes { prediction, radius: 0.0, smaller, larger };
+    let pair = Pair { half_a, half_b, frame, offset, pose, sizes };
+    if pair.cached(cache).is_some_and(|axis| pair.try_known(&axis, cache.separation, out)) {
         return;
     }
-    *cache = pair.search();
-    let separation = cache.separation;
-    out.count = 0;
-    if separation > prediction {
-        out.gap = separation;
-        return;
+    let axis = pair.search(largest_of(pair.faces_of_a()));
+    *cache = axis.cache();
+    pair.decide(&axis, out);
+}
+
+/// The face with the largest separation, of those along each axis.
+#[inline(always)]
+fn largest_of(separations: Vector) -> FaceAxis {
+    let v = separations.to_array();
+    let i = usize::from(v[1] > v[0]);
+    let face = if v[2] > v[i] { 2 } else { i };
+    FaceAxis { face, separation: v[face], lowest: 0 }
+}
+
+impl axis::Pair for Pair<'_> {
+    #[inline(always)]
+    fn sizes(&self) -> &Sizes {
+        &self.sizes
     }
-    let exact = pair.build(cache.kind, cache.a, cache.b, separation, out);
-    if separation > gjk::resolution(larger, smaller) {
-        if !exact {
-            pair.build_apart(pose, separation, out);
+
+    #[inline(always)]
+    fn best_face_of_b(&self) -> FaceAxis {
+        largest_of(self.faces_of_b())
+    }
+
+    #[inline(always)]
+    fn best_edges(&self, _: &FaceAxis, _: &FaceAxis, known: f32) -> Option<EdgeAxis> {
+        self.search_edges(known)
+    }
+
+    #[inline(always)]
+    fn build(&self, axis: &Axis, out: &mut LocalManifold) -> bool {
+        match axis {
+            Axis::FaceA(face) => self.build_face(false, face.face, face.separation, out),
+            Axis::FaceB(face) => self.build_face(true, face.face, face.separation, out),
+            Axis::Edges(edges) => self.build_edges(edges, out),
         }
-    } else if out.count == 0 && cache.kind != EDGES {
-        pair.emit_deepest(cache, separation, out);
+    }
+
+    #[inline(never)]
+    fn build_apart(&self, axis: &Axis, out: &mut LocalManifold) {
+        let (a, b) = (Small::cuboid(self.half_a), Small::cuboid(self.half_b));
+        convex::collide_apart(&a.view(), &b.view(), self.pose, axis.separation(), self.sizes.prediction, out);
+    }
+
+    #[cold]
+    fn push_deepest(&self, axis: &Axis, out: &mut LocalManifold) {
+        let n = out.normal;
+        let sign = |v: f32| if v < 0.0 { -1.0 } else { 1.0 };
+        let (face, of_b, point) = match axis {
+            Axis::FaceA(face) => {
+                let d = self.frame.direction_in(-n);
+                let corner = Vector { x: sign(d.x), y: sign(d.y), z: sign(d.z) }.scale(self.half_b);
+                (face, false, self.frame.point(corner) - n * (0.5 * face.separation))
+            }
+            Axis::FaceB(face) => {
+                let corner = Vector { x: sign(n.x), y: sign(n.y), z: sign(n.z) }.scale(self.half_a);
+                (face, true, corner + n * (0.5 * face.separation))
+            }
+            Axis::Edges(_) => return,
+        };
+        out.push(point, face.separation, (face.face as u32 | u32::from(of_b) << 2) << 9 | 0xff);
     }
 }
 
-impl Pair {
+impl Pair<'_> {
     /// The separations along A's face normals.
     #[inline(always)]
     fn faces_of_a(&self) -> Vector {
@@ -105,9 +144,9 @@ impl Pair {
         (distance.abs() - of_a - of_b, distance, b[i1] * b[i1] + b[i2] * b[i2])
     }
 
-    /// The present separation along the cached axis.
+    /// The cached axis as it is now.
     #[inline(always)]
-    fn cached(&self, cache: &FeatureCache) -> Option<f32> {
+    fn cached(&self, cache: &FeatureCache) -> Option<Axis> {
         let (i, j) = (cache.a as usize, cache.b as usize);
         if i > 2 || j > 2 {
             return None;
@@ -117,47 +156,31 @@ impl Pair {
                 let along = |k: usize| self.frame.axes[k].to_array()[i].abs();
                 let (x, y, z) = (along(0), along(1), along(2));
                 let reach = x * self.half_b.x + y * self.half_b.y + z * self.half_b.z;
-                Some(self.offset[0].to_array()[i].abs() - self.half_a.to_array()[i] - reach)
+                let separation = self.offset[0].to_array()[i].abs() - self.half_a.to_array()[i] - reach;
+                Some(Axis::FaceA(FaceAxis { face: i, separation, lowest: 0 }))
             }
             FACE_B => {
                 let reach = self.frame.axes[j].abs().dot(self.half_a);
-                Some(self.offset[1].to_array()[j].abs() - self.half_b.to_array()[j] - reach)
+                let separation = self.offset[1].to_array()[j].abs() - self.half_b.to_array()[j] - reach;
+                Some(Axis::FaceB(FaceAxis { face: j, separation, lowest: 0 }))
             }
             EDGES => {
                 let (value, _, square) = self.edges(i, j);
-                (square > PARALLEL).then(|| value / square.sqrt())
+                let separation = value / square.sqrt();
+                (square > PARALLEL).then_some(Axis::Edges(EdgeAxis {
+                    a: i,
+                    b: j,
+                    normal: Vector::ZERO,
+                    separation,
+                }))
             }
             _ => None,
         }
     }
 
-    /// The best axis, or the first beyond the prediction distance.
-    fn search(&self) -> FeatureCache {
-        let best = |v: Vector| {
-            let v = v.to_array();
-            let i = usize::from(v[1] > v[0]);
-            let i = if v[2] > v[i] { 2 } else { i };
-            (i as u8, v[i])
-        };
-        let (a, of_a) = best(self.faces_of_a());
-        let mut found = FeatureCache { kind: FACE_A, a, b: 0, separation: of_a };
-        if of_a > self.prediction {
-            return found;
-        }
-        let (b, of_b) = best(self.faces_of_b());
-        let preference = PREFER_FACES * self.smaller;
-        if of_b > of_a + 0.1 * preference {
-            found = FeatureCache { kind: FACE_B, a: 0, b, separation: of_b };
-            if of_b > self.prediction {
-                return found;
-            }
-        }
-        self.search_edges(found, preference)
-    }
-
-    /// The face, or the best pair of edges if it is better by `preference`.
+    /// The best pair of edges if it is better than `least`. Its normal is left open.
     #[inline(always)]
-    fn search_edges(&self, mut found: FeatureCache, preference: f32) -> FeatureCache {
+    fn search_edges(&self, least: f32) -> Option<EdgeAxis> {
         // Row i of the rotation: the components of B's axes along axis i of A.
         let [x, y, z] = self.frame.axes;
         let rows = [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
@@ -166,7 +189,6 @@ impl Pair {
         let (signed, sizes) = (rows.map(lanes), rows.map(|r| turned(r, 0)));
         let (t, ha, hb) = (self.offset[0].to_array(), self.half_a.to_array(), self.half_b.to_array());
         let of_b = [lanes([hb[1], hb[2], hb[0]]), lanes([hb[2], hb[0], hb[1]])];
-        let least = found.separation + preference;
         let (bar, parallel) = (F32x4::splat(min(least, 0.0)), F32x4::splat(PARALLEL));
         let axis = |i: usize| {
             let (i1, i2) = (NEXT[i], NEXT[NEXT[i]]);
@@ -180,9 +202,9 @@ impl Pair {
         };
         let axes = [axis(0), axis(1), axis(2)];
         if !F32x4::any(F32x4::or(F32x4::or(axes[0].2, axes[1].2), axes[2].2)) {
-            return found;
+            return None;
         }
-        let mut least = least;
+        let (mut found, mut least) = (None, least);
         for (i, (value, square, open)) in axes.into_iter().enumerate() {
             let none = F32x4::splat(f32::NEG_INFINITY);
             let separations = F32x4::select(open, value / square.sqrt(), none);
@@ -190,25 +212,11 @@ impl Pair {
                 let separation = separations.get(j);
                 if separation > least {
                     least = separation;
-                    found = FeatureCache { kind: EDGES, a: i as u8, b: j as u8, separation };
+                    found = Some(EdgeAxis { a: i, b: j, normal: Vector::ZERO, separation });
                 }
             }
         }
         found
-    }
-
-    /// Fills the manifold from an axis. Returns whether its nearest point is as near as the separation along the axis.
-    #[inline(always)]
-    fn build(&self, kind: u8, a: u8, b: u8, separation: f32, out: &mut LocalManifold) -> bool {
-        match kind {
-            EDGES => self.build_edges(a as usize, b as usize, separation, out),
-            _ => self.build_face(
-                kind == FACE_B,
-                (if kind == FACE_B { b } else { a }) as usize,
-                separation,
-                out,
-            ),
-        }
     }
 
     /// Clips the face of one box that is most opposite to the face on `axis` of the other, which is A unless `of_b`.
@@ -246,8 +254,8 @@ impl Pair {
             p: local(along[0], other[along[0]]),
             q: local(along[1], other[along[1]]),
         };
-        let margin = MARGIN * self.smaller;
-        let clipped = quad.clip(half[i1] + margin, half[i2] + margin, self.prediction);
+        let margin = MARGIN * self.sizes.smaller;
+        let clipped = quad.clip(half[i1] + margin, half[i2] + margin, self.sizes.prediction);
 
         out.count = 0;
         out.normal = columns[i0] * if of_b { -side } else { side };
@@ -262,35 +270,14 @@ impl Pair {
             let point = origin + up * (half[i0] + 0.5 * height) + right * x + ahead * y;
             out.push(point, height, base | clipped.name(*k));
         }
-        clipped.least <= separation + EXACT * self.smaller
+        clipped.least <= separation + EXACT * self.sizes.smaller
     }
 
-    /// Overlap beside the reference face: the deepest corner alone. Only for the best of all axes: under the face of an
-    /// earlier step there may be nothing, because the other box has moved beside it.
-    #[cold]
-    fn emit_deepest(&self, face: &FeatureCache, separation: f32, out: &mut LocalManifold) {
-        let n = out.normal;
-        let sign = |v: f32| if v < 0.0 { -1.0 } else { 1.0 };
-        let of_b = face.kind == FACE_B;
-        let axis = u32::from(if of_b { face.b } else { face.a });
-        let point = if of_b {
-            Vector { x: sign(n.x), y: sign(n.y), z: sign(n.z) }.scale(self.half_a) + n * (0.5 * separation)
-        } else {
-            let d = self.frame.direction_in(-n);
-            let corner = Vector { x: sign(d.x), y: sign(d.y), z: sign(d.z) }.scale(self.half_b);
-            self.frame.point(corner) - n * (0.5 * separation)
-        };
-        out.push(point, separation, (axis | u32::from(of_b) << 2) << 9 | 0xff);
-    }
-
-    /// See [`convex::collide_apart`].
-    #[inline(never)]
-    fn build_apart(&self, pose: &Pose, separation: f32, out: &mut LocalManifold) {
-        let (a, b) = (Small::cuboid(self.half_a), Small::cuboid(self.half_b));
-        convex::collide_apart(&a.view(), &b.view(), pose, separation, self.prediction, out);
-    }
-
-    fn build_edges(&self, i: usize, j: usize, separation: f32, out: &mut LocalManifold) -> bool {
+    fn build_edges(
+        &self,
+        &EdgeAxis { a: i, b: j, separation, .. }: &EdgeAxis,
+        out: &mut LocalManifold,
+    ) -> bool {
         let direction = self.frame.axes[j];
         let axis = Vector::AXES[i].cross(direction);
         let (_, distance, square) = self.edges(i, j);
@@ -329,7 +316,7 @@ impl Pair {
         let from_b = self.frame.axes[next_b.0] * next_b.1;
         for (a, b) in [(1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
             let separation = separation + a * next_a.2 + b * next_b.2;
-            if separation > self.prediction {
+            if separation > self.sizes.prediction {
                 continue;
             }
             let (on_a, on_b, beyond) = cross(on_a + from_a * a, on_b + from_b * b);
@@ -338,7 +325,7 @@ impl Pair {
                 out.push((on_a + on_b) * 0.5, separation, feature ^ flips);
             }
         }
-        beyond <= EXACT * self.smaller
+        beyond <= EXACT * self.sizes.smaller
     }
 }
 

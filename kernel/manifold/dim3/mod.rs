@@ -4,6 +4,7 @@
 //! polyhedra (with radii) share [`convex`]. What is round about an axis is in [`curved`].
 
 mod across;
+mod axis;
 mod clip;
 mod convex;
 mod cuboids;

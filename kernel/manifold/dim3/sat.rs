@@ -32,7 +32,7 @@ pub(super) struct FaceAxis {
 pub(super) struct EdgeAxis {
     pub a: usize,
     pub b: usize,
-    /// The unit normal from A to B, in A's frame.
+    /// The unit normal from A to B, in the frame of the search.
     pub normal: Vector,
     pub separation: f32,
 }

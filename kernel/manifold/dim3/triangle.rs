@@ -1,12 +1,13 @@
 //! Triangles of a surface against one polyhedron with a radius, which is viewed once for all of them.
 //!
-//! It decides as [`convex`] does, and adds what a triangle has of its own: a single plane, arcs of 180° on the Gauss map, and
+//! It decides as all of [`axis`] do, and adds what a triangle has of its own: a single plane, arcs of 180° on the Gauss map, and
 //! often a proof that its face is the best axis, which saves the search for others. Everything is in the polyhedron's frame.
 
+use super::axis::{self, Axis, EXACT, Pair as _, Sizes};
 use super::clip::{self, Corner, FEW_CORNERS, LEAST_CORNERS, MAX_CORNERS, Polygon, Reference, clip};
-use super::convex::{EXACT, PREFER_FACES, closest_of_lines};
+use super::convex::closest_of_lines;
 use super::gjk::{self, Core};
-use super::sat::{PARALLEL, open_edges, remaining};
+use super::sat::{EdgeAxis, FaceAxis, PARALLEL, open_edges, remaining};
 use super::view::{Facing, MatrixPose, View, four};
 use crate::manifold::LocalManifold;
 use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
@@ -20,6 +21,8 @@ const STEEP: [f32; 2] = [0.980_198, 0.198_02];
 
 /// A triangle and the polyhedron, in the frame of the polyhedron.
 struct Pair<'a> {
+    /// The corners in the triangle's own frame, and here.
+    given: [Vector; 3],
     corners: [Vector; 3],
     /// Unit directions of the sides, each from its corner to the next.
     along: [Vector; 3],
@@ -30,10 +33,9 @@ struct Pair<'a> {
     view: &'a View<'a>,
     /// Transforms the polyhedron to the frame of the triangle.
     frame: MatrixPose,
-    prediction: f32,
-    /// The extents of both.
-    smaller: f32,
-    larger: f32,
+    sizes: Sizes,
+    /// The sides that may make an axis, as bits.
+    open: u32,
 }
 
 /// The planes through the sides across the face, outward, and that of the face.
@@ -55,33 +57,10 @@ impl Prism {
     }
 }
 
-/// One side of the triangle's face, and the vertex of the polyhedron that is lowest over it.
-#[derive(Clone, Copy)]
-struct Plane {
-    /// 1, or −1 for the back.
-    sign: f32,
-    lowest: usize,
-    separation: f32,
-}
-
-/// A feature that separates the pair.
-#[derive(Clone, Copy)]
-enum Axis {
-    /// The triangle's face.
-    Plane(Plane),
-    /// A face of the polyhedron, and the corner of the triangle that is lowest over it.
-    Face { face: usize, corner: usize, separation: f32 },
-    /// A side of the triangle and an edge of the polyhedron, with the unit normal from the triangle.
-    Edges { side: usize, edge: usize, normal: Vector, separation: f32 },
-}
-
-impl Axis {
-    fn separation(&self) -> f32 {
-        match self {
-            Self::Plane(plane) => plane.separation,
-            Self::Face { separation, .. } | Self::Edges { separation, .. } => *separation,
-        }
-    }
+/// 1 for the triangle's face, −1 for its back, which is face 1.
+#[inline(always)]
+fn sign_of(plane: &FaceAxis) -> f32 {
+    if plane.face == 0 { 1.0 } else { -1.0 }
 }
 
 impl Core for [Vector; 3] {
@@ -114,32 +93,22 @@ pub(super) fn collide(
     out: &mut LocalManifold,
 ) -> bool {
     (out.count, out.gap) = (0, 0.0);
-    let Some(pair) = Pair::new(corners, view, pose, prediction) else { return false };
-    let plane = pair.nearest_plane();
-    if plane.separation > pair.limit() {
+    let Some(mut pair) = Pair::new(corners, view, pose, prediction) else { return false };
+    let mut plane = pair.nearest_plane();
+    if plane.separation > pair.sizes.limit() {
         out.gap = max(plane.separation - view.radius, 0.0);
         return true;
     }
-    let sides = pair.open_sides(&plane);
-    if sides == 0 {
+    pair.open = pair.open_sides(&plane);
+    if pair.open == 0 {
         pair.build_plane(&plane, out);
         return true;
     }
-    let axis = pair.search(plane, sides);
-    let separation = axis.separation();
-    // Sizes that are NaN give a NaN separation.
-    if !(separation <= pair.limit()) {
-        out.gap = max(separation - view.radius, 0.0);
-        return true;
+    if plane.separation < 0.0 {
+        let back = pair.plane(1 - plane.face);
+        plane = if back.separation > plane.separation { back } else { plane };
     }
-    let is_exact = pair.build(&axis, out);
-    if separation > gjk::resolution(pair.larger, pair.smaller) {
-        if !is_exact {
-            pair.build_apart(corners, &axis, out);
-        }
-    } else if out.count == 0 {
-        pair.push_deepest(&axis, out);
-    }
+    pair.decide(&pair.search(plane), out);
     true
 }
 
@@ -155,115 +124,21 @@ pub(super) fn collide_face(
 ) {
     (out.count, out.gap) = (0, 0.0);
     let Some(pair) = Pair::new(corners, view, pose, prediction) else { return };
-    let plane = pair.plane(if pair.face.dot(normal) < 0.0 { -1.0 } else { 1.0 });
-    if plane.separation <= pair.limit() {
+    let plane = pair.plane(usize::from(pair.face.dot(normal) < 0.0));
+    if plane.separation <= pair.sizes.limit() {
         pair.build_plane(&plane, out);
     } else {
         out.gap = plane.separation - view.radius;
     }
 }
 
-impl<'a> Pair<'a> {
-    /// `None` for a triangle without area.
+impl axis::Pair for Pair<'_> {
     #[inline(always)]
-    fn new(corners: [Vector; 3], view: &'a View<'a>, pose: &Pose, prediction: f32) -> Option<Self> {
-        let [a, b, c] = corners;
-        let sides = [b - a, c - b, a - c];
-        let Facing { normal: face, scale } = Facing::of(sides)?;
-        let frame = MatrixPose::new(pose);
-        // Taken relative to the polyhedron first, so that rounding is small where they are near.
-        let [a, b, c] = corners.map(|corner| corner - frame.position);
-        let placed = frame.direction_in(four([a, b, c, c]));
-        let turned = frame.direction_in(four([sides[0], sides[1], sides[2], face]));
-        let sides = Vector { x: turned.x, y: turned.y, z: turned.z } * F32x4::splat(scale);
-        let along = sides * (F32x4::ONE / sides.length().max(F32x4::splat(f32::MIN_POSITIVE)));
-        let normal = turned.get(3);
-        let wide = Vector::<F32x4>::splat(normal);
-        let is_face = F32x4::ZERO.lt(F32x4::new([0.0, 0.0, 0.0, 1.0]));
-        let normals = Vector::select(is_face, wide, along.cross(wide));
-        let prism = Prism { normals, offsets: normals.dot(placed) };
-        let center = placed.get(0) + placed.get(1) + placed.get(2);
-        let arm = placed - Vector::splat(center * (1.0 / 3.0));
-        let arms = arm.length_squared();
-        let extent = max(max(arms.get(0), arms.get(1)), arms.get(2)).sqrt();
-        Some(Self {
-            corners: [placed.get(0), placed.get(1), placed.get(2)],
-            along: [along.get(0), along.get(1), along.get(2)],
-            face,
-            normal,
-            prism,
-            view,
-            frame,
-            prediction,
-            smaller: min(extent, view.extent),
-            larger: max(extent, view.extent),
-        })
+    fn sizes(&self) -> &Sizes {
+        &self.sizes
     }
 
-    /// Cores farther apart than this have no contact.
-    #[inline(always)]
-    fn limit(&self) -> f32 {
-        self.prediction + self.view.radius
-    }
-
-    /// One side of the face.
-    #[inline(always)]
-    fn plane(&self, sign: f32) -> Plane {
-        let (lowest, depth) = self.view.farthest(self.normal * -sign);
-        Plane { sign, lowest, separation: -depth - sign * self.normal.dot(self.corners[0]) }
-    }
-
-    /// The side of the face that the polyhedron's centre is on.
-    #[inline(always)]
-    fn nearest_plane(&self) -> Plane {
-        let height = self.normal.dot(self.view.center - self.corners[0]);
-        self.plane(if height < 0.0 { -1.0 } else { 1.0 })
-    }
-
-    /// The sides that may make an axis which separates more than a plane does, as bits. Without any the plane is the best of all
-    /// axes: its lowest vertex v is over the triangle.
-    ///
-    /// Let s be the separation along the plane's normal n, and ρ how far v is inside of a side, whose outward normal is u. An axis
-    /// m = n cos θ + u sin θ of the side separates by at most s cos θ − ρ sin θ, since v is no farther. That is at most s if s ≥ 0,
-    /// and if s < 0 for tan(θ/2) ≤ ρ/|s|. The rest is the axes around −n, along which the polyhedron's centre is deeper.
-    /// If that holds for all sides, it does for any axis: the triangle reaches at least the least ρ around v's foot.
-    #[inline(always)]
-    fn open_sides(&self, plane: &Plane) -> u32 {
-        let vertex = self.view.vertices[plane.lowest];
-        let depth = max(-plane.separation, 0.0);
-        let reach = -self.prism.heights(vertex);
-        let open = !F32x4::bits(F32x4::splat(REACH * depth).le(reach)) & SIDES;
-        if depth == 0.0 {
-            return open;
-        }
-        let arm = self.view.center - vertex;
-        let rise = arm.dot(self.normal) * plane.sign;
-        let aside = max(arm.length_squared() - rise * rise, 0.0).sqrt();
-        let [cos, sin] = STEEP;
-        if cos * (rise - depth) - sin * aside >= depth { open } else { SIDES }
-    }
-
-    /// The axis of least penetration or largest separation, or one beyond the limit. `plane` is that of the centre's side, and
-    /// `sides` are the open ones.
-    fn search(&self, mut plane: Plane, sides: u32) -> Axis {
-        if plane.separation < 0.0 {
-            let back = self.plane(-plane.sign);
-            if back.separation > plane.separation {
-                plane = back;
-            }
-        }
-        let (axis, corner) = self.best_face();
-        if axis.separation() > self.limit() {
-            return axis;
-        }
-        let preference = PREFER_FACES * self.smaller;
-        let best =
-            if axis.separation() > plane.separation + 0.1 * preference { axis } else { Axis::Plane(plane) };
-        self.best_edges(sides, self.corners[corner], best.separation() + preference).unwrap_or(best)
-    }
-
-    /// The face of the polyhedron with the largest separation, and the corner lowest over it; −∞ without faces.
-    fn best_face(&self) -> (Axis, usize) {
+    fn best_face_of_b(&self) -> FaceAxis {
         let corners = self.corners.map(Vector::<F32x4>::splat);
         let mut best = F32x4::splat(f32::NEG_INFINITY);
         let (mut at, mut number) = (F32x4::ZERO, F32x4::ZERO);
@@ -276,21 +151,17 @@ impl<'a> Pair<'a> {
             number += F32x4::ONE;
         }
         if self.view.faces.is_empty() {
-            return (Axis::Face { face: 0, corner: 0, separation: f32::NEG_INFINITY }, 0);
+            return FaceAxis { face: 0, separation: f32::NEG_INFINITY, lowest: 0 };
         }
         let (face, separation) = largest(best, at);
         let face = face.min(self.view.faces.len() - 1);
         let normal = self.view.faces[face].normal;
-        let corner = greatest(self.corners.map(|corner| -corner.dot(normal)));
-        (Axis::Face { face, corner, separation }, corner)
+        FaceAxis { face, separation, lowest: greatest(self.corners.map(|corner| -corner.dot(normal))) }
     }
 
-    /// The side of the triangle, out of `sides`, and the edge of the polyhedron with the largest separation, if that is larger
-    /// than `known`.
-    /// `corner` is the triangle's, deepest in the polyhedron. See [`sat`](super::sat); the arc of a side goes from the face's
-    /// normal to its reverse.
-    fn best_edges(&self, sides: u32, corner: Vector, known: f32) -> Option<Axis> {
-        let depth = min(known, 0.0);
+    /// See [`sat`](super::sat); the arc of a side goes from the face's normal to its reverse.
+    fn best_edges(&self, _: &FaceAxis, of_b: &FaceAxis, known: f32) -> Option<EdgeAxis> {
+        let (corner, depth) = (self.corners[of_b.lowest], min(known, 0.0));
         let mut best = known;
         let mut found = None;
         let normal = Vector::<F32x4>::splat(self.normal);
@@ -299,7 +170,7 @@ impl<'a> Pair<'a> {
                 continue;
             }
             let turn = normal.dot(block.direction);
-            for side in (0..FACE).filter(|side| sides >> side & 1 != 0) {
+            for side in (0..FACE).filter(|side| self.open >> side & 1 != 0) {
                 let along = Vector::<F32x4>::splat(self.along[side]);
                 let (left, right) = (block.left.dot(along), block.right.dot(along));
                 let crosses =
@@ -327,39 +198,147 @@ impl<'a> Pair<'a> {
         let (side, edge, is_forward) = found?;
         let axis = self.along[side].cross(self.view.edge_blocks[edge / 4].direction.get(edge % 4));
         let sign = if is_forward { 1.0 } else { -1.0 };
-        Some(Axis::Edges { side, edge, normal: axis * (sign / axis.length()), separation: best })
+        Some(EdgeAxis { a: side, b: edge, normal: axis * (sign / axis.length()), separation: best })
     }
 
-    /// Fills the manifold from an axis. Returns whether its nearest point is as near as the separation along the axis, which is
-    /// then the true distance.
     fn build(&self, axis: &Axis, out: &mut LocalManifold) -> bool {
-        match *axis {
-            Axis::Plane(plane) => self.build_plane(&plane, out),
-            Axis::Face { face, separation, .. } => {
-                let sides = self.view.faces[face].count as usize;
+        match axis {
+            Axis::FaceA(plane) => self.build_plane(plane, out),
+            Axis::FaceB(face) => {
+                let sides = self.view.faces[face.face].count as usize;
                 if sides + 3 < FEW_CORNERS {
-                    self.clip_triangle::<FEW_CORNERS>(face, separation, out)
+                    self.clip_triangle::<FEW_CORNERS>(face, out)
                 } else {
-                    self.clip_triangle::<MAX_CORNERS>(face, separation, out)
+                    self.clip_triangle::<MAX_CORNERS>(face, out)
                 }
             }
-            Axis::Edges { side, edge, normal, separation } => {
-                self.build_edges(side, edge, normal, separation, out)
-            }
+            Axis::Edges(edges) => self.build_edges(edges, out),
         }
+    }
+
+    fn build_apart(&self, axis: &Axis, out: &mut LocalManifold) {
+        let start = match axis {
+            Axis::FaceA(plane) => self.face * sign_of(plane),
+            Axis::FaceB(face) => -self.frame.direction(self.view.faces[face.face].normal),
+            Axis::Edges(edges) => self.frame.direction(edges.normal),
+        };
+        let limit = self.sizes.limit();
+        let Some(closest) = gjk::closest_within(&self.given, self.view, &self.frame, start, limit) else {
+            return;
+        };
+        closest.fill_apart([0.0, self.view.radius], axis.separation(), self.sizes.prediction, out);
+        if out.count == 0 {
+            out.gap = max(closest.distance - self.view.radius, 0.0);
+        }
+    }
+
+    fn push_deepest(&self, axis: &Axis, out: &mut LocalManifold) {
+        match axis {
+            Axis::FaceA(plane) => {
+                let vertex = self.view.vertices[plane.lowest];
+                self.reference(plane).push_deepest(vertex, plane.separation, out);
+            }
+            Axis::FaceB(face) => {
+                let corner = self.corners[face.lowest];
+                self.reference_of(face.face).push_deepest(corner, face.separation, out);
+            }
+            Axis::Edges(_) => {}
+        }
+    }
+}
+
+impl<'a> Pair<'a> {
+    /// `None` for a triangle without area.
+    #[inline(always)]
+    fn new(corners: [Vector; 3], view: &'a View<'a>, pose: &Pose, prediction: f32) -> Option<Self> {
+        let given = corners;
+        let [a, b, c] = corners;
+        let sides = [b - a, c - b, a - c];
+        let Facing { normal: face, scale } = Facing::of(sides)?;
+        let frame = MatrixPose::new(pose);
+        // Taken relative to the polyhedron first, so that rounding is small where they are near.
+        let [a, b, c] = corners.map(|corner| corner - frame.position);
+        let placed = frame.direction_in(four([a, b, c, c]));
+        let turned = frame.direction_in(four([sides[0], sides[1], sides[2], face]));
+        let sides = Vector { x: turned.x, y: turned.y, z: turned.z } * F32x4::splat(scale);
+        let along = sides * (F32x4::ONE / sides.length().max(F32x4::splat(f32::MIN_POSITIVE)));
+        let normal = turned.get(3);
+        let wide = Vector::<F32x4>::splat(normal);
+        let is_face = F32x4::ZERO.lt(F32x4::new([0.0, 0.0, 0.0, 1.0]));
+        let normals = Vector::select(is_face, wide, along.cross(wide));
+        let prism = Prism { normals, offsets: normals.dot(placed) };
+        let center = placed.get(0) + placed.get(1) + placed.get(2);
+        let arm = placed - Vector::splat(center * (1.0 / 3.0));
+        let arms = arm.length_squared();
+        let extent = max(max(arms.get(0), arms.get(1)), arms.get(2)).sqrt();
+        Some(Self {
+            given,
+            corners: [placed.get(0), placed.get(1), placed.get(2)],
+            along: [along.get(0), along.get(1), along.get(2)],
+            face,
+            normal,
+            prism,
+            view,
+            frame,
+            sizes: Sizes {
+                prediction,
+                radius: view.radius,
+                smaller: min(extent, view.extent),
+                larger: max(extent, view.extent),
+            },
+            open: SIDES,
+        })
+    }
+
+    /// The face, or its back.
+    #[inline(always)]
+    fn plane(&self, face: usize) -> FaceAxis {
+        let sign = if face == 0 { 1.0 } else { -1.0 };
+        let (lowest, depth) = self.view.farthest(self.normal * -sign);
+        FaceAxis { face, lowest, separation: -depth - sign * self.normal.dot(self.corners[0]) }
+    }
+
+    /// The side of the face that the polyhedron's centre is on.
+    #[inline(always)]
+    fn nearest_plane(&self) -> FaceAxis {
+        let height = self.normal.dot(self.view.center - self.corners[0]);
+        self.plane(usize::from(height < 0.0))
+    }
+
+    /// The sides that may make an axis which separates more than a plane does, as bits. Without any the plane is the best of all
+    /// axes: its lowest vertex v is over the triangle.
+    ///
+    /// Let s be the separation along the plane's normal n, and ρ how far v is inside of a side, whose outward normal is u. An axis
+    /// m = n cos θ + u sin θ of the side separates by at most s cos θ − ρ sin θ, since v is no farther. That is at most s if s ≥ 0,
+    /// and if s < 0 for tan(θ/2) ≤ ρ/|s|. The rest is the axes around −n, along which the polyhedron's centre is deeper.
+    /// If that holds for all sides, it does for any axis: the triangle reaches at least the least ρ around v's foot.
+    #[inline(always)]
+    fn open_sides(&self, plane: &FaceAxis) -> u32 {
+        let vertex = self.view.vertices[plane.lowest];
+        let depth = max(-plane.separation, 0.0);
+        let reach = -self.prism.heights(vertex);
+        let open = !F32x4::bits(F32x4::splat(REACH * depth).le(reach)) & SIDES;
+        if depth == 0.0 {
+            return open;
+        }
+        let arm = self.view.center - vertex;
+        let rise = arm.dot(self.normal) * sign_of(plane);
+        let aside = max(arm.length_squared() - rise * rise, 0.0).sqrt();
+        let [cos, sin] = STEEP;
+        if cos * (rise - depth) - sin * aside >= depth { open } else { SIDES }
     }
 
     /// The face as the reference of a contact.
     #[inline(always)]
-    fn reference(&self, plane: &Plane) -> Reference<'_> {
-        let normal = self.normal * plane.sign;
+    fn reference(&self, plane: &FaceAxis) -> Reference<'_> {
+        let normal = self.normal * sign_of(plane);
         Reference {
             normal,
             offset: normal.dot(self.corners[0]),
             radii: [0.0, self.view.radius],
-            prediction: self.prediction,
+            prediction: self.sizes.prediction,
             to_a: Some(&self.frame),
-            feature: Reference::feature_of(false, usize::from(plane.sign < 0.0)),
+            feature: Reference::feature_of(false, plane.face),
         }
     }
 
@@ -371,15 +350,15 @@ impl<'a> Pair<'a> {
             normal: plane.normal,
             offset: plane.offset,
             radii: [self.view.radius, 0.0],
-            prediction: self.prediction,
+            prediction: self.sizes.prediction,
             to_a: Some(&self.frame),
             feature: Reference::feature_of(true, face),
         }
     }
 
-    fn build_plane(&self, plane: &Plane, out: &mut LocalManifold) -> bool {
+    fn build_plane(&self, plane: &FaceAxis, out: &mut LocalManifold) -> bool {
         let view = self.view;
-        let incident = clip::incident_face(view, self.normal * plane.sign, plane.lowest);
+        let incident = clip::incident_face(view, self.normal * sign_of(plane), plane.lowest);
         let most = 3 + incident.map_or(view.vertices.len(), |face| view.faces[face].count as usize);
         if most < LEAST_CORNERS {
             self.clip_face::<LEAST_CORNERS>(plane, incident, out)
@@ -394,12 +373,12 @@ impl<'a> Pair<'a> {
     #[inline(never)]
     fn clip_face<const N: usize>(
         &self,
-        plane: &Plane,
+        plane: &FaceAxis,
         incident: Option<usize>,
         out: &mut LocalManifold,
     ) -> bool {
         let mut first = Polygon::<N, F32x4>::new();
-        let margin = clip::MARGIN * self.smaller;
+        let margin = clip::MARGIN * self.sizes.smaller;
         let margins = F32x4::new([margin, margin, margin, 0.0]);
         let place = |v| (v, self.prism.heights(v) - margins);
         clip::incident_polygon(self.view, incident, place, &mut first);
@@ -411,7 +390,7 @@ impl<'a> Pair<'a> {
         let outside = F32x4::bits(F32x4::ZERO.lt(highest));
         if F32x4::bits(F32x4::ZERO.lt(lowest)) & SIDES != 0 {
             // All of it is beyond one side.
-            (out.count, out.normal) = (0, self.face * plane.sign);
+            (out.count, out.normal) = (0, self.face * sign_of(plane));
             return false;
         }
         let least = if outside & SIDES == 0 {
@@ -425,89 +404,46 @@ impl<'a> Pair<'a> {
             }
             self.fill(polygon, plane, out)
         };
-        least <= plane.separation + EXACT * self.smaller
+        least <= plane.separation + EXACT * self.sizes.smaller
     }
 
     /// Fills the manifold with the corners of a clipped polygon. Returns their least height over the face.
     fn fill<const N: usize>(
         &self,
         polygon: &Polygon<N, F32x4>,
-        plane: &Plane,
+        plane: &FaceAxis,
         out: &mut LocalManifold,
     ) -> f32 {
-        out.normal = self.face * plane.sign;
-        let height = |corner: &Corner<F32x4>| corner.heights.get(FACE) * plane.sign;
+        out.normal = self.face * sign_of(plane);
+        let height = |corner: &Corner<F32x4>| corner.heights.get(FACE) * sign_of(plane);
         self.reference(plane).fill(polygon, height, out)
     }
 
     /// The triangle over a face of the polyhedron.
     #[inline(never)]
-    fn clip_triangle<const N: usize>(&self, face: usize, separation: f32, out: &mut LocalManifold) -> bool {
+    fn clip_triangle<const N: usize>(&self, axis: &FaceAxis, out: &mut LocalManifold) -> bool {
         let (mut polygon, mut spare) = (Polygon::<N>::new(), Polygon::<N>::new());
         (0..3).for_each(|i| polygon.push(i, self.corners[i as usize], ()));
-        let reference = self.reference_of(face);
-        let outline = self.view.outline(face).iter().map(|i| self.view.vertices[*i as usize]);
-        let polygon = clip(reference.normal, outline, [&mut polygon, &mut spare], self.smaller);
+        let reference = self.reference_of(axis.face);
+        let outline = self.view.outline(axis.face).iter().map(|i| self.view.vertices[*i as usize]);
+        let polygon = clip(reference.normal, outline, [&mut polygon, &mut spare], self.sizes.smaller);
         out.normal = -self.frame.direction(reference.normal);
         let height = |corner: &Corner| reference.height(corner.point);
-        reference.fill(polygon, height, out) <= separation + EXACT * self.smaller
+        reference.fill(polygon, height, out) <= axis.separation + EXACT * self.sizes.smaller
     }
 
-    fn build_edges(
-        &self,
-        side: usize,
-        edge: usize,
-        normal: Vector,
-        separation: f32,
-        out: &mut LocalManifold,
-    ) -> bool {
-        let view = self.view;
+    fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {
+        let (view, &EdgeAxis { a: side, b: edge, normal, separation }) = (self.view, axis);
         let ends = [self.corners[side], self.corners[(side + 1) % 3]];
         let ends_of = [view.edges[edge].tail, view.edges[edge].head].map(|i| view.vertices[i as usize]);
         let (point, point_of, is_inside) = closest_of_lines(ends, ends_of);
         let separation = separation - view.radius;
         (out.count, out.normal) = (0, self.frame.direction(normal));
-        if separation <= self.prediction {
+        if separation <= self.sizes.prediction {
             let between = (point + point_of - normal * view.radius) * 0.5;
             let feature = 2 << 30 | (side as u32) << 15 | edge as u32 & 0x7fff;
             out.push(self.frame.point(between), separation, feature);
         }
         is_inside
-    }
-
-    /// Adds the deepest vertex under a face alone, where the shapes overlap beside the face.
-    fn push_deepest(&self, axis: &Axis, out: &mut LocalManifold) {
-        match *axis {
-            Axis::Plane(plane) => {
-                let vertex = self.view.vertices[plane.lowest];
-                self.reference(&plane).push_deepest(vertex, plane.separation, out);
-            }
-            Axis::Face { face, corner, separation } => {
-                self.reference_of(face).push_deepest(self.corners[corner], separation, out);
-            }
-            Axis::Edges { .. } => {}
-        }
-    }
-
-    /// The unit normal from the triangle to the polyhedron, in the triangle's frame.
-    fn normal_of(&self, axis: &Axis) -> Vector {
-        match *axis {
-            Axis::Plane(plane) => self.face * plane.sign,
-            Axis::Face { face, .. } => -self.frame.direction(self.view.faces[face].normal),
-            Axis::Edges { normal, .. } => self.frame.direction(normal),
-        }
-    }
-
-    /// One point between the closest features, where the axis understates the distance. Keeps present points if the distance is
-    /// no larger. `corners` are in the triangle's frame.
-    fn build_apart(&self, corners: [Vector; 3], axis: &Axis, out: &mut LocalManifold) {
-        let (start, limit) = (self.normal_of(axis), self.limit());
-        let Some(closest) = gjk::closest_within(&corners, self.view, &self.frame, start, limit) else {
-            return;
-        };
-        closest.fill_apart([0.0, self.view.radius], axis.separation(), self.prediction, out);
-        if out.count == 0 {
-            out.gap = max(closest.distance - self.view.radius, 0.0);
-        }
     }
 }
