@@ -10,8 +10,10 @@ mod composite;
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
 mod dim;
+mod local;
 mod look;
 mod merge;
+mod pairs;
 mod parts;
 mod screen;
 #[cfg(test)]
@@ -19,75 +21,7 @@ mod tests_pairs;
 
 pub use cache::FeatureCache;
 pub use composite::{CompositeBuffers, collide_composite, collide_each_part};
-pub use dim::{collide, lead_rims};
+pub use dim::lead_rims;
+pub use local::{LocalManifold, LocalPoint};
 pub use look::Look;
-
-use crate::math::{MAX_POINTS, Vector, min};
-
-/// One contact point in the frame of shape A.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LocalPoint {
-    /// Midway between the two surfaces, in metres.
-    pub point: Vector,
-    /// The distance between the surfaces along the normal; negative where they overlap.
-    pub separation: f32,
-    /// The features of both shapes that make this point; equal in the next step if the features are.
-    pub feature: u32,
-}
-
-/// The contact of two convex shapes in the frame of shape A.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LocalManifold {
-    /// The unit normal from A to B.
-    pub normal: Vector,
-    /// The points; the first `count` are valid.
-    pub points: [LocalPoint; MAX_POINTS],
-    /// The number of points, 0 if the shapes are farther apart than the prediction distance.
-    pub count: usize,
-    /// A lower bound of the distance of shapes without points, in metres; 0 if it is not known.
-    pub gap: f32,
-    /// How far the core that each surface turns about is behind it, in metres: a centre, an axis, a centre of curvature.
-    pub radii: [f32; 2],
-    /// The groups of the facets of A and B, see [`Look::groups`]; 0 without.
-    pub groups: [u8; 2],
-    /// How far [`Look::motion`] closes the shapes along the normal until they meet, in metres; 0 if they are near now. If not 0, points
-    /// are on the shape that is not composite, or on B, where it is now.
-    pub closing: f32,
-}
-
-impl LocalManifold {
-    /// The valid points.
-    pub fn points(&self) -> &[LocalPoint] {
-        &self.points[..self.count]
-    }
-
-    /// A lower bound of the distance between the shapes, in metres.
-    pub fn lower_bound(&self) -> f32 {
-        match self.points() {
-            [] => self.gap,
-            points => points.iter().fold(f32::INFINITY, |least, p| min(least, p.separation)),
-        }
-    }
-
-    /// Adds a point. Points beyond `MAX_POINTS` are dropped: functions that find more reduce first.
-    pub fn push(&mut self, point: Vector, separation: f32, feature: u32) {
-        debug_assert!(self.count < MAX_POINTS, "a manifold is reduced before it is filled");
-        if self.count < MAX_POINTS {
-            self.points[self.count] = LocalPoint { point, separation, feature };
-            self.count += 1;
-        }
-    }
-
-    /// The same contact seen from shape B: `pose` is that of B in A's frame, which this manifold is in.
-    /// The result is in B's frame with the normal from B to A.
-    pub fn flipped(&self, pose: &crate::math::Pose) -> Self {
-        let mut out = *self;
-        out.normal = pose.rotation.inverse_rotate(-self.normal);
-        out.radii = [self.radii[1], self.radii[0]];
-        out.groups = [self.groups[1], self.groups[0]];
-        for p in &mut out.points[..self.count] {
-            p.point = pose.inverse_transform(p.point);
-        }
-        out
-    }
-}
+pub use pairs::collide;

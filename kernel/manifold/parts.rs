@@ -6,8 +6,8 @@
 use super::dim::{Convex, borders, face_normal};
 use super::merge::SAME_NORMAL;
 use super::screen::{Gaps, LANES, Screen};
-use super::{FeatureCache, LocalManifold, Look, MAX_POINTS, collide};
-use crate::math::{F32x4, Lane, Pose, Vector, max, min};
+use super::{FeatureCache, LocalManifold, Look, collide};
+use crate::math::{F32x4, Lane, MAX_POINTS, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Shape, Surface};
 use core::cell::Cell;
 

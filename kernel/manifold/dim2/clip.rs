@@ -148,8 +148,7 @@ pub(super) fn pair(a: usize, b: usize) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::{FeatureCache, LocalManifold};
-    use super::super::collide;
+    use super::super::super::{FeatureCache, LocalManifold, collide};
     use crate::math::{Pose, Rot, Vector};
     use crate::shape::{Cuboid, Shape};
 

@@ -10,7 +10,7 @@ use crate::math::{Pose, Vector};
 use crate::shape::Cuboid;
 
 /// Fills `out` for two cuboids. Edges and vertices are numbered as for polygons.
-pub(super) fn collide(
+pub(in crate::manifold) fn collide(
     a: &Cuboid,
     b: &Cuboid,
     pose: &Pose,

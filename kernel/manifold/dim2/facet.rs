@@ -1,10 +1,9 @@
 //! The segments of a surface: their ends, and contacts with their side alone.
 
 use super::clip::{Edge, Facing, Side};
-use super::collide;
 use super::points::Limits;
 use super::polygonal::{Buffer, view};
-use crate::manifold::{FeatureCache, LocalManifold, LocalPoint};
+use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, collide};
 use crate::math::{F32x4, Pose, Vector};
 use crate::shape::{Curved, Segment, Shape, direction};
 

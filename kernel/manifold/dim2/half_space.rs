@@ -6,20 +6,12 @@ use super::polygonal::Polygonal;
 use crate::math::{Pose, Vector};
 use crate::shape::HalfSpace;
 
-/// The place of the half-space in the pair.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Order {
-    First,
-    Second,
-}
-
 /// Fills `out` in the half-space's frame, with the normal out of it.
 pub(super) fn collide(
     plane: &HalfSpace,
     other: &Polygonal,
     pose: &Pose,
     prediction: f32,
-    order: Order,
     out: &mut LocalManifold,
 ) {
     let normal = plane.normal;
@@ -40,8 +32,7 @@ pub(super) fn collide(
         let h = other.vertices[i].dot(down) + offset;
         let separation = h - other.radius;
         if separation <= prediction {
-            let feature = if order == Order::First { pair(0, i) } else { pair(i, 0) };
-            out.push(v - normal * (0.5 * (h + other.radius)), separation, feature);
+            out.push(v - normal * (0.5 * (h + other.radius)), separation, pair(0, i));
         }
     };
     if other.len() == 1 {

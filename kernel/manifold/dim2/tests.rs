@@ -1,7 +1,7 @@
 //! Contacts against brute force in `f64`, and invariances.
 
 use super::super::{FeatureCache, LocalManifold, LocalPoint};
-use super::collide;
+use crate::manifold::collide;
 use crate::math::{Pose, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Curved, Foreign, HalfSpace, Hull, Segment, Shape, Triangle};
 use proptest::prelude::*;

@@ -1,7 +1,7 @@
 //! Ellipses against the best of many directions.
 
 use super::super::{FeatureCache, LocalManifold};
-use super::collide;
+use crate::manifold::collide;
 use crate::math::{Pose, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Curved, HalfSpace, Hull, Segment, Shape, Triangle};
 use proptest::prelude::*;

@@ -10,6 +10,7 @@ use super::sat::{EdgeAxis, FaceAxis};
 use super::view::{MatrixPose, Small};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{F32x4, Lane, Num, Pose, Vector, clamp, max, min};
+use crate::shape::Cuboid;
 
 /// Products of edges with a smaller squared sine between them have no direction.
 const PARALLEL: f32 = 2.5e-5;
@@ -30,10 +31,10 @@ struct Pair<'a> {
     sizes: Sizes,
 }
 
-/// The contact of two boxes with the given half extents; see the module.
-pub(super) fn collide(
-    half_a: Vector,
-    half_b: Vector,
+/// The contact of two boxes; see the module.
+pub(in crate::manifold) fn collide(
+    &Cuboid { half: half_a }: &Cuboid,
+    &Cuboid { half: half_b }: &Cuboid,
     pose: &Pose,
     prediction: f32,
     cache: &mut FeatureCache,

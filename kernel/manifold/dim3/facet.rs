@@ -2,7 +2,8 @@
 
 use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce_faces};
 use super::view::{Facing, Small, View};
-use super::{collide, curved, drop_unusable, is_near, triangle, with_view};
+use super::{curved, triangle, with_view};
+use crate::manifold::pairs::{collide, drop_unusable, is_near};
 use crate::manifold::{FeatureCache, LocalManifold, LocalPoint};
 use crate::math::{F32x4, Pose, Vector, max};
 use crate::shape::{Shape, Triangle};
@@ -65,7 +66,7 @@ impl<'a> Convex<'a> {
         Self { shape, core: None }
     }
 
-    /// Fills `out` with the contact of a triangle as if there were no other; see [`collide`](super::collide).
+    /// Fills `out` with the contact of a triangle as if there were no other; see [`collide`].
     pub fn collide_facet(&self, corners: [Vector; 3], pose: &Pose, prediction: f32, out: &mut LocalManifold) {
         if let Some(core) = self.core
             && is_near(pose)

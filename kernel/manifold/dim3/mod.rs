@@ -1,4 +1,4 @@
-//! Contact manifolds in space. `dim2` has the same function for the plane.
+//! Contact manifolds in space. `dim2` has the same functions for the plane.
 //!
 //! Balls and capsules have closed forms where they exist, two boxes have a function of their own, and all other pairs of
 //! polyhedra (with radii) share [`convex`]. What is round about an axis is in [`curved`].
@@ -31,51 +31,13 @@ mod view;
 use super::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector};
 use crate::shape::{Capsule, Curved, Segment, Shape};
+pub(super) use cuboids::collide as collide_cuboids;
 pub use curved::lead_rims;
 pub(super) use facet::{Border, Convex, borders, face_normal, facing, few_points, with_convex};
 use view::{Small, View};
 
-/// Centres farther apart than this, in metres, have no contact: their squares would overflow.
-const FARTHEST: f32 = 1.0e15;
-
-/// The contact of two shapes, `pose_b_in_a` being where B is in A's frame.
-///
-/// `out` gets the points no farther apart than `prediction` metres. It has none if a pose or size is not finite, and for two
-/// half-spaces, [composites](crate::shape::Composite) and foreign shapes. `cache` is that of the same pair from the step before, or [`FeatureCache::NONE`].
-pub fn collide(
-    a: &Shape,
-    b: &Shape,
-    pose_b_in_a: &Pose,
-    prediction: f32,
-    cache: &mut FeatureCache,
-    out: &mut LocalManifold,
-) {
-    (out.count, out.gap) = (0, 0.0);
-    if !is_near(pose_b_in_a) {
-        return;
-    }
-    if let (Shape::Cuboid(a), Shape::Cuboid(b)) = (a, b) {
-        cuboids::collide(a.half, b.half, pose_b_in_a, prediction, cache, out);
-    } else if rank(a) > rank(b) {
-        let inverse = pose_b_in_a.inverse();
-        dispatch(b, a, &inverse, prediction, cache, out);
-        *out = out.flipped(&inverse);
-    } else {
-        dispatch(a, b, pose_b_in_a, prediction, cache, out);
-    }
-    if !matches!((a, b), (Shape::Curved(_), _) | (_, Shape::Curved(_))) {
-        out.radii = [a.radius(), b.radius()];
-    }
-    drop_unusable(out);
-}
-
-/// Whether squares of distances between two shapes do not overflow.
-fn is_near(pose: &Pose) -> bool {
-    pose.position.abs().max_element() < FARTHEST && pose.rotation.is_finite()
-}
-
-/// The order of the shapes in a pair for the functions below.
-fn rank(shape: &Shape) -> u8 {
+/// The order of the shapes in a pair for [`dispatch`].
+pub(super) fn rank(shape: &Shape) -> u8 {
     match shape {
         Shape::HalfSpace(_) => 0,
         Shape::Cuboid(_) | Shape::Hull(_) | Shape::Triangle(_) => 1,
@@ -86,24 +48,13 @@ fn rank(shape: &Shape) -> u8 {
     }
 }
 
-/// Drops a contact whose numbers overflowed, as they do with sizes out of all proportion.
-#[inline]
-fn drop_unusable(out: &mut LocalManifold) {
-    if out.count == 0 {
-        return;
-    }
-    // `x * 0.0` is 0 unless x is infinite or NaN.
-    let mut zero = 0.0;
-    for p in out.points() {
-        zero += p.point.x * 0.0 + p.point.y * 0.0 + p.point.z * 0.0 + p.separation * 0.0;
-    }
-    if !((out.normal.length_squared() - 1.0).abs() < 1.0e-3 && zero == 0.0) {
-        out.count = 0;
-    }
+/// The feature of a point of the swapped pair: it names no order.
+pub(super) fn swapped_feature(feature: u32) -> u32 {
+    feature
 }
 
 /// The function of each pair, all by name: a new shape does not compile until its pairs are here.
-fn dispatch(
+pub(super) fn dispatch(
     a: &Shape,
     b: &Shape,
     pose: &Pose,
@@ -136,7 +87,7 @@ fn dispatch(
         }
         // Composites are collided part by part, and foreign shapes by their `ManifoldSource`.
         (_, Composite(_) | Foreign(_)) => {}
-        // `collide` swaps these.
+        // `collide` swaps these, or has taken them.
         (
             Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Curved(_) | Ball(_) | Composite(_)
             | Foreign(_),

@@ -1,10 +1,10 @@
 //! Manifolds against brute-force distances in `f64`, and the invariants of every pair.
 
-use super::collide;
 use super::oracle::Solid;
 use super::reduce::{Candidate, reduce};
 use super::sat;
 use super::view::{MatrixPose, View};
+use crate::manifold::collide;
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Curved, HalfSpace, Hull, Segment, Shape, Triangle};

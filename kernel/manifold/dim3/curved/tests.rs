@@ -1,11 +1,12 @@
 //! Frusta against the best of many directions, and where their points are.
 
 use super::super::tests::{bounded, deepest, fresh, pose, rotation, scaled, v, vector};
-use super::super::{FARTHEST, collide, with_view};
+use super::super::with_view;
 use super::patch::LEVEL;
 use super::{EXACT, PREFER_PLANES, SURE, bytes_of, deep, normal_of};
 use crate::distance::{Accuracy, Convex, Frame, closest_cores};
-use crate::manifold::{FeatureCache, LocalManifold};
+use crate::manifold::pairs::FARTHEST;
+use crate::manifold::{FeatureCache, LocalManifold, collide};
 use crate::math::{Pose, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Curved, HalfSpace, Segment, Shape, Triangle};
 use proptest::prelude::*;
