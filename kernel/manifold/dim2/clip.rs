@@ -2,22 +2,8 @@
 
 use super::super::LocalManifold;
 use super::points::{Limits, push_between};
+use super::polygonal::Edge;
 use crate::math::{Pose, Vector, max};
-
-/// An edge of a polygon, counter-clockwise, with the indices of its ends.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
-    pub(super) ends: [Vector; 2],
-    pub(super) indices: [usize; 2],
-}
-
-impl Edge {
-    /// The edge in the outer frame of `pose`.
-    #[inline]
-    pub(super) fn moved(&self, pose: &Pose) -> Self {
-        Self { ends: self.ends.map(|v| pose.transform(v)), indices: self.indices }
-    }
-}
 
 /// The shape of the reference edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +26,24 @@ pub(super) struct Facing {
 const ALIGNED: f32 = 1.0e-6;
 
 impl Facing {
+    /// A reference edge of `side` with its normal, in that side's frame. `facing` gives the edge of the other side that faces a
+    /// normal in that other side's frame.
+    #[inline]
+    pub(super) fn new(
+        side: Side,
+        (reference, normal): (Edge, Vector),
+        facing: impl FnOnce(Vector) -> Edge,
+        pose: &Pose,
+        limits: Limits,
+    ) -> Self {
+        if side == Side::A {
+            let incident = facing(pose.rotation.inverse_rotate(normal)).moved(pose);
+            return Self { side, normal, reference, incident, limits };
+        }
+        let normal = pose.rotation.rotate(normal);
+        Self { side, normal, reference: reference.moved(pose), incident: facing(normal), limits }
+    }
+
     /// Fills `out`. `is_separated` tells that the cores are separated along the reference normal; otherwise a corner is never taken
     /// for the closest feature.
     #[inline]

@@ -2,9 +2,9 @@
 //! polygons need sixteen vertices.
 
 use super::super::{FeatureCache, LocalManifold};
-use super::clip::{Edge, Facing, Side};
+use super::clip::{Facing, Side};
 use super::points::Limits;
-use super::polygonal::NORMALS;
+use super::polygonal::{Edge, NORMALS};
 use super::polygons::{Best, choose, known_edge, preference, remember};
 use crate::math::{Pose, Vector};
 use crate::shape::Cuboid;
@@ -41,14 +41,9 @@ pub(in crate::manifold) fn collide(
     }
 
     let (own, other) = if side == Side::A { (a, b) } else { (b, a) };
-    let (reference, incident, normal) = if side == Side::A {
-        let normal = NORMALS[best.edge];
-        (edge(own, best.edge), facing_edge(other, pose.rotation.inverse_rotate(normal)).moved(pose), normal)
-    } else {
-        let normal = pose.rotation.rotate(NORMALS[best.edge]);
-        (edge(own, best.edge).moved(pose), facing_edge(other, normal), normal)
-    };
-    Facing { side, normal, reference, incident, limits: Limits { radii: [0.0; 2], prediction } }
+    let reference = (edge(own, best.edge), NORMALS[best.edge]);
+    let limits = Limits { radii: [0.0; 2], prediction };
+    Facing::new(side, reference, |normal| facing_edge(other, normal), pose, limits)
         .contact(best.separation > 0.0, out);
 }
 

@@ -1,8 +1,8 @@
 //! The segments of a surface: their ends, and contacts with their side alone.
 
-use super::clip::{Edge, Facing, Side};
+use super::clip::{Facing, Side};
 use super::points::Limits;
-use super::polygonal::{Buffer, view};
+use super::polygonal::{Buffer, Edge, view};
 use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, collide};
 use crate::math::{F32x4, Pose, Vector};
 use crate::shape::{Curved, Segment, Shape, direction};
@@ -97,9 +97,8 @@ fn collide_side(
     }
     let mut room = Buffer::EMPTY;
     let Some(polygon) = view(other, &mut room) else { return };
-    let facing = pose.rotation.inverse_rotate(-normal);
-    let height = |i: usize| polygon.vertices[i].dot(facing);
-    let lowest = (1..polygon.len()).fold(0, |best, i| if height(i) > height(best) { i } else { best });
+    let facing = pose.rotation.inverse_rotate(normal);
+    let (lowest, _) = polygon.lowest(facing);
     let vertex = pose.transform(polygon.vertices[lowest]);
     let [a, b] = corners;
     // Counter-clockwise, the edge has its normal on the right.
@@ -118,17 +117,11 @@ fn collide_side(
         }
         return;
     }
-    let before = polygon.previous(lowest);
-    let turned = polygon.normals[before].dot(facing) > polygon.normals[lowest].dot(facing);
-    let first = if turned { before } else { lowest };
-    let second = polygon.next(first);
-    let incident =
-        Edge { ends: [polygon.vertices[first], polygon.vertices[second]], indices: [first, second] };
     Facing {
         side: Side::A,
         normal,
         reference: Edge { ends, indices },
-        incident: incident.moved(pose),
+        incident: polygon.edge(polygon.edge_facing(facing, lowest)).moved(pose),
         limits: Limits { radii: [0.0, polygon.radius], prediction },
     }
     .contact(false, out);

@@ -18,13 +18,7 @@ pub(super) fn collide(
     // The plane's normal and offset in the polygon's frame, so that only contact points are transformed.
     let down = pose.rotation.inverse_rotate(normal);
     let offset = pose.position.dot(normal);
-    let (mut lowest, mut height) = (0, f32::INFINITY);
-    for (i, v) in other.vertices.iter().enumerate() {
-        let h = v.dot(down);
-        if h < height {
-            (lowest, height) = (i, h);
-        }
-    }
+    let (lowest, height) = other.lowest(down);
     out.normal = normal;
     out.gap = height + offset - other.radius;
     let mut push = |i: usize| {
@@ -39,14 +33,6 @@ pub(super) fn collide(
         push(0);
         return;
     }
-    // The edge of the two at the lowest vertex that faces the plane more. In the order of the outline, so that points keep
-    // their order while the polygon rocks.
-    let before = other.previous(lowest);
-    if other.normals[before].dot(down) < other.normals[lowest].dot(down) {
-        push(before);
-        push(lowest);
-    } else {
-        push(lowest);
-        push(other.next(lowest));
-    }
+    // In the order of the outline, so that points keep their order while the polygon rocks.
+    other.edge(other.edge_facing(down, lowest)).indices.into_iter().for_each(push);
 }

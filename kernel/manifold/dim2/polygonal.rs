@@ -1,6 +1,6 @@
 //! The view of every bounded shape as a convex polygon with a radius.
 
-use crate::math::Vector;
+use crate::math::{Pose, Vector};
 use crate::shape::{Shape, direction, oriented};
 
 /// A convex polygon with a radius: one vertex for a ball, two for a segment, else counter-clockwise.
@@ -11,6 +11,21 @@ pub(super) struct Polygonal<'a> {
     pub(super) vertices: &'a [Vector],
     pub(super) normals: &'a [Vector],
     pub(super) radius: f32,
+}
+
+/// An edge of a polygon, counter-clockwise, with the indices of its ends.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    pub(super) ends: [Vector; 2],
+    pub(super) indices: [usize; 2],
+}
+
+impl Edge {
+    /// The edge in the outer frame of `pose`.
+    #[inline]
+    pub(super) fn moved(&self, pose: &Pose) -> Self {
+        Self { ends: self.ends.map(|v| pose.transform(v)), indices: self.indices }
+    }
 }
 
 /// A buffer for the vertices and normals of shapes that do not store them.
@@ -39,6 +54,33 @@ impl Polygonal<'_> {
     #[inline]
     pub(super) fn previous(&self, i: usize) -> usize {
         if i == 0 { self.len() - 1 } else { i - 1 }
+    }
+
+    /// The edge `i`.
+    #[inline]
+    pub(super) fn edge(&self, i: usize) -> Edge {
+        let j = self.next(i);
+        Edge { ends: [self.vertices[i], self.vertices[j]], indices: [i, j] }
+    }
+
+    /// The vertex least far along `normal`, and its distance.
+    #[inline]
+    pub(super) fn lowest(&self, normal: Vector) -> (usize, f32) {
+        let mut best = (0, f32::INFINITY);
+        for (i, v) in self.vertices.iter().enumerate() {
+            let h = v.dot(normal);
+            if h < best.1 {
+                best = (i, h);
+            }
+        }
+        best
+    }
+
+    /// Of the two edges at a vertex the one whose normal is more opposite to `normal`.
+    #[inline]
+    pub(super) fn edge_facing(&self, normal: Vector, vertex: usize) -> usize {
+        let before = self.previous(vertex);
+        if self.normals[before].dot(normal) < self.normals[vertex].dot(normal) { before } else { vertex }
     }
 }
 

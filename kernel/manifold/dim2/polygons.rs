@@ -4,7 +4,7 @@
 //! edge of separated polygons is beside the nearest corner, and this edge and the one facing it have the closest features.
 
 use super::super::{FeatureCache, LocalManifold};
-use super::clip::{Edge, Facing, Side};
+use super::clip::{Facing, Side};
 use super::points::Limits;
 use super::polygonal::Polygonal;
 use crate::math::{Pose, Vector, min};
@@ -57,23 +57,10 @@ pub(super) fn collide(
     }
 
     let (own, other) = if side == Side::A { (a, b) } else { (b, a) };
-    let (own_pose, other_pose) =
-        if side == Side::A { (&Pose::IDENTITY, pose) } else { (pose, &Pose::IDENTITY) };
-    let local = own.normals[best.edge];
-    let normal = own_pose.rotation.rotate(local);
-    // The incident edge is that of the two at the lowest vertex that faces the reference more.
-    let facing = other_pose.rotation.inverse_rotate(normal);
-    let before = other.previous(best.support);
-    let turned = other.normals[before].dot(facing) < other.normals[best.support].dot(facing);
-    let incident = edge(other, if turned { before } else { best.support });
-    Facing {
-        side,
-        normal,
-        reference: edge(own, best.edge).moved(own_pose),
-        incident: incident.moved(other_pose),
-        limits: Limits { radii: [own.radius, other.radius], prediction },
-    }
-    .contact(best.separation > 0.0, out);
+    let reference = (own.edge(best.edge), own.normals[best.edge]);
+    let facing = |normal| other.edge(other.edge_facing(normal, best.support));
+    let limits = Limits { radii: [own.radius, other.radius], prediction };
+    Facing::new(side, reference, facing, pose, limits).contact(best.separation > 0.0, out);
 }
 
 /// The reference: the better one of two edges. While the polygons overlap or touch, it is the reference of the last step, or
@@ -90,13 +77,6 @@ pub(super) fn choose(on_a: Best, on_b: Best, known: Option<(Side, Best)>, prefer
         _ if on_a.separation >= floor => (Side::A, on_a),
         _ => best,
     }
-}
-
-/// The edge `i` of a polygon.
-#[inline]
-fn edge(polygon: &Polygonal, i: usize) -> Edge {
-    let j = polygon.next(i);
-    Edge { ends: [polygon.vertices[i], polygon.vertices[j]], indices: [i, j] }
 }
 
 /// Up to this number of vertices, testing all of them for every edge is faster than walking: it has no branches.
@@ -116,7 +96,7 @@ const EDGE_OF_B: u8 = 2;
 fn most_separating(own: &Polygonal, other: &Polygonal, pose: &Pose, reach: f32) -> Best {
     let mut best = (f32::NEG_INFINITY, 0, Vector::ZERO);
     let few = other.len() <= FEW;
-    let mut support = if few { 0 } else { lowest(other, pose.rotation.rotate(own.normals[0])).0 };
+    let mut support = if few { 0 } else { other.lowest(pose.rotation.rotate(own.normals[0])).0 };
     for (i, (v, n)) in own.vertices.iter().zip(own.normals).enumerate() {
         let normal = pose.rotation.rotate(*n);
         let height = if few {
@@ -133,7 +113,7 @@ fn most_separating(own: &Polygonal, other: &Polygonal, pose: &Pose, reach: f32) 
             }
         }
     }
-    Best { edge: best.1, support: lowest(other, best.2).0, separation: best.0 }
+    Best { edge: best.1, support: other.lowest(best.2).0, separation: best.0 }
 }
 
 /// The vertex least far along `normal`. The walk starts at that of a normal up to half a turn behind. After nearly half a
@@ -156,19 +136,6 @@ fn descend(polygon: &Polygonal, normal: Vector, start: usize) -> usize {
     support
 }
 
-/// The vertex least far along `normal`, and its distance.
-#[inline]
-fn lowest(polygon: &Polygonal, normal: Vector) -> (usize, f32) {
-    let mut best = (0, f32::INFINITY);
-    for (i, v) in polygon.vertices.iter().enumerate() {
-        let h = v.dot(normal);
-        if h < best.1 {
-            best = (i, h);
-        }
-    }
-    best
-}
-
 /// The cached reference with its present separation.
 fn cached(
     a: &Polygonal,
@@ -180,7 +147,7 @@ fn cached(
     let (side, edge) = known_edge(cache)?;
     let (own, other, pose) = if side == Side::A { (a, b, inverse) } else { (b, a, pose) };
     let normal = pose.rotation.rotate(*own.normals.get(edge)?);
-    let (support, height) = lowest(other, normal);
+    let (support, height) = other.lowest(normal);
     let separation = height - own.vertices[edge].dot(own.normals[edge]) - pose.position.dot(normal);
     Some((side, Best { edge, support, separation }))
 }

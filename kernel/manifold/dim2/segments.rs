@@ -3,9 +3,9 @@
 //! Edge normals do not separate segments on one line, so the closest points are computed first.
 
 use super::super::LocalManifold;
-use super::clip::{Edge, Facing, Side, pair};
+use super::clip::{Facing, Side, pair};
 use super::points::{Limits, push_between};
-use super::polygonal::Polygonal;
+use super::polygonal::{Edge, Polygonal};
 use crate::math::{Pose, Vector};
 
 /// An end of one segment against the other segment.
