@@ -16,6 +16,7 @@ pub use hull3::{Edge, Face, Hull};
 pub(crate) use hull3::{EdgeBlock, FaceBlock, farthest, largest};
 
 use super::primitives::direction;
+pub(crate) use super::primitives::nearest_fraction;
 use super::{Ball, Capsule, Cuboid, RayHit, Segment, Triangle};
 use crate::math::{Inertia, Pose, Vector};
 use core::f32::consts::PI;

@@ -3,8 +3,9 @@
 //! Two edges touch in one point. A thin rod on the edge of another would rock on that, from one of its own edges to the next:
 //! the other end of the line across its face is hardly farther from the surface. So that end is a point, too.
 
+use super::clip::clip_line;
 use super::view::View;
-use crate::math::{Vector, max, min};
+use crate::math::Vector;
 use crate::shape::Edge;
 
 /// Faces with a smaller cosine to the normal are not lain in.
@@ -28,24 +29,9 @@ pub(super) fn far_end(
         return None;
     }
     let along = ends[1] - ends[0];
-    let (mut low, mut high) = (0.0f32, 1.0f32);
     let outline = &reference.loops[face.first as usize..(face.first + face.count) as usize];
-    for (i, tail) in outline.iter().enumerate() {
-        let head = outline[(i + 1) % outline.len()];
-        let [tail, head] = [*tail, head].map(|corner| reference.vertices[corner as usize]);
-        let outward = (head - tail).cross(normal);
-        let (start, rate) = (outward.dot(ends[0] - tail), outward.dot(along));
-        if rate > 0.0 {
-            high = min(high, -start / rate);
-        } else if rate < 0.0 {
-            low = max(low, -start / rate);
-        } else if start > 0.0 {
-            return None;
-        }
-    }
-    if !(low < high) {
-        return None;
-    }
+    let outline = outline.iter().map(|corner| reference.vertices[*corner as usize]);
+    let [(low, _), (high, _)] = clip_line(normal, outline, ends, 0.0).filter(|[low, high]| low.0 < high.0)?;
     let end = |t: f32| {
         let point = ends[0] + along * t;
         (point, (face.normal.dot(point) - face.offset) / cosine)

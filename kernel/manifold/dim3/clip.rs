@@ -1,9 +1,9 @@
 //! The part of an incident face that lies over a reference face (Sutherland and Hodgman, "Reentrant
 //! Polygon Clipping", 1974), with a feature id for each corner.
 
-use super::reduce::{Candidate, Candidates, reduce};
+use super::reduce::{Candidates, keep, reduce};
 use super::view::{MatrixPose, View};
-use crate::manifold::LocalManifold;
+use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{F32x4, Lane, Vector, min};
 
 /// Clipped polygons have less corners than this. A cut adds at most one per side.
@@ -168,6 +168,34 @@ pub(super) fn clip<const N: usize>(
     polygon
 }
 
+/// The range of a line, from one of `ends` to the other as 0…1, that lies over a face with a normal and an outline, and the
+/// sides that end it, if any. The sides are `margin` metres farther out.
+pub(super) fn clip_line(
+    normal: Vector,
+    outline: impl DoubleEndedIterator<Item = Vector> + Clone,
+    ends: [Vector; 2],
+    margin: f32,
+) -> Option<[(f32, Option<u32>); 2]> {
+    let along = ends[1] - ends[0];
+    let (mut low, mut high) = ((0.0, None), (1.0, None));
+    let mut tail = outline.clone().next_back()?;
+    for (side, head) in (0..).zip(outline) {
+        let outward = (head - tail).cross(normal);
+        let height = outward.dot(ends[0] - tail) - margin * outward.length();
+        let rate = outward.dot(along);
+        let t = -height / rate;
+        if rate > 0.0 && t < high.0 {
+            high = (t, Some(side));
+        } else if rate < 0.0 && t > low.0 {
+            low = (t, Some(side));
+        } else if rate == 0.0 && height > 0.0 {
+            return None;
+        }
+        tail = head;
+    }
+    (low.0 <= high.0).then_some([low, high])
+}
+
 /// A reference face, and what the points of its contact are made from.
 pub(super) struct Reference<'a> {
     pub normal: Vector,
@@ -216,19 +244,15 @@ impl Reference<'_> {
             let s = height(corner);
             least = min(s, least);
             if s - radius <= self.prediction {
-                candidates.push(Candidate {
+                candidates.push(LocalPoint {
                     point: self.middle(corner.point, s),
                     separation: s - radius,
                     feature: self.feature | corner.name,
                 });
             }
         }
-        out.count = 0;
         let list = candidates.as_slice();
-        let (kept, count) = reduce(list, out.normal);
-        for k in &kept[..count] {
-            out.push(list[*k].point, list[*k].separation, list[*k].feature);
-        }
+        keep(list, reduce(list, out.normal), out);
         least
     }
 

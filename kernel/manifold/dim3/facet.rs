@@ -1,6 +1,6 @@
 //! The triangles of a surface: their borders, and contacts with their face alone.
 
-use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce_faces};
+use super::reduce::{Candidates, MAX_CANDIDATES, keep, reduce_faces};
 use super::view::{Facing, Small, View};
 use super::{curved, triangle, with_view};
 use crate::manifold::pairs::{collide, drop_unusable, is_near};
@@ -118,13 +118,7 @@ fn borders_of(corners: [Vector; 3]) -> Option<[Border; 3]> {
 /// Puts the points that hold the same as all of `points` into a manifold.
 pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalManifold) {
     let mut candidates = Candidates::<MAX_CANDIDATES>::new();
-    for &LocalPoint { point, separation, feature } in points {
-        candidates.push(Candidate { point, separation, feature });
-    }
+    points.iter().for_each(|p| candidates.push(*p));
     let list = candidates.as_slice();
-    let (kept, count) = reduce_faces(list, out.normal);
-    out.count = 0;
-    for k in &kept[..count] {
-        out.push(list[*k].point, list[*k].separation, list[*k].feature);
-    }
+    keep(list, reduce_faces(list, out.normal), out);
 }

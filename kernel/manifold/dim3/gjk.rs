@@ -94,22 +94,12 @@ impl<A: Core, B: Core> Difference for Pair<'_, A, B> {
 
 /// The closest points, or `None` if the cores touch or overlap.
 pub(super) fn closest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> Option<Closest> {
-    closest_along(a, b, frame, frame.point(b.center()) - a.center())
+    closest_within(a, b, frame, frame.point(b.center()) - a.center(), f32::INFINITY)
 }
 
-/// The same, beginning with the vertices along a direction from A to B. The nearer it is to that between the closest points,
-/// the fewer iterations are needed.
-pub(super) fn closest_along<A: Core, B: Core>(
-    a: &A,
-    b: &B,
-    frame: &MatrixPose,
-    start: Vector,
-) -> Option<Closest> {
-    closest_within(a, b, frame, start, f32::INFINITY)
-}
-
-/// The same up to a limit: of cores that are farther apart the distance may be any between the limit and the true one, and
-/// the points are not the closest.
+/// The same up to a limit, beginning with the vertices along a direction from A to B: the nearer it is to that between the
+/// closest points, the fewer iterations are needed. Of cores that are farther apart the distance may be any between the limit
+/// and the true one, and the points are not the closest.
 pub(super) fn closest_within<A: Core, B: Core>(
     a: &A,
     b: &B,

@@ -1,7 +1,7 @@
 //! A half-space against the vertices of anything.
 
-use super::reduce::{Candidate, Candidates, MAX_CANDIDATES, reduce};
-use crate::manifold::LocalManifold;
+use super::reduce::{Candidates, MAX_CANDIDATES, keep, reduce};
+use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{Pose, Vector, min};
 use crate::shape::Shape;
 
@@ -39,13 +39,10 @@ fn vertices(
         out.gap = min(out.gap, separation);
         if separation <= prediction {
             let point = pose.transform(p) - normal * (radius + 0.5 * separation);
-            candidates.push(Candidate { point, separation, feature: i as u32 });
+            candidates.push(LocalPoint { point, separation, feature: i as u32 });
         }
     }
     out.normal = normal;
     let list = candidates.as_slice();
-    let (kept, count) = reduce(list, normal);
-    for k in &kept[..count] {
-        out.push(list[*k].point, list[*k].separation, list[*k].feature);
-    }
+    keep(list, reduce(list, normal), out);
 }

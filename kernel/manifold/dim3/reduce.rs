@@ -1,5 +1,6 @@
 //! Reduction of many candidate points to at most four: the deepest one, and those that span the largest area with it.
 
+use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{F32x4, Lane, Num, Vector, max};
 
 /// The most candidates a manifold function collects before it reduces.
@@ -17,31 +18,23 @@ const IN_THE_AIR: f32 = 0.5;
 /// A point must add at least this share of the patch's squared size. Less keeps points on a line.
 const FLAT: f32 = 1.0e-6;
 
-/// A candidate for a contact point.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Candidate {
-    pub point: Vector,
-    pub separation: f32,
-    pub feature: u32,
-}
-
 /// A list of at most `N` candidates on the stack.
 pub(super) struct Candidates<const N: usize> {
-    list: [Candidate; N],
+    list: [LocalPoint; N],
     count: usize,
 }
 
 impl<const N: usize> Candidates<N> {
     pub fn new() -> Self {
-        Self { list: [Candidate::default(); N], count: 0 }
+        Self { list: [LocalPoint::default(); N], count: 0 }
     }
 
-    pub fn as_slice(&self) -> &[Candidate] {
+    pub fn as_slice(&self) -> &[LocalPoint] {
         &self.list[..self.count]
     }
 
     /// Adds a candidate. A full list replaces the one with the largest separation.
-    pub fn push(&mut self, candidate: Candidate) {
+    pub fn push(&mut self, candidate: LocalPoint) {
         if self.count < N {
             self.list[self.count] = candidate;
             self.count += 1;
@@ -61,7 +54,7 @@ impl<const N: usize> Candidates<N> {
 
 /// The indices of the candidates to keep, and their number; see [`Patch::reduce`].
 #[inline]
-pub(super) fn reduce(list: &[Candidate], normal: Vector) -> ([usize; 4], usize) {
+pub(super) fn reduce(list: &[LocalPoint], normal: Vector) -> ([usize; 4], usize) {
     match list.len() {
         0..=4 => ([0, 1, 2, 3], list.len()),
         5..=16 => Patch::<4>::of(list, normal).reduce(),
@@ -74,11 +67,20 @@ pub(super) fn reduce(list: &[Candidate], normal: Vector) -> ([usize; 4], usize) 
 /// Candidates of one face are in a plane, so that its ends hold it. Of several faces the ends may be in the air while the body
 /// leans on an edge between them. One end of that would be dropped, sink in, and be pushed out, which adds energy.
 #[inline]
-pub(super) fn reduce_faces(list: &[Candidate], normal: Vector) -> ([usize; 4], usize) {
+pub(super) fn reduce_faces(list: &[LocalPoint], normal: Vector) -> ([usize; 4], usize) {
     match list.len() {
         0..=4 => ([0, 1, 2, 3], list.len()),
         5..=16 => Patch::<4>::of(list, normal).reduce_faces(),
         _ => Patch::<16>::of(list, normal).reduce_faces(),
+    }
+}
+
+/// Fills a manifold, whose normal is set, with the kept ones of some candidates.
+#[inline]
+pub(super) fn keep(list: &[LocalPoint], (kept, count): ([usize; 4], usize), out: &mut LocalManifold) {
+    out.count = 0;
+    for k in &kept[..count] {
+        out.push(list[*k].point, list[*k].separation, list[*k].feature);
     }
 }
 
@@ -93,7 +95,7 @@ pub(super) struct Patch<const B: usize> {
 type Mask = <F32x4 as Lane>::Mask;
 
 impl<const B: usize> Patch<B> {
-    fn of(list: &[Candidate], normal: Vector) -> Self {
+    fn of(list: &[LocalPoint], normal: Vector) -> Self {
         let u = normal.any_orthonormal();
         let v = normal.cross(u);
         let none = F32x4::splat(f32::INFINITY);

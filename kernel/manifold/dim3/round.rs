@@ -2,7 +2,7 @@
 
 use crate::manifold::LocalManifold;
 use crate::math::{Pose, Vector, clamp, max, min};
-use crate::shape::{Capsule, Triangle};
+use crate::shape::{Capsule, Triangle, nearest_fraction};
 
 /// Below this sine the common normal of two capsules is not computed from their cross product.
 const PARALLEL: f32 = 1.0e-3;
@@ -15,7 +15,7 @@ const LINE_TURN: f32 = 0.1;
 /// Capsules whose axes have a larger sine than this touch in a point, however short they are.
 const LINE_SINE: f32 = 0.2;
 
-/// Capsules touch along a line if they are side by side over more than this share of the shorter one.
+/// Lines are side by side if they are over more than this share of the shorter one.
 const LINE_SHARE: f32 = 0.01;
 
 /// A hundred times the rounding of a point, as a share of the largest number it was computed from. The direction between
@@ -88,8 +88,7 @@ pub(super) fn capsule_ball(
     out: &mut LocalManifold,
 ) {
     let axis = a.b - a.a;
-    let square = axis.length_squared();
-    let t = if square > 0.0 { clamp((center - a.a).dot(axis) / square, 0.0, 1.0) } else { 0.0 };
+    let t = nearest_fraction(a.a, a.b, center);
     let fallback = unit_or(axis, Vector::X).any_orthonormal();
     let point = a.a + axis * t;
     // A centre within rounding of the axis counts as on it.
@@ -203,10 +202,7 @@ fn nearest_on_triangle(t: &Triangle, p: Vector) -> Vector {
 fn nearest_on_sides(t: &Triangle, p: Vector) -> Vector {
     let (mut nearest, mut least) = (t.a, f32::INFINITY);
     for (from, to) in [(t.a, t.b), (t.b, t.c), (t.c, t.a)] {
-        let side = to - from;
-        let square = side.length_squared();
-        let along = if square > 0.0 { clamp((p - from).dot(side) / square, 0.0, 1.0) } else { 0.0 };
-        let point = from + side * along;
+        let point = from + (to - from) * nearest_fraction(from, to, p);
         let distance = (p - point).length_squared();
         if distance < least {
             (nearest, least) = (point, distance);
@@ -237,9 +233,9 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
     if side < 0.0 {
         fallback = -fallback;
     }
-    let lines = Lines { a, u, b0, v, cores };
+    let touching = Touching { lines: Lines::new(a.a, u, [b0, b0 + v], v), cores };
     if is_within(LINE_SINE)
-        && lines.touch(parallel, |middle| middle.direction_or(fallback, rounding), prediction, out)
+        && touching.touch(parallel, |middle| middle.direction_or(fallback, rounding), prediction, out)
     {
         return;
     }
@@ -255,19 +251,44 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
     }
 }
 
+/// A line from a point along a vector, another between two points, and their squared lengths.
+pub(super) struct Lines {
+    a: Vector,
+    pub u: Vector,
+    b: [Vector; 2],
+    pub v: Vector,
+    pub uu: f32,
+    pub vv: f32,
+}
+
+impl Lines {
+    pub fn new(a: Vector, u: Vector, b: [Vector; 2], v: Vector) -> Self {
+        Self { a, u, b, v, uu: u.length_squared(), vv: v.length_squared() }
+    }
+
+    /// The range of A in which B is beside it, as 0…1, if it is long enough. Both have a length.
+    pub fn shared(&self) -> Option<[f32; 2]> {
+        let ends = self.b.map(|p| clamp((p - self.a).dot(self.u) / self.uu, 0.0, 1.0));
+        let (low, high) = (min(ends[0], ends[1]), max(ends[0], ends[1]));
+        let shared = (high - low) * (high - low) * self.uu;
+        (shared > LINE_SHARE * LINE_SHARE * min(self.uu, self.vv)).then_some([low, high])
+    }
+
+    /// The point of A at a share, and that of B beside it.
+    pub fn at(&self, t: f32) -> [Vector; 2] {
+        let on_a = self.a + self.u * t;
+        [on_a, self.b[0] + self.v * clamp((on_a - self.b[0]).dot(self.v) / self.vv, 0.0, 1.0)]
+    }
+}
+
 /// Two capsules side by side.
-struct Lines<'a> {
-    a: &'a Capsule,
-    /// A's axis.
-    u: Vector,
-    /// B's first end and axis.
-    b0: Vector,
-    v: Vector,
+struct Touching {
+    lines: Lines,
     /// The closest points.
     cores: Cores,
 }
 
-impl Lines<'_> {
+impl Touching {
     /// A contact with a point at each end of the range in which both are side by side, if they are nearly parallel there.
     /// The normal is that in the middle of the range.
     fn touch(
@@ -277,26 +298,21 @@ impl Lines<'_> {
         prediction: f32,
         out: &mut LocalManifold,
     ) -> bool {
-        let &Self { a, u, b0, v, cores } = self;
-        let (uu, vv) = (u.length_squared(), v.length_squared());
-        if uu == 0.0 || vv == 0.0 {
+        let &Self { ref lines, cores } = self;
+        if lines.uu == 0.0 || lines.vv == 0.0 {
             return false;
         }
-        // B's ends along A, clamped to A.
-        let ends = [b0, b0 + v].map(|p| clamp((p - a.a).dot(u) / uu, 0.0, 1.0));
-        let (low, high) = (min(ends[0], ends[1]), max(ends[0], ends[1]));
-        let across = |s: f32| {
-            let p = a.a + u * s;
-            let q = b0 + v * clamp((p - b0).dot(v) / vv, 0.0, 1.0);
-            Cores { a: p, b: q, ..cores }
+        let Some([low, high]) = lines.shared() else { return false };
+        let across = |t: f32| {
+            let [a, b] = lines.at(t);
+            Cores { a, b, ..cores }
         };
         let [first, last] = [low, high].map(across);
         let between = cores.b - cores.a;
         let sway = [first, last].map(|end| ((end.b - end.a) - between).length_squared());
         let size = LINE_TURN * min(between.length(), cores.radius_a + cores.radius_b);
         let is_line = parallel || max(sway[0], sway[1]) < size * size;
-        let shared = (high - low) * (high - low) * uu;
-        if !is_line || !(shared > LINE_SHARE * LINE_SHARE * min(uu, vv)) {
+        if !is_line {
             return false;
         }
         out.normal = normal_or(&across(0.5 * (low + high)));

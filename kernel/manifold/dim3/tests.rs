@@ -1,11 +1,10 @@
 //! Manifolds against brute-force distances in `f64`, and the invariants of every pair.
 
 use super::oracle::Solid;
-use super::reduce::{Candidate, reduce};
+use super::reduce::reduce;
 use super::sat;
 use super::view::{MatrixPose, View};
-use crate::manifold::collide;
-use crate::manifold::{FeatureCache, LocalManifold};
+use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, collide};
 use crate::math::{Pose, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Curved, HalfSpace, Hull, Segment, Shape, Triangle};
 use proptest::prelude::*;
@@ -252,8 +251,8 @@ proptest! {
     fn reduction_keeps_the_deepest(
         points in prop::collection::vec((-1.0f32..1.0, -1.0f32..1.0, -0.1f32..0.1), 5..40),
     ) {
-        let list: Vec<Candidate> = points.iter().enumerate()
-            .map(|(i, (x, z, s))| Candidate { point: v(*x, 0.0, *z), separation: *s, feature: i as u32 }).collect();
+        let list: Vec<LocalPoint> = points.iter().enumerate()
+            .map(|(i, (x, z, s))| LocalPoint { point: v(*x, 0.0, *z), separation: *s, feature: i as u32 }).collect();
         let (kept, count) = reduce(&list, Vector::Y);
         let least = list.iter().map(|c| c.separation).fold(f32::INFINITY, f32::min);
         let size = list.iter().map(|c| (c.point - list[0].point).length()).fold(0.0, f32::max);

@@ -13,7 +13,7 @@ mod rim;
 mod tests;
 
 use super::gjk;
-use super::reduce::reduce;
+use super::reduce::{keep, reduce};
 use super::round::unit_or;
 use super::view::{MatrixPose, View};
 use crate::manifold::{FeatureCache, LocalManifold};
@@ -167,7 +167,7 @@ pub(super) fn half_space(
     region.fill_plane(&party::facing(b, down, &frame));
     *cache = FeatureCache { kind: PLANE_A, a: 0, b: region.phase, separation: out.gap };
     take(&region, out);
-    out.radii = [0.0, party::rolling(b, down)];
+    out.radii = [0.0, b.rolling(down)];
 }
 
 /// The contact of a frustum and a ball.
@@ -182,18 +182,15 @@ pub(super) fn ball(a: &Curved, center: Vector, radius: f32, prediction: f32, out
     out.normal = nearest.normal;
     let point = center - nearest.normal * (0.5 * (nearest.distance + radius));
     out.push(point, separation, 0);
-    let own = if nearest.on_side { party::rolling(a, nearest.normal) } else { 0.0 };
+    let own = if nearest.on_side { a.rolling(nearest.normal) } else { 0.0 };
     out.radii = [own, radius];
 }
 
 /// Takes at most four points of a region.
 fn take(region: &Region, out: &mut LocalManifold) {
-    (out.normal, out.count) = (region.normal, 0);
+    out.normal = region.normal;
     let list = region.candidates.as_slice();
-    let (kept, count) = reduce(list, region.normal);
-    for k in &kept[..count] {
-        out.push(list[*k].point, list[*k].separation, list[*k].feature);
-    }
+    keep(list, reduce(list, region.normal), out);
 }
 
 impl<'a, A: Party> Pair<'a, A> {
@@ -386,7 +383,7 @@ impl<'a, A: Party> Pair<'a, A> {
     fn set_radii(&self, out: &mut LocalManifold) {
         let n = out.normal;
         let down = -self.b_in_a.direction_in(n);
-        out.radii = [self.a.rolling(n), party::rolling(self.b, down)];
+        out.radii = [self.a.rolling(n), self.b.rolling(down)];
     }
 
     /// Fills the manifold from an axis that is no plane: the points of two lines side by side, or one point. `witness` are
@@ -395,7 +392,7 @@ impl<'a, A: Party> Pair<'a, A> {
         let n = found.normal;
         let mut region = self.region(found, 0);
         let down = -self.b_in_a.direction_in(n);
-        let line_b = party::line_along(self.b, down).map(|ends| ends.map(|p| self.b_in_a.point(p)));
+        let line_b = self.b.line_along(down).map(|ends| ends.map(|p| self.b_in_a.point(p)));
         let bar = found.separation + EXACT * self.smaller;
         if let (Some(a), Some(b)) = (self.a.line_along(n), line_b)
             && region.parallel_lines(&a, &b)
@@ -507,7 +504,7 @@ impl<'a, A: Party> Pair<'a, A> {
     fn refine(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
         let apart = APART * self.smaller;
         if !self.surely_overlaps(start)
-            && let Some(c) = gjk::closest_along(self.a, self.b, &self.b_in_a, start.normal)
+            && let Some(c) = gjk::closest_within(self.a, self.b, &self.b_in_a, start.normal, f32::INFINITY)
             && c.distance > gjk::resolution(self.larger, self.smaller)
         {
             let found = Found { axis: Axis::Line, normal: c.normal, separation: self.separation(c.normal) };
@@ -520,7 +517,9 @@ impl<'a, A: Party> Pair<'a, A> {
             let push = max(apart - separation, 0.0);
             let mut frame = self.b_in_a;
             frame.position += normal * push;
-            let Some(closest) = gjk::closest_along(self.a, self.b, &frame, normal) else { break };
+            let Some(closest) = gjk::closest_within(self.a, self.b, &frame, normal, f32::INFINITY) else {
+                break;
+            };
             let found = self.separation(closest.normal);
             let gain = found - best.0.separation;
             // Moved along another direction, the nearest points are not across from each other.

@@ -30,7 +30,7 @@ pub(super) trait Party: Core {
     fn axis(&self) -> Option<[Vector; 2]>;
     /// The line of the core that is farthest along a direction, and across it.
     fn line_along(&self, direction: Vector) -> Option<[Vector; 2]>;
-    /// The distance from the surface to what it rolls about, along a normal.
+    /// The distance from the surface to the axis or centre that it may roll about, along a normal; 0 if it cannot roll there.
     fn rolling(&self, normal: Vector) -> f32;
     /// The distance from a point in the core to its surface; negative outside.
     fn depth_of(&self, point: Vector) -> f32;
@@ -106,7 +106,17 @@ impl Party for Curved {
     }
 
     fn facing(&self, direction: Vector) -> Patch<'_> {
-        facing_part(self, direction)
+        let (length, around) = across(direction);
+        let end = self.end_along(length, direction.y);
+        let (outward, upward) = self.slope();
+        let on_side = length * outward + direction.y * upward;
+        let on_end = if end == 0 { -direction.y } else { direction.y };
+        // A tip has no end to stand on.
+        if on_end > on_side && self.radius_of(end) > 0.0 {
+            Patch::Disc(disc(self, end))
+        } else {
+            Patch::Line(side_line(self, around))
+        }
     }
 
     fn axis(&self) -> Option<[Vector; 2]> {
@@ -114,11 +124,23 @@ impl Party for Curved {
     }
 
     fn line_along(&self, direction: Vector) -> Option<[Vector; 2]> {
-        line_along(self, direction)
+        let ends = side_line(self, across(direction).1);
+        (self.half_height > 0.0 && is_across(&ends, direction)).then_some(ends)
     }
 
     fn rolling(&self, normal: Vector) -> f32 {
-        rolling(self, normal)
+        let (length, around) = across(normal);
+        let size = (length * length + normal.y * normal.y).sqrt();
+        if !(length > ROLLING * size) {
+            return 0.0;
+        }
+        let ends = side_line(self, around);
+        let radius = if is_across(&ends, normal) {
+            0.5 * (self.lower + self.upper)
+        } else {
+            self.radius_of(self.end_along(length, normal.y))
+        };
+        radius * size / max(length, f32::MIN_POSITIVE)
     }
 
     fn depth_of(&self, point: Vector) -> f32 {
@@ -156,23 +178,9 @@ fn side_line(shape: &Curved, around: Vector) -> [Vector; 2] {
     [0, 1].map(|end| around * shape.radius_of(end) + Vector::Y * shape.height_of(end))
 }
 
-fn facing_part(shape: &Curved, direction: Vector) -> Patch<'static> {
-    let (length, around) = across(direction);
-    let end = shape.end_along(length, direction.y);
-    let (outward, upward) = shape.slope();
-    let on_side = length * outward + direction.y * upward;
-    let on_end = if end == 0 { -direction.y } else { direction.y };
-    // A tip has no end to stand on.
-    if on_end > on_side && shape.radius_of(end) > 0.0 {
-        Patch::Disc(disc(shape, end))
-    } else {
-        Patch::Line(side_line(shape, around))
-    }
-}
-
 /// The part of a frustum that faces a direction of its own frame most, of those at the farthest point; in the outer frame.
-pub(super) fn facing(shape: &Curved, direction: Vector, frame: &MatrixPose) -> Patch<'static> {
-    moved(facing_part(shape, direction), frame)
+pub(super) fn facing<'a>(shape: &'a Curved, direction: Vector, frame: &MatrixPose) -> Patch<'a> {
+    moved(shape.facing(direction), frame)
 }
 
 /// An end of a frustum in the outer frame.
@@ -180,7 +188,7 @@ pub(super) fn end(shape: &Curved, end: usize, frame: &MatrixPose) -> Patch<'stat
     moved(Patch::Disc(disc(shape, end)), frame)
 }
 
-fn moved(patch: Patch<'static>, frame: &MatrixPose) -> Patch<'static> {
+fn moved<'a>(patch: Patch<'a>, frame: &MatrixPose) -> Patch<'a> {
     match patch {
         Patch::Disc(disc) => Patch::Disc(Disc {
             center: frame.point(disc.center),
@@ -191,26 +199,4 @@ fn moved(patch: Patch<'static>, frame: &MatrixPose) -> Patch<'static> {
         Patch::Line(ends) => Patch::Line(ends.map(|p| frame.point(p))),
         face @ Patch::Face(_) => face,
     }
-}
-
-/// The line of a frustum's side that is farthest along a direction, if it is across it.
-pub(super) fn line_along(shape: &Curved, direction: Vector) -> Option<[Vector; 2]> {
-    let ends = side_line(shape, across(direction).1);
-    (shape.half_height > 0.0 && is_across(&ends, direction)).then_some(ends)
-}
-
-/// The distance from a frustum's surface to its axis along a normal, if it may roll about the axis there; else 0.
-pub(super) fn rolling(shape: &Curved, normal: Vector) -> f32 {
-    let (length, around) = across(normal);
-    let size = (length * length + normal.y * normal.y).sqrt();
-    if !(length > ROLLING * size) {
-        return 0.0;
-    }
-    let ends = side_line(shape, around);
-    let radius = if is_across(&ends, normal) {
-        0.5 * (shape.lower + shape.upper)
-    } else {
-        shape.radius_of(shape.end_along(length, normal.y))
-    };
-    radius * size / max(length, f32::MIN_POSITIVE)
 }

@@ -4,8 +4,11 @@
 //! circle, and four points of a circle, a quarter turn apart. These have the names of what makes them. A full circle stands
 //! on four points that keep their places in the frame of the other shape, so that nothing moves while a cylinder turns.
 
-use super::super::reduce::{Candidate, Candidates, MAX_CANDIDATES};
-use crate::math::{Vector, atan2, clamp, max, min, sin_cos};
+use super::super::clip::clip_line;
+use super::super::reduce::{Candidates, MAX_CANDIDATES};
+use super::super::round::Lines;
+use crate::manifold::LocalPoint;
+use crate::math::{Vector, atan2, min, sin_cos};
 use core::f64::consts::TAU;
 
 /// A part of a surface, in A's frame.
@@ -63,9 +66,6 @@ const CROSSING: u32 = 8 << 16;
 /// Lines with a smaller sine between them are side by side.
 const SIDE_BY_SIDE: f32 = 0.02;
 
-/// Lines run side by side if they do over more than this share of the shorter one.
-const LINE_SHARE: f32 = 0.01;
-
 /// Lines side by side may pass each other by this share of the smaller shape's extent.
 const ASIDE: f32 = 2.0e-3;
 
@@ -105,7 +105,7 @@ impl Region {
         let separation = gap - self.radius;
         if separation <= self.prediction {
             let point = on_a + self.normal * (0.5 * (gap + self.radius));
-            self.candidates.push(Candidate { point, separation, feature });
+            self.candidates.push(LocalPoint { point, separation, feature });
         }
     }
 
@@ -255,30 +255,11 @@ impl Region {
 
     /// A polygon and a line over it.
     fn face_and_line(&mut self, face: &Face, ends: &[Vector; 2]) {
-        let along = ends[1] - ends[0];
-        let (mut low, mut high) = ((0.0, END), (1.0, END | 1));
-        let mut tail = face.vertices[face.outline[face.outline.len() - 1] as usize];
-        for (side, i) in face.outline.iter().enumerate() {
-            let head = face.vertices[*i as usize];
-            let outward = (head - tail).cross(face.normal);
-            let margin = self.margin() * outward.length();
-            let height = outward.dot(ends[0] - tail) - margin;
-            let rate = outward.dot(along);
-            let t = -height / rate;
-            if rate > 0.0 && t < high.0 {
-                high = (t, CUT | side as u32);
-            } else if rate < 0.0 && t > low.0 {
-                low = (t, CUT | side as u32);
-            } else if rate == 0.0 && height > 0.0 {
-                return;
-            }
-            tail = head;
-        }
-        if !(low.0 <= high.0) {
-            return;
-        }
-        for (t, name) in [low, high] {
-            let point = ends[0] + along * t;
+        let outline = face.outline.iter().map(|i| face.vertices[*i as usize]);
+        let Some(range) = clip_line(face.normal, outline, *ends, self.margin()) else { return };
+        for (i, (t, side)) in (0..).zip(range) {
+            let name = side.map_or(END | i, |side| CUT | side);
+            let point = ends[0] + (ends[1] - ends[0]) * t;
             let gap = face.normal.dot(point) - face.offset;
             self.push(point - face.normal * gap, gap, name);
         }
@@ -339,22 +320,14 @@ impl Region {
     /// Adds two lines across the normal that run side by side: the ends of the range in which they do. `false` if they do
     /// not.
     pub fn parallel_lines(&mut self, a: &[Vector; 2], b: &[Vector; 2]) -> bool {
-        let (u, v) = (a[1] - a[0], b[1] - b[0]);
-        let (uu, vv) = (u.length_squared(), v.length_squared());
+        let lines = Lines::new(a[0], a[1] - a[0], *b, b[1] - b[0]);
+        let Lines { u, v, uu, vv, .. } = lines;
         if !(uu > 0.0 && vv > 0.0 && u.cross(v).length_squared() <= SIDE_BY_SIDE * SIDE_BY_SIDE * uu * vv) {
             return false;
         }
-        let ends = [0, 1].map(|i| clamp((b[i] - a[0]).dot(u) / uu, 0.0, 1.0));
-        let (low, high) = (min(ends[0], ends[1]), max(ends[0], ends[1]));
-        let shared = (high - low) * (high - low) * uu;
-        if !(shared > LINE_SHARE * LINE_SHARE * min(uu, vv)) {
-            return false;
-        }
+        let Some(range) = lines.shared() else { return false };
         let across = self.normal.cross(u) * (1.0 / uu.sqrt());
-        let pairs = [low, high].map(|t| {
-            let on_a = a[0] + u * t;
-            [on_a, b[0] + v * clamp((on_a - b[0]).dot(v) / vv, 0.0, 1.0)]
-        });
+        let pairs = range.map(|t| lines.at(t));
         // Lines that pass each other are nearest along another normal.
         let aside = pairs.map(|[on_a, on_b]| across.dot(on_b - on_a));
         if aside[0] * aside[1] > 0.0 && min(aside[0].abs(), aside[1].abs()) > ASIDE * self.extent {
