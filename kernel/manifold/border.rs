@@ -1,7 +1,6 @@
 //! Which borders of a facet a contact is on, and where the surface goes on behind them.
 
 use super::LocalManifold;
-use super::dim::Border;
 use crate::math::Vector;
 
 /// Contacts up to this share of a facet's size inside of a border are on the border.
@@ -10,6 +9,26 @@ const ON_BORDER: f32 = 0.02;
 /// A facet rises from its deepest point if the separation grows by more than this share of the distance. Points up there do
 /// not tell which border is met.
 const RISING: f32 = 0.05;
+
+/// A single point may lie outside of a facet by this share of its height over the border.
+pub(super) const BESIDE: f32 = 1.0e-3;
+
+/// One side of a triangle, or one end of a segment.
+pub(super) struct Border {
+    /// Where it begins.
+    pub corner: Vector,
+    /// Its unit direction; 0 for a point.
+    pub along: Vector,
+    /// The unit direction out of the facet, in its plane.
+    pub outward: Vector,
+    /// How far the facet reaches from it, in metres.
+    pub depth: f32,
+}
+
+/// Whether a point is outside of a facet.
+pub(super) fn is_beside(borders: &[Border], point: Vector) -> bool {
+    borders.iter().any(|b| (point - b.corner).dot(b.outward) > BESIDE * b.depth)
+}
 
 impl Border {
     /// Whether all points of a manifold are on the facet's border, but for those where it rises.

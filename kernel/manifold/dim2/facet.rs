@@ -3,28 +3,15 @@
 use super::clip::{Facing, Side};
 use super::points::Limits;
 use super::polygonal::{Buffer, Edge, view};
+use crate::manifold::border::{BESIDE, Border, is_beside};
 use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, collide};
 use crate::math::{F32x4, Pose, Vector};
 use crate::shape::{Curved, Segment, Shape, direction};
 
-/// A single point may lie beyond an end by this share of the segment.
-const BESIDE: f32 = 1.0e-3;
 /// Sides overlapped by more than this share of an ellipse's smaller half size have a contact in any case.
 const DEEP: f32 = 0.05;
 /// A point hangs deeper than the line between two others by more than this share of their distance.
 const HANGS: f32 = 1.0e-3;
-
-/// One end of a segment.
-pub(in crate::manifold) struct Border {
-    /// Where it is.
-    pub corner: Vector,
-    /// A point has no direction: 0.
-    pub along: Vector,
-    /// The unit direction out of the segment.
-    pub outward: Vector,
-    /// The length of the segment, in metres.
-    pub depth: f32,
-}
 
 /// The unit normal on the left of a segment; `None` if it has no length.
 pub(in crate::manifold) fn face_normal([a, b]: [Vector; 2]) -> Option<Vector> {
@@ -110,8 +97,7 @@ fn collide_side(
         return;
     }
     if polygon.len() == 1 {
-        let is_beside = |b: &Border| (vertex - b.corner).dot(b.outward) > BESIDE * b.depth;
-        if !borders(corners, normal).iter().any(is_beside) {
+        if !is_beside(&borders(corners, normal), vertex) {
             out.normal = normal;
             out.push(vertex - normal * (0.5 * (separation + 2.0 * polygon.radius)), separation, 0);
         }
@@ -174,8 +160,7 @@ fn collide_curved(
         out.gap = separation;
         return;
     }
-    let is_beside = |b: &Border| (lowest - b.corner).dot(b.outward) > BESIDE * b.depth;
-    if !borders(corners, normal).iter().any(is_beside) {
+    if !is_beside(&borders(corners, normal), lowest) {
         (out.normal, out.radii) = (normal, [0.0, other.curvature_radius(facing)]);
         out.push(lowest - normal * (0.5 * separation), separation, 0);
     } else if separation < -DEEP * other.half.min_element() {

@@ -25,7 +25,7 @@ use super::{FeatureCache, LocalManifold};
 use crate::math::{Angular, Pose, Rot};
 use crate::shape::Shape;
 pub(super) use cuboids::collide as collide_cuboids;
-pub(super) use facet::{Border, Convex, borders, face_normal, facing, few_points, with_convex};
+pub(super) use facet::{Convex, borders, face_normal, facing, few_points, with_convex};
 use polygonal::{Buffer, Polygonal};
 
 /// Does nothing, and returns infinity: shapes in the plane have no rims. `dim3` has the function for those in space.

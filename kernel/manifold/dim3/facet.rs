@@ -3,25 +3,11 @@
 use super::reduce::{Candidates, MAX_CANDIDATES, keep, reduce_faces};
 use super::view::{Facing, Small, View};
 use super::{curved, triangle, with_view};
+use crate::manifold::border::{Border, is_beside};
 use crate::manifold::pairs::{collide, drop_unusable, is_near};
 use crate::manifold::{FeatureCache, LocalManifold, LocalPoint};
 use crate::math::{F32x4, Pose, Vector, max};
 use crate::shape::{Shape, Triangle};
-
-/// A single point may lie outside of a face by this share of its height over the border.
-const BESIDE: f32 = 1.0e-3;
-
-/// One side of a triangle.
-pub(in crate::manifold) struct Border {
-    /// Where it begins.
-    pub corner: Vector,
-    /// Its unit direction.
-    pub along: Vector,
-    /// The unit direction out of the triangle, in its plane.
-    pub outward: Vector,
-    /// How far the triangle reaches from it, in metres.
-    pub depth: f32,
-}
 
 /// The unit normal of a triangle, counter-clockwise from outside; `None` if it has no area.
 pub(in crate::manifold) fn face_normal([a, b, c]: [Vector; 3]) -> Option<Vector> {
@@ -100,19 +86,16 @@ impl<'a> Convex<'a> {
         }
         let Some(lowest) = self.shape.support(pose.rotation.inverse_rotate(-normal)) else { return };
         let lowest = pose.transform(lowest);
-        let is_beside = |b: &Border| (lowest - b.corner).dot(b.outward) > BESIDE * b.depth;
         let separation = (lowest - corners[0]).dot(normal);
-        if separation <= prediction && !borders_of(corners).is_some_and(|all| all.iter().any(is_beside)) {
+        if separation <= prediction
+            && !face_normal(corners).is_some_and(|face| is_beside(&borders(corners, face), lowest))
+        {
             out.normal = normal;
             out.push(lowest - normal * (0.5 * separation), separation, 0);
         } else {
             out.gap = max(separation, 0.0);
         }
     }
-}
-
-fn borders_of(corners: [Vector; 3]) -> Option<[Border; 3]> {
-    face_normal(corners).map(|normal| borders(corners, normal))
 }
 
 /// Puts the points that hold the same as all of `points` into a manifold.

@@ -33,7 +33,7 @@ use crate::math::{Pose, Vector};
 use crate::shape::{Capsule, Curved, Segment, Shape};
 pub(super) use cuboids::collide as collide_cuboids;
 pub use curved::lead_rims;
-pub(super) use facet::{Border, Convex, borders, face_normal, facing, few_points, with_convex};
+pub(super) use facet::{Convex, borders, face_normal, facing, few_points, with_convex};
 use view::{Small, View};
 
 /// The order of the shapes in a pair for [`dispatch`].
