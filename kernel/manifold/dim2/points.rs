@@ -55,6 +55,7 @@ pub(super) fn collide_with_point(
     out: &mut LocalManifold,
 ) {
     let center = pose.transform(b.vertices[0]);
+    let limits = Limits { radii: [a.radius, b.radius], prediction };
     let reach = prediction + a.radius + b.radius;
     let mut best = (f32::NEG_INFINITY, 0);
     for (i, (v, n)) in a.vertices.iter().zip(a.normals).enumerate() {
@@ -80,14 +81,7 @@ pub(super) fn collide_with_point(
             None
         };
         if let Some(corner) = corner {
-            out.normal = push_between(
-                corner,
-                center,
-                normal,
-                Limits { radii: [a.radius, b.radius], prediction },
-                0,
-                out,
-            );
+            out.normal = push_between(corner, center, normal, limits, 0, out);
             return;
         }
     }

@@ -135,15 +135,17 @@ pub(super) fn incident_polygon<const N: usize, H: Carried>(
     }
 }
 
-/// Cuts a polygon by the side planes of a face with a normal and an outline; `extent` is that of the smaller shape. Alternates
-/// between two buffers and returns the one with the result.
+/// Cuts a polygon by the side planes of a face; `extent` is that of the smaller shape. Alternates between two buffers and returns
+/// the one with the result.
 #[inline(always)]
-pub(super) fn clip<const N: usize>(
-    normal: Vector,
-    outline: impl DoubleEndedIterator<Item = Vector> + Clone,
-    [mut polygon, mut spare]: [&mut Polygon<N>; 2],
+pub(super) fn clip<'a, const N: usize>(
+    view: &View,
+    face: usize,
+    [mut polygon, mut spare]: [&'a mut Polygon<N>; 2],
     extent: f32,
-) -> &Polygon<N> {
+) -> &'a Polygon<N> {
+    let normal = view.faces[face].normal;
+    let outline = view.outline(face).iter().map(|i| view.vertices[*i as usize]);
     let Some(mut tail) = outline.clone().next_back() else { return polygon };
     let mut heights = [0.0; N];
     for (side, head) in outline.enumerate() {

@@ -161,8 +161,7 @@ impl<'a> Pair<'a> {
         let normal = reference.faces[axis.face].normal;
         let (mut polygon, mut spare) = (Polygon::<N>::new(), Polygon::<N>::new());
         clip::incident_polygon(incident, face, |v| (frame.point(v), ()), &mut polygon);
-        let outline = reference.outline(axis.face).iter().map(|i| reference.vertices[*i as usize]);
-        let polygon = clip(normal, outline, [&mut polygon, &mut spare], self.sizes.smaller);
+        let polygon = clip(reference, axis.face, [&mut polygon, &mut spare], self.sizes.smaller);
         out.normal = if of_b { -self.b_in_a.direction(normal) } else { normal };
         let reference = self.reference(axis, of_b);
         let least = reference.fill(polygon, |corner| reference.height(corner.point), out);

@@ -425,8 +425,7 @@ impl<'a> Pair<'a> {
         let (mut polygon, mut spare) = (Polygon::<N>::new(), Polygon::<N>::new());
         (0..3).for_each(|i| polygon.push(i, self.corners[i as usize], ()));
         let reference = self.reference_of(axis.face);
-        let outline = self.view.outline(axis.face).iter().map(|i| self.view.vertices[*i as usize]);
-        let polygon = clip(reference.normal, outline, [&mut polygon, &mut spare], self.sizes.smaller);
+        let polygon = clip(self.view, axis.face, [&mut polygon, &mut spare], self.sizes.smaller);
         out.normal = -self.frame.direction(reference.normal);
         let height = |corner: &Corner| reference.height(corner.point);
         reference.fill(polygon, height, out) <= axis.separation + EXACT * self.sizes.smaller
