@@ -15,6 +15,7 @@
 //! | [`solver`] | rows, substeps, poses |
 //! | [`query`] | rays, shape casts, nearest points, overlaps: of two shapes, and of all colliders |
 //! | [`thread_pool`] | the threads |
+//! | [`tuning`] | the constants that tune all of it |
 //!
 //! Lengths are metres, times seconds, masses kilograms, angles radians. The same input gives the same
 //! bits on every machine, for every lane width and number of threads: no fused multiply-add, no approximate reciprocal, no
@@ -44,3 +45,4 @@ pub mod shape;
 pub mod solver;
 pub mod table;
 pub mod thread_pool;
+pub mod tuning;

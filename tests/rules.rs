@@ -11,8 +11,9 @@ use std::path::{Path, PathBuf};
 const CFG_BUDGET: usize = 80;
 
 /// The kernel's folders from the bottom up: each may use those before it only.
-const KERNEL_FLOORS: [&str; 13] = [
+const KERNEL_FLOORS: [&str; 14] = [
     "math",
+    "tuning",
     "data",
     "thread_pool",
     "shape",

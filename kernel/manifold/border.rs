@@ -2,16 +2,7 @@
 
 use super::LocalManifold;
 use crate::math::Vector;
-
-/// Contacts up to this share of a facet's size inside of a border are on the border.
-const ON_BORDER: f32 = 0.02;
-
-/// A facet rises from its deepest point if the separation grows by more than this share of the distance. Points up there do
-/// not tell which border is met.
-const RISING: f32 = 0.05;
-
-/// A single point may lie outside of a facet by this share of its height over the border.
-pub(super) const BESIDE: f32 = 1.0e-3;
+use crate::tuning::manifold::{MARGIN, ON_BORDER, SIDEWAYS};
 
 /// One side of a triangle, or one end of a segment.
 pub(super) struct Border {
@@ -27,7 +18,7 @@ pub(super) struct Border {
 
 /// Whether a point is outside of a facet.
 pub(super) fn is_beside(borders: &[Border], point: Vector) -> bool {
-    borders.iter().any(|b| (point - b.corner).dot(b.outward) > BESIDE * b.depth)
+    borders.iter().any(|b| (point - b.corner).dot(b.outward) > MARGIN * b.depth)
 }
 
 impl Border {
@@ -37,7 +28,7 @@ impl Border {
         let Some(deepest) = deepest else { return true };
         local.points().iter().all(|p| {
             let on_facet = p.point - local.normal * (0.5 * p.separation);
-            let is_above = p.separation - deepest.separation > RISING * (p.point - deepest.point).length();
+            let is_above = p.separation - deepest.separation > SIDEWAYS * (p.point - deepest.point).length();
             is_above || (self.corner - on_facet).dot(self.outward) <= ON_BORDER * self.depth
         })
     }

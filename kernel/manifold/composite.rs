@@ -6,11 +6,8 @@ use super::parts::{PartBuffers, Pass, Skin};
 use super::{FeatureCache, LocalManifold, Look};
 use crate::math::{Pose, min};
 use crate::shape::{Aabb, Composite, Part, Shape};
+use crate::tuning::manifold::INSIDE;
 use core::cell::Cell;
-
-/// A guest is inside of a closed surface if its centre is deeper than this share of its half size. More pushes out what lies inside on
-/// the surface; less keeps what sank in from outside.
-const INSIDE: f32 = 0.5;
 
 /// Buffers for the manifolds of composite shapes, kept between calls.
 #[derive(Clone, Debug, Default)]

@@ -3,17 +3,7 @@
 use super::dim::few_points;
 use super::{LocalManifold, LocalPoint};
 use crate::math::{max, min};
-
-/// Manifolds with normals closer than this are merged: cos 2°. More merges slopes; less solves a plane several times.
-pub(super) const SAME_NORMAL: f32 = 0.9994;
-/// The same for round shapes, squared, in radians: their points move with the normal, and a point beside the lowest one
-/// brakes what rolls.
-const SAME_ROUND_NORMAL: f32 = 1.0e-8;
-/// Manifolds of curved shapes are merged if their radii differ by less than this share, as they do by less than 2°.
-const SAME_RADIUS: f32 = 0.02;
-
-/// Points closer than this share of a manifold's size are one.
-const SAME_POINT: f32 = 0.01;
+use crate::tuning::manifold::{SAME_NORMAL, SAME_POINT, SAME_RADIUS, SAME_ROUND_NORMAL};
 
 /// Buffers, kept between calls.
 #[derive(Clone, Debug, Default)]

@@ -4,44 +4,18 @@
 //! replaced by the facet's own: there the neighbour is nearer (convex edges keep the normals between both facets).
 
 use super::dim::{Convex, borders, face_normal};
-use super::merge::SAME_NORMAL;
 use super::screen::{Gaps, LANES, Screen};
 use super::{FeatureCache, LocalManifold, Look, collide};
 use crate::math::{F32x4, Lane, MAX_POINTS, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Shape, Surface};
+use crate::tuning::manifold::{
+    DEEPER_FACE, FACING, LEAN, MOST_LEAN, ON_ONE_SIDE, POKE, SAME_NORMAL, SIDEWAYS, TURNED,
+};
+use crate::tuning::sweeps::{MET, PART_ROUNDS};
 use core::cell::Cell;
-
-/// Normals that lean over a border by less than this are the facet's own, in radians. More brakes sliding bodies; rounding is
-/// a tenth of it.
-const LEAN: f32 = 1.0e-3;
-
-/// Normals whose cosine to a face is below this do not tell on which side of it the other shape is.
-const SIDEWAYS: f32 = 0.05;
-
-/// A facet of a body that faces the ground with at least this cosine is pushed back into the body, as it should be.
-const FACING: f32 = 0.5;
-
-/// A shape is on one side of a face if it reaches to the other side by less than this share of its extent. More turns
-/// bodies over that reach under a facet from aside; less pulls cones into faces that they stand on.
-const ON_ONE_SIDE: f32 = 0.25;
 
 /// Up to this number of vertices are looked through for the farthest one, for each facet that may be on the wrong side.
 const FEW_VERTICES: usize = 64;
-
-/// The maximum number of rounds of a cast. A pair that needs more meets where the last round placed it.
-const MAX_ROUNDS: usize = 16;
-
-/// Parts meet at a gap of this share of the prediction. More stops bodies that pass by; less takes more rounds.
-const MET: f32 = 0.1;
-
-/// Normals differ if their cosine is below this: 8°.
-const TURNED: f32 = 0.99;
-/// A face is deeper than what was found from this share of the prediction on. Less is rounding.
-const DEEPER: f32 = 0.005;
-/// Rounding and clipping of the depth of a corner that pokes into a seam, as a share of the prediction.
-const POKE: f32 = 0.25;
-/// The least cosine between a face and the side of a corner that pokes into it.
-const MOST_LEAN: f32 = 0.25;
 
 /// Buffers, kept between calls.
 #[derive(Clone, Debug, Default)]
@@ -275,7 +249,7 @@ impl<'a> Pass<'a> {
             let (normal, nearest) = (local.normal, local.lower_bound());
             self.keep_outside(&skin, part, prediction, local);
             let is_turned = local.normal.dot(normal) < TURNED;
-            if local.count > 0 && (is_turned || local.lower_bound() < nearest - DEEPER * prediction) {
+            if local.count > 0 && (is_turned || local.lower_bound() < nearest - DEEPER_FACE * prediction) {
                 return Some(Doubt { normal, nearest, share: 0.0, is_needless: false });
             }
         }
@@ -327,7 +301,7 @@ impl<'a> Pass<'a> {
         let way = self.look.motion;
         let met = MET * self.look.prediction;
         let (mut share, mut beside) = (0.0, None);
-        for round in 1..=MAX_ROUNDS {
+        for round in 1..=PART_ROUNDS {
             let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
             let there = Pass { pose: &pose, ..*self };
             there.collide_alone(part, (1.0 - share) * way.length() + self.look.prediction, local);
@@ -337,7 +311,7 @@ impl<'a> Pass<'a> {
                 break;
             }
             let gap = local.lower_bound();
-            if gap <= met || round == MAX_ROUNDS {
+            if gap <= met || round == PART_ROUNDS {
                 let normal = local.normal;
                 let doubt = there.collide_part(part, self.look.prediction, local);
                 if local.count > 0
@@ -466,7 +440,7 @@ impl<'a> Pass<'a> {
         let (found, nearest) = (local.normal, local.lower_bound());
         let own = self.toward_other(corners[0], face, found);
         self.other.collide_face(corners, own, self.pose, prediction, local);
-        let is_doubtful = own.dot(found) < TURNED || local.lower_bound() < nearest - DEEPER * prediction;
+        let is_doubtful = own.dot(found) < TURNED || local.lower_bound() < nearest - DEEPER_FACE * prediction;
         is_doubtful.then_some(Doubt { normal: found, nearest, share: 0.0, is_needless: false })
     }
 }

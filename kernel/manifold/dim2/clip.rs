@@ -4,6 +4,7 @@ use super::super::LocalManifold;
 use super::points::{Limits, push_between};
 use super::polygonal::Edge;
 use crate::math::{Pose, Vector, max};
+use crate::tuning::manifold::ALIGNED;
 
 /// The shape of the reference edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,9 +22,6 @@ pub(super) struct Facing {
     /// The radii of the reference and of the incident polygon.
     pub(super) limits: Limits,
 }
-
-/// Offsets along an edge below this share of the edges' lengths count as 0. They are rounding.
-const ALIGNED: f32 = 1.0e-6;
 
 impl Facing {
     /// A reference edge of `side` with its normal, in that side's frame. `facing` gives the edge of the other side that faces a

@@ -7,16 +7,7 @@ use super::super::LocalManifold;
 use super::polygonal::Polygonal;
 use crate::math::{Pose, Rot, Vector, max};
 use crate::shape::{Curved, direction};
-
-/// How many directions of a turn are tried for two curves, for each of them.
-const DIRECTIONS: usize = 16;
-/// The ratio of half sizes of the flattest ellipse whose normals are tried. At 0 all would be across it.
-const FLATTEST: f32 = 1.0e-4;
-/// Halvings of an angle: to 1e-6 of it.
-const HALVINGS: usize = 20;
-
-/// Overlaps deeper than this share of the ellipse are deep.
-const DEEP: f32 = 0.02;
+use crate::tuning::manifold::{DEEP_ELLIPSE, DIRECTIONS, FLATTEST, HALVINGS};
 
 /// A round shape by its farthest points.
 pub(super) trait Rounded {
@@ -214,7 +205,7 @@ pub(super) fn collide(a: &Polygonal, b: &Curved, pose: &Pose, prediction: f32, o
     }
     // Of shapes that overlap deeply another corner or side may be the best.
     let separation = normal.dot(points[1] - points[0]);
-    if separation < -DEEP * b.half.max_element() {
+    if separation < -DEEP_ELLIPSE * b.half.max_element() {
         let other = pair.best_normal(a);
         let found = [a.farthest(other), pair.lowest(other)];
         if other.dot(found[1] - found[0]) > separation + 1.0e-3 * b.half.max_element() {

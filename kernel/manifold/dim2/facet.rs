@@ -3,15 +3,11 @@
 use super::clip::{Facing, Side};
 use super::points::Limits;
 use super::polygonal::{Buffer, Edge, view};
-use crate::manifold::border::{BESIDE, Border, is_beside};
+use crate::manifold::border::{Border, is_beside};
 use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, collide};
 use crate::math::{F32x4, Pose, Vector};
 use crate::shape::{Curved, Segment, Shape, direction};
-
-/// Sides overlapped by more than this share of an ellipse's smaller half size have a contact in any case.
-const DEEP: f32 = 0.05;
-/// A point hangs deeper than the line between two others by more than this share of their distance.
-const HANGS: f32 = 1.0e-3;
+use crate::tuning::manifold::{DEEP, DEEPER, MARGIN};
 
 /// The unit normal on the left of a segment; `None` if it has no length.
 pub(in crate::manifold) fn face_normal([a, b]: [Vector; 2]) -> Option<Vector> {
@@ -114,7 +110,7 @@ fn collide_side(
     let tangent = normal.perp();
     let along = |p: &LocalPoint| (p.point - ends[0]).dot(tangent);
     let length = (ends[1] - ends[0]).dot(tangent);
-    if out.count == 1 && !(-BESIDE * length..=(1.0 + BESIDE) * length).contains(&along(&out.points[0])) {
+    if out.count == 1 && !(-MARGIN * length..=(1.0 + MARGIN) * length).contains(&along(&out.points[0])) {
         out.count = 0;
     }
 }
@@ -136,7 +132,7 @@ pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalMani
     let deepest = *points.iter().min_by(|p, q| p.separation.total_cmp(&q.separation)).unwrap_or(&first);
     let (length, way) = (along(&last) - along(&first), along(&deepest) - along(&first));
     let sag = first.separation + (last.separation - first.separation) * (way / length) - deepest.separation;
-    if deepest != first && deepest != last && sag > HANGS * length {
+    if deepest != first && deepest != last && sag > DEEPER * length {
         if first.separation <= last.separation { last = deepest } else { first = deepest }
     }
     out.count = 0;

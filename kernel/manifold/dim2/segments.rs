@@ -7,6 +7,7 @@ use super::clip::{Facing, Side, pair};
 use super::points::{Limits, push_between};
 use super::polygonal::{Edge, Polygonal};
 use crate::math::{Pose, Vector};
+use crate::tuning::manifold::SAME_DISTANCE;
 
 /// An end of one segment against the other segment.
 #[derive(Clone, Copy)]
@@ -21,10 +22,6 @@ struct Candidate {
     height: f32,
     square: f32,
 }
-
-/// Among equally near features the first one wins, unless another is nearer by this share. Without it the reference of
-/// parallel capsules flips.
-const PREFERENCE: f32 = 1.0e-4;
 
 /// Fills `out` for two segments. Parallel segments side by side get two points.
 pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
@@ -43,7 +40,7 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32
     let reach = prediction + a.radius + b.radius;
     if !crossing && best.square > reach * reach {
         // Another feature may be nearer by the preference.
-        out.gap = best.square.sqrt() * (1.0 - PREFERENCE) - a.radius - b.radius;
+        out.gap = best.square.sqrt() * (1.0 - SAME_DISTANCE) - a.radius - b.radius;
         return;
     }
 
@@ -112,7 +109,7 @@ fn candidate(side: Side, own: [Vector; 2], axis: Vector, other: [Vector; 2], end
 fn shallowest(candidates: &[Candidate; 4]) -> Candidate {
     let mut best = candidates[0];
     for c in &candidates[1..] {
-        if c.height.abs() < best.height.abs() * (1.0 - PREFERENCE) {
+        if c.height.abs() < best.height.abs() * (1.0 - SAME_DISTANCE) {
             best = *c;
         }
     }
@@ -123,8 +120,8 @@ fn shallowest(candidates: &[Candidate; 4]) -> Candidate {
 fn nearest(candidates: &[Candidate; 4]) -> Candidate {
     let mut best = candidates[0];
     for c in &candidates[1..] {
-        let nearer = c.square < best.square * (1.0 - PREFERENCE);
-        let as_near = c.square <= best.square * (1.0 + PREFERENCE);
+        let nearer = c.square < best.square * (1.0 - SAME_DISTANCE);
+        let as_near = c.square <= best.square * (1.0 + SAME_DISTANCE);
         if nearer || (as_near && best.corner.is_some() && c.corner.is_none()) {
             best = *c;
         }

@@ -7,9 +7,7 @@ use super::clip::clip_line;
 use super::view::View;
 use crate::math::Vector;
 use crate::shape::Edge;
-
-/// Faces with a smaller cosine to the normal are not lain in.
-const FACING: f32 = 0.5;
+use crate::tuning::manifold::FACING;
 
 /// The end of the line along which an edge passes over the face of `reference` beside `edge`, of the two ends the one
 /// farther from that face: the point on the edge, and its distance from the face along `normal`. The ends of the edge are in

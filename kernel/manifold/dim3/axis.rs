@@ -7,6 +7,7 @@ use super::gjk;
 use super::sat::{EdgeAxis, FaceAxis};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::max;
+use crate::tuning::manifold::{AXIS_SLACK, PREFER_FACES};
 
 /// [`FeatureCache::kind`] of a face of A.
 pub(super) const FACE_A: u8 = 1;
@@ -14,16 +15,6 @@ pub(super) const FACE_A: u8 = 1;
 pub(super) const FACE_B: u8 = 2;
 /// [`FeatureCache::kind`] of an edge of each.
 pub(super) const EDGES: u8 = 3;
-/// A cached axis is kept if its separation changed by less than this share of the smaller shape's extent since the full
-/// search: 5 mm for a shape of 1 m. More keeps worse axes; less searches more often.
-pub(super) const CACHE_TOLERANCE: f32 = 0.005;
-/// An edge axis must beat the faces by this share of the smaller shape's extent, and the faces of B
-/// those of A by a tenth of it.
-pub(super) const PREFER_FACES: f32 = 0.002;
-/// An axis counts as exact if the nearest point is farther than its separation by at most this share of the smaller shape's
-/// extent.
-pub(super) const EXACT: f32 = 1.0e-3;
-
 /// A feature that separates the pair.
 #[derive(Clone, Copy)]
 pub(super) enum Axis {
@@ -112,7 +103,7 @@ pub(super) trait Pair {
             out.gap = separation - sizes.radius;
             return true;
         }
-        if !((separation - before).abs() < CACHE_TOLERANCE * sizes.smaller) {
+        if !((separation - before).abs() < AXIS_SLACK * sizes.smaller) {
             return false;
         }
         let is_exact = self.build(axis, out);

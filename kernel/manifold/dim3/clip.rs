@@ -5,6 +5,7 @@ use super::reduce::{Candidates, keep, reduce};
 use super::view::{MatrixPose, View};
 use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{F32x4, Lane, Vector, min};
+use crate::tuning::manifold::MARGIN;
 
 /// Clipped polygons have less corners than this. A cut adds at most one per side.
 pub(super) const MAX_CORNERS: usize = 65;
@@ -14,9 +15,6 @@ pub(super) const FEW_CORNERS: usize = 17;
 pub(super) const LEAST_CORNERS: usize = 8;
 /// Incident faces with more vertices are thinned to every second, fourth, … vertex.
 const MAX_INCIDENT: usize = 32;
-/// Side planes are this share of the smaller shape's extent outside of the face, so that two equal faces on each other keep
-/// their own corners in spite of rounding.
-pub(super) const MARGIN: f32 = 1.0e-3;
 /// Tags an edge that lies on a side of the reference face.
 const ON_SIDE: u32 = 0x200;
 

@@ -1,13 +1,14 @@
 //! Any two polyhedra, with radii: the points along their separating axis.
 
 use super::across;
-use super::axis::{self, Axis, EDGES, EXACT, FACE_A, FACE_B, Pair as _, Sizes};
+use super::axis::{self, Axis, EDGES, FACE_A, FACE_B, Pair as _, Sizes};
 use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference, clip};
 use super::gjk;
 use super::sat::{self, EdgeAxis, FaceAxis, Known};
 use super::view::{MatrixPose, View, extents};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector, clamp, max};
+use crate::tuning::manifold::MARGIN;
 
 /// The number of faces of a triangle, which no solid has.
 const TRIANGLE_FACES: usize = 2;
@@ -165,7 +166,7 @@ impl<'a> Pair<'a> {
         out.normal = if of_b { -self.b_in_a.direction(normal) } else { normal };
         let reference = self.reference(axis, of_b);
         let least = reference.fill(polygon, |corner| reference.height(corner.point), out);
-        least <= axis.separation + EXACT * self.sizes.smaller
+        least <= axis.separation + MARGIN * self.sizes.smaller
     }
 
     /// The face of an axis.
@@ -259,6 +260,6 @@ pub(super) fn closest_of_lines(a: [Vector; 2], b: [Vector; 2]) -> (Vector, Vecto
     }
     let s = (uw * vv - vw * uv) / determinant;
     let t = (uw * uv - vw * uu) / determinant;
-    let inside = max(max(-s, s - 1.0), max(-t, t - 1.0)) < EXACT;
+    let inside = max(max(-s, s - 1.0), max(-t, t - 1.0)) < MARGIN;
     (a[0] + u * clamp(s, 0.0, 1.0), b[0] + v * clamp(t, 0.0, 1.0), inside)
 }

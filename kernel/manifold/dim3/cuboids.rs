@@ -3,7 +3,7 @@
 //! Fifteen axes (Gottschalk, Lin and Manocha, "OBBTree", 1996): three face normals each, nine products
 //! of edges. The rules of choice are those of [`axis`](super::axis).
 
-use super::axis::{self, Axis, EDGES, EXACT, FACE_A, FACE_B, Pair as _, Sizes};
+use super::axis::{self, Axis, EDGES, FACE_A, FACE_B, Pair as _, Sizes};
 use super::convex;
 use super::reduce::Patch;
 use super::sat::{EdgeAxis, FaceAxis};
@@ -11,12 +11,8 @@ use super::view::{MatrixPose, Small};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{F32x4, Lane, Num, Pose, Vector, clamp, max, min};
 use crate::shape::Cuboid;
+use crate::tuning::manifold::{MARGIN, PARALLEL};
 
-/// Products of edges with a smaller squared sine between them have no direction.
-const PARALLEL: f32 = 2.5e-5;
-/// The reference rectangle is widened by this share of the smaller extent, so that equal boxes on each other keep their own
-/// corners in spite of rounding.
-const MARGIN: f32 = 1.0e-3;
 /// The two axes that follow each axis, cyclically.
 const NEXT: [usize; 3] = [1, 2, 0];
 
@@ -168,7 +164,7 @@ impl Pair<'_> {
             EDGES => {
                 let (value, _, square) = self.edges(i, j);
                 let separation = value / square.sqrt();
-                (square > PARALLEL).then_some(Axis::Edges(EdgeAxis {
+                (square > PARALLEL * PARALLEL).then_some(Axis::Edges(EdgeAxis {
                     a: i,
                     b: j,
                     normal: Vector::ZERO,
@@ -190,7 +186,7 @@ impl Pair<'_> {
         let (signed, sizes) = (rows.map(lanes), rows.map(|r| turned(r, 0)));
         let (t, ha, hb) = (self.offset[0].to_array(), self.half_a.to_array(), self.half_b.to_array());
         let of_b = [lanes([hb[1], hb[2], hb[0]]), lanes([hb[2], hb[0], hb[1]])];
-        let (bar, parallel) = (F32x4::splat(min(least, 0.0)), F32x4::splat(PARALLEL));
+        let (bar, parallel) = (F32x4::splat(min(least, 0.0)), F32x4::splat(PARALLEL * PARALLEL));
         let axis = |i: usize| {
             let (i1, i2) = (NEXT[i], NEXT[NEXT[i]]);
             let distance = F32x4::splat(t[i2]) * signed[i1] - F32x4::splat(t[i1]) * signed[i2];
@@ -271,7 +267,7 @@ impl Pair<'_> {
             let point = origin + up * (half[i0] + 0.5 * height) + right * x + ahead * y;
             out.push(point, height, base | clipped.name(*k));
         }
-        clipped.least <= separation + EXACT * self.sizes.smaller
+        clipped.least <= separation + MARGIN * self.sizes.smaller
     }
 
     fn build_edges(
@@ -326,7 +322,7 @@ impl Pair<'_> {
                 out.push((on_a + on_b) * 0.5, separation, feature ^ flips);
             }
         }
-        beyond <= EXACT * self.sizes.smaller
+        beyond <= MARGIN * self.sizes.smaller
     }
 }
 

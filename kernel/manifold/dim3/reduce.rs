@@ -2,22 +2,10 @@
 
 use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{F32x4, Lane, Num, Vector, max};
+use crate::tuning::manifold::{ABOUT_EQUAL, DEEPER, FLAT, HIGH, IN_THE_AIR};
 
 /// The most candidates a manifold function collects before it reduces.
 pub(super) const MAX_CANDIDATES: usize = 64;
-/// The first candidate with at least this share of the best score is taken. So the choice among nearly equal candidates is the
-/// same from step to step, and points keep their impulses.
-const ABOUT_EQUAL: f32 = 0.952;
-/// A point counts as deep as the deepest one within this share of the patch's size. Less makes the choice flicker.
-const DEEPER: f32 = 1.0e-3;
-/// The worth of a point of several faces falls with its height over the deepest one, down to [`IN_THE_AIR`] at this share of the
-/// patch's size. More drops one end of an edge that a body leans on for a point in the air; less makes the choice flicker.
-const HIGH: f32 = 0.02;
-/// The share of its worth that is left of a point in the air. More drops points that bear, less those that the body falls on.
-const IN_THE_AIR: f32 = 0.5;
-/// A point must add at least this share of the patch's squared size. Less keeps points on a line.
-const FLAT: f32 = 1.0e-6;
-
 /// A list of at most `N` candidates on the stack.
 pub(super) struct Candidates<const N: usize> {
     list: [LocalPoint; N],
@@ -197,7 +185,7 @@ impl<const B: usize> Patch<B> {
         let first = self.those_with(|k, _| self.separation[k].le(bar)).trailing_zeros() as usize % (4 * B);
         let a = self.at(first);
         let (second, far) = self.pick(&weights, distance(a));
-        if !(far > FLAT * size_squared) {
+        if !(far > FLAT as f32 * size_squared) {
             return ([first, 0, 0, 0], 1);
         }
         let b = self.at(second);
@@ -205,7 +193,7 @@ impl<const B: usize> Patch<B> {
             let area = twice_area(a, b, x, y);
             area.max(-area)
         });
-        if !(area > FLAT * size_squared) {
+        if !(area > FLAT as f32 * size_squared) {
             return ([first, second, 0, 0], 2);
         }
         let c = self.at(third);
@@ -214,7 +202,7 @@ impl<const B: usize> Patch<B> {
         let (fourth, added) = self.pick(&weights, |x, y| {
             -twice_area(p, q, x, y).min(twice_area(q, r, x, y)).min(twice_area(r, p, x, y))
         });
-        let count = if added > FLAT * size_squared { 4 } else { 3 };
+        let count = if added > FLAT as f32 * size_squared { 4 } else { 3 };
         ([first, second, third, fourth], count)
     }
 }

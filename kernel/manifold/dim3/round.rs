@@ -3,27 +3,7 @@
 use crate::manifold::LocalManifold;
 use crate::math::{Pose, Vector, clamp, max, min};
 use crate::shape::{Capsule, Triangle, nearest_fraction};
-
-/// Below this sine the common normal of two capsules is not computed from their cross product.
-const PARALLEL: f32 = 1.0e-3;
-
-/// Capsules touch along a line while the directions between their axes differ by less than this angle, in radians, from
-/// that between their closest points. There the point of contact would jump from end to end with every small turn, and
-/// resting capsules would rock on it.
-const LINE_TURN: f32 = 0.1;
-
-/// Capsules whose axes have a larger sine than this touch in a point, however short they are.
-const LINE_SINE: f32 = 0.2;
-
-/// Lines are side by side if they are over more than this share of the shorter one.
-const LINE_SHARE: f32 = 0.01;
-
-/// A hundred times the rounding of a point, as a share of the largest number it was computed from. The direction between
-/// points that are farther apart is accurate to a hundredth.
-const ROUNDING: f32 = 2.0e-5;
-
-/// Triangles with a corner of a smaller sine count as segments.
-const SLIVER: f32 = 1.0e-5;
+use crate::tuning::manifold::{LINE_SINE, LINE_TURN, PARALLEL_LINES, ROUNDING, SAME_POINT};
 
 /// The closest points of both cores, and the radii.
 #[derive(Clone, Copy)]
@@ -157,7 +137,7 @@ fn face(t: &Triangle) -> Option<Vector> {
     let cross = ab.cross(ac);
     let size = ab.length() * ac.length();
     // The third side may be the short one. A NaN fails the comparison.
-    let is_face = cross.length() > SLIVER * max(size, max(ab.length_squared(), ac.length_squared()));
+    let is_face = cross.length() > ROUNDING * max(size, max(ab.length_squared(), ac.length_squared()));
     is_face.then(|| unit_or(cross, Vector::Y))
 }
 
@@ -220,7 +200,7 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
     let crossed = u.cross(v);
     let (uu, vv) = (u.length_squared(), v.length_squared());
     let is_within = |sine: f32| !(crossed.length_squared() > sine * sine * uu * vv);
-    let parallel = is_within(PARALLEL);
+    let parallel = is_within(PARALLEL_LINES);
     let mut fallback = if parallel {
         unit_or(u, unit_or(v, Vector::X)).any_orthonormal()
     } else {
@@ -271,7 +251,7 @@ impl Lines {
         let ends = self.b.map(|p| clamp((p - self.a).dot(self.u) / self.uu, 0.0, 1.0));
         let (low, high) = (min(ends[0], ends[1]), max(ends[0], ends[1]));
         let shared = (high - low) * (high - low) * self.uu;
-        (shared > LINE_SHARE * LINE_SHARE * min(self.uu, self.vv)).then_some([low, high])
+        (shared > SAME_POINT * SAME_POINT * min(self.uu, self.vv)).then_some([low, high])
     }
 
     /// The point of A at a share, and that of B beside it.

@@ -10,9 +10,7 @@
 use super::view::{MatrixPose, View};
 use crate::math::{F32x4, Lane, Num, Vector, min};
 use crate::shape::{EdgeBlock, largest};
-
-/// Edges with a smaller sine between them count as parallel: the direction of their product is rounding.
-pub(super) const PARALLEL: f32 = 0.005;
+use crate::tuning::manifold::PARALLEL;
 
 /// The number of blocks of A's edges that are tested beforehand. Of hulls with more, all other blocks are searched.
 const LISTED: usize = 64;

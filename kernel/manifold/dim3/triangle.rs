@@ -3,21 +3,19 @@
 //! It decides as all of [`axis`] do, and adds what a triangle has of its own: a single plane, arcs of 180° on the Gauss map, and
 //! often a proof that its face is the best axis, which saves the search for others. Everything is in the polyhedron's frame.
 
-use super::axis::{self, Axis, EXACT, Pair as _, Sizes};
+use super::axis::{self, Axis, Pair as _, Sizes};
 use super::clip::{self, Corner, FEW_CORNERS, LEAST_CORNERS, MAX_CORNERS, Polygon, Reference, clip};
 use super::convex::closest_of_lines;
 use super::gjk::{self, Core};
-use super::sat::{EdgeAxis, FaceAxis, PARALLEL, open_edges, remaining};
+use super::sat::{EdgeAxis, FaceAxis, open_edges, remaining};
 use super::view::{Facing, MatrixPose, View, four};
 use crate::manifold::LocalManifold;
 use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
 use crate::shape::largest;
+use crate::tuning::manifold::{MARGIN, PARALLEL, REACH};
 
-/// A side makes no better axis than the face if the vertex behind the face is this many depths inside of it, but for those
-/// closer than [`STEEP`] to the reverse of the face's normal. See [`Pair::open_sides`].
-const REACH: f32 = 10.0;
-/// The cosine and sine of the angle from which on `REACH` says nothing: 2 atan(1 / 10) = 11.4°.
-const STEEP: [f32; 2] = [0.980_198, 0.198_02];
+/// The cosine and sine of the angle from which on [`REACH`] says nothing: 2 atan(1 / REACH).
+const STEEP: [f32; 2] = [(REACH * REACH - 1.0) / (REACH * REACH + 1.0), 2.0 * REACH / (REACH * REACH + 1.0)];
 
 /// A triangle and the polyhedron, in the frame of the polyhedron.
 struct Pair<'a> {
@@ -378,7 +376,7 @@ impl<'a> Pair<'a> {
         out: &mut LocalManifold,
     ) -> bool {
         let mut first = Polygon::<N, F32x4>::new();
-        let margin = clip::MARGIN * self.sizes.smaller;
+        let margin = MARGIN * self.sizes.smaller;
         let margins = F32x4::new([margin, margin, margin, 0.0]);
         let place = |v| (v, self.prism.heights(v) - margins);
         clip::incident_polygon(self.view, incident, place, &mut first);
@@ -404,7 +402,7 @@ impl<'a> Pair<'a> {
             }
             self.fill(polygon, plane, out)
         };
-        least <= plane.separation + EXACT * self.sizes.smaller
+        least <= plane.separation + MARGIN * self.sizes.smaller
     }
 
     /// Fills the manifold with the corners of a clipped polygon. Returns their least height over the face.
@@ -428,7 +426,7 @@ impl<'a> Pair<'a> {
         let polygon = clip(self.view, axis.face, [&mut polygon, &mut spare], self.sizes.smaller);
         out.normal = -self.frame.direction(reference.normal);
         let height = |corner: &Corner| reference.height(corner.point);
-        reference.fill(polygon, height, out) <= axis.separation + EXACT * self.sizes.smaller
+        reference.fill(polygon, height, out) <= axis.separation + MARGIN * self.sizes.smaller
     }
 
     fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {

@@ -8,18 +8,14 @@
 use super::super::gjk::Core;
 use super::super::view::MatrixPose;
 use crate::math::Vector;
+use crate::tuning::manifold::{DEPTH_ACCURACY, FLAT};
 
 type Wide = Vector<f64>;
 
-/// The search ends when both bounds differ by less than this share of the depth.
-pub(super) const RESOLUTION: f64 = 0.01;
 /// It also ends at this many corners, which only shapes about as deep along very many directions have.
 const MAX_CORNERS: usize = 96;
 /// A closed surface of triangles has two for each corner, less four.
 const MAX_FACES: usize = 2 * MAX_CORNERS - 4;
-/// A corner must be over a face by this share of the difference's size to replace it.
-const FLAT: f64 = 1.0e-6;
-
 /// A triangle of the polytope, counter-clockwise from outside.
 #[derive(Clone, Copy)]
 struct Face {
@@ -38,7 +34,7 @@ struct Polytope {
     size: f64,
 }
 
-/// The normal from A to B along which the cores are least deep, to within [`RESOLUTION`]. `None` if their difference is
+/// The normal from A to B along which the cores are least deep, to within [`DEPTH_ACCURACY`]. `None` if their difference is
 /// flat. Not inlined, since its stack frame is large.
 #[inline(never)]
 pub(super) fn shallowest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> Option<Vector> {
@@ -56,7 +52,7 @@ pub(super) fn shallowest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> 
         if height < depth {
             (depth, normal) = (height, face.normal);
         }
-        if !(depth - face.offset > RESOLUTION * depth) || !polytope.add(corner) {
+        if !(depth - face.offset > DEPTH_ACCURACY * depth) || !polytope.add(corner) {
             return (depth < f64::INFINITY).then(|| normal.narrow());
         }
     }

@@ -19,6 +19,7 @@ use super::view::{MatrixPose, View};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector, max, min};
 use crate::shape::Curved;
+use crate::tuning::manifold::{APART, APART_ROUNDS, AXIS_SLACK, DEEP, FACING, GAIN, MARGIN, PREFER_FACES};
 use party::Party;
 use patch::{Phase, Region};
 pub use rim::lead_rims;
@@ -29,26 +30,6 @@ const PLANE_A: u8 = 1;
 const PLANE_B: u8 = 2;
 /// [`FeatureCache::kind`] of any other axis, which is in `a` and `b`.
 const LINE: u8 = 3;
-
-/// A cached plane is kept if its separation changed by less than this share of the smaller shape's extent.
-const CACHE_TOLERANCE: f32 = 0.005;
-/// Another axis must beat a plane by this share of the smaller shape's extent, and an end of B a plane of A by a tenth of it.
-const PREFER_PLANES: f32 = 0.002;
-/// An axis counts as exact if the nearest point is farther than its separation by at most this share of the smaller shape's
-/// extent.
-const EXACT: f32 = 1.0e-3;
-/// Closest points are looked for where shapes are this share of the smaller one's extent apart, or farther.
-const APART: f32 = 0.03;
-/// The most rounds of moving shapes apart. Deep overlaps take more than shallow ones.
-const MAX_ROUNDS: usize = 32;
-/// A round that gains less than this share of the smaller shape's extent is the last.
-const GAIN: f32 = 1.0e-5;
-
-/// An axis counts as the best of all if no other can be less deep by more than this share of the smaller shape's extent.
-const SURE: f32 = 0.005;
-
-/// Faces overlapped by more than this share of the smaller shape's extent have a contact in any case.
-const DEEP: f32 = 0.05;
 
 /// The name of the point of a contact that has one.
 const SINGLE: u32 = 15 << 16;
@@ -131,7 +112,7 @@ pub(super) fn collide_face(
     prediction: f32,
     out: &mut LocalManifold,
 ) {
-    let Some(face) = (0..a.faces.len()).find(|i| a.faces[*i].normal.dot(normal) > 0.5) else { return };
+    let Some(face) = (0..a.faces.len()).find(|i| a.faces[*i].normal.dot(normal) > FACING) else { return };
     let b = &b.with_equal_discs();
     let pair = Pair::new(a, b, pose, prediction);
     let found = pair.plane_a(face);
@@ -242,7 +223,7 @@ impl<'a, A: Party> Pair<'a, A> {
             return true;
         }
         if matches!(found.axis, Axis::Line)
-            || !((found.separation - cache.separation).abs() < CACHE_TOLERANCE * self.smaller)
+            || !((found.separation - cache.separation).abs() < AXIS_SLACK * self.smaller)
         {
             return false;
         }
@@ -258,7 +239,7 @@ impl<'a, A: Party> Pair<'a, A> {
     fn search(&self, cache: &mut FeatureCache, out: &mut LocalManifold) {
         let known = *cache;
         let phase = if known.kind == PLANE_A || known.kind == PLANE_B { known.b } else { 0 };
-        let preference = PREFER_PLANES * self.smaller;
+        let preference = PREFER_FACES * self.smaller;
         let mut best = self.plane_b(0);
         let mut consider = |found: Found, bonus: f32| {
             if found.separation + bonus > best.separation {
@@ -371,12 +352,12 @@ impl<'a, A: Party> Pair<'a, A> {
         *phase = region.phase;
         take(&region, out);
         self.set_radii(out);
-        region.least <= found.separation + EXACT * self.smaller
+        region.least <= found.separation + MARGIN * self.smaller
     }
 
     fn region(&self, found: &Found, phase: Phase) -> Region {
         let mut region = Region::new(found.normal, self.a.radius(), self.prediction, self.smaller, phase);
-        region.deepest = found.separation - EXACT * self.smaller;
+        region.deepest = found.separation - MARGIN * self.smaller;
         region
     }
 
@@ -393,7 +374,7 @@ impl<'a, A: Party> Pair<'a, A> {
         let mut region = self.region(found, 0);
         let down = -self.b_in_a.direction_in(n);
         let line_b = self.b.line_along(down).map(|ends| ends.map(|p| self.b_in_a.point(p)));
-        let bar = found.separation + EXACT * self.smaller;
+        let bar = found.separation + MARGIN * self.smaller;
         if let (Some(a), Some(b)) = (self.a.line_along(n), line_b)
             && region.parallel_lines(&a, &b)
             && region.least <= bar
@@ -407,11 +388,11 @@ impl<'a, A: Party> Pair<'a, A> {
             (None, Some(a), Some(b)) => {
                 let (p, q, inside) = super::convex::closest_of_lines(a, b);
                 let aside = (q - p - n * found.separation).length();
-                ([p, q], inside && aside <= EXACT * self.smaller)
+                ([p, q], inside && aside <= MARGIN * self.smaller)
             }
             _ => {
                 let (a, b) = (self.a.farthest_point(n).0, self.b_in_a.point(self.b.support(down)));
-                ([a, b], (b - a - n * found.separation).length() <= EXACT * self.smaller)
+                ([a, b], (b - a - n * found.separation).length() <= MARGIN * self.smaller)
             }
         };
         (out.normal, out.count) = (n, 0);
@@ -465,7 +446,7 @@ impl<'a, A: Party> Pair<'a, A> {
     /// Whether no axis is clearly less deep, by a point of each core. If the ball of a radius about a point of B is within A,
     /// all axes are at least as deep as that, and the other way around.
     fn is_best(&self, found: &Found, points: Option<[Vector; 2]>) -> bool {
-        let sure = found.separation + SURE * self.smaller;
+        let sure = found.separation + AXIS_SLACK * self.smaller;
         sure >= 0.0
             || points.is_some_and(|[on_a, on_b]| {
                 let on_a = self.b_in_a.direction_in(on_a - self.b_in_a.position);
@@ -513,7 +494,7 @@ impl<'a, A: Party> Pair<'a, A> {
         let mut best = (Found { axis: Axis::Line, ..*start }, None);
         let mut normal = start.normal;
         let mut separation = start.separation;
-        for _ in 0..MAX_ROUNDS {
+        for _ in 0..APART_ROUNDS {
             let push = max(apart - separation, 0.0);
             let mut frame = self.b_in_a;
             frame.position += normal * push;
@@ -530,7 +511,8 @@ impl<'a, A: Party> Pair<'a, A> {
             } else if best.1.is_none() {
                 best.1 = points;
             }
-            if !(gain > GAIN * self.smaller || gain >= -GAIN * self.smaller && aside > EXACT * self.smaller) {
+            if !(gain > GAIN * self.smaller || gain >= -GAIN * self.smaller && aside > MARGIN * self.smaller)
+            {
                 break;
             }
             (normal, separation) = (closest.normal, found);

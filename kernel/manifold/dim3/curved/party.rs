@@ -6,11 +6,7 @@ use super::super::view::{MatrixPose, View};
 use super::patch::{Disc, Face, Patch};
 use crate::math::{Vector, max, min};
 use crate::shape::Curved;
-
-/// A line is across a normal if the cosine between them is smaller.
-const ACROSS: f32 = 0.02;
-/// A frustum rolls on its side or edge if the sine between its axis and the normal is larger, else it stands.
-pub(super) const ROLLING: f32 = 0.3;
+use crate::tuning::manifold::{LEVEL_SINE, ROLLING};
 
 /// The first shape of a pair, in its own frame.
 pub(super) trait Party: Core {
@@ -150,7 +146,7 @@ impl Party for Curved {
 
 fn is_across(ends: &[Vector; 2], direction: Vector) -> bool {
     let along = ends[1] - ends[0];
-    along.dot(direction).abs() <= ACROSS * along.length() * direction.length()
+    along.dot(direction).abs() <= LEVEL_SINE * along.length() * direction.length()
 }
 
 /// The part of a direction across the axis, and its unit vector.

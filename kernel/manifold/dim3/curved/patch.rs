@@ -9,6 +9,7 @@ use super::super::reduce::{Candidates, MAX_CANDIDATES};
 use super::super::round::Lines;
 use crate::manifold::LocalPoint;
 use crate::math::{Vector, atan2, min, sin_cos};
+use crate::tuning::manifold::{CROSSED, LEVEL_SINE, LOWEST, MARGIN};
 use core::f64::consts::TAU;
 
 /// A part of a surface, in A's frame.
@@ -44,15 +45,6 @@ pub(super) struct Face<'a> {
 /// Where the four points of a circle are, from step to step: 0 if it is not known, else 1 and a share of 255 of a turn.
 pub(super) type Phase = u8;
 
-/// A point of a circle may be this share of the radius above its lowest point before the points turn to that.
-pub(super) const LEVEL: f32 = 2.0e-4;
-/// A circle with a larger sine to the other surface has one of its points at the lowest place.
-const TILTED: f32 = 0.02;
-/// Regions are wider by this share of the smaller shape's extent, so that equal ends on each other keep their own points.
-const MARGIN: f32 = 1.0e-3;
-/// Circles with a larger sine between them touch at their lowest points only.
-const CROSSED: f32 = 0.1;
-
 /// The names of points; a number of up to 16 bits is added.
 const CORNER: u32 = 1 << 16;
 const ENTRY: u32 = 2 << 16;
@@ -62,12 +54,6 @@ const OF_B: u32 = 5 << 16;
 const END: u32 = 6 << 16;
 const CUT: u32 = 7 << 16;
 const CROSSING: u32 = 8 << 16;
-
-/// Lines with a smaller sine between them are side by side.
-const SIDE_BY_SIDE: f32 = 0.02;
-
-/// Lines side by side may pass each other by this share of the smaller shape's extent.
-const ASIDE: f32 = 2.0e-3;
 
 /// Polygons with more corners are thinned to every second, third, … corner.
 const MAX_CORNERS: usize = 32;
@@ -168,7 +154,7 @@ impl Region {
                 nearest = if cosine(spokes[i]) > cosine(spokes[nearest]) { i } else { nearest };
             }
             let above = tilt * disc.radius * (1.0 - cosine(spokes[nearest]));
-            if tilt > TILTED || above > LEVEL * min(disc.radius, self.extent) {
+            if tilt > LEVEL_SINE || above > LOWEST * min(disc.radius, self.extent) {
                 spoke = quarter_turns(lowest)[(4 - nearest) % 4];
             }
         }
@@ -322,7 +308,7 @@ impl Region {
     pub fn parallel_lines(&mut self, a: &[Vector; 2], b: &[Vector; 2]) -> bool {
         let lines = Lines::new(a[0], a[1] - a[0], *b, b[1] - b[0]);
         let Lines { u, v, uu, vv, .. } = lines;
-        if !(uu > 0.0 && vv > 0.0 && u.cross(v).length_squared() <= SIDE_BY_SIDE * SIDE_BY_SIDE * uu * vv) {
+        if !(uu > 0.0 && vv > 0.0 && u.cross(v).length_squared() <= LEVEL_SINE * LEVEL_SINE * uu * vv) {
             return false;
         }
         let Some(range) = lines.shared() else { return false };
@@ -330,7 +316,7 @@ impl Region {
         let pairs = range.map(|t| lines.at(t));
         // Lines that pass each other are nearest along another normal.
         let aside = pairs.map(|[on_a, on_b]| across.dot(on_b - on_a));
-        if aside[0] * aside[1] > 0.0 && min(aside[0].abs(), aside[1].abs()) > ASIDE * self.extent {
+        if aside[0] * aside[1] > 0.0 && min(aside[0].abs(), aside[1].abs()) > 2.0 * self.margin() {
             return false;
         }
         for (i, [on_a, on_b]) in (0..).zip(pairs) {

@@ -4,23 +4,11 @@
 //! rocks: by 1/α times the angle. Solver rows keep the arms of a contact for a step, and an arm that lags behind feeds the
 //! rocking: a heap of coins rocked for ever. So the point is placed where it will be in the middle of the step.
 
-use super::party::{ROLLING, across};
+use super::party::across;
 use crate::manifold::LocalManifold;
 use crate::math::{Angular, Pose, Rot, Vector, min};
 use crate::shape::{Curved, Shape};
-
-/// A point counts as the lowest one of a rim if it is within this share of the radius.
-const AT_RIM: f32 = 0.05;
-
-/// The lowest point of a rim may lag by this share of the radius before a contact is computed anew.
-const LAG: f32 = 0.02;
-
-/// A disc that leans less than this, as a sine, has no lowest point.
-const LEVEL: f32 = 1.0e-4;
-
-/// Nor has one whose lowest point runs farther in half a step than this share of the radius. It tips over: led to the other
-/// side, the point would be missing where the disc goes down.
-const MOST_RUN: f32 = 0.5;
+use crate::tuning::manifold::{AT_RIM, RIM_LAG, RIM_LEVEL, RIM_RUN, ROLLING};
 
 /// Moves points on the lowest place of a rim, up to `near` apart, to where that will be once B has turned by `turn` against A,
 /// a rotation vector in world axes. `out` is the contact of the shapes, `rotation_a` that of A in the world, `pose_b_in_a`
@@ -71,11 +59,11 @@ impl Rim {
         // Seen from the shape, the other surface turns the other way.
         let ((lean, around), (lean_then, around_then)) = (across(down), across(down + down.cross(turn)));
         let end = shape.end_along(lean, down.y);
-        let leans = lean > LEVEL && lean < ROLLING;
+        let leans = lean > RIM_LEVEL && lean < ROLLING;
         let radius = if leans { shape.radius_of(end) } else { 0.0 };
         let lowest = around * radius + Vector::Y * shape.height_of(end);
         let run = around_then - around;
-        let runs = lean_then > LEVEL && run.length_squared() < MOST_RUN * MOST_RUN;
+        let runs = lean_then > RIM_LEVEL && run.length_squared() < RIM_RUN * RIM_RUN;
         let shift = if runs { run * radius } else { Vector::ZERO };
         Self { lowest, shift, rise: -shift.dot(down), radius, lean }
     }
@@ -94,7 +82,7 @@ impl Rim {
                 p.point += from_shape(self.shift);
                 p.separation += self.rise;
                 if !is_full {
-                    allowed = LAG * self.lean * self.radius;
+                    allowed = RIM_LAG * self.lean * self.radius;
                 }
             }
         }

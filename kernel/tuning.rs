@@ -1,0 +1,240 @@
+//! What tunes the kernel: every length, speed, angle, share and count by which contacts, manifolds, sweeps, rest and the solver
+//! decide, with its meaning and what breaks when it is larger or smaller.
+//!
+//! Shares are of a length of the pair itself, mostly the smaller shape's extent. Lengths and speeds that are not are in units of
+//! the contact tolerance, which scales with the length unit: so the scale of the world does not matter. Angles are in radians, or
+//! given by their cosine or sine.
+//!
+//! Not here: numbers of the user, laws of physics and geometry, limits of floats, and sizes of blocks and buffers, which change
+//! speed or memory only.
+
+/// Contact points of two shapes. Shares are of the smaller shape's extent, if nothing else is said.
+pub mod manifold {
+    // Which axis separates two shapes.
+    /// How much less an axis may separate than the best one, or than when it was found, and be kept. Larger keeps worse
+    /// axes; smaller searches more often.
+    pub const AXIS_SLACK: f32 = 0.005;
+
+    /// By how much more edges must separate than faces to be the axis, and ten times what faces of B must beat faces of A
+    /// by. Smaller lets resting contacts flip between axes; larger takes faces that are deeper than edges.
+    pub const PREFER_FACES: f32 = 0.002;
+
+    /// How far beyond a face, clipped points still count as over it, and how far the nearest point may be from an axis
+    /// that counts as exact. Larger has points in the air; smaller drops the corners of equal boxes on each other by
+    /// rounding.
+    pub const MARGIN: f32 = 1.0e-3;
+
+    /// The sine below which edges of polyhedra have no common normal. Larger misses axes of nearly parallel edges; smaller
+    /// has normals of rounding.
+    pub const PARALLEL: f32 = 0.005;
+
+    /// A vertex behind a facet, inside of a side by this many depths, proves the face to be the best axis. Smaller is
+    /// wrong for axes 2 atan(1 / REACH) from the reverse of the normal; larger proves less and costs time.
+    pub const REACH: f32 = 10.0;
+
+    /// The least cosine to a normal of a face that faces that way. Larger leaves faces out that bodies lie in; smaller
+    /// takes sides for faces.
+    pub const FACING: f32 = 0.5;
+
+    /// The sine up to which a direction counts as along a plane, and the slope up to which it counts as level. Larger
+    /// takes leaning sides for level ones; smaller decides by rounding.
+    pub const SIDEWAYS: f32 = 0.05;
+
+    // Which points are kept.
+    /// The share of the best score from which on the first candidate is taken. Larger lets points change from step to
+    /// step; smaller keeps worse ones.
+    pub const ABOUT_EQUAL: f32 = 0.952;
+
+    /// Points are equally deep within this share of the patch's size. Smaller makes the choice flicker; larger leaves the
+    /// deepest point out.
+    pub const DEEPER: f32 = 1.0e-3;
+
+    /// Of several faces, a point this share of the patch's size above the deepest one is in the air. Larger drops one end
+    /// of an edge that a body leans on; smaller makes the choice flicker.
+    pub const HIGH: f32 = 0.02;
+
+    /// The share of its worth that is left of a point in the air. Larger drops points that bear; smaller drops those that
+    /// the body falls on.
+    pub const IN_THE_AIR: f32 = 0.5;
+
+    /// What adds less than this share of the whole size, or of its square, adds nothing. Smaller keeps points on a line;
+    /// larger drops corners of slender patches.
+    pub const FLAT: f64 = 1.0e-6;
+
+    // Round shapes.
+    /// The sine below which capsules have no common normal across both. Smaller has normals of rounding; larger misses
+    /// crossing capsules.
+    pub const PARALLEL_LINES: f32 = 1.0e-3;
+
+    /// Capsules with a larger sine between them touch in a point, however short they are. Larger has lines where they
+    /// cross.
+    pub const LINE_SINE: f32 = 0.2;
+
+    /// Capsules touch along a line while the direction between their axes turns by less along it, in radians. Smaller lets
+    /// resting capsules rock; larger gives crossing ones two points.
+    pub const LINE_TURN: f32 = 0.1;
+
+    /// A hundred times the rounding of numbers: nearer points, as a share of their largest number, have no direction,
+    /// triangles with a corner of a smaller sine no normal, and platforms that turn by less, in radians, do not turn their
+    /// contacts. Larger takes fallback normals too early, and tilts what slides on platforms; smaller takes normals of
+    /// rounding.
+    pub const ROUNDING: f32 = 2.0e-5;
+
+    /// Frusta roll on their side or edge if the sine between axis and normal is larger, else they stand. Larger brakes
+    /// rolling on edges; smaller lets standing ones roll.
+    pub const ROLLING: f32 = 0.3;
+
+    /// Lines and circles with a smaller sine to a line or plane lie along it. Larger has points in the air; smaller gives
+    /// cylinders that lie a single point.
+    pub const LEVEL_SINE: f32 = 0.02;
+
+    /// Circles with a larger sine between them touch at their lowest points only. Larger has crossings far above the
+    /// contact.
+    pub const CROSSED: f32 = 0.1;
+
+    /// Points of a full circle stay where they are until the lowest one is this share of the radius below them. Larger
+    /// lets discs sink on one side; smaller turns points with every rock.
+    pub const LOWEST: f32 = 2.0e-4;
+
+    /// Facets overlapped by more have a contact in any case, over them or beside. Larger lets what is deep fall through;
+    /// smaller pushes beside edges.
+    pub const DEEP: f32 = 0.05;
+
+    /// Overlapping curves are moved this far apart to find closest points. Larger finds other features; smaller has
+    /// normals of rounding.
+    pub const APART: f32 = 0.03;
+
+    /// Most rounds of that. Deep overlaps take more than shallow ones.
+    pub const APART_ROUNDS: usize = 32;
+
+    /// A round of moving apart that separates less is the last. Larger stops at worse axes; smaller takes more rounds.
+    pub const GAIN: f32 = 1.0e-5;
+
+    /// The share of the depth to which the least depth of deep overlaps is known. Larger pushes out along worse normals;
+    /// smaller takes more corners.
+    pub const DEPTH_ACCURACY: f64 = 0.01;
+
+    /// A point within this share of the radius of a rim's lowest place is that place. Larger leads other points; smaller
+    /// misses it.
+    pub const AT_RIM: f32 = 0.05;
+
+    /// The lowest point of a rim may lag by this share of the radius before its contact is computed anew. Larger lets
+    /// coins rock for ever; smaller computes more.
+    pub const RIM_LAG: f32 = 0.02;
+
+    /// A disc that leans by a smaller sine has no lowest point. Smaller leads points by rounding.
+    pub const RIM_LEVEL: f32 = 1.0e-4;
+
+    /// A lowest point that runs farther in half a step, as a share of the radius, is not led: the disc tips over. Larger
+    /// leaves nothing under it.
+    pub const RIM_RUN: f32 = 0.5;
+
+    /// How many directions of a turn are tried for two ellipses. Fewer miss the best one, more cost time.
+    pub const DIRECTIONS: usize = 16;
+
+    /// How often an angle between these is halved. Fewer leave the normal off by more than rounding.
+    pub const HALVINGS: usize = 20;
+
+    /// The ratio of half sizes of the flattest ellipse whose normals are tried. At 0 all would be across it.
+    pub const FLATTEST: f32 = 1.0e-4;
+
+    /// Ellipses that overlap by more than this share have other corners tried. Larger keeps worse normals; smaller costs
+    /// time.
+    pub const DEEP_ELLIPSE: f32 = 0.02;
+
+    /// Features of two segments are equally near within this share; the first one wins. Smaller lets parallel capsules
+    /// flip.
+    pub const SAME_DISTANCE: f32 = 1.0e-4;
+
+    /// Offsets along an edge below this share of both lengths are 0. Smaller decides by rounding.
+    pub const ALIGNED: f32 = 1.0e-6;
+
+    // Parts of composites.
+    /// The cosine from which on normals are one, and their manifolds are merged: 2°. Smaller merges slopes; larger solves
+    /// a plane several times.
+    pub const SAME_NORMAL: f32 = 0.9994;
+
+    /// The same of round shapes, as a squared angle: points move with the normal. Larger brakes what rolls over seams.
+    pub const SAME_ROUND_NORMAL: f32 = 1.0e-8;
+
+    /// Curved contacts are merged if their radii differ by less than this share.
+    pub const SAME_RADIUS: f32 = 0.02;
+
+    /// Points closer than this share of a manifold's size are one, and lines that are side by side over less of the
+    /// shorter one have one point. Larger loses corners; smaller solves points twice.
+    pub const SAME_POINT: f32 = 0.01;
+
+    /// Points up to this share of a facet's size inside of its border are on it. Larger takes inner points for those of an
+    /// edge; smaller misses edges.
+    pub const ON_BORDER: f32 = 0.02;
+
+    /// Normals that lean over a border by less are the facet's own, in radians. Larger brakes sliding bodies; rounding is
+    /// a tenth of it.
+    pub const LEAN: f32 = 1.0e-3;
+
+    /// A shape is on one side of a face if it reaches to the other side by less than this share of its extent. Larger
+    /// turns bodies over that reach under a facet; smaller pulls cones into faces.
+    pub const ON_ONE_SIDE: f32 = 0.25;
+
+    /// The cosine below which normals differ: 8°. Larger doubts rounding; smaller misses edges that poke into walls.
+    pub const TURNED: f32 = 0.99;
+
+    /// A face is deeper than what was found from this share of the prediction on. Smaller is rounding.
+    pub const DEEPER_FACE: f32 = 0.005;
+
+    /// Rounding and clipping of the depth of a corner that pokes into a seam, as a share of the prediction. Smaller drops
+    /// the wall there.
+    pub const POKE: f32 = 0.25;
+
+    /// The least cosine between a face and the side of a corner that pokes into it.
+    pub const MOST_LEAN: f32 = 0.25;
+
+    /// What is deeper in a closed surface than this share of its own half size is inside of it. Larger pushes out what
+    /// lies inside; smaller keeps what sank in from outside.
+    pub const INSIDE: f32 = 0.5;
+}
+
+/// Conservative advancement, of contacts within the step, of parts, and of fast bodies after the solver.
+pub mod sweeps {
+    /// Most steps in which two shapes are advanced to where they meet within the step. What takes more meets where it then
+    /// is. Fewer stop bodies that pass by; more cost time.
+    pub const MEETING_ROUNDS: usize = 24;
+
+    /// The same for a part of a composite.
+    pub const PART_ROUNDS: usize = 16;
+
+    /// The same for a fast body after the solver.
+    pub const STOP_ROUNDS: usize = 40;
+
+    /// Shapes that move past each other have met at this share of the distance that counts as touching. Larger stops
+    /// bodies that pass by; smaller takes more rounds.
+    pub const MET: f32 = 0.1;
+
+    /// Shapes that turn have met at this share of the smaller one's reach, and no farther than touching. Larger stops what
+    /// passes by; smaller takes more rounds.
+    pub const MET_TURNING: f32 = 0.02;
+
+    /// Bodies that turn by more in the step, in radians, are not swept past what they are near to. Larger gives energy to
+    /// what is pushed where it comes to; smaller stops bodies that pass by.
+    pub const MOST_STRAIGHT_TURN: f32 = 0.75;
+
+    /// Bodies that turn by more in a step, in radians, are predicted as if they turned by this. Larger finds pairs that
+    /// never touch; smaller misses what spinning rods hit.
+    pub const MOST_TURN: f32 = 1.5;
+
+    /// Chords of a slab's width that are drawn for one advance. More advance farther, fewer cost less.
+    pub const CHORDS: usize = 3;
+
+    /// Points push that close within this many steps. The solver lets points close no further than they may by the end of
+    /// the first substep after the step, so that fewer miss points, and more stop bodies that pass by.
+    pub const AHEAD: f32 = 2.0;
+
+    /// Bodies that move by less than this share of the ball within them are not swept, and those that overlap by less when
+    /// the step ends are not put back: the solver pushes them out. Larger lets them through thin walls; smaller takes time
+    /// from bodies.
+    pub const CORE_SHARE: f32 = 0.5;
+
+    /// Shapes with foreign parts are looked at up to this many extents of the moving one at once. Larger computes parts
+    /// that are not met; smaller takes more rounds.
+    pub const VIEW: f32 = 4.0;
+}
