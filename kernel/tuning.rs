@@ -1,9 +1,8 @@
 //! What tunes the kernel: every length, speed, angle, share and count by which contacts, manifolds, sweeps, rest and the solver
 //! decide, with its meaning and what breaks when it is larger or smaller.
 //!
-//! Shares are of a length of the pair itself, mostly the smaller shape's extent. Lengths and speeds that are not are in units of
-//! the contact tolerance, which scales with the length unit: so the scale of the world does not matter. Angles are in radians, or
-//! given by their cosine or sine.
+//! Shares are of a length of the pair itself, mostly the smaller shape's extent. Lengths and speeds that are not are in length
+//! units, so that the scale of the world does not matter. Angles are in radians, or given by their cosine or sine.
 //!
 //! Not here: numbers of the user, laws of physics and geometry, limits of floats, and sizes of blocks and buffers, which change
 //! speed or memory only.
@@ -194,6 +193,76 @@ pub mod manifold {
     pub const INSIDE: f32 = 0.5;
 }
 
+/// Contacts from step to step. Shares are of the smaller side's reach, if nothing else is said.
+pub mod contact {
+    // What continues a contact.
+    /// The cosine from which on a normal is that of the same face: 25°. Larger loses impulses of bodies that turn, and has
+    /// contacts for sides far from the ground; smaller hands impulses to other faces, and lets bodies that tip over slap
+    /// down.
+    pub const SAME_FACE: f32 = 0.9;
+
+    /// Bodies may move by this much while their manifold is kept. Larger makes contacts of small bodies lag; smaller
+    /// recomputes them more often.
+    pub const RECYCLE_SHARE: f32 = 0.25;
+
+    /// The same of round ones, as a share of both radii. Larger keeps capsules rocking in a pile.
+    pub const ROUND_SHARE: f32 = 0.005;
+
+    /// The least cosine of a body's turn while its manifold is kept: 10°. With smaller ones the bounds of small angles
+    /// fail.
+    pub const RECYCLE_COS: f32 = 0.985;
+
+    /// The share of that way up to which a contact is not looked at. Larger lets separations drift: with this, by a tenth
+    /// of a millimetre.
+    pub const CALM_SHARE: f32 = 0.5;
+
+    // Deep overlap.
+    /// Bodies that were placed into one another by more are pushed out gently. Smaller lets heaps sink into themselves;
+    /// larger lets placed bodies jump.
+    pub const DEEP: f32 = 0.1;
+
+    /// Deep overlap stays deep down to this. Larger has springs push out the rest, and rows of bodies fly apart.
+    pub const NO_LONGER_DEEP: f32 = 0.01;
+
+    // Round bodies that rock.
+    /// Bodies that turn by less in a step, in radians, keep their inertia through it, and if they do so against each other
+    /// the contact of its start. Larger leaves rocking without damping, and lets bodies gain spin in contacts; smaller
+    /// computes more contacts, and slows down piles that creep.
+    pub const STILL: f32 = 2.0e-3;
+
+    /// Bodies that turn by more, in radians, do not rock. Larger moves contacts of what has yet to hit.
+    pub const MOST_ROCKING: f32 = 0.25;
+
+    /// Nor do those that move by more than this.
+    pub const MOST_WAY: f32 = 0.5;
+
+    // Inner edges of the ground. Lengths are in length units, speeds in these per second.
+    /// How far above a plane a point may be that is on it. Larger hides kerbs; smaller is below the rounding of positions
+    /// some kilometres from the origin.
+    pub const FLUSH: f32 = 2.5e-4;
+
+    /// How far below a plane the collider may reach besides the depth of its contact there. Larger hides pits from concave
+    /// colliders; smaller has ghosts where bodies tip.
+    pub const BELOW: f32 = 0.005;
+
+    /// At how many times the height that counts as on a plane a wall is looked for. Larger misses low walls; smaller takes
+    /// edges of flush tiles for walls.
+    pub const RISES: f32 = 4.0;
+
+    /// Normals closer than this hold the same, as a squared angle: 0.2°. Larger merges slopes; smaller compares planes
+    /// with themselves.
+    pub const PARALLEL: f32 = 1.2e-5;
+
+    /// Bodies slower than this slide over nothing. Larger has ghosts at low speed; smaller compares what rests.
+    pub const MOVING: f32 = 0.02;
+
+    /// Dynamic bodies slower than this are ground.
+    pub const RESTING: f32 = 0.05;
+
+    /// And for those only that move faster than this against them. Smaller takes contacts from bodies in heaps.
+    pub const SLIDING: f32 = 0.25;
+}
+
 /// Conservative advancement, of contacts within the step, of parts, and of fast bodies after the solver.
 pub mod sweeps {
     /// Most steps in which two shapes are advanced to where they meet within the step. What takes more meets where it then
@@ -237,4 +306,17 @@ pub mod sweeps {
     /// Shapes with foreign parts are looked at up to this many extents of the moving one at once. Larger computes parts
     /// that are not met; smaller takes more rounds.
     pub const VIEW: f32 = 4.0;
+}
+
+/// Boxes around moving bodies, and when they sleep.
+pub mod rest {
+    use crate::math::DIM;
+
+    /// The time over which velocities are averaged, in seconds. Larger lets bodies sleep that have only begun to roll: at
+    /// 0.1 s, below 0.4 m/s² with the usual rest speed and time; smaller keeps what shakes awake.
+    pub const MEAN_TIME: f32 = 0.1;
+
+    /// How much a fat box may grow, as a share of the extent and the displacement by turning. Larger finds pairs that
+    /// never touch: twice as much costs a pile of boxes in 3D a quarter; smaller enlarges boxes more often.
+    pub const FAT_SHARE: f32 = 0.5 / (1 << DIM) as f32;
 }

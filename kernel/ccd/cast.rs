@@ -8,16 +8,7 @@ use crate::contact::ManifoldSource;
 use crate::manifold::{self, CompositeBuffers, FeatureCache, LocalManifold, Look};
 use crate::math::{Pose, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
-
-/// Most steps of an advance. What takes more stops where it then is.
-const MAX_ROUNDS: usize = 40;
-
-/// A ball touches already if it is as near as this share of the distance at which it stops.
-const TOUCHING: f32 = 0.1;
-
-/// Manifolds of shapes with many parts are looked for up to this many extents of the moving shape at once, so that parts far
-/// ahead are not computed again and again.
-const VIEW: f32 = 4.0;
+use crate::tuning::sweeps::{MET, STOP_ROUNDS, VIEW};
 
 /// A collider that takes part in a cast.
 #[derive(Clone, Copy, Debug)]
@@ -99,7 +90,7 @@ impl<S: ManifoldSource> Pair<'_, S> {
         // Balls that stopped are not free to go on in the next step.
         let (way, turning, touching) = match caster {
             Caster::Whole => (self.moving.path.way, self.moving.turning(), self.target),
-            Caster::Ball(center, _) => (self.chord(center), 0.0, TOUCHING * self.target),
+            Caster::Ball(center, _) => (self.chord(center), 0.0, MET * self.target),
         };
         let (way, turning) = (way - self.other.path.way, turning + self.other.turning());
         let fastest = way.length() + turning;
@@ -107,7 +98,7 @@ impl<S: ManifoldSource> Pair<'_, S> {
             return Cast::Miss;
         }
         let mut fraction = 0.0;
-        for round in 0..MAX_ROUNDS {
+        for round in 0..STOP_ROUNDS {
             let other = self.other.pose(fraction);
             let left = 1.0 - fraction;
             let rest = Rest { way: way * left, turning: left * turning + 2.0 * self.target };

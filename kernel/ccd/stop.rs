@@ -7,20 +7,11 @@ use crate::contact::{ContactTable, ManifoldSource};
 use crate::math::{Vector, WorldPose, max, min};
 use crate::shape::Aabb;
 use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach};
-
-/// Bodies that move by less than this share of the ball within them stay on their side of a wall: it then pushes them back.
-const FAR: f32 = 0.5;
-
-/// Shapes stop at this share of the tolerance, or of the ball within them, before they touch.
-const TARGET: f32 = 0.1;
-
-/// A body that overlaps by more than this share of the ball within it when the step ends is put back to where it did not. Less
-/// is the solver's to push out: bodies that are put back lose time.
-const DEEP: f32 = 0.5;
+use crate::tuning::sweeps::{CORE_SHARE, MET};
 
 /// The radii of the balls that are cast where shapes touch already, as shares of that within them. The first that is free when
 /// the step begins counts.
-const BALLS: [f32; 3] = [0.5, 0.1, 0.0];
+const BALLS: [f32; 3] = [CORE_SHARE, MET, 0.0];
 
 /// The trees of what does not move.
 const FIXED: [TreeKind; 2] = [TreeKind::Static, TreeKind::Standalone];
@@ -76,7 +67,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
     #[inline(always)]
     pub fn is_far(&self, body: u32, way: f32, angle: f32) -> bool {
         let size = self.colliders.size_of(body);
-        way + size.arm * angle > max(FAR * size.core, TARGET * self.tolerance)
+        way + size.arm * angle > max(CORE_SHARE * size.core, MET * self.tolerance)
     }
 
     /// Whether there is anything that does not move, and that a body may meet on a way of the step however it turns. Most fast
@@ -87,7 +78,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             let Reach { extent, margin, .. } = self.colliders.reaches[id as usize];
             reach = max(reach, extent + margin);
             // Casts stop this far before shapes touch.
-            let around = self.ball(body, extent + margin).swept(way).grown(TARGET * self.tolerance);
+            let around = self.ball(body, extent + margin).swept(way).grown(MET * self.tolerance);
             is_known &= self.colliders.fat[id as usize].contains(&around);
         }
         if is_known {
@@ -240,14 +231,14 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             moving,
             other,
             margin: reaches[0].margin + reaches[1].margin,
-            target: TARGET * size,
+            target: MET * size,
             extent: reaches[0].extent,
         };
-        if pair.depth_at_end(buffers) > DEEP * core {
+        if pair.depth_at_end(buffers) > CORE_SHARE * core {
             // What touches already, as a rod that falls over on its foot, goes on to the overlap at which it would be put
             // back: stopped where it touches, it would hang there for many steps and gain their speed.
             if pair.begins_within(self.tolerance, buffers) {
-                pair.margin -= DEEP * core;
+                pair.margin -= CORE_SHARE * core;
             }
             if let Cast::Hit(fraction) = pair.cast(Caster::Whole, buffers) {
                 return fraction;

@@ -7,10 +7,7 @@
 use super::input::NarrowPhaseInput;
 use super::record::{Contact, ContactFlags};
 use crate::table::{BodyPose, TravelScale};
-
-/// The share of the allowed way up to which there is no look. Separations that the solver adds up from step to step are wrong by
-/// half the square of a body's turn, so that more makes them worse: by a tenth of a millimetre with half.
-const SHARE: f32 = 0.5;
+use crate::tuning::contact::CALM_SHARE;
 
 /// What has to be looked at in each step.
 const LOOKED_AT: ContactFlags = ContactFlags::DEEP
@@ -38,7 +35,7 @@ impl Contact {
     /// `moved`.
     #[inline(always)]
     pub(super) fn calm_down(&mut self, poses: [&BodyPose; 2], scale: TravelScale, allowed: f32, moved: f32) {
-        let way = allowed * SHARE - moved;
+        let way = allowed * CALM_SHARE - moved;
         self.calm_until = travel(poses).wrapping_add(scale.travelled(way));
         // Separations are followed by the solver, if there are any.
         let is_followed = self.manifold.count == 0 && self.may_be_calm();

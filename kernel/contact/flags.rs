@@ -5,14 +5,7 @@ use super::record::{Contact, ContactFlags};
 use crate::math::min;
 use crate::shape::Shape;
 use crate::table::{BodyKind, NONE};
-
-/// Overlap above this share of the smaller side's reach is deep, where bodies were placed into one another. Overlap by
-/// load or a blow is not: if it were pushed out gently, a heap would sink into itself.
-const DEEP: f32 = 0.1;
-
-/// Deep overlap remains deep down to this share of the smaller side's reach. With [`DEEP`] here too, springs would push
-/// out the last tenth, and a row of a hundred bodies would fly apart.
-const NO_LONGER_DEEP: f32 = 0.01;
+use crate::tuning::contact::{DEEP, NO_LONGER_DEEP};
 
 /// Sets the bits that follow from a recomputed manifold: that of deep overlap, and that the embedder has changed nothing. Only contacts whose bodies were `placed` where they are
 /// can become deep. What pushes nothing is never deep.

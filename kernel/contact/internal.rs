@@ -19,43 +19,8 @@ use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
 use crate::table::{BodyKind, NONE};
 use crate::thread_pool::ThreadPool;
-
-/// How far above a plane a point may lie that counts as on it, in length units. More would hide kerbs; less is below the rounding of
-/// positions some kilometres from the origin.
-const FLUSH: f32 = 2.5e-4;
-
-/// Faces are clipped beyond their edges by this share of the smaller shape's extent, and so are points on them.
-const CLIPPED: f32 = 1.0e-3;
-
-/// How far below a plane the collider may reach, besides how deep the plane's own contact is, in length units. What reaches farther
-/// down is another part of a concave collider, which a pit may hold.
-const BELOW: f32 = 0.005;
-
-/// A wall is looked for at this height over a plane, in units of the height up to which points count as on it. More misses low
-/// walls; less takes the edges of flush tiles for walls.
-const RISES: f32 = 4.0;
-
-/// The least cosine between the normals of a side of the collider and of the plane that holds it: 25°. More lets bodies that tip over
-/// slap into the ground; less has contacts for sides that are far from it.
-const ASKEW: f32 = 0.9;
-
-/// The least sine by which the normal of a wall's foot points down, and the least length of its level part. Less is rounding.
-const LEANS: f32 = 0.05;
-
-/// Planes whose normals differ by less than this hold the same, squared, in radians: 0.2°.
-const PARALLEL: f32 = 1.2e-5;
-
-/// The same for a point of round shapes, and across the line of two: there points move with the normal.
-const ROUND_PARALLEL: f32 = 1.0e-8;
-
-/// Bodies slower than this against ground that does not move slide over nothing, in length units per second.
-const MOVING: f32 = 0.02;
-
-/// Dynamic bodies slower than this are ground, in length units per second ...
-const RESTING: f32 = 0.05;
-
-/// ... for those that move faster than this against them, in length units per second.
-const SLIDING: f32 = 0.25;
+use crate::tuning::contact::{BELOW, FLUSH, MOVING, PARALLEL, RESTING, RISES, SAME_FACE, SLIDING};
+use crate::tuning::manifold::{MARGIN, SAME_ROUND_NORMAL, SIDEWAYS};
 
 /// How many contacts a worker takes at a time.
 const BLOCK: usize = 64;
@@ -101,7 +66,7 @@ impl<'a> Seen<'a> {
         let is_curved = shapes.iter().any(|shape| matches!(shape, Shape::Curved(_)));
         let is_clipped =
             manifold.radii == [0.0; 2] || is_curved || !shapes.iter().any(|shape| is_line(shape));
-        let clipped = if is_clipped { CLIPPED * smaller([a.extent, b.extent]) } else { 0.0 };
+        let clipped = if is_clipped { MARGIN * smaller([a.extent, b.extent]) } else { 0.0 };
         let is_recycled = contact.flags.has(ContactFlags::FROZEN);
         let now = (poses[1].center - poses[0].center).to_local();
         let until_met = if is_recycled { Vector::ZERO } else { contact.frozen.offset - now };
@@ -184,7 +149,7 @@ impl Sliding {
             return squared < PARALLEL;
         }
         // The point of round shapes moves with the normal, two points only across their line.
-        (apart - self.line * apart.dot(self.line)).length_squared() < ROUND_PARALLEL
+        (apart - self.line * apart.dot(self.line)).length_squared() < SAME_ROUND_NORMAL
     }
 }
 
@@ -372,7 +337,7 @@ impl ContactTable {
             }
         }
         // Within half of the tolerance of one, all are parallel.
-        let tolerance = if all.iter().any(|m| m.is_round) { ROUND_PARALLEL } else { PARALLEL };
+        let tolerance = if all.iter().any(|m| m.is_round) { SAME_ROUND_NORMAL } else { PARALLEL };
         let is_plane = all.iter().all(|m| (m.normal - all[0].normal).length_squared() < 0.25 * tolerance);
         for this in &all {
             let role = if is_plane { Role::Obstacle } else { self.role(input, this, &all, worker) };
@@ -408,7 +373,7 @@ impl ContactTable {
         worker: &mut WorkerBuffers<W>,
     ) -> Role {
         let contact = self.get(this.contact);
-        let (mut seen, mut steepest, mut role) = (None, -LEANS, Role::Obstacle);
+        let (mut seen, mut steepest, mut role) = (None, -SIDEWAYS, Role::Obstacle);
         // Most are of the same plane, or this one itself.
         for other in all.iter().filter(|other| !this.is_parallel(other)) {
             let seen = seen.get_or_insert_with(|| self.see(input, this));
@@ -433,7 +398,7 @@ impl ContactTable {
                 }
                 continue;
             }
-            if cos < ASKEW || this.is_round || other.is_round {
+            if cos < SAME_FACE || this.is_round || other.is_round {
                 return Role::Internal;
             }
             // The plane is held where the other has points. Here the collider may come down by turning.
@@ -454,7 +419,7 @@ impl ContactTable {
         let manifold = self.manifold_mut(id, index);
         let (old, new) = (manifold.normal, normal * side);
         let cos = old.dot(new);
-        if !(cos > LEANS) {
+        if !(cos > SIDEWAYS) {
             return;
         }
         for p in &mut manifold.points[..usize::from(manifold.count)] {
@@ -472,7 +437,7 @@ impl ContactTable {
                 let contact = self.get(id);
                 contact.flags.has(ContactFlags::TOUCHING)
                     && !contact.flags.has(ContactFlags::SENSOR)
-                    && contact.manifold.normal.dot(normal).abs() > 0.9
+                    && contact.manifold.normal.dot(normal).abs() > SAME_FACE
             })
     }
 }

@@ -5,22 +5,13 @@
 //! contact is computed where the bodies will be in the middle of the step, as for shapes that [meet](super::sweep) then.
 
 use super::input::{NarrowPhaseInput, smaller};
-use super::manifolds::SAME_FACE;
 use super::record::Contact;
 use super::sweep::{Meeting, place_at};
 use crate::manifold::{self, LocalManifold};
 use crate::math::{max, min};
-use crate::table::{BodyKind, BodyPose, MOST_TURN, NONE};
-
-/// Bodies that turn by less than this against each other in the step, in radians, keep the contact of its start, which can
-/// be recycled. More leaves rocking without damping, less computes more contacts anew.
-const LEAST_TURN: f32 = 2.0e-3;
-
-/// Bodies that turn by more against each other, in radians, do not rock: what they hit comes first.
-const MOST_ROCKING: f32 = 0.25;
-
-/// Nor do those that move by more than this share of the smaller one's reach or radius.
-const MOST_WAY: f32 = 0.5;
+use crate::table::{BodyKind, BodyPose, NONE};
+use crate::tuning::contact::{MOST_ROCKING, MOST_WAY, SAME_FACE, STILL};
+use crate::tuning::sweeps::MOST_TURN;
 
 /// Moves the only point of `local`, with a round surface that presses another body, to where it is in the middle of the step,
 /// up to `prediction` apart. Leaves all other points as they are.
@@ -42,7 +33,7 @@ pub(super) fn lead<S>(
     let fastest = max(va.angular.length(), vb.angular.length()) * input.dt;
     let way = (vb.linear - va.linear).length() * input.dt;
     let size = min(smaller(input.reaches(contact).map(|reach| reach.extent)), smaller(local.radii));
-    let rocks = turn > LEAST_TURN && turn < MOST_ROCKING && fastest < MOST_TURN && way < MOST_WAY * size;
+    let rocks = turn > STILL && turn < MOST_ROCKING && fastest < MOST_TURN && way < MOST_WAY * size;
     if !(rocks && contact.bodies.iter().all(is_dynamic)) {
         return None;
     }

@@ -11,9 +11,7 @@ use super::input::NarrowPhaseInput;
 use super::record::{Contact, Lost, Manifold, ManifoldPoint};
 use super::table::ContactTable;
 use crate::math::Vector;
-
-/// Load goes to points whose normals differ by less than this: cos 2°.
-const SAME_NORMAL: f32 = 0.9994;
+use crate::tuning::manifold::SAME_NORMAL;
 
 /// The manifolds of a sliding contact before it is recomputed.
 pub(super) struct Before {

@@ -8,10 +8,7 @@ use crate::manifold::{self, FeatureCache, LocalManifold, Look};
 use crate::math::{Pose, Rot, Vector, min};
 use crate::shape::{Ball, Shape};
 use crate::table::BodyPose;
-
-/// A manifold continues an old one if the cosine between their normals is above this: 25°. More loses impulses of bodies
-/// that turn; less hands them to another face.
-pub(super) const SAME_FACE: f32 = 0.9;
+use crate::tuning::contact::SAME_FACE;
 
 /// Computes the manifold of two native shapes where they are now, with points up to `prediction` apart, margins not
 /// subtracted. Points on rims are where they will be in the middle of the step; returns how far the surfaces may move until

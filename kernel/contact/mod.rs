@@ -28,7 +28,7 @@ pub use input::{ManifoldSource, NarrowPhaseInput};
 pub use link::{Link, Status};
 pub use narrow_phase::{Outcome, update_contact};
 pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint, ManifoldSurface};
-pub(crate) use recycle::{CHORD, RECYCLE_COS};
+pub(crate) use recycle::CHORD;
 pub use table::ContactTable;
 pub(crate) use view::ManifoldsView;
 

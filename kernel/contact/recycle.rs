@@ -20,23 +20,9 @@ use super::record::{Contact, ContactFlags, Manifold};
 use crate::math::F32x8;
 use crate::math::{Angular, F32x4, Ids, Lane, MAX_POINTS, Num, Quad, Rot, Vector, Width, max};
 use crate::table::BodyPose;
+use crate::tuning::contact::{RECYCLE_COS, RECYCLE_SHARE, ROUND_SHARE};
+use crate::tuning::manifold::ROUNDING;
 use core::mem::MaybeUninit;
-
-/// Bodies may move at most this share of the smaller one's reach against each other. More makes contacts of small bodies
-/// lag behind; less recomputes them more often.
-const RECYCLE_SHARE: f32 = 0.25;
-
-/// Bodies that touch with round cores may move at most this share of both radii. A frozen normal lags behind a rolling body,
-/// and its hysteresis keeps capsules rocking in a pile. On the flat side of an ellipse, whose radius of curvature exceeds its
-/// extent, the contact runs ahead of the body by their ratio, and the share is of the extent divided by that.
-const ROUND_SHARE: f32 = 0.005;
-
-/// The least cosine of a body's turn since the manifold was computed: 10°. Beyond it the small-angle bounds below fail.
-pub(crate) const RECYCLE_COS: f32 = 0.985;
-
-/// The frozen pose does not turn with a platform that turned by less than this, in radians. A frictionless body slides on
-/// the platform as on a plane whose tilt is too small by that angle.
-const MIN_PLATFORM_TURN: f32 = 2.0e-5;
 
 /// Which body of a contact is a platform, as a number in a row.
 const NO_PLATFORM: f32 = 0.0;
@@ -358,8 +344,7 @@ impl<N: Lane> RecycleRow<N> {
     /// Whether the frozen pose turns with its platform.
     #[inline(always)]
     fn is_turned(&self) -> N::Mask {
-        let is_far = N::splat(MIN_PLATFORM_TURN * MIN_PLATFORM_TURN)
-            .lt(self.platform_turn().small_turn().length_squared());
+        let is_far = N::splat(ROUNDING * ROUNDING).lt(self.platform_turn().small_turn().length_squared());
         N::and(N::and(is_far, N::ZERO.lt(self.platform)), N::ZERO.lt(self.count))
     }
 

@@ -13,27 +13,8 @@ use super::record::{Contact, Manifold};
 use crate::manifold::{self, LocalManifold};
 use crate::math::{Angular, Rot, Vector, WorldPose, max, min};
 use crate::shape::Shape;
-use crate::table::{BodyPose, MOST_TURN, NONE};
-
-/// Most steps of conservative advancement. A pair that takes more meets where it then is.
-const MAX_ROUNDS: usize = 24;
-
-/// Shapes meet when they are no farther apart than the tolerance and this share of the smaller one's reach. More stops what
-/// passes by; less takes more rounds.
-const MET: f32 = 0.02;
-
-/// Shapes that move past each other meet at this share of that.
-const MET_STRAIGHT: f32 = 0.1;
-
-/// Bodies that turn by more than this in the step, in radians, are not cast past what they are near to.
-const MOST_STRAIGHT_TURN: f32 = 0.75;
-
-/// Chords of a slab's width that are drawn for one advance. More advance farther, fewer cost less.
-const CHORDS: usize = 3;
-
-/// The solver lets points close no further than they may by the end of the first substep after the step. So points count
-/// as pushing that close within this many steps, the most that can be.
-const AHEAD: f32 = 2.0;
+use crate::table::{BodyPose, NONE};
+use crate::tuning::sweeps::{AHEAD, CHORDS, MEETING_ROUNDS, MET, MET_TURNING, MOST_STRAIGHT_TURN, MOST_TURN};
 
 /// The poses at a time within the step: when the shapes meet, or in its middle.
 #[derive(Clone, Copy, Debug)]
@@ -76,7 +57,7 @@ pub(super) fn find_meeting<S>(
     let shapes = [&input.colliders[a].def.shape, &input.colliders[b].def.shape];
     let mut motion = Motion::new(input, contact);
     if local.count > 0 {
-        motion.met *= MET_STRAIGHT;
+        motion.met *= MET;
     }
     let margin = input.margin(contact);
     let mut offset = (poses[1].center - poses[0].center).to_local();
@@ -87,7 +68,7 @@ pub(super) fn find_meeting<S>(
         shape: input.colliders.poses[contact.colliders[side] as usize],
     });
     let mut time = 0.0;
-    for round in 1..=MAX_ROUNDS {
+    for round in 1..=MEETING_ROUNDS {
         let slab = Slab { shapes, placed: &placed, motion: &motion, offset, margin };
         time += match local.count {
             0 => max(gap, 0.5 * motion.met) / motion.fastest(offset),
@@ -104,7 +85,7 @@ pub(super) fn find_meeting<S>(
         let rest = max(farthest * (1.0 - time / input.dt), input.near(contact)) + margin;
         manifold::collide(shapes[0], shapes[1], &relative, rest, &mut contact.cache, local);
         gap = local.lower_bound() - margin;
-        if gap <= motion.met || (round == MAX_ROUNDS && local.count > 0) {
+        if gap <= motion.met || (round == MEETING_ROUNDS && local.count > 0) {
             // Points that only turning brings together are found again when they are near.
             let prediction = prediction + margin;
             manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, local);
@@ -132,7 +113,7 @@ pub(super) fn may_pass_by<S>(
     let normal = input.colliders.poses[contact.colliders[0] as usize].rotation.rotate(local.normal);
     let offset = (poses[1].center - poses[0].center).to_local();
     is_straight(input, contact)
-        && gap > MET_STRAIGHT * motion.met
+        && gap > MET * motion.met
         && motion.closing(normal, offset) * (AHEAD * input.dt) > gap
 }
 
@@ -187,7 +168,7 @@ impl Motion {
             spins: [a.angular.length(), b.angular.length()],
             arms: reaches.map(|reach| reach.arm),
             extents,
-            met: min(input.tolerance, MET * smaller(extents)),
+            met: min(input.tolerance, MET_TURNING * smaller(extents)),
         }
     }
 

@@ -5,7 +5,8 @@ use crate::math::{Angular, Pose, Rot, Vector, WorldPose, max, min};
 use crate::query::closest;
 use crate::query::tests::{convex, pose, vector};
 use crate::shape::Shape;
-use crate::table::{BodyPose, MOST_TURN};
+use crate::table::BodyPose;
+use crate::tuning::sweeps::MOST_TURN;
 use proptest::prelude::*;
 
 /// A body with one shape, whose frame is the body's.

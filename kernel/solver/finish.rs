@@ -2,11 +2,12 @@
 #![expect(unsafe_code, reason = "bodies are changed by several threads, each its own")]
 
 use super::{BodyRow, RowView, Solver};
-use crate::contact::{CHORD, RECYCLE_COS};
+use crate::contact::CHORD;
 use crate::data::{BitSet, Parts};
 use crate::math::{F32x4, Ids, Lane, Rot, Vector, WorldPose};
 use crate::table::{BodyParts, BodyTable, FAR, Velocity};
 use crate::thread_pool::ThreadPool;
+use crate::tuning::contact::RECYCLE_COS;
 use std::sync::{Mutex, PoisonError};
 
 /// Number of bodies in a block of the job, a multiple of the widest lanes. More leaves workers idle at the end, fewer cost

@@ -4,6 +4,7 @@ use super::{ConstraintTable, NONE};
 use crate::data::{BitSet, IdPool, Parts};
 use crate::graph::ConstraintKind;
 use crate::math::{Angular, Rot, Vector, WorldPose, WorldVector};
+use crate::tuning::rest::MEAN_TIME;
 
 /// What moves a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,10 +63,6 @@ pub struct Body {
     /// How far its colliders have reached from its centre of mass, in metres.
     pub(crate) extent: f32,
 }
-
-/// The time over which velocities are averaged, in seconds. More lets bodies sleep that shake in longer cycles, but also
-/// those that have only begun to roll: at 0.1 s, below 0.4 m/s² with the usual rest speed and time.
-const MEAN_TIME: f32 = 0.1;
 
 impl Body {
     /// Adds a step of `dt` seconds to the average velocity, and returns whether the body rests by that. So a body that shakes

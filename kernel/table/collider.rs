@@ -3,9 +3,11 @@
 
 use super::{BodyKind, BodyTable, FacetMaterials, Material, NONE};
 use crate::data::{BitSet, IdPool, Parts, prefetch};
-use crate::math::{DIM, Pose, Rot, Vector, WorldPose, max, min};
+use crate::math::{Pose, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Aabb, Shape};
 use crate::thread_pool::ThreadPool;
+use crate::tuning::rest::FAT_SHARE;
+use crate::tuning::sweeps::MOST_TURN;
 use core::ops::{Index, IndexMut};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -15,15 +17,6 @@ const BLOCK: usize = 128;
 /// Prefetch distance, in bodies. The collider of a body this far ahead is prefetched, and its hull half as far ahead.
 /// Less hides too little latency, more evicts lines before their use.
 const PREFETCH_DISTANCE: usize = 8;
-
-/// Maximum turn per step that prediction assumes, in radians. Bodies that turn further are treated as if they turned by
-/// this.
-pub(crate) const MOST_TURN: f32 = 1.5;
-
-/// Maximum growth of a fat box, as a share of the shape's extent and its displacement by turning. A larger share
-/// enlarges boxes less often but finds more pairs that never touch: with twice the share in 3D, a step of a pile of
-/// boxes takes a quarter longer.
-const FAT_SHARE: f32 = 0.5 / (1 << DIM) as f32;
 
 /// Collision layers as bit masks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,7 +9,7 @@ mod material;
 pub use body::{Body, BodyKind, BodyPose, BodyTable, RestSpeed, Velocity};
 pub(crate) use body::{BodyParts, FAR, TravelScale};
 pub use collider::{BodySize, Collider, ColliderDef, ColliderFlags, ColliderTable, Fattening, Layers, Reach};
-pub(crate) use collider::{MOST_TURN, is_swinging, turn};
+pub(crate) use collider::{is_swinging, turn};
 pub use constraint::{Constraint, ConstraintTable};
 pub use facets::{FacetMaterial, FacetMaterials, MAX_FACET_MATERIALS};
 pub use material::{Combine, Material, Surface};
