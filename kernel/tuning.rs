@@ -320,3 +320,55 @@ pub mod rest {
     /// never touch: twice as much costs a pile of boxes in 3D a quarter; smaller enlarges boxes more often.
     pub const FAT_SHARE: f32 = 0.5 / (1 << DIM) as f32;
 }
+
+/// Rows, passes and free spin.
+pub mod solver {
+    // Free spin. Angles are in radians.
+    /// The most turn within a substep for which precession is integrated; bodies that turn farther precess as if they
+    /// turned by this. Larger has Newton steps that do not converge.
+    pub const MAX_TURN: f32 = 1.0;
+
+    /// The most turn within a substep for which one Newton step is used. It leaves an energy error below 1e-8 a substep;
+    /// at 0.75 it would be 1e-5. Smaller costs time.
+    pub const SMALL_TURN: f32 = 0.25;
+
+    /// The least turn within a substep for which the spin axis moves. Larger stops slow precession; smaller costs time in
+    /// bodies at rest.
+    pub const MIN_TURN: f32 = 1.0e-5;
+
+    /// The most relative change of energy in a substep of free spin; with more, Newton's method has not converged, and the
+    /// spin is left as it is. Larger takes wrong spins.
+    pub const MAX_ENERGY_ERROR: f32 = 1.0e-4;
+
+    /// The number of substeps of a step that is assumed where bodies that turn far are told apart.
+    pub const STEP_SUBSTEPS: f32 = 4.0;
+
+    /// The least product of the ratio of moments and the squared turn of a step for which a body turns far: a box from
+    /// about 6 rad/s on at 60 Hz. Larger lets such bodies gain energy in contacts; smaller slows down piles that tumble.
+    pub const FAR_TURN: f32 = 0.08;
+
+    // Friction and resistance.
+    /// The lever of rolling resistance as a share of the smaller radius: at friction 0.6 a ball rolls as if up a slope of
+    /// 0.6 %. Larger holds round bodies on steeper slopes; smaller keeps them rocking in a pile.
+    pub const ROLL_LEVER: f32 = 0.01;
+
+    /// The same of torsional friction of a contact in one point: a patch that holds against rolling by a lever holds
+    /// against spin by about twice that. Smaller lets balls spin on the spot.
+    pub const SPIN_LEVER: f32 = 2.0 * ROLL_LEVER;
+
+    /// Both for corners and edges, as a share of their distance from the nearer centre of mass of a body that can turn.
+    pub const CORNER_LEVER: f32 = 0.002;
+
+    /// Rolling resistance takes friction coefficients for at most this. Larger holds balls on slopes whose friction is set
+    /// high against sliding.
+    pub const ROLL_FRICTION: f32 = 1.0;
+
+    /// By how much spin weakens sliding friction, as a fourth power: 1.26⁴. A disc under even pressure has 1.5⁴; with
+    /// that, one on several pieces slides too far.
+    pub const SPUN: f32 = 2.5;
+
+    // Overlap.
+    /// Up to this number of deep contacts a body starts from all its impulses: about as many touch it in a full container.
+    /// Larger lets crowds explode; smaller lets stacks sink.
+    pub const WARM_CONTACTS: f32 = 8.0;
+}

@@ -10,6 +10,23 @@ use std::path::{Path, PathBuf};
 /// Maximum number of lines that name a dimension. Larger differences belong in twin files.
 const CFG_BUDGET: usize = 80;
 
+/// Maximum number of constants in `kernel/tuning.rs`. What a mechanism decides by itself needs none.
+const TUNING_BUDGET: usize = 90;
+
+/// Numbers of the kernel that do not tune: limits of floats, tags, and what follows from geometry.
+const NOT_TUNING: [&str; 10] = [
+    "FARTHEST",
+    "TOUCHING",
+    "RELATIVE",
+    "NO_PLATFORM",
+    "PLATFORM_A",
+    "PLATFORM_B",
+    "CHORD",
+    "TRAVEL_UNITS",
+    "STEEP",
+    "BALLS",
+];
+
 /// The kernel's folders from the bottom up: each may use those before it only.
 const KERNEL_FLOORS: [&str; 14] = [
     "math",
@@ -356,6 +373,35 @@ fn few_lines_depend_on_the_dimension_and_none_inside_of_functions() {
         "{count} lines name a dimension, {CFG_BUDGET} may:\n  {}",
         lines.join("\n  ")
     );
+}
+
+/// The name of a constant of floats that a line defines.
+fn float_constant(line: &str) -> Option<&str> {
+    let (name, kind) = line.split_once("const ")?.1.split_once(": ")?;
+    let kind = kind.trim_start_matches('[');
+    let is_float = kind.starts_with("f32") || kind.starts_with("f64");
+    (is_float && !name.contains(' ')).then_some(name)
+}
+
+#[test]
+fn tuning_constants_are_few_and_stand_on_one_page() {
+    let mut count = 0;
+    let mut elsewhere = Vec::new();
+    for source in sources(&["kernel"]) {
+        if source.path == "kernel/tuning.rs" {
+            count = source.shipped.matches("pub const ").count();
+        }
+        if !["manifold", "contact", "ccd", "table"].contains(&source.room()) {
+            continue;
+        }
+        for name in source.shipped.lines().filter_map(float_constant) {
+            if !NOT_TUNING.contains(&name) {
+                elsewhere.push(format!("{}: {name}", source.path));
+            }
+        }
+    }
+    assert_none(&elsewhere, "what tunes the kernel stands in kernel/tuning.rs");
+    assert!((1..=TUNING_BUDGET).contains(&count), "{count} tuning constants, {TUNING_BUDGET} may be");
 }
 
 #[test]

@@ -4,11 +4,8 @@ use super::{BodyRow, GainRow, MassRow, RowView, fast_turn::FastTurn, gyro::*, in
 use crate::data::{BitSet, Parts};
 use crate::graph::{ColorGraph, ConstraintKind, OVERFLOW};
 use crate::math::{Angular, AxisLocks, InvInertia, Rot, Vector, Width};
+use crate::tuning::contact::STILL;
 use core::sync::atomic::AtomicBool;
-
-/// Bodies that turn by less than this in half a step, in rad, keep their inertia through it. More lets them gain spin in
-/// contacts, less slows down piles that creep.
-const STILL: f32 = 1.0e-3;
 
 /// Acceleration and damping of a body. Constant over a step.
 #[derive(Clone, Copy, Debug)]
@@ -373,7 +370,7 @@ impl BodyRows {
         let Self { spins, fast_turns, rows, masses, turn_locked, .. } = self;
         for (row, _) in spins.list() {
             let half = rows[*row as usize].velocity().1 * time;
-            if half.length_squared() > STILL * STILL
+            if half.length_squared() > 0.25 * STILL * STILL
                 && !turn_locked.contains(*row)
                 && !fast_turns.contains(*row)
             {

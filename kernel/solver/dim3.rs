@@ -4,6 +4,7 @@
 
 use super::RowView;
 use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Tangent, TangentMass, Vector};
+use crate::tuning::solver::SPUN;
 
 /// A body while the solver runs: velocity, and displacement in this step. 64 bytes, one cache line. Padding makes each
 /// part one load of four floats.
@@ -251,10 +252,6 @@ impl MassRow {
 /// The mean distance from the centre under even pressure, by number of points, as a share of that of the points: of a line
 /// half its end's, of a disc two thirds of its rim's.
 const EVEN: [f32; 5] = [0.0, 1.0, 1.0 / 2.0, 2.0 / 3.0, 2.0 / 3.0];
-
-/// By how much spin weakens sliding friction, as a fourth power: 1.26⁴. A disc under even pressure has 1.5⁴; with that, one that
-/// lies on several pieces slides too far.
-const SPUN: f32 = 2.5;
 
 /// Torsional friction about the contact normal.
 ///

@@ -2,10 +2,10 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::pair::{Pair, lanes_of_body};
-use super::resistance::ROLL_FRICTION;
 use super::row::ContactRow;
 use super::{BodyRow, GainRow, InvMass, RowView, SubstepParams, about, resist_rolling};
 use crate::math::{DIM, Lane, TangentFrame, Vector, max};
+use crate::tuning::solver::ROLL_FRICTION;
 
 impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// What the velocity of B's surface over A's gains by the turn of a platform since the start of the step.

@@ -2,21 +2,7 @@
 //! same names.
 
 use crate::math::{Angular, InvInertia, Lane, MAX_RATIO, Rot, SymTensor, Vector};
-
-/// Maximum turn within a substep, in rad, for which precession is integrated. Bodies that turn further precess as if
-/// they turned by this: three Newton steps of [`Gyro::spun`] converge up to here for any inertia.
-const MAX_TURN: f32 = 1.0;
-
-/// Maximum turn within a substep, in rad, for which one Newton step is used. It leaves an energy error below 1e-8 per
-/// substep; at 0.5 rad that would be 1e-7, at 0.75 rad 1e-5.
-const SMALL_TURN: f32 = 0.25;
-
-/// Minimum turn within a substep, in rad, for which the spin axis moves. Resting bodies stay below it and cost nothing.
-const MIN_TURN: f32 = 1.0e-5;
-
-/// Maximum relative change of energy in a substep of free spin. The midpoint rule changes none, so more means that
-/// Newton's method has not converged. The spin is then left as it is.
-const MAX_ENERGY_ERROR: f32 = 1.0e-4;
+use crate::tuning::solver::{FAR_TURN, MAX_ENERGY_ERROR, MAX_TURN, MIN_TURN, SMALL_TURN, STEP_SUBSTEPS};
 
 /// Inertia of a body in its own frame, for free spin; of one body for each lane.
 ///
@@ -30,14 +16,6 @@ pub(super) struct Gyro<N = f32> {
 
 /// Minimum of 1 + cos θ for which the swing by θ is known from both directions of the axis. Below it is rounding.
 const MIN_SWING: f32 = 1.0e-3;
-
-/// Number of substeps per step that [`Gyro::turns_far`] assumes.
-const STEP_SUBSTEPS: f32 = 4.0;
-
-/// Minimum product r φ² of the ratio of moments r and the squared angle φ of a step, in rad², for which a body turns far. A
-/// box, whose r is 6 to 10, turns far from about 6 rad/s on at 60 Hz, a rod 10 times as long as thick from 2 rad/s on. More lets
-/// such bodies gain energy in contacts, less slows down piles that tumble.
-const FAR_TURN: f32 = 0.08;
 
 impl Gyro {
     /// `None` if the three moments are equal (within 1 ‰) and the tensor is diagonal, so that ω × I ω vanishes, or if

@@ -4,6 +4,7 @@
 use super::BodyRows;
 use super::input::RowInput;
 use crate::contact::ContactFlags;
+use crate::tuning::solver::WARM_CONTACTS;
 
 /// Number of deeply overlapping contacts of each dynamic body's row. Empty in steps without any.
 ///
@@ -11,10 +12,6 @@ use crate::contact::ContactFlags;
 /// Contacts in a crowd therefore push less, and start from a share of their last impulses.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DeepCounts(Vec<u32>);
-
-/// Number of deep contacts up to which a body starts from all its impulses: about as many as touch it in a full
-/// container.
-const WARM_CONTACTS: f32 = 8.0;
 
 impl DeepCounts {
     pub(super) fn count(&mut self, input: &RowInput, bodies: &BodyRows) {
