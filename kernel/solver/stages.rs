@@ -385,21 +385,45 @@ impl Solver {
         self.trees.clear();
     }
 
-    /// Runs a pass over all trees and blocks that need it, stage by stage.
+    /// Runs a pass over all trees and rows.
+    ///
+    /// The solve pass ends with trees, so that bodies move as joints let them; the relax pass ends with rows, so that contacts
+    /// have the last word on velocities. Trees are stiffer than contacts. What contacts open would be closed by the next tree pass
+    /// against the same contacts: such a loop gains energy from a mass ratio of three on. Trees come first as well, since they
+    /// have no warm start: contacts have to see what joints bear.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
-        let Self { bodies, joints, customs, trees, rows, plan, first_dynamic, .. } = self;
-        debug_assert!(
-            plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),
-            "bodies have the rows that rows of constraints were built for"
-        );
-        if trees.len() > 0 && pass != Pass::Measure {
+        match pass {
+            Pass::Measure => self.sweep_rows(pass, params, pool),
+            _ => {
+                self.sweep_trees(pass, params, pool);
+                self.sweep_rows(pass, params, pool);
+                if pass == Pass::Solve && !self.plan.blocks.is_empty() {
+                    self.sweep_trees(pass, params, pool);
+                }
+            }
+        }
+    }
+
+    /// Runs a pass over all trees.
+    fn sweep_trees(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
+        let Self { bodies, trees, first_dynamic, .. } = self;
+        if trees.len() > 0 {
             // Trees follow the turns of bodies exactly.
             bodies.leave_rows(pool);
             let (rows, gains) = bodies.views(*first_dynamic);
             trees.run(&Sweep { pass, bodies: rows, gains, params }, pool);
             bodies.enter_rows(pool);
         }
+    }
+
+    /// Runs a pass over all blocks that need it, stage by stage.
+    fn sweep_rows(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
+        let Self { bodies, joints, customs, rows, plan, first_dynamic, .. } = self;
+        debug_assert!(
+            plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),
+            "bodies have the rows that rows of constraints were built for"
+        );
         let (bodies, gains) = bodies.views(*first_dynamic);
         let sweep = &Sweep { pass, bodies, gains, params };
         rows.with(joints, customs, |batches| {

@@ -7,6 +7,7 @@
 
 use super::dim::golden_dim::{GOLDEN, coordinates, numbers, shapes, spun, terrain, tilted, trough};
 use super::dim::{container, sized, terrain as surface, turned};
+use super::jointed::jointed;
 use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{AxisLocks, DIM, Pose, Rot, Scalar, Vector, WorldPose};
@@ -14,7 +15,7 @@ use kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Shape};
 use kernel::table::{BodyKind, Velocity};
 
 /// Name of a scene, and the function that builds and runs it.
-const SCENES: [(&str, fn(&mut Sim)); 16] = [
+const SCENES: [(&str, fn(&mut Sim)); 17] = [
     ("pyramid", pyramid),
     ("towers", towers),
     ("pairs", pairs),
@@ -31,6 +32,7 @@ const SCENES: [(&str, fn(&mut Sim)); 16] = [
     ("mixer", mixer),
     ("changes", changes),
     ("wall", wall),
+    ("joints", jointed),
 ];
 
 fn ball(radius: f32) -> Shape {

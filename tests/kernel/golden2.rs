@@ -5,7 +5,7 @@ use crate::kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Hull, Segment, Shap
 use std::sync::Arc;
 
 /// For each scene the hash with world positions in `f32`, and in `f64`.
-pub const GOLDEN: [(&str, u64, u64); 16] = [
+pub const GOLDEN: [(&str, u64, u64); 17] = [
     ("pyramid", 0x33a36322c41b19d9, 0xc4af2ec26bece801),
     ("towers", 0x56f256b25e187317, 0x2bc7a364da062c3c),
     ("pairs", 0xa560c9accd5e41a3, 0x70f7e53e192e320b),
@@ -22,6 +22,7 @@ pub const GOLDEN: [(&str, u64, u64); 16] = [
     ("mixer", 0x03494448b2cba12b, 0x3bf575de002aa84e),
     ("changes", 0x8a029d2a9c035904, 0x01db8db2209ebbe6),
     ("wall", 0xa51aa86ad759539a, 0x87c0a9e51682ce12),
+    ("joints", 0x2c611263244386df, 0x0),
 ];
 
 /// Every native shape with bounds, each about a metre across.

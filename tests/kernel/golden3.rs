@@ -5,7 +5,7 @@ use crate::kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Hull, Segment, Shap
 use std::sync::Arc;
 
 /// For each scene the hash with world positions in `f32`, and in `f64`.
-pub const GOLDEN: [(&str, u64, u64); 16] = [
+pub const GOLDEN: [(&str, u64, u64); 17] = [
     ("pyramid", 0x69d5cf729fa0d148, 0x294d44d24881ffea),
     ("towers", 0x451e5fd3833ce5e5, 0x729959ddee3c20d0),
     ("pairs", 0xb8801ef6bc257a57, 0x294590feb2873c76),
@@ -22,6 +22,7 @@ pub const GOLDEN: [(&str, u64, u64); 16] = [
     ("mixer", 0xb8a32f26388960a8, 0x16c8206e6929870a),
     ("changes", 0x7c70aac3a9880d5f, 0x656da7a304fec832),
     ("wall", 0x1a14414069ea5647, 0x0e9f3179e745a925),
+    ("joints", 0x1bd309e000efed93, 0x0),
 ];
 
 /// Every native shape with bounds, each about a metre across.

@@ -2,7 +2,7 @@
 
 use super::dim::{any_axis_turn, sized, spin};
 use super::joints::{SHIFTS, chain};
-use super::ragdolls::human;
+use super::ragdolls::{Losses, human};
 use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Rot, Vector, WorldPose};
@@ -14,7 +14,7 @@ use kernel::solver::{
 use kernel::table::BodyKind;
 
 /// A chain with a heavy ball, humans that fall on a pyramid, an arm of motors, gears, and a weight on a rope.
-fn jointed(sim: &mut Sim) {
+pub fn jointed(sim: &mut Sim) {
     sim.floor();
     for row in 0..4 {
         for column in 0..5 - row {
@@ -25,7 +25,8 @@ fn jointed(sim: &mut Sim) {
     chain(sim, 12, 100.0, Vector::X);
     for k in 0..6 {
         let at = Vector::X * (1.5 * k as f32 - 4.0) + Vector::Y * (6.5 + 0.3 * k as f32);
-        human(sim, at, any_axis_turn(0.7 * k as f32), if k % 2 == 0 { 0.0 } else { 2.0 });
+        let losses = [Losses::NONE, Losses { friction: 2.0, ..Losses::NONE }];
+        human(sim, at, any_axis_turn(0.7 * k as f32), losses[k % 2]);
     }
     let drive = Drive::Spring(Spring { frequency: 3.0, damping_ratio: 0.7 });
     let (target_velocity, max_torque) = (spin(0.0), 50.0);

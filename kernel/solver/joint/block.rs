@@ -105,6 +105,15 @@ impl<N: Lane, const D: usize> Block<N, D> {
         Self { gradients, values, responses: gradients.map(|gradient| masses.response(&gradient)) }
     }
 
+    /// Replaces the first coordinate by the distance of the anchors.
+    #[inline(always)]
+    pub(super) fn take_distance(&mut self, place: &Place<N>, masses: &Masses<N>) {
+        let (distance, direction) = place.apart();
+        let gradient = place.gradient(direction, Angular::ZERO);
+        (self.values[0], self.gradients[0], self.responses[0]) =
+            (distance, gradient, masses.response(&gradient));
+    }
+
     /// Applies impulses.
     #[inline(always)]
     pub(super) fn push(&self, rows: &[Locked<N>], pair: &mut Pair<N>) {

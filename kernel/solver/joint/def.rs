@@ -1,5 +1,6 @@
 //! What a joint does: two frames, and a setting for each coordinate of B's frame relative to A's.
 
+use super::dim::coordinate::DISTANCE;
 use super::dim::{AXES, BLOCK, parts_of};
 use crate::math::{Angular, Rot, Vector};
 use core::fmt;
@@ -243,6 +244,14 @@ impl JointDef {
         let axis = &self.axes[number];
         let is_driven = axis.give != Give::Rigid && (axis.motor.is_some() || axis.spring.is_some());
         number < BLOCK && axis.locked_at().is_some() && !is_driven
+    }
+
+    /// Whether it locks nothing but the distance of its anchors. A tree holds that as a coordinate of the block.
+    pub(super) fn is_rod(&self) -> bool {
+        let distance = &self.axes[DISTANCE];
+        let is_driven = distance.motor.is_some() || distance.spring.is_some();
+        let has_block = (0..BLOCK).any(|number| self.is_in_block(number));
+        distance.locked_at().is_some_and(|length| length > 0.0) && !is_driven && !has_block
     }
 
     /// Whether a distance or an angle between axes has limits, and one of the coordinates of which it is made: such settings

@@ -222,6 +222,18 @@ impl<N: Lane> Row<N> {
         }
     }
 
+    /// Makes a distance that is locked the first coordinate of the block, instead of a single one.
+    pub(super) fn take_rod(&mut self, singles: &mut [Single<N>], def: &JointDef, hold: Hold, h: f32) {
+        let axis = &def.axes[coordinate::DISTANCE];
+        let Some(single) = singles.iter_mut().find(|single| single.apart.get(0) > 0.0) else { return };
+        single.limits = [N::splat(f32::NEG_INFINITY), N::splat(f32::INFINITY)];
+        single.impulses = [N::ZERO; 2];
+        let rod = &mut self.block[0];
+        rod.is_locked.set(0, 1.0);
+        rod.target.set(0, axis.locked_at().unwrap_or(0.0));
+        rod.softening.set(0, axis.give, hold, h);
+    }
+
     /// Computes derived values, for all lanes at once.
     #[inline(always)]
     pub(super) fn finish(&mut self, masses: &[MassRow]) {

@@ -1,7 +1,7 @@
 //! Trees of joints, solved directly in each pass.
 //!
 //! A pass solves what all joints of a tree lock at once (`elimination.rs`), then limits and motors one by one, each by the response
-//! of the whole tree. Rows of contacts, loops and other joints follow, and win.
+//! of the whole tree. Rows of contacts, loops and other joints come before it in the solve pass, and follow and win in the relax pass.
 //!
 //! Being exact, the direct solution needs no warm start, and is soft at the rate of the substeps: one by one, rows that stiff
 //! would explode.
@@ -102,7 +102,8 @@ impl JointTrees {
         // By ascending id: the order in colours depends on their history.
         for id in all.iter() {
             let def = &table.record(id).def;
-            if !(0..BLOCK).any(|number| def.is_in_block(number)) || def.sets_twice() {
+            let is_held = def.is_rod() || (0..BLOCK).any(|number| def.is_in_block(number));
+            if !is_held || def.sets_twice() {
                 continue;
             }
             let nodes = def.bodies.map(|body| match input.row_of(body) {
@@ -169,6 +170,9 @@ impl JointTrees {
                     from,
                 );
                 row.finish(from.masses);
+                if record.def.is_rod() {
+                    row.take_rod(singles, &record.def, hold, from.params.h);
+                }
                 joint.is_warm = !singles.is_empty() || joint.orientation.is_some() || row.damping != [0.0; 2];
                 let place = |place: u32| if place == GROUND { GROUND } else { place - span.bodies[0] };
                 let places = branch.places.map(place);
@@ -192,6 +196,7 @@ impl JointTrees {
                 row: Row::default(),
                 singles: [start, end],
                 locked_end: (0..BLOCK).rev().find(|k| def.is_in_block(*k)).map_or(0, |last| last + 1),
+                is_rod: def.is_rod(),
                 parent_side: branch.parent_side,
                 is_warm: false,
                 arm: Vector::ZERO,

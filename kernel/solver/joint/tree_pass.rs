@@ -53,6 +53,8 @@ pub(super) struct TreeJoint {
     pub(super) singles: [u32; 2],
     /// Number of coordinates up to the last that is locked.
     pub(super) locked_end: usize,
+    /// Whether the first coordinate of its block is the distance of the anchors.
+    pub(super) is_rod: bool,
     /// Its side at the parent.
     pub(super) parent_side: usize,
     /// Whether it has more than what is locked: single coordinates, or damping.
@@ -151,7 +153,7 @@ impl Tree<'_> {
         elimination::solve(self.links, self.nodes);
         // SAFETY: by the contract.
         unsafe {
-            self.apply(1.0, sweep, sweep.pass == Pass::Solve);
+            self.apply(1.0, sweep);
             let mut first = 0.0;
             for round in 0..ROUNDS {
                 let (mut most, mut count) = (0.0f32, 0);
@@ -171,11 +173,11 @@ impl Tree<'_> {
         }
     }
 
-    /// Applies what was solved, some times. Impulses begin anew, or add to those before.
+    /// Applies what was solved, some times.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
-    unsafe fn apply(&mut self, times: f32, sweep: &Sweep, is_new: bool) {
+    unsafe fn apply(&mut self, times: f32, sweep: &Sweep) {
         for (node, body) in self.nodes.iter().zip(&*self.bodies) {
             let (v, w) = motion(&node.change());
             // SAFETY: by the contract.
@@ -189,8 +191,7 @@ impl Tree<'_> {
         for (joint, link) in self.joints.iter_mut().zip(&*self.links) {
             let locked = joint.row.block.iter_mut().filter(|locked| locked.is_locked > 0.0);
             for (locked, impulse) in locked.zip(&link.impulses) {
-                let impulse = *impulse as f32 * times;
-                locked.impulse = if is_new { impulse } else { locked.impulse + impulse };
+                locked.impulse += *impulse as f32 * times;
             }
         }
     }
@@ -216,7 +217,7 @@ impl Tree<'_> {
             }
             self.beside(k, &place.gradient(Vector::ZERO, sum));
             // SAFETY: by the contract.
-            unsafe { self.apply(1.0, sweep, false) };
+            unsafe { self.apply(1.0, sweep) };
         }
         let joint = &mut self.joints[k];
         joint.row.turning = Angular::ZERO;
@@ -253,7 +254,7 @@ impl Tree<'_> {
                 most = most.max((change * response.along(&gradient)).abs());
                 acting += u32::from(self.singles[number].impulses != [0.0; 2]);
                 // SAFETY: by the contract.
-                unsafe { self.apply(change, sweep, false) };
+                unsafe { self.apply(change, sweep) };
             }
             let of_b = screw(gradient.normal, gradient.moments[1]);
             let impulse = f64::from(self.singles[number].impulse() - if again { before } else { 0.0 });
@@ -299,9 +300,12 @@ impl Tree<'_> {
     /// # Safety
     /// As [`solve`](Self::solve).
     pub(super) unsafe fn warm_start(&mut self, sweep: &Sweep) {
-        for joint in self.joints.iter_mut().filter(|joint| joint.is_warm) {
-            let range = joint.singles_from(self.first_single);
+        for joint in self.joints.iter_mut() {
             joint.row.block.iter_mut().for_each(|locked| locked.impulse = 0.0);
+            if !joint.is_warm {
+                continue;
+            }
+            let range = joint.singles_from(self.first_single);
             // SAFETY: by the contract.
             unsafe {
                 let more = (&mut self.singles[range], joint.orientation.as_mut());
@@ -347,7 +351,10 @@ impl TreeJoint {
         let (place, pair) =
             unsafe { (row.start.now(&sweep.bodies, &row.ids), Pair::load(&sweep.bodies, &row.ids)) };
         let is_biased = sweep.pass == Pass::Solve;
-        let block = Block::<f32, D>::new(&place, row.of_world(), &row.masses);
+        let mut block = Block::<f32, D>::new(&place, row.of_world(), &row.masses);
+        if self.is_rod {
+            block.take_distance(&place, &row.masses);
+        }
         let mut count = 0;
         for i in 0..D {
             let locked = &row.block[i];
@@ -365,6 +372,7 @@ impl TreeJoint {
                 let most = if i < DIM { sweep.params.max_push_speed } else { MOST_TURN * sweep.params.inv_h };
                 rate += if soft.is_spring > 0.0 { bias } else { bias.clamp(-most, most) };
                 softness = f64::from(own * soft.share + soft.more);
+                rate += (own * soft.share + soft.more) * locked.impulse;
             } else if soft.is_spring > 0.0 {
                 (softness, rate) = (LOOSE * f64::from(own), 0.0);
             }
