@@ -3,14 +3,14 @@
 use avian::math::Vector;
 use avian::parry::math::{Pose, Rotation as Rotation2};
 use avian::prelude::*;
-use bevy_ecs::world::World;
+use bevy_ecs::{entity::Entity, world::World};
 use bevy_math::{Quat, Vec2, Vec3};
 use bevy_transform::components::Transform;
 
 use crate::scene::{Bounds, Scene, Watch, at, spawn_block, spawn_body};
 use crate::{
-    belts, blast, bridge, bullets, card_house, dominoes, growing, pile, pyramid, scaled, sensors, slopes,
-    terrain, towers, tumbler,
+    belts, blast, breaking, bridge, bullets, card_house, cars, dominoes, growing, pile, pyramid, ragdolls,
+    scaled, sensors, slopes, terrain, towers, tumbler, walkers,
 };
 
 /// Density of the bodies in kg/m².
@@ -34,7 +34,7 @@ pub const TUMBLER_BOX: (f32, f32) = (0.25, 0.4);
 pub const NO_TURN: f32 = 0.0;
 
 /// The scenes of the tour.
-pub static SCENES: [Scene; 16] = [
+pub static SCENES: [Scene; 20] = [
     Scene {
         name: "large_pyramid",
         about: "5,050 unit boxes, 100 at the base, sleeping off",
@@ -155,6 +155,42 @@ pub static SCENES: [Scene; 16] = [
         watch: Watch::Inside,
     },
     Scene {
+        name: "ragdolls",
+        about: "humans of capsules fall down a flight of stairs",
+        steps: 600,
+        build: |world| ragdolls::ragdolls(world, 4),
+        bounds: Bounds::new([-7.0, -1.0, 0.0], [7.0, 14.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "cars",
+        about: "cars on springs drive over bumps into stacks of boxes",
+        steps: 600,
+        build: |world| cars::cars(world, 3),
+        bounds: Bounds::new([-26.0, -1.0, 0.0], [26.0, 8.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "breaking",
+        about: "heavy balls break a wall of bricks that joints hold together",
+        steps: 300,
+        build: |world| breaking::breaking(world),
+        bounds: Bounds::new([-20.0, -1.0, 0.0], [20.0, 9.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "walkers",
+        about: "characters walk to and fro over stairs and slopes, and push boxes",
+        steps: 600,
+        build: |world| walkers::walkers(world),
+        bounds: Bounds::new([-13.0, -1.0, 0.0], [13.0, 6.0, 0.0]),
+        eye: Vec3::Z,
+        watch: Watch::Inside,
+    },
+    Scene {
         name: "blasts",
         about: "what a query finds near the middle is blown away, every two seconds",
         steps: 600,
@@ -235,6 +271,16 @@ pub fn roof(width: f32, height: f32) -> Collider {
 /// The 2D version of a rolling cylinder: a circle.
 pub fn roller(radius: f32, _length: f32) -> Collider {
     Collider::circle(radius)
+}
+
+/// A wheel at a place of its chassis, that spins across the plane.
+pub fn wheel(chassis: Entity, wheel: Entity, [x, y, _]: [f32; 3]) -> WheelJoint {
+    WheelJoint::new(chassis, wheel).with_local_anchor1(Vector::new(x, y))
+}
+
+/// z of the wheels of an axle.
+pub fn wheels_across(_distance: f32) -> [f32; 1] {
+    [0.0]
 }
 
 /// The rotation that puts a cylinder's axis across the slope.

@@ -3,15 +3,15 @@
 use avian::math::Vector;
 use avian::parry::math::Pose;
 use avian::prelude::*;
-use bevy_ecs::world::World;
+use bevy_ecs::{entity::Entity, world::World};
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
 
 use crate::numbers::{Rng, half_turn_parts, sin_cos};
 use crate::scene::{Bounds, Scene, Watch, at, spawn_block, spawn_body};
 use crate::{
-    belts, blast, bridge, bullets, card_house, dominoes, growing, pile, pyramid, scaled, sensors, slopes,
-    terrain, towers, tumbler,
+    belts, blast, breaking, bridge, bullets, card_house, cars, dominoes, growing, pile, pyramid, ragdolls,
+    scaled, sensors, slopes, terrain, towers, tumbler, walkers,
 };
 
 /// Density of the bodies in kg/m³.
@@ -35,7 +35,7 @@ pub const TUMBLER_BOX: (f32, f32) = (0.6, 1.0);
 pub const NO_TURN: Quat = Quat::IDENTITY;
 
 /// The scenes of the tour.
-pub static SCENES: [Scene; 16] = [
+pub static SCENES: [Scene; 20] = [
     Scene {
         name: "large_pyramid",
         about: "5,050 unit boxes, 100 at the base, sleeping off",
@@ -156,6 +156,42 @@ pub static SCENES: [Scene; 16] = [
         watch: Watch::Inside,
     },
     Scene {
+        name: "ragdolls",
+        about: "humans of capsules fall down a flight of stairs",
+        steps: 600,
+        build: |world| ragdolls::ragdolls(world, 2),
+        bounds: Bounds::new([-7.0, -1.0, -7.0], [7.0, 14.0, 7.0]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "cars",
+        about: "cars on springs drive over bumps into stacks of boxes",
+        steps: 600,
+        build: |world| cars::cars(world, 8),
+        bounds: Bounds::new([-26.0, -1.0, -8.5], [26.0, 8.0, 8.5]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "breaking",
+        about: "heavy balls break a wall of bricks that joints hold together",
+        steps: 300,
+        build: |world| breaking::breaking(world),
+        bounds: Bounds::new([-20.0, -1.0, -8.0], [20.0, 9.0, 8.0]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
+        name: "walkers",
+        about: "characters walk to and fro over stairs and slopes, and push boxes",
+        steps: 600,
+        build: |world| walkers::walkers(world),
+        bounds: Bounds::new([-13.0, -1.0, -6.5], [13.0, 6.0, 6.5]),
+        eye: Vec3::new(0.35, 0.45, 1.0),
+        watch: Watch::Inside,
+    },
+    Scene {
         name: "blasts",
         about: "what a query finds near the middle is blown away, every two seconds",
         steps: 600,
@@ -239,6 +275,19 @@ pub fn roof(width: f32, height: f32) -> Collider {
 /// A rolling body: a cylinder along y, see [`roller_turn`].
 pub fn roller(radius: f32, length: f32) -> Collider {
     Collider::cylinder(radius, length)
+}
+
+/// A wheel at a place of its chassis, a [`roller`] turned by [`roller_turn`].
+pub fn wheel(chassis: Entity, wheel: Entity, place: [f32; 3]) -> WheelJoint {
+    WheelJoint::new(chassis, wheel)
+        .with_local_anchor1(Vector::from(place))
+        .with_local_basis2(roller_turn().inverse())
+        .with_axle(Vector::Z)
+}
+
+/// z of the wheels of an axle.
+pub fn wheels_across(distance: f32) -> [f32; 2] {
+    [-distance, distance]
 }
 
 /// The rotation that puts a cylinder's axis across the slope.

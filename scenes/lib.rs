@@ -8,14 +8,17 @@
 pub mod app;
 pub mod belts;
 pub mod blast;
+pub mod breaking;
 pub mod bridge;
 pub mod bullets;
 pub mod card_house;
+pub mod cars;
 pub mod dominoes;
 pub mod growing;
 pub mod numbers;
 pub mod pile;
 pub mod pyramid;
+pub mod ragdolls;
 pub mod scaled;
 pub mod scene;
 pub mod sensors;
@@ -23,6 +26,7 @@ pub mod slopes;
 pub mod terrain;
 pub mod towers;
 pub mod tumbler;
+pub mod walkers;
 
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]

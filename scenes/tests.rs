@@ -1,5 +1,6 @@
 //! Properties of every scene before its first step.
 
+use avian::dynamics::solver::joint_graph::JointGraph;
 use avian::parry::bounding_volume::{Aabb, BoundingVolume};
 use avian::parry::math::Pose;
 use avian::parry::query;
@@ -9,7 +10,7 @@ use bevy_app::App;
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
 
-use crate::{DT, SUBSTEPS, Scene, Watch, Watched, all, dim, headless_app, pyramid};
+use crate::{Bounds, DT, SUBSTEPS, Scene, Watch, Watched, all, dim, headless_app, pyramid};
 
 /// A collider at its initial place.
 struct Placed {
@@ -54,10 +55,17 @@ fn placed(world: &mut World) -> Vec<Placed> {
 #[test]
 fn no_scene_starts_with_an_overlap() {
     for scene in all() {
-        let parts = placed(built(scene).world_mut());
+        let mut app = built(scene);
+        let parts = placed(app.world_mut());
+        let joints = app.world().resource::<JointGraph>();
         for (i, a) in parts.iter().enumerate() {
             for b in parts[i + 1..].iter().take_while(|b| b.bounds.mins.x <= a.bounds.maxs.x) {
-                if a.body == b.body || !(a.dynamic || b.dynamic) || !a.bounds.intersects(&b.bounds) {
+                let are_joined = joints.joints_between(a.body, b.body).next().is_some();
+                if a.body == b.body
+                    || are_joined
+                    || !(a.dynamic || b.dynamic)
+                    || !a.bounds.intersects(&b.bounds)
+                {
                     continue;
                 }
                 if let Ok(Some(contact)) = query::contact(&a.pose, &*a.shape, &b.pose, &*b.shape, 0.0) {
@@ -121,4 +129,53 @@ fn one_step_is_one_tick() {
     crate::step(&mut app);
     let speed = app.world().get::<LinearVelocity>(body).expect("bodies have velocities").0.y;
     assert!((speed + 1.0).abs() < 1e-5, "after one step of 0.5 s at 2 m/s²: {speed}");
+}
+
+/// A scene after some seconds, and all its dynamic and kinematic bodies.
+fn played(name: &str, seconds: u32) -> (App, Vec<Entity>) {
+    let scene = crate::find(name).expect("a scene of that name");
+    let mut app = built(scene);
+    (0..60 * seconds).for_each(|_| crate::step(&mut app));
+    let world = app.world_mut();
+    let mut bodies = world.query::<(Entity, &RigidBody, &Position)>();
+    let moving = bodies.iter(world).filter(|(_, body, _)| !body.is_static());
+    let found = moving.map(|(entity, _, position)| {
+        let Bounds { min, max } = scene.bounds;
+        let inside = (min.x..max.x).contains(&position.x) && (min.y..max.y).contains(&position.y);
+        assert!(inside, "{name}: a body is at {}", position.0);
+        entity
+    });
+    let found = found.collect();
+    (app, found)
+}
+
+/// How many joints of a world are intact, by their graph.
+fn joint_count(app: &App, bodies: &[Entity]) -> usize {
+    let joints = app.world().resource::<JointGraph>();
+    bodies.iter().map(|body| joints.joints_of(*body).count()).sum()
+}
+
+#[test]
+fn joints_and_characters_do_what_their_scenes_say() {
+    let (app, cars) = played("cars", 10);
+    let x = |body: &Entity| app.world().get::<Position>(*body).expect("a body has a place").x;
+    let farthest = cars.iter().map(x).fold(f32::MIN, f32::max);
+    assert!(farthest > 17.0, "the stacks were moved: {:?}", cars.iter().map(x).collect::<Vec<_>>());
+
+    let (app, bricks) = played("breaking", 3);
+    let (whole, _) = played("breaking", 0);
+    assert!(joint_count(&app, &bricks) < joint_count(&whole, &bricks), "some joints broke");
+
+    let (app, humans) = played("ragdolls", 6);
+    assert!(humans.len() >= 11 * 6, "{} bones", humans.len());
+    for bone in humans {
+        let speed = app.world().get::<LinearVelocity>(bone).expect("a body has a velocity").length();
+        assert!(speed < 3.0, "a bone moves at {speed} m/s");
+    }
+
+    let (app, walkers) = played("walkers", 8);
+    for walker in walkers {
+        let Some(state) = app.world().get::<CharacterState>(walker) else { continue };
+        assert!(state.is_grounded(), "{state:?}");
+    }
 }
