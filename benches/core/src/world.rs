@@ -161,6 +161,9 @@ impl<D: Dimension> Body<D> {
 }
 
 /// Keeps a point of one body at a point of another. The two bodies do not collide.
+///
+/// With limits, the second body turns against the first by no more: in 2D from the first to the second angle; in 3D its y axis by up to
+/// the first from the first body's, and about it by up to the second either way. In radians.
 #[derive(Clone, Copy, Debug)]
 pub struct Joint<D: Dimension> {
     /// The first body.
@@ -171,6 +174,15 @@ pub struct Joint<D: Dimension> {
     pub anchor_a: D::Vec,
     /// The point in the second body's frame.
     pub anchor_b: D::Vec,
+    /// The limits of turns.
+    pub limits: Option<[f32; 2]>,
+}
+
+impl<D: Dimension> Joint<D> {
+    /// A joint that turns freely.
+    pub fn free([a, b]: [usize; 2], [anchor_a, anchor_b]: [D::Vec; 2]) -> Self {
+        Self { a, b, anchor_a, anchor_b, limits: None }
+    }
 }
 
 /// A ray of a query.

@@ -105,12 +105,13 @@ impl Engine<D2> for Sim {
 
     #[cfg(feature = "joints")]
     fn add_joint(&mut self, j: &Joint2) {
-        self.app.world_mut().spawn((
-            RevoluteJoint::new(self.bodies[j.a], self.bodies[j.b])
-                .with_local_anchor1(Vec2::from(j.anchor_a))
-                .with_local_anchor2(Vec2::from(j.anchor_b)),
-            JointCollisionDisabled,
-        ));
+        let mut joint = RevoluteJoint::new(self.bodies[j.a], self.bodies[j.b])
+            .with_local_anchor1(Vec2::from(j.anchor_a))
+            .with_local_anchor2(Vec2::from(j.anchor_b));
+        if let Some([min, max]) = j.limits {
+            joint = joint.with_angle_limits(min, max);
+        }
+        self.app.world_mut().spawn((joint, JointCollisionDisabled));
     }
 
     fn ready(&mut self) {

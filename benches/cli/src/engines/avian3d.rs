@@ -112,12 +112,13 @@ impl Engine<D3> for Sim {
 
     #[cfg(feature = "joints")]
     fn add_joint(&mut self, j: &Joint3) {
-        self.app.world_mut().spawn((
-            SphericalJoint::new(self.bodies[j.a], self.bodies[j.b])
-                .with_local_anchor1(Vec3::from(j.anchor_a))
-                .with_local_anchor2(Vec3::from(j.anchor_b)),
-            JointCollisionDisabled,
-        ));
+        let mut joint = SphericalJoint::new(self.bodies[j.a], self.bodies[j.b])
+            .with_local_anchor1(Vec3::from(j.anchor_a))
+            .with_local_anchor2(Vec3::from(j.anchor_b));
+        if let Some([cone, twist]) = j.limits {
+            joint = joint.with_swing_limits(-cone, cone).with_twist_limits(-twist, twist);
+        }
+        self.app.world_mut().spawn((joint, JointCollisionDisabled));
     }
 
     fn ready(&mut self) {

@@ -108,6 +108,10 @@ impl Engine<D2> for World {
             def.base.bodyIdB = self.bodies[j.b];
             def.base.localFrameA.p = v(j.anchor_a);
             def.base.localFrameB.p = v(j.anchor_b);
+            if let Some([lower, upper]) = j.limits {
+                def.enableLimit = true;
+                (def.lowerAngle, def.upperAngle) = (lower, upper);
+            }
             b2CreateRevoluteJoint(self.id, &def);
         }
     }

@@ -3,10 +3,10 @@
 
 #![expect(unsafe_code, reason = "a C interface")]
 
-use std::ffi::c_void;
+use std::{f32::consts::FRAC_PI_2, ffi::c_void};
 
 use bench_core::{
-    dim3::{Body3, D3, Joint3, Mesh, Part3, Ray3, Shape3, State3, V3},
+    dim3::{Body3, D3, Joint3, Mesh, Part3, Ray3, Shape3, State3, V3, turn_about},
     engine::{DT, Engine, SUBSTEPS, Settings, Stage},
     world::{Group, Kind},
 };
@@ -155,6 +155,14 @@ impl Engine<D3> for World {
             def.base.bodyIdB = self.bodies[j.b];
             def.base.localFrameA.p = v(j.anchor_a);
             def.base.localFrameB.p = v(j.anchor_b);
+            if let Some([cone, twist]) = j.limits {
+                // Its axis is z of both frames.
+                let axis = q(turn_about([1.0, 0.0, 0.0], -FRAC_PI_2));
+                (def.base.localFrameA.q, def.base.localFrameB.q) = (axis, axis);
+                (def.enableConeLimit, def.coneAngle) = (true, cone);
+                def.enableTwistLimit = true;
+                (def.lowerTwistAngle, def.upperTwistAngle) = (-twist, twist);
+            }
             b3CreateSphericalJoint(self.id, &def);
         }
     }

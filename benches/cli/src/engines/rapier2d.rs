@@ -73,10 +73,13 @@ impl Engine<D2> for World {
     }
 
     fn add_joint(&mut self, j: &Joint2) {
-        let joint = RevoluteJointBuilder::new()
+        let mut joint = RevoluteJointBuilder::new()
             .local_anchor1(v(j.anchor_a))
             .local_anchor2(v(j.anchor_b))
             .contacts_enabled(false);
+        if let Some(limits) = j.limits {
+            joint = joint.limits(limits);
+        }
         self.w.insert_impulse_joint(self.bodies[j.a], self.bodies[j.b], joint);
     }
 

@@ -85,10 +85,17 @@ impl Engine<D3> for World {
     }
 
     fn add_joint(&mut self, j: &Joint3) {
-        let joint = SphericalJointBuilder::new()
+        let mut joint = SphericalJointBuilder::new()
             .local_anchor1(v(j.anchor_a))
             .local_anchor2(v(j.anchor_b))
             .contacts_enabled(false);
+        if let Some([cone, twist]) = j.limits {
+            // A pyramid, there.
+            for (axis, limit) in [(JointAxis::AngX, cone), (JointAxis::AngY, twist), (JointAxis::AngZ, cone)]
+            {
+                joint = joint.limits(axis, [-limit, limit]);
+            }
+        }
         self.w.insert_impulse_joint(self.bodies[j.a], self.bodies[j.b], joint);
     }
 

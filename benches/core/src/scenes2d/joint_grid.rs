@@ -18,13 +18,13 @@ pub(super) fn scene() -> Scene<D2> {
             let me = scene.bodies.len();
             scene.bodies.push(Body2 { group: Group::NotEachOther, ..body });
             if i > 0 {
-                let (anchor_a, anchor_b) = ([0.0, -0.5], [0.0, 0.5]);
-                scene.joints.push(Joint2 { a: me - 1, b: me, anchor_a, anchor_b });
+                let anchors = [[0.0, -0.5], [0.0, 0.5]];
+                scene.joints.push(Joint2::free([me - 1, me], anchors));
             }
             // Two static neighbours need no joint between them, and some engines refuse one.
             if k > 0 && !(held && scene.bodies[me - n].kind == Kind::Static) {
-                let (anchor_a, anchor_b) = ([0.5, 0.0], [-0.5, 0.0]);
-                scene.joints.push(Joint2 { a: me - n, b: me, anchor_a, anchor_b });
+                let anchors = [[0.5, 0.0], [-0.5, 0.0]];
+                scene.joints.push(Joint2::free([me - n, me], anchors));
             }
         }
     }

@@ -62,8 +62,10 @@ const JOINTS: [(usize, usize, V2, f32); 9] = [
 
 /// Ragdolls fall into a box.
 pub(super) fn ragdolls() -> Scene<D2> {
-    let mut scene = Scene::new("400 ragdolls of ten capsules, with limits, fall into a bin", Plan::steps(600));
-    for (at, shape) in [([0.0, -1.0], (21.0, 1.0)), ([-21.0, 50.0], (1.0, 52.0)), ([21.0, 50.0], (1.0, 52.0))] {
+    let mut scene =
+        Scene::new("400 ragdolls of ten capsules, with limits, fall into a bin", Plan::steps(600));
+    for (at, shape) in [([0.0, -1.0], (21.0, 1.0)), ([-21.0, 50.0], (1.0, 52.0)), ([21.0, 50.0], (1.0, 52.0))]
+    {
         scene.bodies.push(Body2::fixed(at, Shape2::Box(shape.0, shape.1)));
     }
     let mut random = Random::new(1);
@@ -77,7 +79,8 @@ pub(super) fn ragdolls() -> Scene<D2> {
         for (a, b, point, limit) in JOINTS {
             let local = |limb: usize| {
                 let (_, _, place, turn) = LIMBS[limb];
-                let ([x, y], (s, c)) = ([point[0] - place[0], point[1] - place[1]], turn.to_radians().sin_cos());
+                let ([x, y], (s, c)) =
+                    ([point[0] - place[0], point[1] - place[1]], turn.to_radians().sin_cos());
                 [c * x + s * y, c * y - s * x]
             };
             let rest = (LIMBS[b].3 - LIMBS[a].3).to_radians();

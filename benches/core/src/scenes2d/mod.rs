@@ -9,6 +9,7 @@ use crate::{
 mod bullets;
 mod compounds;
 mod joint_grid;
+mod jointed;
 mod junkyard;
 mod pyramids;
 mod raycast;
@@ -24,6 +25,9 @@ impl Scenes for D2 {
         speed("large_pyramid", pyramids::large),
         speed("many_pyramids", pyramids::many),
         speed("joint_grid", joint_grid::scene),
+        speed("bridge", jointed::bridge),
+        speed("ragdolls", jointed::ragdolls),
+        speed("cars", jointed::cars),
         speed("tumbler", tumbler::scene),
         speed("smash", smash::scene),
         speed("compounds", compounds::scene),

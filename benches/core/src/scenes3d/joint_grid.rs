@@ -18,12 +18,12 @@ pub(super) fn scene() -> Scene<D3> {
             let me = scene.bodies.len();
             scene.bodies.push(Body3 { kind, group: Group::NotEachOther, ..body });
             if i > 0 {
-                let (anchor_a, anchor_b) = ([0.0, -0.5, 0.0], [0.0, 0.5, 0.0]);
-                scene.joints.push(Joint3 { a: me - 1, b: me, anchor_a, anchor_b });
+                let anchors = [[0.0, -0.5, 0.0], [0.0, 0.5, 0.0]];
+                scene.joints.push(Joint3::free([me - 1, me], anchors));
             }
             if k > 0 && i > 0 {
-                let (anchor_a, anchor_b) = ([0.5, 0.0, 0.0], [-0.5, 0.0, 0.0]);
-                scene.joints.push(Joint3 { a: me - n, b: me, anchor_a, anchor_b });
+                let anchors = [[0.5, 0.0, 0.0], [-0.5, 0.0, 0.0]];
+                scene.joints.push(Joint3::free([me - n, me], anchors));
             }
         }
     }

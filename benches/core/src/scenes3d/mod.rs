@@ -17,6 +17,7 @@ mod mesh_terrain;
 mod pile;
 mod pyramids;
 mod queries;
+mod ragdolls;
 mod still;
 mod washer;
 
@@ -29,6 +30,7 @@ impl Scenes for D3 {
         speed("pile", pile::mixed),
         speed("cylinders", pile::cylinders),
         speed("joint_grid", joint_grid::scene),
+        speed("ragdolls", ragdolls::scene),
         speed("convex_pile", convex_pile::scene),
         speed("junkyard", junkyard::scene),
         speed("washer", washer::scene),

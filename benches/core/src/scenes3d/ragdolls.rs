@@ -35,7 +35,8 @@ const JOINTS: [(usize, usize, V3, [f32; 2]); 9] = [
 ];
 
 pub(super) fn scene() -> Scene<D3> {
-    let mut scene = Scene::new("400 ragdolls of ten capsules, with limits, fall into a bin", Plan::steps(400));
+    let mut scene =
+        Scene::new("400 ragdolls of ten capsules, with limits, fall into a bin", Plan::steps(400));
     scene.bodies.push(Body3::fixed([0.0, -1.0, 0.0], Shape3::Box(12.0, 1.0, 12.0)));
     for (x, z) in [(-6.0, 0.0), (6.0, 0.0), (0.0, -6.0), (0.0, 6.0)] {
         let half = if z == 0.0 { [0.5, 7.0] } else { [7.0, 0.5] };
