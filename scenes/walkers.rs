@@ -49,7 +49,7 @@ pub fn walkers(world: &mut World) {
     }
     let shapes = [dim::block(0.5, 1.6, 0.5), Collider::capsule(0.3, 1.0), dim::roller(0.4, 1.6)];
     for (i, shape) in shapes.into_iter().enumerate() {
-        // In the plane they meet, and turn round.
+        // In 2D characters walk in one plane: they meet, and turn round.
         let place = Vec3::new(-10.0 + 9.0 * i as f32, 2.6, 4.0 * i as f32 - 4.0) * dim::PLANE;
         let velocity = dim::vector(Vec3::X * SPEED);
         world
@@ -60,7 +60,7 @@ pub fn walkers(world: &mut World) {
     world.resource_mut::<Schedules>().add_systems(FixedUpdate, turn_back);
 }
 
-/// Away from who is in the way.
+/// Turns a character round that meets another one.
 fn turn_round(hit: On<CharacterHit>, mut inputs: Query<&mut CharacterInput>) {
     let Ok([mut one, other]) = inputs.get_many_mut([hit.character, hit.collider]) else { return };
     if hit.normal.x * one.velocity.x < 0.0 && one.velocity.x * other.velocity.x <= 0.0 {
@@ -68,7 +68,7 @@ fn turn_round(hit: On<CharacterHit>, mut inputs: Query<&mut CharacterInput>) {
     }
 }
 
-/// Back before the ends of the way.
+/// Turns characters round two metres before the walls.
 fn turn_back(mut walkers: Query<(&Position, &mut CharacterInput)>) {
     for (position, mut input) in &mut walkers {
         if position.x.abs() > REACH - 2.0 && position.x * input.velocity.x > 0.0 {

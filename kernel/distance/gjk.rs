@@ -65,7 +65,7 @@ pub(crate) struct Vertex {
     b: Wide,
     w: Wide,
     weight: f64,
-    /// The numbers of the features of A and B that it is made of; 0 if nobody asks.
+    /// The vertices of A and B, by number. The distance search does not need them, and sets 0.
     pub(crate) features: [u32; 2],
 }
 
