@@ -3,6 +3,7 @@
 
 use super::bearing::Bearing;
 use super::input::{Item, RowInput};
+use super::release::Released;
 use super::split::DeepCounts;
 use super::struck::{Striking, Struck};
 use super::{BodyRow, GainRow, MassRow, RowView, SubstepParams};
@@ -85,6 +86,7 @@ pub(super) struct Filling<'a> {
     pub(super) params: &'a SubstepParams,
     pub(super) deep: &'a DeepCounts,
     pub(super) bearing: &'a Bearing,
+    pub(super) released: &'a Released,
     /// As in [`BodyRows`](super::BodyRows).
     pub(super) axes: &'a [Vector],
 }

@@ -7,7 +7,7 @@ use super::input::Item;
 use super::pair::lanes_of_body;
 use super::resistance::levers;
 use super::split::DeepCounts;
-use super::{BodyRow, ContactRow, ImpactRow, InvMass, MassRow, SplitImpulseRow, SubstepParams};
+use super::{BodyRow, ContactRow, ImpactRow, InvMass, MassRow, SplitImpulseRow};
 use crate::contact::{Contact, ContactFlags, Manifold};
 use crate::math::{Ids, Lane, TangentFrame, Vector};
 use crate::table::{BodyTable, NONE};
@@ -197,7 +197,8 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         let share = from.deep.share(ids, from.first_dynamic);
         debug_assert!(share > 0.0 && share <= 1.0, "a share: {share}");
         row.push_speed.set(lane, from.params.max_push_speed * share * from.bearing.push_share(ids));
-        self.copy(manifold, contact.frozen.offset, from.params, lane, row);
+        let warm_start = if from.released.concerns(ids) { 0.0 } else { from.params.warm_start };
+        self.copy(manifold, contact.frozen.offset, warm_start, from.params.friction_fade, lane, row);
     }
 
     /// Sets the factors of the inverse masses along each axis. Not inlined, since most worlds have none.
@@ -234,29 +235,30 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         &mut self,
         manifold: &Manifold,
         offset: Vector,
-        params: &SubstepParams,
+        warm_start: f32,
+        friction_fade: f32,
         lane: usize,
         row: &mut ContactRow<N, M, P>,
     ) {
         row.normal.set(lane, manifold.normal);
         row.offset.set(lane, offset);
-        self.friction_impulse.set(lane, manifold.friction_impulse * params.warm_start);
+        self.friction_impulse.set(lane, manifold.friction_impulse * warm_start);
         for (to, from) in self.radii.iter_mut().zip(manifold.radii) {
             to.set(lane, from);
         }
-        row.twist.set_impulse(lane, manifold.twist_impulse.get() * params.warm_start);
-        row.owed.set(lane, manifold.friction_owed * params.warm_start);
+        row.twist.set_impulse(lane, manifold.twist_impulse.get() * warm_start);
+        row.owed.set(lane, manifold.friction_owed * warm_start);
         for (i, p) in manifold.points().iter().enumerate() {
             let point = &mut row.points[i];
             point.anchor.set(lane, p.anchor);
             point.separation.set(lane, p.separation);
             point.gap.set(lane, p.separation);
-            point.impulse.set(lane, p.impulse * params.warm_start);
+            point.impulse.set(lane, p.impulse * warm_start);
             // 1 marks the point as present until its mass is computed.
             point.mass.set(lane, 1.0);
             // A separated point weighs less with distance, so that the friction centre does not jump when a point
             // appears or disappears.
-            let weight = 2.0 - p.separation / params.friction_fade;
+            let weight = 2.0 - p.separation / friction_fade;
             self.weights[i].set(lane, crate::math::clamp(weight, 1.0e-10, 1.0));
         }
     }

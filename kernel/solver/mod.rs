@@ -41,6 +41,7 @@ mod joint;
 mod layer;
 mod pair;
 mod plan;
+mod release;
 mod resistance;
 mod row;
 mod shares;

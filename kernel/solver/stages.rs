@@ -13,6 +13,7 @@ use super::input::RowInput;
 use super::joint::{JointTable, JointTrees, TreeBlows};
 use super::layer::Sorter;
 use super::plan::{Block, Plan, Stage};
+use super::release::Released;
 use super::shares::Shares;
 use super::split::DeepCounts;
 use super::struck::Striking;
@@ -60,6 +61,7 @@ pub struct Solver {
     shares: Shares,
     deep: DeepCounts,
     bearing: Bearing,
+    released: Released,
     blows: Blows,
     /// The first body row that constraint rows may write, kept from when they were built.
     first_dynamic: u32,
@@ -128,6 +130,7 @@ impl Solver {
             pool.wake();
         }
         self.bearing.clear();
+        self.released.find(input, &self.bodies, params);
         self.blows.begin_step();
         self.fill_rows(input, params, pool);
         let Self { bodies, trees, plan, bearing, .. } = self;
@@ -160,7 +163,7 @@ impl Solver {
 
     /// Fills the rows of all blocks.
     fn fill_rows(&mut self, input: &RowInput, params: &SubstepParams, pool: &ThreadPool) {
-        let Self { bodies, joints, customs, trees, rows, layers, plan, deep, bearing, .. } = self;
+        let Self { bodies, joints, customs, trees, rows, layers, plan, deep, bearing, released, .. } = self;
         let BodyRows { rows: body_rows, masses, axes, first_dynamic, .. } = bodies;
         let filling = &Filling {
             input,
@@ -170,6 +173,7 @@ impl Solver {
             params,
             deep,
             bearing,
+            released,
             axes,
         };
         trees.fill(&joints.records(), filling, pool);

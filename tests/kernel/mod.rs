@@ -13,6 +13,7 @@ mod customs;
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 mod distance;
+mod doors;
 mod extreme;
 mod facets;
 mod ghosts;
