@@ -257,8 +257,12 @@ impl JointDef {
     /// Whether a distance or an angle between axes has limits, and one of the coordinates of which it is made: such settings
     /// may contradict each other.
     pub(super) fn sets_twice(&self) -> bool {
-        let is_set = |number: usize| self.axes[number].limits.is_some();
-        (BLOCK..AXES).any(|number| is_set(number) && parts_of(number).any(is_set))
+        (BLOCK..AXES).any(|number| self.axes[number].limits.is_some() && self.has_set_parts(number))
+    }
+
+    /// Whether a coordinate is a distance or an angle between axes, and one of those of which it is made has limits.
+    pub(super) fn has_set_parts(&self, number: usize) -> bool {
+        number >= BLOCK && parts_of(number).any(|part| self.axes[part].limits.is_some())
     }
 
     /// The coordinates that are solved one by one: outside the block those with limits, a spring or a motor.

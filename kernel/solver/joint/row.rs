@@ -139,6 +139,7 @@ impl<N: Lane> Single<N> {
             None => self.along[number].set(lane, 1.0),
         }
         let [min, max] = axis.limits.unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
+        self.may_contradict.set(lane, f32::from(u8::from(record.def.has_set_parts(number))));
         self.limits[0].set(lane, min);
         self.limits[1].set(lane, max);
         self.softening.set(lane, axis.give, Hold::Row, params.h);

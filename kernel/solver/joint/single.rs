@@ -71,6 +71,8 @@ pub(super) struct Single<N> {
     pub(super) near: N,
     /// 1 if the angle counts turns, else 0.
     pub(super) counts_turns: N,
+    /// 1 if the block may hold what the coordinate is made of, else 0.
+    pub(super) may_contradict: N,
 }
 
 impl<N: Lane> Single<N> {
@@ -87,6 +89,7 @@ impl<N: Lane> Single<N> {
         turns: N::ZERO,
         near: N::ZERO,
         counts_turns: N::ZERO,
+        may_contradict: N::ZERO,
     };
 
     /// The gradient of the coordinate, and its value.
@@ -141,6 +144,9 @@ impl<N: Lane> Single<N> {
 
     /// Solves spring, motor and limits by the response to a unit impulse, given the one without other joints. Returns the change of the
     /// impulse.
+    ///
+    /// Where the block may hold the coordinate, impulses are those of the mass without the block. To shorten a distance across a locked
+    /// shift, the body would have to move along the other axis without bound.
     #[inline(always)]
     pub(super) fn act(
         &mut self,
@@ -150,10 +156,10 @@ impl<N: Lane> Single<N> {
         params: &SubstepParams,
         biased: bool,
     ) -> N {
-        let k = response.along(gradient);
+        let (k, own) = (response.along(gradient), alone.along(gradient));
         // What the block holds already, a single row cannot move.
-        let moves = (alone.along(gradient) * N::splat(NO_PIVOT)).lt(k);
-        let k = N::select(moves, k, N::ZERO);
+        let moves = (own * N::splat(NO_PIVOT)).lt(k);
+        let k = N::select(moves, k + (own - k) * self.may_contradict, N::ZERO);
         let before = self.impulse();
         let mass = N::select(moves, N::ONE / N::select(moves, k, N::ONE), N::ZERO);
         if biased {
