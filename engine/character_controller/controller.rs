@@ -162,6 +162,8 @@ pub struct CharacterState {
     pub is_crouching: bool,
     /// Whether it has no room between something that moves and something that does not.
     pub is_crushed: bool,
+    /// The force in N by which it weighs on the dynamic body that it stands on: its weight, once that body bears it.
+    pub load: Scalar,
     /// What carries it.
     pub carrier: Option<Carrier>,
 }

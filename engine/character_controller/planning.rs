@@ -92,6 +92,7 @@ impl Planning<'_> {
     pub(super) fn run(&mut self, from: Vector) {
         let time = self.around.time;
         let up = self.walker.up;
+        let before = (self.state.ground_entity, self.state.ground_velocity.dot(up));
         self.follow_carrier();
         self.walker.recover();
         let own = self.input.velocity - up * self.input.velocity.dot(up);
@@ -119,7 +120,7 @@ impl Planning<'_> {
         self.make_way();
         self.plan.velocity = (self.walker.position - from) / time;
         self.note_hits();
-        self.weigh();
+        self.weigh(before);
         if let Some((collider, height)) = self.walker.climbed {
             self.plan.climbed = Some(CharacterClimbed { character: self.entity, collider, height });
             self.state.visual_offset -= height;
@@ -400,14 +401,27 @@ impl Planning<'_> {
         force * around.time
     }
 
-    /// Weighs on a dynamic body that the character stands on.
-    fn weigh(&mut self) {
+    /// Weighs on a dynamic body that the character stands on: on the same one as before, which had a speed along `up`.
+    ///
+    /// How much the body bears is not known, and the whole weight at once would throw a light limb that lies on nothing. So each
+    /// step adds what accelerates the character and the body together by gravity, and takes off what made the body give way.
+    fn weigh(&mut self, (before, speed): (Option<Entity>, Scalar)) {
+        let load = core::mem::take(&mut self.state.load);
         let Some(ground) = self.state.ground_entity.filter(|_| self.state.is_grounded()) else { return };
-        if let Some(body) = self.around.bodies.body_of(ground) {
-            let force = self.gravity * self.controller.mass.max(0.0);
-            // A flat foot touches at any of its points.
-            let point = self.walker.below_foot(ground).unwrap_or(self.state.ground_point);
-            self.plan.pushes.push(Push { body, point, force });
+        let Some(body) = self.around.bodies.body_of(ground) else { return };
+        // A flat foot touches at any of its points.
+        let point = self.walker.below_foot(ground).unwrap_or(self.state.ground_point);
+        let up = self.walker.up;
+        let (mass, gravity) = (self.controller.mass, -self.gravity.dot(up));
+        let inverse = self.around.bodies.inverse_mass_at(body, point, up);
+        if !(mass > 0.0 && inverse > 0.0) {
+            return;
         }
+        let is_same = before == Some(ground);
+        let (load, yielded) =
+            if is_same { (load, speed - self.state.ground_velocity.dot(up)) } else { (0.0, 0.0) };
+        let more = (gravity - yielded / self.around.time) / (1.0 / mass + inverse);
+        self.state.load = (load + more).min(mass * gravity).max(0.0);
+        self.plan.pushes.push(Push { body, point, force: -up * self.state.load });
     }
 }

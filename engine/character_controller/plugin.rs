@@ -12,6 +12,7 @@ use super::{
     system::{drive_characters, plan_characters},
 };
 use crate::{
+    dynamics::rigid_body::LinearVelocity,
     schedule::{PhysicsSchedule, PhysicsStepSystems},
     step::{self, Stage},
 };
@@ -45,5 +46,23 @@ impl Plugin for CharacterControllerPlugin {
             .in_set(CharacterSystems)
             .in_set(Stage::MoveCharacters);
         step::add_systems(app, PhysicsSchedule, systems);
+        app.add_observer(stop_characters).add_observer(stop_movers);
     }
+}
+
+/// Leaves the body of what is a character no longer to its app, at rest.
+fn stop_characters(
+    removed: On<Remove, CharacterController>,
+    mut velocities: Query<&mut LinearVelocity>,
+    mut commands: Commands,
+) {
+    if let Ok(mut velocity) = velocities.get_mut(removed.entity) {
+        *velocity = LinearVelocity::ZERO;
+    }
+    commands.entity(removed.entity).try_remove::<CharacterPlan>();
+}
+
+/// Leaves the body of what is a mover no longer to its app.
+fn stop_movers(removed: On<Remove, DynamicMover>, mut commands: Commands) {
+    commands.entity(removed.entity).try_remove::<MoverPlan>();
 }

@@ -216,8 +216,12 @@ impl Walker<'_> {
             floors.iter().copied().max_by(|a, b| self.lift(*a, ahead).total_cmp(&self.lift(*b, ahead)));
         *floor = steepest.unwrap_or(*floor);
         let mut lift = self.lift(*floor, ahead);
-        let is_under = contacts.iter().any(|contact| contact.part.normal.dot(self.up) < -EDGE);
-        if is_under && lift > 0.0 {
+        let motion = ahead + self.up * lift;
+        let is_closing = |contact: &Contact| {
+            let normal = contact.part.normal;
+            normal.dot(self.up) < -EDGE && normal.dot(motion) < -PARTING * motion.length()
+        };
+        if lift > 0.0 && contacts.iter().any(is_closing) {
             // No way up: the slope is a wall.
             let flat = self.horizontal(*floor).normalize_or_zero();
             walls.push(Plane::facing(flat));
@@ -230,11 +234,13 @@ impl Walker<'_> {
     /// Climbs the first step that the way leads into. Returns the share of the way that was walked.
     fn climb_one(&mut self, contacts: &[Contact], way: Vector) -> Option<Scalar> {
         let length = way.length();
-        contacts.iter().filter(|contact| !contact.is_face()).find_map(|contact| {
-            let flat = self.horizontal(contact.part.normal).normalize_or_zero();
-            let is_ahead = contact.part.normal.dot(self.up) > -EDGE && -flat.dot(way) > CLIMBING * length;
-            is_ahead.then(|| self.climb(way, contact.part.entity))?
-        })
+        let is_ahead = |contact: &&Contact| {
+            let normal = contact.part.normal;
+            let flat = self.horizontal(normal).normalize_or_zero();
+            !contact.is_face() && normal.dot(self.up) > -EDGE && -flat.dot(way) > CLIMBING * length
+        };
+        let step = contacts.iter().find(is_ahead)?.part.entity;
+        self.climb(way, step)
     }
 
     /// Up, ahead and down again: onto a step, if there is ground within its height, and room above.

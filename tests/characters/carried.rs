@@ -1,6 +1,6 @@
 //! Characters on what moves, and before what moves.
 
-use super::{Course, SKIN, block, figures, fixed, floor, rates, spin};
+use super::{Course, RATES, SKIN, Sample, all_at, block, each, figures, fixed, floor, lane, spin};
 use avian::{character_controller::controller::GroundState, math::*, prelude::*};
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
@@ -20,23 +20,30 @@ fn set<C: Component>(course: &mut Course, entity: Entity, value: C) {
 /// Up and down at 0.5 and 5 m/s, turning round at once.
 #[test]
 fn feet_stay_on_a_lift_that_turns_round() {
-    for (name, shape) in figures() {
-        for &rate in rates(name) {
-            for speed in [0.5, 5.0] {
-                let mut course = Course::new(rate, shape.clone(), Vector::Y * STANDING);
-                let lift = moving(&mut course, block(Vector::ONE * 4.0), Vector::NEG_Y * 2.0, Vector::ZERO);
-                course.walk(Vector::ZERO, 0.2);
-                for turn in 0..6 {
-                    let way = if turn % 2 == 0 { speed } else { -speed };
-                    set(&mut course, lift, LinearVelocity(Vector::Y * way));
-                    for _ in 0..rate / 3 {
-                        let sample = course.tick();
-                        let gap = sample.position.y - course.get::<Position>(lift).0.y - 2.0 - 0.9;
-                        let what = (name, rate, speed, turn);
-                        assert!((gap - SKIN).abs() < 2.0e-4, "{what:?}: a gap of {gap}");
-                        assert!(sample.state.is_grounded(), "{what:?}: {:?}", sample.state);
-                        assert!((sample.state.ground_velocity.y - way).abs() < 1.0e-5, "{what:?}");
-                    }
+    let cases = each(&[0.5, 5.0]);
+    for rate in RATES {
+        let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::Y * STANDING));
+        let mut course = Course::side_by_side(rate, starts);
+        let mut lifts = Vec::new();
+        for i in 0..cases.len() {
+            let lift = moving(&mut course, block(Vector::ONE * 4.0), Vector::NEG_Y * 2.0, Vector::ZERO);
+            set(&mut course, lift, lane(i));
+            lifts.push(lift);
+        }
+        course.walk(Vector::ZERO, 0.1);
+        for turn in 0..6 {
+            let sign = if turn % 2 == 0 { 1.0 } else { -1.0 };
+            for (lift, (_, speed, _)) in lifts.iter().zip(&cases) {
+                set(&mut course, *lift, LinearVelocity(Vector::Y * (sign * speed)));
+            }
+            for _ in 0..rate / 3 {
+                let samples = course.tick_all();
+                for ((sample, lift), (name, speed, _)) in samples.iter().zip(&lifts).zip(&cases) {
+                    let gap = sample.position.y - course.get::<Position>(*lift).0.y - 2.0 - 0.9;
+                    let what = (name, rate, speed, turn);
+                    assert!((gap - SKIN).abs() < 2.0e-4, "{what:?}: a gap of {gap}");
+                    assert!(sample.state.is_grounded(), "{what:?}: {:?}", sample.state);
+                    assert!((sample.state.ground_velocity.y - sign * speed).abs() < 1.0e-5, "{what:?}");
                 }
             }
         }
@@ -46,31 +53,27 @@ fn feet_stay_on_a_lift_that_turns_round() {
 /// By its transform, with turns at up to 7 m/s²; and a carousel.
 #[test]
 fn feet_stay_on_a_lift_that_follows_its_transform() {
-    for (name, shape) in figures() {
-        for &rate in rates(name) {
-            let mut course = Course::new(rate, shape.clone(), spin::START * 0.5 + Vector::Y * STANDING);
-            let bundle =
-                (RigidBody::Kinematic, FollowTransform, spin::disc(), Transform::from_xyz(0.0, -0.5, 0.0));
-            let lift = course.app.world_mut().spawn(bundle).id();
-            course.walk(Vector::ZERO, 0.2);
-            let what = (name, rate);
-            for i in 1..=rate {
-                let t = i as f32 / rate as f32;
-                let height = 1.5 * (1.0 - (2.2 * t).cos());
-                let turn = if spin::IS_LEVEL {
-                    bevy_math::Quat::from_rotation_y(2.0 * t)
-                } else {
-                    Default::default()
-                };
-                set(&mut course, lift, Transform::from_xyz(0.0, height - 0.5, 0.0).with_rotation(turn));
-                let sample = course.tick();
-                let lift = course.get::<Position>(lift).0;
-                assert!(
-                    (lift.y - (height as Scalar) + 0.5).abs() < 1.0e-4,
-                    "{what:?}: it is there in the step"
-                );
+    for rate in RATES {
+        let mut course = all_at(rate, spin::START * 0.5 + Vector::Y * STANDING);
+        let bundle =
+            (RigidBody::Kinematic, FollowTransform, spin::disc(), Transform::from_xyz(0.0, -0.5, 0.0));
+        let lift = course.app.world_mut().spawn(bundle).id();
+        course.walk(Vector::ZERO, 0.1);
+        let figures = figures();
+        for i in 1..=rate {
+            let t = i as f32 / rate as f32;
+            let height = 1.5 * (1.0 - (2.2 * t).cos());
+            let turn =
+                if spin::IS_LEVEL { bevy_math::Quat::from_rotation_y(2.0 * t) } else { Default::default() };
+            set(&mut course, lift, Transform::from_xyz(0.0, height - 0.5, 0.0).with_rotation(turn));
+            let samples = course.tick_all();
+            let lift = course.get::<Position>(lift).0;
+            let off = (lift.y - (height as Scalar) + 0.5).abs();
+            assert!(off < 1.0e-4, "{rate}, tick {i}: it is there in the step");
+            for (sample, (name, _)) in samples.into_iter().zip(&figures) {
+                let what = (name, rate, i);
                 let gap = sample.position.y - lift.y - 0.5 - 0.9;
-                assert!((gap - SKIN).abs() < 2.0e-4, "{what:?}, tick {i}: a gap of {gap}");
+                assert!((gap - SKIN).abs() < 2.0e-4, "{what:?}: a gap of {gap}");
                 assert!(sample.state.is_grounded(), "{what:?}: {:?}", sample.state);
                 let radius = (sample.position - Vector::Y * sample.position.y).length();
                 assert!((radius - 0.5 * spin::START.length()).abs() < 2.0e-4, "{what:?}: {radius}");
@@ -81,29 +84,41 @@ fn feet_stay_on_a_lift_that_follows_its_transform() {
 
 #[test]
 fn trains_carry_and_give_their_speed_to_who_jumps() {
-    for (name, shape) in figures() {
-        for rate in [30, 64, 360] {
-            let mut course = Course::new(rate, shape.clone(), Vector::Y * STANDING);
-            let train = moving(&mut course, block(Vector::ONE * 8.0), Vector::NEG_Y * 4.0, Vector::X * 7.0);
-            course.walk(Vector::ZERO, 1.0);
-            let offset = course.position().x - course.get::<Position>(train).0.x;
-            assert!(offset.abs() < 0.2, "{name} at {rate}: {offset}");
-            // Walking on it adds to its speed.
-            course.walk(Vector::X * 2.0, 1.0);
-            let walked = course.position().x - course.get::<Position>(train).0.x - offset;
-            assert!((walked - 2.0).abs() < 1.0e-3, "{name} at {rate}: {walked}");
-            course.jump(4.0);
-            let path = course.walk(Vector::ZERO, 0.5);
-            assert!(path.iter().all(|p| p.state.ground == GroundState::InAir), "{name} at {rate}");
-            let drift = course.position().x - course.get::<Position>(train).0.x - offset - walked;
+    for rate in [30, 64, 360] {
+        let mut course = all_at(rate, Vector::Y * STANDING);
+        let train = moving(&mut course, block(Vector::ONE * 8.0), Vector::NEG_Y * 4.0, Vector::X * 7.0);
+        let offset = |course: &Course, path: &[Sample]| {
+            path.last().expect("it rides").position.x - course.get::<Position>(train).0.x
+        };
+        let figures = figures();
+        let all = |course: &Course, paths: &[Vec<Sample>]| -> Vec<Scalar> {
+            paths.iter().map(|path| offset(course, path)).collect()
+        };
+        let paths = course.walk_all(|_| Vector::ZERO, 0.5);
+        let start = all(&course, &paths);
+        assert!(start.iter().all(|x| x.abs() < 0.2), "at {rate}: {start:?}");
+        // Walking on it adds to its speed.
+        let paths = course.walk_all(|_| Vector::X * 2.0, 1.0);
+        let walked = all(&course, &paths);
+        course.jump(4.0);
+        let jumps = course.walk_all(|_| Vector::ZERO, 0.5);
+        let flown = all(&course, &jumps);
+        let ends = course.walk_all(|_| Vector::ZERO, 0.5);
+        for (i, (name, _)) in figures.iter().enumerate() {
+            let way = walked[i] - start[i];
+            assert!((way - 2.0).abs() < 1.0e-3, "{name} at {rate}: {way}");
+            assert!(jumps[i].iter().all(|p| p.state.ground == GroundState::InAir), "{name} at {rate}");
+            let drift = flown[i] - walked[i];
             assert!(drift.abs() < 1.0e-3, "{name} at {rate}: it flies with the train: {drift}");
-            course.walk(Vector::ZERO, 0.7);
-            assert!(course.state().is_grounded());
-            // A stop takes the one that stands with it.
-            set(&mut course, train, LinearVelocity::ZERO);
-            let at = course.position();
-            course.walk(Vector::ZERO, 0.5);
-            assert!((course.position() - at).length() < 1.0e-4, "{name} at {rate}");
+            assert!(ends[i].last().expect("it lands").state.is_grounded(), "{name} at {rate}");
+        }
+        // A stop takes those that stand with it.
+        set(&mut course, train, LinearVelocity::ZERO);
+        let still = course.walk_all(|_| Vector::ZERO, 0.5);
+        for (path, end) in still.iter().zip(&ends) {
+            let at = end.last().expect("it stands").position;
+            let off = path.iter().find(|p| (p.position - at).length() > 1.0e-4);
+            assert!(off.is_none(), "at {rate}: {off:?} from {at}");
         }
     }
 }
@@ -111,22 +126,23 @@ fn trains_carry_and_give_their_speed_to_who_jumps() {
 /// A wheel about the axis of the view, in space a carousel about `up` as well.
 #[test]
 fn a_carousel_carries_round_exactly() {
-    for (name, shape) in figures() {
-        for &rate in rates(name) {
-            let mut course = Course::new(rate, shape.clone(), spin::START + Vector::Y * STANDING);
-            let disc = moving(&mut course, spin::disc(), Vector::NEG_Y * 0.5, Vector::ZERO);
-            course.walk(Vector::ZERO, 0.2);
-            let start = course.position();
-            set(&mut course, disc, AngularVelocity(spin::velocity(TAU)));
-            let path = course.walk(Vector::ZERO, 1.0);
+    for rate in RATES {
+        let mut course = all_at(rate, spin::START + Vector::Y * STANDING);
+        let disc = moving(&mut course, spin::disc(), Vector::NEG_Y * 0.5, Vector::ZERO);
+        let start = course.walk_all(|_| Vector::ZERO, 0.1);
+        set(&mut course, disc, AngularVelocity(spin::velocity(TAU)));
+        let paths = course.walk_all(|_| Vector::ZERO, 1.0);
+        for (i, (name, _)) in figures().iter().enumerate() {
             let what = (name, rate);
+            let path = &paths[i];
             if spin::IS_LEVEL {
-                let off = (course.position() - start).length();
+                let [from, to] = [&start, &paths].map(|paths| *paths[i].last().expect("it rides"));
+                let off = (to.position - from.position).length();
                 assert!(off < 1.0e-4, "{what:?}: {off} after a turn");
                 assert!(path.iter().all(|p| p.state.is_grounded()), "{what:?}");
-                let radius = path.iter().map(|p| (p.position - Vector::Y * p.position.y).length());
-                assert!(radius.clone().all(|r| (r - spin::START.length()).abs() < 1.0e-4), "{what:?}");
-                assert_eq!(course.state().ground_spin, spin::velocity(TAU), "{what:?}");
+                let mut radius = path.iter().map(|p| (p.position - Vector::Y * p.position.y).length());
+                assert!(radius.all(|r| (r - spin::START.length()).abs() < 1.0e-4), "{what:?}");
+                assert_eq!(to.state.ground_spin, spin::velocity(TAU), "{what:?}");
             } else {
                 assert!(path.iter().any(|p| !p.state.is_grounded()), "{what:?}: it cannot stand on a wall");
             }
@@ -187,60 +203,64 @@ fn belts_carry_at_the_speed_of_their_surface() {
 /// A door pushes; between a door and a wall there is no room.
 #[test]
 fn doors_push_and_crush() {
-    for (name, shape) in figures() {
-        for &rate in rates(name) {
-            let mut course = Course::new(rate, shape.clone(), Vector::Y * STANDING);
-            floor(&mut course.app);
-            fixed(
-                &mut course.app,
-                block(Vector::ONE * 4.0),
-                Vector::X * 5.0 + Vector::Y * 2.1,
-                Rotation::IDENTITY,
-            );
-            course.walk(Vector::ZERO, 0.2);
-            let at = Vector::X * -3.5 + Vector::Y * 2.1;
-            let door = moving(&mut course, block(Vector::ONE * 4.0), at, Vector::X * 3.0);
-            let mut crushed = None;
-            for i in 0..3 * rate / 2 {
-                let sample = course.tick();
-                let gap = sample.position.x - course.get::<Position>(door).0.x - 2.0 - 0.4;
-                let room = 3.0 - course.get::<Position>(door).0.x - 2.0;
-                let what = (name, rate, i);
+    for rate in RATES {
+        let mut course = all_at(rate, Vector::Y * STANDING);
+        floor(&mut course.app);
+        let wall = Vector::X * 5.0 + Vector::Y * 2.1;
+        fixed(&mut course.app, block(Vector::ONE * 4.0), wall, Rotation::IDENTITY);
+        course.walk(Vector::ZERO, 0.1);
+        let at = Vector::X * -3.0 + Vector::Y * 2.1;
+        let door = moving(&mut course, block(Vector::ONE * 4.0), at, Vector::X * 3.0);
+        let figures = figures();
+        let mut crushed = vec![None; figures.len()];
+        for i in 0..4 * rate / 3 {
+            for (k, sample) in course.tick_all().into_iter().enumerate() {
+                let door = course.get::<Position>(door).0.x + 2.0;
+                let (gap, room) = (sample.position.x - door - 0.4, 3.0 - door);
+                let what = (figures[k].0, rate, i);
                 if room > 0.8 + 2.2 * SKIN {
                     assert!(gap > SKIN - 3.0e-4, "{what:?}: a gap of {gap}");
                     assert!(!sample.state.is_crushed, "{what:?}: {room} m of room");
                 } else if room < 0.78 {
-                    crushed = crushed.or(Some(sample.state.is_crushed));
+                    crushed[k] = crushed[k].or(Some(sample.state.is_crushed));
                 }
             }
-            assert_eq!(crushed, Some(true), "{name} at {rate}");
         }
+        assert!(crushed.iter().all(|crushed| *crushed == Some(true)), "at {rate}: {crushed:?}");
     }
 }
 
 /// By the largest force, so heavier crates are slower; none is thrown.
 #[test]
 fn crates_are_pushed_by_their_mass() {
-    for (name, shape) in figures() {
-        for rate in [30, 60, 144] {
-            let mut ways = Vec::new();
-            for mass in [1.0, 10.0, 100.0, 1000.0] {
-                let mut course = Course::new(rate, shape.clone(), Vector::Y * STANDING);
-                floor(&mut course.app);
-                let at = Vector::X * 1.5 + Vector::Y * 0.5;
-                let bundle =
-                    (RigidBody::Dynamic, block(Vector::ONE), Position(at), Mass(mass), Friction::new(0.4));
-                let load = course.app.world_mut().spawn(bundle).id();
-                course.walk(Vector::ZERO, 0.5);
-                let mut fastest: Scalar = 0.0;
-                for _ in 0..2 * rate {
-                    course.walk(Vector::X * 2.0, 1.0 / rate as Scalar);
-                    fastest = fastest.max(course.get::<LinearVelocity>(load).0.length());
-                }
-                let what = (name, rate, mass);
-                assert!(fastest < 3.0, "{what:?}: it flies at {fastest} m/s");
-                ways.push(course.get::<Position>(load).0.x - 1.5);
+    let figures = figures();
+    let masses = [1.0, 10.0, 100.0, 1000.0];
+    for rate in [30, 60, 144] {
+        let each = figures.iter().flat_map(|(_, shape)| masses.map(|mass| (shape, mass)));
+        let starts = each.clone().map(|(shape, _)| (shape.clone(), Vector::Y * STANDING));
+        let mut course = Course::side_by_side(rate, starts);
+        floor(&mut course.app);
+        let mut loads = Vec::new();
+        for (i, (_, mass)) in each.enumerate() {
+            let at = Position(Vector::X * 1.5 + Vector::Y * 0.5);
+            let bundle =
+                (RigidBody::Dynamic, block(Vector::ONE), at, Mass(mass), Friction::new(0.4), lane(i));
+            loads.push(course.app.world_mut().spawn(bundle).id());
+        }
+        course.walk(Vector::ZERO, 0.3);
+        let mut fastest = vec![0.0; loads.len()];
+        for _ in 0..2 * rate {
+            course.walk(Vector::X * 2.0, 1.0 / rate as Scalar);
+            for (fastest, load) in fastest.iter_mut().zip(&loads) {
+                *fastest = Scalar::max(*fastest, course.get::<LinearVelocity>(*load).0.length());
             }
+        }
+        for (i, (name, _)) in figures.iter().enumerate() {
+            let own = masses.len() * i..masses.len() * (i + 1);
+            let fastest = &fastest[own.clone()];
+            assert!(fastest.iter().all(|v| *v < 3.0), "{name} at {rate}: one flies at {fastest:?} m/s");
+            let ways: Vec<Scalar> =
+                loads[own].iter().map(|load| course.get::<Position>(*load).0.x - 1.5).collect();
             assert!(ways.windows(2).all(|w| w[1] < w[0] + 0.05), "{name} at {rate}: {ways:?}");
             assert!(ways[0] > 2.0 && ways[3].abs() < 1.0e-2, "{name} at {rate}: {ways:?}");
         }

@@ -50,3 +50,28 @@ pub mod spin {
         speed
     }
 }
+
+/// A planet.
+pub fn ball(radius: Scalar) -> Collider {
+    Collider::circle(radius)
+}
+
+/// Half of a tube around a capsule: below it.
+pub mod groove {
+    use avian::{math::*, prelude::*};
+
+    pub const IS_UPRIGHT: bool = false;
+    pub const START: Vector = Vector::new(0.0, 0.5);
+    pub const INTO: [Vector; 2] = [Vector::X, Vector::NEG_X];
+
+    pub fn tube(radius: Scalar, segments: u32) -> Collider {
+        let corner = |i: u32| {
+            let angle = PI * (1.0 + i as Scalar / segments as Scalar);
+            Vector::new(angle.cos(), angle.sin()) * radius
+        };
+        // Higher than a step.
+        let [left, right] = [-radius, radius].map(|x| Vector::new(x, 1.0));
+        let corners = core::iter::once(left).chain((0..=segments).map(corner)).chain([right]);
+        Collider::polyline(corners.collect(), None)
+    }
+}

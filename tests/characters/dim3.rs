@@ -61,3 +61,29 @@ pub mod spin {
         Vector::Y * speed
     }
 }
+
+/// A planet.
+pub fn ball(radius: Scalar) -> Collider {
+    Collider::sphere(radius)
+}
+
+/// Half of a tube around a capsule: beside it.
+pub mod groove {
+    use avian::{math::*, prelude::*};
+
+    pub const IS_UPRIGHT: bool = true;
+    pub const START: Vector = Vector::new(0.0, 0.91, 0.0);
+    pub const INTO: [Vector; 3] = [Vector::X, Vector::new(0.6, 0.0, 0.8), Vector::new(0.096, 0.0, -0.995)];
+
+    pub fn tube(radius: Scalar, segments: u32) -> Collider {
+        let corner = |i: u32, y: Scalar| {
+            let angle = PI * (i as Scalar / segments as Scalar - 0.5);
+            Vector::new(angle.cos() * radius, y, angle.sin() * radius)
+        };
+        let corners = (0..=segments).flat_map(|i| [corner(i, 0.0), corner(i, 3.0)]);
+        let quads = 0..segments;
+        let triangles =
+            quads.flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 1], [2 * i + 1, 2 * i + 2, 2 * i + 3]]);
+        Collider::trimesh(corners.collect(), triangles.collect())
+    }
+}

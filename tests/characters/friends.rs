@@ -1,6 +1,6 @@
 //! Characters among each other.
 
-use super::{ASIDE, Course, SKIN, block, figures, fixed, floor};
+use super::{Course, SKIN, block, figures, fixed, floor};
 use avian::{math::*, prelude::*};
 use bevy_ecs::prelude::*;
 
@@ -84,45 +84,6 @@ fn only_characters_in_the_layers_are_friends() {
             // In space it may walk around.
             let between = (p.position - course.get::<Position>(friend).0).length();
             assert!(between > 0.79, "{name}: it passes through a stranger: {p:?}, {at}");
-        }
-    }
-}
-
-/// Twelve each way through a corridor that is 2 m wide.
-#[test]
-fn friends_pass_in_a_narrow_corridor() {
-    for (name, shape) in figures() {
-        let mut course = course(&shape, Vector::X * -40.0 + Vector::Y * STANDING);
-        for side in [-1.0, 1.0] {
-            let size = Vector::ONE * 3.0 + Vector::X * 60.0;
-            if ASIDE != Vector::ZERO {
-                fixed(
-                    &mut course.app,
-                    block(size),
-                    ASIDE * (2.5 * side) + Vector::Y * 1.6,
-                    Rotation::IDENTITY,
-                );
-            }
-        }
-        let mut crowd = Vec::new();
-        for i in 0..12 {
-            for way in [-1.0, 1.0] {
-                let aside = ASIDE * (0.4 * ((i * 7 % 5) as Scalar / 2.0 - 1.0));
-                let at = Vector::X * (way * -(2.0 + 0.9 * i as Scalar)) + Vector::Y * STANDING + aside;
-                crowd.push((spawn(&mut course, &shape, at, Vector::X * (2.0 * way)), at, way));
-            }
-        }
-        for _ in 0..9 * 60 {
-            course.tick();
-            for &(one, ..) in &crowd {
-                let at = course.get::<Position>(one).0;
-                assert!(at.dot(ASIDE).abs() < 0.6, "{name}: within the wall, {at}");
-                assert!((at.y - STANDING).abs() < 5.0e-3, "{name}: {at}");
-            }
-        }
-        for (one, from, way) in crowd {
-            let walked = (course.get::<Position>(one).0.x - from.x) * way;
-            assert!(walked > 12.0 && walked < 20.0, "{name}: {walked} m of 18");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Dynamic movers: bodies that walk by forces.
 
-use super::{SKIN, app, block, fixed, floor, spin, step, toward, turned};
+use super::{SKIN, app, block, fixed, floor, lane, spin, stay_on_one_thread, step, toward, turned};
 use avian::{math::*, prelude::*};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
@@ -11,23 +11,40 @@ use core::time::Duration;
 /// Half the height of the shape, with the height of rest.
 const HOVERING: Scalar = 0.75 + 0.3;
 
-/// The rates in Hz, and the height of the spring: 0 slides.
-const CASES: [(u32, Scalar); 5] = [(30, 0.3), (64, 0.3), (144, 0.3), (30, 0.0), (64, 0.0)];
+/// The heights of the spring at each rate in Hz: 0 slides.
+const CASES: [(u32, &[Scalar]); 3] = [(30, &[0.3, 0.0]), (64, &[0.3, 0.0]), (144, &[0.3])];
 
+/// One mover, or several side by side.
 struct Hall {
     app: App,
     player: Entity,
+    players: Vec<Entity>,
     rate: u32,
 }
 
+type Path = Vec<(Vector, CharacterState)>;
+
 impl Hall {
     fn new(rate: u32, float_height: Scalar, at: Vector) -> Self {
+        Self::side_by_side(rate, [(float_height, at)])
+    }
+
+    /// Movers by the heights of their springs, each in a lane of its own.
+    fn side_by_side(rate: u32, starts: impl IntoIterator<Item = (Scalar, Vector)>) -> Self {
         let mut app = app();
         app.insert_resource(Gravity(Vector::NEG_Y * 9.81));
-        let mover = DynamicMover { float_height, ..Default::default() };
-        let shape = Collider::capsule(0.4, 0.7);
-        let player = app.world_mut().spawn((mover, shape, Mass(70.0), Position(at))).id();
-        Self { app, player, rate }
+        let spawn = |(i, (float_height, at))| {
+            let mover = DynamicMover { float_height, ..Default::default() };
+            let shape = Collider::capsule(0.4, 0.7);
+            app.world_mut().spawn((mover, shape, Mass(70.0), Position(at), lane(i))).id()
+        };
+        let players: Vec<Entity> = starts.into_iter().enumerate().map(spawn).collect();
+        Self { app, player: players[0], players, rate }
+    }
+
+    /// A body in the lane of a mover.
+    fn spawn_in_lane(&mut self, index: usize, body: impl Bundle) -> Entity {
+        self.app.world_mut().spawn((body, lane(index))).id()
     }
 
     fn get<C: Component + Copy>(&self, entity: Entity) -> C {
@@ -46,15 +63,29 @@ impl Hall {
         self.app.world_mut().get_mut(self.player).expect("a mover")
     }
 
-    /// Walks for some seconds; returns the positions and states.
-    fn walk(&mut self, velocity: Vector, seconds: Scalar) -> Vec<(Vector, CharacterState)> {
-        self.input().velocity = velocity;
-        let tick = |hall: &mut Self| {
-            step(&mut hall.app, Duration::from_secs_f64(1.0 / f64::from(hall.rate)));
-            (hall.position(), hall.state())
-        };
-        (0..(seconds * self.rate as Scalar).round() as u32).map(|_| tick(self)).collect()
+    /// Walks for some seconds; returns the positions and states of the first mover.
+    fn walk(&mut self, velocity: Vector, seconds: Scalar) -> Path {
+        self.walk_all(velocity, seconds).swap_remove(0)
     }
+
+    /// Walks for some seconds; returns the paths of all.
+    fn walk_all(&mut self, velocity: Vector, seconds: Scalar) -> Vec<Path> {
+        for &player in &self.players {
+            self.app.world_mut().get_mut::<CharacterInput>(player).expect("a mover").velocity = velocity;
+        }
+        let mut paths = vec![Vec::new(); self.players.len()];
+        for _ in 0..(seconds * self.rate as Scalar).round() as u32 {
+            step(&mut self.app, Duration::from_secs_f64(1.0 / f64::from(self.rate)));
+            for (path, &player) in paths.iter_mut().zip(&self.players) {
+                path.push((self.get::<Position>(player).0, self.get::<CharacterState>(player)));
+            }
+        }
+        paths
+    }
+}
+
+fn last(path: &Path) -> Vector {
+    path.last().expect("it moves").0
 }
 
 fn rest(float_height: Scalar) -> Scalar {
@@ -63,69 +94,88 @@ fn rest(float_height: Scalar) -> Scalar {
 
 #[test]
 fn it_rests_at_its_height_and_walks_at_the_speed_asked_for() {
-    for (rate, float_height) in CASES {
-        let what = (rate, float_height);
-        let mut hall = Hall::new(rate, float_height, Vector::Y * (rest(float_height) + 0.5));
+    for (rate, heights) in CASES {
+        let starts = heights.iter().map(|height| (*height, Vector::Y * (rest(*height) + 0.3)));
+        let mut hall = Hall::side_by_side(rate, starts);
         floor(&mut hall.app);
-        hall.walk(Vector::ZERO, 1.5);
-        let start = hall.position();
-        assert!(hall.state().is_grounded(), "{what:?}: {:?}", hall.state());
-        assert!((start.y - rest(float_height)).abs() < 6.0e-3, "{what:?}: {start}");
-        hall.walk(Vector::ZERO, 5.0);
-        assert!((hall.position() - start).length() < 1.0e-3, "{what:?}: {} from {start}", hall.position());
-        hall.walk(Vector::X * 4.0, 0.5);
-        let from = hall.position();
-        let path = hall.walk(Vector::X * 4.0, 1.0);
-        assert!((hall.position().x - from.x - 4.0).abs() < 0.02, "{what:?}: {}", hall.position());
-        assert!(path.iter().all(|(_, state)| state.is_grounded()), "{what:?}");
+        let settled = hall.walk_all(Vector::ZERO, 1.2);
+        let stood = hall.walk_all(Vector::ZERO, 4.0);
+        let begun = hall.walk_all(Vector::X * 4.0, 0.4);
+        let walked = hall.walk_all(Vector::X * 4.0, 1.0);
         // It stops within a tick more than its acceleration allows.
-        hall.walk(Vector::ZERO, 0.1 + 1.5 / rate as Scalar);
-        assert!(hall.get::<LinearVelocity>(hall.player).0.length() < 0.05, "{what:?}");
-        let before = hall.position().y;
-        hall.input().jump = 5.0;
-        let path = hall.walk(Vector::ZERO, 0.7);
-        let top = path.iter().fold(0.0, |top: Scalar, p| top.max(p.0.y)) - before;
-        // Symplectic integration is off by half a tick.
-        let height = 25.0 / (2.0 * 9.81);
-        assert!((top - height).abs() < 5.0 * 0.5 / rate as Scalar + 0.01, "{what:?}: {top} m, not {height}");
-        hall.walk(Vector::ZERO, 1.5);
-        assert!((hall.position().y - before).abs() < 6.0e-3, "{what:?}: {}", hall.position());
+        let stopped = hall.walk_all(Vector::ZERO, 0.1 + 1.5 / rate as Scalar);
+        let speeds: Vec<_> =
+            hall.players.iter().map(|player| hall.get::<LinearVelocity>(*player).0.length()).collect();
+        for &player in &hall.players {
+            hall.app.world_mut().get_mut::<CharacterInput>(player).expect("a mover").jump = 5.0;
+        }
+        let flown = hall.walk_all(Vector::ZERO, 0.7);
+        let landed = hall.walk_all(Vector::ZERO, 1.2);
+        for (i, float_height) in heights.iter().enumerate() {
+            let what = (rate, float_height);
+            let start = last(&settled[i]);
+            assert!(settled[i].last().is_some_and(|(_, state)| state.is_grounded()), "{what:?}: {start}");
+            assert!((start.y - rest(*float_height)).abs() < 6.0e-3, "{what:?}: {start}");
+            let end = last(&stood[i]);
+            assert!((end - start).length() < 1.0e-3, "{what:?}: {end} from {start}");
+            let way = last(&walked[i]).x - last(&begun[i]).x;
+            assert!((way - 4.0).abs() < 0.02, "{what:?}: {way}");
+            assert!(walked[i].iter().all(|(_, state)| state.is_grounded()), "{what:?}");
+            assert!(speeds[i] < 0.05, "{what:?}: {}", speeds[i]);
+            let before = last(&stopped[i]).y;
+            let top = flown[i].iter().fold(0.0, |top: Scalar, p| top.max(p.0.y)) - before;
+            // Symplectic integration is off by half a tick.
+            let height = 25.0 / (2.0 * 9.81);
+            assert!(
+                (top - height).abs() < 5.0 * 0.5 / rate as Scalar + 0.01,
+                "{what:?}: {top} m, not {height}"
+            );
+            let end = last(&landed[i]);
+            assert!((end.y - before).abs() < 6.0e-3, "{what:?}: {end}");
+        }
     }
 }
 
 #[test]
 fn it_stands_on_slopes_and_walks_up_and_down() {
-    for (rate, float_height) in CASES {
-        for degrees in [20, 40] {
-            let what = (rate, float_height, degrees);
-            let angle = (degrees as Scalar).to_radians();
+    for (rate, heights) in CASES {
+        let cases = heights.iter().flat_map(|height| [20, 40, 60].map(|degrees| (*height, degrees)));
+        let cases: Vec<(Scalar, i32)> = cases.collect();
+        let starts = cases.iter().map(|(height, _)| (*height, Vector::Y * 1.6));
+        let mut hall = Hall::side_by_side(rate, starts);
+        for (i, (_, degrees)) in cases.iter().enumerate() {
+            let angle = (*degrees as Scalar).to_radians();
             let out = toward(angle as f32 + core::f32::consts::FRAC_PI_2);
-            let mut hall = Hall::new(rate, float_height, Vector::Y * 1.6);
-            fixed(&mut hall.app, block(Vector::ONE * 100.0), out * -50.0, turned(angle));
-            hall.walk(Vector::ZERO, 2.0);
-            let start = hall.position();
-            assert!(hall.state().is_grounded(), "{what:?}: {:?}", hall.state());
-            hall.walk(Vector::ZERO, 5.0);
-            let drift = (hall.position() - start).length();
+            let slope = (RigidBody::Static, block(Vector::ONE * 100.0), Position(out * -50.0), turned(angle));
+            hall.spawn_in_lane(i, slope);
+        }
+        let settled = hall.walk_all(Vector::ZERO, 2.0);
+        let stood = hall.walk_all(Vector::ZERO, 4.0);
+        let runs = [1.0, -1.0].map(|way| {
+            let begun = hall.walk_all(Vector::X * (2.0 * way), 0.5);
+            (way, begun, hall.walk_all(Vector::X * (2.0 * way), 1.0))
+        });
+        for (i, (float_height, degrees)) in cases.into_iter().enumerate() {
+            let what = (rate, float_height, degrees);
+            let start = last(&settled[i]);
+            if degrees == 60 {
+                // Too steep.
+                assert!(settled[i].iter().all(|(_, state)| !state.is_grounded()), "{what:?}");
+                assert!(start.y < -3.0, "{what:?}: {start}");
+                continue;
+            }
+            assert!(settled[i].last().is_some_and(|(_, state)| state.is_grounded()), "{what:?}: {start}");
+            let drift = (last(&stood[i]) - start).length();
             assert!(drift < 0.01, "{what:?}: it slides by {drift}");
-            for way in [1.0, -1.0] {
-                hall.walk(Vector::X * (2.0 * way), 0.5);
-                let from = hall.position();
-                let path = hall.walk(Vector::X * (2.0 * way), 1.0);
-                let off = hall.position() - from - (Vector::X + Vector::Y * angle.tan()) * (2.0 * way);
+            let rise = (degrees as Scalar).to_radians().tan();
+            for (way, begun, walked) in &runs {
+                let expected = (Vector::X + Vector::Y * rise) * (2.0 * way);
+                let off = last(&walked[i]) - last(&begun[i]) - expected;
                 assert!(off.length() < 0.04, "{what:?}: off by {off}");
-                let lost = path.iter().find(|(_, state)| !state.is_grounded());
+                let lost = walked[i].iter().find(|(_, state)| !state.is_grounded());
                 assert!(lost.is_none(), "{what:?}: {lost:?}");
             }
         }
-        // Too steep.
-        let angle: Scalar = 60.0_f64.to_radians() as Scalar;
-        let out = toward(angle as f32 + core::f32::consts::FRAC_PI_2);
-        let mut hall = Hall::new(rate, float_height, Vector::Y * 1.6);
-        fixed(&mut hall.app, block(Vector::ONE * 100.0), out * -50.0, turned(angle));
-        let path = hall.walk(Vector::ZERO, 2.0);
-        assert!(path.iter().all(|(_, state)| !state.is_grounded()), "{rate}, {float_height}");
-        assert!(hall.position().y < -3.0, "{rate}, {float_height}: {}", hall.position());
     }
 }
 
@@ -157,28 +207,35 @@ fn stairs_are_a_slope_to_the_spring() {
 
 #[test]
 fn platforms_carry_it() {
-    for (rate, float_height) in CASES {
-        let what = (rate, float_height);
-        for (velocity, turn) in [(Vector::X * 5.0, 0.0), (Vector::Y * 2.0, 0.0), (Vector::ZERO, 1.0)] {
-            if turn != 0.0 && !spin::IS_LEVEL {
-                continue;
-            }
-            let from = if turn == 0.0 { Vector::ZERO } else { spin::START * 0.5 };
-            let mut hall = Hall::new(rate, float_height, from + Vector::Y * rest(float_height));
-            let shape = if turn == 0.0 { block(Vector::ONE * 8.0 - Vector::Y * 7.0) } else { spin::disc() };
+    let motions = [(Vector::X * 5.0, 0.0), (Vector::Y * 2.0, 0.0), (Vector::ZERO, 1.0)];
+    for (rate, heights) in CASES {
+        let motions = motions.iter().filter(|(_, turn)| *turn == 0.0 || spin::IS_LEVEL);
+        let cases: Vec<_> =
+            motions.flat_map(|motion| heights.iter().map(move |height| (*motion, *height))).collect();
+        let starts = cases.iter().map(|((_, turn), height)| {
+            let from = if *turn == 0.0 { Vector::ZERO } else { spin::START * 0.5 };
+            (*height, from + Vector::Y * rest(*height))
+        });
+        let mut hall = Hall::side_by_side(rate, starts);
+        let mut platforms = Vec::new();
+        for (i, ((velocity, turn), _)) in cases.iter().enumerate() {
+            let is_level = *turn == 0.0;
+            let shape = if is_level { block(Vector::ONE * 8.0 - Vector::Y * 7.0) } else { spin::disc() };
             let body = (RigidBody::Kinematic, shape, Position(Vector::Y * -0.5));
-            let motion = (LinearVelocity(velocity), AngularVelocity(spin::velocity(turn)));
-            let platform = hall.app.world_mut().spawn((body, motion)).id();
-            hall.walk(Vector::ZERO, 0.5);
-            let offset = |hall: &Hall| {
-                let (p, q) = (hall.get::<Position>(platform).0, hall.get::<Rotation>(platform));
-                q.inverse() * (hall.position() - p)
-            };
-            let start = offset(&hall);
-            let path = hall.walk(Vector::ZERO, 2.0);
-            assert!(path.iter().all(|(_, state)| state.is_grounded()), "{what:?}, {velocity}");
-            let slip = (offset(&hall) - start).length();
-            assert!(slip < 0.02, "{what:?}, {velocity}, {turn} rad/s: it slips by {slip}");
+            let motion = (LinearVelocity(*velocity), AngularVelocity(spin::velocity(*turn)));
+            platforms.push(hall.spawn_in_lane(i, (body, motion)));
+        }
+        hall.walk(Vector::ZERO, 0.5);
+        let offset = |hall: &Hall, i: usize| {
+            let (p, q) = (hall.get::<Position>(platforms[i]).0, hall.get::<Rotation>(platforms[i]));
+            q.inverse() * (hall.get::<Position>(hall.players[i]).0 - p)
+        };
+        let start: Vec<Vector> = (0..cases.len()).map(|i| offset(&hall, i)).collect();
+        let paths = hall.walk_all(Vector::ZERO, 2.0);
+        for (i, case) in cases.iter().enumerate() {
+            assert!(paths[i].iter().all(|(_, state)| state.is_grounded()), "{rate}: {case:?}");
+            let slip = (offset(&hall, i) - start[i]).length();
+            assert!(slip < 0.02, "{rate}: {case:?}: it slips by {slip}");
         }
     }
 }
@@ -207,26 +264,32 @@ fn it_pushes_by_its_mass() {
 /// A raft without weight of its own, that a spring carries: it sinks by the weight of the mover.
 #[test]
 fn the_ground_bears_its_weight() {
-    for (rate, float_height) in [(64, 0.3), (64, 0.0), (144, 0.3)] {
-        let mut hall = Hall::new(rate, float_height, Vector::Y * (rest(float_height) + 0.3));
+    for (rate, heights) in CASES {
+        let starts = heights.iter().map(|height| (*height, Vector::Y * (rest(*height) + 0.3)));
+        let mut hall = Hall::side_by_side(rate, starts);
         let bearer = fixed(&mut hall.app, block(Vector::ONE * 0.1), Vector::Y * -3.0, Rotation::IDENTITY);
-        let raft = (
-            RigidBody::Dynamic,
-            block(Vector::ONE * 4.0 - Vector::Y * 3.5),
-            Position(Vector::ZERO),
-            (Mass(200.0), GravityScale(0.0), LockedAxes::ROTATION_LOCKED),
-        );
-        let raft = hall.app.world_mut().spawn(raft).id();
-        // k = 200 · (2π)².
-        let spring = MotorModel::SpringDamper { frequency: 1.0, damping_ratio: 1.0 };
-        let motor = LinearMotor::new(spring).with_target_position(3.0);
-        hall.app
-            .world_mut()
-            .spawn(PrismaticJoint::new(bearer, raft).with_slider_axis(Vector::Y).with_motor(motor));
-        hall.walk(Vector::ZERO, 6.0);
-        let sunk = -hall.get::<Position>(raft).0.y;
+        let mut rafts = Vec::new();
+        for i in 0..heights.len() {
+            let raft = (
+                RigidBody::Dynamic,
+                block(Vector::ONE * 4.0 - Vector::Y * 3.5),
+                Position(Vector::ZERO),
+                (Mass(200.0), GravityScale(0.0), LockedAxes::ROTATION_LOCKED),
+            );
+            let raft = hall.spawn_in_lane(i, raft);
+            // k = 200 · (2π)².
+            let spring = MotorModel::SpringDamper { frequency: 1.0, damping_ratio: 1.0 };
+            let motor = LinearMotor::new(spring).with_target_position(3.0);
+            let slider = PrismaticJoint::new(bearer, raft).with_slider_axis(Vector::Y).with_motor(motor);
+            hall.app.world_mut().spawn(slider);
+            rafts.push(raft);
+        }
+        hall.walk(Vector::ZERO, 5.0);
         let expected = 70.0 * 9.81 / (200.0 * TAU * TAU);
-        assert!((sunk / expected - 1.0).abs() < 0.05, "{rate}, {float_height}: {sunk} m, not {expected}");
+        for (raft, height) in rafts.iter().zip(heights) {
+            let sunk = -hall.get::<Position>(*raft).0.y;
+            assert!((sunk / expected - 1.0).abs() < 0.05, "{rate}, {height}: {sunk} m, not {expected}");
+        }
     }
 }
 
@@ -292,6 +355,42 @@ fn what_it_is_told_and_what_it_cannot_do() {
     }
 }
 
+/// Movers whose layers exclude each other walk through each other at full speed, on ground of any layers.
+#[test]
+fn layers_of_their_own_do_not_stop_movers() {
+    let layers = |own: u32, met: u32| CollisionLayers::new(LayerMask(own), LayerMask(met));
+    // Of a mover, and of what it meets.
+    let cases = [
+        (layers(2, 1), CollisionLayers::DEFAULT),
+        (layers(2, !2), CollisionLayers::DEFAULT),
+        (layers(4, 8), layers(8, 4)),
+        (layers(16, 32 | 64), layers(32, LayerMask::ALL.0)),
+    ];
+    for rate in [30, 64] {
+        let starts =
+            cases.iter().flat_map(|_| [0.0, 0.3].map(|height| (height, Vector::Y * (rest(height) + 0.2))));
+        let mut hall = Hall::side_by_side(rate, starts);
+        for (i, (own, ground)) in cases.into_iter().enumerate() {
+            for (k, way) in [1.0, -1.0].into_iter().enumerate() {
+                let player = hall.players[2 * i + k];
+                let input = CharacterInput { velocity: Vector::X * (3.0 * way), ..Default::default() };
+                hall.app.world_mut().entity_mut(player).insert((own, input));
+            }
+            let floor = floor(&mut hall.app);
+            hall.app.world_mut().entity_mut(floor).insert(ground);
+        }
+        let tick = Duration::from_secs_f64(1.0 / f64::from(rate));
+        (0..2 * rate).for_each(|_| step(&mut hall.app, tick));
+        for (i, &player) in hall.players.iter().enumerate() {
+            let way = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let (at, velocity) = (hall.get::<Position>(player).0, hall.get::<LinearVelocity>(player).0);
+            assert!(hall.get::<CharacterState>(player).is_grounded(), "{rate}, {i}: at {at}");
+            assert!((velocity.x * way - 3.0).abs() < 0.05, "{rate}, {i}: {velocity} m/s");
+            assert!(at.x * way > 5.0, "{rate}, {i}: at {at}");
+        }
+    }
+}
+
 /// A character with a skin of its own and a mover push each other, and both stay whole.
 #[test]
 fn a_mover_and_a_walker_meet() {
@@ -316,6 +415,7 @@ fn it_walks_to_and_fro_in_the_fixed_schedule() {
         app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 60.0)));
         app.finish();
         app.cleanup();
+        stay_on_one_thread(&mut app);
         floor(&mut app);
         for side in [-1.0, 1.0] {
             let wall = block(Vector::ONE * 4.0);

@@ -1,6 +1,6 @@
 //! Platforms that are passed from below, and ceilings.
 
-use super::{Course, SKIN, block, figures, fixed, floor, rates};
+use super::{Course, RATES, SKIN, all_at, block, each, figures, fixed, floor, lane};
 use avian::{character_controller::controller::GroundState, math::*, prelude::*, schedule::PhysicsSchedule};
 use bevy_ecs::prelude::*;
 
@@ -36,47 +36,53 @@ fn pass_platforms(
 /// Jumped through from below, stood on, walked on, dropped through; at rest and as a lift.
 #[test]
 fn platforms_by_a_filter_are_one_way() {
-    for (name, shape) in figures() {
-        for &rate in rates(name) {
-            for speed in [0.0, 0.3] {
-                let mut course = Course::new(rate, shape.clone(), Vector::Y * STANDING);
-                course.app.add_systems(PhysicsSchedule, pass_platforms.before(CharacterSystems));
-                floor(&mut course.app);
-                let size = Vector::ONE * 6.0 + Vector::Y * -5.8;
-                let bundle = (RigidBody::Kinematic, block(size), Position(Vector::Y * 2.4), OneWay);
-                let platform = course.app.world_mut().spawn(bundle).id();
-                let lower = fixed(&mut course.app, block(size), Vector::Y * 1.2, Rotation::IDENTITY);
-                course.app.world_mut().entity_mut(lower).insert(OneWay);
-                let player = course.player;
-                course.app.world_mut().entity_mut(player).insert(Through::default());
-                course.app.world_mut().entity_mut(platform).insert(LinearVelocity(Vector::Y * speed));
+    let cases = each(&[0.0, 0.3]);
+    for rate in RATES {
+        let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::Y * STANDING));
+        let mut course = Course::side_by_side(rate, starts);
+        course.app.add_systems(PhysicsSchedule, pass_platforms.before(CharacterSystems));
+        let ground = floor(&mut course.app);
+        let size = Vector::ONE * 6.0 + Vector::Y * -5.8;
+        let mut platforms = Vec::new();
+        for (i, (_, speed, _)) in cases.iter().enumerate() {
+            let motion = (RigidBody::Kinematic, LinearVelocity(Vector::Y * *speed));
+            let upper = (motion, block(size), Position(Vector::Y * 2.4), OneWay, lane(i));
+            let upper = course.app.world_mut().spawn(upper).id();
+            let lower = course.fix_in_lane(i, block(size), Vector::Y * 1.2, Rotation::IDENTITY);
+            course.app.world_mut().entity_mut(lower).insert(OneWay);
+            course.app.world_mut().entity_mut(course.players[i]).insert(Through::default());
+            platforms.push([lower, upper]);
+        }
+        course.walk(Vector::ZERO, 0.1);
+        for (which, jump) in [(0, 5.5), (1, 7.0)] {
+            course.jump(jump);
+            let paths = course.walk_all(|_| Vector::X * 0.5, 1.4);
+            for (i, (name, speed, _)) in cases.iter().enumerate() {
                 let what = (name, rate, speed);
-                course.walk(Vector::ZERO, 0.2);
-                for (expected, jump) in [(lower, 5.5), (platform, 7.0)] {
-                    course.jump(jump);
-                    let path = course.walk(Vector::X * 0.5, 1.6);
-                    assert!(course.state().is_grounded(), "{what:?}: {:?}", course.state());
-                    assert_eq!(
-                        course.state().ground_entity,
-                        Some(expected),
-                        "{what:?}: {}",
-                        course.position()
-                    );
-                    let hit = path.iter().find(|p| p.state.ground == GroundState::NotSupported);
-                    assert!(hit.is_none(), "{what:?}: {hit:?}");
-                }
-                let gap = course.position().y - course.get::<Position>(platform).0.y - 0.1 - 0.9;
+                let end = paths[i].last().expect("it lands");
+                assert!(end.state.is_grounded(), "{what:?}: {end:?}");
+                assert_eq!(end.state.ground_entity, Some(platforms[i][which]), "{what:?}: {end:?}");
+                let hit = paths[i].iter().find(|p| p.state.ground == GroundState::NotSupported);
+                assert!(hit.is_none(), "{what:?}: {hit:?}");
+                let gap = end.position.y - course.get::<Position>(platforms[i][which]).0.y - 0.1 - 0.9;
                 assert!((gap - SKIN).abs() < 2.0e-4, "{what:?}: a gap of {gap}");
-                // One tick is enough, and the one below catches it.
-                for left in [lower, player] {
-                    let through = course.state().ground_entity;
-                    course.app.world_mut().entity_mut(player).insert(Through(through));
-                    course.walk(Vector::ZERO, 1.0);
-                    assert!(course.state().is_grounded(), "{what:?}: {:?}", course.state());
-                    let is_floor = left == player;
-                    assert_eq!(course.state().ground_entity == Some(left), !is_floor, "{what:?}");
-                }
-                assert!((course.position().y - STANDING).abs() < 2.0e-4, "{what:?}: {}", course.position());
+            }
+        }
+        // One tick is enough, and the one below catches it.
+        for which in [0, 1] {
+            for &player in &course.players {
+                let through = course.get::<CharacterState>(player).ground_entity;
+                course.app.world_mut().entity_mut(player).insert(Through(through));
+            }
+            let paths = course.walk_all(|_| Vector::ZERO, 0.9);
+            for (i, (name, speed, _)) in cases.iter().enumerate() {
+                let what = (name, rate, speed);
+                let end = paths[i].last().expect("it lands");
+                assert!(end.state.is_grounded(), "{what:?}: {end:?}");
+                let expected = if which == 0 { platforms[i][0] } else { ground };
+                assert_eq!(end.state.ground_entity, Some(expected), "{what:?}: {end:?}");
+                let is_low = (end.position.y - STANDING).abs() < 2.0e-4;
+                assert!(is_low || which == 0, "{what:?}: {end:?}");
             }
         }
     }
@@ -85,16 +91,16 @@ fn platforms_by_a_filter_are_one_way() {
 /// The jump ends at the ceiling, and the fall begins there.
 #[test]
 fn a_ceiling_ends_a_jump() {
-    for (name, shape) in figures() {
-        for &rate in rates(name) {
-            let mut course = Course::new(rate, shape.clone(), Vector::Y * STANDING);
-            floor(&mut course.app);
-            let room = 0.3;
-            let top = 1.8 + 2.0 * SKIN + room;
-            fixed(&mut course.app, block(Vector::ONE * 20.0), Vector::Y * (top + 10.0), Rotation::IDENTITY);
-            course.walk(Vector::ZERO, 0.2);
-            course.jump(4.0);
-            let path = course.walk(Vector::X * 2.0, 1.0);
+    for rate in RATES {
+        let mut course = all_at(rate, Vector::Y * STANDING);
+        floor(&mut course.app);
+        let room = 0.3;
+        let top = 1.8 + 2.0 * SKIN + room;
+        fixed(&mut course.app, block(Vector::ONE * 20.0), Vector::Y * (top + 10.0), Rotation::IDENTITY);
+        course.walk(Vector::ZERO, 0.1);
+        course.jump(4.0);
+        let paths = course.walk_all(|_| Vector::X * 2.0, 0.6);
+        for ((name, _), path) in figures().iter().zip(paths) {
             let what = (name, rate);
             let highest = path.iter().fold(0.0, |top: Scalar, p| top.max(p.position.y)) - STANDING;
             assert!((highest - room).abs() < 2.0e-4, "{what:?}: {highest}");
@@ -103,7 +109,8 @@ fn a_ceiling_ends_a_jump() {
             let down = (2.0 * room / 9.81).sqrt();
             let tick = 1.0 / rate as Scalar;
             assert!((air - up - down).abs() < 1.5 * tick, "{what:?}: {air} s, not {}", up + down);
-            assert!((course.position().x - 2.0).abs() < 1.0e-3, "{what:?}: {}", course.position());
+            let (end, way) = (path.last().expect("it lands"), 2.0 * path.len() as Scalar * tick);
+            assert!((end.position.x - way).abs() < 1.0e-3, "{what:?}: {end:?}");
         }
     }
 }

@@ -114,6 +114,39 @@ fn two_that_meet_stay_apart() {
     }
 }
 
+/// It stops, and from then on moves as its app wants: by forces, by a velocity, or as a mover.
+#[test]
+fn what_is_no_longer_a_character_is_a_body_as_others() {
+    for (name, shape) in figures() {
+        let mut course = Course::new(60, shape, Vector::Y * 20.0);
+        course.walk(Vector::X * 3.0, 0.3);
+        let player = course.player;
+        course.app.world_mut().entity_mut(player).remove::<CharacterController>();
+        let from = course.position();
+        course.walk(Vector::X * 3.0, 0.3);
+        assert_eq!(course.position(), from, "{name}: it moves on");
+        course.app.world_mut().entity_mut(player).insert(LinearVelocity(Vector::X));
+        course.walk(Vector::X * 3.0, 0.5);
+        let way = course.position() - from;
+        assert!((way - Vector::X * 0.5).length() < 1.0e-5, "{name}: {way}");
+        let body = (RigidBody::Dynamic, LinearVelocity::ZERO, LockedAxes::ROTATION_LOCKED);
+        course.app.world_mut().entity_mut(player).insert(body);
+        let from = course.position();
+        course.walk(Vector::X * 3.0, 0.5);
+        let fallen = from - course.position();
+        assert!((fallen - Vector::Y * (0.5 * 9.81 * 0.25)).length() < 0.05, "{name}: {fallen}");
+        let body = (DynamicMover::default(), LinearVelocity::ZERO);
+        course.app.world_mut().entity_mut(player).insert(body);
+        course.walk(Vector::X * 3.0, 0.5);
+        let speed = course.get::<LinearVelocity>(player).0.x;
+        assert!((speed - 3.0).abs() < 0.01, "{name}: a mover at {speed} m/s");
+        course.app.world_mut().entity_mut(player).remove::<DynamicMover>().insert(Friction::new(0.5));
+        floor(&mut course.app);
+        course.walk(Vector::X * 3.0, 6.0);
+        assert!(course.app.world().get::<Sleeping>(player).is_some(), "{name}: it does not fall asleep");
+    }
+}
+
 #[test]
 fn input_that_is_none_moves_nothing() {
     let mut course = Course::new(60, figures().remove(0).1, Vector::Y * STANDING);
