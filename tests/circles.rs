@@ -3,7 +3,7 @@
 //! An arrow goes from a file to the one that *defines* a name it uses. Re-exports are followed and are no arrows
 //! themselves, so a module may re-export what its files define. Of twin files only that of one dimension is read.
 
-use super::{Source, group, is_word};
+use super::source_text::{Source, group, is_word};
 use std::collections::{BTreeMap, BTreeSet};
 
 type Path = Vec<String>;

@@ -8,7 +8,7 @@ use crate::contact::ManifoldSource;
 use crate::manifold::{self, CompositeBuffers, FeatureCache, LocalManifold, Look};
 use crate::math::{Pose, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
-use crate::tuning::sweeps::{MET, STOP_ROUNDS, VIEW};
+use crate::tuning::sweeps::{MET, ROUNDS, VIEW};
 
 /// A collider that takes part in a cast.
 #[derive(Clone, Copy, Debug)]
@@ -98,7 +98,7 @@ impl<S: ManifoldSource> Pair<'_, S> {
             return Cast::Miss;
         }
         let mut fraction = 0.0;
-        for round in 0..STOP_ROUNDS {
+        for round in 0..ROUNDS {
             let other = self.other.pose(fraction);
             let left = 1.0 - fraction;
             let rest = Rest { way: way * left, turning: left * turning + 2.0 * self.target };

@@ -5,14 +5,15 @@ use super::record::{Contact, ContactFlags};
 use crate::math::min;
 use crate::shape::Shape;
 use crate::table::{BodyKind, NONE};
-use crate::tuning::contact::{DEEP, NO_LONGER_DEEP};
+use crate::tuning::contact::DEEP;
+use crate::tuning::manifold::SAME;
 
 /// Sets the bits that follow from a recomputed manifold: that of deep overlap, and that the embedder has changed nothing. Only contacts whose bodies were `placed` where they are
 /// can become deep. What pushes nothing is never deep.
 #[inline(always)]
 pub(super) fn recomputed<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, placed: bool) {
     let deep = match (contact.flags.has(ContactFlags::DEEP), placed && !contact.is_inert()) {
-        (true, _) => overlaps_by(input, NO_LONGER_DEEP, contact),
+        (true, _) => overlaps_by(input, SAME, contact),
         (false, true) => overlaps_by(input, DEEP, contact),
         (false, false) => false,
     };
@@ -24,7 +25,7 @@ pub(super) fn recomputed<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact, 
 #[inline(always)]
 pub(super) fn recycled<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact) {
     if contact.flags.has(ContactFlags::DEEP) {
-        contact.flags.set(ContactFlags::DEEP, overlaps_by(input, NO_LONGER_DEEP, contact));
+        contact.flags.set(ContactFlags::DEEP, overlaps_by(input, SAME, contact));
     }
 }
 

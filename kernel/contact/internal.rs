@@ -19,8 +19,8 @@ use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
 use crate::table::{BodyKind, NONE};
 use crate::thread_pool::ThreadPool;
-use crate::tuning::contact::{BELOW, FLUSH, MOVING, PARALLEL, RESTING, RISES, SAME_FACE, SLIDING};
-use crate::tuning::manifold::{MARGIN, SAME_ROUND_NORMAL, SIDEWAYS};
+use crate::tuning::contact::{FLUSH, MOVING, RESTING, RISES, SAME_FACE, SLIDING};
+use crate::tuning::manifold::{ALIKE, MARGIN, PARALLEL, SIDEWAYS};
 
 /// How many contacts a worker takes at a time.
 const BLOCK: usize = 64;
@@ -79,7 +79,7 @@ impl<'a> Seen<'a> {
             place = if placed_on == side { Place::Collider } else { Place::Ground };
         }
         let unit = input.bodies.length_unit();
-        let (flush, below) = (FLUSH * unit + clipped, BELOW * unit);
+        let (flush, below) = (FLUSH * unit + clipped, input.tolerance);
         Self { manifold, normal: manifold.normal * sign, origin, flush, below, motion, place }
     }
 
@@ -145,11 +145,11 @@ impl Sliding {
     fn is_parallel(&self, other: &Self) -> bool {
         let apart = self.normal - other.normal;
         let squared = apart.length_squared();
-        if !(self.is_round && other.is_round && squared < PARALLEL) || self.is_face {
-            return squared < PARALLEL;
+        if !(self.is_round && other.is_round && squared < PARALLEL * PARALLEL) || self.is_face {
+            return squared < PARALLEL * PARALLEL;
         }
         // The point of round shapes moves with the normal, two points only across their line.
-        (apart - self.line * apart.dot(self.line)).length_squared() < SAME_ROUND_NORMAL
+        (apart - self.line * apart.dot(self.line)).length_squared() < ALIKE * ALIKE
     }
 }
 
@@ -337,7 +337,7 @@ impl ContactTable {
             }
         }
         // Within half of the tolerance of one, all are parallel.
-        let tolerance = if all.iter().any(|m| m.is_round) { SAME_ROUND_NORMAL } else { PARALLEL };
+        let tolerance = if all.iter().any(|m| m.is_round) { ALIKE * ALIKE } else { PARALLEL * PARALLEL };
         let is_plane = all.iter().all(|m| (m.normal - all[0].normal).length_squared() < 0.25 * tolerance);
         for this in &all {
             let role = if is_plane { Role::Obstacle } else { self.role(input, this, &all, worker) };

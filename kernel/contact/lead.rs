@@ -10,7 +10,8 @@ use super::sweep::{Meeting, place_at};
 use crate::manifold::{self, LocalManifold};
 use crate::math::{max, min};
 use crate::table::{BodyKind, BodyPose, NONE};
-use crate::tuning::contact::{MOST_ROCKING, MOST_WAY, SAME_FACE, STILL};
+use crate::tuning::contact::{MOST_WAY, SAME_FACE, STILL};
+use crate::tuning::solver::SMALL_TURN;
 use crate::tuning::sweeps::MOST_TURN;
 
 /// Moves the only point of `local`, with a round surface that presses another body, to where it is in the middle of the step,
@@ -33,7 +34,7 @@ pub(super) fn lead<S>(
     let fastest = max(va.angular.length(), vb.angular.length()) * input.dt;
     let way = (vb.linear - va.linear).length() * input.dt;
     let size = min(smaller(input.reaches(contact).map(|reach| reach.extent)), smaller(local.radii));
-    let rocks = turn > STILL && turn < MOST_ROCKING && fastest < MOST_TURN && way < MOST_WAY * size;
+    let rocks = turn > STILL && turn < SMALL_TURN && fastest < MOST_TURN && way < MOST_WAY * size;
     if !(rocks && contact.bodies.iter().all(is_dynamic)) {
         return None;
     }

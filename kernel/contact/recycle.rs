@@ -20,8 +20,8 @@ use super::record::{Contact, ContactFlags, Manifold};
 use crate::math::F32x8;
 use crate::math::{Angular, F32x4, Ids, Lane, MAX_POINTS, Num, Quad, Rot, Vector, Width, max};
 use crate::table::BodyPose;
-use crate::tuning::contact::{RECYCLE_COS, RECYCLE_SHARE, ROUND_SHARE};
-use crate::tuning::manifold::ROUNDING;
+use crate::tuning::contact::{RECYCLE_COS, RECYCLE_SHARE};
+use crate::tuning::manifold::{KEPT, ROUNDING};
 use core::mem::MaybeUninit;
 
 /// Which body of a contact is a platform, as a number in a row.
@@ -330,7 +330,7 @@ impl<N: Lane> RecycleRow<N> {
             let is_flat = N::and(extent.lt(radius), N::ZERO.lt(extent));
             curved = N::select(is_flat, curved.min(extent * extent / radius), curved);
         }
-        let errors = N::select(is_round, errors.min(curved * N::splat(ROUND_SHARE)), errors);
+        let errors = N::select(is_round, errors.min(curved * N::splat(KEPT)), errors);
         // A manifold that is not complete may lack points that were too far apart. None of these may close in this step.
         let is_full = count.eq(N::splat(MAX_POINTS as f32));
         let with_points = N::select(is_full, errors, errors.min(prediction - closing));

@@ -14,7 +14,7 @@ use crate::manifold::{self, LocalManifold};
 use crate::math::{Angular, Rot, Vector, WorldPose, max, min};
 use crate::shape::Shape;
 use crate::table::{BodyPose, NONE};
-use crate::tuning::sweeps::{AHEAD, CHORDS, MEETING_ROUNDS, MET, MET_TURNING, MOST_STRAIGHT_TURN, MOST_TURN};
+use crate::tuning::sweeps::{AHEAD, CHORDS, LAG, MEETING_ROUNDS, MET, MOST_TURN};
 
 /// The poses at a time within the step: when the shapes meet, or in its middle.
 #[derive(Clone, Copy, Debug)]
@@ -121,7 +121,7 @@ pub(super) fn may_pass_by<S>(
 /// if it is pushed where it comes to.
 pub(super) fn is_straight<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> bool {
     input.reaches(contact).into_iter().enumerate().all(|(side, reach)| {
-        reach.arm == 0.0 || input.velocity(contact, side).angular.length() * input.dt < MOST_STRAIGHT_TURN
+        reach.arm == 0.0 || input.velocity(contact, side).angular.length() * input.dt < 0.5 * MOST_TURN
     })
 }
 
@@ -168,7 +168,7 @@ impl Motion {
             spins: [a.angular.length(), b.angular.length()],
             arms: reaches.map(|reach| reach.arm),
             extents,
-            met: min(input.tolerance, MET_TURNING * smaller(extents)),
+            met: min(input.tolerance, LAG * smaller(extents)),
         }
     }
 

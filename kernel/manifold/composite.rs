@@ -6,7 +6,7 @@ use super::parts::{PartBuffers, Pass, Skin};
 use super::{FeatureCache, LocalManifold, Look};
 use crate::math::{Pose, min};
 use crate::shape::{Aabb, Composite, Part, Shape};
-use crate::tuning::manifold::INSIDE;
+use crate::tuning::sweeps::CORE_SHARE;
 use core::cell::Cell;
 
 /// Buffers for the manifolds of composite shapes, kept between calls.
@@ -134,7 +134,7 @@ fn solid<'a>(
         let around = other.local_box(pose);
         let (center, half) = (around.center(), around.half());
         // What does not move may be a room. The centre of what is in it stays there.
-        let deep = if look.ground[side] { 0.0 } else { INSIDE };
+        let deep = if look.ground[side] { 0.0 } else { CORE_SHARE };
         hull.contains(center, |normal| deep * normal.abs().dot(half))
     };
     let can_be_inside = size < shape.ball_around().1;

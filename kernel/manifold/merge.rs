@@ -3,7 +3,7 @@
 use super::dim::few_points;
 use super::{LocalManifold, LocalPoint};
 use crate::math::{max, min};
-use crate::tuning::manifold::{SAME_NORMAL, SAME_POINT, SAME_RADIUS, SAME_ROUND_NORMAL};
+use crate::tuning::manifold::{ALIKE, SAME, SAME_NORMAL};
 
 /// Buffers, kept between calls.
 #[derive(Clone, Debug, Default)]
@@ -25,13 +25,12 @@ pub(super) fn merge(found: &mut [LocalManifold], room: &mut Merging, out: &mut V
     groups.clear();
     let start = out.len();
     for m in found.iter() {
-        let is_round_alike = |o: &LocalManifold| {
-            o.radii.iter().zip(m.radii).all(|(r, q)| (r - q).abs() <= SAME_RADIUS * max(*r, q))
-        };
+        let is_round_alike =
+            |o: &LocalManifold| o.radii.iter().zip(m.radii).all(|(r, q)| (r - q).abs() <= SAME * max(*r, q));
         let is_flat = m.radii == [0.0; 2];
         let is_parallel = |o: &LocalManifold| match is_flat {
             true => o.radii == m.radii && o.normal.dot(m.normal) > SAME_NORMAL,
-            false => (o.normal - m.normal).length_squared() < SAME_ROUND_NORMAL && is_round_alike(o),
+            false => (o.normal - m.normal).length_squared() < ALIKE * ALIKE && is_round_alike(o),
         };
         let is_same = |o: &LocalManifold| o.groups == m.groups && is_parallel(o);
         let group = out[start..].iter().position(is_same);
@@ -60,8 +59,7 @@ fn drop_twins(points: &mut Vec<LocalPoint>) {
     let mut kept = 0;
     for i in 0..points.len() {
         let point = points[i];
-        let is_near =
-            |p: &LocalPoint| (p.point - point.point).length_squared() <= SAME_POINT * SAME_POINT * spread;
+        let is_near = |p: &LocalPoint| (p.point - point.point).length_squared() <= SAME * SAME * spread;
         match points[..kept].iter().position(is_near) {
             Some(twin) if point.separation < points[twin].separation => points[twin] = point,
             Some(_) => {}

@@ -8,10 +8,8 @@ use super::screen::{Gaps, LANES, Screen};
 use super::{FeatureCache, LocalManifold, Look, collide};
 use crate::math::{F32x4, Lane, MAX_POINTS, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Shape, Surface};
-use crate::tuning::manifold::{
-    DEEPER_FACE, FACING, LEAN, MOST_LEAN, ON_ONE_SIDE, POKE, SAME_NORMAL, SIDEWAYS, TURNED,
-};
-use crate::tuning::sweeps::{MET, PART_ROUNDS};
+use crate::tuning::manifold::{FACING, MARGIN, POKE, SAME, SAME_NORMAL, SIDEWAYS, TURNED};
+use crate::tuning::sweeps::{CORE_SHARE, MET, ROUNDS};
 use core::cell::Cell;
 
 /// Up to this number of vertices are looked through for the farthest one, for each facet that may be on the wrong side.
@@ -196,7 +194,7 @@ impl<'a> Pass<'a> {
         let at_meeting = |m: &LocalManifold| m.lower_bound() + m.normal.dot(motion) * doubt.share;
         // A corner with the replaced normal is deeper in the face by 1 / cos. Contacts met later have no corner in the face yet.
         let (depth, slack) = (own.lower_bound(), POKE * prediction);
-        let cos = max(own.normal.dot(doubt.normal), MOST_LEAN);
+        let cos = max(own.normal.dot(doubt.normal), FACING);
         let deepest = min(doubt.nearest, doubt.nearest / cos);
         let is_corner = doubt.share == 0.0 && deepest - slack <= depth && depth <= doubt.nearest + slack;
         let certain = || found.iter().zip(doubts).filter(|(_, doubt)| doubt.is_none()).map(|(m, _)| m);
@@ -249,7 +247,7 @@ impl<'a> Pass<'a> {
             let (normal, nearest) = (local.normal, local.lower_bound());
             self.keep_outside(&skin, part, prediction, local);
             let is_turned = local.normal.dot(normal) < TURNED;
-            if local.count > 0 && (is_turned || local.lower_bound() < nearest - DEEPER_FACE * prediction) {
+            if local.count > 0 && (is_turned || local.lower_bound() < nearest - SAME * prediction) {
                 return Some(Doubt { normal, nearest, share: 0.0, is_needless: false });
             }
         }
@@ -301,7 +299,7 @@ impl<'a> Pass<'a> {
         let way = self.look.motion;
         let met = MET * self.look.prediction;
         let (mut share, mut beside) = (0.0, None);
-        for round in 1..=PART_ROUNDS {
+        for round in 1..=ROUNDS {
             let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
             let there = Pass { pose: &pose, ..*self };
             there.collide_alone(part, (1.0 - share) * way.length() + self.look.prediction, local);
@@ -311,7 +309,7 @@ impl<'a> Pass<'a> {
                 break;
             }
             let gap = local.lower_bound();
-            if gap <= met || round == PART_ROUNDS {
+            if gap <= met || round == ROUNDS {
                 let normal = local.normal;
                 let doubt = there.collide_part(part, self.look.prediction, local);
                 if local.count > 0
@@ -368,9 +366,9 @@ impl<'a> Pass<'a> {
         let is_under = if along.abs() <= SIDEWAYS {
             over < under
         } else if along < 0.0 {
-            over <= ON_ONE_SIDE * under
+            over <= CORE_SHARE * under
         } else {
-            under > ON_ONE_SIDE * over
+            under > CORE_SHARE * over
         };
         if is_under { -face } else { face }
     }
@@ -415,32 +413,32 @@ impl<'a> Pass<'a> {
         let corners = surface.corners(facet);
         let face = face_normal(corners)?;
         let across = local.normal - face * local.normal.dot(face);
-        if across.length_squared() < LEAN * LEAN {
+        if across.length_squared() < MARGIN * MARGIN {
             return None;
         }
         let borders = borders(corners, face);
         let (mut leans, mut is_free) = (false, true);
         for (border, neighbor) in borders.iter().zip(surface.neighbors(facet)) {
-            if !(local.normal.dot(border.outward) > LEAN) {
+            if !(local.normal.dot(border.outward) > MARGIN) {
                 continue;
             }
             leans = true;
             if border.is_met_by(local) {
                 is_free &= neighbor == NO_FACET || {
                     let beyond = border.toward_neighbor(surface.corners(neighbor));
-                    !(local.normal.dot(beyond) > LEAN)
+                    !(local.normal.dot(beyond) > MARGIN)
                 };
             }
         }
         // A normal that leans over a border without points there belongs to no feature of the facet.
-        let is_met = || borders.iter().any(|b| local.normal.dot(b.outward) > LEAN && b.is_met_by(local));
+        let is_met = || borders.iter().any(|b| local.normal.dot(b.outward) > MARGIN && b.is_met_by(local));
         if !leans || (is_free && is_met()) {
             return None;
         }
         let (found, nearest) = (local.normal, local.lower_bound());
         let own = self.toward_other(corners[0], face, found);
         self.other.collide_face(corners, own, self.pose, prediction, local);
-        let is_doubtful = own.dot(found) < TURNED || local.lower_bound() < nearest - DEEPER_FACE * prediction;
+        let is_doubtful = own.dot(found) < TURNED || local.lower_bound() < nearest - SAME * prediction;
         is_doubtful.then_some(Doubt { normal: found, nearest, share: 0.0, is_needless: false })
     }
 }

@@ -19,32 +19,7 @@ use super::input::RowInput;
 use super::{BodyRows, SubstepParams};
 use crate::contact::{Contact, ContactFlags, ContactTable, Manifold};
 use crate::math::{DIM, Vector, max, min};
-
-/// Ratio of the masses of two bodies from which the lighter one gets more mass, if it is loaded. Less would change
-/// ordinary stacks, more leaves towers soft that could be stiff.
-pub(super) const HEAVY: f32 = 8.0;
-
-/// Sag of one contact, as a share of [`SubstepParams::max_sag`], from which it presses its bodies. Contacts below it do not
-/// pass on that there is a heavy body.
-pub(super) const PRESSED: f32 = 0.1;
-
-/// Sag, as a share of [`SubstepParams::max_sag`], that is left to a body with more mass, to within a factor of two. Less
-/// adds more mass, more lets towers sink deeper.
-const FULL_SAG: f32 = 0.6;
-
-/// Maximum impulse of a heavy body's contact that counts as its weight, in weights. Fewer leave towers soft on which
-/// something fell, more give mass to what is struck.
-const MOST_WEIGHTS: f32 = 4.0;
-
-/// Maximum number of doublings of a mass: 256 times the mass.
-const MAX_DOUBLINGS: u8 = 8;
-
-/// Number of steps with little load after which a mass is halved. Fewer shake a tower that rebounds, more leave mass to what
-/// is unloaded.
-const STEPS_TO_HALVE: u8 = 8;
-
-/// Share of the push-out speed of contacts of bodies with more mass. With more, light bodies throw the heavy one up.
-const PUSH_SHARE: f32 = 1.0 / 16.0;
+use crate::tuning::solver::{FULL_SAG, HEAVY, MAX_DOUBLINGS, PRESSED, STEPS_TO_HALVE};
 
 /// Finds the bodies that bear much more than their weight. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
@@ -148,7 +123,7 @@ impl Bearing {
     #[inline(always)]
     pub(super) fn push_share(&self, rows: [u32; 2]) -> f32 {
         let is_raised = |row| self.share(row) != Vector::ONE;
-        if !self.raised.is_empty() && rows.into_iter().any(is_raised) { PUSH_SHARE } else { 1.0 }
+        if !self.raised.is_empty() && rows.into_iter().any(is_raised) { 0.5 / HEAVY } else { 1.0 }
     }
 
     /// The ratio of a body's mass along each axis to the one that contacts see.
@@ -208,7 +183,7 @@ impl Bearing {
             self.presses.push(rows);
             let [light, heavy] = if a > b { rows } else { [rows[1], rows[0]] };
             let weight = bodies.motions[heavy as usize].acceleration.length() * params.h;
-            if max(a, b) > HEAVY * min(a, b) && impulse * min(a, b) <= MOST_WEIGHTS * weight {
+            if max(a, b) > HEAVY * min(a, b) && impulse * min(a, b) <= HEAVY * weight {
                 self.loads[light as usize].is_below = true;
             }
         }

@@ -19,9 +19,6 @@ use crate::graph::DisjointSets;
 use crate::math::{MAX_POINTS, Vector};
 use crate::thread_pool::ThreadPool;
 
-/// Maximum number of rounds in a substep. Fewer stop a chain of impacts sooner: each round reaches one body further.
-pub(super) const ROUNDS: usize = 32;
-
 /// The manifolds that are struck in a substep. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blows {

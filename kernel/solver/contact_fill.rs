@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::batch::{Filling, Pass, Passes};
-use super::bearing::{HEAVY, PRESSED, sag_rate};
+use super::bearing::sag_rate;
 use super::input::Item;
 use super::pair::lanes_of_body;
 use super::resistance::levers;
@@ -11,6 +11,8 @@ use super::{BodyRow, ContactRow, ImpactRow, InvMass, MassRow, SplitImpulseRow};
 use crate::contact::{Contact, ContactFlags, Manifold};
 use crate::math::{Ids, Lane, TangentFrame, Vector};
 use crate::table::{BodyTable, NONE};
+use crate::tuning::solver::{HEAVY, MIN_USED_SHARE, NO_MASS, PRESSED, WATCHED_SPEED};
+use crate::tuning::sweeps::AHEAD;
 
 /// Prefetch distance, in rows: the contacts of a colour are scattered over the table.
 pub(super) const PREFETCH_DISTANCE: usize = 1;
@@ -104,20 +106,6 @@ impl<N: Lane, const P: usize> SplitImpulseRow<N, P> {
         any
     }
 }
-
-/// Share of the speed of a blow from which a point is watched at the start of the step: it gains speed within the step.
-const WATCHED_SPEED: f32 = 0.5;
-
-/// A point is watched if it would touch within this many steps: it gains speed within the step.
-const WATCHED_TIME: f32 = 2.0;
-
-/// Minimum share of K that locked axes must leave for a point to be pushed along the normal. Below it, K is rounding
-/// error.
-const MIN_FREE_SHARE: f32 = 1.0e-6;
-
-/// Minimum share of K that is used where locked axes leave less. With less, a normal almost along a locked axis would
-/// push the body out sideways.
-const MIN_USED_SHARE: f32 = 0.1;
 
 /// Values that are needed only while a row is filled.
 struct Fill<N, const P: usize> {
@@ -288,7 +276,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             unsafe { row.ids.each_ref().map(|ids| BodyRow::gather_velocity::<N>(&from.bodies, ids)) };
         let n = row.normal;
         let slow = N::splat(-WATCHED_SPEED * from.params.blow_speed);
-        let time = N::splat(WATCHED_TIME * from.params.dt);
+        let time = N::splat(AHEAD * from.params.dt);
         let linear = n.dot(row.inv_mass[0].apply(n)) + n.dot(row.inv_mass[1].apply(n));
         let (mut total, mut center) = (N::ZERO, Vector::ZERO);
         let to_surface = n * self.radii[0];
@@ -299,7 +287,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             point.anchor -= to_surface;
             let (ma, mb) = (point.anchor.cross(n), (point.anchor - row.offset).cross(n));
             let k = linear + ma.dot(row.inv_inertia[0].apply(ma)) + mb.dot(row.inv_inertia[1].apply(mb));
-            let present = N::and((unheld * N::splat(MIN_FREE_SHARE)).lt(k), N::ZERO.lt(point.mass));
+            let present = N::and((unheld * N::splat(NO_MASS)).lt(k), N::ZERO.lt(point.mass));
             point.mass = N::select(present, N::ONE / k.max(unheld * N::splat(MIN_USED_SHARE)), N::ZERO);
             let speed = (vb - va).dot(n) + wb.dot(mb) - wa.dot(ma);
             let may_be_struck = N::and(speed.lt(slow), (point.separation + speed * time).lt(N::ZERO));

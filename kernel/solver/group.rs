@@ -13,27 +13,7 @@
 use super::struck::{Striking, Struck};
 use super::{BodyRow, RowView};
 use crate::math::{Angular, Vector, max, min};
-
-/// Maximum number of sweeps over a group. Fewer tilt what lands on many pieces.
-const SWEEPS: usize = 96;
-
-/// When sweeps end.
-#[derive(Clone, Copy)]
-struct Ending {
-    /// They change velocities by less than this share of the fastest approach. More tilts what falls flat.
-    tolerance: f32,
-    /// This many make the least change smaller by less than a hundredth: a body is jammed between others that do not yield.
-    /// Fewer end sweeps that would still converge.
-    hopeless: usize,
-}
-
-/// Where something bounces, its height depends on the rest.
-const BOUNCING: Ending = Ending { tolerance: 2.0e-6, hopeless: 8 };
-const DULL: Ending = Ending { tolerance: 1.0e-4, hopeless: 8 };
-
-/// Number of sweeps in which impulses of several manifolds with friction rise to what stops the approach, where they are returned.
-/// Fewer favour the first.
-const RISE: usize = 8;
+use crate::tuning::solver::{BLOW_SWEEPS, BOUNCE_TOLERANCE, CONVERGED, ROUND_OF_SWEEPS};
 
 /// A body of a group.
 #[derive(Clone, Copy, Debug)]
@@ -77,14 +57,15 @@ pub(super) unsafe fn solve(
 
     let fastest = group.iter().fold(0.0, |fastest, one| max(fastest, one.speed));
     let bounces = group.iter().any(|one| one.bounces);
-    let ending = if bounces { &BOUNCING } else { &DULL };
+    // Where something bounces, its height depends on the rest.
+    let tolerance = if bounces { BOUNCE_TOLERANCE } else { CONVERGED };
     let shares = bounces && group.len() > 1 && group.iter().any(|one| one.row.friction > 0.0);
-    let rise = if shares { RISE } else { 1 };
+    let rise = if shares { ROUND_OF_SWEEPS } else { 1 };
     // SAFETY: by the contract.
     group.iter_mut().for_each(|one| unsafe { one.begin(rows) });
     // SAFETY: by the contract.
     let compress = |one: &mut Struck, is_backward, share| unsafe { one.compress(rows, is_backward, share) };
-    if sweep(group, fastest, rise, ending, compress) {
+    if sweep(group, fastest, rise, tolerance, compress) {
         // SAFETY: by the contract.
         group.iter_mut().for_each(|one| unsafe { one.find_jam(rows, striking.params) });
     }
@@ -101,7 +82,7 @@ pub(super) unsafe fn solve(
         // SAFETY: by the contract.
         group.iter_mut().for_each(|one| unsafe { one.restitute(rows) });
         // SAFETY: by the contract.
-        sweep(group, fastest, 1, ending, |one, _, _| unsafe { one.rub(rows) });
+        sweep(group, fastest, 1, tolerance, |one, _, _| unsafe { one.rub(rows) });
         // SAFETY: by the contract.
         unsafe { return_at_most(share * share * max(lost, 0.0), group, bodies, rows) };
     }
@@ -157,12 +138,12 @@ fn sweep(
     group: &mut [Struck],
     fastest: f32,
     rise: usize,
-    ending: &Ending,
+    tolerance: f32,
     mut solve: impl FnMut(&mut Struck, bool, f32) -> f32,
 ) -> bool {
     // The least change of these sweeps and of those before.
     let [mut least, mut earlier] = [f32::INFINITY; 2];
-    for count in 0..SWEEPS {
+    for count in 0..BLOW_SWEEPS {
         let is_backward = count % 2 == 1;
         let share = 1.0 / max(rise as f32 - count as f32, 1.0);
         let mut change = 0.0;
@@ -175,11 +156,11 @@ fn sweep(
         if share < 1.0 {
             continue;
         }
-        if change <= ending.tolerance * fastest {
+        if change <= tolerance * fastest {
             return false;
         }
         least = min(least, change);
-        if count % ending.hopeless == ending.hopeless - 1 {
+        if count % ROUND_OF_SWEEPS == ROUND_OF_SWEEPS - 1 {
             if least > 0.99 * earlier {
                 return true;
             }

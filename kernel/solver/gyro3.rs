@@ -2,7 +2,8 @@
 //! same names.
 
 use crate::math::{Angular, InvInertia, Lane, MAX_RATIO, Rot, SymTensor, Vector};
-use crate::tuning::solver::{FAR_TURN, MAX_ENERGY_ERROR, MAX_TURN, MIN_TURN, SMALL_TURN, STEP_SUBSTEPS};
+use crate::tuning::solver::{CONVERGED, FAR_TURN, MIN_TURN, SMALL_TURN};
+use crate::tuning::sweeps::MOST_TURN;
 
 /// Inertia of a body in its own frame, for free spin; of one body for each lane.
 ///
@@ -36,10 +37,9 @@ impl Gyro {
         Some(Self { inertia: inertia.scaled(1.0 / size), inv_inertia: i.scaled(size) })
     }
 
-    /// Whether a body turns so far in a step of substeps of `h` seconds that constraints must know of it.
+    /// Whether a body turns so far in a substep of `h` seconds that constraints must know of it.
     pub(super) fn turns_far(&self, w: Angular, h: f32) -> bool {
-        let step = STEP_SUBSTEPS * h;
-        let square = w.length_squared() * step * step;
+        let square = w.length_squared() * h * h;
         square * MAX_RATIO > FAR_TURN && square * self.inv_inertia.needle_ratio() > FAR_TURN
     }
 
@@ -78,7 +78,7 @@ impl<N: Lane> Gyro<N> {
             return (w, w);
         }
         let half = N::splat(0.5) * h;
-        let k = N::select(N::lt(N::splat(MAX_TURN), turn), half * (N::splat(MAX_TURN) / turn), half);
+        let k = N::select(N::lt(N::splat(MOST_TURN), turn), half * (N::splat(MOST_TURN) / turn), half);
         let momentum = self.inertia.apply(w);
         let guess = self.inv_inertia.apply(w.cross(momentum)) * -k;
         let mut middle = self.newton(w, w + guess, k);
@@ -124,7 +124,7 @@ impl<N: Lane> Gyro<N> {
         let change = change + (local + change) * s;
         let energy = local.dot(momentum);
         let gain = change.dot(momentum) * N::splat(2.0) + change.dot(self.inertia.apply(change));
-        let is_kept = N::le(gain.max(-gain), N::splat(MAX_ENERGY_ERROR) * energy);
+        let is_kept = N::le(gain.max(-gain), N::splat(CONVERGED) * energy);
         select(is_kept, change, Vector::ZERO)
     }
 }

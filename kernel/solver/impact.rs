@@ -5,6 +5,7 @@ use super::bearing::Bearing;
 use super::pair::{Pair, lanes_of_body};
 use super::{BodyRow, ContactRow, InvMass, PointRow, RowView, SubstepParams};
 use crate::math::{Angular, Ids, Lane, MAX_POINTS, Tangent, TangentFrame, TangentMass, Vector, max, min};
+use crate::tuning::solver::NEARLY;
 
 /// Data of impacts, apart from the rows that every pass reads.
 #[derive(Clone, Copy, Debug)]
@@ -22,10 +23,6 @@ impl<N: Lane> Default for ImpactRow<N> {
         Self { restitution: N::ZERO, watched: N::ZERO }
     }
 }
-
-/// Points that would touch within this many substeps are struck together with those that are due: of what lands flat, rounding
-/// decides which points are.
-pub(super) const NEARLY: f32 = 1.01;
 
 /// Where the points of a row are, and how fast they approach.
 pub(super) struct Motions<N, const P: usize> {

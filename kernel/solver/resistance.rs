@@ -4,7 +4,7 @@
 //! a share of the smaller radius: a marble on a boulder rolls as on a plane, whose radius counts as infinite.
 
 use crate::math::Lane;
-use crate::tuning::solver::{CORNER_LEVER, ROLL_LEVER, SPIN_LEVER};
+use crate::tuning::solver::ROLL_LEVER;
 
 /// The levers of spinning and of rolling, in metres. `radii` are those of both surfaces, 0 for a face or a corner; `arm` is
 /// the distance from the contact to the nearer centre of mass of a body that can turn.
@@ -12,6 +12,7 @@ use crate::tuning::solver::{CORNER_LEVER, ROLL_LEVER, SPIN_LEVER};
 pub(super) fn levers<N: Lane>([a, b]: [N; 2], arm: N) -> [N; 2] {
     let are_round = N::and(N::ZERO.lt(a), N::ZERO.lt(b));
     let radius = N::select(are_round, a.min(b), a.max(b));
-    [(SPIN_LEVER, CORNER_LEVER), (ROLL_LEVER, CORNER_LEVER)]
-        .map(|(round, corner)| (radius * N::splat(round)).max(arm * N::splat(corner)))
+    let of_corner = arm * N::splat(0.2 * ROLL_LEVER);
+    // A patch that holds against rolling by a lever holds against spin by about twice that.
+    [2.0 * ROLL_LEVER, ROLL_LEVER].map(|of_round| (radius * N::splat(of_round)).max(of_corner))
 }

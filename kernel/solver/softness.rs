@@ -106,6 +106,20 @@ impl SubstepParams {
         }
     }
 
+    /// The same in a world whose unit of length is `length_unit` metres of these parameters: all lengths and speeds are
+    /// multiplied by it.
+    pub fn in_units_of(self, length_unit: f32) -> Self {
+        Self {
+            max_push_speed: self.max_push_speed * length_unit,
+            restitution_threshold: self.restitution_threshold * length_unit,
+            blow_speed: self.blow_speed * length_unit,
+            friction_fade: self.friction_fade * length_unit,
+            max_sag: self.max_sag * length_unit,
+            roll_speed: self.roll_speed * length_unit,
+            ..self
+        }
+    }
+
     /// Whether a substep may be run with these parameters.
     pub(super) fn is_valid(&self) -> bool {
         let is_step = [self.h, self.inv_h, self.dt].iter().all(|x| x.is_finite() && *x >= 0.0);

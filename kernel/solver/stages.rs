@@ -4,7 +4,7 @@
 use super::batch::{Filling, Pass, Seek, Sweep};
 use super::batches::{AllRows, Layers, SortedTables};
 use super::bearing::Bearing;
-use super::blow::{Blows, ManifoldBlow, ROUNDS};
+use super::blow::{Blows, ManifoldBlow};
 use super::body::Gains;
 use super::contact_batch::Room;
 use super::custom::CustomTable;
@@ -23,6 +23,7 @@ use crate::data::Parts;
 use crate::graph::ColorGraph;
 use crate::math::Width;
 use crate::thread_pool::ThreadPool;
+use crate::tuning::solver::{BLOW_ROUNDS, JOINT_ROUNDS};
 
 /// Maximum number of rows of a block if several workers share them: some microseconds of work. More leaves workers idle
 /// at the end of a stage, fewer cost more claims.
@@ -30,9 +31,6 @@ const BLOCK_ROWS: u32 = 32;
 
 /// Minimum number of rows for which waking workers pays.
 const WORTH_WAKING: u32 = 256;
-
-/// Maximum number of turns between trees of joints and contacts in a blow. Fewer leave joints that open at the blow.
-const JOINT_ROUNDS: usize = 8;
 
 /// The bodies and rows of one step.
 ///
@@ -327,7 +325,7 @@ impl Solver {
         let mut any = false;
         let mut blocks = core::mem::take(&mut plan.blocks);
         rows.with(joints, customs, |batches| {
-            for _ in 0..ROUNDS {
+            for _ in 0..BLOW_ROUNDS {
                 let Blows { found, reached, .. } = blows;
                 let seek = &Seek { striking, reached };
                 let looked_at = |block: &&mut Block| !seek.reached.is_empty() || block.passes.are_watched();

@@ -2,19 +2,13 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::bearing::Bearing;
-use super::impact::{Motions, NEARLY};
+use super::impact::Motions;
 use super::input::Item;
 use super::pair::Pair;
 use super::{BodyRow, ContactRow, Motion, PointRow, RowView, SubstepParams};
 use crate::math::{Angular, MAX_POINTS, Tangent, TangentFrame, Vector, max, min};
+use crate::tuning::solver::{NEARLY, TOUCHING};
 use core::cmp::Ordering;
-
-/// Points that would touch within this many substeps are due: what touches at the end of a substep is struck before the solve
-/// pass may stop it.
-const DUE: f32 = 1.005;
-
-/// Points that are apart by less than this share of the fade of friction (1 mm) take part in an impact: they touch.
-const TOUCHING: f32 = 0.05;
 
 /// A manifold that is struck.
 #[derive(Clone, Debug)]
@@ -108,7 +102,7 @@ impl Struck {
         for i in (0..MAX_POINTS).filter(|i| row.points[*i].mass > 0.0) {
             let (speed, gap) = (-speeds[i], gaps[i]);
             if speed > params.blow_speed && gap <= speed * time * NEARLY {
-                struck.is_due |= gap <= speed * time * DUE;
+                struck.is_due |= gap <= speed * time * (0.5 * (1.0 + NEARLY));
                 struck.speed = max(struck.speed, speed);
                 let touch = max(gap, -unforeseen) / speed;
                 struck.time = min(struck.time, touch);

@@ -3,15 +3,16 @@
 use super::dim::{any_rotation, any_spin, sized, terrain};
 use super::extreme::Dice;
 use super::sim::Sim;
+use super::units::{BINARY, DECIMAL};
 use crate::kernel;
 use kernel::math::{Rot, Scalar, Vector};
 use kernel::shape::{Ball, Cuboid, HalfSpace, Shape};
 use kernel::table::{BodyKind, Velocity};
 
 /// The height to which a shape rebounds that falls ten metres onto a floor.
-fn rebound(shape: Shape, e: f32, dt: f32, substeps: u32) -> Scalar {
+fn rebound(shape: Shape, e: f32, (dt, substeps): (f32, u32), unit: f32) -> Scalar {
     let mut sim = Sim::new();
-    (sim.dt, sim.substeps) = (dt, substeps);
+    (sim.dt, sim.substeps, sim.unit) = (dt, substeps, unit);
     let floor = Shape::Cuboid(Cuboid { half: Vector::ONE * 200.0 });
     sim.add_with(BodyKind::Static, floor, Vector::Y * -200.0, Rot::IDENTITY, 0.5, e);
     let id = sim.add_with(BodyKind::Dynamic, shape, Vector::Y * 10.5, Rot::IDENTITY, 0.5, e);
@@ -21,7 +22,7 @@ fn rebound(shape: Shape, e: f32, dt: f32, substeps: u32) -> Scalar {
         let v = sim.bodies.velocities[id as usize].linear.y;
         bounced |= v > 0.0;
         if bounced {
-            highest = highest.max(sim.position(id).y - 0.5);
+            highest = highest.max(sim.position(id).y / Scalar::from(unit) - 0.5);
             if v < 0.0 {
                 break;
             }
@@ -38,10 +39,27 @@ fn balls_and_flat_boxes_rebound_to_e_squared_of_the_height() {
         for shape in &shapes {
             for e in [0.1f32, 0.2, 0.3, 0.5, 0.7, 0.9, 0.95] {
                 let want = Scalar::from(10.0 * e * e);
-                let got = rebound(shape.clone(), e, dt, substeps);
+                let got = rebound(shape.clone(), e, (dt, substeps), 1.0);
                 let error = (got / want - 1.0).abs();
                 assert!(error < 0.01, "{dt} s in {substeps}, e = {e}: {got} m, not {want}: {shape:?}");
             }
+        }
+    }
+}
+
+#[test]
+fn balls_and_flat_boxes_rebound_alike_in_any_length_unit() {
+    let shapes = [Shape::Ball(Ball { radius: 0.5 }), Shape::Cuboid(Cuboid { half: Vector::ONE * 0.5 })];
+    for (shape, e) in shapes.iter().flat_map(|shape| [0.2f32, 0.7].map(|e| (shape, e))) {
+        let clock = (1.0 / 60.0, 4);
+        let want = rebound(shape.clone(), e, clock, 1.0);
+        for unit in DECIMAL {
+            let got = rebound(shape.clone(), e, clock, unit);
+            let error = (got / Scalar::from(10.0 * e * e) - 1.0).abs();
+            assert!(error < 0.01, "e = {e} in units of {unit}: {got} m: {shape:?}");
+        }
+        for unit in BINARY {
+            assert_eq!(rebound(shape.clone(), e, clock, unit), want, "e = {e} in units of {unit}: {shape:?}");
         }
     }
 }

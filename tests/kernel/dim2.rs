@@ -17,6 +17,17 @@ pub fn inverse_inertia(mass: &MassProperties) -> InvInertia {
     InvInertia { zz: if mass.inertia > 0.0 { 1.0 / mass.inertia } else { 0.0 } }
 }
 
+/// A hull `unit` times as large.
+pub fn scaled_hull(hull: &Hull, unit: f32) -> Hull {
+    let vertices: Vec<Vector> = hull.vertices().iter().map(|p| *p * unit).collect();
+    Hull::from_convex(&vertices, hull.radius() * unit).expect("scaling keeps a hull a hull")
+}
+
+/// An ellipse `unit` times as large.
+pub fn scaled_curved(curved: &Curved, unit: f32) -> Curved {
+    Curved { half: curved.half * unit }
+}
+
 /// The rotation by an angle in the plane of x and y.
 pub fn turned(angle: f32) -> Rot {
     Rot::from_angle(angle)

@@ -25,6 +25,20 @@ pub fn inverse_inertia(mass: &MassProperties) -> InvInertia {
     mass.inertia.inverse()
 }
 
+/// A hull `unit` times as large.
+pub fn scaled_hull(hull: &Hull, unit: f32) -> Hull {
+    let vertices: Vec<Vector> = hull.vertices().iter().map(|p| *p * unit).collect();
+    let faces = hull.faces().iter().map(|face| hull.outline(face).to_vec()).collect();
+    let scaled = Hull::from_mesh(vertices, faces).and_then(|scaled| scaled.rounded(hull.radius() * unit));
+    scaled.expect("scaling keeps a hull a hull")
+}
+
+/// A frustum `unit` times as large.
+pub fn scaled_curved(curved: &Curved, unit: f32) -> Curved {
+    let Curved { lower, upper, half_height } = *curved;
+    Curved { lower: lower * unit, upper: upper * unit, half_height: half_height * unit }
+}
+
 /// The rotation by an angle in the plane of x and y.
 pub fn turned(angle: f32) -> Rot {
     Rot::from_axis_angle(Vector::Z, angle)

@@ -3,6 +3,7 @@
 use super::dim::floors::{feet, heading, messy, on_edge, roll, rollers, wall_and_floor};
 use super::dim::{more_riders, riders, sized, spin, tiles, turned, upright};
 use super::sim::Sim;
+use super::units::{BINARY, DECIMAL};
 use crate::kernel;
 use kernel::math::{AxisLocks, Pose, Rot, Vector};
 use kernel::shape::{Cuboid, Shape};
@@ -37,6 +38,8 @@ struct Trial<'a> {
     /// Of length 1.
     direction: Vector,
     speed: f32,
+    /// The length unit of the world.
+    unit: f32,
 }
 
 impl<'a> Trial<'a> {
@@ -51,6 +54,7 @@ impl<'a> Trial<'a> {
             spin: 0.0,
             direction: Vector::X,
             speed,
+            unit: 1.0,
         }
     }
 
@@ -76,7 +80,7 @@ impl<'a> Trial<'a> {
     /// The ride over 10 m of the floor, whose top is at y = 0.
     fn run(&self) -> Ride {
         let mut sim = Sim::new();
-        sim.checked = false;
+        (sim.checked, sim.unit) = (false, self.unit);
         (sim.dt, sim.substeps) = (1.0 / 64.0, 6);
         let rotation = heading(self.direction).mul(self.rotation);
         let low = self.rider.local_aabb(rotation).min.y;
@@ -93,17 +97,18 @@ impl<'a> Trial<'a> {
         if self.radius > 0.0 {
             angular += roll(self.direction, self.speed / self.radius);
         }
-        sim.bodies.set_velocity(id, Velocity { linear: self.direction * self.speed, angular });
+        let linear = self.direction * (self.speed * self.unit);
+        sim.bodies.set_velocity(id, Velocity { linear, angular });
         let mut ride = Ride { gained: 0.0, bump: 0.0, aside: 0.0, spun: 0.0 };
         for _ in 0..(10.0 / self.speed / sim.dt) as usize {
             sim.step();
-            let moved = sim.bodies.poses[id as usize].center.to_local() - start;
+            let moved = (sim.bodies.poses[id as usize].center.to_local() - start) * (1.0 / self.unit);
             ride.bump = ride.bump.max(moved.y);
             let along = self.direction * moved.dot(self.direction);
             ride.aside = ride.aside.max(super::dim::across(moved - along).abs());
         }
         let end = sim.bodies.velocities[id as usize];
-        ride.gained = end.linear.dot(self.direction) / self.speed - 1.0;
+        ride.gained = end.linear.dot(self.direction) / (self.speed * self.unit) - 1.0;
         if self.spin > 0.0 {
             ride.spun = end.angular.length() / self.spin - 1.0;
         }
@@ -151,6 +156,19 @@ fn assert_undisturbed<'a>(aside: f32, trials: impl Iterator<Item = (String, Tria
         }
     }
     assert!(bad.is_empty(), "{bad:#?}");
+}
+
+/// With the length unit of the world what counts as flush, as moving and as touching grows or shrinks.
+#[test]
+fn floors_of_flush_pieces_are_floors_in_any_length_unit() {
+    for unit in DECIMAL.into_iter().chain(BINARY) {
+        for (floor, pieces) in tiles() {
+            let trials = slides(&pieces, &[1.0, 10.0]).into_iter();
+            let scaled =
+                |(name, trial)| (format!("{name} over {floor} in units of {unit}"), Trial { unit, ..trial });
+            assert_undisturbed(1.0e-3, trials.map(scaled));
+        }
+    }
 }
 
 #[test]

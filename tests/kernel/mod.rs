@@ -49,5 +49,6 @@ pub mod surveys;
 mod swept_spin;
 mod tiles;
 mod tunnel;
+mod units;
 mod unrest;
 mod walled;

@@ -3,6 +3,7 @@
 use super::dim::{BALL_INERTIA, PILES, bullets, hull_of, restless, sized, spin, turned, upright};
 use super::extreme::Dice;
 use super::sim::Sim;
+use super::units::{BINARY, DECIMAL};
 use crate::kernel;
 use kernel::math::{DIM, Rot, Vector};
 use kernel::shape::{Ball, Cuboid, Shape};
@@ -23,8 +24,9 @@ fn shapes() -> Vec<(&'static str, Vec<Shape>)> {
 
 /// A pile in a box without a lid, `wide` metres wide, from layers of `wide` bodies along each axis. Seeds differ in the
 /// first poses.
-fn pile(shapes: &[Shape], wide: usize, count: usize, seed: u64) -> Sim {
+fn pile(shapes: &[Shape], wide: usize, count: usize, seed: u64, unit: f32) -> Sim {
     let mut sim = Sim::new();
+    sim.unit = unit;
     sim.checked = false;
     sim.sleeping = true;
     let half = 0.5 * wide as f32 + 0.1;
@@ -74,16 +76,30 @@ fn rests(sim: &mut Sim, limit: usize) -> Result<(), String> {
     Err(format!("{} awake after {limit} s, up to {fastest:?} m/s and rad/s", awake(sim)))
 }
 
+#[test]
+fn piles_fall_asleep_in_any_length_unit() {
+    let (wide, count, _, limit) = PILES[0];
+    let mixed = shapes().pop().expect("the last pile is mixed").1;
+    let late = |(unit, seed): (f32, u64)| {
+        let mut sim = seeded(&mixed, wide, count, seed, unit);
+        rests(&mut sim, 2 * limit).err().map(|why| (unit, seed, why))
+    };
+    let units = DECIMAL.into_iter().chain(BINARY).flat_map(|unit| [0, 1].map(|seed| (unit, seed)));
+    let late: Vec<_> = units.filter_map(late).collect();
+    assert!(late.is_empty(), "{late:?}");
+}
+
 /// A pile of a seed, with the step and substeps of that.
-fn seeded(shapes: &[Shape], wide: usize, count: usize, seed: u64) -> Sim {
-    let mut sim = pile(shapes, wide, count, seed);
+fn seeded(shapes: &[Shape], wide: usize, count: usize, seed: u64, unit: f32) -> Sim {
+    let mut sim = pile(shapes, wide, count, seed, unit);
     (sim.dt, sim.substeps) = RATES[(seed % 2) as usize];
     sim
 }
 
 /// The seeds of a pile that does not fall asleep in time.
 fn late(shapes: &[Shape], wide: usize, count: usize, seeds: u64, limit: usize) -> Vec<(u64, String)> {
-    let late = |seed: u64| rests(&mut seeded(shapes, wide, count, seed), limit).err().map(|why| (seed, why));
+    let late =
+        |seed: u64| rests(&mut seeded(shapes, wide, count, seed, 1.0), limit).err().map(|why| (seed, why));
     (0..seeds).filter_map(late).collect()
 }
 
@@ -92,7 +108,7 @@ pub fn survey_of_piles() {
     for (name, shapes) in shapes() {
         for ((wide, count, ..), seeds) in PILES.into_iter().zip([40, 20]) {
             let time = |seed| {
-                let mut sim = seeded(&shapes, wide, count, seed);
+                let mut sim = seeded(&shapes, wide, count, seed, 1.0);
                 let rested = rests(&mut sim, 30).is_ok();
                 if rested { sim.dt * sim.steps_done as f32 } else { f32::INFINITY }
             };

@@ -1,7 +1,10 @@
 //! A step made of the kernel's parts, in the engine's order, as an embedder without an ECS would write it.
 #![expect(unsafe_code, reason = "the caller of `build_rows` answers for contacts and colours")]
 
+mod constraints;
+
 use super::dim::inverse_inertia;
+use super::units;
 use crate::kernel;
 use kernel::bvh::{FoundPairs, Mover, Movers, PairMask, ProxyId, TreeKind, Trees};
 use kernel::ccd::{SweepBuffers, SweepInput};
@@ -13,9 +16,7 @@ use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::solver::{
-    BodyRow, BodyRows, CouplingDef, CustomConstraint, CustomError, CustomTable, JointDef, JointError,
-    JointGap, JointReaction, JointSolver, JointTable, Limits, MassRow, Motion, RowInput, Solver,
-    SubstepParams,
+    BodyRow, BodyRows, JointSolver, Limits, MassRow, Motion, RowInput, Solver, SubstepParams,
 };
 use kernel::table::{
     BodyKind, BodyTable, ColliderDef, ColliderFlags, ColliderTable, Combine, Fattening, Layers, Material,
@@ -24,6 +25,9 @@ use kernel::table::{
 use kernel::thread_pool::ThreadPool;
 use std::collections::BTreeSet;
 
+/// The distance that counts as touching, in length units.
+const TOLERANCE: f32 = 0.005;
+
 fn phase<'a>(
     bodies: &'a BodyTable,
     colliders: &'a ColliderTable,
@@ -31,14 +35,15 @@ fn phase<'a>(
     recycle: bool,
     narrow: bool,
 ) -> NarrowPhaseInput<'a, ()> {
+    let unit = bodies.length_unit();
     NarrowPhaseInput {
         bodies,
         colliders,
         source: &(),
         dt,
-        tolerance: 0.005,
-        speculative: 0.02,
-        recycle_distance: if recycle { 0.05 } else { 0.0 },
+        tolerance: TOLERANCE * unit,
+        speculative: 0.02 * unit,
+        recycle_distance: if recycle { 0.05 * unit } else { 0.0 },
         match_points: true,
         narrow,
     }
@@ -61,6 +66,10 @@ pub struct Sim {
     pub colors: ColorGraph,
     pub islands: Islands,
     pub gravity: Vector,
+    /// The length unit. Shapes, places, joints and, until the first step, velocities and gravity are given in such units.
+    pub unit: f32,
+    /// The density of bodies that are added.
+    pub density: f32,
     pub dt: f32,
     pub substeps: u32,
     /// How joints are solved.
@@ -86,6 +95,7 @@ pub struct Sim {
     pub shared: usize,
     trees: Trees,
     proxies: Vec<(TreeKind, ProxyId)>,
+    is_in_units: bool,
     pub masses: Vec<(f32, InvInertia)>,
     movers: Movers,
     solver: Solver,
@@ -112,6 +122,8 @@ impl Sim {
             colors: ColorGraph::new(),
             islands: Islands::new(),
             gravity: Vector::Y * -10.0,
+            unit: 1.0,
+            density: 1.0,
             dt: 1.0 / 60.0,
             substeps: 4,
             joint_solver: JointSolver::Auto,
@@ -128,6 +140,7 @@ impl Sim {
             shared: 0,
             trees: Trees::default(),
             proxies: Vec::new(),
+            is_in_units: false,
             masses: Vec::new(),
             movers: Movers::default(),
             solver,
@@ -164,7 +177,7 @@ impl Sim {
         }
     }
 
-    /// Adds a body of one shape with density 1; its id is its collider's.
+    /// Adds a body of one shape; its id is its collider's.
     pub fn add(&mut self, kind: BodyKind, shape: Shape, position: Vector, rotation: Rot) -> u32 {
         self.add_with(kind, shape, position, rotation, 0.6, 0.0)
     }
@@ -190,10 +203,11 @@ impl Sim {
         [friction, restitution]: [f32; 2],
         flags: ColliderFlags,
     ) -> u32 {
-        let mass = shape.mass_properties(1.0);
-        let pose = WorldPose::new(position.to_world(), rotation);
+        let shape = units::scaled_shape(&shape, self.unit);
+        let mass = shape.mass_properties(self.density);
+        let pose = WorldPose::new((position * self.unit).to_world(), rotation);
         let id = self.bodies.add(kind, mass.center, pose);
-        self.bodies[id].rest_speed = RestSpeed { linear: 0.15, angular: 0.15 };
+        self.bodies[id].rest_speed = RestSpeed { linear: 0.15 * self.unit, angular: 0.15 };
         put(&mut self.frames, id, pose);
         self.link().enter(id);
         let inverse = if mass.mass > 0.0 { 1.0 / mass.mass } else { 0.0 };
@@ -230,8 +244,9 @@ impl Sim {
             let mass = self.masses[id as usize];
             put(&mut self.masses, unused, mass);
             put(&mut self.locks, unused, AxisLocks::NONE);
-            let local = Pose::new(*at - *place, Rot::IDENTITY);
-            let def = ColliderDef { shape: shape.clone(), local, ..self.colliders[id].def.clone() };
+            let local = Pose::new((*at - *place) * self.unit, Rot::IDENTITY);
+            let shape = units::scaled_shape(shape, self.unit);
+            let def = ColliderDef { shape, local, ..self.colliders[id].def.clone() };
             let collider = self.colliders.add(def, pose.then(&local), &mut self.bodies);
             assert_eq!(collider, unused, "one collider an id");
             self.enter_tree(collider, kind);
@@ -285,9 +300,9 @@ impl Sim {
         self.contacts.recycle_ids();
     }
 
-    /// Sets the mass of a body to that of a shape with density 1.
+    /// Sets the mass of a body to that of a shape.
     pub fn weigh(&mut self, id: u32, shape: &Shape) {
-        let mass = shape.mass_properties(1.0);
+        let mass = units::scaled_shape(shape, self.unit).mass_properties(self.density);
         self.masses[id as usize] = (1.0 / mass.mass, inverse_inertia(&mass));
     }
 
@@ -300,6 +315,7 @@ impl Sim {
     /// Sets the shape of a body, and its mass.
     pub fn reshape(&mut self, id: u32, shape: Shape) {
         self.weigh(id, &shape);
+        let shape = units::scaled_shape(&shape, self.unit);
         let def = ColliderDef { shape, ..self.colliders[id].def.clone() };
         self.colliders.redefine(id, def, &mut self.bodies);
     }
@@ -318,79 +334,6 @@ impl Sim {
         self.colliders.redefine(id, def, &mut self.bodies);
     }
 
-    /// Adds a joint.
-    pub fn join(&mut self, def: JointDef) -> Result<u32, JointError> {
-        self.with_joints(|joints, link| joints.add(link, def))
-    }
-
-    /// Changes a joint.
-    pub fn rejoin(&mut self, id: u32, def: JointDef) -> Result<(), JointError> {
-        self.with_joints(|joints, link| joints.set(link, id, def))
-    }
-
-    /// Removes a joint.
-    pub fn part(&mut self, id: u32) -> Result<(), JointError> {
-        self.with_joints(|joints, link| joints.remove(link, id))
-    }
-
-    fn with_joints<R>(&mut self, f: impl FnOnce(&mut JointTable, &mut Link) -> R) -> R {
-        let mut joints = core::mem::take(&mut self.solver.joints);
-        let result = f(&mut joints, &mut self.link());
-        self.solver.joints = joints;
-        result
-    }
-
-    /// Adds a coupling.
-    pub fn couple(&mut self, def: CouplingDef) -> Result<u32, JointError> {
-        self.with_joints(|joints, link| joints.add_coupling(link, def))
-    }
-
-    /// Changes a coupling.
-    pub fn recouple(&mut self, id: u32, def: CouplingDef) -> Result<(), JointError> {
-        self.with_joints(|joints, link| joints.set_coupling(link, id, def))
-    }
-
-    /// The force of a coupling along its coordinate at A.
-    pub fn coupling_force(&self, id: u32) -> f32 {
-        self.solver.joints.coupling_force(id)
-    }
-
-    /// How far a joint is off.
-    pub fn gap(&self, id: u32) -> Option<JointGap> {
-        self.solver.joints.gap(id, &self.bodies)
-    }
-
-    /// Adds a custom constraint.
-    pub fn tie(
-        &mut self,
-        bodies: [u32; 2],
-        act: Option<Box<dyn CustomConstraint>>,
-    ) -> Result<u32, CustomError> {
-        self.with_customs(|customs, link| customs.add(link, bodies, act))
-    }
-
-    /// Removes a custom constraint.
-    pub fn untie(&mut self, id: u32) -> Result<(), CustomError> {
-        self.with_customs(|customs, link| customs.remove(link, id))
-    }
-
-    fn with_customs<R>(&mut self, f: impl FnOnce(&mut CustomTable, &mut Link) -> R) -> R {
-        let mut customs = core::mem::take(&mut self.solver.customs);
-        let result = f(&mut customs, &mut self.link());
-        self.solver.customs = customs;
-        result
-    }
-
-    /// All custom constraints.
-    pub fn customs(&self) -> &CustomTable {
-        &self.solver.customs
-    }
-
-    /// What a joint did in the last substep.
-    pub fn reaction(&self, id: u32) -> JointReaction {
-        self.solver.joints.reaction(id)
-    }
-
     pub fn floor(&mut self) -> u32 {
         let half = Vector::ONE * 200.0;
         self.add(BodyKind::Static, Shape::Cuboid(Cuboid { half }), Vector::Y * -200.0, Rot::IDENTITY)
@@ -401,11 +344,12 @@ impl Sim {
     }
 
     pub fn fattening(&self) -> Fattening {
-        Fattening { margin: 0.05, dt: self.dt }
+        Fattening { margin: 0.05 * self.unit, dt: self.dt }
     }
 
     fn params(&self) -> SubstepParams {
-        SubstepParams { joints: self.joint_solver, ..SubstepParams::new(self.dt, self.substeps) }
+        let params = SubstepParams::new(self.dt, self.substeps).in_units_of(self.unit);
+        SubstepParams { joints: self.joint_solver, ..params }
     }
 
     /// Builds rows from the colours of another simulation. Returns the number of shared stages.
@@ -431,7 +375,20 @@ impl Sim {
         }
     }
 
+    /// Brings velocities and gravity from length units to the units of the world, once.
+    pub fn enter_units(&mut self) {
+        if core::mem::replace(&mut self.is_in_units, true) {
+            return;
+        }
+        self.bodies.set_length_unit(self.unit);
+        self.gravity = self.gravity * self.unit;
+        for velocity in &mut self.bodies.velocities {
+            velocity.linear = velocity.linear * self.unit;
+        }
+    }
+
     pub fn step(&mut self) {
+        self.enter_units();
         self.steps_done += 1;
         self.recycle_ids();
         self.gather();
@@ -470,7 +427,7 @@ impl Sim {
                 trees: &self.trees,
                 contacts: &self.contacts,
                 source: &(),
-                tolerance: 0.005,
+                tolerance: TOLERANCE * self.unit,
                 dt: self.dt,
             };
             self.solver.stop_fast(&input, &self.listed, &mut self.sweep_buffers, &self.pool);

@@ -3,6 +3,7 @@
 use super::dim::floors::blocks;
 use super::dim::{more_riders, sized, tiles};
 use super::sim::Sim;
+use super::units::{BINARY, DECIMAL};
 use crate::kernel;
 use kernel::math::{AxisLocks, Rot, Vector};
 use kernel::shape::{Capsule, Cuboid, Shape};
@@ -31,12 +32,15 @@ struct Drive {
     gap: f32,
     /// The velocity along the wall at the start, in m/s.
     along: f32,
+    /// The length unit of the world.
+    unit: f32,
 }
 
 /// Where a character comes in some steps from x = 0, and how deep in the wall it was at most.
 fn run(wall: &[(Shape, Vector)], who: &Character, drive: Drive, steps: usize) -> [f32; 2] {
     let mut sim = Sim::new();
     (sim.checked, sim.dt, sim.gravity) = (false, 1.0 / drive.rate, Vector::X * GRAVITY);
+    sim.unit = drive.unit;
     for (shape, place) in wall {
         sim.add_with(BodyKind::Static, shape.clone(), *place, Rot::IDENTITY, 0.0, 0.0);
     }
@@ -47,15 +51,16 @@ fn run(wall: &[(Shape, Vector)], who: &Character, drive: Drive, steps: usize) ->
     sim.locks[id as usize] = UPRIGHT;
     let linear = Vector::X * drive.along;
     sim.bodies.set_velocity(id, Velocity { linear, ..Velocity::default() });
+    sim.enter_units();
     let mut deepest = 0.0f32;
     for _ in 0..steps {
         let Velocity { linear, angular } = sim.bodies.velocities[id as usize];
-        let linear = Vector { y: -drive.speed, ..linear };
+        let linear = Vector { y: -drive.speed * drive.unit, ..linear };
         sim.bodies.set_velocity(id, Velocity { linear, angular });
         sim.step();
-        deepest = deepest.max(-low - sim.position(id).to_local().y);
+        deepest = deepest.max(-low - sim.position(id).to_local().y / drive.unit);
     }
-    [sim.position(id).to_local().x, deepest]
+    [sim.position(id).to_local().x / drive.unit, deepest]
 }
 
 fn cuboid(half: Vector) -> Shape {
@@ -79,16 +84,15 @@ fn characters() -> Vec<Character> {
     solid.chain(meshes).collect()
 }
 
-/// The velocity into the wall counted as motion: the top of the next piece, met inside of the wall, was taken for ground. A fall of 20 m
-/// took up to 6.5 times as long, and a jump ended at a tenth of its height.
-#[test]
-fn characters_fall_and_jump_along_walls_of_pieces_as_beside_them() {
+/// Asserts that characters fall and jump along walls of pieces as beside them, at some speeds and rates.
+#[track_caller]
+fn assert_free(unit: f32, drives: &[(f32, f32)]) {
     let mut bad = Vec::new();
     for (name, wall) in tiles() {
         for who in characters() {
-            for (speed, rate) in [(1.0, 60.0), (3.0, 30.0), (5.0, 64.0), (10.0, 60.0), (10.0, 144.0)] {
+            for &(speed, rate) in drives {
                 for (gap, along) in [(0.03, 0.0), (0.0, -6.0)] {
-                    let drive = Drive { speed, rate, gap, along };
+                    let drive = Drive { speed, rate, gap, along, unit };
                     // Until it has fallen 14 m, or is at the top of its jump.
                     let seconds = if along < 0.0 { -along / GRAVITY } else { (28.0 / GRAVITY).sqrt() };
                     let steps = (seconds * rate) as usize;
@@ -107,6 +111,18 @@ fn characters_fall_and_jump_along_walls_of_pieces_as_beside_them() {
     assert!(bad.is_empty(), "{}: {bad:#?}", bad.len());
 }
 
+/// The velocity into the wall counted as motion: the top of the next piece, met inside of the wall, was taken for ground. A fall of 20 m
+/// took up to 6.5 times as long, and a jump ended at a tenth of its height.
+#[test]
+fn characters_fall_and_jump_along_walls_of_pieces_as_beside_them() {
+    assert_free(1.0, &[(1.0, 60.0), (3.0, 30.0), (5.0, 64.0), (10.0, 60.0), (10.0, 144.0)]);
+}
+
+#[test]
+fn characters_fall_and_jump_along_walls_in_any_length_unit() {
+    DECIMAL.into_iter().chain(BINARY).for_each(|unit| assert_free(unit, &[(5.0, 64.0)]));
+}
+
 /// What stands out of the wall is ground.
 #[test]
 fn characters_land_on_ledges_of_walls() {
@@ -121,7 +137,7 @@ fn characters_land_on_ledges_of_walls() {
             };
             for who in characters().into_iter().filter(is_square) {
                 for (speed, rate) in [(1.0, 60.0), (10.0, 30.0), (10.0, 144.0)] {
-                    let drive = Drive { speed, rate, gap: 0.0, along: 0.0 };
+                    let drive = Drive { speed, rate, gap: 0.0, along: 0.0, unit: 1.0 };
                     let [x, _] = run(&wall, &who, drive, (1.5 * rate) as usize);
                     let foot = x + who.shape.local_aabb(Rot::IDENTITY).max.x;
                     if !((foot - 5.0).abs() < 0.02) {

@@ -4,7 +4,7 @@ use super::super::LocalManifold;
 use super::points::{Limits, push_between};
 use super::polygonal::Edge;
 use crate::math::{Pose, Vector, max};
-use crate::tuning::manifold::ALIGNED;
+use crate::tuning::manifold::FLAT;
 
 /// The shape of the reference edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +53,7 @@ impl Facing {
         let offsets = self.incident.ends.map(|w| w - start);
         let along = offsets.map(|w| w.dot(tangent));
         let height = offsets.map(|w| w.dot(self.normal));
-        let nothing = ALIGNED * (length + (along[1] - along[0]).abs());
+        let nothing = FLAT as f32 * (length + (along[1] - along[0]).abs());
         // The closest end is the lower one. Of an edge wholly beside the reference it is the end nearer to the corner, since
         // level edges have no lower end.
         let beside = along[1] > length || along[0] < 0.0;
@@ -95,7 +95,7 @@ impl Facing {
         out.normal = self.outward(self.normal);
         // The incident edge runs against the reference edge: its end 1 pairs with the start.
         let run = along[0] - along[1];
-        let nothing = ALIGNED * (length + run.abs());
+        let nothing = FLAT as f32 * (length + run.abs());
         // Ends within rounding above an end of the reference edge are not clipped: the incident edge may be steep.
         let low = if along[1] < -nothing { 0.0 } else { along[1] };
         let high = if along[0] > length + nothing { length } else { along[0] };

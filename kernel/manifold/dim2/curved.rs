@@ -7,7 +7,9 @@ use super::super::LocalManifold;
 use super::polygonal::Polygonal;
 use crate::math::{Pose, Rot, Vector, max};
 use crate::shape::{Curved, direction};
-use crate::tuning::manifold::{DEEP_ELLIPSE, DIRECTIONS, FLATTEST, HALVINGS};
+use crate::tuning::contact::DEEP;
+use crate::tuning::manifold::ALIKE;
+use crate::tuning::sweeps::ROUNDS;
 
 /// A round shape by its farthest points.
 pub(super) trait Rounded {
@@ -79,9 +81,9 @@ impl Pair<'_> {
     /// and its normal. Those of a flat ellipse are close together.
     fn best_in_fan(&self, a: &impl Rounded, fan: impl Fn(Vector) -> Vector) -> (f32, Vector) {
         // A sixteenth of a turn.
-        let step = Rot { cos: 0.923_879_5, sin: 0.382_683_43 };
+        let (directions, step) = (16, Rot { cos: 0.923_879_5, sin: 0.382_683_43 });
         let (mut most, mut best, mut around) = (f32::NEG_INFINITY, Vector::Y, Vector::Y);
-        for _ in 0..DIRECTIONS {
+        for _ in 0..directions {
             let normal = fan(around);
             let separation = self.separation(normal, a.farthest(normal));
             if separation > most {
@@ -101,7 +103,7 @@ impl Pair<'_> {
 
     /// The normal between two at which the farthest points are across from each other. `point` gives that of A.
     fn bisect(&self, mut low: Vector, mut high: Vector, point: impl Fn(Vector) -> Vector) -> Vector {
-        for _ in 0..HALVINGS {
+        for _ in 0..ROUNDS {
             let Some((middle, _)) = direction(low + high) else { break };
             let shift = (self.lowest(middle) - point(middle)).dot(middle.perp());
             if shift > 0.0 {
@@ -116,7 +118,7 @@ impl Pair<'_> {
 
 /// The normal of an ellipse at the point that a circle with a normal is stretched to.
 fn normal_of(half: Vector, around: Vector) -> Vector {
-    let least = FLATTEST * half.max_element();
+    let least = ALIKE * half.max_element();
     let (x, y) = (max(half.y, least) * around.x, max(half.x, least) * around.y);
     direction(Vector { x, y }).map_or(around, |(normal, _)| normal)
 }
@@ -205,7 +207,7 @@ pub(super) fn collide(a: &Polygonal, b: &Curved, pose: &Pose, prediction: f32, o
     }
     // Of shapes that overlap deeply another corner or side may be the best.
     let separation = normal.dot(points[1] - points[0]);
-    if separation < -DEEP_ELLIPSE * b.half.max_element() {
+    if separation < -DEEP * b.half.max_element() {
         let other = pair.best_normal(a);
         let found = [a.farthest(other), pair.lowest(other)];
         if other.dot(found[1] - found[0]) > separation + 1.0e-3 * b.half.max_element() {

@@ -7,7 +7,8 @@ use crate::manifold::border::{Border, is_beside};
 use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, collide};
 use crate::math::{F32x4, Pose, Vector};
 use crate::shape::{Curved, Segment, Shape, direction};
-use crate::tuning::manifold::{DEEP, DEEPER, MARGIN};
+use crate::tuning::contact::DEEP;
+use crate::tuning::manifold::MARGIN;
 
 /// The unit normal on the left of a segment; `None` if it has no length.
 pub(in crate::manifold) fn face_normal([a, b]: [Vector; 2]) -> Option<Vector> {
@@ -132,7 +133,7 @@ pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalMani
     let deepest = *points.iter().min_by(|p, q| p.separation.total_cmp(&q.separation)).unwrap_or(&first);
     let (length, way) = (along(&last) - along(&first), along(&deepest) - along(&first));
     let sag = first.separation + (last.separation - first.separation) * (way / length) - deepest.separation;
-    if deepest != first && deepest != last && sag > DEEPER * length {
+    if deepest != first && deepest != last && sag > MARGIN * length {
         if first.separation <= last.separation { last = deepest } else { first = deepest }
     }
     out.count = 0;

@@ -7,7 +7,7 @@ use super::clip::{Facing, Side, pair};
 use super::points::{Limits, push_between};
 use super::polygonal::{Edge, Polygonal};
 use crate::math::{Pose, Vector};
-use crate::tuning::manifold::SAME_DISTANCE;
+use crate::tuning::manifold::ALIKE;
 
 /// An end of one segment against the other segment.
 #[derive(Clone, Copy)]
@@ -40,7 +40,7 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32
     let reach = prediction + a.radius + b.radius;
     if !crossing && best.square > reach * reach {
         // Another feature may be nearer by the preference.
-        out.gap = best.square.sqrt() * (1.0 - SAME_DISTANCE) - a.radius - b.radius;
+        out.gap = best.square.sqrt() * (1.0 - ALIKE) - a.radius - b.radius;
         return;
     }
 
@@ -109,7 +109,7 @@ fn candidate(side: Side, own: [Vector; 2], axis: Vector, other: [Vector; 2], end
 fn shallowest(candidates: &[Candidate; 4]) -> Candidate {
     let mut best = candidates[0];
     for c in &candidates[1..] {
-        if c.height.abs() < best.height.abs() * (1.0 - SAME_DISTANCE) {
+        if c.height.abs() < best.height.abs() * (1.0 - ALIKE) {
             best = *c;
         }
     }
@@ -120,8 +120,8 @@ fn shallowest(candidates: &[Candidate; 4]) -> Candidate {
 fn nearest(candidates: &[Candidate; 4]) -> Candidate {
     let mut best = candidates[0];
     for c in &candidates[1..] {
-        let nearer = c.square < best.square * (1.0 - SAME_DISTANCE);
-        let as_near = c.square <= best.square * (1.0 + SAME_DISTANCE);
+        let nearer = c.square < best.square * (1.0 - ALIKE);
+        let as_near = c.square <= best.square * (1.0 + ALIKE);
         if nearer || (as_near && best.corner.is_some() && c.corner.is_none()) {
             best = *c;
         }

@@ -7,7 +7,7 @@ use super::gjk;
 use super::sat::{EdgeAxis, FaceAxis};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::max;
-use crate::tuning::manifold::{AXIS_SLACK, PREFER_FACES};
+use crate::tuning::manifold::{KEPT, MARGIN};
 
 /// [`FeatureCache::kind`] of a face of A.
 pub(super) const FACE_A: u8 = 1;
@@ -103,7 +103,7 @@ pub(super) trait Pair {
             out.gap = separation - sizes.radius;
             return true;
         }
-        if !((separation - before).abs() < AXIS_SLACK * sizes.smaller) {
+        if !((separation - before).abs() < KEPT * sizes.smaller) {
             return false;
         }
         let is_exact = self.build(axis, out);
@@ -121,7 +121,7 @@ pub(super) trait Pair {
         if of_b.separation > sizes.limit() {
             return Axis::FaceB(of_b);
         }
-        let preference = PREFER_FACES * sizes.smaller;
+        let preference = 2.0 * MARGIN * sizes.smaller;
         let is_of_b = of_b.separation > of_a.separation + 0.1 * preference;
         let face = if is_of_b { Axis::FaceB(of_b) } else { Axis::FaceA(of_a) };
         self.best_edges(&of_a, &of_b, face.separation() + preference).map_or(face, Axis::Edges)

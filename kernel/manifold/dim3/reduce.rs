@@ -2,7 +2,7 @@
 
 use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{F32x4, Lane, Num, Vector, max};
-use crate::tuning::manifold::{ABOUT_EQUAL, DEEPER, FLAT, HIGH, IN_THE_AIR};
+use crate::tuning::manifold::{ABOUT_EQUAL, FLAT, HIGH, IN_THE_AIR, MARGIN};
 
 /// The most candidates a manifold function collects before it reduces.
 pub(super) const MAX_CANDIDATES: usize = 64;
@@ -181,7 +181,7 @@ impl<const B: usize> Patch<B> {
         let size_squared = greatest(size);
         let (size, deepest) = (size_squared.sqrt(), -greatest(-least));
         let weights = weights(deepest, size);
-        let bar = F32x4::splat(DEEPER * size + deepest);
+        let bar = F32x4::splat(MARGIN * size + deepest);
         let first = self.those_with(|k, _| self.separation[k].le(bar)).trailing_zeros() as usize % (4 * B);
         let a = self.at(first);
         let (second, far) = self.pick(&weights, distance(a));

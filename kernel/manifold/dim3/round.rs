@@ -3,7 +3,7 @@
 use crate::manifold::LocalManifold;
 use crate::math::{Pose, Vector, clamp, max, min};
 use crate::shape::{Capsule, Triangle, nearest_fraction};
-use crate::tuning::manifold::{LINE_SINE, LINE_TURN, PARALLEL_LINES, ROUNDING, SAME_POINT};
+use crate::tuning::manifold::{CROSSED, LINE_SINE, MARGIN, ROUNDING, SAME};
 
 /// The closest points of both cores, and the radii.
 #[derive(Clone, Copy)]
@@ -200,7 +200,7 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, o
     let crossed = u.cross(v);
     let (uu, vv) = (u.length_squared(), v.length_squared());
     let is_within = |sine: f32| !(crossed.length_squared() > sine * sine * uu * vv);
-    let parallel = is_within(PARALLEL_LINES);
+    let parallel = is_within(MARGIN);
     let mut fallback = if parallel {
         unit_or(u, unit_or(v, Vector::X)).any_orthonormal()
     } else {
@@ -251,7 +251,7 @@ impl Lines {
         let ends = self.b.map(|p| clamp((p - self.a).dot(self.u) / self.uu, 0.0, 1.0));
         let (low, high) = (min(ends[0], ends[1]), max(ends[0], ends[1]));
         let shared = (high - low) * (high - low) * self.uu;
-        (shared > SAME_POINT * SAME_POINT * min(self.uu, self.vv)).then_some([low, high])
+        (shared > SAME * SAME * min(self.uu, self.vv)).then_some([low, high])
     }
 
     /// The point of A at a share, and that of B beside it.
@@ -290,7 +290,7 @@ impl Touching {
         let [first, last] = [low, high].map(across);
         let between = cores.b - cores.a;
         let sway = [first, last].map(|end| ((end.b - end.a) - between).length_squared());
-        let size = LINE_TURN * min(between.length(), cores.radius_a + cores.radius_b);
+        let size = CROSSED * min(between.length(), cores.radius_a + cores.radius_b);
         let is_line = parallel || max(sway[0], sway[1]) < size * size;
         if !is_line {
             return false;

@@ -93,7 +93,7 @@ pub(super) fn deepest(m: &LocalManifold) -> f32 {
 const TOLERANCE: f64 = 0.006;
 
 /// How much farther shapes may reach into each other along a contact's normal than along the best one. Capsules and segments
-/// that touch along a line have the normal of its middle, which is up to a tenth (`LINE_TURN`) from that of their closest
+/// that touch along a line have the normal of its middle, which is up to a tenth (`CROSSED`) from that of their closest
 /// points.
 fn slack(a: &Shape, b: &Shape, m: &LocalManifold) -> f64 {
     let length = |shape: &Shape| match shape {

@@ -5,6 +5,7 @@ use super::super::pair::Pair;
 use super::dim::ANGLE_AXES;
 use super::place::{Gradient, Masses, Place, Response};
 use crate::math::{Angular, DIM, Lane, Vector};
+use crate::tuning::solver::NO_MASS;
 
 /// What a coordinate that is locked gives way.
 #[derive(Clone, Copy, Debug)]
@@ -185,9 +186,6 @@ pub(super) fn wrapped<N: Lane>(angle: N) -> N {
     N::select(angle.lt(-half), angle + turn, angle)
 }
 
-/// Share of a diagonal element below which its pivot is rounding: the row depends on those before.
-pub(super) const NO_PIVOT: f32 = 1.0e-6;
-
 /// K = L D Lᵀ.
 pub(super) struct Factors<N, const D: usize> {
     lower: [[N; D]; D],
@@ -208,7 +206,7 @@ impl<N: Lane, const D: usize> Factors<N, D> {
                 pivot -= scaled * lower[j][m];
                 lower[j][m] = scaled;
             }
-            let counts = (k[j][j] * N::splat(NO_PIVOT)).lt(pivot);
+            let counts = (k[j][j] * N::splat(NO_MASS)).lt(pivot);
             inverse[j] = N::select(counts, N::ONE / N::select(counts, pivot, N::ONE), N::ZERO);
             for i in j + 1..D {
                 for m in 0..j {

@@ -17,9 +17,6 @@ use crate::data::Parts;
 use crate::math::{Angular, Entry, Ids, Job, Lane, Rot, Vector};
 use core::ops::Range;
 
-/// Minimum distance of two points, in metres, for which the vector between them has a direction.
-const COINCIDENT: f32 = 1.0e-6;
-
 /// An end of `N::WIDTH` lanes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
@@ -81,7 +78,7 @@ impl<N: Lane> EndRow<N> {
         let between = self.from + moved;
         let axis = self.ground.rotate(Vector::splat(Vector::X));
         let distance = between.length();
-        let is_apart = N::splat(COINCIDENT).lt(distance);
+        let is_apart = N::ZERO.lt(distance);
         let direction = between * (N::ONE / N::select(is_apart, distance, N::ONE));
         let direction = Vector::select(is_apart, direction, Vector::splat(Vector::X));
         let (angle, about) = angles([self.ground, turn.mul(self.basis)])[TURNING];

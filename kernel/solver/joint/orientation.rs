@@ -8,12 +8,13 @@
 //! longer than the maximum is shortened to it.
 
 use super::super::pair::Pair;
-use super::block::{Block, Factors, Locked, NO_PIVOT, Solved};
+use super::block::{Block, Factors, Locked, Solved};
 use super::def::OrientationMotor;
 use super::dim::{TURNS, rotation_vector, units};
 use super::place::{Gradient, Masses, Place, Response};
 use super::single::laws;
 use crate::math::{Lane, Rot, Vector};
+use crate::tuning::solver::NO_MASS;
 
 /// An orientation motor of `N::WIDTH` lanes.
 #[derive(Clone, Copy, Debug)]
@@ -124,7 +125,7 @@ impl<N: Lane> OrientationRow<N> {
         for i in 0..TURNS {
             let own = responses[i].along(&gradients[i]);
             // What the block holds already, the motor cannot turn.
-            let is_free = (alone[i].along(&gradients[i]) * N::splat(NO_PIVOT)).lt(own);
+            let is_free = (alone[i].along(&gradients[i]) * N::splat(NO_MASS)).lt(own);
             moves[i] = N::select(N::and(is_free, drives), N::ONE, N::ZERO);
             for j in 0..=i {
                 k[i][j] = responses[i].along(&gradients[j]) * (moves[i] * moves[j]);

@@ -123,9 +123,6 @@ pub(super) struct Place<N> {
     pub(super) bases: [Rot<N>; 2],
 }
 
-/// Minimum distance of two points, in metres, for which the vector between them has a direction.
-const COINCIDENT: f32 = 1.0e-6;
-
 impl<N: Lane> Place<N> {
     /// From B's centre of mass to its anchor.
     #[inline(always)]
@@ -172,7 +169,7 @@ impl<N: Lane> Place<N> {
     #[inline(always)]
     pub(super) fn apart(&self) -> (N, Vector<N>) {
         let distance = self.between.length();
-        let is_apart = N::splat(COINCIDENT).lt(distance);
+        let is_apart = N::ZERO.lt(distance);
         let scaled = self.between * (N::ONE / N::select(is_apart, distance, N::ONE));
         (distance, Vector::select(is_apart, scaled, Vector::splat(Vector::X)))
     }

@@ -13,17 +13,7 @@ use super::place::{Gradient, Masses, Start};
 use super::single::{MotorRow, Single, laws, turns_near};
 use super::table::{JointReaction, Record};
 use crate::math::{Angular, DIM, Ids, Lane, Vector};
-
-/// Damping ratio of what is rigid. Its frequency is the highest that the substeps resolve, a quarter of their rate.
-const RIGID_DAMPING: f32 = 2.0;
-/// Share of the rate of the substeps that is the frequency of what is rigid.
-const RIGID_FREQUENCY: f32 = 0.25;
-/// The same for what is solved directly.
-const DIRECT_FREQUENCY: f32 = 2.0;
-/// Share of an error that is taken back in a substep where nothing is soft.
-const EXACT_SHARE: f32 = 0.2;
-/// Softness of what is not soft, as a share of the inverse mass: for joints that hold what others hold already.
-pub(super) const NOT_SOFT: f32 = 1.0e-6;
+use crate::tuning::solver::{DIRECT_FREQUENCY, NO_MASS, RIGID_DAMPING, RIGID_FREQUENCY};
 
 /// How what is rigid is held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,7 +73,7 @@ fn softening(give: Give, hold: Hold, h: f32) -> (f32, f32, f32, bool) {
             let (rate, share) = match hold {
                 Hold::Row => of_spring(RIGID_FREQUENCY / h, RIGID_DAMPING),
                 Hold::Tree => of_spring(DIRECT_FREQUENCY / h, RIGID_DAMPING),
-                Hold::Exact => (EXACT_SHARE / h, NOT_SOFT),
+                Hold::Exact => (RIGID_FREQUENCY / h, NO_MASS),
             };
             (rate, share, 0.0, false)
         }

@@ -2,11 +2,12 @@
 
 use super::super::SubstepParams;
 use super::super::pair::Pair;
-use super::block::{Block, Locked, NO_PIVOT, Softening, Solved};
+use super::block::{Block, Locked, Softening, Solved};
 use super::def::Drive;
 use super::dim::{ANGLES, TURNING};
 use super::place::{Gradient, Place, Response};
 use crate::math::{Angular, DIM, Lane};
+use crate::tuning::solver::NO_MASS;
 
 /// A motor of `N::WIDTH` lanes, or a spring.
 #[derive(Clone, Copy, Debug)]
@@ -158,7 +159,7 @@ impl<N: Lane> Single<N> {
     ) -> N {
         let (k, own) = (response.along(gradient), alone.along(gradient));
         // What the block holds already, a single row cannot move.
-        let moves = (own * N::splat(NO_PIVOT)).lt(k);
+        let moves = (own * N::splat(NO_MASS)).lt(k);
         let k = N::select(moves, k + (own - k) * self.may_contradict, N::ZERO);
         let before = self.impulse();
         let mass = N::select(moves, N::ONE / N::select(moves, k, N::ONE), N::ZERO);

@@ -23,11 +23,9 @@ use crate::data::{BitSet, Parts};
 use crate::graph::{COLOR_COUNT, ColorGraph, ConstraintKind};
 use crate::math::Vector;
 use crate::thread_pool::ThreadPool;
+use crate::tuning::solver::FEWEST;
 
 const KIND: ConstraintKind = ConstraintKind::Joint;
-
-/// Minimum number of joints of a tree. Fewer are solved as well one by one.
-const FEWEST: usize = 3;
 
 /// The trees of a step.
 #[derive(Clone, Debug, Default)]
@@ -140,14 +138,8 @@ impl JointTrees {
             return;
         }
         self.make_room(records);
-        let (forest, hold) = (&self.forest, self.hold);
-        let trees = &Trees {
-            joints: Parts::of(&mut self.joints),
-            singles: Parts::of(&mut self.singles),
-            links: Parts::of(&mut self.links),
-            nodes: Parts::of(&mut self.nodes),
-            bodies: Parts::of(&mut self.bodies),
-        };
+        let hold = self.hold;
+        let (forest, trees) = self.split();
         let constraints = from.input.bodies.constraints(KIND);
         pool.run(forest.trees.len(), |number, _| {
             let span = &forest.trees[number];
@@ -181,6 +173,19 @@ impl JointTrees {
                 joint.load = record.reaction.force.length() * from.params.h;
             }
         });
+    }
+
+    /// The forest, and the columns of its trees.
+    fn split(&mut self) -> (&Forest, Trees<'_>) {
+        let Self { forest, joints, singles, links, nodes, bodies, .. } = self;
+        let trees = Trees {
+            joints: Parts::of(joints),
+            singles: Parts::of(singles),
+            links: Parts::of(links),
+            nodes: Parts::of(nodes),
+            bodies: Parts::of(bodies),
+        };
+        (forest, trees)
     }
 
     fn make_room(&mut self, records: &Records) {
@@ -235,14 +240,7 @@ impl JointTrees {
         number: impl Fn(usize) -> usize + Sync,
         f: impl Fn(Tree) + Sync,
     ) {
-        let forest = &self.forest;
-        let trees = &Trees {
-            joints: Parts::of(&mut self.joints),
-            singles: Parts::of(&mut self.singles),
-            links: Parts::of(&mut self.links),
-            nodes: Parts::of(&mut self.nodes),
-            bodies: Parts::of(&mut self.bodies),
-        };
+        let (forest, trees) = self.split();
         // SAFETY: each tree is taken once, and no two share a joint or a body.
         pool.run(count, |k, _| f(unsafe { trees.take(&forest.trees[number(k)]) }));
     }

@@ -10,19 +10,12 @@ use super::elimination::{self, Link, Node, Screw};
 use super::forest::GROUND;
 use super::orientation::OrientationRow;
 use super::place::{Gradient, Response};
-use super::row::{NOT_SOFT, Row};
+use super::row::Row;
 use super::single::Single;
 use crate::math::{Angular, DIM, InvInertia, Vector};
+use crate::tuning::manifold::SAME;
+use crate::tuning::solver::{JOINT_ROUNDS, NO_MASS, SMALL_TURN};
 use core::ops::Range;
-
-/// Largest angle that is taken back in a substep, rad. Bodies that turn farther gain energy.
-const MOST_TURN: f32 = 0.25;
-
-/// Maximum number of rounds over limits and motors of a tree in a pass. Fewer let limits that are struck at once be passed.
-const ROUNDS: usize = 8;
-
-/// Rounds end when they change rates by less than this share of the first.
-const SETTLED: f32 = 0.01;
 
 /// Softness of a spring in the relax pass, where it takes no part, as a multiple of its inverse mass.
 const LOOSE: f64 = 1.0e12;
@@ -155,7 +148,7 @@ impl Tree<'_> {
         unsafe {
             self.apply(1.0, sweep);
             let mut first = 0.0;
-            for round in 0..ROUNDS {
+            for round in 0..JOINT_ROUNDS {
                 let (mut most, mut count) = (0.0f32, 0);
                 for k in 0..self.joints.len() {
                     if round == 0 {
@@ -166,7 +159,7 @@ impl Tree<'_> {
                     (most, count) = (most.max(change), count + acting);
                 }
                 first = if round == 0 { most } else { first };
-                if count < 2 || most <= SETTLED * first {
+                if count < 2 || most <= SAME * first {
                     break;
                 }
             }
@@ -364,12 +357,13 @@ impl TreeJoint {
             let (gradient, soft) = (&block.gradients[i], &locked.softening);
             let own = block.responses[i].along(gradient);
             let mut rate = gradient.rate(&pair);
-            let mut softness = f64::from(own * NOT_SOFT);
+            let mut softness = f64::from(own * NO_MASS);
             if is_biased {
                 let error = block.values[i] - locked.target;
                 let error = if i < DIM { error } else { wrapped(error) };
                 let bias = soft.bias_rate * error;
-                let most = if i < DIM { sweep.params.max_push_speed } else { MOST_TURN * sweep.params.inv_h };
+                let most =
+                    if i < DIM { sweep.params.max_push_speed } else { SMALL_TURN * sweep.params.inv_h };
                 rate += if soft.is_spring > 0.0 { bias } else { bias.clamp(-most, most) };
                 softness = f64::from(own * soft.share + soft.more);
                 rate += (own * soft.share + soft.more) * locked.impulse;

@@ -8,7 +8,7 @@
 use super::super::gjk::Core;
 use super::super::view::MatrixPose;
 use crate::math::Vector;
-use crate::tuning::manifold::{DEPTH_ACCURACY, FLAT};
+use crate::tuning::manifold::{FLAT, SAME};
 
 type Wide = Vector<f64>;
 
@@ -34,7 +34,7 @@ struct Polytope {
     size: f64,
 }
 
-/// The normal from A to B along which the cores are least deep, to within [`DEPTH_ACCURACY`]. `None` if their difference is
+/// The normal from A to B along which the cores are least deep, to within [`SAME`]. `None` if their difference is
 /// flat. Not inlined, since its stack frame is large.
 #[inline(never)]
 pub(super) fn shallowest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> Option<Vector> {
@@ -52,7 +52,7 @@ pub(super) fn shallowest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> 
         if height < depth {
             (depth, normal) = (height, face.normal);
         }
-        if !(depth - face.offset > DEPTH_ACCURACY * depth) || !polytope.add(corner) {
+        if !(depth - face.offset > f64::from(SAME) * depth) || !polytope.add(corner) {
             return (depth < f64::INFINITY).then(|| normal.narrow());
         }
     }

@@ -19,7 +19,9 @@ use super::view::{MatrixPose, View};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Pose, Vector, max, min};
 use crate::shape::Curved;
-use crate::tuning::manifold::{APART, APART_ROUNDS, AXIS_SLACK, DEEP, FACING, GAIN, MARGIN, PREFER_FACES};
+use crate::tuning::contact::DEEP;
+use crate::tuning::manifold::{FACING, KEPT, MARGIN, ROUNDING};
+use crate::tuning::sweeps::ROUNDS;
 use party::Party;
 use patch::{Phase, Region};
 pub use rim::lead_rims;
@@ -223,7 +225,7 @@ impl<'a, A: Party> Pair<'a, A> {
             return true;
         }
         if matches!(found.axis, Axis::Line)
-            || !((found.separation - cache.separation).abs() < AXIS_SLACK * self.smaller)
+            || !((found.separation - cache.separation).abs() < KEPT * self.smaller)
         {
             return false;
         }
@@ -239,7 +241,7 @@ impl<'a, A: Party> Pair<'a, A> {
     fn search(&self, cache: &mut FeatureCache, out: &mut LocalManifold) {
         let known = *cache;
         let phase = if known.kind == PLANE_A || known.kind == PLANE_B { known.b } else { 0 };
-        let preference = PREFER_FACES * self.smaller;
+        let preference = 2.0 * MARGIN * self.smaller;
         let mut best = self.plane_b(0);
         let mut consider = |found: Found, bonus: f32| {
             if found.separation + bonus > best.separation {
@@ -446,7 +448,7 @@ impl<'a, A: Party> Pair<'a, A> {
     /// Whether no axis is clearly less deep, by a point of each core. If the ball of a radius about a point of B is within A,
     /// all axes are at least as deep as that, and the other way around.
     fn is_best(&self, found: &Found, points: Option<[Vector; 2]>) -> bool {
-        let sure = found.separation + AXIS_SLACK * self.smaller;
+        let sure = found.separation + KEPT * self.smaller;
         sure >= 0.0
             || points.is_some_and(|[on_a, on_b]| {
                 let on_a = self.b_in_a.direction_in(on_a - self.b_in_a.position);
@@ -483,7 +485,7 @@ impl<'a, A: Party> Pair<'a, A> {
 
     /// The axis that separates the cores best, near a given one, and the nearest points.
     fn refine(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
-        let apart = APART * self.smaller;
+        let apart = DEEP * self.smaller;
         if !self.surely_overlaps(start)
             && let Some(c) = gjk::closest_within(self.a, self.b, &self.b_in_a, start.normal, f32::INFINITY)
             && c.distance > gjk::resolution(self.larger, self.smaller)
@@ -494,7 +496,7 @@ impl<'a, A: Party> Pair<'a, A> {
         let mut best = (Found { axis: Axis::Line, ..*start }, None);
         let mut normal = start.normal;
         let mut separation = start.separation;
-        for _ in 0..APART_ROUNDS {
+        for _ in 0..ROUNDS {
             let push = max(apart - separation, 0.0);
             let mut frame = self.b_in_a;
             frame.position += normal * push;
@@ -506,12 +508,13 @@ impl<'a, A: Party> Pair<'a, A> {
             // Moved along another direction, the nearest points are not across from each other.
             let aside = (closest.normal - normal).length() * push;
             let points = Some([closest.a, closest.b - normal * push]);
-            if gain >= -GAIN * self.smaller {
+            if gain >= -ROUNDING * self.smaller {
                 best = (Found { axis: Axis::Line, normal: closest.normal, separation: found }, points);
             } else if best.1.is_none() {
                 best.1 = points;
             }
-            if !(gain > GAIN * self.smaller || gain >= -GAIN * self.smaller && aside > MARGIN * self.smaller)
+            if !(gain > ROUNDING * self.smaller
+                || gain >= -ROUNDING * self.smaller && aside > MARGIN * self.smaller)
             {
                 break;
             }

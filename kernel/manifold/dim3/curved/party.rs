@@ -6,7 +6,7 @@ use super::super::view::{MatrixPose, View};
 use super::patch::{Disc, Face, Patch};
 use crate::math::{Vector, max, min};
 use crate::shape::Curved;
-use crate::tuning::manifold::{LEVEL_SINE, ROLLING};
+use crate::tuning::manifold::{ROLLING, SIDEWAYS};
 
 /// The first shape of a pair, in its own frame.
 pub(super) trait Party: Core {
@@ -146,7 +146,7 @@ impl Party for Curved {
 
 fn is_across(ends: &[Vector; 2], direction: Vector) -> bool {
     let along = ends[1] - ends[0];
-    along.dot(direction).abs() <= LEVEL_SINE * along.length() * direction.length()
+    along.dot(direction).abs() <= SIDEWAYS * along.length() * direction.length()
 }
 
 /// The part of a direction across the axis, and its unit vector.

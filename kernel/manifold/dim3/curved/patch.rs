@@ -9,7 +9,7 @@ use super::super::reduce::{Candidates, MAX_CANDIDATES};
 use super::super::round::Lines;
 use crate::manifold::LocalPoint;
 use crate::math::{Vector, atan2, min, sin_cos};
-use crate::tuning::manifold::{CROSSED, LEVEL_SINE, LOWEST, MARGIN};
+use crate::tuning::manifold::{ALIKE, CROSSED, MARGIN, SIDEWAYS};
 use core::f64::consts::TAU;
 
 /// A part of a surface, in A's frame.
@@ -154,7 +154,7 @@ impl Region {
                 nearest = if cosine(spokes[i]) > cosine(spokes[nearest]) { i } else { nearest };
             }
             let above = tilt * disc.radius * (1.0 - cosine(spokes[nearest]));
-            if tilt > LEVEL_SINE || above > LOWEST * min(disc.radius, self.extent) {
+            if tilt > SIDEWAYS || above > ALIKE * min(disc.radius, self.extent) {
                 spoke = quarter_turns(lowest)[(4 - nearest) % 4];
             }
         }
@@ -308,7 +308,7 @@ impl Region {
     pub fn parallel_lines(&mut self, a: &[Vector; 2], b: &[Vector; 2]) -> bool {
         let lines = Lines::new(a[0], a[1] - a[0], *b, b[1] - b[0]);
         let Lines { u, v, uu, vv, .. } = lines;
-        if !(uu > 0.0 && vv > 0.0 && u.cross(v).length_squared() <= LEVEL_SINE * LEVEL_SINE * uu * vv) {
+        if !(uu > 0.0 && vv > 0.0 && u.cross(v).length_squared() <= SIDEWAYS * SIDEWAYS * uu * vv) {
             return false;
         }
         let Some(range) = lines.shared() else { return false };

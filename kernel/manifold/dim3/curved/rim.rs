@@ -8,7 +8,9 @@ use super::party::across;
 use crate::manifold::LocalManifold;
 use crate::math::{Angular, Pose, Rot, Vector, min};
 use crate::shape::{Curved, Shape};
-use crate::tuning::manifold::{AT_RIM, RIM_LAG, RIM_LEVEL, RIM_RUN, ROLLING};
+use crate::tuning::contact::MOST_WAY;
+use crate::tuning::manifold::{ALIKE, ROLLING};
+use crate::tuning::sweeps::LAG;
 
 /// Moves points on the lowest place of a rim, up to `near` apart, to where that will be once B has turned by `turn` against A,
 /// a rotation vector in world axes. `out` is the contact of the shapes, `rotation_a` that of A in the world, `pose_b_in_a`
@@ -59,11 +61,11 @@ impl Rim {
         // Seen from the shape, the other surface turns the other way.
         let ((lean, around), (lean_then, around_then)) = (across(down), across(down + down.cross(turn)));
         let end = shape.end_along(lean, down.y);
-        let leans = lean > RIM_LEVEL && lean < ROLLING;
+        let leans = lean > ALIKE && lean < ROLLING;
         let radius = if leans { shape.radius_of(end) } else { 0.0 };
         let lowest = around * radius + Vector::Y * shape.height_of(end);
         let run = around_then - around;
-        let runs = lean_then > RIM_LEVEL && run.length_squared() < RIM_RUN * RIM_RUN;
+        let runs = lean_then > ALIKE && run.length_squared() < MOST_WAY * MOST_WAY;
         let shift = if runs { run * radius } else { Vector::ZERO };
         Self { lowest, shift, rise: -shift.dot(down), radius, lean }
     }
@@ -78,11 +80,11 @@ impl Rim {
         let is_full = out.count == out.points.len();
         let mut allowed = f32::INFINITY;
         for p in &mut out.points[..out.count] {
-            if p.separation <= near && (to_shape(p.point) - self.lowest).length() < AT_RIM * self.radius {
+            if p.separation <= near && (to_shape(p.point) - self.lowest).length() < LAG * self.radius {
                 p.point += from_shape(self.shift);
                 p.separation += self.rise;
                 if !is_full {
-                    allowed = RIM_LAG * self.lean * self.radius;
+                    allowed = LAG * self.lean * self.radius;
                 }
             }
         }

@@ -8,7 +8,7 @@ use crate::manifold::pairs::FARTHEST;
 use crate::manifold::{FeatureCache, LocalManifold, collide};
 use crate::math::{Pose, Rot, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Curved, HalfSpace, Segment, Shape, Triangle};
-use crate::tuning::manifold::{AXIS_SLACK, DEPTH_ACCURACY, LOWEST, MARGIN, PREFER_FACES};
+use crate::tuning::manifold::{ALIKE, KEPT, MARGIN, SAME};
 use proptest::prelude::*;
 
 fn curved() -> impl Strategy<Value = Shape> {
@@ -91,15 +91,13 @@ fn extent(shape: &Shape) -> f32 {
 /// How much deeper than the best axis the found one may be: what planes are preferred by, how sure the search is, the share
 /// of the depth at which it ends, and the rounding of positions of a metre or two.
 fn allowed(a: &Shape, b: &Shape, best: f32) -> f32 {
-    PREFER_FACES.max(AXIS_SLACK) * extent(a).min(extent(b))
-        + DEPTH_ACCURACY as f32 * (-best).max(0.0)
-        + 1.0e-4
+    KEPT * extent(a).min(extent(b)) + SAME * (-best).max(0.0) + 1.0e-4
 }
 
 /// How far points may be from where the axis has them: an axis is exact, and a region ends, to within a thousandth of the
 /// smaller shape. A plane that lacks its nearest point gets one of an axis up to the preference of planes farther out.
 fn inexact(a: &Shape, b: &Shape) -> f32 {
-    PREFER_FACES.max(MARGIN) * extent(a).min(extent(b)) + 1.0e-4
+    2.0 * MARGIN * extent(a).min(extent(b)) + 1.0e-4
 }
 
 fn check(a: &Shape, b: &Shape, pose: &Pose) -> Result<(), TestCaseError> {
@@ -185,7 +183,7 @@ proptest! {
         prop_assert_eq!(m.count > 0, lowest.y <= 0.05);
         if m.count > 0 {
             // The points of a circle stay while one is nearly the lowest.
-            prop_assert!((deepest(&m) - lowest.y).abs() < LOWEST + 1e-5, "{} {}", deepest(&m), lowest.y);
+            prop_assert!((deepest(&m) - lowest.y).abs() < ALIKE + 1e-5, "{} {}", deepest(&m), lowest.y);
         } else {
             prop_assert!((m.gap - lowest.y).abs() < 1e-5);
         }
