@@ -50,6 +50,8 @@ enum Place {
     Ground,
     /// At the collider's surface where it is now, half of the separation below it.
     Collider,
+    /// Where they meet, moved with the collider to where it is now.
+    Moved,
 }
 
 impl<'a> Seen<'a> {
@@ -75,8 +77,14 @@ impl<'a> Seen<'a> {
         if contact.flags.has(ContactFlags::COMPOSITE) && !is_recycled && closing != 0.0 {
             let all = input.predicted_motion(contact);
             motion = all * (sign * closing / -manifold.normal.dot(all));
+            let is_dynamic = contact.bodies.map(|body| input.is_dynamic(body));
             let placed_on = usize::from(matches!(shapes[0], Shape::Composite(_)));
-            place = if placed_on == side { Place::Collider } else { Place::Ground };
+            place = match is_dynamic {
+                [true, true] if placed_on == side => Place::Collider,
+                [true, true] => Place::Ground,
+                _ if is_dynamic[side] => Place::Moved,
+                _ => Place::Meeting,
+            };
         }
         let unit = input.bodies.length_unit();
         let (flush, below) = (FLUSH * unit + clipped, input.tolerance);
@@ -92,6 +100,7 @@ impl<'a> Seen<'a> {
                 Place::Meeting => middle - gap * 0.5,
                 Place::Ground => middle - half,
                 Place::Collider => middle + half + self.motion - gap,
+                Place::Moved => middle + self.motion - gap * 0.5,
             };
             [ground, ground + gap]
         })

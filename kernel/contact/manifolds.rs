@@ -53,12 +53,13 @@ pub(super) fn touches<W>(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut W
 }
 
 /// Adds the manifolds of two shapes of which one is composite, margins not subtracted. The motion is that of B against A in
-/// this step, in world axes. Returns a lower bound of the distance between the shapes.
+/// this step, in world axes; parts farther away than `met` may be passed by. Returns a lower bound of the distance between the
+/// shapes.
 pub(super) fn collide_parts<S: ManifoldSource>(
     input: &NarrowPhaseInput<S>,
     contact: &mut Contact,
     prediction: f32,
-    motion: Vector,
+    (motion, met): (Vector, f32),
     buffers: &mut WorkerBuffers<S::Workspace>,
 ) -> f32 {
     let [a, b] = contact.colliders;
@@ -70,7 +71,7 @@ pub(super) fn collide_parts<S: ManifoldSource>(
         facets.map_or(&[][..], |facets| facets.groups())
     });
     let ground = contact.bodies.map(|body| !input.is_dynamic(body));
-    let look = Look { prediction, motion: pose_a.rotation.inverse_rotate(motion), ground, groups };
+    let look = Look { prediction, motion: pose_a.rotation.inverse_rotate(motion), met, ground, groups };
     let WorkerBuffers { composite, local, .. } = buffers;
     composite.cache = contact.cache;
     let gap = manifold::collide_composite(shapes[0], shapes[1], &relative, look, composite, local);

@@ -399,10 +399,17 @@ fn search_parts<S: ManifoldSource>(
     }
     let near = input.near(contact);
     let motion = if prediction > near { input.predicted_motion(contact) } else { Vector::ZERO };
-    let near = near + (farthest - prediction);
-    let gap = manifolds::collide_parts(input, contact, near + margin, motion, buffers);
+    let turning = farthest - prediction;
+    let near = near + turning;
+    let met = if sweep::is_straight(input, contact) {
+        sweep::met_at(input, contact) + turning
+    } else {
+        f32::INFINITY
+    };
+    let gap = manifolds::collide_parts(input, contact, near + margin, (motion, met + margin), buffers);
     // Without any part the gap is infinite.
     let known = if buffers.local.is_empty() && gap.is_finite() { max(gap - margin, near) } else { near };
+    let known = min(known, buffers.composite.passed - margin);
     Search { prediction: known, meeting: None, has_far: false }
 }
 

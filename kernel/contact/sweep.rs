@@ -117,6 +117,11 @@ pub(super) fn may_pass_by<S>(
         && motion.closing(normal, offset) * (AHEAD * input.dt) > gap
 }
 
+/// The distance at which two shapes that move past each other count as having met.
+pub(super) fn met_at<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> f32 {
+    MET * Motion::new(input, contact).met
+}
+
 /// Whether the bodies turn little in this step. The solver keeps the arms of the step's start. What turns farther gains energy
 /// if it is pushed where it comes to.
 pub(super) fn is_straight<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> bool {

@@ -14,6 +14,8 @@ use core::cell::Cell;
 pub struct CompositeBuffers {
     /// That of the pair, where a surface counts as one solid; see [`collide`](super::collide).
     pub cache: FeatureCache,
+    /// A lower bound of the distance to parts that are passed by.
+    pub passed: f32,
     parts: PartBuffers,
     merging: Merging,
 }
@@ -30,8 +32,10 @@ pub fn collide_composite(
 ) -> f32 {
     let cache = Cell::new(buffers.cache);
     let gap = collide_parts([a, b], pose_b_in_a, look, false, &cache, &mut buffers.parts);
-    buffers.cache = cache.get();
+    (buffers.cache, buffers.passed) = (cache.get(), buffers.parts.passed);
+    let start = out.len();
     merge(&mut buffers.parts.found, &mut buffers.merging, out);
+    out[start..].iter_mut().for_each(|m| m.place_on_mover(look.ground));
     if buffers.parts.found.is_empty() { gap } else { 0.0 }
 }
 

@@ -29,7 +29,8 @@ pub struct LocalManifold {
     /// The groups of the facets of A and B, see [`Look::groups`](super::Look::groups); 0 without.
     pub groups: [u8; 2],
     /// How far [`Look::motion`](super::Look::motion) closes the shapes along the normal until they meet, in metres; 0 if they are near now. If not 0, points
-    /// are on the shape that is not composite, or on B, where it is now.
+    /// are where they meet, moved back with the shape that moves. If both do, with that which is not composite, or with B, and half
+    /// of the distance above it.
     pub closing: f32,
 }
 
@@ -45,6 +46,18 @@ impl LocalManifold {
             [] => self.gap,
             points => points.iter().fold(f32::INFINITY, |least, p| min(least, p.separation)),
         }
+    }
+
+    /// Puts points of shapes that meet later onto the shape that moves, if the other one is ground: its arms are exact then.
+    pub(super) fn place_on_mover(&mut self, ground: [bool; 2]) {
+        let side = match ground {
+            [true, false] => 1.0,
+            [false, true] => -1.0,
+            _ => return,
+        };
+        let shift = self.normal * (0.5 * side * self.closing);
+        let count = self.count;
+        self.points[..count].iter_mut().for_each(|p| p.point += shift);
     }
 
     /// Adds a point. Points beyond `MAX_POINTS` are dropped: functions that find more reduce first.

@@ -7,9 +7,11 @@ use crate::math::Vector;
 pub struct Look<'a> {
     /// Points up to this distance are found, in metres.
     pub prediction: f32,
-    /// How far B moves against A until the end of the step, in A's frame. Parts farther away than the prediction are followed to
-    /// where they meet.
+    /// How far B moves against A until the end of the step, in A's frame. Parts that may be passed by are followed to where they
+    /// meet.
     pub motion: Vector,
+    /// Parts farther away than this may be passed by. Nearer ones count as met, or may be met by turning.
+    pub met: f32,
     /// Whether A and B are ground: not dynamic. Ground is never inside of what is dynamic.
     pub ground: [bool; 2],
     /// The group of each facet of A and of B; facets beyond the list have 0. Manifolds of different groups are not merged.
@@ -22,7 +24,7 @@ impl<'a> Look<'a> {
 
     /// A look at two bodies up to a distance, without motion.
     pub fn up_to(prediction: f32) -> Self {
-        Self { prediction, motion: Vector::ZERO, ground: [false; 2], groups: Self::ALIKE }
+        Self { prediction, motion: Vector::ZERO, met: f32::INFINITY, ground: [false; 2], groups: Self::ALIKE }
     }
 
     /// The same with A and B swapped; the motion is given in B's frame.

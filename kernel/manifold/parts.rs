@@ -9,7 +9,7 @@ use super::{FeatureCache, LocalManifold, Look, collide};
 use crate::math::{F32x4, Lane, MAX_POINTS, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Shape, Surface};
 use crate::tuning::manifold::{FACING, MARGIN, POKE, SAME, SAME_NORMAL, SIDEWAYS, TURNED};
-use crate::tuning::sweeps::{CORE_SHARE, MET, ROUNDS};
+use crate::tuning::sweeps::{AHEAD, MET, ROUNDS};
 use core::cell::Cell;
 
 /// Up to this number of vertices are looked through for the farthest one, for each facet that may be on the wrong side.
@@ -22,12 +22,17 @@ pub(super) struct PartBuffers {
     pub(super) found: Vec<LocalManifold>,
     /// For each of `found` what it replaced, if it is doubtful.
     doubts: Vec<Option<Doubt>>,
+    /// Near parts that the motion may lead past, with their present contacts.
+    passing: Vec<(u32, LocalManifold, Option<Doubt>)>,
+    /// A lower bound of the distance to parts that are passed by.
+    pub(super) passed: f32,
 }
 
 impl PartBuffers {
     pub(super) fn clear(&mut self) {
         self.found.clear();
         self.doubts.clear();
+        self.passed = f32::INFINITY;
     }
 }
 
@@ -81,7 +86,7 @@ pub(super) struct Pass<'a> {
     pub(super) name: u32,
     /// Whether each part is collided as if it were the only one, up to the end of the motion.
     pub(super) alone: bool,
-    /// Whether points of what is met later are on the composite where it is now, not on the other shape.
+    /// Whether points of what is met later are on the composite where it is now, not on the other shape, if both move.
     pub(super) on_composite: bool,
     /// Whether the composite is B of the pair. Two solids are then collided in that order, which prefers faces of A.
     pub(super) is_b: bool,
@@ -137,6 +142,9 @@ impl<'a> Pass<'a> {
             }
         }
         buffers.parts = parts;
+        if !buffers.passing.is_empty() {
+            self.pass_by(start, buffers);
+        }
         if buffers.found.len() == start && !self.alone {
             // Who only asks whether shapes touch does not need to know how far others are.
             if self.look.prediction <= 0.0 {
@@ -156,7 +164,7 @@ impl<'a> Pass<'a> {
         let far = if self.alone {
             F32x4::and(far, F32x4::splat(prediction).lt(gaps.ever))
         } else if motion != Vector::ZERO {
-            F32x4::and(far, F32x4::splat(MET * prediction).lt(gaps.ever))
+            F32x4::and(far, F32x4::splat(self.met_ahead()).lt(gaps.ever))
         } else {
             far
         };
@@ -201,7 +209,7 @@ impl<'a> Pass<'a> {
         let has_normal = |m: &LocalManifold| !is_corner || m.normal.dot(doubt.normal) > TURNED;
         // The tread of a step has the floor's normal, and is another plane.
         let is_plane = |m: &LocalManifold| {
-            m.normal.dot(own.normal) > SAME_NORMAL && at_meeting(m) <= at_meeting(own) + slack
+            m.normal.dot(own.normal) > SAME_NORMAL && at_meeting(m) <= at_meeting(own) + SAME * prediction
         };
         certain().any(|m| has_normal(m) && at_meeting(m) <= prediction) && !certain().any(is_plane)
     }
@@ -220,24 +228,55 @@ impl<'a> Pass<'a> {
             local.gap = now;
         } else {
             doubt = self.collide_part(part, prediction, &mut local);
+            if self.may_pass_by(&local) {
+                buffers.passing.push((part, local, doubt));
+                return local.lower_bound();
+            }
             self.look_ahead(part, &mut local);
         }
         if local.count == 0 {
             gap = local.gap;
-            let may_meet = !self.alone && is_moving && !(ever > MET * prediction);
+            let may_meet = !self.alone && is_moving && !(ever > self.met_ahead());
             if may_meet {
-                doubt = self.cast(part, &mut local);
+                doubt = self.cast(part, self.met_ahead(), &mut local);
             }
             if local.count == 0 {
                 return gap;
             }
         }
+        self.push(part, local, doubt, buffers);
+        gap
+    }
+
+    /// Adds a contact of a part.
+    fn push(&self, part: u32, mut local: LocalManifold, doubt: Option<Doubt>, buffers: &mut PartBuffers) {
         let count = local.count;
         local.groups = [self.look.group(0, part), self.other_group];
         local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, part, p.feature]));
         buffers.found.push(local);
         buffers.doubts.push(doubt);
-        gap
+    }
+
+    /// Follows the motion to the parts that it may lead past, unless something that touches now stops it.
+    fn pass_by(&self, start: usize, buffers: &mut PartBuffers) {
+        let Look { prediction, motion, met, .. } = self.look;
+        let stops = |m: &LocalManifold| m.lower_bound() <= met && -m.normal.dot(motion) > prediction;
+        let is_stopped = buffers.found[start..].iter().any(stops);
+        let mut passing = core::mem::take(&mut buffers.passing);
+        for (part, mut local, mut doubt) in passing.drain(..) {
+            let gap = local.lower_bound();
+            if is_stopped {
+                self.look_ahead(part, &mut local);
+            } else {
+                doubt = self.cast(part, met, &mut local);
+            }
+            if local.count > 0 {
+                self.push(part, local, doubt, buffers);
+            } else {
+                buffers.passed = min(buffers.passed, gap);
+            }
+        }
+        buffers.passing = passing;
     }
 
     /// Fills `local` with the contact of one part. Returns what it replaced, if it is doubtful.
@@ -253,6 +292,17 @@ impl<'a> Pass<'a> {
         }
         let surface = self.composite.surface().filter(|_| local.count > 0);
         surface.and_then(|surface| self.keep_on_surface(surface, part, prediction, local))
+    }
+
+    /// Whether the motion may lead past a part that has points: it crosses their plane.
+    fn may_pass_by(&self, local: &LocalManifold) -> bool {
+        let gap = local.lower_bound();
+        local.count > 0 && gap > self.look.met && -local.normal.dot(self.look.motion) * AHEAD > gap
+    }
+
+    /// The distance at which parts that are farther away than the prediction have met.
+    fn met_ahead(&self) -> f32 {
+        min(self.look.met, MET * self.look.prediction)
     }
 
     /// Adds the points that the motion brings to the part of a contact. What is struck at one of them turns to the others.
@@ -293,11 +343,10 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// Follows the motion to where a part that is farther away than the prediction meets the other shape. `local` receives the
-    /// contact there, with the separations of now, if they meet. Returns what it replaced, if it is doubtful.
-    fn cast(&self, part: u32, local: &mut LocalManifold) -> Option<Doubt> {
+    /// Follows the motion to where a part and the other shape are `met` apart. `local` receives the contact there, with the
+    /// separations of now, if they meet. Returns what it replaced, if it is doubtful.
+    fn cast(&self, part: u32, met: f32, local: &mut LocalManifold) -> Option<Doubt> {
         let way = self.look.motion;
-        let met = MET * self.look.prediction;
         let (mut share, mut beside) = (0.0, None);
         for round in 1..=ROUNDS {
             let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
@@ -311,7 +360,10 @@ impl<'a> Pass<'a> {
             let gap = local.lower_bound();
             if gap <= met || round == ROUNDS {
                 let normal = local.normal;
-                let doubt = there.collide_part(part, self.look.prediction, local);
+                // At an edge the normal turns until they touch.
+                share = min(share + max(gap, 0.0) / closing, 1.0);
+                let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
+                let doubt = Pass { pose: &pose, ..*self }.collide_part(part, self.look.prediction, local);
                 if local.count > 0
                     && beside.is_none_or(|beside: Vector| beside.dot(local.normal) > SAME_NORMAL)
                 {
@@ -339,7 +391,12 @@ impl<'a> Pass<'a> {
         let along = local.normal.dot(way);
         local.closing = -along;
         let half = local.normal * (0.5 * along);
-        let back = if self.on_composite { half } else { way - half };
+        let on_composite = match self.look.ground {
+            [true, false] => false,
+            [false, true] => true,
+            _ => self.on_composite,
+        };
+        let back = if on_composite { half } else { way - half };
         let count = local.count;
         for p in &mut local.points[..count] {
             p.point -= back;
@@ -362,15 +419,7 @@ impl<'a> Pass<'a> {
         let (Some(over), Some(under)) = (height(face), height(-face)) else {
             return if normal.dot(face) < 0.0 { -face } else { face };
         };
-        let along = normal.dot(face);
-        let is_under = if along.abs() <= SIDEWAYS {
-            over < under
-        } else if along < 0.0 {
-            over <= CORE_SHARE * under
-        } else {
-            under > CORE_SHARE * over
-        };
-        if is_under { -face } else { face }
+        if over < under { -face } else { face }
     }
 
     /// Replaces the contact of a facet of a closed surface that pushes it out of what the surface bounds, or through the composite, by

@@ -4,7 +4,7 @@
 use super::{BodyRow, BodyRows, RowView, Solver, gyro::*};
 use crate::ccd::{Path, SweepBuffers, SweepInput, Swept};
 use crate::contact::ManifoldSource;
-use crate::math::{Vector, max};
+use crate::math::{Angular, Vector, max};
 use crate::thread_pool::ThreadPool;
 use std::sync::{Mutex, PoisonError};
 
@@ -48,7 +48,15 @@ impl Solver {
                 if fraction < 1.0 {
                     let acceleration = motions[row as usize].acceleration;
                     // SAFETY: as above; the copy is no reference.
-                    unsafe { rows.put(row, |row| put_back(row, &path, fraction, acceleration)) };
+                    unsafe {
+                        rows.put(row, |row| {
+                            put_back(row, &path, fraction, acceleration);
+                            // It would make no way in the next steps either: contacts of a body that spins fast do not stop it.
+                            if fraction == 0.0 {
+                                row.set_velocity(Vector::ZERO, Angular::ZERO);
+                            }
+                        })
+                    };
                     stopped.lock().unwrap_or_else(PoisonError::into_inner).push(row);
                 }
             }

@@ -9,11 +9,13 @@ pub mod costs;
 mod couplings;
 mod crowds;
 mod customs;
+mod debris;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
 mod distance;
 mod doors;
+mod edges;
 mod extreme;
 mod facets;
 mod ghosts;

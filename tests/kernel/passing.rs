@@ -1,6 +1,7 @@
 //! Fast bodies: what they pass by leaves them alone, and what is in their way stops them.
 
-use super::dim::sized;
+use super::dim::{any_rotation, bullets, sized};
+use super::extreme::Dice;
 use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Rot, Vector};
@@ -189,4 +190,39 @@ fn a_spin_of_minus_zero_lets_nothing_through() {
         let [a, b] = ids.map(|id| sim.bodies.velocities[id as usize].linear.x);
         assert!(a < 31.0 && b > 29.0, "from {x} m it goes on at {a} m/s, the other at {b} m/s");
     }
+}
+
+/// Shapes of all kinds that pass each other with a gap above one and below the other.
+#[test]
+fn shapes_that_pass_each_other_are_not_deflected() {
+    let shapes = bullets(0.5);
+    let mut bad = Vec::new();
+    for (name_a, a) in &shapes {
+        for (name_b, b) in &shapes {
+            for speed in [20.0, 60.0] {
+                let deflected = (0..30u64)
+                    .filter(|seed| {
+                        let dice = &mut Dice::new(*seed);
+                        let turns = [any_rotation(dice), any_rotation(dice)];
+                        let gap = 0.01 + 0.02 * dice.unit();
+                        let above = a.local_aabb(turns[0]).max.y - b.local_aabb(turns[1]).min.y + gap;
+                        let before = 1.0 + speed / 64.0 * dice.unit();
+                        let mut sim = free();
+                        let still = sim.add(BodyKind::Dynamic, a.clone(), Vector::ZERO, turns[0]);
+                        let start = sized(-before, above, 0.3 * dice.signed());
+                        let passing = sim.add(BodyKind::Dynamic, b.clone(), start, turns[1]);
+                        shoot(&mut sim, passing, Vector::X * speed);
+                        sim.steps((2.0 * before / speed * 64.0) as usize + 1);
+                        let velocity = |id: u32| sim.bodies.velocities[id as usize].linear;
+                        velocity(still).length() > 1e-3 * speed
+                            || (velocity(passing) - Vector::X * speed).length() > 1e-3 * speed
+                    })
+                    .count();
+                if deflected > 0 {
+                    bad.push((name_b, name_a, speed, deflected));
+                }
+            }
+        }
+    }
+    assert!(bad.is_empty(), "what passed what, m/s, deflected of 30: {bad:#?}");
 }

@@ -118,7 +118,7 @@ fn a_scaled_scene_with_its_length_unit_is_the_same_scene() {
 fn rest_of_pile(dt: f64, seed: u64) -> (Scalar, Scalar) {
     let mut lab = Lab::with_steps(dt, 4);
     scenes::pile::mixed_by_chance(lab.app.world_mut(), dim::PILE_LAYERS, seed);
-    lab.seconds(8.0);
+    lab.seconds(6.0);
     let world = lab.app.world_mut();
     let mut bodies = world.query::<(&RigidBody, &Position, &LinearVelocity)>();
     let (mut count, mut height, mut speed) = (0.0, 0.0, 0.0);
@@ -140,7 +140,7 @@ fn rest_is_the_same_in_steps_of_any_length() {
         (mean(|p| p.0), mean(|p| p.1))
     };
     let (mean, _) = rest(1.0 / 60.0);
-    for dt in [1.0 / 30.0, 1.0 / 120.0, 1.0 / 240.0] {
+    for dt in [1.0 / 30.0, 1.0 / 240.0] {
         let (other, speed) = rest(dt);
         assert!((other - mean).abs() < 0.05 * mean, "dt {dt}: {other}, not {mean}");
         assert!(speed < 0.1, "dt {dt}: still at {speed} m/s");

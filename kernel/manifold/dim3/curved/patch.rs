@@ -154,7 +154,7 @@ impl Region {
                 nearest = if cosine(spokes[i]) > cosine(spokes[nearest]) { i } else { nearest };
             }
             let above = tilt * disc.radius * (1.0 - cosine(spokes[nearest]));
-            if tilt > SIDEWAYS || above > ALIKE * min(disc.radius, self.extent) {
+            if tilt > SIDEWAYS || above > 2.0 * ALIKE * min(disc.radius, self.extent) {
                 spoke = quarter_turns(lowest)[(4 - nearest) % 4];
             }
         }
