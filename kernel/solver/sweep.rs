@@ -55,7 +55,7 @@ impl Solver {
                             if fraction == 0.0 {
                                 row.set_velocity(Vector::ZERO, Angular::ZERO);
                             }
-                        })
+                        });
                     };
                     stopped.lock().unwrap_or_else(PoisonError::into_inner).push(row);
                 }
