@@ -82,10 +82,10 @@ pub mod manifold {
     /// a plane several times.
     pub const SAME_NORMAL: f32 = 0.9994;
 
-    /// The share within which round shapes are alike. Normals that differ by less are one, as points move with them. A disc that
-    /// leans by less has no lowest point, and points of a full circle stay until the lowest one is so much of the radius below
-    /// them. Of two distances that differ by less the first one wins, and ellipses are no flatter. Larger brakes what rolls over
-    /// seams, and lets discs sink on one side; smaller leads points by rounding, and lets parallel capsules flip.
+    /// Differences between round shapes that count as none: of normals and slopes in radians, of distances and of an ellipse's
+    /// axes as a share. The four points of a standing disc are kept until the lowest point is twice this share of the radius
+    /// below them. Larger brakes what rolls over seams, and lets discs sink on one side; smaller moves points by rounding, and
+    /// lets parallel capsules flip.
     pub const ALIKE: f32 = 1.0e-4;
 
     /// The share of a size that makes no difference. Points of a manifold, and radii of curved contacts, that are closer are the

@@ -409,7 +409,7 @@ fn search_parts<S: ManifoldSource>(
     let gap = manifolds::collide_parts(input, contact, near + margin, (motion, met + margin), buffers);
     // Without any part the gap is infinite.
     let known = if buffers.local.is_empty() && gap.is_finite() { max(gap - margin, near) } else { near };
-    let known = min(known, buffers.composite.passed - margin);
+    let known = min(known, buffers.composite.passed() - margin);
     Search { prediction: known, meeting: None, has_far: false }
 }
 

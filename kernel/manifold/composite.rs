@@ -14,10 +14,15 @@ use core::cell::Cell;
 pub struct CompositeBuffers {
     /// That of the pair, where a surface counts as one solid; see [`collide`](super::collide).
     pub cache: FeatureCache,
-    /// A lower bound of the distance to parts that are passed by.
-    pub passed: f32,
     parts: PartBuffers,
     merging: Merging,
+}
+
+impl CompositeBuffers {
+    /// A lower bound of the distance to the parts that the motion of the last call leads past.
+    pub fn passed(&self) -> f32 {
+        self.parts.passed
+    }
 }
 
 /// Adds the manifolds of two shapes of which at least one is composite, in A's frame; see [`collide`](super::collide). Returns a
@@ -32,7 +37,7 @@ pub fn collide_composite(
 ) -> f32 {
     let cache = Cell::new(buffers.cache);
     let gap = collide_parts([a, b], pose_b_in_a, look, false, &cache, &mut buffers.parts);
-    (buffers.cache, buffers.passed) = (cache.get(), buffers.parts.passed);
+    buffers.cache = cache.get();
     let start = out.len();
     merge(&mut buffers.parts.found, &mut buffers.merging, out);
     out[start..].iter_mut().for_each(|m| m.place_on_mover(look.ground));

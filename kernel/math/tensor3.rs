@@ -19,6 +19,7 @@ impl<N: Num> SymTensor<N> {
             yz: self.yz * factor,
         }
     }
+
     /// The product with a vector; of an [`InvInertia`](super::InvInertia) the change of angular velocity by an angular impulse.
     #[inline(always)]
     pub fn apply(self, v: Angular<N>) -> Angular<N> {

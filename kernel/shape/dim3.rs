@@ -48,19 +48,7 @@ impl MassProperties {
 
     /// The properties at `density`.
     pub fn scaled(self, density: f32) -> Self {
-        let i = self.inertia;
-        Self {
-            mass: self.mass * density,
-            center: self.center,
-            inertia: Inertia {
-                xx: i.xx * density,
-                yy: i.yy * density,
-                zz: i.zz * density,
-                xy: i.xy * density,
-                xz: i.xz * density,
-                yz: i.yz * density,
-            },
-        }
+        Self { mass: self.mass * density, center: self.center, inertia: self.inertia.scaled(density) }
     }
 }
 

@@ -51,7 +51,7 @@ impl Solver {
                     unsafe {
                         rows.put(row, |row| {
                             put_back(row, &path, fraction, acceleration);
-                            // It would make no way in the next steps either: contacts of a body that spins fast do not stop it.
+                            // Contacts do not stop a body that spins fast: it would be put back in every step, and keep its speed.
                             if fraction == 0.0 {
                                 row.set_velocity(Vector::ZERO, Angular::ZERO);
                             }

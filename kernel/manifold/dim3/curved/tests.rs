@@ -183,7 +183,7 @@ proptest! {
         prop_assert_eq!(m.count > 0, lowest.y <= 0.05);
         if m.count > 0 {
             // The points of a circle stay while one is nearly the lowest.
-            prop_assert!((deepest(&m) - lowest.y).abs() < ALIKE + 1e-5, "{} {}", deepest(&m), lowest.y);
+            prop_assert!((deepest(&m) - lowest.y).abs() < 2.0 * ALIKE + 1e-5, "{} {}", deepest(&m), lowest.y);
         } else {
             prop_assert!((m.gap - lowest.y).abs() < 1e-5);
         }
