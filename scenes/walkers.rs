@@ -54,17 +54,33 @@ pub fn walkers(world: &mut World) {
         let velocity = dim::vector(Vec3::X * SPEED);
         world
             .spawn((CharacterController::default(), shape, at(place.x, place.y, place.z)))
-            .insert(CharacterInput { velocity, ..CharacterInput::default() })
+            .insert((CharacterInput { velocity, ..CharacterInput::default() }, Held::default()))
             .observe(turn_round);
     }
-    world.resource_mut::<Schedules>().add_systems(FixedUpdate, turn_back);
+    world.resource_mut::<Schedules>().add_systems(FixedUpdate, (turn_back, turn_held));
 }
 
-/// Turns a character round that meets another one.
+/// How long a character has been held, in ticks.
+#[derive(Component, Default)]
+struct Held(u32);
+
+/// Turns a character round that another one holds, with a box between them.
+fn turn_held(mut walkers: Query<(&LinearVelocity, &mut CharacterInput, &mut Held)>) {
+    for (velocity, mut input, mut held) in &mut walkers {
+        held.0 = if velocity.length() < 0.1 * SPEED { held.0 + 1 } else { 0 };
+        if held.0 == 30 {
+            input.velocity = -input.velocity;
+            held.0 = 0;
+        }
+    }
+}
+
+/// Two characters that meet walk apart.
 fn turn_round(hit: On<CharacterHit>, mut inputs: Query<&mut CharacterInput>) {
-    let Ok([mut one, other]) = inputs.get_many_mut([hit.character, hit.collider]) else { return };
-    if hit.normal.x * one.velocity.x < 0.0 && one.velocity.x * other.velocity.x <= 0.0 {
-        one.velocity = -one.velocity;
+    let Ok([mut one, mut other]) = inputs.get_many_mut([hit.character, hit.collider]) else { return };
+    let apart = dim::vector(Vec3::X * SPEED.copysign(hit.normal.x));
+    if one.velocity.dot(other.velocity) <= 0.0 {
+        (one.velocity, other.velocity) = (apart, -apart);
     }
 }
 

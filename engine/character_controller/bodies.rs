@@ -31,6 +31,11 @@ impl BodiesAround<'_, '_> {
         self.owners.get(collider).ok().map(|of| of.body)
     }
 
+    /// Whether a body is dynamic.
+    pub(super) fn is_dynamic(&self, body: Entity) -> bool {
+        self.states.get(body).is_ok_and(|state| state.rb.is_dynamic())
+    }
+
     /// Whether a body is a kinematic character.
     pub(super) fn is_character(&self, body: Entity) -> bool {
         self.characters.contains(body)

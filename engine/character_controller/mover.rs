@@ -6,7 +6,7 @@
 
 use bevy_ecs::prelude::*;
 
-use super::planes::{Plane, compromise, nearest};
+use super::planes::{Plane, way_out};
 use crate::{
     collision::collider::Collider,
     math::{AsF32, Dir, RotationValue, Scalar, Vector},
@@ -25,6 +25,9 @@ const SAME_NORMAL: Scalar = 3.0e-4;
 /// Of the parts of one collider whose normals have a greater dot product, the nearest stands for all: the cosine of 2.5 degrees.
 /// A sweep finds the others. More stops at facets that are found late; less asks about edges of facets that are all alike.
 const SIMILAR_PART: Scalar = 0.999_048_2;
+
+/// The least share of `up` in the normal of an edge that carries a character, and of what lifts it out of an overlap.
+pub(super) const EDGE: Scalar = 0.05;
 
 /// What stops a shape is not the edge that is asked about if its normal is farther from it than this: the cosine of 10 degrees.
 const SIMILAR_NORMAL: Scalar = 0.984_807_7;
@@ -70,6 +73,16 @@ pub(super) struct Recovery {
     pub(super) error: Scalar,
     /// Deeper overlaps stay.
     pub(super) deepest: Scalar,
+    /// Walls do not lift along this.
+    pub(super) up: Vector,
+}
+
+impl Recovery {
+    /// The normal that a part pushes along.
+    fn push_of(&self, normal: Vector) -> Vector {
+        let rise = normal.dot(self.up);
+        if rise == 0.0 || rise.abs() > EDGE { normal } else { (normal - self.up * rise).normalize_or_zero() }
+    }
 }
 
 impl Mover<'_> {
@@ -202,25 +215,29 @@ impl Mover<'_> {
     /// The shortest way out of what the shape overlaps with its skin, as a displacement.
     ///
     /// The deepest overlap is solved first, and looked at again: a box that sank into tiles is no longer in those beside when
-    /// it is above one.
-    pub(super) fn recovery(&self, position: Vector, how: &Recovery) -> Vector {
+    /// it is above one. Between two walls that lean apart there may be no way but a long one up: along `up` walls do not lift.
+    pub(super) fn recovery(
+        &self,
+        position: Vector,
+        how: &Recovery,
+        makes_way: &dyn Fn(&NearPart) -> bool,
+    ) -> Vector {
         let error = how.error.min(0.5 * self.slack());
         let mut planes: Vec<Plane> = Vec::new();
         let mut way = Vector::ZERO;
         for _ in 0..how.rounds {
             let parts = self.near(position + way, self.skin);
-            let is_overlap =
-                |part: &&NearPart| part.distance < self.skin - error && part.distance >= -how.deepest;
+            let is_overlap = |part: &&NearPart| {
+                part.distance < self.skin - error && part.distance >= -how.deepest && !makes_way(part)
+            };
             let deepest = parts.iter().filter(is_overlap).min_by(|a, b| a.distance.total_cmp(&b.distance));
             let Some(part) = deepest else { break };
-            let offset = way.dot(part.normal) + self.skin - part.distance;
-            planes.push(Plane { normal: part.normal, offset });
-            match nearest(&planes, Vector::ZERO, 0.1 * error) {
-                Some(out) => way = out,
-                None => {
-                    way = compromise(&planes, Vector::ZERO);
-                    break;
-                }
+            let normal = how.push_of(part.normal);
+            planes.push(Plane { normal, offset: way.dot(normal) + self.skin - part.distance });
+            let (out, is_out) = way_out(&planes, 0.1 * error);
+            way = out;
+            if !is_out {
+                break;
             }
         }
         way

@@ -75,6 +75,17 @@ impl Flat {
     }
 }
 
+/// A way out of an overlap is at most so many times as long as the overlap is deep: in a corner of 11 degrees. Longer ones lead out
+/// of narrow wedges, metres away.
+const LONGEST: Scalar = 10.0;
+
+/// The shortest way out of planes that a shape is below, and whether it leads out. Where there is no room it leads midway.
+pub(super) fn way_out(planes: &[Plane], tolerance: Scalar) -> (Vector, bool) {
+    let deepest = planes.iter().map(|plane| plane.offset).fold(0.0, Scalar::max);
+    let out = nearest(planes, Vector::ZERO, tolerance).filter(|way| way.length() <= LONGEST * deepest);
+    out.map_or_else(|| (compromise(planes), false), |way| (way, true))
+}
+
 /// The point nearest to `from` that is above all planes, or below them by `tolerance` at most. `None` if there is none.
 pub(super) fn nearest(planes: &[Plane], from: Vector, tolerance: Scalar) -> Option<Vector> {
     nearest_on(Flat::default(), planes, from, tolerance)
@@ -95,8 +106,8 @@ const ROUNDS: usize = 64;
 
 /// The point with the least sum of squares by which it is below planes that have no point in common: midway between two
 /// that face each other.
-pub(super) fn compromise(planes: &[Plane], from: Vector) -> Vector {
-    let mut x = from;
+fn compromise(planes: &[Plane]) -> Vector {
+    let mut x = Vector::ZERO;
     let share = 1.0 / planes.len().max(1) as Scalar;
     for _ in 0..ROUNDS {
         let below = |plane: &Plane| plane.normal * (plane.offset - plane.normal.dot(x)).max(0.0);
@@ -125,7 +136,18 @@ mod tests {
     fn planes_without_a_common_point_are_missed_by_the_same_depth() {
         let planes = [plane(Vector::X, 1.0), plane(-Vector::X, 0.0), plane(Vector::Y, 0.5)];
         assert_eq!(nearest(&planes, Vector::ZERO, 1.0e-6), None);
-        let x = compromise(&planes, Vector::ZERO);
+        let (x, is_out) = way_out(&planes, 1.0e-6);
+        assert!(!is_out);
         assert!((x - Vector::X * 0.5 - Vector::Y * 0.5).length() < 1.0e-4, "{x}");
+    }
+
+    #[test]
+    fn the_way_out_of_a_narrow_wedge_is_short() {
+        for (tilt, is_wide) in [(0.4 as Scalar, true), (0.01, false)] {
+            let planes = [plane(Vector::X, 0.01), plane((Vector::Y * tilt - Vector::X).normalize(), 0.01)];
+            let (way, is_out) = way_out(&planes, 1.0e-6);
+            assert_eq!(is_out, is_wide);
+            assert!(way.length() < 0.1, "{way}");
+        }
     }
 }

@@ -9,7 +9,7 @@ use super::{
         CharacterLeftGround, CharacterState, GroundState,
     },
     move_and_slide::MoveAndSlide,
-    planes::{Plane, compromise, nearest},
+    planes::{Plane, way_out},
     walker::{Contact, Walker},
 };
 use crate::{
@@ -94,7 +94,7 @@ impl Planning<'_> {
         let up = self.walker.up;
         let before = (self.state.ground_entity, self.state.ground_velocity.dot(up));
         self.follow_carrier();
-        self.walker.recover();
+        self.recover();
         let own = self.input.velocity - up * self.input.velocity.dot(up);
         let was_grounded = self.state.is_grounded();
         let floor = was_grounded.then(|| self.floor_below()).flatten();
@@ -126,6 +126,18 @@ impl Planning<'_> {
             self.state.visual_offset -= height;
         }
         self.state.visual_offset *= SMOOTHING / (SMOOTHING + time);
+    }
+
+    /// Moves out of what it overlaps. Dynamic bodies that are no floor make way themselves.
+    fn recover(&mut self) {
+        let (bodies, walker) = (self.around.bodies, &self.walker);
+        let makes_way = |part: &NearPart| {
+            let body = bodies.body_of(part.entity);
+            part.normal.dot(walker.up) < walker.least_cosine
+                && body.is_some_and(|body| bodies.is_dynamic(body))
+        };
+        let out = walker.mover.recovery(walker.position, &walker.recovery, &makes_way);
+        self.walker.position += out;
     }
 
     /// Moves with what carries the character, as far as that did not come to where it was expected.
@@ -340,9 +352,7 @@ impl Planning<'_> {
             return;
         }
         let tolerance = 0.1 * self.walker.mover.slack();
-        let way = nearest(&planes, Vector::ZERO, tolerance);
-        let is_between = way.is_none();
-        let way = way.unwrap_or_else(|| compromise(&planes, Vector::ZERO));
+        let (way, is_out) = way_out(&planes, tolerance);
         let count = self.walker.mover.ignored.len();
         for body in pushing {
             self.walker.mover.ignored.extend(self.around.bodies.colliders_of(body));
@@ -352,7 +362,7 @@ impl Planning<'_> {
         let moved = self.walker.position - position;
         let left = |plane: &Plane| plane.offset - plane.normal.dot(moved);
         let is_stuck = planes.iter().any(|plane| left(plane) > skin);
-        self.state.is_crushed = is_between || is_stuck;
+        self.state.is_crushed = !is_out || is_stuck;
         self.moved_on(moved);
     }
 

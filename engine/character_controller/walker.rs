@@ -5,7 +5,7 @@
 
 use super::{
     move_and_slide::MoveAndSlideConfig,
-    mover::{Mover, Recovery, Sweep},
+    mover::{EDGE, Mover, Recovery, Sweep},
     planes::{Plane, add_facing},
     velocity_project::along,
 };
@@ -17,9 +17,6 @@ use bevy_ecs::prelude::*;
 
 /// The most sweeps of one move. What is left of it then is lost.
 const SWEEPS: usize = 6;
-
-/// The least share of `up` in the normal of an edge that carries a character.
-const EDGE: Scalar = 0.05;
 
 /// A character climbs a step that it walks into at up to 75 degrees from straight on: the cosine.
 const CLIMBING: Scalar = 0.258_819;
@@ -85,6 +82,7 @@ impl<'a> Walker<'a> {
                 rounds: config.depenetration_iterations,
                 error: config.max_depenetration_error * unit,
                 deepest: config.penetration_rejection_threshold * unit,
+                up,
             },
             met: Vec::new(),
             climbed: None,
@@ -95,11 +93,6 @@ impl<'a> Walker<'a> {
 impl Walker<'_> {
     pub(super) fn horizontal(&self, v: Vector) -> Vector {
         v - self.up * v.dot(self.up)
-    }
-
-    /// Moves out of what it overlaps.
-    pub(super) fn recover(&mut self) {
-        self.position += self.mover.recovery(self.position, &self.recovery);
     }
 
     /// The lowest point of the character, below its position.

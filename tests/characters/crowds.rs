@@ -133,6 +133,38 @@ fn a_hundred_friends_pass_in_a_narrow_corridor() {
     }
 }
 
+/// Crates fall between characters and on them: these stand as they stood, and no crate is thrown.
+#[test]
+fn crates_that_rain_on_characters_move_nobody() {
+    let places = (0..5).map(|i| (Vector::X * i as Scalar + Vector::Y * STANDING, Vector::ZERO));
+    let mut crowd = Crowd::new(60, LayerMask::NONE, places);
+    floor(&mut crowd.app);
+    let shape = block(Vector::ONE * 0.4);
+    let crates: Vec<Entity> = (0..100)
+        .map(|i| {
+            let (row, place, layer) = (i / 50, i % 10, i / 10 % 5);
+            let at = Vector::X * (0.45 * place as Scalar)
+                + Vector::Y * (3.0 + 0.5 * (layer + 5 * row) as Scalar)
+                + ASIDE * (0.45 * row as Scalar - 0.25);
+            crowd.app.world_mut().spawn((RigidBody::Dynamic, shape.clone(), Position(at))).id()
+        })
+        .collect();
+    (0..10).for_each(|_| crowd.tick());
+    let before = crowd.positions();
+    for tick in 0..3 * 60 {
+        crowd.tick();
+        let moved = crowd.positions().into_iter().zip(&before).map(|(at, start)| (at - start).length());
+        let moved = moved.fold(0.0, Scalar::max);
+        assert!(moved < 2.0e-3, "tick {tick}: a character moved by {moved}");
+        for of in &crates {
+            let world = crowd.app.world();
+            let (at, velocity) = (world.get::<Position>(*of), world.get::<LinearVelocity>(*of));
+            let (at, speed) = (at.expect("a body").0, velocity.expect("a body").0.length());
+            assert!(at.y > 0.15 && speed < 12.0, "tick {tick}: a crate at {at} with {speed} m/s");
+        }
+    }
+}
+
 /// The height of a hilly level.
 fn hill(x: Scalar) -> Scalar {
     0.6 * (x * 0.7).sin() + 0.3 * (x * 1.9 + 1.0).sin()

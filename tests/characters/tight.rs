@@ -80,3 +80,27 @@ fn a_wedge_holds_and_lets_go() {
         }
     }
 }
+
+/// A gap too narrow by 8 mm between a wall and one that leans away by 2 degrees: to fit, it would have to rise by 23 cm.
+#[test]
+fn a_gap_between_walls_does_not_lift() {
+    for rate in RATES {
+        let starts = figures().into_iter().map(|(_, shape)| (shape, Vector::Y * STANDING));
+        let mut course = Course::side_by_side(rate, starts);
+        floor(&mut course.app);
+        let lean = -0.035;
+        for (i, (_, shape)) in figures().into_iter().enumerate() {
+            let half = shape.aabb(Vector::ZERO, Rotation::IDENTITY).max.x + SKIN - 0.004;
+            let wall = block(Vector::ONE * 4.0);
+            course.fix_in_lane(i, wall.clone(), Vector::X * (-half - 2.0), turned(0.0));
+            // Its side goes through the middle of the character's waist.
+            let side = Vector::X * half + Vector::Y * 0.5;
+            course.fix_in_lane(i, wall, side + turned(lean) * (Vector::X * 2.0), turned(lean));
+        }
+        for way in [Vector::ZERO, Vector::X * 3.0] {
+            for p in course.walk_all(|_| way, 0.5).iter().flatten() {
+                assert!(p.state.is_grounded() && (p.position.y - STANDING).abs() < 1.0e-3, "{rate}: {p:?}");
+            }
+        }
+    }
+}
