@@ -13,6 +13,22 @@ use crate::{
     physics_transform::{Position, Rotation, pose_from_kernel, world_pose},
 };
 
+/// The load in N, of a mass under gravity, that a body bears after another step, in which it gave way by a speed.
+///
+/// How much it bears is not known, and the whole weight at once would throw a light limb that lies on nothing. So the load begins
+/// with what accelerates the mass and the body together by gravity, and grows twofold in each step until the body gives way.
+pub(super) fn borne(
+    load: Scalar,
+    yielded: Scalar,
+    (mass, gravity): (Scalar, Scalar),
+    inverse: Scalar,
+    time: Scalar,
+) -> Scalar {
+    let more = (gravity - yielded / time) / (1.0 / mass + inverse);
+    let more = if more > 0.0 { more.max(load) } else { more };
+    (load + more).min(mass * gravity).max(0.0)
+}
+
 /// The bodies, and the colliders that belong to them.
 #[derive(SystemParam)]
 pub(super) struct BodiesAround<'w, 's> {

@@ -15,7 +15,7 @@ use bevy_ecs::prelude::*;
 use bevy_time::Time;
 
 use super::{
-    bodies::{BodiesAround, Motion},
+    bodies::{BodiesAround, Motion, borne},
     controller::{CharacterInput, CharacterLanded, CharacterLeftGround, CharacterState, GroundState},
     dynamic_mover::DynamicMover,
     move_and_slide::{MoveAndSlide, MoveAndSlideConfig},
@@ -80,6 +80,8 @@ struct Below {
     gap: Scalar,
     /// The mean velocity of its point and surface in the step.
     velocity: Vector,
+    /// Its inverse mass at the point, along the missing velocity and upwards: 0 if it is not dynamic.
+    inverse: [Scalar; 2],
 }
 
 /// Plans the forces of each mover.
@@ -166,6 +168,7 @@ impl Hover<'_> {
             is_floor: floor.is_some(),
             gap: hit.distance,
             velocity: carried + bodies.surface_of(entity),
+            inverse: [0.0; 2],
         })
     }
 
@@ -179,8 +182,10 @@ impl Hover<'_> {
     ) {
         let up = self.walker.up;
         let own = self.walker.horizontal(input.velocity);
+        let before = (state.ground_entity, state.ground_velocity.dot(up));
+        let load = core::mem::take(&mut state.load);
         note_ground(state, below.as_ref());
-        let Some(ground) = below.filter(|ground| self.is_caught(ground, state.is_grounded())) else {
+        let Some(mut ground) = below.filter(|ground| self.is_caught(ground, state.is_grounded())) else {
             if state.is_grounded() {
                 state.fall = state.ground_velocity;
             }
@@ -200,9 +205,22 @@ impl Hover<'_> {
         state.fall = Vector::ZERO;
         let is_dynamic = ground.motion.is_some_and(|motion| motion.kind.is_dynamic());
         plan.ground = ground.body.filter(|_| is_dynamic).map(|body| (body, ground.point));
+        if let Some((body, point)) = plan.ground {
+            let yielded =
+                if before.0 == Some(ground.entity) { before.1 - ground.velocity.dot(up) } else { 0.0 };
+            let missing = self.walker.horizontal(own + ground.velocity - self.velocity);
+            let directions = [missing.normalize_or_zero(), up];
+            ground.inverse = directions.map(|along| bodies.inverse_mass_at(body, point, along));
+            let gravity = -self.gravity.dot(up);
+            state.load = borne(load, yielded, (self.mass, gravity), ground.inverse[1], self.time);
+        }
         if input.jump > 0.0 {
             let speed = ground.velocity.dot(up) + self.walker.lift(ground.normal, own).max(0.0) + input.jump;
-            plan.impulse = up * ((speed - self.velocity.dot(up)) * self.mass);
+            // What bears its weight is as firm as what it lies on itself.
+            let weight = -self.gravity.dot(up) * self.mass;
+            let free = if weight > 0.0 { 1.0 - state.load / weight } else { 1.0 };
+            let share = self.share(ground.inverse[1] * free);
+            plan.impulse = up * ((speed - self.velocity.dot(up)) * self.mass * share);
             state.ground = GroundState::InAir;
             state.fall = ground.velocity;
             return;
@@ -210,14 +228,23 @@ impl Hover<'_> {
         let missing = own + ground.velocity - self.velocity;
         if self.rest > 0.0 {
             let drive = self.drive(self.walker.horizontal(missing), self.mover.max_acceleration);
-            plan.impulse = (self.spring(&ground, bodies) + drive) * self.time;
+            plan.impulse = (self.spring(&ground) + drive * self.share(ground.inverse[0])) * self.time;
             plan.force = -up * self.gravity.dot(up) * self.mass;
+            if plan.ground.is_some() {
+                plan.force = up * state.load;
+            }
         } else {
             let along = |v: Vector| v - ground.normal * v.dot(ground.normal);
             let climb = up * self.walker.lift(ground.normal, own);
-            plan.impulse = self.drive(along(missing + climb), self.mover.max_acceleration) * self.time;
+            let drive = self.drive(along(missing + climb), self.mover.max_acceleration);
+            plan.impulse = drive * (self.share(ground.inverse[0]) * self.time);
             plan.force = -along(self.gravity) * self.mass;
         }
+    }
+
+    /// The share of an impulse that it takes to change its velocity relative to a body of an inverse mass.
+    fn share(&self, inverse: Scalar) -> Scalar {
+        1.0 / (1.0 + self.mass * inverse)
     }
 
     /// Whether the ground carries: what is in the air is caught as it comes down.
@@ -234,15 +261,14 @@ impl Hover<'_> {
     }
 
     /// The force of the spring, in N.
-    fn spring(&self, ground: &Below, bodies: &BodiesAround) -> Vector {
+    fn spring(&self, ground: &Below) -> Vector {
         let up = self.walker.up;
         let h = self.time;
         let omega = TAU * self.mover.frequency.max(0.0);
         let (k, c) = (omega * omega, 2.0 * self.mover.damping_ratio.max(0.0) * omega);
         let (x, v) = (ground.gap - self.rest, self.rate(ground));
         let acceleration = -(k * x + (c + h * k) * v) / (1.0 + h * c + h * h * k);
-        let inverse = ground.body.map_or(0.0, |body| bodies.inverse_mass_at(body, ground.point, up));
-        up * (acceleration / (1.0 / self.mass + inverse))
+        up * (acceleration * self.mass * self.share(ground.inverse[1]))
     }
 
     /// The force that adds a velocity in the step, in N, up to a largest acceleration.

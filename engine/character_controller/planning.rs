@@ -3,7 +3,7 @@
 use bevy_ecs::prelude::*;
 
 use super::{
-    bodies::{BodiesAround, Motion},
+    bodies::{BodiesAround, Motion, borne},
     controller::{
         Carrier, CharacterClimbed, CharacterController, CharacterHit, CharacterInput, CharacterLanded,
         CharacterLeftGround, CharacterState, GroundState,
@@ -413,8 +413,6 @@ impl Planning<'_> {
 
     /// Weighs on a dynamic body that the character stands on: on the same one as before, which had a speed along `up`.
     ///
-    /// How much the body bears is not known, and the whole weight at once would throw a light limb that lies on nothing. So each
-    /// step adds what accelerates the character and the body together by gravity, and takes off what made the body give way.
     fn weigh(&mut self, (before, speed): (Option<Entity>, Scalar)) {
         let load = core::mem::take(&mut self.state.load);
         let Some(ground) = self.state.ground_entity.filter(|_| self.state.is_grounded()) else { return };
@@ -430,8 +428,7 @@ impl Planning<'_> {
         let is_same = before == Some(ground);
         let (load, yielded) =
             if is_same { (load, speed - self.state.ground_velocity.dot(up)) } else { (0.0, 0.0) };
-        let more = (gravity - yielded / self.around.time) / (1.0 / mass + inverse);
-        self.state.load = (load + more).min(mass * gravity).max(0.0);
+        self.state.load = borne(load, yielded, (mass, gravity), inverse, self.around.time);
         self.plan.pushes.push(Push { body, point, force: -up * self.state.load });
     }
 }

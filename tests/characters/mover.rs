@@ -261,6 +261,32 @@ fn it_pushes_by_its_mass() {
     }
 }
 
+/// Light crates rain on a mover that walks through them: what it steps on in the air is not thrown.
+#[test]
+fn it_throws_nothing_that_bears_nothing() {
+    for rate in [30, 64] {
+        let mut hall = Hall::new(rate, 0.3, Vector::Y * rest(0.3));
+        floor(&mut hall.app);
+        let crates: Vec<Entity> = (0..50)
+            .map(|i| {
+                let (place, layer) = (i % 10, i / 10);
+                let at =
+                    Vector::X * (0.45 * place as Scalar - 2.0) + Vector::Y * (3.0 + 0.5 * layer as Scalar);
+                let body = (RigidBody::Dynamic, block(Vector::ONE * 0.4), Mass(0.1), Position(at));
+                hall.app.world_mut().spawn(body).id()
+            })
+            .collect();
+        for velocity in [Vector::ZERO, Vector::X * 3.0] {
+            for _ in 0..rate * 2 {
+                hall.walk(velocity, 1.0 / rate as Scalar);
+                let speeds = crates.iter().map(|of| hall.get::<LinearVelocity>(*of).0.length());
+                let fastest = speeds.fold(0.0, Scalar::max);
+                assert!(fastest < 15.0, "{rate}: a crate at {fastest} m/s, the mover {}", hall.position());
+            }
+        }
+    }
+}
+
 /// A raft without weight of its own, that a spring carries: it sinks by the weight of the mover.
 #[test]
 fn the_ground_bears_its_weight() {
