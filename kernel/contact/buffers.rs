@@ -1,6 +1,6 @@
 //! What one worker of the narrow phase computes with, and what it leaves for the table.
 
-use super::record::{Lost, Manifold, Sliding};
+use super::record::{Lost, Manifold, Parallel, Sliding};
 use super::recycle::RecycleBatch;
 use crate::manifold::{CompositeBuffers, LocalManifold};
 use crate::math::Vector;
@@ -24,10 +24,12 @@ pub struct WorkerBuffers<W = ()> {
     pub(super) stored: Vec<(u32, usize)>,
     /// The manifolds of `stored`, one contact's after the other's.
     pub(super) pool: Vec<Manifold>,
-    /// Contacts whose manifolds may be of internal edges.
+    /// Colliders that slide, by each of their contacts.
     pub(super) sliding: Vec<u32>,
     /// The manifolds of the sliding collider at hand.
     pub(super) slides: Vec<Sliding>,
+    /// Those that are parallel.
+    pub(super) parallel: Vec<Parallel>,
     /// Contacts, and the numbers of those of their manifolds, whose [`is_internal`](Manifold::is_internal) changes.
     pub(super) internal: Vec<(u32, u32)>,
     /// Manifolds that get other normals, from the ground to the collider.

@@ -13,7 +13,7 @@ use super::buffers::WorkerBuffers;
 use super::input::{ManifoldSource, NarrowPhaseInput, smaller};
 use super::load;
 use super::manifolds;
-use super::record::{Contact, ContactFlags, Manifold, Sliding};
+use super::record::{Contact, ContactFlags, Manifold, Parallel, Sliding};
 use super::table::{ContactTable, PointCount};
 use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
@@ -22,8 +22,8 @@ use crate::thread_pool::ThreadPool;
 use crate::tuning::contact::{FLUSH, MOVING, RESTING, RISES, SAME_FACE, SLIDING};
 use crate::tuning::manifold::{ALIKE, MARGIN, PARALLEL, SIDEWAYS};
 
-/// How many contacts a worker takes at a time.
-const BLOCK: usize = 64;
+/// How many colliders a worker takes at a time.
+const BLOCK: usize = 16;
 
 /// A manifold, seen by the collider on one side of it.
 struct Seen<'a> {
@@ -114,6 +114,16 @@ impl<'a> Seen<'a> {
     /// The height of the highest point on the ground of another manifold over this plane.
     fn highest(&self, other: &Seen) -> f32 {
         other.points().fold(f32::NEG_INFINITY, |top, [p, _]| max(top, p.dot(self.normal))) - self.plane()
+    }
+
+    /// The least height of a plane, with a normal of a group, that has all of its points at most so far above it that they are flush.
+    fn least_top(&self, group: &Parallel) -> f32 {
+        let (mut top, mut reach): (f32, f32) = (f32::NEG_INFINITY, 0.0);
+        for [p, _] in self.points() {
+            (top, reach) = (max(top, p.dot(group.normal)), max(reach, p.length_squared()));
+        }
+        let rounding = if group.spread > 0.0 { group.spread + 8.0 * f32::EPSILON } else { 0.0 };
+        top - self.flush - rounding * reach.sqrt()
     }
 
     /// Whether another manifold, which is not parallel, holds what this one would stop. If all points of both are in one place, it does
@@ -213,8 +223,8 @@ impl<S> NarrowPhaseInput<'_, S> {
         let side = if contact.is_solved() { self.sliding_side(contact) } else { None };
         contact.flags.set(ContactFlags::SLIDES_A, side == Some(0));
         contact.flags.set(ContactFlags::SLIDES_B, side == Some(1));
-        if side.is_some() {
-            worker.sliding.push(id);
+        if let Some(side) = side {
+            worker.sliding.push(contact.colliders[side]);
         } else {
             let marked =
                 core::iter::once(&contact.manifold).chain(extra).zip(0..).filter(|(m, _)| m.is_internal);
@@ -265,7 +275,7 @@ impl<S> NarrowPhaseInput<'_, S> {
 }
 
 impl ContactTable {
-    /// Marks the manifolds of internal edges among the contacts that the workers noted, so that they are not solved. Adds their
+    /// Marks the manifolds of internal edges of the colliders that the workers noted, so that they are not solved. Adds their
     /// points to those that were lost.
     pub(super) fn mark_internal<S: ManifoldSource>(
         &mut self,
@@ -274,12 +284,13 @@ impl ContactTable {
         workers: &mut Vec<WorkerBuffers<S::Workspace>>,
     ) {
         let mut sliding = core::mem::take(&mut self.sliding);
-        workers.iter().for_each(|worker| sliding.extend_from_slice(&worker.sliding));
+        let noted = workers.iter().flat_map(|worker| &worker.sliding);
+        sliding.extend(noted.filter(|collider| self.sliders.insert(**collider)));
         let this = &*self;
-        pool.each_into(workers, sliding.chunks(BLOCK), |worker, ids| {
-            ids.iter().for_each(|id| this.find_internal(input, *id, worker));
+        pool.each_into(workers, sliding.chunks(BLOCK), |worker, colliders| {
+            colliders.iter().for_each(|collider| this.find_internal(input, *collider, worker));
         });
-        sliding.clear();
+        sliding.drain(..).for_each(|collider| _ = self.sliders.remove(collider));
         self.sliding = sliding;
         let mut lost = core::mem::take(&mut self.lost);
         for (id, index) in workers.iter_mut().flat_map(|worker| worker.internal.drain(..)) {
@@ -310,20 +321,11 @@ impl ContactTable {
         }
     }
 
-    /// Adds the manifolds of a sliding collider whose mark is to change, and those that get another normal. The collider's first contact adds them for
-    /// all its contacts; the others add nothing.
-    fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, id: u32, worker: &mut WorkerBuffers<W>) {
-        let contact = self.get(id);
-        let side = usize::from(contact.flags.has(ContactFlags::SLIDES_B));
-        let collider = contact.colliders[side];
-        let mut contacts =
-            self.of_collider(collider, input.colliders).filter(|id| self.slides(*id, collider));
-        if contacts.next() != Some(id) {
-            return;
-        }
+    /// Adds the manifolds of a sliding collider whose mark is to change, and those that get another normal.
+    fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, collider: u32, worker: &mut WorkerBuffers<W>) {
         let mut all = core::mem::take(&mut worker.slides);
         all.clear();
-        for id in core::iter::once(id).chain(contacts) {
+        for id in self.of_collider(collider, input.colliders).filter(|id| self.slides(*id, collider)) {
             let contact = self.get(id);
             let side = usize::from(contact.colliders[1] == collider);
             for index in 0..=u32::from(contact.extra_count) {
@@ -336,20 +338,26 @@ impl ContactTable {
                 all.push(Sliding {
                     contact: id,
                     index,
+                    order: all.len() as u32,
                     side,
                     normal: if side == 0 { -m.normal } else { m.normal },
                     is_round,
                     is_face: m.count > 2,
                     line,
                     is_marked: m.is_internal,
+                    group: 0,
+                    height: 0.0,
                 });
             }
         }
-        // Within half of the tolerance of one, all are parallel.
-        let tolerance = if all.iter().any(|m| m.is_round) { ALIKE * ALIKE } else { PARALLEL * PARALLEL };
-        let is_plane = all.iter().all(|m| (m.normal - all[0].normal).length_squared() < 0.25 * tolerance);
+        let mut groups = core::mem::take(&mut worker.parallel);
+        self.group_parallel(input, &mut all, &mut groups);
         for this in &all {
-            let role = if is_plane { Role::Obstacle } else { self.role(input, this, &all, worker) };
+            let role = if groups.len() == 1 {
+                Role::Obstacle
+            } else {
+                self.role(input, this, &all, &groups, worker)
+            };
             if (role == Role::Internal) != this.is_marked {
                 worker.internal.push((this.contact, this.index));
             }
@@ -358,6 +366,44 @@ impl ContactTable {
             }
         }
         worker.slides = all;
+        worker.parallel = groups;
+    }
+
+    /// Groups manifolds that are parallel. Several groups are sorted, each by the heights of its planes.
+    fn group_parallel<S>(
+        &self,
+        input: &NarrowPhaseInput<S>,
+        all: &mut [Sliding],
+        groups: &mut Vec<Parallel>,
+    ) {
+        groups.clear();
+        // Within half of the tolerance of one, all are parallel.
+        let tolerance = 0.5 * if all.iter().any(|m| m.is_round) { ALIKE } else { PARALLEL };
+        for m in &mut *all {
+            let near = groups.iter_mut().zip(0..).find_map(|(group, number)| {
+                let apart = (m.normal - group.normal).length_squared();
+                (apart < tolerance * tolerance).then_some((group, number, apart))
+            });
+            if let Some((group, number, apart)) = near {
+                group.spread = max(group.spread, apart.sqrt());
+                m.group = number;
+            } else {
+                m.group = groups.len() as u32;
+                groups.push(Parallel { normal: m.normal, spread: 0.0, range: 0..0 });
+            }
+        }
+        if groups.len() == 1 {
+            return;
+        }
+        all.iter_mut().for_each(|m| m.height = self.see(input, m).plane());
+        let by_height = |a: &Sliding, b: &Sliding| b.height.total_cmp(&a.height).then(a.order.cmp(&b.order));
+        all.sort_unstable_by(|a, b| a.group.cmp(&b.group).then_with(|| by_height(a, b)));
+        let mut end = 0;
+        for of_one in all.chunk_by(|a, b| a.group == b.group) {
+            let start = end;
+            end += of_one.len();
+            groups[of_one[0].group as usize].range = start..end;
+        }
     }
 
     /// Whether a collider slides over the other one of a contact in this update.
@@ -379,47 +425,60 @@ impl ContactTable {
         input: &NarrowPhaseInput<S>,
         this: &Sliding,
         all: &[Sliding],
+        groups: &[Parallel],
         worker: &mut WorkerBuffers<W>,
     ) -> Role {
         let contact = self.get(this.contact);
-        let (mut seen, mut steepest, mut role) = (None, -SIDEWAYS, Role::Obstacle);
-        // Most are of the same plane, or this one itself.
-        for other in all.iter().filter(|other| !this.is_parallel(other)) {
-            let seen = seen.get_or_insert_with(|| self.see(input, this));
-            let holding = self.see(input, other);
-            // An edge of the collider is at a seam: the next piece ends at the plane of this one, but not the other way round.
-            let mut ends_at = |of: &Sliding, own: &Seen, plane: &Seen| {
-                let contact = self.get(of.contact);
-                let top = input.top(contact, of.side, plane.normal);
-                let mut rises = || input.rises(contact, of.side, own, plane, worker);
-                top.map_or_else(|| !rises(), |top| top - plane.plane() <= plane.flush)
-            };
-            let is_plane_of_both = || ends_at(this, seen, &holding) && !ends_at(other, &holding, seen);
-            if !seen.is_held_by(&holding, is_plane_of_both) {
-                continue;
-            }
-            let ground = self.get(other.contact).colliders[1 - other.side];
-            let stands = self.stands_on([contact.colliders[1 - this.side], ground], holding.normal);
-            let cos = seen.normal.dot(holding.normal);
-            if stands || input.rises(contact, this.side, seen, &holding, worker) {
-                if cos < steepest {
-                    (steepest, role) = (cos, Role::Turned(unit(seen.normal - holding.normal * cos)));
+        let seen = &self.see(input, this);
+        let (mut is_held, mut plane, mut level) = (false, None, None);
+        for group in
+            groups.iter().zip(0..).filter(|(_, number)| *number != this.group).map(|(group, _)| group)
+        {
+            // Planes below its points hold nothing of it.
+            let least = seen.least_top(group);
+            let others = all[group.range.clone()].iter().take_while(|other| !(other.height < least));
+            for other in others.filter(|other| !this.is_parallel(other)) {
+                let holding = self.see(input, other);
+                // An edge of the collider is at a seam: the next piece ends at the plane of this one, but not the other way round.
+                let mut ends_at = |of: &Sliding, own: &Seen, plane: &Seen| {
+                    let contact = self.get(of.contact);
+                    let top = input.top(contact, of.side, plane.normal);
+                    let mut rises = || input.rises(contact, of.side, own, plane, worker);
+                    top.map_or_else(|| !rises(), |top| top - plane.plane() <= plane.flush)
+                };
+                let is_plane_of_both = || ends_at(this, seen, &holding) && !ends_at(other, &holding, seen);
+                if !seen.is_held_by(&holding, is_plane_of_both) {
+                    continue;
                 }
-                continue;
-            }
-            if cos < SAME_FACE || this.is_round || other.is_round {
-                return Role::Internal;
-            }
-            // The plane is held where the other has points. Here the collider may come down by turning.
-            let is_plane = [this, other].into_iter().all(|of| {
-                let top = input.top(self.get(of.contact), of.side, holding.normal);
-                top.is_none_or(|top| top - holding.plane() <= holding.flush)
-            });
-            if role == Role::Obstacle || is_plane && role == Role::Internal {
-                role = if is_plane { Role::Turned(holding.normal) } else { Role::Internal };
+                let ground = self.get(other.contact).colliders[1 - other.side];
+                let stands = self.stands_on([contact.colliders[1 - this.side], ground], holding.normal);
+                let cos = seen.normal.dot(holding.normal);
+                if stands || input.rises(contact, this.side, seen, &holding, worker) {
+                    let (steepest, first, _) = level.unwrap_or((-SIDEWAYS, 0, Vector::ZERO));
+                    if cos < steepest || cos == steepest && other.order < first {
+                        level = Some((cos, other.order, unit(seen.normal - holding.normal * cos)));
+                    }
+                    continue;
+                }
+                if cos < SAME_FACE || this.is_round || other.is_round {
+                    return Role::Internal;
+                }
+                is_held = true;
+                // The plane is held where the other has points. Here the collider may come down by turning.
+                let is_plane = [this, other].into_iter().all(|of| {
+                    let top = input.top(self.get(of.contact), of.side, holding.normal);
+                    top.is_none_or(|top| top - holding.plane() <= holding.flush)
+                });
+                if is_plane && plane.is_none_or(|(first, _)| other.order < first) {
+                    plane = Some((other.order, holding.normal));
+                }
             }
         }
-        role
+        match (level, plane) {
+            (Some((.., normal)), _) | (None, Some((_, normal))) => Role::Turned(normal),
+            (None, None) if is_held => Role::Internal,
+            (None, None) => Role::Obstacle,
+        }
     }
 
     /// Gives a manifold another normal, from the ground to the collider, with the same points on the ground.

@@ -8,9 +8,9 @@
 //! Points are lost in parallel, and handed on by one thread in the order of contacts.
 
 use super::input::NarrowPhaseInput;
-use super::record::{Contact, Lost, Manifold, ManifoldPoint};
+use super::record::{Bearing, Contact, Lost, Manifold, ManifoldPoint};
 use super::table::ContactTable;
-use crate::math::Vector;
+use crate::math::{DIM, Vector};
 use crate::tuning::manifold::SAME_NORMAL;
 
 /// The manifolds of a sliding contact before it is recomputed.
@@ -93,40 +93,86 @@ pub(super) fn note_internal(
     }
 }
 
+/// The axis along which points are spread farthest.
+fn longest_axis(points: &[Bearing]) -> usize {
+    let Some(first) = points.first() else { return 0 };
+    let (low, high) = points
+        .iter()
+        .fold((first.place, first.place), |(low, high), p| (low.min(p.place), high.max(p.place)));
+    let size = (high - low).to_array();
+    (1..DIM).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best })
+}
+
+/// The nearest point with the same normal as a lost one. Points are sorted along an axis; of two as near the first of the collider's
+/// is taken.
+fn nearest<'a>(points: &'a [Bearing], axis: usize, lost: &Lost) -> Option<&'a Bearing> {
+    let along = |p: &Bearing| p.place.to_array()[axis] - lost.place.to_array()[axis];
+    let (mut below, mut above) = points.split_at(points.partition_point(|p| along(p) < 0.0));
+    let (mut best, mut least) = (None::<&Bearing>, f32::INFINITY);
+    loop {
+        let p = match (below.split_last(), above.split_first()) {
+            (Some((p, rest)), other) if other.is_none_or(|(q, _)| -along(p) < along(q)) => {
+                below = rest;
+                p
+            }
+            (_, Some((p, rest))) => {
+                above = rest;
+                p
+            }
+            (_, None) => return best,
+        };
+        if along(p) * along(p) > least {
+            return best;
+        }
+        if p.normal.dot(lost.normal) > SAME_NORMAL {
+            let away = (p.place - lost.place).length_squared();
+            if away < least || away == least && best.is_some_and(|best| p.order < best.order) {
+                (best, least) = (Some(p), away);
+            }
+        }
+    }
+}
+
 impl ContactTable {
     /// Gives the impulses of lost points to the nearest ones, and empties the list.
     pub(super) fn hand_on<S>(&mut self, input: &NarrowPhaseInput<S>) {
-        let mut lost = core::mem::take(&mut self.lost);
-        lost.sort_unstable_by_key(|lost| (lost.contact, lost.number));
-        for lost in lost.drain(..) {
-            let Some((id, index, point)) = self.nearest(input, &lost) else { continue };
-            self.manifold_mut(id, index).points[point].impulse += lost.impulse;
+        let (mut lost, mut points) = (core::mem::take(&mut self.lost), core::mem::take(&mut self.bearings));
+        lost.sort_unstable_by_key(|lost| (lost.collider, lost.contact, lost.number));
+        for of_one in lost.chunk_by(|a, b| a.collider == b.collider) {
+            self.list_bearings(input, of_one[0].collider, &mut points);
+            let axis = longest_axis(&points);
+            points.sort_unstable_by(|a, b| a.place.to_array()[axis].total_cmp(&b.place.to_array()[axis]));
+            for lost in of_one {
+                let Some(p) = nearest(&points, axis, lost) else { continue };
+                self.manifold_mut(p.contact, p.index).points[p.point as usize].impulse += lost.impulse;
+            }
         }
-        self.lost = lost;
+        lost.clear();
+        points.clear();
+        (self.lost, self.bearings) = (lost, points);
     }
 
-    /// The nearest point with the same normal: its contact, manifold and number.
-    fn nearest<S>(&self, input: &NarrowPhaseInput<S>, lost: &Lost) -> Option<(u32, u32, usize)> {
-        let mut best = None;
-        let mut least = f32::INFINITY;
-        let contacts = self.of_collider(lost.collider, input.colliders);
-        for id in contacts.filter(|id| self.slides(*id, lost.collider)) {
+    /// Lists the points of a sliding collider that bear load.
+    fn list_bearings<S>(&self, input: &NarrowPhaseInput<S>, collider: u32, points: &mut Vec<Bearing>) {
+        points.clear();
+        for id in self.of_collider(collider, input.colliders).filter(|id| self.slides(*id, collider)) {
             let contact = self.get(id);
-            let side = usize::from(contact.colliders[1] == lost.collider);
+            let side = usize::from(contact.colliders[1] == collider);
             for index in 0..=u32::from(contact.extra_count) {
                 let Some(m) = self.manifold(contact, index).filter(|m| !m.is_internal) else { continue };
-                if !(toward(side, m).dot(lost.normal) > SAME_NORMAL) {
-                    continue;
-                }
-                for (i, p) in m.points().iter().enumerate().filter(|(_, p)| p.separation < input.tolerance) {
-                    let away = (place(side, p, contact.frozen.offset) - lost.place).length_squared();
-                    if away < least {
-                        least = away;
-                        best = Some((id, index, i));
-                    }
+                for (point, p) in
+                    m.points().iter().enumerate().filter(|(_, p)| p.separation < input.tolerance)
+                {
+                    points.push(Bearing {
+                        contact: id,
+                        index,
+                        point: point as u32,
+                        order: points.len() as u32,
+                        place: place(side, p, contact.frozen.offset),
+                        normal: toward(side, m),
+                    });
                 }
             }
         }
-        best
     }
 }

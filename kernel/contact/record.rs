@@ -155,12 +155,40 @@ pub(super) struct Lost {
     pub(super) impulse: f32,
 }
 
+/// Manifolds of a sliding collider that are parallel: normals lie around that of the first, by less than half of what counts.
+#[derive(Clone, Debug)]
+pub(super) struct Parallel {
+    pub(super) normal: Vector,
+    /// The largest distance of a normal from that of the first.
+    pub(super) spread: f32,
+    /// The manifolds in the list of all, the highest planes first.
+    pub(super) range: core::ops::Range<usize>,
+}
+
+/// A point of a sliding collider that lost load may be handed on to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bearing {
+    pub(super) contact: u32,
+    /// The number of the manifold in the contact.
+    pub(super) index: u32,
+    /// The number of the point in the manifold.
+    pub(super) point: u32,
+    /// Its number among those of the collider.
+    pub(super) order: u32,
+    /// From the centre of mass of the collider's body.
+    pub(super) place: Vector,
+    /// From the ground to the collider.
+    pub(super) normal: Vector,
+}
+
 /// A manifold of a moving collider with what it slides over.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sliding {
     pub(super) contact: u32,
     /// The manifold's number in the contact.
     pub(super) index: u32,
+    /// Its number among the manifolds of the collider.
+    pub(super) order: u32,
     /// The collider's side of the contact.
     pub(super) side: usize,
     /// From the ground to the collider.
@@ -173,6 +201,10 @@ pub(super) struct Sliding {
     pub(super) line: Vector,
     /// Whether the manifold is marked.
     pub(super) is_marked: bool,
+    /// The number of its group of parallel manifolds.
+    pub(super) group: u32,
+    /// How high its plane is along its normal. Known if there are several groups.
+    pub(super) height: f32,
 }
 
 /// The relative pose of the bodies at which the manifold was computed, turned since then with a platform.

@@ -1,6 +1,6 @@
 //! All contacts by id, the map from pairs to contacts, and the set of awake contacts.
 
-use super::record::{Contact, ContactFlags, Lost, Manifold, ManifoldSurface};
+use super::record::{Bearing, Contact, ContactFlags, Lost, Manifold, ManifoldSurface};
 use crate::data::{BitSet, IdPool, PairSet, prefetch};
 use crate::math::DIM;
 use crate::table::{ColliderTable, NONE};
@@ -40,10 +40,14 @@ pub struct ContactTable {
     pub(super) surfaces: BTreeMap<(u32, u32), ManifoldSurface>,
     /// Bodies to which the solver gave more mass in the last step, by id, and how long it lasts.
     raised_masses: Vec<(u32, [u8; DIM])>,
-    /// Contacts that may be of internal edges; empty between updates.
+    /// Colliders that slide; empty between updates.
     pub(super) sliding: Vec<u32>,
+    /// The same as a set.
+    pub(super) sliders: BitSet,
     /// Points under load that sliding colliders lost; empty between updates.
     pub(super) lost: Vec<Lost>,
+    /// The points of a sliding collider; empty between updates.
+    pub(super) bearings: Vec<Bearing>,
 }
 
 /// Manifolds after the first that a worker computed.

@@ -42,6 +42,7 @@ mod rest;
 mod rubbing;
 mod sensors;
 mod sim;
+mod slabs;
 mod sound;
 mod strikes;
 mod struck;
