@@ -299,6 +299,36 @@ mod tests {
         }
     }
 
+    /// Also along axes, where a ray goes through as many boxes as it can.
+    #[test]
+    fn a_ray_visits_what_is_nearest_first() {
+        let side = if DIM == 2 { 64 } else { 16_usize };
+        let place = |k: usize| core::array::from_fn(|axis| (k / side.pow(axis as u32) % side) as f32 + 0.25);
+        let boxes: Vec<Aabb> = (0..side.pow(DIM as u32))
+            .map(|k| Vector::from_array(place(k)))
+            .map(|corner| Aabb::new(corner, corner + Vector::ONE * 0.5))
+            .collect();
+        let tree = PartTree::new(&boxes);
+        let middle = Vector::ONE * (0.5 * side as f32 + 0.45);
+        for axis in 0..DIM {
+            for toward in [1.0, -1.0] {
+                let along =
+                    Vector::from_array(core::array::from_fn(|i| if i == axis { toward } else { 0.0 }));
+                let origin = middle - along * (2.0 * side as f32);
+                let inverse = Vector::from_array(along.to_array().map(|c| 1.0 / c));
+                let (mut visited, mut nearest) = (0, f32::INFINITY);
+                tree.cast_ray(origin, along, f32::MAX, |part, limit| {
+                    visited += 1;
+                    let entry = boxes[part as usize].ray_entry(origin, inverse, limit);
+                    nearest = entry.unwrap_or(nearest);
+                    entry.unwrap_or(limit)
+                });
+                assert!(nearest < 1.6 * side as f32, "the first box of the row is hit, at {nearest} m");
+                assert!(visited <= LEAF_PARTS, "{visited} boxes are visited along {along:?}");
+            }
+        }
+    }
+
     #[test]
     fn boxes_without_numbers_do_not_end_a_build() {
         let odd = [Aabb::EMPTY, Aabb::new(Vector::ONE * f32::NAN, Vector::ONE), Aabb::EVERYTHING];
