@@ -79,6 +79,10 @@ impl Link<'_> {
         if let Some(islands) = &mut self.islands {
             islands.drain_woken(|body| self.bodies[body].sleep_timer = 0.0);
         }
+        if core::mem::take(&mut self.contacts.gives_back) {
+            self.colors.shrink();
+            self.islands.iter_mut().for_each(|islands| islands.shrink());
+        }
         for id in core::mem::take(&mut self.contacts.visited) {
             if self.contacts.is_live(id) {
                 self.refresh(ConstraintId::contact(id));

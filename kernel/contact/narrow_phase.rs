@@ -62,6 +62,9 @@ impl ContactTable {
         changed: &mut BitSet,
     ) {
         workers.iter_mut().for_each(WorkerBuffers::clear);
+        if self.gives_back {
+            workers.clear();
+        }
         if workers.len() < pool.workers() {
             workers.resize_with(pool.workers(), WorkerBuffers::default);
         }

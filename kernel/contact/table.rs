@@ -1,7 +1,7 @@
 //! All contacts by id, the map from pairs to contacts, and the set of awake contacts.
 
 use super::record::{Bearing, Contact, ContactFlags, Lost, Manifold, ManifoldSurface};
-use crate::data::{BitSet, IdPool, PairSet, prefetch};
+use crate::data::{BitSet, IdPool, PairSet, Slack, prefetch};
 use crate::math::DIM;
 use crate::table::{ColliderTable, NONE};
 use std::collections::BTreeMap;
@@ -48,6 +48,16 @@ pub struct ContactTable {
     pub(super) lost: Vec<Lost>,
     /// The points of a sliding collider; empty between updates.
     pub(super) bearings: Vec<Bearing>,
+    /// How many contacts there are, step by step.
+    slack: Slack,
+    /// Whether buffers are given back in this step.
+    pub(super) gives_back: bool,
+}
+
+/// Shortens a list, and gives back the storage of what it does not hold.
+fn cut<T>(list: &mut Vec<T>, len: usize) {
+    list.truncate(len);
+    list.shrink_to_fit();
 }
 
 /// Manifolds after the first that a worker computed.
@@ -214,9 +224,22 @@ impl ContactTable {
         self.raised_masses.extend_from_slice(raised);
     }
 
-    /// Makes ids that were freed before this usable again.
+    /// Makes ids that were freed before this usable again: to be called in every step. Gives back what a crowd needed that is gone.
     pub fn recycle_ids(&mut self) {
         self.ids.recycle();
+        self.gives_back = self.slack.is_due(self.len());
+        if self.gives_back {
+            self.ids.trim();
+            let capacity = self.ids.capacity();
+            cut(&mut self.contacts, capacity);
+            cut(&mut self.points, capacity);
+            cut(&mut self.bodies, capacity);
+            self.active.truncate(capacity);
+            self.pairs.shrink();
+            for slot in &self.free_extra {
+                self.extra[*slot as usize] = Vec::new();
+            }
+        }
     }
 
     pub(super) fn store_extra(&mut self, id: u32, manifolds: &[Manifold]) {

@@ -34,6 +34,21 @@ impl BitSet {
         absent
     }
 
+    /// Removes the ids from `capacity` on, and gives their storage back.
+    pub fn truncate(&mut self, capacity: usize) {
+        self.words.truncate(capacity.div_ceil(BITS));
+        self.words.shrink_to_fit();
+        if let (Some(last), rest @ 1..) = (self.words.get_mut(capacity / BITS), capacity % BITS) {
+            *last &= (1 << rest) - 1;
+        }
+    }
+
+    /// The highest member.
+    pub fn last(&self) -> Option<u32> {
+        let word = self.words.iter().rposition(|word| *word != 0)?;
+        Some((word * BITS) as u32 + self.words[word].ilog2())
+    }
+
     /// Removes an id. Returns whether it was present.
     #[inline]
     pub fn remove(&mut self, id: u32) -> bool {

@@ -104,6 +104,24 @@ impl IdPool {
         }
     }
 
+    /// Forgets the reusable ids beyond all that are not: the order of those that are allocated next stays. To be called when freed
+    /// ids were [recycled](Self::recycle).
+    pub fn trim(&mut self) {
+        debug_assert!(self.pending.is_empty(), "freed ids were recycled");
+        if !self.pending.is_empty() {
+            return;
+        }
+        self.capacity = self.live.last().map_or(0, |last| last + 1);
+        let capacity = self.capacity as usize;
+        [&mut self.live, &mut self.aside].into_iter().for_each(|ids| ids.truncate(capacity));
+        for free in &mut self.free {
+            free.ids.truncate(capacity);
+            free.count = free.ids.count() as u32;
+            free.lowest = free.lowest.min(self.capacity);
+        }
+        self.pending.shrink_to_fit();
+    }
+
     /// Whether the id is in use.
     #[inline]
     pub fn is_live(&self, id: u32) -> bool {
@@ -164,6 +182,11 @@ mod tests {
                     _ => {
                         pool.recycle();
                         free.extend(pending.drain(..));
+                        if pick % 4 == 0 {
+                            pool.trim();
+                            highest = live.iter().max().map_or(0, |last| last + 1);
+                            free.split_off(&highest);
+                        }
                     }
                 }
                 prop_assert_eq!(pool.len(), live.len());
@@ -200,6 +223,9 @@ mod tests {
                     _ => {
                         alone.recycle();
                         both.recycle();
+                        if pick % 3 == 0 {
+                            both.trim();
+                        }
                     }
                 }
                 pairs.sort_unstable();

@@ -129,6 +129,14 @@ impl PairSet {
         }
     }
 
+    /// Gives back the storage of pairs that were removed.
+    pub fn shrink(&mut self) {
+        let slots = (self.len * 2).next_power_of_two().max(MIN_SLOTS);
+        if slots < self.slots.len() {
+            self.rehash(slots);
+        }
+    }
+
     /// Removes all pairs and keeps the storage.
     pub fn clear(&mut self) {
         self.slots.fill(FREE);
@@ -215,6 +223,9 @@ mod tests {
             }
         }
         assert!(set.slots.len() <= slots * 2 && set.len() == 1000);
+        (0..900).for_each(|k| _ = set.remove(99_999 - k, 99_999 - k + 7));
+        set.shrink();
+        assert!(set.slots.len() == 256 && (99_000..99_100).all(|k| set.get(k, k + 7) == Some(k)));
         set.clear();
         assert!(set.is_empty() && set.slots.iter().all(|s| *s == FREE));
     }

@@ -90,6 +90,11 @@ impl ColorGraph {
         ColorSlot::new(color, list.len() - 1)
     }
 
+    /// Gives back the storage of constraints that were released.
+    pub(crate) fn shrink(&mut self) {
+        self.colors.iter_mut().flat_map(|color| &mut color.lists).for_each(Vec::shrink_to_fit);
+    }
+
     /// Releases the colour of a constraint. `bodies` must be those it was assigned with.
     ///
     /// Returns the constraint of the same kind that moved into the slot, if any: the caller must store `slot` as its

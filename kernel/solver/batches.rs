@@ -187,6 +187,11 @@ impl AllRows {
     /// Number of batches: of single constraints, of rows that share bodies, and of wide rows.
     pub(super) const BATCHES: usize = WIDE + BATCHES;
 
+    /// Empties all rows without keeping their storage.
+    pub(super) fn give_back(&mut self) {
+        *self = Self { width: self.width, ..Self::default() };
+    }
+
     /// Resizes the rows of each batch. Their content is stale.
     pub(super) fn make_room(&mut self, rows: &[u32], room: Room) {
         let (overflow, wide) = rows.split_at(WIDE);

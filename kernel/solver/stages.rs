@@ -19,7 +19,7 @@ use super::split::DeepCounts;
 use super::struck::Striking;
 use super::{BodyRow, BodyRows, GainRow, RowView, SubstepParams};
 use crate::contact::ContactTable;
-use crate::data::Parts;
+use crate::data::{Parts, Slack};
 use crate::graph::ColorGraph;
 use crate::math::Width;
 use crate::thread_pool::ThreadPool;
@@ -65,6 +65,8 @@ pub struct Solver {
     first_dynamic: u32,
     /// Whether the embedder changed bodies since gaps were measured.
     gaps_are_old: bool,
+    /// How many rows there are, step by step.
+    slack: Slack,
 }
 
 impl Solver {
@@ -123,8 +125,13 @@ impl Solver {
         joints.stiffen(input, colors, params.h, &mut bodies.masses, least_inertia);
         shares.divide(pool.workers(), *first_dynamic, input, colors);
         self.plan_rows(input, colors, pool);
-        let Self { plan, trees, .. } = self;
-        if plan.rows().iter().sum::<u32>() + trees.len() >= WORTH_WAKING {
+        let rows = self.plan.rows().iter().sum::<u32>();
+        if self.slack.is_due(rows as usize) {
+            self.rows.give_back();
+            (self.layers, self.plan, self.bearing, self.blows) = Default::default();
+            self.plan_rows(input, colors, pool);
+        }
+        if rows + self.trees.len() >= WORTH_WAKING {
             pool.wake();
         }
         self.bearing.clear();

@@ -66,6 +66,27 @@ fn bodies_in_one_place_come_apart_gently() {
 }
 
 #[test]
+fn the_memory_of_a_crowd_is_given_back() {
+    let mut sim = Sim::new();
+    sim.checked = false;
+    sim.floor();
+    let kept = sim.ball(0.25, Vector::X * 20.0 + Vector::Y * 0.25);
+    let ids: Vec<u32> = (0..200).map(|_| sim.ball(0.25, Vector::Y * 2.0)).collect();
+    sim.steps(5);
+    let crowded = sim.contacts.capacity();
+    assert!(crowded >= 200 * 199 / 2, "{crowded} contacts");
+    ids.iter().for_each(|id| sim.remove(*id));
+    sim.checked = true;
+    // Buffers that are in use are kept for some seconds.
+    sim.steps(600);
+    let left = sim.contacts.capacity();
+    assert!(left < crowded / 100, "places of {left} contacts are left of {crowded}");
+    sim.cuboid(Vector::ONE * 0.25, Vector::X * 20.0 + Vector::Y);
+    sim.steps(120);
+    assert!(speed(&sim, kept) < 0.5 && sim.contacts.len() >= 2, "contacts are made anew");
+}
+
+#[test]
 fn bodies_in_one_place_on_a_floor_come_to_rest_near_it() {
     let mut sim = Sim::new();
     let floor = Shape::Cuboid(Cuboid { half: Vector::ONE * 200.0 });

@@ -154,6 +154,15 @@ impl Islands {
         Self::default()
     }
 
+    /// Gives back the storage of links that were removed.
+    pub fn shrink(&mut self) {
+        let placed = self.link_places.iter().rposition(|place| *place != NOWHERE);
+        self.link_places.truncate(placed.map_or(0, |last| last + 1));
+        self.link_places.shrink_to_fit();
+        self.islands.iter_mut().for_each(|island| island.links.shrink_to_fit());
+        self.spare.clear();
+    }
+
     /// Adds a body in an awake island of its own. A body that has an island stays there.
     pub fn add_body(&mut self, body: u32) -> IslandId {
         if let Some(island) = self.island_of(body) {
