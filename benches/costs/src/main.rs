@@ -3,6 +3,7 @@
 //! `cargo run --release -p bench_costs` in the folder `benches` measures all, `-- events` one part.
 
 mod batches;
+mod characters;
 mod drawing;
 mod events;
 mod meshes;
@@ -12,6 +13,7 @@ fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let all = [
         ("events", events::measure as fn()),
+        ("characters", characters::measure),
         ("drawing", drawing::measure),
         ("meshes", meshes::measure),
         ("batches", batches::measure),
