@@ -15,17 +15,17 @@ use crate::{
 
 /// The load in N, of a mass under gravity, that a body bears after another step, in which it gave way by a speed.
 ///
-/// How much it bears is not known, and the whole weight at once would throw a light limb that lies on nothing. So the load begins
-/// with what accelerates the mass and the body together by gravity, and grows twofold in each step until the body gives way.
+/// How much it bears is not known, and the whole weight at once would throw a light limb that lies on nothing. So each step adds what
+/// accelerates the mass and the body together by gravity, at least `growth` times the load, and takes off what made the body give way.
 pub(super) fn borne(
     load: Scalar,
     yielded: Scalar,
     (mass, gravity): (Scalar, Scalar),
-    inverse: Scalar,
+    (inverse, growth): (Scalar, Scalar),
     time: Scalar,
 ) -> Scalar {
     let more = (gravity - yielded / time) / (1.0 / mass + inverse);
-    let more = if more > 0.0 { more.max(load) } else { more };
+    let more = if more > 0.0 { more.max(growth * load) } else { more };
     (load + more).min(mass * gravity).max(0.0)
 }
 

@@ -212,7 +212,9 @@ impl Hover<'_> {
             let directions = [missing.normalize_or_zero(), up];
             ground.inverse = directions.map(|along| bodies.inverse_mass_at(body, point, along));
             let gravity = -self.gravity.dot(up);
-            state.load = borne(load, yielded, (self.mass, gravity), ground.inverse[1], self.time);
+            // It falls where it is not borne, so its load grows fast.
+            let growing = (ground.inverse[1], 1.0);
+            state.load = borne(load, yielded, (self.mass, gravity), growing, self.time);
         }
         if input.jump > 0.0 {
             let speed = ground.velocity.dot(up) + self.walker.lift(ground.normal, own).max(0.0) + input.jump;

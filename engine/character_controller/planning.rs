@@ -428,7 +428,7 @@ impl Planning<'_> {
         let is_same = before == Some(ground);
         let (load, yielded) =
             if is_same { (load, speed - self.state.ground_velocity.dot(up)) } else { (0.0, 0.0) };
-        self.state.load = borne(load, yielded, (mass, gravity), inverse, self.around.time);
+        self.state.load = borne(load, yielded, (mass, gravity), (inverse, 0.0), self.around.time);
         self.plan.pushes.push(Push { body, point, force: -up * self.state.load });
     }
 }
