@@ -75,8 +75,8 @@ impl Flat {
     }
 }
 
-/// A way out of an overlap is at most so many times as long as the overlap is deep: in a corner of 11 degrees. Longer ones lead out
-/// of narrow wedges, metres away.
+/// The longest way out of an overlap, as a multiple of its depth: that of a wedge of 11 degrees. Larger moves a shape metres along
+/// two walls that are nearly parallel; smaller leaves it in sharp corners.
 const LONGEST: Scalar = 10.0;
 
 /// The shortest way out of planes that a shape is below, and whether it leads out. Where there is no room it leads midway.

@@ -4,7 +4,8 @@
 /// waves, more hold the memory longer.
 const STEPS: u32 = 256;
 
-/// Buffers are given back if at most one in so many places was used.
+/// The number of places of a buffer for each one in use, from which it is given back. Smaller gives back and allocates more often;
+/// larger keeps more memory.
 const SHARE: usize = 4;
 
 /// The least number of places that is worth giving back.

@@ -14,8 +14,9 @@ const HINT: &str = "Walk: WASD or arrows. Jump: space.\n\
 /// In m/s.
 const SPEED: f32 = 4.0;
 const JUMP: f32 = 6.0;
-/// In m/s². In the air it changes its speed by so much.
+/// In m/s².
 const GRAVITY: f32 = 9.81;
+/// Acceleration of the character in the air, in m/s².
 const AIR: f32 = 10.0;
 /// The least upward part of the normal of a floor: 50 degrees.
 const FLOOR: f32 = 0.64;
