@@ -10,7 +10,7 @@
 //! Bodies move with their old velocity until they touch: each is displaced by the time until then, times the change of its velocity.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::group::{StruckBody, movable, solve};
+use super::group::{GroupBuffers, movable, solve};
 use super::input::Item;
 use super::struck::{Striking, Struck};
 use crate::contact::ContactTable;
@@ -18,6 +18,7 @@ use crate::data::BitSet;
 use crate::graph::DisjointSets;
 use crate::math::{MAX_POINTS, Vector};
 use crate::thread_pool::ThreadPool;
+use crate::tuning::solver::{BLOW_SWEEPS, BLOW_WORK};
 
 /// The manifolds that are struck in a substep. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
@@ -32,7 +33,9 @@ pub(super) struct Blows {
     bodies: Vec<u32>,
     sets: DisjointSets,
     /// By worker.
-    groups: Vec<Vec<StruckBody>>,
+    groups: Vec<GroupBuffers>,
+    /// How often a manifold was solved in this substep, about.
+    solved: usize,
     /// Of all rounds of the step.
     given: Vec<Given>,
     /// Struck body rows since the caller last emptied this list, and when they were struck, in seconds from the start of the
@@ -75,6 +78,12 @@ impl Blows {
     pub(super) fn begin(&mut self) {
         self.struck.clear();
         self.times.clear();
+        self.solved = 0;
+    }
+
+    /// Whether there is no time for another round in this substep. What closes still is left to contacts.
+    pub(super) fn is_spent(&self) -> bool {
+        self.solved >= BLOW_WORK
     }
 
     /// The blows of the step, in the order of time. A manifold may be struck several times.
@@ -99,17 +108,21 @@ impl Blows {
         }
         self.merge_found();
         self.find_groups(first_dynamic);
-        let Self { struck, groups, given, reached, times, .. } = self;
-        let mut any = false;
+        let Self { struck, groups, given, reached, times, solved, .. } = self;
+        let mut count = 0;
         for group in struck.chunk_by(|a, b| a.group == b.group).filter(|group| is_due(group)) {
-            any = true;
+            count += group.len();
             group.iter().flat_map(|one| movable(one, first_dynamic)).for_each(|row| _ = reached.insert(row));
         }
+        let most_sweeps = (BLOW_WORK.saturating_sub(*solved) / count.max(1)).min(BLOW_SWEEPS);
         let of_groups = struck.chunk_by_mut(|a, b| a.group == b.group).filter(|group| is_due(group));
-        pool.each_into(groups, of_groups, |bodies, group| {
+        pool.each_into(groups, of_groups, |buffers, group| {
             // SAFETY: no two groups have a body that may be written in common.
-            unsafe { solve(group, bodies, first_dynamic, striking) };
+            unsafe { solve(group, buffers, (first_dynamic, most_sweeps), striking) };
         });
+        // To find and to sort them takes about as long as to solve each once.
+        *solved += struck.len();
+        *solved += groups.iter_mut().map(|worker| core::mem::take(&mut worker.solved)).sum::<usize>();
         for one in struck.iter_mut() {
             let impulses = one.impulses();
             if impulses.iter().any(|impulse| *impulse > 0.0) {
@@ -121,7 +134,7 @@ impl Blows {
             }
             one.rest();
         }
-        any
+        count > 0
     }
 
     /// Adds what was found to the struck manifolds. What was struck in an earlier round is replaced.

@@ -13,7 +13,7 @@
 use super::struck::{Striking, Struck};
 use super::{BodyRow, RowView};
 use crate::math::{Angular, Vector, max, min};
-use crate::tuning::solver::{BLOW_SWEEPS, BOUNCE_TOLERANCE, CONVERGED, ROUND_OF_SWEEPS};
+use crate::tuning::solver::{BOUNCE_TOLERANCE, CONVERGED, ROUND_OF_SWEEPS};
 
 /// A body of a group.
 #[derive(Clone, Copy, Debug)]
@@ -27,22 +27,31 @@ pub(super) struct StruckBody {
     time: f32,
 }
 
+/// What a worker keeps between groups.
+#[derive(Clone, Debug, Default)]
+pub(super) struct GroupBuffers {
+    bodies: Vec<StruckBody>,
+    /// How often a manifold was solved since the caller last took this.
+    pub(super) solved: usize,
+}
+
 /// The body rows of a manifold that may be written.
 pub(super) fn movable(one: &Struck, first_dynamic: u32) -> impl Iterator<Item = u32> + use<> {
     one.row.ids.into_iter().map(|[row]| row).filter(move |row| *row >= first_dynamic)
 }
 
-/// Solves the impacts of a group.
+/// Solves the impacts of a group, with `most_sweeps` at most. Fewer than a round of sweeps make no blow.
 ///
 /// # Safety
 /// Until it returns, no other thread reads or writes the bodies of the group that may be written, or writes the others.
 pub(super) unsafe fn solve(
     group: &mut [Struck],
-    bodies: &mut Vec<StruckBody>,
-    first_dynamic: u32,
+    GroupBuffers { bodies, solved }: &mut GroupBuffers,
+    (first_dynamic, most_sweeps): (u32, usize),
     striking: &Striking,
 ) {
     let rows = &striking.bodies;
+    let most_sweeps = most_sweeps.max(ROUND_OF_SWEEPS);
     bodies.clear();
     for one in group.iter() {
         let time = if one.speed > 0.0 { one.time } else { f32::MAX };
@@ -63,9 +72,13 @@ pub(super) unsafe fn solve(
     let rise = if shares { ROUND_OF_SWEEPS } else { 1 };
     // SAFETY: by the contract.
     group.iter_mut().for_each(|one| unsafe { one.begin(rows) });
+    let mut sweep = |group: &mut [Struck], rise, solve: &mut dyn FnMut(&mut Struck, bool, f32) -> f32| {
+        let (sweeps, is_stuck) = sweep(group, (rise, most_sweeps), tolerance * fastest, solve);
+        *solved += sweeps * group.len();
+        is_stuck
+    };
     // SAFETY: by the contract.
-    let compress = |one: &mut Struck, is_backward, share| unsafe { one.compress(rows, is_backward, share) };
-    if sweep(group, fastest, rise, tolerance, compress) {
+    if sweep(group, rise, &mut |one, is_backward, share| unsafe { one.compress(rows, is_backward, share) }) {
         // SAFETY: by the contract.
         group.iter_mut().for_each(|one| unsafe { one.find_jam(rows, striking.params) });
     }
@@ -82,7 +95,7 @@ pub(super) unsafe fn solve(
         // SAFETY: by the contract.
         group.iter_mut().for_each(|one| unsafe { one.restitute(rows) });
         // SAFETY: by the contract.
-        sweep(group, fastest, 1, tolerance, |one, _, _| unsafe { one.rub(rows) });
+        sweep(group, 1, &mut |one, _, _| unsafe { one.rub(rows) });
         // SAFETY: by the contract.
         unsafe { return_at_most(share * share * max(lost, 0.0), group, bodies, rows) };
     }
@@ -132,18 +145,17 @@ unsafe fn work(group: &[Struck], rows: &RowView<BodyRow>) -> [f32; 2] {
     group.iter().map(|one| unsafe { one.work(rows) }).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
 }
 
-/// Sweeps over a group, forward and backward in turns, until velocities hardly change. In the first `rise` sweeps impulses rise
-/// evenly. Returns whether more sweeps would not help.
+/// Sweeps over a group, forward and backward in turns, until velocities change by no more than this, m/s. In the first `rise`
+/// sweeps impulses rise evenly. Returns how many there were, and whether more would not help.
 fn sweep(
     group: &mut [Struck],
-    fastest: f32,
-    rise: usize,
-    tolerance: f32,
-    mut solve: impl FnMut(&mut Struck, bool, f32) -> f32,
-) -> bool {
+    (rise, most): (usize, usize),
+    calm: f32,
+    solve: &mut dyn FnMut(&mut Struck, bool, f32) -> f32,
+) -> (usize, bool) {
     // The least change of these sweeps and of those before.
     let [mut least, mut earlier] = [f32::INFINITY; 2];
-    for count in 0..BLOW_SWEEPS {
+    for count in 0..most {
         let is_backward = count % 2 == 1;
         let share = 1.0 / max(rise as f32 - count as f32, 1.0);
         let mut change = 0.0;
@@ -156,16 +168,16 @@ fn sweep(
         if share < 1.0 {
             continue;
         }
-        if change <= tolerance * fastest {
-            return false;
+        if change <= calm {
+            return (count + 1, false);
         }
         least = min(least, change);
         if count % ROUND_OF_SWEEPS == ROUND_OF_SWEEPS - 1 {
             if least > 0.99 * earlier {
-                return true;
+                return (count + 1, true);
             }
             (earlier, least) = (least, f32::INFINITY);
         }
     }
-    false
+    (most, false)
 }

@@ -23,7 +23,7 @@ use crate::data::{Parts, Slack};
 use crate::graph::ColorGraph;
 use crate::math::Width;
 use crate::thread_pool::ThreadPool;
-use crate::tuning::solver::{BLOW_ROUNDS, JOINT_ROUNDS};
+use crate::tuning::solver::{BLOW_SWEEPS, JOINT_ROUNDS};
 
 /// Maximum number of rows of a block if several workers share them: some microseconds of work. More leaves workers idle
 /// at the end of a stage, fewer cost more claims.
@@ -332,7 +332,10 @@ impl Solver {
         let mut any = false;
         let mut blocks = core::mem::take(&mut plan.blocks);
         rows.with(joints, customs, |batches| {
-            for _ in 0..BLOW_ROUNDS {
+            for _ in 0..BLOW_SWEEPS {
+                if blows.is_spent() {
+                    break;
+                }
                 let Blows { found, reached, .. } = blows;
                 let seek = &Seek { striking, reached };
                 let looked_at = |block: &&mut Block| !seek.reached.is_empty() || block.passes.are_watched();

@@ -15,7 +15,7 @@ use kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Shape};
 use kernel::table::{BodyKind, Velocity};
 
 /// Name of a scene, and the function that builds and runs it.
-const SCENES: [(&str, fn(&mut Sim)); 17] = [
+const SCENES: [(&str, fn(&mut Sim)); 18] = [
     ("pyramid", pyramid),
     ("towers", towers),
     ("pairs", pairs),
@@ -33,6 +33,7 @@ const SCENES: [(&str, fn(&mut Sim)); 17] = [
     ("changes", changes),
     ("wall", wall),
     ("joints", jointed),
+    ("landing", landing),
 ];
 
 fn ball(radius: f32) -> Shape {
@@ -101,6 +102,20 @@ fn towers(sim: &mut Sim) {
         }
     }
     sim.steps(120);
+}
+
+/// Columns of loose boxes that land at once: more than is struck exactly in a substep.
+fn landing(sim: &mut Sim) {
+    sim.floor();
+    let rows = if DIM == 2 { 1 } else { 6 };
+    for i in 0..24 * rows {
+        let at = |k: usize| 0.7 * k as f32;
+        let [x, z] = if DIM == 2 { [at(i), 0.0] } else { [at(i % 24), at(i / 24)] };
+        for level in 0..12 {
+            sim.cuboid(Vector::ONE * 0.25, sized(x, 0.6 + 0.58 * level as f32, z));
+        }
+    }
+    sim.steps(80);
 }
 
 /// Every native shape collides with every other one, head-on and tilted.

@@ -5,11 +5,11 @@ use crate::kernel::shape::{Ball, Capsule, Cuboid, HalfSpace, Hull, Segment, Shap
 use std::sync::Arc;
 
 /// For each scene the hash with world positions in `f32`, and in `f64`.
-pub const GOLDEN: [(&str, u64, u64); 17] = [
-    ("pyramid", 0x33a36322c41b19d9, 0xc4af2ec26bece801),
+pub const GOLDEN: [(&str, u64, u64); 18] = [
+    ("pyramid", 0xda3efbe9ccf35fb6, 0x78d52ddd2fa77598),
     ("towers", 0x56f256b25e187317, 0x2bc7a364da062c3c),
     ("pairs", 0xa560c9accd5e41a3, 0x70f7e53e192e320b),
-    ("heap", 0xb78b0f0308a745cf, 0x3e14a2376185a726),
+    ("heap", 0xf9c704c43d0b38eb, 0xd3b0d44d7ce61c52),
     ("terrain", 0xca202c189515c3f4, 0x97be07d9abfe1213),
     ("slopes", 0x9ce56aa15f282302, 0x92fc75e3881edcb4),
     ("composites", 0xa57637edd5f73782, 0xea7a3eba83679002),
@@ -18,11 +18,12 @@ pub const GOLDEN: [(&str, u64, u64); 17] = [
     ("sleepers", 0x8123a61c2e1f4724, 0xf84338b02e8ee25c),
     ("held", 0x4f2f5900cbeae18b, 0x9211a8b47476462a),
     ("dominance", 0x963d5fedb83bb4fa, 0x389c9733172a67d4),
-    ("spin", 0xd1123577855c84ac, 0x927f4f8b9aac4d8e),
-    ("mixer", 0x7e2ace464105d04d, 0x580a61ea756d6840),
+    ("spin", 0xed67456ef08ed709, 0x60c9a8481b96b919),
+    ("mixer", 0xb8cd16da9d80a52e, 0x32b20e2b293cd4e7),
     ("changes", 0x8a029d2a9c035904, 0x01db8db2209ebbe6),
     ("wall", 0xa51aa86ad759539a, 0x87c0a9e51682ce12),
-    ("joints", 0x2c611263244386df, 0xfb5c93726c062996),
+    ("joints", 0xf16cdcbb5da16513, 0x52ab99736418229e),
+    ("landing", 0xbe4c9592a5fa192f, 0xc739ee8aaa2704f4),
 ];
 
 /// Every native shape with bounds, each about a metre across.

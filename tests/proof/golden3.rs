@@ -6,13 +6,13 @@ use avian::prelude::*;
 pub const NATIVE: [(&str, u64); 11] = [
     ("pyramid", 0x6adbd9dda75add28),
     ("pyramids", 0x17a8afd77f7dc398),
-    ("tumbler", 0x5d62156c8f8ab194),
+    ("tumbler", 0xb27cd220abc76013),
     ("dominoes", 0xac7b849ae9d2ce46),
     ("card_house", 0x15a5ba7543678eac),
     ("towers", 0x4a66ad8c890eac3c),
-    ("smash", 0x35c707a335560a7e),
+    ("smash", 0xfd9230a6d29175a2),
     ("crowd", 0xdd2090397d611373),
-    ("sleepers", 0xf3c08340bfed229c),
+    ("sleepers", 0xf9dc327a40fcb339),
     ("bounces", 0xccb55e1a4906b501),
     ("settings", 0x9bc46dfe96d8fb35),
 ];
