@@ -112,7 +112,10 @@ pub fn atan2_lanes<N: Lane>(y: N, x: N) -> N {
     let turned = (ratio - N::ONE) / (ratio + N::ONE);
     let z = N::select(is_wide, turned, ratio);
     let s = z * z;
-    let polynomial = ATAN.iter().rev().fold(N::ZERO, |sum, c| sum * s + N::splat(*c));
+    let mut polynomial = N::ZERO;
+    for c in ATAN.iter().rev() {
+        polynomial = polynomial * s + N::splat(*c);
+    }
     let angle = z + z * s * polynomial + N::select(is_wide, N::splat(FRAC_PI_4), N::ZERO);
     let angle = N::select(ax.lt(ay), N::splat(FRAC_PI_2) - angle, angle);
     let angle = N::select(x.lt(N::ZERO), N::splat(PI) - angle, angle);

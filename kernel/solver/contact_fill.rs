@@ -83,7 +83,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         for point in &self.points {
             impulse += point.impulse;
         }
-        let [a, b] = self.inv_mass.map(|inv_mass| inv_mass.along(self.normal));
+        let [a, b] = [self.inv_mass[0].along(self.normal), self.inv_mass[1].along(self.normal)];
         let (larger, smaller) = (a.max(b), a.min(b));
         let is_heavy = N::and((smaller * N::splat(HEAVY)).lt(larger), N::ZERO.lt(smaller));
         N::select(is_heavy, impulse * larger, N::ZERO)

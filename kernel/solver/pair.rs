@@ -26,10 +26,12 @@ impl<N: Lane> Pair<N> {
     /// This pair where the mask is set, else `other`.
     #[inline(always)]
     pub(super) fn or_where_not(self, mask: N::Mask, other: Self) -> Self {
-        Self {
-            v: core::array::from_fn(|i| Vector::select(mask, self.v[i], other.v[i])),
-            w: core::array::from_fn(|i| Angular::select(mask, self.w[i], other.w[i])),
+        let mut pair = other;
+        for i in 0..2 {
+            pair.v[i] = Vector::select(mask, self.v[i], other.v[i]);
+            pair.w[i] = Angular::select(mask, self.w[i], other.w[i]);
         }
+        pair
     }
 
     /// Velocity of B relative to A along `n`, at the point whose moments with `n` are given.

@@ -14,5 +14,5 @@ pub(super) fn levers<N: Lane>([a, b]: [N; 2], arm: N) -> [N; 2] {
     let radius = N::select(are_round, a.min(b), a.max(b));
     let of_corner = arm * N::splat(0.2 * ROLL_LEVER);
     // A patch that holds against rolling by a lever holds against spin by about twice that.
-    [2.0 * ROLL_LEVER, ROLL_LEVER].map(|of_round| (radius * N::splat(of_round)).max(of_corner))
+    [(radius * N::splat(2.0 * ROLL_LEVER)).max(of_corner), (radius * N::splat(ROLL_LEVER)).max(of_corner)]
 }

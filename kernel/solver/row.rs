@@ -352,10 +352,12 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// nothing to do with rolling.
     #[inline(always)]
     pub(super) fn rolling_arm(&self) -> N {
-        let far = N::splat(f32::MAX);
-        let arms = self.surface_arms();
-        let arm = |i: usize| N::select(N::ZERO.lt(self.inv_inertia[i].trace()), arms[i].length(), far);
-        let shorter = arm(0).min(arm(1));
+        let (far, arms) = (N::splat(f32::MAX), self.surface_arms());
+        let mut shorter = far;
+        for i in 0..2 {
+            let turns = N::ZERO.lt(self.inv_inertia[i].trace());
+            shorter = shorter.min(N::select(turns, arms[i].length(), far));
+        }
         N::select(shorter.lt(far), shorter, N::ZERO)
     }
 

@@ -70,7 +70,8 @@ fn the_step_in_which_columns_land_takes_some_times_as_long_as_one_at_rest() {
     };
     // Of three steps in turn the shortest, since other programs may interrupt some.
     let mut times: Vec<f64> = (0..240).map(|_| timed(&mut sim)).collect();
-    let longest = times.windows(3).map(|three| three.iter().copied().fold(f64::MAX, f64::min)).fold(0.0, f64::max);
+    let longest =
+        times.windows(3).map(|three| three.iter().copied().fold(f64::MAX, f64::min)).fold(0.0, f64::max);
     let rest = &mut times[200..];
     rest.sort_unstable_by(f64::total_cmp);
     let rest = rest[rest.len() / 2];

@@ -6,12 +6,11 @@ use super::super::input::Item;
 use super::super::layer::{Layer, Sorter};
 use super::super::{BodyRow, MassRow, RowView, SubstepParams};
 use super::coupling_row::{CouplingRow, CouplingView};
-use super::def::JointDef;
 use super::dim::{AXES, BLOCK};
 use super::orientation::OrientationRow;
 use super::row::{Hold, Row};
 use super::single::Single;
-use super::table::{JointTable, Records};
+use super::table::{JointTable, Record, Records};
 use super::tree::JointTrees;
 use crate::contact::ManifoldsView;
 use crate::data::Parts;
@@ -20,6 +19,9 @@ use crate::math::{DIM, Entry, Job, Lane};
 use core::ops::Range;
 
 const KIND: ConstraintKind = ConstraintKind::Joint;
+
+/// How many joints ahead records are prefetched.
+const PREFETCH_DISTANCE: usize = 3;
 
 /// Number of batches of joints in one width: one for each class, and couplings.
 pub(in super::super) const JOINT_BATCHES: usize = COUPLINGS + 1;
@@ -53,8 +55,12 @@ impl Class {
     }
 }
 
-/// The batch of a joint.
-fn class_of(def: &JointDef) -> usize {
+/// The number of the batch of a joint.
+pub(super) fn batch_of(record: &Record) -> usize {
+    if record.coupling.is_some() {
+        return COUPLINGS;
+    }
+    let def = &record.def;
     let block = (0..BLOCK).rev().find(|k| def.is_in_block(*k)).map_or(0, |last| last + 1);
     let singles = (0..AXES).filter(|k| def.is_single(*k)).count();
     let turns = def.orientation.is_some();
@@ -78,9 +84,7 @@ pub(in super::super) fn sort_joints(
     let parts = layer.parts();
     for &id in joints.iter().filter(|id| !trees.holds(**id)) {
         let bodies = sorter.input.bodies.constraints(KIND).get(id).bodies;
-        let record = table.record(id);
-        let of_kind = if record.coupling.is_some() { COUPLINGS } else { class_of(&record.def) };
-        let batch = first + of_kind;
+        let batch = first + usize::from(table.summary(id).batch);
         layer.push(sorter.part(id, bodies, parts), batch, Item { id, index: 0 });
     }
 }
@@ -221,8 +225,10 @@ impl<N: Entry> Batch for JointView<'_, N> {
         taken.rows.fill(Row::default());
         taken.singles.fill(Single::NONE);
         taken.turns.fill(OrientationRow::NONE);
+        let mut ahead = items.iter().skip(PREFETCH_DISTANCE);
         for ((row, (singles, mut turns)), lanes) in taken.each().zip(items.chunks(N::WIDTH)) {
             for (lane, item) in lanes.iter().enumerate() {
+                ahead.next().into_iter().for_each(|item| self.records.0.prefetch(item.id));
                 // SAFETY: a joint is in one row, so by the contract no other thread has its record.
                 let record = unsafe { self.records.0.one(item.id as usize) };
                 let bodies = constraints.get(item.id).bodies;
@@ -245,8 +251,10 @@ impl<N: Entry> Batch for JointView<'_, N> {
     unsafe fn store(&self, rows: Range<usize>, items: &[Item], _: &ManifoldsView) {
         // SAFETY: by the contract.
         let mut taken = unsafe { self.take(rows) };
+        let mut ahead = items.iter().skip(PREFETCH_DISTANCE);
         for ((row, (singles, turns)), lanes) in taken.each().zip(items.chunks(N::WIDTH)) {
             for (lane, item) in lanes.iter().enumerate() {
+                ahead.next().into_iter().for_each(|item| self.records.0.prefetch(item.id));
                 // SAFETY: a joint is in one row, so by the contract no other thread has its record.
                 let record = unsafe { self.records.0.one(item.id as usize) };
                 row.store((singles, turns.as_deref()), lane, record);

@@ -2,7 +2,7 @@
 
 use super::super::SubstepParams;
 use super::super::pair::Pair;
-use super::dim::ANGLE_AXES;
+use super::dim::{ANGLE_AXES, ANGLES};
 use super::place::{Gradient, Masses, Place, Response};
 use crate::math::{Angular, DIM, Lane, Vector};
 use crate::tuning::solver::NO_MASS;
@@ -96,14 +96,20 @@ impl<N: Lane, const D: usize> Block<N, D> {
             gradients[k] = place.gradient(axes[k], Angular::ZERO);
         }
         if D > DIM {
-            for ((value, axis), number) in place.angles().into_iter().zip(ANGLE_AXES) {
-                if number < D {
-                    values[number] = value;
-                    gradients[number] = Gradient { normal: Vector::ZERO, moments: [axis; 2] };
+            let angles = place.angles();
+            for i in 0..ANGLES {
+                let (value, axis) = angles[i];
+                if ANGLE_AXES[i] < D {
+                    values[ANGLE_AXES[i]] = value;
+                    gradients[ANGLE_AXES[i]] = Gradient { normal: Vector::ZERO, moments: [axis; 2] };
                 }
             }
         }
-        Self { gradients, values, responses: gradients.map(|gradient| masses.response(&gradient)) }
+        let mut responses = [Response::NONE; D];
+        for k in 0..D {
+            responses[k] = masses.response(&gradients[k]);
+        }
+        Self { gradients, values, responses }
     }
 
     /// Replaces the first coordinate by the distance of the anchors.
@@ -169,10 +175,13 @@ impl<N: Lane, const D: usize> Block<N, D> {
     /// A response that leaves the block solved, and the impulses of the block for each of its own.
     #[inline(always)]
     pub(super) fn beside(&self, solved: &Solved<N, D>, mut response: Response<N>) -> (Response<N>, [N; D]) {
-        let shared = core::array::from_fn(|i| response.along(&self.gradients[i]) * solved.takes_part[i]);
+        let mut shared = [N::ZERO; D];
+        for i in 0..D {
+            shared[i] = response.along(&self.gradients[i]) * solved.takes_part[i];
+        }
         let kept = solved.factors.solve(shared);
-        for (own, share) in self.responses.iter().zip(kept) {
-            response.add(own, -share);
+        for i in 0..D {
+            response.add(&self.responses[i], -kept[i]);
         }
         (response, kept)
     }

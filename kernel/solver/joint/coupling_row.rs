@@ -174,7 +174,8 @@ impl<N: Lane> CouplingRow<N> {
     unsafe fn run(&mut self, bodies: &RowView<BodyRow>, params: &SubstepParams, pass: Pass) {
         // SAFETY: by the contract.
         let (deltas, mut pair) = unsafe {
-            let deltas = [0, 1].map(|side| BodyRow::gather_delta::<N>(bodies, &self.ids[side]));
+            let [a, b] = &self.ids;
+            let deltas = [BodyRow::gather_delta::<N>(bodies, a), BodyRow::gather_delta::<N>(bodies, b)];
             (deltas, Pair::<N>::load(bodies, &self.ids))
         };
         let (mut value, mut k) = (self.start, N::ZERO);
@@ -190,28 +191,22 @@ impl<N: Lane> CouplingRow<N> {
             k += v.dot(normal) + w.dot(moment);
             self.on_b = (normal, turn);
         }
-        let push = |pair: &mut Pair<N>, impulse: N| {
-            for (side, (v, w)) in responses.iter().enumerate() {
-                pair.v[side] += *v * impulse;
-                pair.w[side] += *w * impulse;
-            }
-        };
         if pass == Pass::WarmStart {
-            push(&mut pair, self.impulses[0] - self.impulses[1]);
+            push(&mut pair, &responses, self.impulses[0] - self.impulses[1]);
         } else {
             let both = self.limits[0].eq(self.limits[1]);
             for side in 0..2 {
                 let sign = if side == 0 { N::ONE } else { -N::ONE };
                 let mut rate = N::ZERO;
-                for ((normal, moment), (v, w)) in along.iter().zip(pair.v.into_iter().zip(pair.w)) {
-                    rate += normal.dot(v) + moment.dot(w);
+                for end in 0..2 {
+                    rate += along[end].0.dot(pair.v[end]) + along[end].1.dot(pair.w[end]);
                 }
                 let gap = (value - self.limits[side]) * sign;
                 let before = self.impulses[side];
                 let at = (gap, rate * sign, k);
                 let after = self.softening.limit(side, both, at, before, params, pass == Pass::Solve);
                 self.impulses[side] = after;
-                push(&mut pair, (after - before) * sign);
+                push(&mut pair, &responses, (after - before) * sign);
             }
         }
         let impulse = self.impulses[0] - self.impulses[1];
@@ -237,6 +232,15 @@ impl<N: Lane> CouplingRow<N> {
                 coupling.values[side] += f64::from(row.turned.get(lane));
             }
         }
+    }
+}
+
+/// Changes velocities by an impulse, given what a unit impulse does to each body.
+#[inline(always)]
+fn push<N: Lane>(pair: &mut Pair<N>, responses: &[(Vector<N>, Angular<N>); 2], impulse: N) {
+    for side in 0..2 {
+        pair.v[side] += responses[side].0 * impulse;
+        pair.w[side] += responses[side].1 * impulse;
     }
 }
 

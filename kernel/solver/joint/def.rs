@@ -254,6 +254,12 @@ impl JointDef {
         distance.locked_at().is_some_and(|length| length > 0.0) && !is_driven && !has_block
     }
 
+    /// Whether a tree may hold it: something is locked, and nothing contradicts it.
+    pub(super) fn may_branch(&self) -> bool {
+        let is_held = self.is_rod() || (0..BLOCK).any(|number| self.is_in_block(number));
+        is_held && !self.sets_twice()
+    }
+
     /// Whether a distance or an angle between axes has limits, and one of the coordinates of which it is made: such settings
     /// may contradict each other.
     pub(super) fn sets_twice(&self) -> bool {

@@ -1,5 +1,6 @@
 //! The coordinates of a joint in 2D.
 
+use super::place::inverse;
 use crate::math::{Angular, InvInertia, Lane, Rot, Vector, atan2_lanes};
 
 /// Numbers of coordinates of B's frame in A's.
@@ -79,10 +80,10 @@ pub(super) fn rotation_vector<N: Lane>(turn: Rot<N>) -> Angular<N> {
     Angular { z: atan2_lanes(turn.sin, turn.cos) }
 }
 
-/// A vector of a function of each component.
+/// The inverse of each component, 0 where that is 0.
 #[inline(always)]
-pub(super) fn each<N: Lane>(v: Vector<N>, f: impl Fn(N) -> N) -> Vector<N> {
-    Vector { x: f(v.x), y: f(v.y) }
+pub(super) fn inverses<N: Lane>(v: Vector<N>) -> Vector<N> {
+    Vector { x: inverse(v.x), y: inverse(v.y) }
 }
 
 /// An inverse of inertia with no less inertia than given, in kg·m².

@@ -1,5 +1,6 @@
 //! The coordinates of a joint in 3D.
 
+use super::place::inverse;
 use crate::math::{Angular, InvInertia, Lane, Rot, Vector, atan2_lanes};
 
 /// Numbers of coordinates of B's frame in A's.
@@ -45,7 +46,7 @@ const NO_SWING: f32 = 1.0e-12;
 /// m = (x + b) / (1 + x · b). For a swing θ across the other one the factor θ / sin θ is left out.
 #[inline(always)]
 pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] {
-    let [x, y, z] = Vector::AXES.map(|axis| a.rotate(Vector::splat(axis)));
+    let [x, y, z] = turn_axes(a);
     let q = a.inverse().mul(b);
     let sign = N::select(q.w.lt(N::ZERO), -N::ONE, N::ONE);
     let (qx, qy, qz, qw) = (q.x * sign, q.y * sign, q.z * sign, q.w * sign);
@@ -70,11 +71,12 @@ pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] 
     let is_defined = N::splat(NO_SWING).lt(along);
     let twist_axis = Vector::select(is_defined, mean * (N::ONE / N::select(is_defined, along, N::ONE)), x);
     // Swings do not change as B turns about its own x axis.
-    let swung = |axis: Vector<N>| axis - twist_axis * N::select(is_defined, axis.dot(bx), N::ZERO);
+    let swung_y = y - twist_axis * N::select(is_defined, y.dot(bx), N::ZERO);
+    let swung_z = z - twist_axis * N::select(is_defined, z.dot(bx), N::ZERO);
     [
         (twist, twist_axis),
-        (sy * factor, swung(y)),
-        (sz * factor, swung(z)),
+        (sy * factor, swung_y),
+        (sz * factor, swung_z),
         (N::select(swings, cone, N::ZERO), axis),
     ]
 }
@@ -119,13 +121,15 @@ pub(super) const TURNS: usize = 3;
 /// The unit turns.
 #[inline(always)]
 pub(super) fn units<N: Lane>() -> [Angular<N>; TURNS] {
-    Vector::AXES.map(Vector::splat)
+    let [x, y, z] = Vector::AXES;
+    [Vector::splat(x), Vector::splat(y), Vector::splat(z)]
 }
 
 /// The axes of a frame about which bodies turn.
 #[inline(always)]
 pub(super) fn turn_axes<N: Lane>(basis: Rot<N>) -> [Angular<N>; TURNS] {
-    units().map(|unit| basis.rotate(unit))
+    let [x, y, z] = units();
+    [basis.rotate(x), basis.rotate(y), basis.rotate(z)]
 }
 
 /// The angle of a rotation, up to π, along its axis.
@@ -140,10 +144,10 @@ pub(super) fn rotation_vector<N: Lane>(turn: Rot<N>) -> Angular<N> {
     axis * N::select(turns, angle / sine, N::splat(2.0))
 }
 
-/// A vector of a function of each component.
+/// The inverse of each component, 0 where that is 0.
 #[inline(always)]
-pub(super) fn each<N: Lane>(v: Vector<N>, f: impl Fn(N) -> N) -> Vector<N> {
-    Vector { x: f(v.x), y: f(v.y), z: f(v.z) }
+pub(super) fn inverses<N: Lane>(v: Vector<N>) -> Vector<N> {
+    Vector { x: inverse(v.x), y: inverse(v.y), z: inverse(v.z) }
 }
 
 /// An inverse of inertia with about no less inertia than given about any axis, in kg·m²: what lacks about the axis of

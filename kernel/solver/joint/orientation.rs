@@ -73,10 +73,12 @@ impl<N: Lane> OrientationRow<N> {
         let [a, b] = place.bases;
         let error = rotation_vector(b.mul(a.mul(self.target).inverse()));
         let axes = place.turn_axes();
-        Turning {
-            gradients: axes.map(|axis| place.gradient(Vector::ZERO, axis)),
-            errors: axes.map(|axis| axis.dot(error)),
+        let mut turning = Turning { gradients: [Gradient::NONE; TURNS], errors: [N::ZERO; TURNS] };
+        for i in 0..TURNS {
+            turning.gradients[i] = place.gradient(Vector::ZERO, axes[i]);
+            turning.errors[i] = axes[i].dot(error);
         }
+        turning
     }
 
     /// Solves the motor, and changes the impulses of the block so that it stays solved.
@@ -89,13 +91,17 @@ impl<N: Lane> OrientationRow<N> {
         pair: &mut Pair<N>,
         h: f32,
     ) {
-        let alone = turning.gradients.map(|gradient| masses.response(&gradient));
-        let beside = alone.map(|response| block.beside(solved, response));
-        let changes = self.act(turning, (&beside.each_ref().map(|(response, _)| *response), &alone), pair, h);
-        for ((response, kept), change) in beside.iter().zip(changes) {
-            response.push(pair, change);
-            for (row, share) in rows.iter_mut().zip(kept) {
-                row.impulse -= *share * change;
+        let mut alone = [Response::NONE; TURNS];
+        let (mut beside, mut kept) = (alone, [[N::ZERO; D]; TURNS]);
+        for i in 0..TURNS {
+            alone[i] = masses.response(&turning.gradients[i]);
+            (beside[i], kept[i]) = block.beside(solved, alone[i]);
+        }
+        let changes = self.act(turning, (&beside, &alone), pair, h);
+        for i in 0..TURNS {
+            beside[i].push(pair, changes[i]);
+            for k in 0..D {
+                rows[k].impulse -= kept[i][k] * changes[i];
             }
         }
     }
@@ -111,7 +117,7 @@ impl<N: Lane> OrientationRow<N> {
         h: f32,
     ) -> [N; TURNS] {
         let h = N::splat(h);
-        let [stiffness, damping] = core::array::from_fn(|i| self.of_mass[i] + self.besides[i]);
+        let [stiffness, damping] = [self.of_mass[0] + self.besides[0], self.of_mass[1] + self.besides[1]];
         let resistance = damping + stiffness * h;
         let drives = N::ZERO.lt(resistance);
         let safe = N::select(drives, resistance, N::ONE);
@@ -132,33 +138,34 @@ impl<N: Lane> OrientationRow<N> {
                 k[j][i] = k[i][j];
             }
         }
-        let wanted: [N; TURNS] = core::array::from_fn(|i| {
+        let mut wanted = [N::ZERO; TURNS];
+        for i in 0..TURNS {
             let bias = (stiffness * errors[i] - damping * self.velocity[i]) / safe;
             let mut soft = more * self.impulses[i];
             for j in 0..TURNS {
                 soft += share * k[i][j] * self.impulses[j];
             }
-            -(gradients[i].rate(pair) + bias + soft) * moves[i]
-        });
+            wanted[i] = -(gradients[i].rate(pair) + bias + soft) * moves[i];
+        }
         for i in 0..TURNS {
             for j in 0..TURNS {
                 k[i][j] = k[i][j] * (N::ONE + share);
             }
             k[i][i] = N::select(N::ZERO.lt(moves[i]), k[i][i] + more, N::ONE);
         }
-        let changes = Factors::of(k).solve(wanted);
-        let after: [N; TURNS] = core::array::from_fn(|i| (self.impulses[i] + changes[i]) * moves[i]);
-        let mut square = N::ZERO;
-        for impulse in after {
-            square += impulse * impulse;
+        let mut changes = Factors::of(k).solve(wanted);
+        let (mut after, mut square) = (changes, N::ZERO);
+        for i in 0..TURNS {
+            after[i] = (self.impulses[i] + changes[i]) * moves[i];
+            square += after[i] * after[i];
         }
         let length = square.sqrt();
         let is_long = self.most.lt(length);
         let shorter = N::select(is_long, self.most / N::select(is_long, length, N::ONE), N::ONE);
-        core::array::from_fn(|i| {
-            let before = self.impulses[i];
+        for i in 0..TURNS {
+            changes[i] = after[i] * shorter - self.impulses[i];
             self.impulses[i] = after[i] * shorter;
-            self.impulses[i] - before
-        })
+        }
+        changes
     }
 }

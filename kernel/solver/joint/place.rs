@@ -39,9 +39,10 @@ impl<N: Lane> Masses<N> {
     /// The changes of velocity by a unit impulse along a gradient.
     #[inline(always)]
     pub(super) fn response(&self, gradient: &Gradient<N>) -> Response<N> {
+        let Gradient { normal, moments: [ma, mb] } = *gradient;
         Response {
-            v: self.linear.map(|inverse| inverse.apply(gradient.normal)),
-            w: core::array::from_fn(|side| self.angular[side].apply(gradient.moments[side])),
+            v: [self.linear[0].apply(normal), self.linear[1].apply(normal)],
+            w: [self.angular[0].apply(ma), self.angular[1].apply(mb)],
         }
     }
 }
@@ -54,6 +55,8 @@ pub(super) struct Response<N> {
 }
 
 impl<N: Lane> Response<N> {
+    pub(super) const NONE: Self = Self { v: [Vector::ZERO; 2], w: [Angular::ZERO; 2] };
+
     /// How fast another coordinate grows by it.
     #[inline(always)]
     pub(super) fn along(&self, g: &Gradient<N>) -> N {
@@ -112,6 +115,21 @@ impl<N: Lane> Start<N> {
     }
 }
 
+/// 1 / k, or 0 for 0.
+#[inline(always)]
+pub(super) fn inverse<N: Lane>(k: N) -> N {
+    let moves = N::ZERO.lt(k);
+    N::select(moves, N::ONE / N::select(moves, k, N::ONE), N::ZERO)
+}
+
+/// By how much the velocity of an arm's end changes its place in a substep beyond h ω × r, over h; see [`Place::drift`].
+#[inline(always)]
+fn bent<N: Lane>(w: Angular<N>, arm: Vector<N>, h: f32) -> Vector<N> {
+    let (inward, turn) = (w.cross(w.cross(arm)), w.dot(w) * N::splat(h * h));
+    let weight = (N::ONE - turn * turn).max(N::ZERO);
+    (inward * N::splat(0.5 * h) + w.cross(inward) * N::splat(h * h / 6.0)) * weight
+}
+
 /// Where two frames are now.
 #[derive(Clone, Copy)]
 pub(super) struct Place<N> {
@@ -135,28 +153,24 @@ impl<N: Lane> Place<N> {
     /// it would drive what it follows.
     #[inline(always)]
     pub(super) fn drift(&self, pair: &Pair<N>, h: f32) -> Vector<N> {
-        let [wa, wb] = pair.w;
-        let bent = |w: Angular<N>, arm: Vector<N>| {
-            let (inward, turn) = (w.cross(w.cross(arm)), w.dot(w) * N::splat(h * h));
-            let weight = (N::ONE - turn * turn).max(N::ZERO);
-            (inward * N::splat(0.5 * h) + w.cross(inward) * N::splat(h * h / 6.0)) * weight
-        };
-        bent(wb, self.arms[1]) - bent(wa, self.arms[0] - self.between)
+        bent(pair.w[1], self.arms[1], h) - bent(pair.w[0], self.arms[0] - self.between, h)
     }
 
     /// The gradient of a shift along a direction, and of a turn.
     #[inline(always)]
     pub(super) fn gradient(&self, normal: Vector<N>, turn: Angular<N>) -> Gradient<N> {
-        Gradient { normal, moments: self.arms.map(|arm| arm.cross(normal) + turn) }
+        Gradient { normal, moments: [self.arms[0].cross(normal) + turn, self.arms[1].cross(normal) + turn] }
     }
 
     /// A's axes, or those of the world where the mask is set.
     #[inline(always)]
     pub(super) fn axes(&self, of_world: N::Mask) -> [Vector<N>; DIM] {
-        Vector::AXES.map(|axis| {
-            let axis = Vector::splat(axis);
-            Vector::select(of_world, axis, self.bases[0].rotate(axis))
-        })
+        let mut axes = [Vector::ZERO; DIM];
+        for k in 0..DIM {
+            let axis = Vector::splat(Vector::AXES[k]);
+            axes[k] = Vector::select(of_world, axis, self.bases[0].rotate(axis));
+        }
+        axes
     }
 
     /// The axes of A about which bodies turn.

@@ -7,7 +7,7 @@ use super::super::{BodyRow, InvMass, MassRow, RowView, Softness, SubstepParams};
 use super::block::{Block, Factors, Locked, Softening};
 use super::def::{Axis, AxisSpring, Give, JointDef, Motor};
 
-use super::dim::{ANGLE_AXES, AXES, BLOCK, TURNING, TURNS, coordinate, each, units};
+use super::dim::{ANGLE_AXES, AXES, BLOCK, TURNING, TURNS, coordinate, inverses, units};
 use super::orientation::OrientationRow;
 use super::place::{Gradient, Masses, Start};
 use super::single::{MotorRow, Single, laws, turns_near};
@@ -43,6 +43,23 @@ pub(super) struct Row<N: Lane> {
     /// The impulse of the orientation motor, N·m·s.
     pub(super) turning: Angular<N>,
     inv_h: f32,
+}
+
+/// What a joint does to B: an impulse at its anchor, and a moment.
+struct Borne<N> {
+    /// From B's centre of mass to its anchor.
+    arm: Vector<N>,
+    force: Vector<N>,
+    torque: Angular<N>,
+}
+
+impl<N: Lane> Borne<N> {
+    /// Adds an impulse along a gradient.
+    #[inline(always)]
+    fn add(&mut self, gradient: &Gradient<N>, impulse: N) {
+        self.force += gradient.normal * impulse;
+        self.torque += (gradient.moments[1] - self.arm.cross(gradient.normal)) * impulse;
+    }
 }
 
 impl<N: Lane> Default for Row<N> {
@@ -255,11 +272,7 @@ impl<N: Lane> Row<N> {
         let (place, mut pair) = unsafe { (self.start.now(bodies, &self.ids), Pair::load(bodies, &self.ids)) };
         let biased = pass == Pass::Solve;
         let (arm, of_world) = (place.arm(), self.of_world());
-        let (mut force, mut torque) = (Vector::ZERO, Angular::ZERO);
-        let mut add = |gradient: &Gradient<N>, impulse: N| {
-            force += gradient.normal * impulse;
-            torque += (gradient.moments[1] - arm.cross(gradient.normal)) * impulse;
-        };
+        let mut borne = Borne { arm, force: Vector::ZERO, torque: Angular::ZERO };
         let rows = &mut self.block[..D];
         let block = Block::<N, D>::new(&place, of_world, &self.masses);
         let solved = if pass == Pass::WarmStart {
@@ -274,8 +287,8 @@ impl<N: Lane> Row<N> {
             let turning = motor.look(&place);
             match &solved {
                 None => {
-                    for (gradient, impulse) in turning.gradients.iter().zip(motor.impulses) {
-                        self.masses.response(gradient).push(&mut pair, impulse);
+                    for i in 0..TURNS {
+                        self.masses.response(&turning.gradients[i]).push(&mut pair, motor.impulses[i]);
                     }
                 }
                 Some(solved) => {
@@ -283,8 +296,9 @@ impl<N: Lane> Row<N> {
                         motor.solve(&turning, &self.masses, (&block, solved, rows), &mut pair, params.h);
                     }
                     self.turning = Angular::ZERO;
-                    for (gradient, impulse) in turning.gradients.iter().zip(motor.impulses) {
-                        add(gradient, impulse);
+                    for i in 0..TURNS {
+                        let (gradient, impulse) = (&turning.gradients[i], motor.impulses[i]);
+                        borne.add(gradient, impulse);
                         self.turning += gradient.moments[1] * impulse;
                     }
                 }
@@ -298,7 +312,7 @@ impl<N: Lane> Row<N> {
                 Some(solved) => {
                     let at = (&gradient, value);
                     single.solve(at, alone, (&block, solved, rows), &mut pair, params, biased);
-                    add(&gradient, single.impulse());
+                    borne.add(&gradient, single.impulse());
                 }
             }
         }
@@ -307,10 +321,10 @@ impl<N: Lane> Row<N> {
             let drift = place.drift(&pair, params.h);
             block.solve(rows, &mut pair, drift, biased);
         }
-        for (gradient, locked) in block.gradients.iter().zip(rows) {
-            add(gradient, locked.impulse);
+        for k in 0..D {
+            borne.add(&block.gradients[k], rows[k].impulse);
         }
-        self.bear(force, torque, params);
+        self.bear(borne.force, borne.torque, params);
         if solved.is_none() && N::any(N::ZERO.lt(self.damping[0] + self.damping[1])) {
             self.damp(&mut pair);
         }
@@ -321,28 +335,29 @@ impl<N: Lane> Row<N> {
     /// Takes a share of the relative velocities of the centres of mass, and of the bodies' turning.
     #[inline(always)]
     pub(super) fn damp(&self, pair: &mut Pair<N>) {
-        let [a, b] = self.masses.linear.map(|inverse| InvMass::diagonal(inverse));
-        let masses = each(a + b, |k| {
-            let moves = N::ZERO.lt(k);
-            N::select(moves, N::ONE / N::select(moves, k, N::ONE), N::ZERO)
-        });
-        let impulse = (pair.v[1] - pair.v[0]).scale(masses) * self.damping[0];
+        let [a, b] = [self.masses.linear[0].diagonal(), self.masses.linear[1].diagonal()];
+        let impulse = (pair.v[1] - pair.v[0]).scale(inverses(a + b)) * self.damping[0];
         pair.v[0] += impulse.scale(a);
         pair.v[1] -= impulse.scale(b);
         let [ia, ib] = self.masses.angular;
         let units = units::<N>();
-        let k = core::array::from_fn::<_, TURNS, _>(|i| {
-            core::array::from_fn(|j| units[j].dot(ia.apply(units[i])) + units[j].dot(ib.apply(units[i])))
-        });
         let relative = (pair.w[1] - pair.w[0]) * self.damping[1];
-        let moments = Factors::of(k).solve(units.map(|unit| unit.dot(relative)));
-        for (unit, moment) in units.into_iter().zip(moments) {
-            pair.w[0] += ia.apply(unit * moment);
-            pair.w[1] -= ib.apply(unit * moment);
+        let (mut k, mut wanted) = ([[N::ZERO; TURNS]; TURNS], [N::ZERO; TURNS]);
+        for i in 0..TURNS {
+            wanted[i] = units[i].dot(relative);
+            for j in 0..TURNS {
+                k[i][j] = units[j].dot(ia.apply(units[i])) + units[j].dot(ib.apply(units[i]));
+            }
+        }
+        let moments = Factors::of(k).solve(wanted);
+        for i in 0..TURNS {
+            pair.w[0] += ia.apply(units[i] * moments[i]);
+            pair.w[1] -= ib.apply(units[i] * moments[i]);
         }
     }
 
     /// Notes what the joint does: an impulse on B at its anchor, and its moment.
+    #[inline(always)]
     pub(super) fn bear(&mut self, impulse: Vector<N>, moment: Angular<N>, params: &SubstepParams) {
         (self.force, self.torque) = (impulse * N::splat(params.inv_h), moment * N::splat(params.inv_h));
     }

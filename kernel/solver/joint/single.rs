@@ -38,7 +38,8 @@ impl<N: Lane> MotorRow<N> {
     /// that without a spring. Returns the change of the impulse, and the share of another impulse that the motor would take.
     #[inline(always)]
     fn drive(&mut self, (rate, value): (N, N), (k, mass): (N, N), h: f32) -> (N, N) {
-        let [stiffness, damping] = core::array::from_fn(|i| self.of_mass[i] * mass + self.besides[i]);
+        let stiffness = self.of_mass[0] * mass + self.besides[0];
+        let damping = self.of_mass[1] * mass + self.besides[1];
         let resistance = damping + stiffness * N::splat(h);
         let drives = N::and(N::ZERO.lt(resistance), N::ZERO.lt(k));
         let safe = N::select(drives, resistance, N::ONE);
@@ -99,14 +100,17 @@ impl<N: Lane> Single<N> {
         let axes = place.axes(N::ONE.lt(N::ZERO));
         let (distance, direction) = place.apart();
         let (mut normal, mut value) = (direction * self.apart, distance * self.apart);
-        for (axis, weight) in axes.into_iter().zip(self.along) {
-            normal += axis * weight;
-            value += axis.dot(place.between) * weight;
+        for k in 0..DIM {
+            normal += axes[k] * self.along[k];
+            value += axes[k].dot(place.between) * self.along[k];
         }
-        let mut turn = Angular::ZERO;
-        for (number, ((angle, axis), weight)) in place.angles().into_iter().zip(self.about).enumerate() {
+        let (mut turn, angles) = (Angular::ZERO, place.angles());
+        for i in 0..ANGLES {
+            let ((mut angle, axis), weight) = (angles[i], self.about[i]);
+            if i == TURNING {
+                angle += self.count(angle, weight);
+            }
             turn += axis * weight;
-            let angle = if number == TURNING { angle + self.count(angle, weight) } else { angle };
             value += angle * weight;
         }
         (place.gradient(normal, turn), value)
@@ -138,8 +142,8 @@ impl<N: Lane> Single<N> {
     ) {
         let (response, kept) = block.beside(solved, alone);
         let change = self.act((gradient, value), (&response, &alone), pair, params, biased);
-        for (row, share) in rows.iter_mut().zip(kept) {
-            row.impulse -= share * change;
+        for k in 0..D {
+            rows[k].impulse -= kept[k] * change;
         }
     }
 

@@ -1,6 +1,7 @@
 //! All joints between steps.
 
 use super::super::{MassRow, RowInput};
+use super::batch::batch_of;
 use super::coupling::{CouplingDef, CouplingRecord};
 use super::def::{JointDef, JointError};
 use super::dim::{AXES, BLOCK, TURNS, with_least_inertia};
@@ -54,11 +55,28 @@ impl Record {
     }
 }
 
+/// What sorts a joint, beside its record, which is long.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Summary {
+    /// The number of its batch among those of joints.
+    pub(super) batch: u8,
+    /// Whether it may be part of a tree.
+    pub(super) may_branch: bool,
+}
+
+impl Summary {
+    fn of(record: &Record) -> Self {
+        Self { batch: batch_of(record) as u8, may_branch: record.def.may_branch() }
+    }
+}
+
 /// All joints by id. Their bodies are in [`BodyTable::constraints`](crate::table::BodyTable::constraints).
 #[derive(Clone, Debug, Default)]
 pub struct JointTable {
     /// Records by id. Those of free ids are stale.
     records: Vec<Record>,
+    /// Of each record.
+    summaries: Vec<Summary>,
 }
 
 const KIND: ConstraintKind = ConstraintKind::Joint;
@@ -82,9 +100,16 @@ impl JointTable {
             return Err(JointError::NoBody(dead));
         }
         let id = link.connect(KIND, bodies);
+        let summary = Summary::of(&record);
         match self.records.get_mut(id as usize) {
-            Some(place) => *place = record,
-            None => self.records.push(record),
+            Some(place) => {
+                *place = record;
+                self.summaries[id as usize] = summary;
+            }
+            None => {
+                self.records.push(record);
+                self.summaries.push(summary);
+            }
         }
         Ok(id)
     }
@@ -155,6 +180,7 @@ impl JointTable {
             record.orientation = [0.0; TURNS];
         }
         record.def = def;
+        self.summaries[id as usize] = Summary::of(record);
         def.bodies.into_iter().for_each(|body| link.wake_body(body));
         Ok(())
     }
@@ -207,8 +233,8 @@ impl JointTable {
         }
     }
 
-    pub(super) fn record(&self, id: u32) -> &Record {
-        &self.records[id as usize]
+    pub(super) fn summary(&self, id: u32) -> Summary {
+        self.summaries[id as usize]
     }
 
     pub(in super::super) fn records(&mut self) -> Records<'_> {

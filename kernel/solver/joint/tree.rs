@@ -97,14 +97,13 @@ impl JointTrees {
         numbered.iter().for_each(|row| numbers[*row as usize] = GROUND);
         numbered.clear();
         edges.clear();
+        let constraints = input.bodies.constraints(KIND);
         // By ascending id: the order in colours depends on their history.
         for id in all.iter() {
-            let def = &table.record(id).def;
-            let is_held = def.is_rod() || (0..BLOCK).any(|number| def.is_in_block(number));
-            if !is_held || def.sets_twice() {
+            if !table.summary(id).may_branch {
                 continue;
             }
-            let nodes = def.bodies.map(|body| match input.row_of(body) {
+            let nodes = constraints.get(id).bodies.map(|body| match input.row_of(body) {
                 row if row < rows.first_dynamic => GROUND,
                 row => {
                     numbers.resize(numbers.len().max(row as usize + 1), GROUND);
