@@ -255,6 +255,13 @@ impl Lane for f32 {
     }
 }
 
+/// The inverse of a number, or 0 where that is not positive.
+#[inline(always)]
+pub(crate) fn inverse_of_positive<N: Lane>(number: N) -> N {
+    let is_positive = N::ZERO.lt(number);
+    N::select(is_positive, N::ONE / N::select(is_positive, number, N::ONE), N::ZERO)
+}
+
 /// The larger of two values by the rule `a > b ? a : b`, on every instruction set: with a NaN in
 /// either place the result is `b`.
 #[inline(always)]

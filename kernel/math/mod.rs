@@ -82,6 +82,7 @@ mod trig;
 
 pub use dim::*;
 pub(crate) use entry::{Entry, Job};
+pub(crate) use lane::inverse_of_positive;
 pub use lane::{Avx2, Ids, Lane, Num, Quad, Width, clamp, max, min};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lane_avx::F32x8;

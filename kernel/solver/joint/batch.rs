@@ -5,12 +5,13 @@ use super::super::batch::{Batch, Filling, Pass, Passes, Sweep};
 use super::super::input::Item;
 use super::super::layer::{Layer, Sorter};
 use super::super::{BodyRow, MassRow, RowView, SubstepParams};
+use super::class::{CLASSES, COUPLINGS, Class};
 use super::coupling_row::{CouplingRow, CouplingView};
-use super::dim::{AXES, BLOCK};
+use super::dim::BLOCK;
 use super::orientation::OrientationRow;
 use super::row::{Hold, Row};
 use super::single::Single;
-use super::table::{JointTable, Record, Records};
+use super::table::{JointTable, Records};
 use super::tree::JointTrees;
 use crate::contact::ManifoldsView;
 use crate::data::Parts;
@@ -25,48 +26,6 @@ const PREFETCH_DISTANCE: usize = 3;
 
 /// Number of batches of joints in one width: one for each class, and couplings.
 pub(in super::super) const JOINT_BATCHES: usize = COUPLINGS + 1;
-/// The batch of couplings.
-const COUPLINGS: usize = CLASSES.len();
-
-/// The size of the block and the number of single coordinates that the joints of a batch have room for, and whether they may
-/// have an orientation motor.
-#[derive(Clone, Copy, Debug)]
-struct Class {
-    block: usize,
-    singles: usize,
-    turns: bool,
-}
-
-/// The class of each batch. A joint is in the first that it fits in.
-const CLASSES: [Class; 8] = [
-    Class::new(DIM, 0),
-    Class::new(0, 1),
-    Class::new(DIM, 2),
-    Class::new(BLOCK, 0),
-    Class::new(BLOCK, 1),
-    Class::new(BLOCK, AXES),
-    Class { turns: true, ..Class::new(DIM, 2) },
-    Class { turns: true, ..Class::new(BLOCK, AXES) },
-];
-
-impl Class {
-    const fn new(block: usize, singles: usize) -> Self {
-        Self { block, singles, turns: false }
-    }
-}
-
-/// The number of the batch of a joint.
-pub(super) fn batch_of(record: &Record) -> usize {
-    if record.coupling.is_some() {
-        return COUPLINGS;
-    }
-    let def = &record.def;
-    let block = (0..BLOCK).rev().find(|k| def.is_in_block(*k)).map_or(0, |last| last + 1);
-    let singles = (0..AXES).filter(|k| def.is_single(*k)).count();
-    let turns = def.orientation.is_some();
-    let fits = |class: &Class| class.block >= block && class.singles >= singles && class.turns >= turns;
-    CLASSES.iter().position(fits).expect("the last one has room for all")
-}
 
 /// The joints of a colour.
 pub(in super::super) fn joints(colors: &ColorGraph, color: u8) -> &[u32] {

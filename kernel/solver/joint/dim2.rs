@@ -1,7 +1,6 @@
 //! The coordinates of a joint in 2D.
 
-use super::place::inverse;
-use crate::math::{Angular, InvInertia, Lane, Rot, Vector, atan2_lanes};
+use crate::math::{Angular, InvInertia, Lane, Rot, Vector, atan2_lanes, inverse_of_positive};
 
 /// Numbers of coordinates of B's frame in A's.
 pub mod coordinate {
@@ -80,10 +79,10 @@ pub(super) fn rotation_vector<N: Lane>(turn: Rot<N>) -> Angular<N> {
     Angular { z: atan2_lanes(turn.sin, turn.cos) }
 }
 
-/// The inverse of each component, 0 where that is 0.
+/// The inverse of each component, 0 where that is not positive.
 #[inline(always)]
 pub(super) fn inverses<N: Lane>(v: Vector<N>) -> Vector<N> {
-    Vector { x: inverse(v.x), y: inverse(v.y) }
+    Vector { x: inverse_of_positive(v.x), y: inverse_of_positive(v.y) }
 }
 
 /// An inverse of inertia with no less inertia than given, in kg·m².

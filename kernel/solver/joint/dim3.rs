@@ -1,7 +1,6 @@
 //! The coordinates of a joint in 3D.
 
-use super::place::inverse;
-use crate::math::{Angular, InvInertia, Lane, Rot, Vector, atan2_lanes};
+use crate::math::{Angular, InvInertia, Lane, Rot, Vector, atan2_lanes, inverse_of_positive};
 
 /// Numbers of coordinates of B's frame in A's.
 pub mod coordinate {
@@ -144,10 +143,10 @@ pub(super) fn rotation_vector<N: Lane>(turn: Rot<N>) -> Angular<N> {
     axis * N::select(turns, angle / sine, N::splat(2.0))
 }
 
-/// The inverse of each component, 0 where that is 0.
+/// The inverse of each component, 0 where that is not positive.
 #[inline(always)]
 pub(super) fn inverses<N: Lane>(v: Vector<N>) -> Vector<N> {
-    Vector { x: inverse(v.x), y: inverse(v.y), z: inverse(v.z) }
+    Vector { x: inverse_of_positive(v.x), y: inverse_of_positive(v.y), z: inverse_of_positive(v.z) }
 }
 
 /// An inverse of inertia with about no less inertia than given about any axis, in kg·m²: what lacks about the axis of

@@ -15,6 +15,7 @@
 
 mod batch;
 mod block;
+mod class;
 mod coupling;
 mod coupling_row;
 mod def;

@@ -115,13 +115,6 @@ impl<N: Lane> Start<N> {
     }
 }
 
-/// 1 / k, or 0 for 0.
-#[inline(always)]
-pub(super) fn inverse<N: Lane>(k: N) -> N {
-    let moves = N::ZERO.lt(k);
-    N::select(moves, N::ONE / N::select(moves, k, N::ONE), N::ZERO)
-}
-
 /// By how much the velocity of an arm's end changes its place in a substep beyond h ω × r, over h; see [`Place::drift`].
 #[inline(always)]
 fn bent<N: Lane>(w: Angular<N>, arm: Vector<N>, h: f32) -> Vector<N> {

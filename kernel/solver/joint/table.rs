@@ -1,7 +1,7 @@
 //! All joints between steps.
 
 use super::super::{MassRow, RowInput};
-use super::batch::batch_of;
+use super::class::Summary;
 use super::coupling::{CouplingDef, CouplingRecord};
 use super::def::{JointDef, JointError};
 use super::dim::{AXES, BLOCK, TURNS, with_least_inertia};
@@ -55,21 +55,6 @@ impl Record {
     }
 }
 
-/// What sorts a joint, beside its record, which is long.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Summary {
-    /// The number of its batch among those of joints.
-    pub(super) batch: u8,
-    /// Whether it may be part of a tree.
-    pub(super) may_branch: bool,
-}
-
-impl Summary {
-    fn of(record: &Record) -> Self {
-        Self { batch: batch_of(record) as u8, may_branch: record.def.may_branch() }
-    }
-}
-
 /// All joints by id. Their bodies are in [`BodyTable::constraints`](crate::table::BodyTable::constraints).
 #[derive(Clone, Debug, Default)]
 pub struct JointTable {
@@ -85,22 +70,21 @@ impl JointTable {
     /// Adds a joint and wakes its bodies. They are in one island if both are dynamic.
     pub fn add(&mut self, link: &mut Link, def: JointDef) -> Result<u32, JointError> {
         def.check()?;
-        self.enter(link, Record::new(def))
+        self.enter(link, Record::new(def), Summary::of(&def))
     }
 
     /// Adds a coupling, as a joint with an id among joints, and wakes its bodies.
     pub fn add_coupling(&mut self, link: &mut Link, def: CouplingDef) -> Result<u32, JointError> {
         def.check()?;
-        self.enter(link, Record::of_coupling(def))
+        self.enter(link, Record::of_coupling(def), Summary::OF_COUPLING)
     }
 
-    fn enter(&mut self, link: &mut Link, record: Record) -> Result<u32, JointError> {
+    fn enter(&mut self, link: &mut Link, record: Record, summary: Summary) -> Result<u32, JointError> {
         let bodies = record.def.bodies;
         if let Some(dead) = bodies.into_iter().find(|body| !link.bodies.ids.is_live(*body)) {
             return Err(JointError::NoBody(dead));
         }
         let id = link.connect(KIND, bodies);
-        let summary = Summary::of(&record);
         match self.records.get_mut(id as usize) {
             Some(place) => {
                 *place = record;
@@ -180,7 +164,7 @@ impl JointTable {
             record.orientation = [0.0; TURNS];
         }
         record.def = def;
-        self.summaries[id as usize] = Summary::of(record);
+        self.summaries[id as usize] = Summary::of(&def);
         def.bodies.into_iter().for_each(|body| link.wake_body(body));
         Ok(())
     }

@@ -1,0 +1,57 @@
+//! Which batch a joint is in, and whether a tree may hold it.
+
+use super::def::JointDef;
+use super::dim::{AXES, BLOCK};
+use crate::math::DIM;
+
+/// The batch of couplings, after those of classes.
+pub(super) const COUPLINGS: usize = CLASSES.len();
+
+/// The size of the block and the number of single coordinates that the joints of a batch have room for, and whether they may
+/// have an orientation motor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Class {
+    pub(super) block: usize,
+    pub(super) singles: usize,
+    pub(super) turns: bool,
+}
+
+/// The class of each batch. A joint is in the first that it fits in.
+pub(super) const CLASSES: [Class; 8] = [
+    Class::new(DIM, 0),
+    Class::new(0, 1),
+    Class::new(DIM, 2),
+    Class::new(BLOCK, 0),
+    Class::new(BLOCK, 1),
+    Class::new(BLOCK, AXES),
+    Class { turns: true, ..Class::new(DIM, 2) },
+    Class { turns: true, ..Class::new(BLOCK, AXES) },
+];
+
+impl Class {
+    const fn new(block: usize, singles: usize) -> Self {
+        Self { block, singles, turns: false }
+    }
+}
+
+/// What sorts a joint, kept beside its record, which is long.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Summary {
+    /// The number of its batch among those of joints.
+    pub(super) batch: u8,
+    /// Whether it may be part of a tree.
+    pub(super) may_branch: bool,
+}
+
+impl Summary {
+    pub(super) const OF_COUPLING: Self = Self { batch: COUPLINGS as u8, may_branch: false };
+
+    pub(super) fn of(def: &JointDef) -> Self {
+        let block = (0..BLOCK).rev().find(|k| def.is_in_block(*k)).map_or(0, |last| last + 1);
+        let singles = (0..AXES).filter(|k| def.is_single(*k)).count();
+        let turns = def.orientation.is_some();
+        let fits = |class: &Class| class.block >= block && class.singles >= singles && class.turns >= turns;
+        let batch = CLASSES.iter().position(fits).expect("the last one has room for all");
+        Self { batch: batch as u8, may_branch: def.may_branch() }
+    }
+}
