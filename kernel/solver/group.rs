@@ -40,7 +40,7 @@ pub(super) fn movable(one: &Struck, first_dynamic: u32) -> impl Iterator<Item = 
     one.row.ids.into_iter().map(|[row]| row).filter(move |row| *row >= first_dynamic)
 }
 
-/// Solves the impacts of a group, with `most_sweeps` at most. Fewer than a round of sweeps make no blow.
+/// Solves the impacts of a group, with `most_sweeps` at most, but for a round of sweeps.
 ///
 /// # Safety
 /// Until it returns, no other thread reads or writes the bodies of the group that may be written, or writes the others.
@@ -72,13 +72,12 @@ pub(super) unsafe fn solve(
     let rise = if shares { ROUND_OF_SWEEPS } else { 1 };
     // SAFETY: by the contract.
     group.iter_mut().for_each(|one| unsafe { one.begin(rows) });
-    let mut sweep = |group: &mut [Struck], rise, solve: &mut dyn FnMut(&mut Struck, bool, f32) -> f32| {
-        let (sweeps, is_stuck) = sweep(group, (rise, most_sweeps), tolerance * fastest, solve);
-        *solved += sweeps * group.len();
-        is_stuck
-    };
+    let calm = tolerance * fastest;
     // SAFETY: by the contract.
-    if sweep(group, rise, &mut |one, is_backward, share| unsafe { one.compress(rows, is_backward, share) }) {
+    let compress = |one: &mut Struck, is_backward, share| unsafe { one.compress(rows, is_backward, share) };
+    let (sweeps, is_stuck) = sweep(group, (rise, most_sweeps), calm, compress);
+    *solved += sweeps * group.len();
+    if is_stuck {
         // SAFETY: by the contract.
         group.iter_mut().for_each(|one| unsafe { one.find_jam(rows, striking.params) });
     }
@@ -95,7 +94,8 @@ pub(super) unsafe fn solve(
         // SAFETY: by the contract.
         group.iter_mut().for_each(|one| unsafe { one.restitute(rows) });
         // SAFETY: by the contract.
-        sweep(group, 1, &mut |one, _, _| unsafe { one.rub(rows) });
+        let (sweeps, _) = sweep(group, (1, most_sweeps), calm, |one, _, _| unsafe { one.rub(rows) });
+        *solved += sweeps * group.len();
         // SAFETY: by the contract.
         unsafe { return_at_most(share * share * max(lost, 0.0), group, bodies, rows) };
     }
@@ -151,7 +151,7 @@ fn sweep(
     group: &mut [Struck],
     (rise, most): (usize, usize),
     calm: f32,
-    solve: &mut dyn FnMut(&mut Struck, bool, f32) -> f32,
+    mut solve: impl FnMut(&mut Struck, bool, f32) -> f32,
 ) -> (usize, bool) {
     // The least change of these sweeps and of those before.
     let [mut least, mut earlier] = [f32::INFINITY; 2];
