@@ -192,11 +192,11 @@ impl<S: ManifoldSource> Pair<'_, S> {
         f32::INFINITY
     }
 
-    /// Whether the shapes are within a distance when the step begins.
-    pub(super) fn begins_within(&self, distance: f32, buffers: &mut CastBuffers<S::Workspace>) -> bool {
+    /// The gap between the shapes when the step begins, negative where they overlap; infinite if it is wider than a distance.
+    pub(super) fn gap_at_start(&self, distance: f32, buffers: &mut CastBuffers<S::Workspace>) -> f32 {
         let rest = Rest { way: Vector::ZERO, turning: distance };
         self.look(Caster::Whole, &self.other.pose(0.0), 0.0, rest, buffers);
-        buffers.found.iter().any(|local| local.lower_bound() - self.margin < distance)
+        buffers.found.iter().map(|local| local.lower_bound() - self.margin).fold(f32::INFINITY, min)
     }
 
     /// How far the shapes overlap when the step ends; 0 if they do not.

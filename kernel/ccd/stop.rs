@@ -3,8 +3,9 @@
 use super::cast::{Cast, CastBuffers, Caster, Pair, Side};
 use super::path::Path;
 use crate::bvh::{TreeKind, Trees};
-use crate::contact::{ContactTable, ManifoldSource};
-use crate::math::{Vector, WorldPose, max, min};
+use crate::contact::{Contact, ContactFlags, ContactTable, ManifoldSource};
+use crate::graph::ConstraintKind;
+use crate::math::{Angular, Vector, WorldPose, max, min};
 use crate::shape::Aabb;
 use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach};
 use crate::tuning::sweeps::{CORE_SHARE, MET};
@@ -47,6 +48,15 @@ pub struct Swept {
     pub angular_threshold: f32,
 }
 
+/// How a body moves in a sweep.
+struct Sweep<'a> {
+    path: &'a Path,
+    /// Whether it may get past something that it has no contact with.
+    is_fast: bool,
+    /// Whether it is put back also where it comes less deep.
+    is_early: bool,
+}
+
 /// Buffers of one worker, kept for their memory.
 #[derive(Clone, Debug)]
 pub struct SweepBuffers<W = ()> {
@@ -63,40 +73,95 @@ impl<W: Default> Default for SweepBuffers<W> {
 }
 
 impl<S: ManifoldSource> SweepInput<'_, S> {
-    /// Whether a body that moves by `way` metres and turns by `angle` radians may get past something.
+    /// Whether a body that moves by `way` metres and turns by `angle` radians may get past something, or press a corner into
+    /// something that contacts of the step's start have no point at.
     #[inline(always)]
     pub fn is_far(&self, body: u32, way: f32, angle: f32) -> bool {
-        let size = self.colliders.size_of(body);
-        way + size.arm * angle > max(CORE_SHARE * size.core, MET * self.tolerance)
+        let turning = self.colliders.size_of(body).arm * angle;
+        turning > self.tolerance || self.is_fast(body, way + turning)
     }
 
-    /// Whether there is anything that does not move, and that a body may meet on a way of the step however it turns. Most fast
-    /// bodies are far from all that.
-    pub fn may_meet(&self, body: u32, way: Vector) -> bool {
+    /// Whether a body whose surface moves by `way` metres may get past something.
+    #[inline(always)]
+    fn is_fast(&self, body: u32, way: f32) -> bool {
+        way > max(CORE_SHARE * self.colliders.size_of(body).core, MET * self.tolerance)
+    }
+
+    /// Whether a body that turns far is put back where it comes deep. If others move with it, they would not be put back, and
+    /// joints would open.
+    fn is_put_back_early(&self, body: u32, path: &Path) -> bool {
+        let is_free = |kind| self.bodies.constraints(kind).of_body(body).next().is_none();
+        self.colliders.size_of(body).arm * path.spin.length() > self.tolerance
+            && is_free(ConstraintKind::Joint)
+            && is_free(ConstraintKind::Custom)
+            && self.contacts_of(body).all(|(contact, moving)| {
+                let is_off = !contact.flags.has(ContactFlags::TOUCHING) || contact.is_inert();
+                is_off || self.is_fixed(contact.bodies[1 - moving])
+            })
+    }
+
+    /// The contacts of a body, each with the side that the body is on.
+    fn contacts_of(&self, body: u32) -> impl Iterator<Item = (&Contact, usize)> {
+        self.colliders.of_body(body, self.bodies).flat_map(move |collider| {
+            let contacts = self.contacts.of_collider(collider, self.colliders);
+            contacts.map(move |id| {
+                let contact = self.contacts.get(id);
+                (contact, usize::from(contact.colliders[1] == collider))
+            })
+        })
+    }
+
+    /// Whether there is anything that does not move, and that a body may meet on a way of the step however it turns, or with
+    /// a turn where a contact's plane is known. Most fast bodies are far from all that, or slide on it.
+    pub fn may_meet(&self, body: u32, way: Vector, turn: Angular) -> bool {
+        let turning = self.colliders.size_of(body).arm * turn.length();
+        let is_slow = !self.is_fast(body, way.length() + turning);
         let (mut reach, mut is_known) = (0.0, true);
         for id in self.colliders.of_body(body, self.bodies) {
             let Reach { extent, margin, .. } = self.colliders.reaches[id as usize];
             reach = max(reach, extent + margin);
             // Casts stop this far before shapes touch.
             let around = self.ball(body, extent + margin).swept(way).grown(MET * self.tolerance);
-            is_known &= self.colliders.fat[id as usize].contains(&around);
+            is_known &= is_slow || self.colliders.fat[id as usize].contains(&around);
         }
         if is_known {
             // Within its fat boxes a body meets only what has contacts with it.
-            return self.colliders.of_body(body, self.bodies).any(|collider| {
-                let mut contacts = self.contacts.of_collider(collider, self.colliders);
-                contacts.any(|contact| {
-                    self.contacts.bodies_of(contact).into_iter().any(|body| self.is_fixed(body))
-                })
+            return self.contacts_of(body).any(|(contact, moving)| {
+                self.is_fixed(contact.bodies[1 - moving]) && !self.stays_off(contact, moving, way, turn)
             });
         }
         let around = self.ball(body, reach).swept(way).grown(self.tolerance);
         FIXED.iter().any(|kind| !self.trees[*kind].query(&around, |_| false))
     }
 
-    /// Whether colliders of a body are in the trees of what does not move.
+    /// Whether a body cannot come deeper into the other side of a contact than a body is ever put back at.
+    fn stays_off(&self, contact: &Contact, moving: usize, way: Vector, turn: Angular) -> bool {
+        if !contact.flags.has(ContactFlags::FROZEN) || contact.flags.has(ContactFlags::COMPOSITE) {
+            return false;
+        }
+        let (id, manifold) = (contact.colliders[moving], &contact.manifold);
+        let gap = manifold.points().iter().fold(f32::INFINITY, |gap, p| min(gap, p.separation));
+        let toward = if moving == 0 { manifold.normal } else { -manifold.normal };
+        // A turn by the angle θ about an axis at φ from the normal n moves a point r by at most |r| 2 sin(θ/2) sin φ along n.
+        let closed =
+            way.dot(toward) + self.colliders.reaches[id as usize].extent * turn.cross(toward).length();
+        manifold.count > 0 && gap - closed > -self.allowed(id, true)
+    }
+
+    /// The tree that colliders of a body are in.
+    fn kind_of(&self, body: u32) -> TreeKind {
+        if body == NONE {
+            return TreeKind::Standalone;
+        }
+        match self.bodies[body].kind {
+            BodyKind::Static => TreeKind::Static,
+            BodyKind::Kinematic => TreeKind::Kinematic,
+            BodyKind::Dynamic => TreeKind::Dynamic,
+        }
+    }
+
     fn is_fixed(&self, body: u32) -> bool {
-        body == NONE || self.bodies[body].kind == BodyKind::Static
+        FIXED.contains(&self.kind_of(body))
     }
 
     /// The box of a ball about the centre of mass of a body where the step begins.
@@ -106,10 +171,16 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
 
     /// The fraction of the step after which a body stops at what does not move; 1 if it does not.
     pub fn stop(&self, body: u32, path: &Path, buffers: &mut SweepBuffers<S::Workspace>) -> f32 {
+        let turning = self.colliders.size_of(body).arm * path.spin.length();
+        let is_fast = self.is_fast(body, path.way.length() + turning);
+        let sweep = Sweep { path, is_fast, is_early: self.is_put_back_early(body, path) };
         let mut first = 1.0;
-        self.each_candidate(body, path, &FIXED, buffers, |[collider, other], buffers| {
-            first = min(first, self.impact(collider, path, self.side(other, None), &mut buffers.cast));
-        });
+        if sweep.is_fast || sweep.is_early {
+            self.each_candidate(body, &sweep, &FIXED, buffers, |[collider, other], buffers| {
+                let impact = self.impact(collider, &sweep, self.side(other, None), &mut buffers.cast);
+                first = min(first, impact);
+            });
+        }
         first
     }
 
@@ -125,7 +196,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         let Some(path) = path_of(body).map(|path| path.turning_if(swept.turns)) else { return };
         let kinds = [TreeKind::Kinematic, TreeKind::Dynamic];
         let kinds = if swept.include_dynamic { &kinds[..] } else { &kinds[..1] };
-        self.each_candidate(body, &path, kinds, buffers, |[collider, other], buffers| {
+        let sweep = Sweep { path: &path, is_fast: true, is_early: false };
+        self.each_candidate(body, &sweep, kinds, buffers, |[collider, other], buffers| {
             let other_body = self.colliders.body(other);
             if other_body == body || other_body == NONE {
                 return;
@@ -137,7 +209,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
                 return;
             }
             let other_path = path_of(other_body).map(|path| path.turning_if(swept.turns));
-            let fraction = self.impact(collider, &path, self.side(other, other_path), &mut buffers.cast);
+            let fraction = self.impact(collider, &sweep, self.side(other, other_path), &mut buffers.cast);
             if fraction < 1.0 {
                 buffers.stops.extend([(body, fraction), (other_body, fraction)]);
             }
@@ -148,7 +220,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
     fn each_candidate(
         &self,
         body: u32,
-        path: &Path,
+        sweep: &Sweep,
         kinds: &[TreeKind],
         buffers: &mut SweepBuffers<S::Workspace>,
         mut met: impl FnMut([u32; 2], &mut SweepBuffers<S::Workspace>),
@@ -160,16 +232,41 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
                 continue;
             }
             candidates.clear();
-            let around = self.around(collider, path);
-            for &kind in kinds {
-                self.trees[kind].query(&around, |other| {
-                    let found = &self.colliders[other].def;
-                    let interacts = !found.flags.sensor && def.layers.interacts_with(found.layers);
-                    if interacts && !self.is_refused(collider, other) {
+            let end = sweep.path.frame(1.0).then(&def.local);
+            let end_box = def.shape.aabb(&end);
+            let around = self.around(collider, sweep.path, &end_box);
+            if !sweep.is_fast || self.colliders.fat[collider as usize].contains(&around) {
+                // It can only meet what it has contacts with.
+                let limit = self.allowed(collider, sweep.is_early);
+                for id in self.contacts.of_collider(collider, self.colliders) {
+                    let contact = self.contacts.get(id);
+                    let moving = usize::from(contact.colliders[1] == collider);
+                    let (other, kind) =
+                        (contact.colliders[1 - moving], self.kind_of(contact.bodies[1 - moving]));
+                    let keeps_off = || {
+                        let gap = end_box.gap(&self.colliders.tight[other as usize]);
+                        !sweep.is_fast && gap - self.margin(contact) > -limit
+                    };
+                    let is_candidate = kinds.contains(&kind)
+                        && !contact.is_let_through()
+                        && !keeps_off()
+                        && around.overlaps(&self.colliders.fat[other as usize])
+                        && !(FIXED.contains(&kind) && self.ends_apart(contact, moving, &end, limit));
+                    if is_candidate {
                         candidates.push(other);
                     }
-                    true
-                });
+                }
+            } else {
+                for &kind in kinds {
+                    self.trees[kind].query(&around, |other| {
+                        let found = &self.colliders[other].def;
+                        let interacts = !found.flags.sensor && def.layers.interacts_with(found.layers);
+                        if interacts && !self.is_refused(collider, other) {
+                            candidates.push(other);
+                        }
+                        true
+                    });
+                }
             }
             candidates.iter().for_each(|other| met([collider, *other], buffers));
         }
@@ -185,14 +282,20 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         }
     }
 
-    /// The box of all places that a collider takes on its body's path.
-    fn around(&self, collider: u32, path: &Path) -> Aabb {
+    /// The sum of the collision margins.
+    fn margin(&self, contact: &Contact) -> f32 {
+        let [a, b] = contact.colliders.map(|id| self.colliders.reaches[id as usize].margin);
+        a + b
+    }
+
+    /// The box of all places that a collider takes on its body's path, at whose end it has the box `end`.
+    fn around(&self, collider: u32, path: &Path, end: &Aabb) -> Aabb {
         let (def, extent) = (&self.colliders[collider].def, self.colliders.reaches[collider as usize].extent);
-        let boxes = [0.0, 1.0].map(|fraction| def.shape.aabb(&path.frame(fraction).then(&def.local)));
         let round = Aabb::new(Vector::ZERO, Vector::ZERO).at(path.start.center).grown(extent);
         // A point goes along an arc. Off the line between its ends that is by r (1 - cos φ/2) < r φ²/8 at most.
         let spin = path.spin.length_squared();
-        let arcs = boxes[0].union(&boxes[1]).grown(min(0.125 * extent * spin, 2.0 * extent));
+        let ends = self.colliders.tight[collider as usize].union(end);
+        let arcs = ends.grown(min(0.125 * extent * spin, 2.0 * extent));
         arcs.intersection(&round.swept(path.way)).grown(def.margin + self.tolerance)
     }
 
@@ -214,15 +317,40 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         Side { collider, shape: &def.shape, local, path, arm: self.colliders.reaches[collider as usize].arm }
     }
 
+    /// Whether the plane of a contact with what does not move keeps the shapes from overlapping by more than `limit` when the
+    /// moving side has come to `end`. Most that turns rolls, or lands, on that plane.
+    fn ends_apart(&self, contact: &Contact, moving: usize, end: &WorldPose, limit: f32) -> bool {
+        if contact.manifold.count == 0 {
+            return false;
+        }
+        let sides = [contact.colliders[moving], contact.colliders[1 - moving]];
+        let toward = if moving == 0 { contact.manifold.normal } else { -contact.manifold.normal };
+        let farthest = |side: usize, pose: &WorldPose, direction: Vector| {
+            let shape = &self.colliders[sides[side]].def.shape;
+            Some(pose.rotation.rotate(shape.support(pose.rotation.inverse_rotate(direction))?).dot(direction))
+        };
+        let place = &self.colliders.poses[sides[1] as usize];
+        let margin = self.margin(contact);
+        farthest(0, end, toward).zip(farthest(1, place, -toward)).is_some_and(|(a, b)| {
+            (place.position - end.position).to_local().dot(toward) - a - b - margin > -limit
+        })
+    }
+
+    /// The overlap at the step's end that is left to the solver.
+    fn allowed(&self, collider: u32, is_early: bool) -> f32 {
+        let limit = CORE_SHARE * self.colliders[collider].def.shape.core().1;
+        if is_early { min(limit, self.tolerance) } else { limit }
+    }
+
     /// The fraction of the step after which a collider meets another, 1 if it does not.
     fn impact(
         &self,
         collider: u32,
-        path: &Path,
+        sweep: &Sweep,
         other: Side,
         buffers: &mut CastBuffers<S::Workspace>,
     ) -> f32 {
-        let moving = self.side(collider, Some(*path));
+        let moving = self.side(collider, Some(*sweep.path));
         let (center, core) = moving.shape.core();
         let reaches = [collider, other.collider].map(|id| self.colliders.reaches[id as usize]);
         let size = if core > 0.0 { min(core, self.tolerance) } else { self.tolerance };
@@ -234,17 +362,22 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             target: MET * size,
             extent: reaches[0].extent,
         };
-        if pair.depth_at_end(buffers) > CORE_SHARE * core {
-            // What touches already, as a rod that falls over on its foot, goes on to the overlap at which it would be put
-            // back: stopped where it touches, it would hang there for many steps and gain their speed.
-            if pair.begins_within(self.tolerance, buffers) {
-                pair.margin -= CORE_SHARE * core;
+        let limit = self.allowed(collider, sweep.is_early);
+        if pair.depth_at_end(buffers) > limit {
+            // What touches already, as a rod that falls over on its foot, goes on to that overlap: stopped where it touches, it
+            // would hang there for many steps and gain their speed. What overlaps by as much goes on slower.
+            let gap = pair.gap_at_start(self.tolerance, buffers);
+            if gap < self.tolerance {
+                pair.margin -= min(max(limit, CORE_SHARE * limit - gap), CORE_SHARE * core);
             }
             if let Cast::Hit(fraction) = pair.cast(Caster::Whole, buffers) {
                 return fraction;
             }
         }
         // What touches may slide, roll, and run over the seams of a floor. It must not pass.
+        if !sweep.is_fast {
+            return 1.0;
+        }
         pair.margin = 0.0;
         for share in BALLS {
             match pair.cast(Caster::Ball(center, share * core), buffers) {

@@ -18,7 +18,7 @@ use super::shares::Shares;
 use super::split::DeepCounts;
 use super::struck::Striking;
 use super::{BodyRow, BodyRows, GainRow, RowView, SubstepParams};
-use crate::contact::ContactTable;
+use crate::contact::{ContactFlags, ContactTable};
 use crate::data::{Parts, Slack};
 use crate::graph::ColorGraph;
 use crate::math::Width;
@@ -61,6 +61,8 @@ pub struct Solver {
     bearing: Bearing,
     released: Released,
     blows: Blows,
+    /// The contacts of bodies that were put back in this step.
+    pub(super) thawed: Vec<u32>,
     /// The first body row that constraint rows may write, kept from when they were built.
     first_dynamic: u32,
     /// Whether the embedder changed bodies since gaps were measured.
@@ -393,6 +395,9 @@ impl Solver {
         });
         self.bearing.store(contacts);
         self.blows.store(contacts);
+        for id in self.thawed.drain(..) {
+            contacts.get_mut(id).flags.set(ContactFlags::FROZEN, false);
+        }
         self.plan.begin(0, 1, 0);
         self.trees.clear();
     }

@@ -24,6 +24,7 @@ impl Solver {
         workers: &mut Vec<SweepBuffers<S::Workspace>>,
         pool: &ThreadPool,
     ) {
+        self.thawed.clear();
         let first_dynamic = self.bodies.first_dynamic();
         let listed = &listed[..listed.len().min(self.bodies.rows.len().saturating_sub(1))];
         let BodyRows { motions, rows, moved, .. } = &mut self.bodies;
@@ -39,8 +40,9 @@ impl Solver {
                 let moved: BodyRow = unsafe { *rows.get(row) };
                 let (way, turn) = moved.delta();
                 // What turns by more than half a turn seems to turn less.
-                let angle = max(turn.small_turn().length(), moved.velocity().1.length() * input.dt);
-                if !input.is_far(body, way.length(), angle) || !input.may_meet(body, way) {
+                let small_turn = turn.small_turn();
+                let angle = max(small_turn.length(), moved.velocity().1.length() * input.dt);
+                if !input.is_far(body, way.length(), angle) || !input.may_meet(body, way, small_turn) {
                     continue;
                 }
                 let path = path(input, body, &moved);
@@ -62,7 +64,13 @@ impl Solver {
             }
         });
         let stopped = stopped.into_inner().unwrap_or_else(PoisonError::into_inner);
-        stopped.into_iter().for_each(|row| _ = moved.insert(row));
+        for row in stopped {
+            moved.insert(row);
+            // They met with points that the narrow phase did not predict, so it has to look again.
+            for collider in input.colliders.of_body(listed[row as usize - 1], input.bodies) {
+                self.thawed.extend(input.contacts.of_collider(collider, input.colliders));
+            }
+        }
     }
 
     /// Puts bodies back that are swept against what moves, and what they met, kinematic bodies too. Each stops at the first of

@@ -91,6 +91,13 @@ pub fn cylinder(radius: f32, half_height: f32) -> Shape {
     Shape::Cuboid(Cuboid { half: Vector { x: radius, y: half_height } })
 }
 
+/// A cone that stands upright; in 2D its outline.
+pub fn cone(radius: f32, half_height: f32) -> Shape {
+    let corners = [(-radius, -half_height), (radius, -half_height), (0.0, half_height)];
+    let corners: Vec<_> = corners.into_iter().map(|(x, y)| Vector { x, y }).collect();
+    Shape::Hull(Arc::new(Hull::convex_hull_of(&corners, 0.0).expect("a triangle is solid")))
+}
+
 /// The kinetic energy of rotation.
 pub fn spin_energy(inverse: InvInertia, _rotation: Rot, w: Angular) -> f64 {
     if inverse.zz > 0.0 { 0.5 * f64::from(w.z * w.z / inverse.zz) } else { 0.0 }

@@ -110,6 +110,11 @@ pub fn cylinder(radius: f32, half_height: f32) -> Shape {
     Shape::Curved(Curved { lower: radius, upper: radius, half_height })
 }
 
+/// A cone that stands upright; in 2D its outline.
+pub fn cone(radius: f32, half_height: f32) -> Shape {
+    Shape::Curved(Curved { lower: radius, upper: 0.0, half_height })
+}
+
 /// The kinetic energy of rotation.
 pub fn spin_energy(inverse: InvInertia, rotation: Rot, w: Angular) -> f64 {
     let local = rotation.inverse_rotate(w);

@@ -51,6 +51,7 @@ mod surfaces;
 pub mod surveys;
 mod swept_spin;
 mod tiles;
+mod tumbling;
 mod tunnel;
 mod units;
 mod unrest;
