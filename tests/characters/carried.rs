@@ -1,6 +1,6 @@
 //! Characters on what moves, and before what moves.
 
-use super::{Course, RATES, SKIN, Sample, all_at, block, each, figures, fixed, floor, lane, spin};
+use super::{Course, RATES, SKIN, Sample, all_at, block, each, figures, fixed, floor, lane, some, spin};
 use avian::{character_controller::controller::GroundState, math::*, prelude::*};
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
@@ -84,7 +84,7 @@ fn feet_stay_on_a_lift_that_follows_its_transform() {
 
 #[test]
 fn trains_carry_and_give_their_speed_to_who_jumps() {
-    for rate in [30, 64, 360] {
+    for &rate in some(&[30, 64, 360]) {
         let mut course = all_at(rate, Vector::Y * STANDING);
         let train = moving(&mut course, block(Vector::ONE * 8.0), Vector::NEG_Y * 4.0, Vector::X * 7.0);
         let offset = |course: &Course, path: &[Sample]| {
@@ -154,7 +154,7 @@ fn a_carousel_carries_round_exactly() {
 #[test]
 fn platforms_may_be_teleported_or_despawned() {
     for (name, shape) in figures() {
-        for rate in [30, 144] {
+        for &rate in some(&[30, 144]) {
             let mut course = Course::new(rate, shape.clone(), Vector::Y * STANDING);
             let shelf =
                 fixed(&mut course.app, block(Vector::ONE * 4.0), Vector::NEG_Y * 2.0, Rotation::IDENTITY);
@@ -183,7 +183,7 @@ fn platforms_may_be_teleported_or_despawned() {
 #[test]
 fn belts_carry_at_the_speed_of_their_surface() {
     for (name, shape) in figures() {
-        for rate in [30, 240] {
+        for &rate in some(&[30, 240]) {
             let mut course = Course::new(rate, shape.clone(), Vector::Y * STANDING);
             let belt = floor(&mut course.app);
             set(&mut course, belt, SurfaceVelocity(Vector::X * 1.5));
@@ -235,7 +235,7 @@ fn doors_push_and_crush() {
 fn crates_are_pushed_by_their_mass() {
     let figures = figures();
     let masses = [1.0, 10.0, 100.0, 1000.0];
-    for rate in [30, 60, 144] {
+    for &rate in some(&[30, 60, 144]) {
         let each = figures.iter().flat_map(|(_, shape)| masses.map(|mass| (shape, mass)));
         let starts = each.clone().map(|(shape, _)| (shape.clone(), Vector::Y * STANDING));
         let mut course = Course::side_by_side(rate, starts);

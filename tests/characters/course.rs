@@ -1,6 +1,6 @@
 //! More of the course: piles, ragdolls, and starts inside of things.
 
-use super::{Course, RATES, SKIN, block, each, figures, fixed, floor, lane};
+use super::{Course, RATES, SKIN, block, each, figures, fixed, floor, lane, some};
 use avian::{math::*, prelude::*};
 use bevy_math::Quat;
 use bevy_transform::components::Transform;
@@ -11,7 +11,7 @@ const STANDING: Scalar = 0.9 + SKIN;
 #[test]
 fn who_stands_on_a_pile_or_on_a_ragdoll_is_not_thrown() {
     let figures = figures();
-    for rate in [30, 60, 144] {
+    for &rate in some(&[30, 60, 144]) {
         let starts = figures.iter().map(|(_, shape)| (shape.clone(), Vector::Y * 4.0));
         let mut course = Course::side_by_side(rate, starts);
         floor(&mut course.app);

@@ -1,6 +1,6 @@
 //! Crowds: a hundred characters in a corridor, and a thousand on a mesh.
 
-use super::{ASIDE, SKIN, app, block, figures, fixed, floor, step, terrain};
+use super::{ASIDE, SKIN, app, block, figures, fixed, floor, some, step, terrain};
 use avian::{
     character_controller::controller::CharacterState, collision::collider::contact_query::contact, math::*,
     prelude::*,
@@ -88,7 +88,7 @@ fn corridor(rate: u32, friends: LayerMask) -> Crowd {
 /// Strangers that meet in the corridor stand still before each other: none is run over, lifted or pushed into a wall.
 #[test]
 fn a_hundred_strangers_queue_in_a_narrow_corridor() {
-    for rate in [30, 60] {
+    for &rate in some(&[30, 60]) {
         let mut crowd = corridor(rate, LayerMask::NONE);
         let closing = 6.0 / rate as Scalar;
         for tick in 0..5 * rate / 2 {

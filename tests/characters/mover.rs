@@ -1,6 +1,6 @@
 //! Dynamic movers: bodies that walk by forces.
 
-use super::{SKIN, app, block, fixed, floor, lane, spin, stay_on_one_thread, step, toward, turned};
+use super::{SKIN, app, block, fixed, floor, lane, some, spin, stay_on_one_thread, step, toward, turned};
 use avian::{math::*, prelude::*};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
@@ -182,7 +182,7 @@ fn it_stands_on_slopes_and_walks_up_and_down() {
 /// Steps of 0.2 m pass below its collider.
 #[test]
 fn stairs_are_a_slope_to_the_spring() {
-    for rate in [30, 64, 144] {
+    for &rate in some(&[30, 64, 144]) {
         let mut hall = Hall::new(rate, 0.3, Vector::Y * HOVERING);
         floor(&mut hall.app);
         for i in 0..8 {
@@ -264,7 +264,7 @@ fn it_pushes_by_its_mass() {
 /// Light crates rain on a mover that walks through them: what it steps on in the air is not thrown.
 #[test]
 fn it_throws_nothing_that_bears_nothing() {
-    for rate in [30, 64] {
+    for &rate in some(&[30, 64]) {
         let mut hall = Hall::new(rate, 0.3, Vector::Y * rest(0.3));
         floor(&mut hall.app);
         let crates: Vec<Entity> = (0..50)
@@ -392,7 +392,7 @@ fn layers_of_their_own_do_not_stop_movers() {
         (layers(4, 8), layers(8, 4)),
         (layers(16, 32 | 64), layers(32, LayerMask::ALL.0)),
     ];
-    for rate in [30, 64] {
+    for &rate in some(&[30, 64]) {
         let starts =
             cases.iter().flat_map(|_| [0.0, 0.3].map(|height| (height, Vector::Y * (rest(height) + 0.2))));
         let mut hall = Hall::side_by_side(rate, starts);

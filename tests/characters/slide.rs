@@ -1,6 +1,6 @@
 //! [`MoveAndSlide`]: walls, corners, seams, slopes, overlaps, and input that is none.
 
-use super::{SKIN, app, ask, block, figures, fixed, floor, rates, toward, turned};
+use super::{SKIN, app, ask, block, figures, fixed, floor, rates, some, toward, turned};
 use avian::{
     character_controller::move_and_slide::{COS_5_DEGREES, DepenetrationConfig},
     math::*,
@@ -192,7 +192,7 @@ fn seams_of_floors_are_not_met() {
 #[test]
 fn seams_of_walls_are_not_met() {
     for (name, shape) in figures() {
-        for rate in [30, 64, 144] {
+        for &rate in some(&[30, 64, 144]) {
             let mut app = app();
             for i in -4..30 {
                 let at = Vector::Y * (0.4 * i as Scalar) + Vector::X * 1.0;

@@ -1,6 +1,6 @@
 //! Tight places: tubes that touch a character at each of their facets, and wedges of a floor and a ceiling.
 
-use super::{Course, RATES, SKIN, block, figures, fixed, floor, groove, toward, turned};
+use super::{Course, RATES, SKIN, block, figures, fixed, floor, groove, some, toward, turned};
 use avian::{math::*, prelude::*};
 
 const STANDING: Scalar = 0.9 + SKIN;
@@ -8,7 +8,7 @@ const STANDING: Scalar = 0.9 + SKIN;
 /// Half of a tube of 768 facets, each at the distance of the skin: in space beside the character, in the plane below it.
 #[test]
 fn a_groove_of_many_facets_holds_and_lets_go() {
-    for rate in [30, 60] {
+    for &rate in some(&[30, 60]) {
         let mut course = Course::new(rate, Collider::capsule(0.4, 1.0), groove::START);
         if groove::IS_UPRIGHT {
             floor(&mut course.app);

@@ -1,6 +1,6 @@
 //! Characters on floors, slopes and stairs.
 
-use super::{Course, RATES, SKIN, all_at, block, each, figures, fixed, floor, terrain, toward, turned};
+use super::{Course, RATES, SKIN, all_at, block, each, figures, fixed, floor, some, terrain, toward, turned};
 use avian::{character_controller::controller::GroundState, math::*, prelude::*};
 
 /// Half the height of the figures, with the skin: where one that stands on the floor is.
@@ -224,7 +224,7 @@ fn what_is_too_high_or_has_no_room_is_no_step() {
 /// Neither brakes nor boosts, also below a ceiling.
 #[test]
 fn a_walk_along_a_wall_keeps_its_speed() {
-    for rate in [30, 60, 240] {
+    for &rate in some(&[30, 60, 240]) {
         let mut course = all_at(rate, Vector::Y * STANDING);
         let ceiling = Vector::Y * (1.8 + 3.0 * SKIN + 2.0);
         floor(&mut course.app);
