@@ -197,9 +197,10 @@ pub mod sweeps {
     /// they may by the end of the first substep after the step, so that fewer miss points, and more stop bodies that pass by.
     pub const AHEAD: f32 = 2.0;
 
-    /// Bodies that move by less than this share of the ball within them are not swept, and those that overlap by less when the
-    /// step ends are not put back: the solver pushes them out. What is deeper in a closed surface than this share of its half size
-    /// is inside of it, and a shape that reaches to the other side of a face by less than this share of its extent is on one side.
+    /// Bodies that move by less than this share of the ball within them get past nothing, and those that overlap by less when
+    /// the step ends are not put back, unless they turn alone: the solver pushes them out. What is deeper in a closed surface
+    /// than this share of its half size is inside of it, and a shape that reaches to the other side of a face by less than this
+    /// share of its extent is on one side.
     /// Larger lets bodies through thin walls, and what sank in stay inside; smaller takes time from bodies, and pulls cones into
     /// faces.
     pub const CORE_SHARE: f32 = 0.5;

@@ -5,7 +5,7 @@ use super::path::Path;
 use crate::bvh::{TreeKind, Trees};
 use crate::contact::{Contact, ContactFlags, ContactTable, ManifoldSource};
 use crate::graph::ConstraintKind;
-use crate::math::{Angular, Vector, WorldPose, max, min};
+use crate::math::{Vector, WorldPose, max, min};
 use crate::shape::Aabb;
 use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach};
 use crate::tuning::sweeps::{CORE_SHARE, MET};
@@ -48,13 +48,21 @@ pub struct Swept {
     pub angular_threshold: f32,
 }
 
-/// How a body moves in a sweep.
+/// A body that is swept.
 struct Sweep<'a> {
     path: &'a Path,
-    /// Whether it may get past something that it has no contact with.
+    /// Whether its surface moves far enough to get past something.
     is_fast: bool,
-    /// Whether it is put back also where it comes less deep.
-    is_early: bool,
+    /// Whether it is put back from an overlap of the tolerance on, not only from [`CORE_SHARE`] of the ball within it on.
+    is_strict: bool,
+}
+
+/// A collider where the step ends.
+struct End {
+    pose: WorldPose,
+    aabb: Aabb,
+    /// Around all places on its way there.
+    swept: Aabb,
 }
 
 /// Buffers of one worker, kept for their memory.
@@ -74,7 +82,7 @@ impl<W: Default> Default for SweepBuffers<W> {
 
 impl<S: ManifoldSource> SweepInput<'_, S> {
     /// Whether a body that moves by `way` metres and turns by `angle` radians may get past something, or press a corner into
-    /// something that contacts of the step's start have no point at.
+    /// something where contacts of the step's start have no point.
     #[inline(always)]
     pub fn is_far(&self, body: u32, way: f32, angle: f32) -> bool {
         let turning = self.colliders.size_of(body).arm * angle;
@@ -87,65 +95,58 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         way > max(CORE_SHARE * self.colliders.size_of(body).core, MET * self.tolerance)
     }
 
-    /// Whether a body that turns far is put back where it comes deep. If others move with it, they would not be put back, and
+    /// How a body is swept along a path against what does not move.
+    fn sweep<'a>(&self, body: u32, path: &'a Path) -> Sweep<'a> {
+        let turning = self.colliders.size_of(body).arm * path.spin.length();
+        Sweep {
+            path,
+            is_fast: self.is_fast(body, path.way.length() + turning),
+            is_strict: turning > self.tolerance && self.is_alone(body),
+        }
+    }
+
+    /// Whether a body has no joints and touches only what does not move. What moves with others must not be put back alone:
     /// joints would open.
-    fn is_put_back_early(&self, body: u32, path: &Path) -> bool {
+    fn is_alone(&self, body: u32) -> bool {
         let is_free = |kind| self.bodies.constraints(kind).of_body(body).next().is_none();
-        self.colliders.size_of(body).arm * path.spin.length() > self.tolerance
-            && is_free(ConstraintKind::Joint)
+        is_free(ConstraintKind::Joint)
             && is_free(ConstraintKind::Custom)
             && self.contacts_of(body).all(|(contact, moving)| {
-                let is_off = !contact.flags.has(ContactFlags::TOUCHING) || contact.is_inert();
-                is_off || self.is_fixed(contact.bodies[1 - moving])
+                let pushes = contact.flags.has(ContactFlags::TOUCHING) && !contact.is_inert();
+                !pushes || self.is_fixed(contact.bodies[1 - moving])
             })
     }
 
     /// The contacts of a body, each with the side that the body is on.
     fn contacts_of(&self, body: u32) -> impl Iterator<Item = (&Contact, usize)> {
-        self.colliders.of_body(body, self.bodies).flat_map(move |collider| {
-            let contacts = self.contacts.of_collider(collider, self.colliders);
-            contacts.map(move |id| {
-                let contact = self.contacts.get(id);
-                (contact, usize::from(contact.colliders[1] == collider))
-            })
+        self.colliders.of_body(body, self.bodies).flat_map(|collider| self.contacts_of_collider(collider))
+    }
+
+    /// The contacts of a collider, each with the side that the collider is on.
+    fn contacts_of_collider(&self, collider: u32) -> impl Iterator<Item = (&Contact, usize)> {
+        self.contacts.of_collider(collider, self.colliders).map(move |id| {
+            let contact = self.contacts.get(id);
+            (contact, usize::from(contact.colliders[1] == collider))
         })
     }
 
-    /// Whether there is anything that does not move, and that a body may meet on a way of the step however it turns, or with
-    /// a turn where a contact's plane is known. Most fast bodies are far from all that, or slide on it.
-    pub fn may_meet(&self, body: u32, way: Vector, turn: Angular) -> bool {
-        let turning = self.colliders.size_of(body).arm * turn.length();
-        let is_slow = !self.is_fast(body, way.length() + turning);
+    /// Whether there is anything that does not move, and that a body may meet on a way of the step however it turns. Most fast
+    /// bodies are far from all that.
+    pub fn may_meet(&self, body: u32, way: Vector) -> bool {
+        if self.contacts_of(body).any(|(contact, moving)| self.is_fixed(contact.bodies[1 - moving])) {
+            return true;
+        }
         let (mut reach, mut is_known) = (0.0, true);
         for id in self.colliders.of_body(body, self.bodies) {
             let Reach { extent, margin, .. } = self.colliders.reaches[id as usize];
             reach = max(reach, extent + margin);
             // Casts stop this far before shapes touch.
             let around = self.ball(body, extent + margin).swept(way).grown(MET * self.tolerance);
-            is_known &= is_slow || self.colliders.fat[id as usize].contains(&around);
+            is_known &= self.colliders.fat[id as usize].contains(&around);
         }
-        if is_known {
-            // Within its fat boxes a body meets only what has contacts with it.
-            return self.contacts_of(body).any(|(contact, moving)| {
-                self.is_fixed(contact.bodies[1 - moving]) && !self.stays_off(contact, moving, way, turn)
-            });
-        }
+        // Within its fat boxes a body meets only what has contacts with it.
         let around = self.ball(body, reach).swept(way).grown(self.tolerance);
-        FIXED.iter().any(|kind| !self.trees[*kind].query(&around, |_| false))
-    }
-
-    /// Whether a body cannot come deeper into the other side of a contact than a body is ever put back at.
-    fn stays_off(&self, contact: &Contact, moving: usize, way: Vector, turn: Angular) -> bool {
-        if !contact.flags.has(ContactFlags::FROZEN) || contact.flags.has(ContactFlags::COMPOSITE) {
-            return false;
-        }
-        let (id, manifold) = (contact.colliders[moving], &contact.manifold);
-        let gap = manifold.points().iter().fold(f32::INFINITY, |gap, p| min(gap, p.separation));
-        let toward = if moving == 0 { manifold.normal } else { -manifold.normal };
-        // A turn by the angle θ about an axis at φ from the normal n moves a point r by at most |r| 2 sin(θ/2) sin φ along n.
-        let closed =
-            way.dot(toward) + self.colliders.reaches[id as usize].extent * turn.cross(toward).length();
-        manifold.count > 0 && gap - closed > -self.allowed(id, true)
+        !is_known && FIXED.iter().any(|kind| !self.trees[*kind].query(&around, |_| false))
     }
 
     /// The tree that colliders of a body are in.
@@ -171,12 +172,12 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
 
     /// The fraction of the step after which a body stops at what does not move; 1 if it does not.
     pub fn stop(&self, body: u32, path: &Path, buffers: &mut SweepBuffers<S::Workspace>) -> f32 {
-        let turning = self.colliders.size_of(body).arm * path.spin.length();
-        let is_fast = self.is_fast(body, path.way.length() + turning);
-        let sweep = Sweep { path, is_fast, is_early: self.is_put_back_early(body, path) };
+        let sweep = self.sweep(body, path);
         let mut first = 1.0;
-        if sweep.is_fast || sweep.is_early {
-            self.each_candidate(body, &sweep, &FIXED, buffers, |[collider, other], buffers| {
+        if sweep.is_fast || sweep.is_strict {
+            // Colliders without a body stop only what would get past them.
+            let kinds = if sweep.is_fast { &FIXED[..] } else { &[TreeKind::Static] };
+            self.each_candidate(body, &sweep, kinds, buffers, |[collider, other], buffers| {
                 let impact = self.impact(collider, &sweep, self.side(other, None), &mut buffers.cast);
                 first = min(first, impact);
             });
@@ -196,7 +197,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         let Some(path) = path_of(body).map(|path| path.turning_if(swept.turns)) else { return };
         let kinds = [TreeKind::Kinematic, TreeKind::Dynamic];
         let kinds = if swept.include_dynamic { &kinds[..] } else { &kinds[..1] };
-        let sweep = Sweep { path: &path, is_fast: true, is_early: false };
+        let sweep = Sweep { path: &path, is_fast: true, is_strict: false };
         self.each_candidate(body, &sweep, kinds, buffers, |[collider, other], buffers| {
             let other_body = self.colliders.body(other);
             if other_body == body || other_body == NONE {
@@ -232,45 +233,55 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
                 continue;
             }
             candidates.clear();
-            let end = sweep.path.frame(1.0).then(&def.local);
-            let end_box = def.shape.aabb(&end);
-            let around = self.around(collider, sweep.path, &end_box);
-            if !sweep.is_fast || self.colliders.fat[collider as usize].contains(&around) {
+            let end = self.end(collider, sweep.path);
+            if self.colliders.fat[collider as usize].contains(&end.swept) {
                 // It can only meet what it has contacts with.
-                let limit = self.allowed(collider, sweep.is_early);
-                for id in self.contacts.of_collider(collider, self.colliders) {
-                    let contact = self.contacts.get(id);
-                    let moving = usize::from(contact.colliders[1] == collider);
-                    let (other, kind) =
-                        (contact.colliders[1 - moving], self.kind_of(contact.bodies[1 - moving]));
-                    let keeps_off = || {
-                        let gap = end_box.gap(&self.colliders.tight[other as usize]);
-                        !sweep.is_fast && gap - self.margin(contact) > -limit
-                    };
-                    let is_candidate = kinds.contains(&kind)
-                        && !contact.is_let_through()
-                        && !keeps_off()
-                        && around.overlaps(&self.colliders.fat[other as usize])
-                        && !(FIXED.contains(&kind) && self.ends_apart(contact, moving, &end, limit));
-                    if is_candidate {
-                        candidates.push(other);
-                    }
-                }
+                self.find_in_contacts(collider, sweep, kinds, &end, &mut candidates);
             } else {
-                for &kind in kinds {
-                    self.trees[kind].query(&around, |other| {
-                        let found = &self.colliders[other].def;
-                        let interacts = !found.flags.sensor && def.layers.interacts_with(found.layers);
-                        if interacts && !self.is_refused(collider, other) {
-                            candidates.push(other);
-                        }
-                        true
-                    });
-                }
+                self.find_in_trees(collider, kinds, &end.swept, &mut candidates);
             }
             candidates.iter().for_each(|other| met([collider, *other], buffers));
         }
         buffers.candidates = candidates;
+    }
+
+    /// Adds the colliders of some kinds that a collider has contacts with, and may meet on its way to `end`.
+    fn find_in_contacts(
+        &self,
+        collider: u32,
+        sweep: &Sweep,
+        kinds: &[TreeKind],
+        end: &End,
+        found: &mut Vec<u32>,
+    ) {
+        let allowed = self.allowed_overlap(collider, sweep);
+        for (contact, moving) in self.contacts_of_collider(collider) {
+            let (other, body) = (contact.colliders[1 - moving], contact.bodies[1 - moving]);
+            let is_near = end.swept.overlaps(&self.colliders.fat[other as usize]);
+            if !is_near || !kinds.contains(&self.kind_of(body)) || contact.is_let_through() {
+                continue;
+            }
+            // The end tells only where the other side does not move.
+            if self.is_fixed(body) && self.ends_apart(contact, moving, sweep, end, allowed) {
+                continue;
+            }
+            found.push(other);
+        }
+    }
+
+    /// Adds the colliders of some kinds in a box that a collider may meet.
+    fn find_in_trees(&self, collider: u32, kinds: &[TreeKind], around: &Aabb, found: &mut Vec<u32>) {
+        let layers = self.colliders[collider].def.layers;
+        for &kind in kinds {
+            self.trees[kind].query(around, |other| {
+                let def = &self.colliders[other].def;
+                let interacts = !def.flags.sensor && layers.interacts_with(def.layers);
+                if interacts && !self.is_refused(collider, other) {
+                    found.push(other);
+                }
+                true
+            });
+        }
     }
 
     /// Whether the embedder lets two colliders through each other. A pair whose fat boxes did not overlap when the step began was
@@ -282,21 +293,18 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         }
     }
 
-    /// The sum of the collision margins.
-    fn margin(&self, contact: &Contact) -> f32 {
-        let [a, b] = contact.colliders.map(|id| self.colliders.reaches[id as usize].margin);
-        a + b
-    }
-
-    /// The box of all places that a collider takes on its body's path, at whose end it has the box `end`.
-    fn around(&self, collider: u32, path: &Path, end: &Aabb) -> Aabb {
+    /// A collider at the end of its body's path.
+    fn end(&self, collider: u32, path: &Path) -> End {
         let (def, extent) = (&self.colliders[collider].def, self.colliders.reaches[collider as usize].extent);
+        let pose = path.frame(1.0).then(&def.local);
+        let aabb = def.shape.aabb(&pose);
         let round = Aabb::new(Vector::ZERO, Vector::ZERO).at(path.start.center).grown(extent);
         // A point goes along an arc. Off the line between its ends that is by r (1 - cos φ/2) < r φ²/8 at most.
         let spin = path.spin.length_squared();
-        let ends = self.colliders.tight[collider as usize].union(end);
+        let ends = self.colliders.tight[collider as usize].union(&aabb);
         let arcs = ends.grown(min(0.125 * extent * spin, 2.0 * extent));
-        arcs.intersection(&round.swept(path.way)).grown(def.margin + self.tolerance)
+        let swept = arcs.intersection(&round.swept(path.way)).grown(def.margin + self.tolerance);
+        End { pose, aabb, swept }
     }
 
     /// A collider on its body's path; without one it stays where it is.
@@ -317,29 +325,34 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         Side { collider, shape: &def.shape, local, path, arm: self.colliders.reaches[collider as usize].arm }
     }
 
-    /// Whether the plane of a contact with what does not move keeps the shapes from overlapping by more than `limit` when the
-    /// moving side has come to `end`. Most that turns rolls, or lands, on that plane.
-    fn ends_apart(&self, contact: &Contact, moving: usize, end: &WorldPose, limit: f32) -> bool {
+    /// Whether a plane proves that the sides of a contact overlap by less than `allowed` when the step ends, and that none got
+    /// past the other: that of the contact, or a side of their boxes. Most bodies that turn slide, roll or land on one.
+    fn ends_apart(&self, contact: &Contact, moving: usize, sweep: &Sweep, end: &End, allowed: f32) -> bool {
+        let sides = [contact.colliders[moving], contact.colliders[1 - moving]];
+        let margins = sides.map(|id| self.colliders.reaches[id as usize].margin);
+        let least = margins[0] + margins[1] - allowed;
+        // What is fast may have got past to another side of the box.
+        if !sweep.is_fast && end.aabb.gap(&self.colliders.tight[sides[1] as usize]) > least {
+            return true;
+        }
         if contact.manifold.count == 0 {
             return false;
         }
-        let sides = [contact.colliders[moving], contact.colliders[1 - moving]];
         let toward = if moving == 0 { contact.manifold.normal } else { -contact.manifold.normal };
         let farthest = |side: usize, pose: &WorldPose, direction: Vector| {
             let shape = &self.colliders[sides[side]].def.shape;
             Some(pose.rotation.rotate(shape.support(pose.rotation.inverse_rotate(direction))?).dot(direction))
         };
         let place = &self.colliders.poses[sides[1] as usize];
-        let margin = self.margin(contact);
-        farthest(0, end, toward).zip(farthest(1, place, -toward)).is_some_and(|(a, b)| {
-            (place.position - end.position).to_local().dot(toward) - a - b - margin > -limit
-        })
+        let reaches = farthest(0, &end.pose, toward).zip(farthest(1, place, -toward));
+        reaches
+            .is_some_and(|(a, b)| (place.position - end.pose.position).to_local().dot(toward) - a - b > least)
     }
 
     /// The overlap at the step's end that is left to the solver.
-    fn allowed(&self, collider: u32, is_early: bool) -> f32 {
-        let limit = CORE_SHARE * self.colliders[collider].def.shape.core().1;
-        if is_early { min(limit, self.tolerance) } else { limit }
+    fn allowed_overlap(&self, collider: u32, sweep: &Sweep) -> f32 {
+        let allowed = CORE_SHARE * self.colliders[collider].def.shape.core().1;
+        if sweep.is_strict { min(allowed, self.tolerance) } else { allowed }
     }
 
     /// The fraction of the step after which a collider meets another, 1 if it does not.
@@ -362,13 +375,14 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             target: MET * size,
             extent: reaches[0].extent,
         };
-        let limit = self.allowed(collider, sweep.is_early);
-        if pair.depth_at_end(buffers) > limit {
+        let allowed = self.allowed_overlap(collider, sweep);
+        if pair.depth_at_end(buffers) > allowed {
             // What touches already, as a rod that falls over on its foot, goes on to that overlap: stopped where it touches, it
-            // would hang there for many steps and gain their speed. What overlaps by as much goes on slower.
+            // would hang there for many steps and gain their speed. What overlaps more goes on slowly.
             let gap = pair.gap_at_start(self.tolerance, buffers);
             if gap < self.tolerance {
-                pair.margin -= min(max(limit, CORE_SHARE * limit - gap), CORE_SHARE * core);
+                let deeper = 0.5 * allowed - gap;
+                pair.margin -= min(max(allowed, deeper), CORE_SHARE * core);
             }
             if let Cast::Hit(fraction) = pair.cast(Caster::Whole, buffers) {
                 return fraction;

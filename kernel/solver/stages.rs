@@ -61,8 +61,8 @@ pub struct Solver {
     bearing: Bearing,
     released: Released,
     blows: Blows,
-    /// The contacts of bodies that were put back in this step.
-    pub(super) thawed: Vec<u32>,
+    /// Contacts that are not recycled in the next step, as bodies were put back.
+    pub(super) outdated: Vec<u32>,
     /// The first body row that constraint rows may write, kept from when they were built.
     first_dynamic: u32,
     /// Whether the embedder changed bodies since gaps were measured.
@@ -90,6 +90,7 @@ impl Solver {
     pub fn begin_step(&mut self, kinematic: usize, dynamic: usize) {
         self.plan.begin(0, 1, 0);
         self.trees.clear();
+        self.outdated.clear();
         self.gaps_are_old = false;
         self.bodies.reset(kinematic, dynamic);
     }
@@ -395,7 +396,7 @@ impl Solver {
         });
         self.bearing.store(contacts);
         self.blows.store(contacts);
-        for id in self.thawed.drain(..) {
+        for id in self.outdated.drain(..) {
             contacts.get_mut(id).flags.set(ContactFlags::FROZEN, false);
         }
         self.plan.begin(0, 1, 0);

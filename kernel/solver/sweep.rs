@@ -24,7 +24,6 @@ impl Solver {
         workers: &mut Vec<SweepBuffers<S::Workspace>>,
         pool: &ThreadPool,
     ) {
-        self.thawed.clear();
         let first_dynamic = self.bodies.first_dynamic();
         let listed = &listed[..listed.len().min(self.bodies.rows.len().saturating_sub(1))];
         let BodyRows { motions, rows, moved, .. } = &mut self.bodies;
@@ -40,9 +39,8 @@ impl Solver {
                 let moved: BodyRow = unsafe { *rows.get(row) };
                 let (way, turn) = moved.delta();
                 // What turns by more than half a turn seems to turn less.
-                let small_turn = turn.small_turn();
-                let angle = max(small_turn.length(), moved.velocity().1.length() * input.dt);
-                if !input.is_far(body, way.length(), angle) || !input.may_meet(body, way, small_turn) {
+                let angle = max(turn.small_turn().length(), moved.velocity().1.length() * input.dt);
+                if !input.is_far(body, way.length(), angle) || !input.may_meet(body, way) {
                     continue;
                 }
                 let path = path(input, body, &moved);
@@ -66,10 +64,7 @@ impl Solver {
         let stopped = stopped.into_inner().unwrap_or_else(PoisonError::into_inner);
         for row in stopped {
             moved.insert(row);
-            // They met with points that the narrow phase did not predict, so it has to look again.
-            for collider in input.colliders.of_body(listed[row as usize - 1], input.bodies) {
-                self.thawed.extend(input.contacts.of_collider(collider, input.colliders));
-            }
+            mark_outdated(input, listed[row as usize - 1], &mut self.outdated);
         }
     }
 
@@ -103,8 +98,16 @@ impl Solver {
                 let acceleration = self.bodies.motions[row].acceleration;
                 put_back(&mut self.bodies.rows[row], &path, fraction, acceleration);
                 self.bodies.moved.insert(row as u32);
+                mark_outdated(input, body, &mut self.outdated);
             }
         }
+    }
+}
+
+/// Notes the contacts of a body that was put back. It met what the narrow phase had no points for, so that has to look again.
+fn mark_outdated<S: ManifoldSource>(input: &SweepInput<S>, body: u32, outdated: &mut Vec<u32>) {
+    for collider in input.colliders.of_body(body, input.bodies) {
+        outdated.extend(input.contacts.of_collider(collider, input.colliders));
     }
 }
 

@@ -36,12 +36,12 @@ pub use super::characters_dim::*;
 /// The tick rates of the course, in Hz.
 pub const RATES: [u32; 6] = [30, 60, 64, 144, 240, 360];
 
-/// Some rates, to save time; all of the course with `AVIAN_ALL_RATES=1`.
+/// Some rates, to save time; with `AVIAN_ALL_RATES=1` every rate.
 pub fn some(rates: &'static [u32]) -> &'static [u32] {
     if std::env::var_os("AVIAN_ALL_RATES").is_some() { &RATES } else { rates }
 }
 
-/// The rates at which a figure is tested: the first one at all.
+/// The rates at which a figure is tested: the capsule at every rate, the others at some.
 pub fn rates(name: &str) -> &'static [u32] {
     if name == "capsule" { &RATES } else { some(&[30, 144]) }
 }

@@ -155,21 +155,20 @@ fn fall(seed: u64, shape: &Shape, points: &[Vector], is_compound: bool) -> Fall 
     seen
 }
 
-/// In four falls of 720, both dimensions together, something comes deeper than a centimetre, and in none is it held for five
-/// steps. Twice of each is allowed.
+/// In three falls of 360 in 2D, and in one in 3D, something comes deeper than a centimetre: 13 mm. None is held for five steps.
 #[test]
 fn what_tumbles_through_levels_of_blocks_stays_out_of_them() {
-    for (name, shape) in bodies() {
+    let (mut deep, mut seen) = (0, Fall::default());
+    for (_, shape) in bodies() {
         let points = surface(&shape);
         for is_compound in [false, true] {
-            let falls: Vec<_> = (0..60).map(|seed| fall(seed, &shape, &points, is_compound)).collect();
-            let deepest = falls.iter().fold(0.0, |depth: f32, fall| depth.max(fall.depth));
-            let deep = falls.iter().filter(|fall| fall.depth > 0.01).count();
-            let held = falls.iter().map(|fall| fall.held).max();
-            let what = format!(
-                "{name}, compound {is_compound}: {deepest} m, {deep} deeper than 1 cm, held {held:?}"
-            );
-            assert!(deepest < 0.025 && deep <= 2 && held < Some(10), "{what}");
+            for seed in 0..60 {
+                let Fall { depth, held } = fall(seed, &shape, &points, is_compound);
+                deep += usize::from(depth > 0.01);
+                seen = Fall { depth: depth.max(seen.depth), held: held.max(seen.held) };
+            }
         }
     }
+    println!("{deep} of 360 deeper than 1 cm, {seen:?}");
+    assert!(deep <= 6 && seen.depth < 0.02 && seen.held < 10, "{deep} of 360 deeper than 1 cm, {seen:?}");
 }

@@ -144,6 +144,23 @@ fn sweeps_leave_out_what_they_are_told_to() {
     assert_eq!(through(speed, own, other), 12, "another layer");
 }
 
+/// A collider without a body stops what would get past it in a step, and nothing that is slower.
+#[test]
+fn what_tumbles_falls_freely_through_a_collider_without_a_body() {
+    let fall = |is_there: bool| {
+        let mut lab = Lab::with_steps(1.0 / 64.0, 6);
+        if is_there {
+            lab.spawn((dim::sized_block(8.0, 2.0, 8.0), Transform::default()));
+        }
+        let block = dim::sized_block(1.0, 1.0, 1.0);
+        let spin = AngularVelocity(dim::about_z(8.0));
+        let body = lab.spawn((RigidBody::Dynamic, block, at(0.0, 2.0, 0.0), spin));
+        lab.steps(64);
+        lab.at(body).y
+    };
+    assert_eq!(fall(true).to_bits(), fall(false).to_bits());
+}
+
 /// A ball at rest beside a bar that turns by 0.6 rad in a step, both without margin: whether it is hit.
 fn is_hit(swept: Option<SweptCcd>, phase: f32) -> bool {
     let mut lab = lab();
