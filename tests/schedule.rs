@@ -8,11 +8,12 @@ use avian::{
 use bevy_app::prelude::*;
 use bevy_ecs::{
     prelude::*,
-    schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel},
+    schedule::{LogLevel, MultiThreadedExecutor, ScheduleBuildSettings, ScheduleLabel},
 };
 use bevy_time::{TimePlugin, TimeUpdateStrategy, prelude::*};
 use bevy_transform::{TransformPlugin, TransformSystems, prelude::GlobalTransform};
 use core::time::Duration;
+use std::thread::ThreadId;
 
 /// The deltas of the steps taken, each as (generic clock, physics clock).
 #[derive(Resource, Default)]
@@ -250,6 +251,30 @@ fn the_host_may_be_any_schedule_and_is_fixed_by_default() {
         app.world_mut().run_schedule(host);
         assert_eq!(steps(&app).len(), 1);
     }
+}
+
+#[test]
+fn the_fixed_host_runs_on_one_thread_unless_the_app_sets_another_executor() {
+    #[derive(Resource)]
+    struct RanOn(ThreadId);
+    let ran_on = |is_parallel: bool| {
+        let mut app = App::new();
+        app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin, PhysicsPlugins::default()));
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(20)));
+        app.insert_resource(RanOn(std::thread::current().id()));
+        app.add_systems(FixedPostUpdate, |mut ran: ResMut<RanOn>| ran.0 = std::thread::current().id());
+        if is_parallel {
+            app.edit_schedule(FixedPostUpdate, |schedule| {
+                schedule.set_executor(MultiThreadedExecutor::new());
+            });
+        }
+        app.finish();
+        app.cleanup();
+        (0..3).for_each(|_| app.update());
+        app.world().resource::<RanOn>().0
+    };
+    assert_eq!(ran_on(false), std::thread::current().id());
+    assert_ne!(ran_on(true), std::thread::current().id());
 }
 
 /// Adds a system to each set of a list that records the set. Returns the expected record.

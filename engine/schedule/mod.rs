@@ -26,6 +26,11 @@ use crate::threads::Threads;
 /// schedule.
 ///
 /// Without it there are no clocks and no step is taken.
+///
+/// [`FixedPostUpdate`], the default, gets Bevy's single-threaded executor: a step is parallel inside of its systems, and
+/// to hand its systems from thread to thread takes longer than a step of some hundred bodies. Systems of the app in
+/// [`FixedPostUpdate`] then run one after the other, too. If that is too slow, set another executor after the plugin is
+/// added; other hosting schedules keep theirs.
 pub struct PhysicsSchedulePlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
@@ -77,6 +82,11 @@ impl Plugin for PhysicsSchedulePlugin {
             ),
         );
 
+        if self.schedule == FixedPostUpdate.intern() {
+            app.edit_schedule(self.schedule, |schedule| {
+                schedule.set_executor(SingleThreadedExecutor::new());
+            });
+        }
         app.edit_schedule(PhysicsSchedule, make_deterministic);
         app.configure_sets(
             PhysicsSchedule,
@@ -102,8 +112,8 @@ fn end_writeback(mut times: ResMut<StepTimes>, threads: Res<Threads>, _: OnThisT
     threads.pool.rest();
 }
 
-/// A parameter that keeps a system of the hosting schedule on the thread that runs the schedule. Most of these systems
-/// do so little that handing them to another thread would take a hundred times as long.
+/// A parameter that keeps a system of the hosting schedule on the thread that runs the schedule, if that is a schedule with
+/// many threads. Most of these systems do so little that handing them to another thread would take a hundred times as long.
 pub(crate) use bevy_ecs::system::NonSendMarker as OnThisThread;
 
 /// Lets a schedule run its systems one after the other, and makes an ambiguous order an error.
