@@ -11,6 +11,9 @@ const MANY_CONTACTS: usize = 1024;
 /// swept.
 const MANY_MOVERS: usize = 256;
 
+/// Minimum number of characters for which waking threads pays: the way of one takes 10 to 50 µs.
+const MANY_CHARACTERS: usize = 16;
+
 /// The thread pool, and the [`WorkerCount`](crate::dynamics::solver::workers::WorkerCount) it was made for.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Threads {
@@ -21,11 +24,24 @@ pub(crate) struct Threads {
 }
 
 impl Threads {
-    /// Wakes the threads if there are many contacts, or the last search for pairs was for many colliders. `workers` returns the
-    /// number of workers that `setting` stands for. It is called only when the setting changed, since it asks the operating
-    /// system.
+    /// Wakes the threads if there are many contacts, or the last search for pairs was for many colliders.
     pub(crate) fn wake(&mut self, contacts: usize, setting: usize, workers: impl FnOnce() -> usize) {
-        let many = contacts >= MANY_CONTACTS || self.movers >= MANY_MOVERS;
+        self.wake_if(contacts >= MANY_CONTACTS || self.movers >= MANY_MOVERS, setting, workers);
+    }
+
+    /// Wakes the threads if many characters are to be moved.
+    pub(crate) fn wake_for_characters(
+        &mut self,
+        characters: usize,
+        setting: usize,
+        workers: impl FnOnce() -> usize,
+    ) {
+        self.wake_if(characters >= MANY_CHARACTERS, setting, workers);
+    }
+
+    /// Wakes the threads if there is much to do. `workers` returns the number of workers that `setting` stands for. It is called
+    /// only when the setting changed, since it asks the operating system.
+    fn wake_if(&mut self, many: bool, setting: usize, workers: impl FnOnce() -> usize) {
         // There is no pool before there is much to do for the first time.
         if self.setting != Some(setting) && (many || self.setting.is_some()) {
             *self = Self { pool: ThreadPool::new(workers()), setting: Some(setting), movers: self.movers };

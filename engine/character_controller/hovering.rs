@@ -34,10 +34,12 @@ use crate::{
             forces::{Forces, WriteRigidBodyForces},
             mass_properties::components::ComputedMass,
         },
+        solver::workers::WorkerCount,
     },
     math::{AdjustPrecision, AngularVector, Scalar, TAU, Vector},
     physics_transform::{Position, Rotation},
     schedule::Physics,
+    threads::Threads,
 };
 
 /// The distance up to which a mover without a spring touches the ground, in metres: contacts of the solver rest within it.
@@ -91,12 +93,15 @@ pub(super) fn plan_movers(
     bodies: BodiesAround,
     gravity: Res<Gravity>,
     clock: Res<Time<Physics>>,
+    (mut threads, workers): (ResMut<Threads>, Res<WorkerCount>),
 ) {
     let time = clock.delta_secs_f64().adjust_precision();
     if !(time > 0.0) {
         return;
     }
-    movers.par_iter_mut().for_each(|(entity, mover, input, mut state, mut plan, place, body)| {
+    threads.wake_for_characters(movers.iter().len(), workers.0, || workers.resolve());
+    let all: Vec<_> = movers.iter_mut().collect();
+    threads.pool.each(all.into_iter(), |(entity, mover, input, mut state, mut plan, place, body)| {
         let (shape, position, rotation, layers) = place;
         let (kind, velocity, mass, scale) = body;
         *plan = MoverPlan::default();

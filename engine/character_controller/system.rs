@@ -27,10 +27,12 @@ use crate::{
             GravityScale, LinearVelocity, RigidBodyDisabled,
             forces::{Forces, WriteRigidBodyForces},
         },
+        solver::workers::WorkerCount,
     },
     math::{AdjustPrecision, Scalar, Vector, vector_from_kernel, vector_to_kernel},
     physics_transform::{Position, Rotation, world_pose},
     schedule::Physics,
+    threads::Threads,
 };
 
 /// A character and its components.
@@ -56,15 +58,18 @@ pub(super) fn plan_characters(
     bodies: BodiesAround,
     gravity: Res<Gravity>,
     clock: Res<Time<Physics>>,
+    (mut threads, workers): (ResMut<Threads>, Res<WorkerCount>),
 ) {
     let time = clock.delta_secs_f64().adjust_precision();
     if characters.is_empty() || !(time > 0.0) {
         return;
     }
+    threads.wake_for_characters(characters.iter().len(), workers.0, || workers.resolve());
     let pushers = bodies.pushers(time);
     let gravity = gravity.0.length();
     let around = Surroundings { moves: &moves, bodies: &bodies, pushers: &pushers, gravity, time };
-    characters.par_iter_mut().for_each(|mut character| plan(&mut character, &around));
+    let mut all: Vec<_> = characters.iter_mut().collect();
+    threads.pool.each(all.iter_mut(), |character| plan(character, &around));
 }
 
 fn plan(character: &mut CharacterItem, around: &Surroundings) {
