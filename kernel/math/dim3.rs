@@ -316,6 +316,11 @@ impl<N: Num> Rot<N> {
 }
 
 impl<N: Lane> Rot<N> {
+    /// The same rotation in every lane.
+    #[inline(always)]
+    pub fn splat(v: Rot) -> Self {
+        Self { x: N::splat(v.x), y: N::splat(v.y), z: N::splat(v.z), w: N::splat(v.w) }
+    }
     /// Scaled to unit length. Within 0.05 % of it, as after a product, by three terms of (1 + e)^-½: cheap, and exact to
     /// rounding.
     #[inline(always)]

@@ -141,7 +141,7 @@ impl Shape {
             Self::Ball(s) => s.local_aabb(),
             Self::Capsule(s) => s.local_aabb(rotation),
             Self::Cuboid(s) => s.local_aabb(rotation),
-            Self::Hull(s) => Aabb::around(s.vertices().iter().map(|v| rotation.rotate(*v))).grown(s.radius()),
+            Self::Hull(s) => s.local_aabb(rotation),
             Self::Triangle(s) => Aabb::around([s.a, s.b, s.c].map(|v| rotation.rotate(v))),
             Self::Segment(s) => Aabb::around([s.a, s.b].map(|v| rotation.rotate(v))),
             Self::Curved(s) => s.local_aabb(rotation),

@@ -7,7 +7,7 @@ mod tests;
 pub(super) mod wide;
 
 use super::MassProperties;
-use crate::math::{Vector, max, min};
+use crate::math::{Rot, Vector, max, min};
 use crate::shape::primitives::{Stretch, checked_length, direction_or, hit_of_stretch};
 use crate::shape::{Aabb, Capsule, RayHit, ShapeError};
 use mass::mass_of_rounded_polygon;
@@ -101,6 +101,11 @@ impl Hull {
     #[inline]
     pub fn radius(&self) -> f32 {
         self.radius
+    }
+
+    /// The box around the polygon turned by `rotation`, radius included.
+    pub fn local_aabb(&self, rotation: Rot) -> Aabb {
+        Aabb::around(self.vertices().iter().map(|v| rotation.rotate(*v))).grown(self.radius)
     }
 
     /// The box around the polygon in its own frame, radius included.

@@ -11,9 +11,9 @@ mod wide;
 
 use self::half_edges::HalfEdges;
 use super::MassProperties;
-use crate::math::{F32x4, Lane, Num, Vector, max, min};
+use crate::math::{F32x4, Lane, Num, Rot, Vector, max, min};
 use crate::shape::primitives::{direction_or, hit_of_stretch};
-use crate::shape::{RayHit, ShapeError};
+use crate::shape::{Aabb, RayHit, ShapeError};
 
 /// A face of a hull: its plane and the range of its vertices in the list of loops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -265,6 +265,21 @@ impl Hull {
     /// Whether a point is in the polyhedron, by a distance from each face that `depth` gives for its normal.
     pub fn contains(&self, point: Vector, depth: impl Fn(Vector) -> f32) -> bool {
         self.faces.iter().all(|face| point.dot(face.normal) <= face.offset - depth(face.normal))
+    }
+
+    /// The box around the polyhedron turned by `rotation`, radius included.
+    pub fn local_aabb(&self, rotation: Rot) -> Aabb {
+        let turn = Rot::<F32x4>::splat(rotation);
+        let mut low = Vector::<F32x4>::splat(Vector::ONE * f32::INFINITY);
+        let mut high = -low;
+        for block in &self.blocks {
+            let at = turn.rotate(*block);
+            low = Vector { x: low.x.min(at.x), y: low.y.min(at.y), z: low.z.min(at.z) };
+            high = Vector { x: high.x.max(at.x), y: high.y.max(at.y), z: high.z.max(at.z) };
+        }
+        let corners = |v: Vector<F32x4>| [0, 1, 2, 3].map(|lane| v.get(lane));
+        let (low, high) = (Aabb::around(corners(low)), Aabb::around(corners(high)));
+        Aabb::new(low.min, high.max).grown(self.radius)
     }
 
     /// The point farthest along `direction` (any length), radius included.
