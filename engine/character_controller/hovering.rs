@@ -45,6 +45,10 @@ use crate::{
 /// The distance up to which a mover without a spring touches the ground, in metres: contacts of the solver rest within it.
 const TOUCHING: Scalar = 0.02;
 
+/// The greatest speed that the load of a step may give to ground that bears nothing any more, in m/s. More throws light crates
+/// whose edge it steps on, with less it sinks into them.
+const MAX_KICK: Scalar = 10.0;
+
 /// What acts on a mover in the step to come.
 #[derive(Component, Clone, Debug, Default)]
 pub(super) struct MoverPlan {
@@ -192,7 +196,7 @@ impl Hover<'_> {
         note_ground(state, below.as_ref());
         let Some(mut ground) = below.filter(|ground| self.is_caught(ground, state.is_grounded())) else {
             if state.is_grounded() {
-                state.fall = state.ground_velocity;
+                state.fall = self.kept_of(state.ground_velocity, own);
             }
             state.ground = match state.ground_entity {
                 Some(_) => GroundState::OnSteepGround,
@@ -219,7 +223,9 @@ impl Hover<'_> {
             let gravity = -self.gravity.dot(up);
             // It falls where it is not borne, so its load grows fast.
             let growing = (ground.inverse[1], 1.0);
-            state.load = borne(load, yielded, (self.mass, gravity), growing, self.time);
+            let load = borne(load, yielded, (self.mass, gravity), growing, self.time);
+            let kick = MAX_KICK * self.walker.mover.unit / (ground.inverse[1] * self.time);
+            state.load = load.min(kick);
         }
         if input.jump > 0.0 {
             let speed = ground.velocity.dot(up) + self.walker.lift(ground.normal, own).max(0.0) + input.jump;
@@ -229,7 +235,7 @@ impl Hover<'_> {
             let share = self.share(ground.inverse[1] * free);
             plan.impulse = up * ((speed - self.velocity.dot(up)) * self.mass * share);
             state.ground = GroundState::InAir;
-            state.fall = ground.velocity;
+            state.fall = self.kept_of(ground.velocity, own);
             return;
         }
         let missing = own + ground.velocity - self.velocity;
@@ -247,6 +253,18 @@ impl Hover<'_> {
             plan.impulse = drive * (self.share(ground.inverse[0]) * self.time);
             plan.force = -along(self.gravity) * self.mass;
         }
+    }
+
+    /// The velocity of the ground that it keeps in the air: as far as that carried it along. It does not go on at the speed of a
+    /// crate that it kicked.
+    fn kept_of(&self, ground: Vector, own: Vector) -> Vector {
+        let along = self.walker.horizontal(ground);
+        let square = along.length_squared();
+        if !(square > 0.0) {
+            return ground;
+        }
+        let carried = (self.velocity - own).dot(along) / square;
+        ground - along * (1.0 - carried.clamp(0.0, 1.0))
     }
 
     /// The share of an impulse that it takes to change its velocity relative to a body of an inverse mass.

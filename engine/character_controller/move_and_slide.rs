@@ -259,7 +259,7 @@ impl MoveAndSlide<'_, '_> {
         let is_solid = |entity| self.colliders.contains(entity);
         let mut mover = self.mover(&is_solid, shape, shape_rotation, config.skin_width, filter);
         let recovery = self.recovery(&config.into());
-        let mut position = shape_position + mover.recovery(shape_position, &recovery, &|_| false);
+        let mut position = shape_position + mover.recovery(shape_position, &recovery, &|_| 1.0);
         let mut left: Scalar = delta_time.as_secs_f64().adjust_precision();
         let mut planes: Vec<Plane> =
             config.planes.iter().map(|normal| Plane::facing(vector(*normal))).collect();
@@ -290,7 +290,7 @@ impl MoveAndSlide<'_, '_> {
             position += movement * share;
             left *= 1.0 - share;
         }
-        position += mover.recovery(position, &recovery, &|_| false);
+        position += mover.recovery(position, &recovery, &|_| 1.0);
         MoveAndSlideOutput { position, projected_velocity: velocity }
     }
 
@@ -342,7 +342,7 @@ impl MoveAndSlide<'_, '_> {
     ) -> Vector {
         let is_solid = |entity| self.colliders.contains(entity);
         let mover = self.mover(&is_solid, shape, shape_rotation, config.skin_width, filter);
-        mover.recovery(shape_position, &self.recovery(config), &|_| false)
+        mover.recovery(shape_position, &self.recovery(config), &|_| 1.0)
     }
 
     /// The displacement in metres that moves a shape by at least the given distances along the given normals, but for

@@ -216,24 +216,27 @@ impl Mover<'_> {
     ///
     /// The deepest overlap is solved first, and looked at again: a box that sank into tiles is no longer in those beside when
     /// it is above one. Between two walls that lean apart there may be no way but a long one up: along `up` walls do not lift.
+    /// `share` gives the share of an overlap with a part that the shape gets out of.
     pub(super) fn recovery(
         &self,
         position: Vector,
         how: &Recovery,
-        makes_way: &dyn Fn(&NearPart) -> bool,
+        share: &dyn Fn(&NearPart) -> Scalar,
     ) -> Vector {
         let error = how.error.min(0.5 * self.slack());
         let mut planes: Vec<Plane> = Vec::new();
         let mut way = Vector::ZERO;
         for _ in 0..how.rounds {
             let parts = self.near(position + way, self.skin);
-            let is_overlap = |part: &&NearPart| {
-                part.distance < self.skin - error && part.distance >= -how.deepest && !makes_way(part)
-            };
-            let deepest = parts.iter().filter(is_overlap).min_by(|a, b| a.distance.total_cmp(&b.distance));
-            let Some(part) = deepest else { break };
-            let normal = how.push_of(part.normal);
-            planes.push(Plane { normal, offset: way.dot(normal) + self.skin - part.distance });
+            let planes_of = parts.iter().filter(|part| part.distance >= -how.deepest).map(|part| {
+                let normal = how.push_of(part.normal);
+                let gone = way.dot(normal);
+                let out = share(part) * (gone + self.skin - part.distance);
+                (gone - out, Plane { normal, offset: out })
+            });
+            let deepest = planes_of.min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((_, plane)) = deepest.filter(|(gap, _)| *gap < -error) else { break };
+            planes.push(plane);
             let (out, is_out) = way_out(&planes, 0.1 * error);
             way = out;
             if !is_out {

@@ -128,15 +128,19 @@ impl Planning<'_> {
         self.state.visual_offset *= SMOOTHING / (SMOOTHING + time);
     }
 
-    /// Moves out of what it overlaps. Dynamic bodies that are no floor make way themselves.
+    /// Moves out of what it overlaps. Beside it, dynamic bodies make way themselves, and characters move out by the other
+    /// half.
     fn recover(&mut self) {
         let (bodies, walker) = (self.around.bodies, &self.walker);
-        let makes_way = |part: &NearPart| {
-            let body = bodies.body_of(part.entity);
-            part.normal.dot(walker.up) < walker.least_cosine
-                && body.is_some_and(|body| bodies.is_dynamic(body))
+        let share = |part: &NearPart| {
+            let rise = part.normal.dot(walker.up);
+            match bodies.body_of(part.entity) {
+                Some(body) if rise < walker.least_cosine && bodies.is_dynamic(body) => 0.0,
+                Some(body) if rise.abs() < walker.least_cosine && bodies.is_character(body) => 0.5,
+                _ => 1.0,
+            }
         };
-        let out = walker.mover.recovery(walker.position, &walker.recovery, &makes_way);
+        let out = walker.mover.recovery(walker.position, &walker.recovery, &share);
         self.walker.position += out;
     }
 

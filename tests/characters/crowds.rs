@@ -1,6 +1,6 @@
 //! Crowds: a hundred characters in a corridor, and a thousand on a mesh.
 
-use super::{ASIDE, SKIN, app, block, figures, fixed, floor, some, step, terrain};
+use super::{ASIDE, RATES, SKIN, app, block, figures, fixed, floor, some, step, terrain};
 use avian::{
     character_controller::controller::CharacterState, collision::collider::contact_query::contact,
     dynamics::solver::WorkerCount, math::*, prelude::*,
@@ -112,6 +112,29 @@ fn a_hundred_strangers_queue_in_a_narrow_corridor() {
         let moved = crowd.positions().into_iter().zip(before).map(|(a, b)| (a - b).length());
         let moved = moved.fold(0.0, Scalar::max);
         assert!(moved < 0.02, "{rate}: one moved by {moved} in the jam");
+    }
+}
+
+/// Two that walk at each other stand still where they met, at any rate: each moves out by half of what they overlap.
+#[test]
+fn two_that_meet_do_not_shake() {
+    for rate in RATES {
+        for apart in [3.0, 3.01, 3.03] {
+            let ways = [-1.0, 1.0].map(|way| (Vector::X * (0.5 * apart * way), Vector::X * (-3.0 * way)));
+            let places = ways.map(|(at, velocity)| (at + Vector::Y * STANDING, velocity));
+            let mut crowd = Crowd::new(rate, LayerMask::NONE, places.into_iter());
+            floor(&mut crowd.app);
+            (0..rate).for_each(|_| crowd.tick());
+            let before = crowd.positions();
+            assert!(crowd.deepest() < 1.0e-3, "{rate}, {apart} m: {}", crowd.deepest());
+            for tick in 0..rate / 4 {
+                crowd.tick();
+                for (at, start) in crowd.positions().into_iter().zip(&before) {
+                    let moved = (at - start).length();
+                    assert!(moved < 1.0e-3, "{rate}, {apart} m, tick {tick}: one moved by {moved}");
+                }
+            }
+        }
     }
 }
 
