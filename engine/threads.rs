@@ -11,8 +11,8 @@ const MANY_CONTACTS: usize = 1024;
 /// swept.
 const MANY_MOVERS: usize = 256;
 
-/// Minimum number of characters for which waking threads pays: the way of one takes 10 to 50 µs.
-const MANY_CHARACTERS: usize = 16;
+/// Minimum number of characters for which waking threads pays: planning one takes 10 to 50 µs.
+const MANY_CHARACTERS: usize = 64;
 
 /// The thread pool, and the [`WorkerCount`](crate::dynamics::solver::workers::WorkerCount) it was made for.
 #[derive(Resource, Clone, Debug, Default)]

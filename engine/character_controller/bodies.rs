@@ -36,7 +36,7 @@ pub(super) struct BodiesAround<'w, 's> {
     owners: Query<'w, 's, &'static ColliderOf>,
     colliders: Query<'w, 's, &'static RigidBodyColliders>,
     surfaces: Query<'w, 's, (&'static Rotation, &'static SurfaceVelocity)>,
-    characters: Query<'w, 's, (), With<CharacterController>>,
+    characters: Query<'w, 's, (), (With<CharacterController>, Without<RigidBodyDisabled>)>,
     movers:
         Query<'w, 's, Entity, (With<RigidBody>, Without<CharacterController>, Without<RigidBodyDisabled>)>,
 }

@@ -25,8 +25,8 @@ use crate::{
 /// - The ground, if it is dynamic, gets the opposite of all forces.
 /// - It does not turn, has no friction of its own, and does not sleep.
 ///
-/// Of [`CharacterState`] all of the ground is used, and [`fall`](CharacterState::fall) for the velocity of the ground that was
-/// left, to which the input in the air is relative.
+/// Of [`CharacterState`] all of the ground is used, and [`fall`](CharacterState::fall) for what it keeps of the velocity of the
+/// ground that it left, to which the input in the air is relative.
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};

@@ -45,8 +45,8 @@ use crate::{
 /// The distance up to which a mover without a spring touches the ground, in metres: contacts of the solver rest within it.
 const TOUCHING: Scalar = 0.02;
 
-/// The greatest speed that the load of a step may give to ground that bears nothing any more, in m/s. More throws light crates
-/// whose edge it steps on, with less it sinks into them.
+/// Maximum speed that the load of one step gives unsteady ground, in m/s. More throws light crates whose edge it steps on, with
+/// less it sinks into them.
 const MAX_KICK: Scalar = 10.0;
 
 /// What acts on a mover in the step to come.
@@ -191,12 +191,14 @@ impl Hover<'_> {
     ) {
         let up = self.walker.up;
         let own = self.walker.horizontal(input.velocity);
-        let before = (state.ground_entity, state.ground_velocity.dot(up));
+        let before = (state.ground_entity, state.ground_velocity);
         let load = core::mem::take(&mut state.load);
         note_ground(state, below.as_ref());
         let Some(mut ground) = below.filter(|ground| self.is_caught(ground, state.is_grounded())) else {
             if state.is_grounded() {
-                state.fall = self.kept_of(state.ground_velocity, own);
+                let body = before.0.and_then(|ground| bodies.body_of(ground));
+                let is_dynamic = body.is_some_and(|body| bodies.is_dynamic(body));
+                state.fall = self.kept_of(before.1, is_dynamic, own);
             }
             state.ground = match state.ground_entity {
                 Some(_) => GroundState::OnSteepGround,
@@ -215,17 +217,19 @@ impl Hover<'_> {
         let is_dynamic = ground.motion.is_some_and(|motion| motion.kind.is_dynamic());
         plan.ground = ground.body.filter(|_| is_dynamic).map(|body| (body, ground.point));
         if let Some((body, point)) = plan.ground {
-            let yielded =
-                if before.0 == Some(ground.entity) { before.1 - ground.velocity.dot(up) } else { 0.0 };
+            let is_known = before.0 == Some(ground.entity);
+            let yielded = if is_known { (before.1 - ground.velocity).dot(up) } else { 0.0 };
             let missing = self.walker.horizontal(own + ground.velocity - self.velocity);
             let directions = [missing.normalize_or_zero(), up];
             ground.inverse = directions.map(|along| bodies.inverse_mass_at(body, point, along));
             let gravity = -self.gravity.dot(up);
             // It falls where it is not borne, so its load grows fast.
             let growing = (ground.inverse[1], 1.0);
-            let load = borne(load, yielded, (self.mass, gravity), growing, self.time);
-            let kick = MAX_KICK * self.walker.mover.unit / (ground.inverse[1] * self.time);
-            state.load = load.min(kick);
+            state.load = borne(load, yielded, (self.mass, gravity), growing, self.time);
+            if !is_known || yielded.abs() > gravity * self.time {
+                let kick = MAX_KICK * self.walker.mover.unit / (ground.inverse[1] * self.time);
+                state.load = state.load.min(kick);
+            }
         }
         if input.jump > 0.0 {
             let speed = ground.velocity.dot(up) + self.walker.lift(ground.normal, own).max(0.0) + input.jump;
@@ -235,7 +239,7 @@ impl Hover<'_> {
             let share = self.share(ground.inverse[1] * free);
             plan.impulse = up * ((speed - self.velocity.dot(up)) * self.mass * share);
             state.ground = GroundState::InAir;
-            state.fall = self.kept_of(ground.velocity, own);
+            state.fall = self.kept_of(ground.velocity, is_dynamic, own);
             return;
         }
         let missing = own + ground.velocity - self.velocity;
@@ -255,12 +259,12 @@ impl Hover<'_> {
         }
     }
 
-    /// The velocity of the ground that it keeps in the air: as far as that carried it along. It does not go on at the speed of a
-    /// crate that it kicked.
-    fn kept_of(&self, ground: Vector, own: Vector) -> Vector {
+    /// The velocity of the ground that the mover keeps in the air. Of dynamic ground only the part that the mover already has:
+    /// that may be a crate that it kicked.
+    fn kept_of(&self, ground: Vector, is_dynamic: bool, own: Vector) -> Vector {
         let along = self.walker.horizontal(ground);
         let square = along.length_squared();
-        if !(square > 0.0) {
+        if !(is_dynamic && square > 0.0) {
             return ground;
         }
         let carried = (self.velocity - own).dot(along) / square;

@@ -216,7 +216,7 @@ impl Mover<'_> {
     ///
     /// The deepest overlap is solved first, and looked at again: a box that sank into tiles is no longer in those beside when
     /// it is above one. Between two walls that lean apart there may be no way but a long one up: along `up` walls do not lift.
-    /// `share` gives the share of an overlap with a part that the shape gets out of.
+    /// `share` gives the fraction of an overlap with a part that the shape resolves.
     pub(super) fn recovery(
         &self,
         position: Vector,
@@ -228,13 +228,13 @@ impl Mover<'_> {
         let mut way = Vector::ZERO;
         for _ in 0..how.rounds {
             let parts = self.near(position + way, self.skin);
-            let planes_of = parts.iter().filter(|part| part.distance >= -how.deepest).map(|part| {
-                let normal = how.push_of(part.normal);
+            let overlaps = parts.iter().filter(|part| part.distance >= -how.deepest).filter_map(|part| {
+                let (normal, share) = (how.push_of(part.normal), share(part));
                 let gone = way.dot(normal);
-                let out = share(part) * (gone + self.skin - part.distance);
-                (gone - out, Plane { normal, offset: out })
+                let offset = share * (gone + self.skin - part.distance);
+                (share > 0.0).then_some((gone - offset, Plane { normal, offset }))
             });
-            let deepest = planes_of.min_by(|a, b| a.0.total_cmp(&b.0));
+            let deepest = overlaps.min_by(|a, b| a.0.total_cmp(&b.0));
             let Some((_, plane)) = deepest.filter(|(gap, _)| *gap < -error) else { break };
             planes.push(plane);
             let (out, is_out) = way_out(&planes, 0.1 * error);

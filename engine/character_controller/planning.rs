@@ -128,8 +128,8 @@ impl Planning<'_> {
         self.state.visual_offset *= SMOOTHING / (SMOOTHING + time);
     }
 
-    /// Moves out of what it overlaps. Beside it, dynamic bodies make way themselves, and characters move out by the other
-    /// half.
+    /// Moves out of what it overlaps. Dynamic bodies that are no floor are left to the solver; of two characters each moves by
+    /// half of the overlap.
     fn recover(&mut self) {
         let (bodies, walker) = (self.around.bodies, &self.walker);
         let share = |part: &NearPart| {

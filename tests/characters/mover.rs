@@ -3,7 +3,7 @@
 use super::{
     RATES, SKIN, app, block, fixed, floor, lane, some, spin, stay_on_one_thread, step, toward, turned,
 };
-use avian::{math::*, prelude::*};
+use avian::{dynamics::solver::WorkerCount, math::*, prelude::*};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
@@ -284,11 +284,74 @@ fn it_throws_nothing_that_bears_nothing() {
                 let speeds = crates.iter().map(|of| hall.get::<LinearVelocity>(*of).0.length());
                 let fastest = speeds.fold(0.0, Scalar::max);
                 assert!(fastest < 15.0, "{rate}: a crate at {fastest} m/s, the mover {}", hall.position());
-                let speed = hall.get::<LinearVelocity>(hall.player).0.dot(Vector::X);
-                assert!(speed < 3.3, "{rate}: the mover runs at {speed} m/s");
+                let speed = hall.get::<LinearVelocity>(hall.player).0 * (Vector::ONE - Vector::Y);
+                assert!(speed.length() < 3.3, "{rate}: the mover runs at {speed} m/s");
             }
         }
+        assert!(hall.position().x > 4.5, "{rate}: the mover is stuck at {}", hall.position());
     }
+}
+
+/// A crate of 1 kg on the floor bears all of its weight, and gives as much to a jump as the floor.
+#[test]
+fn a_light_crate_on_the_floor_is_firm() {
+    for rate in RATES {
+        for aside in [0.0, 0.3] {
+            let mut hall = Hall::new(rate, 0.3, Vector::Y * (rest(0.3) + 0.8) + Vector::X * aside);
+            floor(&mut hall.app);
+            let body = (RigidBody::Dynamic, block(Vector::ONE * 0.8), Mass(1.0), Position(Vector::Y * 0.4));
+            hall.app.world_mut().spawn(body);
+            hall.walk(Vector::ZERO, 1.5);
+            let load = hall.state().load;
+            assert!((load - 70.0 * 9.81).abs() < 1.0, "{rate}, {aside} m aside: it bears {load} N");
+            hall.input().jump = 5.0;
+            hall.walk(Vector::ZERO, 1.0 / rate as Scalar);
+            let speed = hall.get::<LinearVelocity>(hall.player).0.y;
+            assert!(
+                (speed - 5.0 + 9.81 / rate as Scalar).abs() < 0.1,
+                "{rate}, {aside} m aside: {speed} m/s"
+            );
+        }
+    }
+}
+
+/// Who presses forward and jumps in the same tick from a moving platform goes on relative to that.
+#[test]
+fn a_jump_from_a_platform_keeps_all_of_its_velocity() {
+    for rate in RATES {
+        let mut hall = Hall::new(rate, 0.3, Vector::Y * (rest(0.3) + 0.1));
+        let body =
+            (RigidBody::Kinematic, block(Vector::ONE * 0.2 + Vector::X * 60.0), Position(Vector::ZERO));
+        hall.app.world_mut().spawn((body, LinearVelocity(Vector::X * 5.0)));
+        hall.walk(Vector::ZERO, 1.0);
+        hall.input().jump = 5.0;
+        hall.walk(Vector::X * 3.0, 0.5);
+        let speed = hall.get::<LinearVelocity>(hall.player).0.dot(Vector::X);
+        assert!((speed - 8.0).abs() < 0.05, "{rate}: {speed} m/s instead of 8");
+    }
+}
+
+/// A hundred movers and crates have the same bits with one worker and three.
+#[test]
+fn workers_change_no_bits_of_movers() {
+    let run = |workers| {
+        let mut hall = Hall::new(60, 0.3, Vector::Y * rest(0.3));
+        hall.app.insert_resource(WorkerCount(workers));
+        floor(&mut hall.app);
+        for i in 1..100 {
+            let place = Vector::X * (1.3 * i as Scalar);
+            let (mover, shape) = (DynamicMover::default(), Collider::capsule(0.4, 0.7));
+            let at = Position(place + Vector::Y * rest(0.3));
+            hall.players.push(hall.app.world_mut().spawn((mover, shape, Mass(70.0), at)).id());
+            let at = Position(place + Vector::X * 0.65 + Vector::Y * 0.2);
+            hall.app.world_mut().spawn((RigidBody::Dynamic, block(Vector::ONE * 0.3), Mass(1.0), at));
+        }
+        let paths = hall.walk_all(Vector::X * 3.0, 1.0);
+        let velocities: Vec<_> =
+            hall.players.iter().map(|player| hall.get::<LinearVelocity>(*player)).collect();
+        (paths, velocities)
+    };
+    assert_eq!(run(1), run(3));
 }
 
 /// A raft without weight of its own, that a spring carries: it sinks by the weight of the mover.

@@ -12,7 +12,7 @@ fn heap(restitution: f32, substeps: u32) -> Sim {
     let mut sim = Sim::new();
     sim.substeps = substeps;
     sim.contacts.sum_impulses = true;
-    // A body that a sweep puts back loses the speed of that height, without an impulse.
+    // A sweep that puts a body back changes its velocity without an impulse.
     sim.sweeps = false;
     let half = Vector::ONE * 200.0;
     let floor = Shape::Cuboid(Cuboid { half });

@@ -278,8 +278,7 @@ impl Hull {
             high = Vector { x: high.x.max(at.x), y: high.y.max(at.y), z: high.z.max(at.z) };
         }
         let corners = |v: Vector<F32x4>| [0, 1, 2, 3].map(|lane| v.get(lane));
-        let (low, high) = (Aabb::around(corners(low)), Aabb::around(corners(high)));
-        Aabb::new(low.min, high.max).grown(self.radius)
+        Aabb::around(corners(low).into_iter().chain(corners(high))).grown(self.radius)
     }
 
     /// The point farthest along `direction` (any length), radius included.

@@ -3,7 +3,7 @@
 use super::super::rays::{check_mass_by_rays, check_ray};
 use super::{Hull, size_of};
 use crate::math::{Inertia, Rot, Vector};
-use crate::shape::{Ball, Capsule, Cuboid, Shape, ShapeError, Triangle};
+use crate::shape::{Aabb, Ball, Capsule, Cuboid, Shape, ShapeError, Triangle};
 use crate::shape::{cast_ray_triangle, mass_of_ball, mass_of_capsule, mass_of_cuboid};
 use proptest::prelude::*;
 
@@ -59,6 +59,16 @@ fn a_cuboid_has_square_faces() {
         let along = hull.vertices()[edge.head as usize] - hull.vertices()[edge.tail as usize];
         let (l, r) = (hull.faces()[edge.left as usize].normal, hull.faces()[edge.right as usize].normal);
         assert!(l.cross(r).dot(along) > 0.0, "the arc from left to right turns about the edge");
+    }
+}
+
+proptest! {
+    /// Four vertices at a time, the last block filled up.
+    #[test]
+    fn boxes_contain_all_vertices_and_no_more(points in cloud(), turn in rotation(), radius in 0.0f32..0.5) {
+        let Ok(hull) = Hull::convex_hull_of(&points).and_then(|hull| hull.rounded(radius)) else { return Ok(()) };
+        let around = Aabb::around(hull.vertices().iter().map(|v| turn.rotate(*v))).grown(radius);
+        prop_assert_eq!(hull.local_aabb(turn), around);
     }
 }
 
