@@ -15,7 +15,7 @@
 //! | `issued` | the sum of all `finished` after the last job | the caller that runs the job |
 //! | `parked[t]` | thread t waits for a wake-up | thread t stores true, the thread that wakes it swaps it to false |
 //! | `awake` | number of threads that were woken | a waking thread adds 1, the woken thread subtracts 1 |
-//! | `stop_spinning`, `quit` | threads are to park at once, to end | callers, [`Drop`] |
+//! | `stop_spinning`, `quit` | threads are to park at once and no job wakes them, to end | callers, [`Drop`] |
 //!
 //! **States of a thread.** *Parked*: `parked[t]` is true. *Awake*: it looks for blocks until it has found none for some time
 //! or `stop_spinning` is set. *Ended*: it saw `quit`.
@@ -114,8 +114,9 @@ impl ThreadPool {
         1 + self.0.as_ref().map_or(0, |threads| threads.handles.len())
     }
 
-    /// Wakes the threads, which then look for work for a short while. Call it where there is much work; without it the caller
-    /// runs its blocks alone.
+    /// Wakes the threads, which then look for work for a short while. When all have parked, the next job wakes them again, until
+    /// [`rest`](Self::rest) is called: do so at the end of a step. Call this where there is much work; without it the caller runs
+    /// its blocks alone.
     pub fn wake(&self) {
         let Some(threads) = &self.0 else { return };
         threads.state.resume();
@@ -174,8 +175,12 @@ impl ThreadPool {
 
     /// Runs the blocks below `blocks`; the queue of each worker gets those up to its end.
     fn run_shares(&self, blocks: u32, ends: impl Iterator<Item = u32>, job: impl Fn(usize, usize) + Sync) {
-        let state = self.0.as_ref().map(|threads| &*threads.state);
-        let shared = state.filter(|state| blocks > 1 && state.is_any_awake()).and_then(State::try_begin);
+        let state = self.0.as_ref().filter(|_| blocks > 1).map(|threads| &*threads.state);
+        // All have parked if a stage of one thread took long.
+        if state.is_some_and(|state| state.is_working() && !state.is_any_awake()) {
+            self.wake();
+        }
+        let shared = state.filter(|state| state.is_any_awake()).and_then(State::try_begin);
         match shared {
             Some(guard) => {
                 let timed = self.0.as_ref().and_then(|threads| Some((threads, threads.clock.get()?)));

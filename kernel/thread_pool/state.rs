@@ -19,7 +19,7 @@ pub(super) struct State {
     parked: Box<[AtomicBool]>,
     /// The number of threads that are awake or about to be woken.
     awake: AtomicU32,
-    /// Whether threads without a block park at once.
+    /// Whether threads without a block park at once, and no job wakes them.
     stop_spinning: AtomicBool,
     /// The payload of the first block that panicked in a thread.
     panic: CachePadded<Mutex<Option<Box<dyn Any + Send>>>>,
@@ -106,6 +106,7 @@ impl State {
             parked: (1..workers).map(|_| AtomicBool::new(true)).collect(),
             queues: (0..workers).map(|_| WorkerQueue::default()).collect(),
             finished: (0..workers).map(|_| CachePadded::default()).collect(),
+            stop_spinning: AtomicBool::new(true),
             ..Self::default()
         }
     }
@@ -133,6 +134,11 @@ impl State {
     /// Lets threads park as soon as they have no block.
     pub(super) fn stop_spinning(&self) {
         self.stop_spinning.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether threads were told to look for blocks, and not to stop.
+    pub(super) fn is_working(&self) -> bool {
+        !self.stop_spinning.load(Ordering::Relaxed)
     }
 
     /// Lets threads return. They are to be unparked.
