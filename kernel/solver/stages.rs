@@ -129,8 +129,9 @@ impl Solver {
         shares.divide(pool.workers(), *first_dynamic, input, colors);
         self.plan_rows(input, colors, pool);
         let rows = self.plan.rows().iter().sum::<u32>();
-        if self.slack.is_due(rows as usize) {
+        if self.slack.is_due((rows + self.trees.len()) as usize) {
             self.rows.give_back();
+            self.trees.give_back();
             (self.layers, self.plan, self.bearing, self.blows) = Default::default();
             self.plan_rows(input, colors, pool);
         }
@@ -243,6 +244,7 @@ impl Solver {
     pub fn integrate_positions(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
         self.bodies.integrate_positions(params.h, pool);
+        self.trees.forget_places();
     }
 
     /// Removes split impulses from the velocities, then solves constraints without bias, and applies friction.
@@ -412,7 +414,10 @@ impl Solver {
     fn sweep(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
         match pass {
-            Pass::Measure => self.sweep_rows(pass, params, pool),
+            Pass::Measure => {
+                self.trees.forget_places();
+                self.sweep_rows(pass, params, pool);
+            }
             _ => {
                 self.sweep_trees(pass, params, pool);
                 self.sweep_rows(pass, params, pool);

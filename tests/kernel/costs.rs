@@ -9,6 +9,7 @@
 use super::dim::floors::yawed;
 use super::dim::{any_rotation, hull_of, sized, spin, terrain};
 use super::extreme::Dice;
+use super::ragdolls::{Losses, human};
 use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{DIM, Rot, Vector};
@@ -26,7 +27,7 @@ struct Scene {
     measured: usize,
 }
 
-const SCENES: [Scene; 10] = [
+const SCENES: [Scene; 11] = [
     Scene { name: "resting-pyramid", build: pyramid, settling: 45, measured: 30 },
     Scene { name: "resting-towers", build: towers, settling: 45, measured: 60 },
     Scene { name: "resting-bodies", build: bodies, settling: 60, measured: 60 },
@@ -35,6 +36,7 @@ const SCENES: [Scene; 10] = [
     Scene { name: "mixer", build: mixer, settling: 60, measured: 90 },
     Scene { name: "sliding-on-tiles", build: tiles, settling: 10, measured: 60 },
     Scene { name: "chains", build: chains, settling: 10, measured: 30 },
+    Scene { name: "ragdolls", build: ragdolls, settling: 60, measured: 60 },
     Scene { name: "net", build: net, settling: 10, measured: 30 },
     Scene { name: "mesh", build: mesh, settling: 0, measured: 120 },
 ];
@@ -207,6 +209,16 @@ fn chains() -> Sim {
             pin(&mut sim, [last.0, id], [last.1, Vector::X * -0.5]);
             last = (id, Vector::X * 0.5);
         }
+    }
+    sim
+}
+
+/// 20 humans that fall into a bin, on each other.
+fn ragdolls() -> Sim {
+    let columns = by_dim(4, 2);
+    let mut sim = bin(columns as f32);
+    for at in grid(columns, 20, 2.0) {
+        human(&mut sim, at + Vector::Y * 2.0, Rot::IDENTITY, Losses::NONE);
     }
     sim
 }

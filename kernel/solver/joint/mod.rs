@@ -33,6 +33,8 @@ mod table;
 mod tree;
 mod tree_blow;
 mod tree_pass;
+mod tree_response;
+mod tree_scratch;
 
 pub(super) use batch::{JOINT_BATCHES, JointRows, JointViews, joints, sort_joints};
 pub use coupling::{CouplingDef, CouplingEnd, EndCoordinate};

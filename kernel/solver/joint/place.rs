@@ -6,7 +6,7 @@ use super::dim::{ANGLES, TURNS, angles, turn_axes};
 use crate::math::{Angular, DIM, InvInertia, Lane, Rot, Vector};
 
 /// The direction in which a coordinate grows: as a change of the bodies' velocities.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Gradient<N> {
     /// The change along which B moves, and against which A moves.
     pub(super) normal: Vector<N>,
@@ -48,7 +48,7 @@ impl<N: Lane> Masses<N> {
 }
 
 /// The changes of velocity by a unit impulse. Those of A are against it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Response<N> {
     pub(super) v: [Vector<N>; 2],
     pub(super) w: [Angular<N>; 2],

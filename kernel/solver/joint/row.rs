@@ -7,7 +7,7 @@ use super::super::{BodyRow, InvMass, MassRow, RowView, Softness, SubstepParams};
 use super::block::{Block, Factors, Locked, Softening};
 use super::def::{Axis, AxisSpring, Give, JointDef, Motor};
 
-use super::dim::{ANGLE_AXES, AXES, BLOCK, TURNING, TURNS, coordinate, inverses, units};
+use super::dim::{ANGLE_AXES, ANGLES, AXES, BLOCK, TURNING, TURNS, coordinate, inverses, units};
 use super::orientation::OrientationRow;
 use super::place::{Gradient, Masses, Start};
 use super::single::{MotorRow, Single, laws, turns_near};
@@ -161,7 +161,9 @@ impl<N: Lane> Single<N> {
         }
         if let Some(of) = &axis.motor {
             self.motor.set(lane, of, params.h);
-            self.motor.impulse.set(lane, motor);
+            // Its maximum may be less than in the last step.
+            let most = of.max_force * params.h;
+            self.motor.impulse.set(lane, motor.clamp(-most, most));
         }
         if number == ANGLE_AXES[TURNING] {
             let of_motor = axis.motor.map_or(0.0, |motor| motor.target_position);
@@ -304,8 +306,9 @@ impl<N: Lane> Row<N> {
                 }
             }
         }
+        let angles = if singles.is_empty() { [(N::ZERO, Angular::ZERO); ANGLES] } else { place.angles() };
         for single in singles {
-            let (gradient, value) = single.gradient(&place);
+            let (gradient, value) = single.gradient(&place, &angles);
             let alone = self.masses.response(&gradient);
             match &solved {
                 None => alone.push(&mut pair, single.impulse()),

@@ -94,9 +94,13 @@ impl<N: Lane> Single<N> {
         may_contradict: N::ZERO,
     };
 
-    /// The gradient of the coordinate, and its value.
+    /// The gradient of the coordinate, and its value, given the angles of the place.
     #[inline(always)]
-    pub(super) fn gradient(&mut self, place: &Place<N>) -> (Gradient<N>, N) {
+    pub(super) fn gradient(
+        &mut self,
+        place: &Place<N>,
+        angles: &[(N, Angular<N>); ANGLES],
+    ) -> (Gradient<N>, N) {
         let axes = place.axes(N::ONE.lt(N::ZERO));
         let (distance, direction) = place.apart();
         let (mut normal, mut value) = (direction * self.apart, distance * self.apart);
@@ -104,7 +108,7 @@ impl<N: Lane> Single<N> {
             normal += axes[k] * self.along[k];
             value += axes[k].dot(place.between) * self.along[k];
         }
-        let (mut turn, angles) = (Angular::ZERO, place.angles());
+        let mut turn = Angular::ZERO;
         for i in 0..ANGLES {
             let ((mut angle, axis), weight) = (angles[i], self.about[i]);
             if i == TURNING {

@@ -10,6 +10,7 @@
 use super::super::BodyRows;
 use super::super::batch::{Filling, Pass, Sweep};
 use super::super::input::RowInput;
+use super::super::pair::Pair;
 use super::def::JointSolver;
 use super::dim::{AXES, BLOCK, DOF};
 use super::elimination::{Link, Node};
@@ -18,7 +19,8 @@ use super::orientation::OrientationRow;
 use super::row::{Hold, Row};
 use super::single::Single;
 use super::table::{JointTable, Records};
-use super::tree_pass::{Tree, TreeBody, TreeJoint, range};
+use super::tree_pass::{Lock, Tree, TreeBody, TreeJoint, range};
+use super::tree_scratch::Scratch;
 use crate::data::{BitSet, Parts};
 use crate::graph::{COLOR_COUNT, ColorGraph, ConstraintKind};
 use crate::math::Vector;
@@ -46,6 +48,8 @@ pub(in super::super) struct JointTrees {
     links: Vec<Link>,
     nodes: Vec<Node>,
     pub(super) bodies: Vec<TreeBody>,
+    /// By tree.
+    scratch: Vec<Scratch>,
 }
 
 impl JointTrees {
@@ -137,13 +141,15 @@ impl JointTrees {
             return;
         }
         self.make_room(records);
+        self.scratch.resize_with(self.scratch.len().max(self.forest.trees.len()), Scratch::default);
+        self.forget_places();
         let hold = self.hold;
         let (forest, trees) = self.split();
         let constraints = from.input.bodies.constraints(KIND);
         pool.run(forest.trees.len(), |number, _| {
             let span = &forest.trees[number];
             // SAFETY: each tree is run once, and no two share a joint or a body.
-            let tree = unsafe { trees.take(span) };
+            let tree = unsafe { trees.take(span, number) };
             for body in tree.bodies.iter_mut() {
                 body.share = from.bearing.share(body.row);
             }
@@ -176,13 +182,14 @@ impl JointTrees {
 
     /// The forest, and the columns of its trees.
     fn split(&mut self) -> (&Forest, Trees<'_>) {
-        let Self { forest, joints, singles, links, nodes, bodies, .. } = self;
+        let Self { forest, joints, singles, links, nodes, bodies, scratch, .. } = self;
         let trees = Trees {
             joints: Parts::of(joints),
             singles: Parts::of(singles),
             links: Parts::of(links),
             nodes: Parts::of(nodes),
             bodies: Parts::of(bodies),
+            scratch: Parts::of(scratch),
         };
         (forest, trees)
     }
@@ -208,12 +215,24 @@ impl JointTrees {
                 load: 0.0,
                 besides: [0.0; DOF],
                 orientation: def.orientation.is_some().then_some(OrientationRow::NONE),
+                locks: [Lock::NONE; BLOCK],
+                pair: Pair::default(),
             });
         }
         singles.clear();
         singles.resize(end as usize, Single::NONE);
         links.resize(forest.branches.len(), Link::NONE);
         nodes.resize(forest.bodies.len(), Node::new([[0.0; DOF]; DOF]));
+    }
+
+    /// Gives back the memory of buffers.
+    pub(in super::super) fn give_back(&mut self) {
+        self.scratch = Vec::new();
+    }
+
+    /// Notes that bodies have moved.
+    pub(in super::super) fn forget_places(&mut self) {
+        self.scratch.iter_mut().for_each(Scratch::forget);
     }
 
     /// Runs a pass over all trees.
@@ -241,7 +260,7 @@ impl JointTrees {
     ) {
         let (forest, trees) = self.split();
         // SAFETY: each tree is taken once, and no two share a joint or a body.
-        pool.run(count, |k, _| f(unsafe { trees.take(&forest.trees[number(k)]) }));
+        pool.run(count, |k, _| f(unsafe { trees.take(&forest.trees[number(k)], number(k)) }));
     }
 
     /// Stores impulses in the joints.
@@ -261,13 +280,14 @@ struct Trees<'a> {
     links: Parts<'a, Link>,
     nodes: Parts<'a, Node>,
     bodies: Parts<'a, TreeBody>,
+    scratch: Parts<'a, Scratch>,
 }
 
 impl<'a> Trees<'a> {
     /// # Safety
     /// While a tree is in use, it may not be taken again.
-    unsafe fn take(&self, span: &Span) -> Tree<'a> {
-        // SAFETY: by the contract, as no two trees share a branch or a body.
+    unsafe fn take(&self, span: &Span, number: usize) -> Tree<'a> {
+        // SAFETY: by the contract, as no two trees share a branch, a body or a number.
         unsafe {
             let joints = self.joints.take(range(span.branches));
             let [first, last] = [0, joints.len() - 1];
@@ -279,6 +299,7 @@ impl<'a> Trees<'a> {
                 links: self.links.take(range(span.branches)),
                 nodes: self.nodes.take(range(span.bodies)),
                 bodies: self.bodies.take(range(span.bodies)),
+                scratch: self.scratch.one(number),
             }
         }
     }

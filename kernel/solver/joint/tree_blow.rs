@@ -101,7 +101,15 @@ impl TreeBlows {
             }
         }
         // SAFETY: each tree is run once, and no two share a joint or a dynamic body. Of the bodies only dynamic ones are written.
-        trees.each(pool, due.len(), |k| due[k], |mut tree| unsafe { tree.project(sweep) });
+        trees.each(
+            pool,
+            due.len(),
+            |k| due[k],
+            |mut tree| unsafe {
+                tree.scratch.forget();
+                tree.project(sweep);
+            },
+        );
         for tree in due {
             self.is_due[tree] = false;
             let time = min(self.times[tree], time);
@@ -115,6 +123,7 @@ impl TreeBlows {
 
     /// Ends the blows of a substep: the bodies of a tree that was struck have moved with their old velocities until its first blow.
     pub(in super::super) fn end(&self, trees: &mut JointTrees, bodies: &RowView<BodyRow>, time: f32) {
+        trees.forget_places();
         let JointTrees { forest, singles, bodies: listed, .. } = trees;
         for (span, first) in forest.trees.iter().zip(&self.times).filter(|(_, first)| **first < f32::MAX) {
             for k in range(span.bodies) {

@@ -1,20 +1,19 @@
-//! One tree of joints in a pass: what joints ask for, the direct solution, limits and motors by the response of the whole tree.
+//! One tree of joints in a pass: what joints ask for, and the direct solution.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::super::BodyRows;
 use super::super::batch::{Pass, Sweep};
 use super::super::pair::Pair;
-use super::block::{Block, wrapped};
-use super::dim::{BLOCK, DOF, inverse_of, motion, screw, with_least_inertia};
+use super::block::{Block, Locked, wrapped};
+use super::dim::{BLOCK, inverse_of, motion, numbers, of_numbers, screw, with_least_inertia};
 use super::elimination::{self, Link, Node, Screw};
-use super::forest::GROUND;
 use super::orientation::OrientationRow;
-use super::place::{Gradient, Response};
+use super::place::{Gradient, Place};
 use super::row::Row;
 use super::single::Single;
-use crate::math::{Angular, DIM, InvInertia, Vector};
-use crate::tuning::manifold::SAME;
-use crate::tuning::solver::{JOINT_ROUNDS, NO_MASS, SMALL_TURN};
+use super::tree_scratch::{Coordinate, Known, Scratch};
+use crate::math::{DIM, InvInertia, Vector};
+use crate::tuning::solver::{NO_MASS, SMALL_TURN};
 use core::ops::Range;
 
 /// Softness of a spring in the relax pass, where it takes no part, as a multiple of its inverse mass.
@@ -32,6 +31,8 @@ pub(super) struct TreeBody {
     pub(super) share: Vector,
     /// Whether its inertia turns with it.
     pub(super) turns: bool,
+    /// The same where the body is now, times the least share.
+    pub(super) turned: InvInertia,
     /// The same now, with what its joints ask for.
     pub(super) now: InvInertia,
     /// What they ask for: h Σ |impulse| |arm|, kg·m².
@@ -62,6 +63,22 @@ pub(super) struct TreeJoint {
     pub(super) besides: Screw,
     /// The orientation motor, if it has one.
     pub(super) orientation: Option<OrientationRow<f32>>,
+    /// What is locked, as the rows of its link.
+    pub(super) locks: [Lock; BLOCK],
+    /// Velocities of its bodies when the pass begins.
+    pub(super) pair: Pair<f32>,
+}
+
+/// A coordinate that is locked, where its bodies are now.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lock {
+    gradient: Gradient<f32>,
+    /// By how much it is off, in m or rad.
+    error: f32,
+}
+
+impl Lock {
+    pub(super) const NONE: Self = Self { gradient: Gradient::NONE, error: 0.0 };
 }
 
 pub(super) fn range([start, end]: [u32; 2]) -> Range<usize> {
@@ -78,16 +95,27 @@ impl TreeBody {
             angular,
             share: Vector::ONE,
             turns: !rows.turn_locked.contains(row),
+            turned: angular,
             now: angular,
             least: 0.0,
         }
+    }
+
+    /// Its inverse inertia with what its joints ask for.
+    fn with_least(&self) -> InvInertia {
+        if self.least > 0.0 { with_least_inertia(self.turned, self.least) } else { self.turned }
     }
 }
 
 impl TreeJoint {
     /// The side of its parent, 0, or of its child, 1.
-    fn side(&self, end: usize) -> usize {
+    pub(super) fn side(&self, end: usize) -> usize {
         if end == 0 { self.parent_side } else { 1 - self.parent_side }
+    }
+
+    /// What is locked of its block.
+    pub(super) fn locked(&mut self) -> impl Iterator<Item = &mut Locked<f32>> {
+        self.row.block.iter_mut().filter(|locked| locked.is_locked > 0.0)
     }
 
     /// The range of its single coordinates among those of its tree.
@@ -104,6 +132,7 @@ pub(super) struct Tree<'a> {
     pub(super) links: &'a mut [Link],
     pub(super) nodes: &'a mut [Node],
     pub(super) bodies: &'a mut [TreeBody],
+    pub(super) scratch: &'a mut Scratch,
 }
 
 impl Tree<'_> {
@@ -124,168 +153,70 @@ impl Tree<'_> {
     /// # Safety
     /// As [`solve`](Self::solve).
     pub(super) unsafe fn project(&mut self, sweep: &Sweep) {
-        // SAFETY: by the contract.
-        unsafe { self.weigh(sweep) };
-        for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
-            for (k, place) in link.places.into_iter().enumerate() {
-                let side = joint.side(k);
-                let body = self.bodies.get(place as usize);
-                joint.row.masses.linear[side] =
-                    body.map_or(Vector::ZERO, |body| body.linear.scale(body.share));
-                joint.row.masses.angular[side] = body.map_or(InvInertia::ZERO, |body| body.now);
-            }
+        if self.scratch.known == Known::Nothing {
             // SAFETY: by the contract.
-            unsafe {
-                match joint.locked_end <= DIM {
-                    true => joint.ask::<DIM>(link, sweep),
-                    false => joint.ask::<BLOCK>(link, sweep),
-                }
-            }
+            unsafe { self.place(sweep) };
         }
-        elimination::factor(self.links, self.nodes);
+        self.ask_inertia(sweep.params.h);
+        let is_other = |body: &TreeBody| body.now != body.with_least();
+        if self.scratch.known != Known::Factors(sweep.pass) || self.bodies.iter().any(is_other) {
+            // SAFETY: by the contract.
+            unsafe { self.factor(sweep) };
+        }
+        for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
+            // SAFETY: by the contract.
+            joint.pair = unsafe { Pair::load(&sweep.bodies, &joint.row.ids) };
+            joint.ask(link, sweep);
+        }
         elimination::solve(self.links, self.nodes);
+        let velocities = &mut self.scratch.velocities;
+        velocities.clear();
+        velocities.extend(self.bodies.iter().map(|body| {
+            // SAFETY: by the contract.
+            numbers(unsafe { sweep.bodies.get(body.row) }.velocity())
+        }));
+        self.apply();
         // SAFETY: by the contract.
         unsafe {
-            self.apply(1.0, sweep);
-            let mut first = 0.0;
-            for round in 0..JOINT_ROUNDS {
-                let (mut most, mut count) = (0.0f32, 0);
-                for k in 0..self.joints.len() {
-                    if round == 0 {
-                        self.joints[k].besides = [0.0; DOF];
-                        self.turn(k, sweep);
-                    }
-                    let (change, acting) = self.solve_singles(k, sweep, round > 0);
-                    (most, count) = (most.max(change), count + acting);
-                }
-                first = if round == 0 { most } else { first };
-                if count < 2 || most <= SAME * first {
-                    break;
-                }
-            }
+            self.solve_limits_and_motors(sweep);
+            self.finish(sweep);
         }
     }
 
-    /// Applies what was solved, some times.
-    ///
-    /// # Safety
-    /// As [`solve`](Self::solve).
-    unsafe fn apply(&mut self, times: f32, sweep: &Sweep) {
-        for (node, body) in self.nodes.iter().zip(&*self.bodies) {
-            let (v, w) = motion(&node.change());
-            // SAFETY: by the contract.
-            unsafe {
-                sweep.bodies.put(body.row, |row| {
-                    let before = row.velocity();
-                    row.set_velocity(before.0 + v * times, before.1 + w * times);
-                });
+    /// Adds what was solved to velocities and impulses.
+    pub(super) fn apply(&mut self) {
+        for (velocity, node) in self.scratch.velocities.iter_mut().zip(&*self.nodes) {
+            for (velocity, change) in velocity.iter_mut().zip(node.change()) {
+                *velocity += change as f32;
             }
         }
         for (joint, link) in self.joints.iter_mut().zip(&*self.links) {
-            let locked = joint.row.block.iter_mut().filter(|locked| locked.is_locked > 0.0);
-            for (locked, impulse) in locked.zip(&link.impulses) {
-                locked.impulse += *impulse as f32 * times;
+            for (locked, impulse) in joint.locked().zip(&link.impulses) {
+                locked.impulse += *impulse as f32;
             }
         }
     }
 
-    /// Solves the orientation motor of a joint, and changes the impulses of all joints so that they stay solved.
+    /// Writes velocities and impulses.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
-    unsafe fn turn(&mut self, k: usize, sweep: &Sweep) {
-        let Some(mut motor) = self.joints[k].orientation else { return };
-        let (row, Sweep { bodies, params, .. }) = (&self.joints[k].row, sweep);
-        // SAFETY: by the contract.
-        let (place, pair) = unsafe { (row.start.now(bodies, &row.ids), Pair::<f32>::load(bodies, &row.ids)) };
-        let turning = motor.look(&place);
-        if sweep.pass == Pass::Solve {
-            let alone = turning.gradients.map(|gradient| row.masses.response(&gradient));
-            let responses = turning.gradients.map(|gradient| self.beside(k, &gradient));
-            let changes = motor.act(&turning, (&responses, &alone), &pair, params.h);
-            self.joints[k].orientation = Some(motor);
-            let mut sum = Angular::ZERO;
-            for (gradient, change) in turning.gradients.iter().zip(changes) {
-                sum += gradient.moments[1] * change;
-            }
-            self.beside(k, &place.gradient(Vector::ZERO, sum));
+    unsafe fn finish(&mut self, sweep: &Sweep) {
+        self.add_lock_impulses();
+        let Scratch { velocities, coordinates, .. } = &*self.scratch;
+        for (body, velocity) in self.bodies.iter().zip(velocities) {
+            let (v, w) = of_numbers(*velocity);
             // SAFETY: by the contract.
-            unsafe { self.apply(1.0, sweep) };
+            unsafe { sweep.bodies.put(body.row, |row| row.set_velocity(v, w)) };
         }
-        let joint = &mut self.joints[k];
-        joint.row.turning = Angular::ZERO;
-        for (gradient, impulse) in turning.gradients.iter().zip(motor.impulses) {
-            joint.row.turning += gradient.moments[1] * impulse;
-        }
-        joint.besides = screw(Vector::ZERO, joint.row.turning);
-    }
-
-    /// Solves limits and motors of a joint, and changes the impulses of all joints so that they stay solved. Returns the largest
-    /// change of a rate, m/s or rad/s, and how many limits act. Once more, only those with limits.
-    ///
-    /// # Safety
-    /// As [`solve`](Self::solve).
-    unsafe fn solve_singles(&mut self, k: usize, sweep: &Sweep, again: bool) -> (f32, u32) {
-        let Sweep { pass, bodies, params, .. } = sweep;
-        let biased = *pass == Pass::Solve;
-        let (mut most, mut acting) = (0.0f32, 0);
-        for number in self.joints[k].singles_from(self.first_single) {
-            let (joint, single) = (&mut self.joints[k], &mut self.singles[number]);
-            if again && !single.has_limits() {
-                continue;
-            }
-            let (row, before) = (&joint.row, single.impulse());
-            // SAFETY: by the contract.
-            let (place, mut pair) =
-                unsafe { (row.start.now(bodies, &row.ids), Pair::<f32>::load(bodies, &row.ids)) };
-            let (gradient, value) = single.gradient(&place);
-            if single.may_act(value, gradient.rate(&pair), params.h) {
-                let alone = row.masses.response(&gradient);
-                let response = self.beside(k, &gradient);
-                let single = &mut self.singles[number];
-                let change = single.act((&gradient, value), (&response, &alone), &mut pair, params, biased);
-                most = most.max((change * response.along(&gradient)).abs());
-                acting += u32::from(self.singles[number].impulses != [0.0; 2]);
-                // SAFETY: by the contract.
-                unsafe { self.apply(change, sweep) };
-            }
-            let of_b = screw(gradient.normal, gradient.moments[1]);
-            let impulse = f64::from(self.singles[number].impulse() - if again { before } else { 0.0 });
-            for (sum, part) in self.joints[k].besides.iter_mut().zip(of_b) {
-                *sum += part * impulse;
+        for joint in self.joints.iter_mut() {
+            let range = joint.singles_from(self.first_single);
+            joint.besides = screw(Vector::ZERO, joint.row.turning);
+            for (single, coordinate) in self.singles[range.clone()].iter().zip(&coordinates[range]) {
+                let Gradient { normal, moments } = coordinate.gradient;
+                elimination::add(&mut joint.besides, &screw(normal, moments[1]), f64::from(single.impulse()));
             }
         }
-        (most, acting)
-    }
-
-    /// Solves the tree for a unit impulse along a coordinate of a joint, and adds the impulse to those on its bodies. The
-    /// response of the joint's bodies.
-    fn beside(&mut self, k: usize, gradient: &Gradient<f32>) -> Response<f32> {
-        let Self { joints, links, nodes, .. } = self;
-        let ends: [(u32, Screw); 2] = core::array::from_fn(|end| {
-            let sign = if joints[k].side(end) == 0 { -1.0 } else { 1.0 };
-            let moment = gradient.moments[joints[k].side(end)];
-            (links[k].places[end], screw(gradient.normal * sign, moment * sign))
-        });
-        for link in links.iter_mut() {
-            link.wanted = [0.0; BLOCK];
-            for (place, push) in ends.iter().filter(|(place, _)| *place != GROUND) {
-                if let Some(end) = link.places.iter().position(|other| other == place) {
-                    link.want_against(end, &nodes[*place as usize].moved(push));
-                }
-            }
-        }
-        elimination::solve(links, nodes);
-        let mut response = Response { v: [Vector::ZERO; 2], w: [Angular::ZERO; 2] };
-        for (end, (place, push)) in ends.into_iter().enumerate().filter(|(_, (place, _))| *place != GROUND) {
-            let node = &mut nodes[place as usize];
-            elimination::add(&mut node.impulse, &push, 1.0);
-            let (v, w) = motion(&node.change());
-            let side = joints[k].side(end);
-            let sign = if side == 0 { -1.0 } else { 1.0 };
-            (response.v[side], response.w[side]) = (v * sign, w * sign);
-        }
-        response
     }
 
     /// Applies the impulses of limits and motors, and damps. What is locked begins from nothing.
@@ -307,78 +238,131 @@ impl Tree<'_> {
         }
     }
 
-    /// Finds the inertia of bodies where they are now.
+    /// Finds where joints are now.
     ///
     /// # Safety
     /// Until it returns, no other thread writes the bodies of the tree.
-    unsafe fn weigh(&mut self, sweep: &Sweep) {
+    unsafe fn place(&mut self, sweep: &Sweep) {
+        let Scratch { known, coordinates, .. } = &mut *self.scratch;
+        coordinates.clear();
+        coordinates.resize(self.singles.len(), Coordinate::NONE);
+        for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
+            // SAFETY: by the contract.
+            let place = unsafe { joint.row.start.now(&sweep.bodies, &joint.row.ids) };
+            match joint.locked_end <= DIM {
+                true => joint.lock::<DIM>(&place, link),
+                false => joint.lock::<BLOCK>(&place, link),
+            }
+            let range = joint.singles_from(self.first_single);
+            if range.is_empty() {
+                continue;
+            }
+            let angles = place.angles();
+            for (single, coordinate) in self.singles[range.clone()].iter_mut().zip(&mut coordinates[range]) {
+                (coordinate.gradient, coordinate.value) = single.gradient(&place, &angles);
+            }
+        }
+        *known = Known::Places;
+    }
+
+    /// Sums up the inertia that joints ask for.
+    fn ask_inertia(&mut self, h: f32) {
         self.bodies.iter_mut().for_each(|body| body.least = 0.0);
         for (joint, link) in self.joints.iter().zip(&*self.links) {
             for (k, place) in link.places.into_iter().enumerate() {
                 let side = joint.side(k);
                 if let Some(body) = self.bodies.get_mut(place as usize) {
-                    body.least += sweep.params.h * joint.load * joint.arms[side];
+                    body.least += h * joint.load * joint.arms[side];
                 }
             }
         }
+    }
+
+    /// Finds the inertia of bodies where they are now, and factors the tree.
+    ///
+    /// # Safety
+    /// Until it returns, no other thread writes the bodies of the tree.
+    unsafe fn factor(&mut self, sweep: &Sweep) {
         for (body, node) in self.bodies.iter_mut().zip(&mut *self.nodes) {
             // SAFETY: by the contract.
             let turn = unsafe { sweep.bodies.get(body.row).delta().1 };
             let angular = if body.turns { body.angular.rotated(turn) } else { body.angular };
-            let angular = angular.scaled(body.share.min_element());
-            body.now = if body.least > 0.0 { with_least_inertia(angular, body.least) } else { angular };
+            body.turned = angular.scaled(body.share.min_element());
+            body.now = body.with_least();
             *node = Node::new(inverse_of(body.linear.scale(body.share), body.now));
         }
+        for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
+            for (k, place) in link.places.into_iter().enumerate() {
+                let side = joint.side(k);
+                let body = self.bodies.get(place as usize);
+                joint.row.masses.linear[side] =
+                    body.map_or(Vector::ZERO, |body| body.linear.scale(body.share));
+                joint.row.masses.angular[side] = body.map_or(InvInertia::ZERO, |body| body.now);
+            }
+            joint.soften(link, sweep.pass);
+        }
+        elimination::factor(self.links, self.nodes);
+        self.scratch.forget_responses();
+        self.scratch.known = Known::Factors(sweep.pass);
     }
 }
 
 impl TreeJoint {
-    /// Writes what the joint asks for in a pass.
-    ///
-    /// # Safety
-    /// Until it returns, no other thread writes its bodies.
+    /// Writes what is locked at a place: the rows of the link.
     #[inline(always)]
-    unsafe fn ask<const D: usize>(&mut self, link: &mut Link, sweep: &Sweep) {
+    fn lock<const D: usize>(&mut self, place: &Place<f32>, link: &mut Link) {
         let row = &self.row;
-        // SAFETY: by the contract.
-        let (place, pair) =
-            unsafe { (row.start.now(&sweep.bodies, &row.ids), Pair::load(&sweep.bodies, &row.ids)) };
-        let is_biased = sweep.pass == Pass::Solve;
-        let mut block = Block::<f32, D>::new(&place, row.of_world(), &row.masses);
+        let mut block = Block::<f32, D>::new(place, row.of_world(), &row.masses);
         if self.is_rod {
-            block.take_distance(&place, &row.masses);
+            block.take_distance(place, &row.masses);
         }
-        let mut count = 0;
-        for i in 0..D {
-            let locked = &row.block[i];
-            if locked.is_locked == 0.0 {
-                continue;
-            }
-            let (gradient, soft) = (&block.gradients[i], &locked.softening);
-            let own = block.responses[i].along(gradient);
+        link.count = 0;
+        for i in (0..D).filter(|i| row.block[*i].is_locked > 0.0) {
+            let (gradient, error) = (block.gradients[i], block.values[i] - row.block[i].target);
+            let error = if i < DIM { error } else { wrapped(error) };
+            self.locks[link.count] = Lock { gradient, error };
+            let side = |side: usize, sign: f32| screw(gradient.normal * sign, gradient.moments[side] * sign);
+            // The first one is the parent's, which is A if its side is 0.
+            link.jacobians[self.parent_side][link.count] = side(0, -1.0);
+            link.jacobians[1 - self.parent_side][link.count] = side(1, 1.0);
+            link.count += 1;
+        }
+        self.arm = place.arm();
+    }
+
+    /// Writes how soft what is locked is in a pass.
+    fn soften(&mut self, link: &mut Link, pass: Pass) {
+        let masses = self.row.masses;
+        let locks = self.locks;
+        for ((locked, lock), softness) in self.locked().zip(&locks).zip(&mut link.softness) {
+            let soft = &locked.softening;
+            let own = masses.response(&lock.gradient).along(&lock.gradient);
+            *softness = match pass {
+                Pass::Solve => f64::from(own * soft.share + soft.more),
+                _ if soft.is_spring > 0.0 => LOOSE * f64::from(own),
+                _ => f64::from(own * NO_MASS),
+            };
+        }
+    }
+
+    /// Writes what the joint asks for in a pass.
+    fn ask(&mut self, link: &mut Link, sweep: &Sweep) {
+        let (pair, locks, mut row) = (self.pair, self.locks, 0);
+        for (i, locked) in self.row.block.iter().enumerate().filter(|(_, locked)| locked.is_locked > 0.0) {
+            let (Lock { gradient, error }, soft) = (&locks[row], &locked.softening);
             let mut rate = gradient.rate(&pair);
-            let mut softness = f64::from(own * NO_MASS);
-            if is_biased {
-                let error = block.values[i] - locked.target;
-                let error = if i < DIM { error } else { wrapped(error) };
+            if sweep.pass == Pass::Solve {
                 let bias = soft.bias_rate * error;
                 let most =
                     if i < DIM { sweep.params.max_push_speed } else { SMALL_TURN * sweep.params.inv_h };
                 rate += if soft.is_spring > 0.0 { bias } else { bias.clamp(-most, most) };
-                softness = f64::from(own * soft.share + soft.more);
-                rate += (own * soft.share + soft.more) * locked.impulse;
+                rate += link.softness[row] as f32 * locked.impulse;
             } else if soft.is_spring > 0.0 {
-                (softness, rate) = (LOOSE * f64::from(own), 0.0);
+                rate = 0.0;
             }
-            let side = |side: usize, sign: f32| screw(gradient.normal * sign, gradient.moments[side] * sign);
-            // The first one is the parent's, which is A if its side is 0.
-            link.jacobians[self.parent_side][count] = side(0, -1.0);
-            link.jacobians[1 - self.parent_side][count] = side(1, 1.0);
-            (link.softness[count], link.wanted[count]) = (softness, -f64::from(rate));
-            count += 1;
+            link.wanted[row] = -f64::from(rate);
+            row += 1;
         }
-        link.count = count;
-        self.arm = place.arm();
     }
 
     /// Notes what the joint bears.
