@@ -336,7 +336,7 @@ pub mod solver {
     /// The same for what is solved directly.
     pub const DIRECT_FREQUENCY: f32 = 2.0;
 
-    /// Most rounds over limits and motors of a tree in a pass, and most turns between trees of joints and contacts in a
+    /// Most rounds over which limits of a tree act in a pass, and most turns between trees of joints and contacts in a
     /// blow. Fewer let limits that are struck at once be passed, and leave joints that open at the blow.
     pub const JOINT_ROUNDS: usize = 8;
 

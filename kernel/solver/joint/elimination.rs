@@ -15,11 +15,17 @@
 //!
 //! After Baraff, "Linear-time dynamics using Lagrange multipliers" (1996), and Featherstone's articulated bodies.
 
-use super::dim::{BLOCK, DOF};
+use super::dim::{AXES, DOF};
 use super::forest::GROUND;
+
+/// Most rows of a link: one of each coordinate.
+pub(super) const ROWS: usize = AXES;
 
 /// A motion of a body, or an impulse on it.
 pub(super) type Screw = [f64; DOF];
+
+/// The conductance of a row that does not give way.
+pub(super) const HARD: [f64; 2] = [f64::INFINITY, 0.0];
 
 /// Share of a row's own inverse mass below which its pivot is rounding.
 const NO_PIVOT: f64 = 1.0e-10;
@@ -89,32 +95,39 @@ pub(super) struct Link {
     /// Number of rows.
     pub(super) count: usize,
     /// J of parent and child, by row.
-    pub(super) jacobians: [[Screw; BLOCK]; 2],
-    /// Γ.
-    pub(super) softness: [f64; BLOCK],
+    pub(super) jacobians: [[Screw; ROWS]; 2],
+    /// Γ, or the part of it that does not depend on k.
+    pub(super) softness: [f64; ROWS],
+    /// a and c of a row that has k / (a + c k) besides, where k is what a unit impulse changes beside the rows before it, in this joint and
+    /// below the child. Infinite if it has not.
+    pub(super) conductance: [[f64; 2]; ROWS],
+    /// k.
+    pub(super) left: [f64; ROWS],
     /// r.
-    pub(super) wanted: [f64; BLOCK],
+    pub(super) wanted: [f64; ROWS],
     /// λ.
-    pub(super) impulses: [f64; BLOCK],
+    pub(super) impulses: [f64; ROWS],
     /// E = L D Lᵀ: L below the diagonal.
-    lower: [[f64; BLOCK]; BLOCK],
+    lower: [[f64; ROWS]; ROWS],
     /// D⁻¹.
-    inverse: [f64; BLOCK],
+    inverse: [f64; ROWS],
     /// Y.
-    passed: [Screw; BLOCK],
+    passed: [Screw; ROWS],
 }
 
 impl Link {
     pub(super) const NONE: Self = Self {
         places: [GROUND; 2],
         count: 0,
-        jacobians: [[[0.0; DOF]; BLOCK]; 2],
-        softness: [0.0; BLOCK],
-        wanted: [0.0; BLOCK],
-        impulses: [0.0; BLOCK],
-        lower: [[0.0; BLOCK]; BLOCK],
-        inverse: [0.0; BLOCK],
-        passed: [[0.0; DOF]; BLOCK],
+        jacobians: [[[0.0; DOF]; ROWS]; 2],
+        softness: [0.0; ROWS],
+        conductance: [HARD; ROWS],
+        left: [0.0; ROWS],
+        wanted: [0.0; ROWS],
+        impulses: [0.0; ROWS],
+        lower: [[0.0; ROWS]; ROWS],
+        inverse: [0.0; ROWS],
+        passed: [[0.0; DOF]; ROWS],
     };
 
     /// Wants a motion of an end taken back.
@@ -127,7 +140,7 @@ impl Link {
     /// Replaces the lower half of E by its factors. Rows that depend on those before, or that nothing moves, are left out.
     #[inline(always)]
     fn factor(&mut self, count: usize) {
-        let Self { lower, inverse, .. } = self;
+        let Self { lower, inverse, conductance, left, .. } = self;
         for j in 0..count {
             let (own, mut pivot) = (lower[j][j], lower[j][j]);
             for m in 0..j {
@@ -136,7 +149,10 @@ impl Link {
                 pivot -= scaled * lower[j][m];
                 lower[j][m] = scaled;
             }
-            inverse[j] = if pivot > own * NO_PIVOT { 1.0 / pivot } else { 0.0 };
+            let counts = pivot > own * NO_PIVOT;
+            left[j] = if counts { pivot } else { 0.0 };
+            let [of_mass, besides] = conductance[j];
+            inverse[j] = if counts { 1.0 / (pivot + pivot / (of_mass + besides * pivot)) } else { 0.0 };
             for i in j + 1..count {
                 for m in 0..j {
                     lower[i][j] -= lower[i][m] * lower[j][m];
@@ -147,7 +163,7 @@ impl Link {
 
     /// E⁻¹ x.
     #[inline(always)]
-    fn solve(&self, x: &mut [f64; BLOCK], count: usize) {
+    fn solve(&self, x: &mut [f64; ROWS], count: usize) {
         for i in 0..count {
             for m in 0..i {
                 x[i] -= self.lower[i][m] * x[m];
@@ -166,7 +182,7 @@ impl Link {
     fn eliminate(&mut self, nodes: &mut [Node], count: usize) {
         let [parent, child] = self.places;
         for i in 0..count {
-            self.lower[i] = [0.0; BLOCK];
+            self.lower[i] = [0.0; ROWS];
             self.lower[i][i] = self.softness[i];
         }
         for (side, place) in [parent, child].into_iter().enumerate() {
@@ -209,8 +225,8 @@ impl Link {
     #[inline(always)]
     fn rise(&mut self, nodes: &mut [Node], count: usize) {
         let is_still = |place: &u32| nodes.get(*place as usize).is_none_or(|node| node.motion == [0.0; DOF]);
-        if self.wanted == [0.0; BLOCK] && self.places.iter().all(is_still) {
-            self.impulses = [0.0; BLOCK];
+        if self.wanted == [0.0; ROWS] && self.places.iter().all(is_still) {
+            self.impulses = [0.0; ROWS];
             return;
         }
         let mut e = self.wanted;
@@ -310,7 +326,7 @@ mod tests {
             } else {
                 [parent % number as u32, number as u32]
             };
-            let count = 1 + seed as usize % BLOCK;
+            let count = 1 + seed as usize % ROWS;
             let mut link = Link { places: ends, count, ..Link::NONE };
             for i in 0..count {
                 link.jacobians = link.jacobians.map(|mut rows| {
@@ -318,6 +334,11 @@ mod tests {
                     rows
                 });
                 (link.softness[i], link.wanted[i]) = (1.0e-3 * inv_mass, any(seed));
+                // The last row may be a limit, a spring or a motor.
+                if i + 1 == count && number % 2 == 0 {
+                    link.softness[i] = 0.0;
+                    link.conductance[i] = [[2.0, 0.0], [0.0, 3.0], [2.0, 3.0]][number % 3];
+                }
             }
             links.push(link);
             if ends[1] == GROUND && number > 0 {
@@ -342,7 +363,9 @@ mod tests {
         let mut most = 0.0f64;
         for link in links {
             for i in 0..link.count {
-                let mut sum = link.softness[i] * link.impulses[i] - link.wanted[i];
+                let [of_mass, besides] = link.conductance[i];
+                let softness = link.softness[i] + link.left[i] / (of_mass + besides * link.left[i]);
+                let mut sum = softness * link.impulses[i] - link.wanted[i];
                 for (side, place) in link.places.into_iter().enumerate().filter(|(_, place)| *place != GROUND)
                 {
                     let change = product(&nodes[place as usize].inverse, &impulses[place as usize]);
@@ -378,7 +401,7 @@ mod tests {
 
     #[test]
     fn rows_that_nothing_moves_are_left_out() {
-        let mut rows = [[[0.0; DOF]; BLOCK]; 2];
+        let mut rows = [[[0.0; DOF]; ROWS]; 2];
         rows[0][0][0] = 1.0;
         rows[0][1][1] = 1.0;
         rows[0][2][1] = 1.0;

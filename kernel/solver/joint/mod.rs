@@ -32,9 +32,10 @@ mod single;
 mod table;
 mod tree;
 mod tree_blow;
+mod tree_motor;
 mod tree_pass;
-mod tree_response;
 mod tree_scratch;
+mod tree_single;
 
 pub(super) use batch::{JOINT_BATCHES, JointRows, JointViews, joints, sort_joints};
 pub use coupling::{CouplingDef, CouplingEnd, EndCoordinate};

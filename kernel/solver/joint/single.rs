@@ -213,24 +213,6 @@ impl<N: Lane> Single<N> {
     }
 }
 
-impl Single<f32> {
-    /// Whether its values are limited.
-    pub(super) fn has_limits(&self) -> bool {
-        self.limits != [f32::NEG_INFINITY, f32::INFINITY]
-    }
-
-    /// Whether a pass would change anything, at a rate of the coordinate: there is a motor, a spring, an
-    /// impulse, or a limit ahead.
-    pub(super) fn may_act(&self, value: f32, rate: f32, h: f32) -> bool {
-        let [min, max] = self.limits;
-        let ahead = value + rate * h;
-        let is_between = |x: f32| min < x && x < max;
-        self.motor.most + self.spring.most > 0.0
-            || self.impulses != [0.0; 2]
-            || !(is_between(value) && is_between(ahead))
-    }
-}
-
 /// Stiffness and damping of a law per effective mass, and besides.
 pub(super) fn laws(drive: &Drive) -> ([f32; 2], [f32; 2]) {
     match *drive {

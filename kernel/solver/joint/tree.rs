@@ -1,7 +1,6 @@
 //! Trees of joints, solved directly in each pass.
 //!
-//! A pass solves what all joints of a tree lock at once (`elimination.rs`), then limits and motors one by one, each by the response
-//! of the whole tree. Rows of contacts, loops and other joints come before it in the solve pass, and follow and win in the relax pass.
+//! A pass solves what all joints of a tree lock, limit and drive at once (`elimination.rs`, `tree_single.rs`). Rows of contacts, loops and other joints come before it in the solve pass, and follow and win in the relax pass.
 //!
 //! Being exact, the direct solution needs no warm start, and is soft at the rate of the substeps: one by one, rows that stiff
 //! would explode.
@@ -20,7 +19,7 @@ use super::row::{Hold, Row};
 use super::single::Single;
 use super::table::{JointTable, Records};
 use super::tree_pass::{Lock, Tree, TreeBody, TreeJoint, range};
-use super::tree_scratch::Scratch;
+use super::tree_scratch::{Coordinate, Scratch};
 use crate::data::{BitSet, Parts};
 use crate::graph::{COLOR_COUNT, ColorGraph, ConstraintKind};
 use crate::math::Vector;
@@ -153,6 +152,8 @@ impl JointTrees {
             for body in tree.bodies.iter_mut() {
                 body.share = from.bearing.share(body.row);
             }
+            tree.scratch.coordinates.clear();
+            tree.scratch.coordinates.resize(tree.singles.len(), Coordinate::NONE);
             for (k, branch) in forest.branches[range(span.branches)].iter().enumerate() {
                 // SAFETY: as above.
                 let record = unsafe { records.0.one(branch.id as usize) };
@@ -170,12 +171,20 @@ impl JointTrees {
                 if record.def.is_rod() {
                     row.take_rod(singles, &record.def, hold, from.params.h);
                 }
-                joint.is_warm = !singles.is_empty() || joint.orientation.is_some() || row.damping != [0.0; 2];
+                let is_driven = |single: &Single<f32>| single.spring.most + single.motor.most > 0.0;
+                let drives = singles.iter().any(is_driven) || joint.orientation.is_some();
+                joint.is_warm = drives || row.damping != [0.0; 2];
                 let place = |place: u32| if place == GROUND { GROUND } else { place - span.bodies[0] };
                 let places = branch.places.map(place);
                 tree.links[k].places = places;
                 joint.arms = [0, 1].map(|side| row.start.arms[side].length());
                 joint.load = record.reaction.force.length() * from.params.h;
+                let of_tree = joint.singles_from(tree.first_single);
+                for (single, at) in
+                    tree.singles[of_tree.clone()].iter().zip(&mut tree.scratch.coordinates[of_tree])
+                {
+                    *at = Coordinate::new(single);
+                }
             }
         });
     }
@@ -207,6 +216,7 @@ impl JointTrees {
                 row: Row::default(),
                 singles: [start, end],
                 locked_end: (0..BLOCK).rev().find(|k| def.is_in_block(*k)).map_or(0, |last| last + 1),
+                locked: 0,
                 is_rod: def.is_rod(),
                 parent_side: branch.parent_side,
                 is_warm: false,

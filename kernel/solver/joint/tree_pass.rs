@@ -7,13 +7,15 @@ use super::super::pair::Pair;
 use super::block::{Block, Locked, wrapped};
 use super::dim::{BLOCK, inverse_of, motion, numbers, of_numbers, screw, with_least_inertia};
 use super::elimination::{self, Link, Node, Screw};
+use super::forest::GROUND;
 use super::orientation::OrientationRow;
 use super::place::{Gradient, Place};
 use super::row::Row;
 use super::single::Single;
-use super::tree_scratch::{Coordinate, Known, Scratch};
+use super::tree_scratch::{Known, Scratch};
 use crate::math::{DIM, InvInertia, Vector};
-use crate::tuning::solver::{NO_MASS, SMALL_TURN};
+use crate::tuning::manifold::SAME;
+use crate::tuning::solver::{JOINT_ROUNDS, NO_MASS, SMALL_TURN};
 use core::ops::Range;
 
 /// Softness of a spring in the relax pass, where it takes no part, as a multiple of its inverse mass.
@@ -47,6 +49,8 @@ pub(super) struct TreeJoint {
     pub(super) singles: [u32; 2],
     /// Number of coordinates up to the last that is locked.
     pub(super) locked_end: usize,
+    /// Number of coordinates that are locked: the first rows of its link.
+    pub(super) locked: usize,
     /// Whether the first coordinate of its block is the distance of the anchors.
     pub(super) is_rod: bool,
     /// Its side at the parent.
@@ -114,7 +118,7 @@ impl TreeJoint {
     }
 
     /// What is locked of its block.
-    pub(super) fn locked(&mut self) -> impl Iterator<Item = &mut Locked<f32>> {
+    pub(super) fn locks(&mut self) -> impl Iterator<Item = &mut Locked<f32>> {
         self.row.block.iter_mut().filter(|locked| locked.is_locked > 0.0)
     }
 
@@ -148,7 +152,7 @@ impl Tree<'_> {
         }
     }
 
-    /// Solves all that is locked, then limits and motors, which act on each other.
+    /// Solves all that is locked, limited and driven. What is known holds until bodies move.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
@@ -161,38 +165,132 @@ impl Tree<'_> {
         let is_other = |body: &TreeBody| body.now != body.with_least();
         if self.scratch.known != Known::Factors(sweep.pass) || self.bodies.iter().any(is_other) {
             // SAFETY: by the contract.
-            unsafe { self.factor(sweep) };
+            unsafe { self.turn_bodies(sweep) };
         }
-        for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
-            // SAFETY: by the contract.
-            joint.pair = unsafe { Pair::load(&sweep.bodies, &joint.row.ids) };
-            joint.ask(link, sweep);
-        }
-        elimination::solve(self.links, self.nodes);
         let velocities = &mut self.scratch.velocities;
         velocities.clear();
         velocities.extend(self.bodies.iter().map(|body| {
             // SAFETY: by the contract.
             numbers(unsafe { sweep.bodies.get(body.row) }.velocity())
         }));
-        self.apply();
+        for joint in self.joints.iter_mut() {
+            // SAFETY: by the contract.
+            joint.pair = unsafe { Pair::load(&sweep.bodies, &joint.row.ids) };
+        }
+        for round in 0..JOINT_ROUNDS {
+            if self.scratch.known != Known::Factors(sweep.pass) {
+                self.factor(sweep);
+            }
+            self.ask(sweep);
+            elimination::solve(self.links, self.nodes);
+            self.apply(sweep);
+            if round == 0 {
+                // SAFETY: by the contract.
+                (0..self.joints.len()).for_each(|k| unsafe { self.solve_orientation(k, sweep) });
+            }
+            if round + 1 == JOINT_ROUNDS || !self.pivot(sweep) {
+                break;
+            }
+        }
         // SAFETY: by the contract.
-        unsafe {
-            self.solve_limits_and_motors(sweep);
-            self.finish(sweep);
+        unsafe { self.finish(sweep) };
+    }
+
+    /// The velocities of a joint's bodies now.
+    pub(super) fn pair(&self, k: usize) -> Pair<f32> {
+        let joint = &self.joints[k];
+        let mut pair = joint.pair;
+        for (end, place) in self.links[k].places.into_iter().enumerate().filter(|(_, place)| *place != GROUND)
+        {
+            let side = joint.side(end);
+            (pair.v[side], pair.w[side]) = of_numbers(self.scratch.velocities[place as usize]);
+        }
+        pair
+    }
+
+    /// Writes what joints ask for.
+    fn ask(&mut self, sweep: &Sweep) {
+        let biased = sweep.pass == Pass::Solve;
+        for k in 0..self.joints.len() {
+            let pair = self.pair(k);
+            let (joint, link) = (&self.joints[k], &mut self.links[k]);
+            joint.ask(&pair, link, sweep);
+            let range = joint.singles_from(self.first_single);
+            for (single, at) in self.singles[range.clone()].iter().zip(&self.scratch.coordinates[range]) {
+                let Some(row) = at.row else { continue };
+                let (rate, left) = (at.gradient.rate(&pair), link.left[row] as f32);
+                link.wanted[row] = f64::from(single.wanted(at, rate, left, sweep.params, biased));
+            }
         }
     }
 
     /// Adds what was solved to velocities and impulses.
-    pub(super) fn apply(&mut self) {
+    pub(super) fn apply(&mut self, sweep: &Sweep) {
         for (velocity, node) in self.scratch.velocities.iter_mut().zip(&*self.nodes) {
             for (velocity, change) in velocity.iter_mut().zip(node.change()) {
                 *velocity += change as f32;
             }
         }
-        for (joint, link) in self.joints.iter_mut().zip(&*self.links) {
-            for (locked, impulse) in joint.locked().zip(&link.impulses) {
+        for k in 0..self.joints.len() {
+            let link = &self.links[k];
+            for (locked, impulse) in self.joints[k].locks().zip(&link.impulses) {
                 locked.impulse += *impulse as f32;
+            }
+            let range = self.joints[k].singles_from(self.first_single);
+            if self.scratch.coordinates[range.clone()].iter().all(|at| at.row.is_none()) {
+                continue;
+            }
+            let pair = self.pair(k);
+            for (single, at) in self.singles[range.clone()].iter_mut().zip(&self.scratch.coordinates[range]) {
+                let Some(row) = at.row.filter(|row| link.left[*row] > 0.0) else { continue };
+                let solved = (link.impulses[row] as f32, at.gradient.rate(&pair), link.left[row] as f32);
+                single.share_out(at, solved, sweep.params, sweep.pass == Pass::Solve);
+            }
+        }
+    }
+
+    /// Finds which limits act and which motors are at their maximum. Returns whether others are than were solved for.
+    fn pivot(&mut self, sweep: &Sweep) -> bool {
+        let mut any = false;
+        for k in 0..self.joints.len() {
+            let range = self.joints[k].singles_from(self.first_single);
+            if range.is_empty() {
+                continue;
+            }
+            let mut pair = self.pair(k);
+            for index in range {
+                let (single, at) = (&mut self.singles[index], &mut self.scratch.coordinates[index]);
+                let left = at.row.map_or(0.0, |row| self.links[k].left[row]) as f32;
+                let of_length = if at.gradient.normal == Vector::ZERO { SAME } else { sweep.params.max_sag };
+                let tolerance = SAME * of_length / sweep.params.dt;
+                let solved = (at.gradient.rate(&pair), left, tolerance);
+                let Some(change) = single.pivot(at, solved, sweep.params, sweep.pass == Pass::Solve) else {
+                    continue;
+                };
+                any = true;
+                if change != 0.0 {
+                    let gradient = at.gradient;
+                    self.push(k, &gradient, change);
+                    pair = self.pair(k);
+                }
+            }
+        }
+        if any {
+            self.scratch.known = Known::Places;
+        }
+        any
+    }
+
+    /// Applies an impulse along a gradient of a joint to its two bodies alone.
+    fn push(&mut self, k: usize, gradient: &Gradient<f32>, impulse: f32) {
+        for (end, place) in self.links[k].places.into_iter().enumerate().filter(|(_, place)| *place != GROUND)
+        {
+            let side = self.joints[k].side(end);
+            let impulse = if side == 0 { -impulse } else { impulse };
+            let push = screw(gradient.normal * impulse, gradient.moments[side] * impulse);
+            let changes = self.nodes[place as usize].moved(&push);
+            for (velocity, change) in self.scratch.velocities[place as usize].iter_mut().zip(changes) {
+                *velocity += change as f32;
             }
         }
     }
@@ -202,7 +300,6 @@ impl Tree<'_> {
     /// # Safety
     /// As [`solve`](Self::solve).
     unsafe fn finish(&mut self, sweep: &Sweep) {
-        self.add_lock_impulses();
         let Scratch { velocities, coordinates, .. } = &*self.scratch;
         for (body, velocity) in self.bodies.iter().zip(velocities) {
             let (v, w) = of_numbers(*velocity);
@@ -219,17 +316,21 @@ impl Tree<'_> {
         }
     }
 
-    /// Applies the impulses of limits and motors, and damps. What is locked begins from nothing.
+    /// Applies the impulses of springs and motors, and damps. What is rigid begins from nothing.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
     pub(super) unsafe fn warm_start(&mut self, sweep: &Sweep) {
         for joint in self.joints.iter_mut() {
             joint.row.block.iter_mut().for_each(|locked| locked.impulse = 0.0);
+            let range = joint.singles_from(self.first_single);
+            let of_joint = &mut self.singles[range.clone()];
+            for single in of_joint.iter_mut().filter(|single| single.softening.is_spring == 0.0) {
+                single.impulses = [0.0; 2];
+            }
             if !joint.is_warm {
                 continue;
             }
-            let range = joint.singles_from(self.first_single);
             // SAFETY: by the contract.
             unsafe {
                 let more = (&mut self.singles[range], joint.orientation.as_mut());
@@ -244,8 +345,6 @@ impl Tree<'_> {
     /// Until it returns, no other thread writes the bodies of the tree.
     unsafe fn place(&mut self, sweep: &Sweep) {
         let Scratch { known, coordinates, .. } = &mut *self.scratch;
-        coordinates.clear();
-        coordinates.resize(self.singles.len(), Coordinate::NONE);
         for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
             // SAFETY: by the contract.
             let place = unsafe { joint.row.start.now(&sweep.bodies, &joint.row.ids) };
@@ -258,8 +357,10 @@ impl Tree<'_> {
                 continue;
             }
             let angles = place.angles();
-            for (single, coordinate) in self.singles[range.clone()].iter_mut().zip(&mut coordinates[range]) {
-                (coordinate.gradient, coordinate.value) = single.gradient(&place, &angles);
+            for (single, at) in self.singles[range.clone()].iter_mut().zip(&mut coordinates[range]) {
+                (at.gradient, at.value) = single.gradient(&place, &angles);
+                // A blow has let go of others than this pass.
+                at.limit = at.limit.or_else(|| single.limit());
             }
         }
         *known = Known::Places;
@@ -278,11 +379,11 @@ impl Tree<'_> {
         }
     }
 
-    /// Finds the inertia of bodies where they are now, and factors the tree.
+    /// Finds the inertia of bodies where they are now.
     ///
     /// # Safety
     /// Until it returns, no other thread writes the bodies of the tree.
-    unsafe fn factor(&mut self, sweep: &Sweep) {
+    unsafe fn turn_bodies(&mut self, sweep: &Sweep) {
         for (body, node) in self.bodies.iter_mut().zip(&mut *self.nodes) {
             // SAFETY: by the contract.
             let turn = unsafe { sweep.bodies.get(body.row).delta().1 };
@@ -291,7 +392,7 @@ impl Tree<'_> {
             body.now = body.with_least();
             *node = Node::new(inverse_of(body.linear.scale(body.share), body.now));
         }
-        for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
+        for (joint, link) in self.joints.iter_mut().zip(&*self.links) {
             for (k, place) in link.places.into_iter().enumerate() {
                 let side = joint.side(k);
                 let body = self.bodies.get(place as usize);
@@ -299,10 +400,22 @@ impl Tree<'_> {
                     body.map_or(Vector::ZERO, |body| body.linear.scale(body.share));
                 joint.row.masses.angular[side] = body.map_or(InvInertia::ZERO, |body| body.now);
             }
+        }
+        self.scratch.known = Known::Places;
+    }
+
+    /// Gives each coordinate along which something acts a row, and factors the tree.
+    fn factor(&mut self, sweep: &Sweep) {
+        let biased = sweep.pass == Pass::Solve;
+        for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
             joint.soften(link, sweep.pass);
+            let range = joint.singles_from(self.first_single);
+            for (single, at) in self.singles[range.clone()].iter().zip(&mut self.scratch.coordinates[range]) {
+                let conductance = single.conductance(at, sweep.params, biased);
+                at.row = conductance.map(|conductance| joint.add_row(&at.gradient, conductance, link));
+            }
         }
         elimination::factor(self.links, self.nodes);
-        self.scratch.forget_responses();
         self.scratch.known = Known::Factors(sweep.pass);
     }
 }
@@ -317,24 +430,35 @@ impl TreeJoint {
             block.take_distance(place, &row.masses);
         }
         link.count = 0;
-        for i in (0..D).filter(|i| row.block[*i].is_locked > 0.0) {
-            let (gradient, error) = (block.gradients[i], block.values[i] - row.block[i].target);
+        for i in (0..D).filter(|i| self.row.block[*i].is_locked > 0.0) {
+            let (gradient, error) = (block.gradients[i], block.values[i] - self.row.block[i].target);
             let error = if i < DIM { error } else { wrapped(error) };
             self.locks[link.count] = Lock { gradient, error };
-            let side = |side: usize, sign: f32| screw(gradient.normal * sign, gradient.moments[side] * sign);
-            // The first one is the parent's, which is A if its side is 0.
-            link.jacobians[self.parent_side][link.count] = side(0, -1.0);
-            link.jacobians[1 - self.parent_side][link.count] = side(1, 1.0);
-            link.count += 1;
+            self.add_row(&gradient, [f32::INFINITY, 0.0], link);
         }
+        self.locked = link.count;
         self.arm = place.arm();
     }
 
-    /// Writes how soft what is locked is in a pass.
+    /// Adds a row to the link. Returns its number.
+    fn add_row(&self, gradient: &Gradient<f32>, conductance: [f32; 2], link: &mut Link) -> usize {
+        let number = link.count;
+        let side = |side: usize, sign: f32| screw(gradient.normal * sign, gradient.moments[side] * sign);
+        // The first one is the parent's, which is A if its side is 0.
+        link.jacobians[self.parent_side][number] = side(0, -1.0);
+        link.jacobians[1 - self.parent_side][number] = side(1, 1.0);
+        link.softness[number] = 0.0;
+        link.conductance[number] = conductance.map(f64::from);
+        link.count += 1;
+        number
+    }
+
+    /// Writes how soft what is locked is in a pass. The link has no other rows then.
     fn soften(&mut self, link: &mut Link, pass: Pass) {
+        link.count = self.locked;
         let masses = self.row.masses;
         let locks = self.locks;
-        for ((locked, lock), softness) in self.locked().zip(&locks).zip(&mut link.softness) {
+        for ((locked, lock), softness) in self.locks().zip(&locks).zip(&mut link.softness) {
             let soft = &locked.softening;
             let own = masses.response(&lock.gradient).along(&lock.gradient);
             *softness = match pass {
@@ -346,11 +470,11 @@ impl TreeJoint {
     }
 
     /// Writes what the joint asks for in a pass.
-    fn ask(&mut self, link: &mut Link, sweep: &Sweep) {
-        let (pair, locks, mut row) = (self.pair, self.locks, 0);
+    fn ask(&self, pair: &Pair<f32>, link: &mut Link, sweep: &Sweep) {
+        let (locks, mut row) = (&self.locks, 0);
         for (i, locked) in self.row.block.iter().enumerate().filter(|(_, locked)| locked.is_locked > 0.0) {
             let (Lock { gradient, error }, soft) = (&locks[row], &locked.softening);
-            let mut rate = gradient.rate(&pair);
+            let mut rate = gradient.rate(pair);
             if sweep.pass == Pass::Solve {
                 let bias = soft.bias_rate * error;
                 let most =

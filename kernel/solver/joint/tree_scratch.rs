@@ -1,8 +1,9 @@
 //! What of a tree of joints is kept between its passes.
 
 use super::super::batch::Pass;
-use super::dim::{BLOCK, DOF};
-use super::place::{Gradient, Response};
+use super::dim::DOF;
+use super::place::Gradient;
+use super::single::Single;
 
 /// What of a tree holds from pass to pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,7 +13,7 @@ pub(super) enum Known {
     Nothing,
     /// Where its joints are.
     Places,
-    /// The factors and responses of a pass as well. Both solve passes of a substep use the same.
+    /// The factors of a pass as well. Both solve passes of a substep use the same.
     Factors(Pass),
 }
 
@@ -22,55 +23,41 @@ pub(super) struct Scratch {
     pub(super) known: Known,
     /// By body, its velocity.
     pub(super) velocities: Vec<[f32; DOF]>,
-    /// By single coordinate with a response, and body: what a unit impulse changes.
-    pub(super) unit_velocities: Vec<[f32; DOF]>,
-    /// By single coordinate with a response, and joint: the impulses of what is locked that answer it.
-    pub(super) unit_impulses: Vec<[f32; BLOCK]>,
     /// By single coordinate.
     pub(super) coordinates: Vec<Coordinate>,
 }
-
-/// Maximum number of bodies, over all responses of a tree that are kept: what fits into a core's cache. Where there are more, all
-/// are found anew.
-pub(super) const MOST_KEPT: usize = 1 << 13;
-
-/// In place of a number among coordinates with a response.
-pub(super) const NOT_YET: usize = usize::MAX;
 
 /// A single coordinate in a pass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coordinate {
     pub(super) gradient: Gradient<f32>,
     pub(super) value: f32,
-    /// Its number among those with a response.
-    pub(super) number: usize,
-    /// The changes of velocity of its own bodies by a unit impulse: as what is locked allows, and of these bodies alone.
-    pub(super) response: Response<f32>,
-    pub(super) alone: Response<f32>,
-    /// By how much its impulse has changed since those of the locks were.
-    pub(super) change: f32,
+    /// The limit that acts, if one does: 0 for the lower one, 1 for the upper one.
+    pub(super) limit: Option<usize>,
+    /// Whether the motor is at its maximum.
+    pub(super) is_capped: bool,
+    /// Its row of the link, if anything acts.
+    pub(super) row: Option<usize>,
 }
 
 impl Coordinate {
-    pub(super) const NONE: Self = Self {
-        gradient: Gradient::NONE,
-        value: 0.0,
-        number: NOT_YET,
-        response: Response::NONE,
-        alone: Response::NONE,
-        change: 0.0,
-    };
+    pub(super) const NONE: Self =
+        Self { gradient: Gradient::NONE, value: 0.0, limit: None, is_capped: false, row: None };
+
+    /// At the start of a step: what acted at the end of the last one acts again.
+    pub(super) fn new(single: &Single<f32>) -> Self {
+        let most = single.motor.most;
+        Self {
+            limit: single.limit(),
+            is_capped: most > 0.0 && single.motor.impulse.abs() >= most,
+            ..Self::NONE
+        }
+    }
 }
 
 impl Scratch {
     /// Forgets what was found out: bodies have moved, or are others.
     pub(super) fn forget(&mut self) {
         self.known = Known::Nothing;
-    }
-
-    pub(super) fn forget_responses(&mut self) {
-        self.unit_velocities.clear();
-        self.unit_impulses.clear();
-        self.coordinates.iter_mut().for_each(|coordinate| coordinate.number = NOT_YET);
     }
 }
