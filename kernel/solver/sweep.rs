@@ -1,12 +1,13 @@
 //! Bodies that moved far stop where they meet something; see [`ccd`](crate::ccd).
 #![expect(unsafe_code, reason = "rows of bodies are changed by several threads, each its own")]
 
-use super::{BodyRow, BodyRows, RowView, Solver, gyro::*};
+use super::{BodyRow, RowView, Solver, gyro::*};
 use crate::ccd::{Path, SweepBuffers, SweepInput, Swept};
 use crate::contact::ManifoldSource;
-use crate::math::{Angular, Vector, max};
+use crate::data::BitSet;
+use crate::graph::ConstraintKind;
+use crate::math::{Angular, Vector, max, min};
 use crate::thread_pool::ThreadPool;
-use std::sync::{Mutex, PoisonError};
 
 /// Number of bodies in a block of the job. More leaves workers idle at the end, fewer cost more claims.
 const BLOCK: usize = 64;
@@ -15,8 +16,8 @@ const BLOCK: usize = 64;
 const SWEPT_BLOCK: usize = 8;
 
 impl Solver {
-    /// Puts bodies back that moved far in the substeps and met what does not move. `listed` are the bodies in the order of
-    /// rows, from row 1. `workers` are buffers, kept between steps.
+    /// Puts bodies back that moved far in the substeps and met what does not move, each with what it is joined to. `listed` are the
+    /// bodies in the order of rows, from row 1. `workers` are buffers, kept between steps.
     pub fn stop_fast<S: ManifoldSource>(
         &mut self,
         input: &SweepInput<S>,
@@ -26,16 +27,14 @@ impl Solver {
     ) {
         let first_dynamic = self.bodies.first_dynamic();
         let listed = &listed[..listed.len().min(self.bodies.rows.len().saturating_sub(1))];
-        let BodyRows { motions, rows, moved, .. } = &mut self.bodies;
-        let rows = &RowView::over(rows, first_dynamic);
-        let stopped = Mutex::new(Vec::new());
+        let rows = &RowView::over(&mut self.bodies.rows, first_dynamic);
         pool.each_into(workers, listed.chunks(BLOCK).enumerate(), |buffers, (block, ids)| {
             for (i, &body) in ids.iter().enumerate() {
                 let row = (1 + block * BLOCK + i) as u32;
                 if row < first_dynamic || input.bodies.row(body) != row {
                     continue;
                 }
-                // SAFETY: no two bodies have one row, and the reference does not outlive the copy.
+                // SAFETY: no thread writes bodies.
                 let moved: BodyRow = unsafe { *rows.get(row) };
                 let (way, turn) = moved.delta();
                 // What turns by more than half a turn seems to turn less.
@@ -43,29 +42,18 @@ impl Solver {
                 if !input.is_far(body, way.length(), angle) || !input.may_meet(body, way) {
                     continue;
                 }
-                let path = path(input, body, &moved);
-                let fraction = input.stop(body, &path, buffers);
+                let fraction = input.stop(body, &path(input, body, &moved), buffers);
                 if fraction < 1.0 {
-                    let acceleration = motions[row as usize].acceleration;
-                    // SAFETY: as above; the copy is no reference.
-                    unsafe {
-                        rows.put(row, |row| {
-                            put_back(row, &path, fraction, acceleration);
-                            // Contacts do not stop a body that spins fast: it would be put back in every step, and keep its speed.
-                            if fraction == 0.0 {
-                                row.set_velocity(Vector::ZERO, Angular::ZERO);
-                            }
-                        });
-                    };
-                    stopped.lock().unwrap_or_else(PoisonError::into_inner).push(row);
+                    buffers.stops.push((body, fraction));
                 }
             }
         });
-        let stopped = stopped.into_inner().unwrap_or_else(PoisonError::into_inner);
-        for row in stopped {
-            moved.insert(row);
-            mark_outdated(input, listed[row as usize - 1], &mut self.outdated);
-        }
+        self.put_back_all(input, workers, |row, fraction| {
+            // Contacts do not stop a body that spins fast: it would be put back in every step, and keep its speed.
+            if fraction == 0.0 {
+                row.set_velocity(Vector::ZERO, Angular::ZERO);
+            }
+        });
     }
 
     /// Puts bodies back that are swept against what moves, and what they met, kinematic bodies too. Each stops at the first of
@@ -88,19 +76,67 @@ impl Solver {
         pool.each_into(workers, swept.chunks(SWEPT_BLOCK), |buffers, swept| {
             swept.iter().for_each(|(body, swept)| input.stop_swept(*body, swept, &path_of, buffers));
         });
+        self.put_back_all(input, workers, |_, _| ());
+    }
+
+    /// Puts back all bodies that stop, each to the first of its impacts, and what they are joined to with them. Calls a function for
+    /// those that met something, with their fraction of the step.
+    fn put_back_all<S: ManifoldSource>(
+        &mut self,
+        input: &SweepInput<S>,
+        workers: &mut [SweepBuffers<S::Workspace>],
+        stopped: impl Fn(&mut BodyRow, f32),
+    ) {
         let mut stops: Vec<_> = workers.iter_mut().flat_map(|worker| worker.stops.drain(..)).collect();
+        if stops.is_empty() {
+            return;
+        }
         stops.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         stops.dedup_by_key(|stop| stop.0);
-        let paths: Vec<_> = stops.iter().map(|(body, _)| path_of(*body)).collect();
-        for ((body, fraction), path) in stops.into_iter().zip(paths) {
-            if let Some(path) = path {
-                let row = input.bodies.row(body) as usize;
-                let acceleration = self.bodies.motions[row].acceleration;
-                put_back(&mut self.bodies.rows[row], &path, fraction, acceleration);
-                self.bodies.moved.insert(row as u32);
-                mark_outdated(input, body, &mut self.outdated);
+        let joined = self.joined(input, &stops);
+        for (body, fraction, met) in joined {
+            let row = input.bodies.row(body) as usize;
+            let Some(moved) = self.bodies.rows.get_mut(row).filter(|_| row > 0) else { continue };
+            let path = path(input, body, moved);
+            put_back(moved, &path, fraction, self.bodies.motions[row].acceleration);
+            if met {
+                stopped(moved, fraction);
             }
+            self.bodies.moved.insert(row as u32);
+            mark_outdated(input, body, &mut self.outdated);
         }
+    }
+
+    /// All bodies that stop with some, given by ascending id, with the fraction of the step and whether they met something. What is joined
+    /// stops together, or its joints would open by its way.
+    fn joined<S>(&self, input: &SweepInput<S>, stops: &[(u32, f32)]) -> Vec<(u32, f32, bool)> {
+        let own = |body: u32| stops.binary_search_by_key(&body, |stop| stop.0).ok().map(|k| stops[k].1);
+        let (first_dynamic, mut seen, mut all) = (self.bodies.first_dynamic(), BitSet::default(), Vec::new());
+        for (body, _) in stops {
+            let start = all.len();
+            let mut add = |body: u32, all: &mut Vec<_>| {
+                if seen.insert(body) {
+                    all.push((body, 1.0f32, own(body).is_some()));
+                }
+            };
+            add(*body, &mut all);
+            let mut next = start;
+            while let Some((body, ..)) = all.get(next).copied() {
+                next += 1;
+                for kind in [ConstraintKind::Joint, ConstraintKind::Custom] {
+                    let constraints = input.bodies.constraints(kind);
+                    for id in constraints.of_body(body) {
+                        let others = constraints.get(id).bodies.into_iter();
+                        others
+                            .filter(|other| input.bodies.row(*other) >= first_dynamic)
+                            .for_each(|other| add(other, &mut all));
+                    }
+                }
+            }
+            let first = all[start..].iter().filter_map(|one| own(one.0)).fold(1.0, min);
+            all[start..].iter_mut().for_each(|one| one.1 = first);
+        }
+        all
     }
 }
 

@@ -6,9 +6,9 @@ use super::joints::{SHIFTS, hinge};
 use super::sim::Sim;
 use crate::kernel;
 use kernel::math::{Rot, Vector};
-use kernel::shape::{Capsule, Shape};
+use kernel::shape::{Capsule, Cuboid, Shape};
 use kernel::solver::{Axis, Drive, JointDef, JointFrame, OrientationMotor};
-use kernel::table::BodyKind;
+use kernel::table::{BodyKind, Velocity};
 
 /// A body: the middle of its capsule, half of its axis, and its radius, in metres. Sides are ahead, up, left.
 const PARTS: [([f32; 3], [f32; 3], f32); 11] = [
@@ -105,29 +105,20 @@ pub fn human(sim: &mut Sim, place: Vector, turn: Rot, losses: Losses) -> (Vec<u3
     (ids, joints)
 }
 
-/// Steps until all sleep. Returns the number of steps, and of each joint the widest gap, m, and the farthest limit passed, degrees.
-fn settle(sim: &mut Sim, joints: &[u32], steps: usize) -> (usize, Vec<[f32; 2]>) {
-    let mut all = vec![[0.0f32; 2]; joints.len()];
+/// Steps until all sleep. Returns the number of steps, the widest gap, m, and the farthest limit passed, degrees.
+fn settle(sim: &mut Sim, joints: &[u32], steps: usize) -> (usize, f32, f32) {
+    let (mut open, mut past) = (0.0f32, 0.0f32);
     for step in 0..steps {
         sim.step();
-        for (id, [open, past]) in joints.iter().zip(&mut all) {
+        for id in joints {
             let gap = sim.gap(*id).unwrap();
-            (*open, *past) = (open.max(gap.length), past.max(gap.angle.to_degrees()));
+            (open, past) = (open.max(gap.length), past.max(gap.angle.to_degrees()));
         }
         if sim.bodies.awake_dynamic().next().is_none() {
-            return (step, all);
+            return (step, open, past);
         }
     }
-    (steps, all)
-}
-
-/// What a share of joints does not exceed.
-fn quantile(all: &[[f32; 2]], share: f32) -> [f32; 2] {
-    [0, 1].map(|k| {
-        let mut sorted: Vec<f32> = all.iter().map(|joint| joint[k]).collect();
-        sorted.sort_by(f32::total_cmp);
-        sorted[((sorted.len() - 1) as f32 * share) as usize]
-    })
+    (steps, open, past)
 }
 
 /// Joints without friction hold as well, but limbs that are propped up may swing on.
@@ -148,13 +139,12 @@ fn a_human_that_falls_holds_together_and_sleeps() {
                 let turn = any_rotation(&mut dice);
                 let (_, joints) = human(&mut sim, Vector::Y * (1.0 + height), turn, losses);
                 let before = sim.energy();
-                let (steps, all) = settle(&mut sim, &joints, (11.0 * rate) as usize);
-                let [open, past] = quantile(&all, 1.0);
+                let (steps, open, past) = settle(&mut sim, &joints, (11.0 * rate) as usize);
                 let gained = sim.energy() - before;
                 let seconds = steps as f32 / rate;
                 let is_late = losses.friction + losses.damping > 0.0 && seconds > 10.0;
-                // Of 40 that fall 3 or 30 m, two may be torn for a moment.
-                let is_torn = height > 1.0 && (open > 0.02 || past > 3.5);
+                // Of 24 that fall 30 m, two may be torn for a moment.
+                let is_torn = height > 3.0 && (open > 0.02 || past > 3.5);
                 torn += u32::from(is_torn);
                 let [widest, farthest] = if is_torn && torn <= 2 { [0.06, 20.0] } else { [0.02, 3.5] };
                 if open > widest || past > farthest || is_late || gained > 0.0 {
@@ -185,10 +175,7 @@ fn a_heap_of_humans_comes_to_rest() {
             let turn = any_rotation(&mut dice);
             joints.extend(human(&mut sim, place, turn, losses).1);
         }
-        let (steps, all) = settle(&mut sim, &joints, 720);
-        // Of 16 heaps 98 % of the joints keep within 11 mm and 3.6 degrees; the worst one is torn by 8 cm and 24 degrees for a moment.
-        let ([open, past], [widest, farthest]) = (quantile(&all, 0.98), quantile(&all, 1.0));
-        let is_torn = open > 0.02 || past > 5.0 || widest > 0.15 || farthest > 45.0;
+        let (steps, open, past) = settle(&mut sim, &joints, 720);
         let seconds = steps as f32 / 60.0;
         let mut speeds: Vec<f32> =
             sim.bodies.awake_dynamic().map(|id| sim.bodies.velocities[id as usize].linear.length()).collect();
@@ -196,11 +183,44 @@ fn a_heap_of_humans_comes_to_rest() {
         let [half, most] = [50, 99].map(|q| speeds.get(speeds.len() * q / 100).copied().unwrap_or(0.0));
         // The last of a heap may rock on.
         let is_restless = half > 0.001 || losses.damping > 0.0 && most > 0.1;
-        if is_torn || is_restless {
+        if open > 0.015 || past > 10.0 || is_restless {
             failed.push(format!(
-                "{losses:?}: open {open} and {widest} m, past {past} and {farthest} degrees, after {seconds} s {} awake, {half} and {most} m/s",
+                "{losses:?}: open {open} m, past {past} degrees, after {seconds} s {} awake, {half} and {most} m/s",
                 speeds.len()
             ));
+        }
+    }
+    assert!(failed.is_empty(), "{failed:#?}");
+}
+
+/// A limb that is stopped before a thin wall stops the whole body with it: its joints do not open by the way that is left.
+#[test]
+fn a_human_thrown_at_a_thin_wall_neither_passes_nor_is_torn() {
+    let mut failed = Vec::new();
+    for speed in [10.0f32, 20.0, 40.0] {
+        for seed in 0..8 {
+            let mut dice = Dice::new(seed);
+            let mut sim = Sim::new();
+            sim.checked = false;
+            let wall = Shape::Cuboid(Cuboid { half: sized(0.01, 20.0, 20.0) });
+            sim.add(BodyKind::Static, wall, Vector::ZERO, Rot::IDENTITY);
+            let turn = any_rotation(&mut dice);
+            let (ids, joints) = human(&mut sim, Vector::X * -3.0, turn, Losses::USUAL);
+            for id in &ids {
+                sim.bodies.set_velocity(*id, Velocity { linear: Vector::X * speed, ..Velocity::default() });
+            }
+            let mut open = 0.0f32;
+            for _ in 0..60 {
+                sim.step();
+                for joint in &joints {
+                    open = open.max(sim.gap(*joint).unwrap().length);
+                }
+            }
+            let passed = ids.iter().filter(|id| sim.position(**id).to_local().x > 0.0).count();
+            if passed > 0 || open > 0.05 {
+                failed
+                    .push(format!("{speed} m/s, seed {seed}: {passed} parts pass, joints open by {open} m"));
+            }
         }
     }
     assert!(failed.is_empty(), "{failed:#?}");
