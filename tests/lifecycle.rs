@@ -14,7 +14,7 @@ use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
 
 /// Changes per run.
-const OPERATIONS: u32 = 25_000;
+const OPERATIONS: u32 = 1_000;
 /// Changes between two steps, on average.
 const PER_STEP: u32 = 8;
 /// Few enough entities that changes often affect the same one.
@@ -291,12 +291,13 @@ fn check(app: &mut App, falling: &[(Entity, Scalar)], step: u32) {
     }
 }
 
-/// Worlds per run. Many combinations of components occur, so that a long-lived world gets slow.
-const WORLDS: u32 = 25;
+/// Worlds per run, and with `AVIAN_LONG_TESTS=1`. Many combinations of components occur, so that a long-lived world gets slow.
+const WORLDS: [u32; 2] = [10, 25];
 
 fn run(seed: u64, observers: bool) {
+    let is_long = std::env::var_os("AVIAN_LONG_TESTS").is_some();
     let mut random = Random(seed);
-    (0..WORLDS).for_each(|_| run_world(&mut random, observers));
+    (0..WORLDS[usize::from(is_long)]).for_each(|_| run_world(&mut random, observers));
 }
 
 fn run_world(random: &mut Random, observers: bool) {
@@ -310,7 +311,7 @@ fn run_world(random: &mut Random, observers: bool) {
             .add_observer(|_: On<Add, RigidBody>, commands: Commands| meddle(commands))
             .add_observer(|_: On<Remove, Collider>, commands: Commands| meddle(commands));
     }
-    for number in 0..OPERATIONS / WORLDS / PER_STEP {
+    for number in 0..OPERATIONS / PER_STEP {
         for _ in 0..PER_STEP {
             change(app.world_mut(), random);
         }

@@ -6,7 +6,9 @@ usage() {
 Everything a change has to pass. Goes on after a failure, and prints all
 of them again at the end.
 
-    tools/check.sh            all of it, which is what CI runs
+    tools/check.sh            what CI runs: a third of an hour on a fast machine with two cores, three times that on a slow one
+    tools/check.sh --full     the same, then golden hashes of the kernel in release and without any optimisation, characters at all
+                              rates, and more random changes: before a release, and after a change of compiler
     tools/check.sh --fast     formatting, rules of the source tree, lints and tests of the kernel in f32, golden hashes
                               among them, but for the longest: no Bevy, three minutes
     tools/check.sh --hunt [N] the kernel's tests N times (10 if not told) with other random input each time
@@ -30,7 +32,7 @@ mode=all
 rounds=10
 case "${1:-}" in
     "") ;;
-    --fast | --hunt) mode="${1#--}" ;;
+    --fast | --full | --hunt) mode="${1#--}" ;;
     --help | -h)
         usage
         exit
@@ -58,6 +60,8 @@ export CARGO_TARGET_DIR="$(cd "$target" && pwd)"
 copy="$CARGO_TARGET_DIR/tree"
 # Incremental files are many times the size of the result, and save little where a whole crate is compiled.
 export CARGO_INCREMENTAL=0
+# What is inlined is compiled once in each unit of code: 4 instead of 16 take a quarter less.
+export CARGO_PROFILE_DEV_CODEGEN_UNITS=4
 export PROPTEST_RNG_SEED="${PROPTEST_RNG_SEED:-1}"
 # Messages tell what failed.
 export RUST_BACKTRACE=0
@@ -148,20 +152,22 @@ readme_tests() {
     stage cargo test --quiet
 }
 
+# Characters at all rates, and more random changes.
+long_tests() {
+    for dimension in 2d 3d; do
+        AVIAN_LONG_TESTS=1 stage cargo test --quiet --package "avian$dimension" --test it --test lifecycle
+    done
+}
+
 # World positions in f64 exclude f32 in one build: their tests, and the engine's unit tests in f64, are a workspace
 # of their own. Bevy has the same features there, and is not compiled again.
 f64_tests() {
     stage cargo test --quiet --locked --manifest-path crates/far_f64/Cargo.toml
 }
 
-# The features of apps that no test has: f64 as Avian's users ask for it, and no default collider, as crates ask for
-# that bring none. With avian_derive in the command, Bevy has the features that it has for lints.
+# The features of apps that no test has: no default collider, as crates ask for that bring none.
 feature_sets() {
-    for dimension in 2d 3d; do
-        stage cargo check --quiet --package "avian$dimension" --package avian_derive \
-            --no-default-features --features "$dimension,f64,parry-f64,parallel"
-    done
-    stage cargo check --quiet --package avian3d --no-default-features --features 3d,f32,parallel
+    stage cargo check --quiet --package avian3d --package avian_derive --no-default-features --features 3d,f32,parallel
 }
 
 # Documentation without a broken link. Cargo looks for changes in the folder of a package only, and the sources are
@@ -201,18 +207,22 @@ main() {
                 kernel_tests --lib --test it
             done
             ;;
-        all)
+        all | full)
             # What newcomers run comes first: on a slow machine, or in too short a time, it says most.
             formatting
             rules
             readme_tests
-            kernel_tests --features f64
-            golden_hashes
+            # Unit tests are the same in f64.
+            kernel_tests --features f64 --test it
             lints
             documentation
             f64_tests
             feature_sets
-            plain_golden_hashes
+            if [ "$mode" = full ]; then
+                long_tests
+                golden_hashes
+                plain_golden_hashes
+            fi
             ;;
     esac
     if [ ${#failed[@]} -gt 0 ]; then

@@ -1,6 +1,6 @@
 //! Characters on what moves, and before what moves.
 
-use super::{Course, RATES, SKIN, Sample, all_at, block, each, figures, fixed, floor, lane, some, spin};
+use super::{Course, SKIN, Sample, all_at, block, each, figures, fixed, floor, lane, some, spin, usual};
 use avian::{character_controller::controller::GroundState, math::*, prelude::*};
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
@@ -21,7 +21,7 @@ fn set<C: Component>(course: &mut Course, entity: Entity, value: C) {
 #[test]
 fn feet_stay_on_a_lift_that_turns_round() {
     let cases = each(&[0.5, 5.0]);
-    for rate in RATES {
+    for rate in usual() {
         let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::Y * STANDING));
         let mut course = Course::side_by_side(rate, starts);
         let mut lifts = Vec::new();
@@ -53,7 +53,7 @@ fn feet_stay_on_a_lift_that_turns_round() {
 /// By its transform, with turns at up to 7 m/s²; and a carousel.
 #[test]
 fn feet_stay_on_a_lift_that_follows_its_transform() {
-    for rate in RATES {
+    for rate in usual() {
         let mut course = all_at(rate, spin::START * 0.5 + Vector::Y * STANDING);
         let bundle =
             (RigidBody::Kinematic, FollowTransform, spin::disc(), Transform::from_xyz(0.0, -0.5, 0.0));
@@ -126,7 +126,7 @@ fn trains_carry_and_give_their_speed_to_who_jumps() {
 /// A wheel about the axis of the view, in space a carousel about `up` as well.
 #[test]
 fn a_carousel_carries_round_exactly() {
-    for rate in RATES {
+    for rate in usual() {
         let mut course = all_at(rate, spin::START + Vector::Y * STANDING);
         let disc = moving(&mut course, spin::disc(), Vector::NEG_Y * 0.5, Vector::ZERO);
         let start = course.walk_all(|_| Vector::ZERO, 0.1);
@@ -203,7 +203,7 @@ fn belts_carry_at_the_speed_of_their_surface() {
 /// A door pushes; between a door and a wall there is no room.
 #[test]
 fn doors_push_and_crush() {
-    for rate in RATES {
+    for rate in usual() {
         let mut course = all_at(rate, Vector::Y * STANDING);
         floor(&mut course.app);
         let wall = Vector::X * 5.0 + Vector::Y * 2.1;

@@ -1,6 +1,6 @@
 //! More of the course: piles, ragdolls, and starts inside of things.
 
-use super::{Course, RATES, SKIN, block, each, figures, fixed, floor, lane, some};
+use super::{Course, SKIN, block, each, figures, fixed, floor, lane, some, usual};
 use avian::{math::*, prelude::*};
 use bevy_math::Quat;
 use bevy_transform::components::Transform;
@@ -65,7 +65,7 @@ fn who_stands_on_a_pile_or_on_a_ragdoll_is_not_thrown() {
 #[test]
 fn who_starts_inside_gets_out_or_stays() {
     let cases = each(&[0.0, 0.1, 0.25, 0.45]);
-    for rate in RATES {
+    for rate in usual() {
         let starts = cases.iter().map(|(_, depth, shape)| (shape.clone(), Vector::Y * (0.9 - depth)));
         let mut course = Course::side_by_side(rate, starts);
         floor(&mut course.app);

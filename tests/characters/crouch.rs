@@ -1,6 +1,6 @@
 //! Characters that crouch.
 
-use super::{Course, RATES, SKIN, Sample, all_at, ask, block, crouched, figures, fixed, floor};
+use super::{Course, SKIN, Sample, all_at, ask, block, crouched, figures, fixed, floor, usual};
 use avian::{math::*, prelude::*};
 
 /// Half the heights of the figures, with the skin.
@@ -29,7 +29,7 @@ fn tunnel(rate: u32) -> Course {
 
 #[test]
 fn a_low_tunnel_is_for_those_that_crouch() {
-    for rate in RATES {
+    for rate in usual() {
         let mut course = tunnel(rate);
         let before = course.walk_all(|_| Vector::X * 3.0, 0.8);
         crouches(&mut course, true);

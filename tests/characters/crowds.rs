@@ -1,6 +1,6 @@
 //! Crowds: a hundred characters in a corridor, and a thousand on a mesh.
 
-use super::{ASIDE, RATES, SKIN, app, block, figures, fixed, floor, some, step, terrain};
+use super::{ASIDE, SKIN, app, block, figures, fixed, floor, some, step, terrain, usual};
 use avian::{
     character_controller::controller::CharacterState, collision::collider::contact_query::contact,
     dynamics::solver::WorkerCount, math::*, prelude::*,
@@ -118,7 +118,7 @@ fn a_hundred_strangers_queue_in_a_narrow_corridor() {
 /// Two that walk at each other stand still where they met, at any rate: each moves out by half of what they overlap.
 #[test]
 fn two_that_meet_do_not_shake() {
-    for rate in RATES {
+    for rate in usual() {
         for apart in [3.0, 3.01, 3.03] {
             let ways = [-1.0, 1.0].map(|way| (Vector::X * (0.5 * apart * way), Vector::X * (-3.0 * way)));
             let places = ways.map(|(at, velocity)| (at + Vector::Y * STANDING, velocity));

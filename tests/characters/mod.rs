@@ -34,16 +34,21 @@ use core::time::Duration;
 pub use super::characters_dim::*;
 
 /// The tick rates of the course, in Hz.
-pub const RATES: [u32; 6] = [30, 60, 64, 144, 240, 360];
+const RATES: [u32; 6] = [30, 60, 64, 144, 240, 360];
 
-/// Some rates, to save time; with `AVIAN_ALL_RATES=1` every rate.
+/// Some rates, to save time; with `AVIAN_LONG_TESTS=1` every rate.
 pub fn some(rates: &'static [u32]) -> &'static [u32] {
-    if std::env::var_os("AVIAN_ALL_RATES").is_some() { &RATES } else { rates }
+    if std::env::var_os("AVIAN_LONG_TESTS").is_some() { &RATES } else { rates }
 }
 
-/// The rates at which a figure is tested: the capsule at every rate, the others at some.
+/// The rates of most tests: a low one, the default and a high one, or every rate.
+pub fn usual() -> impl Iterator<Item = u32> {
+    some(&[30, 64, 144]).iter().copied()
+}
+
+/// The rates at which a figure is tested: the capsule at three, the others at two.
 pub fn rates(name: &str) -> &'static [u32] {
-    if name == "capsule" { &RATES } else { some(&[30, 144]) }
+    some(if name == "capsule" { &[30, 64, 144] } else { &[30, 144] })
 }
 
 /// Each figure in each of some cases.

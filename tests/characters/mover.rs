@@ -1,7 +1,7 @@
 //! Dynamic movers: bodies that walk by forces.
 
 use super::{
-    RATES, SKIN, app, block, fixed, floor, lane, some, spin, stay_on_one_thread, step, toward, turned,
+    SKIN, app, block, fixed, floor, lane, some, spin, stay_on_one_thread, step, toward, turned, usual,
 };
 use avian::{dynamics::solver::WorkerCount, math::*, prelude::*};
 use bevy_app::prelude::*;
@@ -266,7 +266,7 @@ fn it_pushes_by_its_mass() {
 /// Light crates rain on a mover that walks through them: what it steps on in the air is not thrown.
 #[test]
 fn it_throws_nothing_that_bears_nothing() {
-    for rate in RATES {
+    for rate in usual() {
         let mut hall = Hall::new(rate, 0.3, Vector::Y * rest(0.3));
         floor(&mut hall.app);
         let crates: Vec<Entity> = (0..50)
@@ -295,7 +295,7 @@ fn it_throws_nothing_that_bears_nothing() {
 /// A crate of 1 kg on the floor bears all of its weight, and gives as much to a jump as the floor.
 #[test]
 fn a_light_crate_on_the_floor_is_firm() {
-    for rate in RATES {
+    for rate in usual() {
         for aside in [0.0, 0.3] {
             let mut hall = Hall::new(rate, 0.3, Vector::Y * (rest(0.3) + 0.8) + Vector::X * aside);
             floor(&mut hall.app);
@@ -318,7 +318,7 @@ fn a_light_crate_on_the_floor_is_firm() {
 /// Who presses forward and jumps in the same tick from a moving platform goes on relative to that.
 #[test]
 fn a_jump_from_a_platform_keeps_all_of_its_velocity() {
-    for rate in RATES {
+    for rate in usual() {
         let mut hall = Hall::new(rate, 0.3, Vector::Y * (rest(0.3) + 0.1));
         let body =
             (RigidBody::Kinematic, block(Vector::ONE * 0.2 + Vector::X * 60.0), Position(Vector::ZERO));

@@ -1,6 +1,6 @@
 //! Platforms that are passed from below, and ceilings.
 
-use super::{Course, RATES, SKIN, all_at, block, each, figures, fixed, floor, lane};
+use super::{Course, SKIN, all_at, block, each, figures, fixed, floor, lane, usual};
 use avian::{character_controller::controller::GroundState, math::*, prelude::*, schedule::PhysicsSchedule};
 use bevy_ecs::prelude::*;
 
@@ -37,7 +37,7 @@ fn pass_platforms(
 #[test]
 fn platforms_by_a_filter_are_one_way() {
     let cases = each(&[0.0, 0.3]);
-    for rate in RATES {
+    for rate in usual() {
         let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::Y * STANDING));
         let mut course = Course::side_by_side(rate, starts);
         course.app.add_systems(PhysicsSchedule, pass_platforms.before(CharacterSystems));
@@ -91,7 +91,7 @@ fn platforms_by_a_filter_are_one_way() {
 /// The jump ends at the ceiling, and the fall begins there.
 #[test]
 fn a_ceiling_ends_a_jump() {
-    for rate in RATES {
+    for rate in usual() {
         let mut course = all_at(rate, Vector::Y * STANDING);
         floor(&mut course.app);
         let room = 0.3;

@@ -1,6 +1,6 @@
 //! Planets: characters that walk once around.
 
-use super::{Course, RATES, SKIN, ball, each, terrain, toward, turned};
+use super::{Course, SKIN, ball, each, terrain, toward, turned, usual};
 use avian::{math::*, prelude::*, schedule::PhysicsSchedule};
 use bevy_ecs::prelude::*;
 
@@ -48,7 +48,7 @@ fn faceted() -> Collider {
 #[test]
 fn a_planet_is_walked_around() {
     let cases = each(&["ball", "facets"]);
-    for rate in RATES {
+    for rate in usual() {
         let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::Y * STANDING));
         let mut course = Course::side_by_side(rate, starts);
         for (i, (_, planet, _)) in cases.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Tight places: tubes that touch a character at each of their facets, and wedges of a floor and a ceiling.
 
-use super::{Course, RATES, SKIN, block, figures, fixed, floor, groove, some, toward, turned};
+use super::{Course, SKIN, block, figures, fixed, floor, groove, some, toward, turned, usual};
 use avian::{math::*, prelude::*};
 
 const STANDING: Scalar = 0.9 + SKIN;
@@ -54,7 +54,7 @@ fn a_wedge_holds_and_lets_go() {
         .into_iter()
         .flat_map(|degrees: Scalar| figures().into_iter().map(move |(name, shape)| (degrees, name, shape)))
         .collect();
-    for rate in RATES {
+    for rate in usual() {
         let starts = cases.iter().map(|(_, _, shape)| (shape.clone(), Vector::Y * STANDING));
         let mut course = Course::side_by_side(rate, starts);
         floor(&mut course.app);
@@ -85,7 +85,7 @@ fn a_wedge_holds_and_lets_go() {
 /// A gap too narrow by 8 mm between a wall and one that leans away by 2 degrees: to fit, it would have to rise by 23 cm.
 #[test]
 fn a_gap_between_walls_does_not_lift() {
-    for rate in RATES {
+    for rate in usual() {
         let starts = figures().into_iter().map(|(_, shape)| (shape, Vector::Y * STANDING));
         let mut course = Course::side_by_side(rate, starts);
         floor(&mut course.app);

@@ -1,6 +1,6 @@
 //! Characters on floors, slopes and stairs.
 
-use super::{Course, RATES, SKIN, all_at, block, each, figures, fixed, floor, some, terrain, toward, turned};
+use super::{Course, SKIN, all_at, block, each, figures, fixed, floor, some, terrain, toward, turned, usual};
 use avian::{character_controller::controller::GroundState, math::*, prelude::*};
 
 /// Half the height of the figures, with the skin: where one that stands on the floor is.
@@ -13,7 +13,7 @@ fn slope(angle: Scalar) -> [Vector; 2] {
 
 #[test]
 fn a_jump_is_as_high_as_its_speed_says_at_any_rate() {
-    for rate in RATES {
+    for rate in usual() {
         let mut course = all_at(rate, Vector::Y * 2.0);
         floor(&mut course.app);
         let falls = course.walk_all(|_| Vector::ZERO, 0.7);
@@ -45,7 +45,7 @@ fn a_jump_is_as_high_as_its_speed_says_at_any_rate() {
 #[test]
 fn slopes_up_to_the_limit_are_walked_at_the_speed_asked_for() {
     let cases = each(&[5, 25, 45]);
-    for rate in RATES {
+    for rate in usual() {
         let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::Y * 1.5));
         let mut course = Course::side_by_side(rate, starts);
         for (i, (_, degrees, _)) in cases.iter().enumerate() {
@@ -81,7 +81,7 @@ fn slopes_up_to_the_limit_are_walked_at_the_speed_asked_for() {
 #[test]
 fn steep_slopes_are_slid_down() {
     let cases = each(&[55, 75, 85]);
-    for rate in RATES {
+    for rate in usual() {
         let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::ZERO));
         let mut course = Course::side_by_side(rate, starts);
         for (i, (_, degrees, _)) in cases.iter().enumerate() {
@@ -114,7 +114,7 @@ fn steep_slopes_are_slid_down() {
 
 #[test]
 fn a_fast_walker_stays_on_a_slope_down() {
-    for rate in RATES {
+    for rate in usual() {
         let mut course = all_at(rate, Vector::Y * STANDING - Vector::X * 2.0);
         let level = Vector::NEG_X * 10.0 - Vector::Y * 10.0;
         fixed(&mut course.app, block(Vector::ONE * 20.0), level, Rotation::IDENTITY);
@@ -158,7 +158,7 @@ fn stairs(course: &mut Course, index: usize, is_mesh: bool) {
 /// As boxes and as a mesh.
 #[test]
 fn stairs_are_climbed_and_descended_at_any_rate() {
-    for rate in RATES {
+    for rate in usual() {
         let slow = if rate < 100 { 1.5 } else { 2.5 };
         let cases = each(&[(slow, false), (slow, true), (4.0, false), (4.0, true)]);
         let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::Y * STANDING));
@@ -195,7 +195,7 @@ fn stairs_are_climbed_and_descended_at_any_rate() {
 fn what_is_too_high_or_has_no_room_is_no_step() {
     // Height and depth of a step with a wall behind it; whether it is climbed.
     let cases = each(&[(0.35, 1.0, true), (0.45, 1.0, false), (0.3, 0.05, false), (0.3, 0.2, true)]);
-    for rate in RATES {
+    for rate in usual() {
         let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::Y * STANDING));
         let mut course = Course::side_by_side(rate, starts);
         floor(&mut course.app);
