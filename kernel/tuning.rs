@@ -90,9 +90,8 @@ pub mod manifold {
 
     /// The share of a size that makes no difference. Points of a manifold, and radii of curved contacts, that are closer are the
     /// same; lines that are side by side over less have one point; a face is deeper than what it replaces from this share of the
-    /// prediction on; depths of deep overlaps are known to it; deep overlap stays deep down to it; rounds over limits of joints
-    /// end when they move coordinates by less than this share of what the first did, or of the tolerance, for angles as many
-    /// radians. Larger loses corners, pushes out along worse normals,
+    /// prediction on; depths of deep overlaps are known to it; deep overlap stays deep down to it; a limit of a tree of joints
+    /// acts if it would be passed by this share of the tolerance in a step, for angles of as many radians. Larger loses corners, pushes out along worse normals,
     /// and has springs push out the rest of deep overlap, so that rows of bodies fly apart; smaller solves points twice.
     pub const SAME: f32 = 0.01;
 

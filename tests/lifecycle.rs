@@ -13,7 +13,7 @@ use bevy_time::Time;
 use bevy_transform::{TransformPlugin, components::Transform};
 use core::time::Duration;
 
-/// Changes per run.
+/// Changes per world.
 const OPERATIONS: u32 = 1_000;
 /// Changes between two steps, on average.
 const PER_STEP: u32 = 8;

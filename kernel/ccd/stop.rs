@@ -105,8 +105,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         }
     }
 
-    /// Whether a body has no joints and touches only what does not move. What moves with others must not be put back alone:
-    /// joints would open.
+    /// Whether a body has no joints and touches only what does not move. What moves with others is not put back for a
+    /// corner: with it would be all that it is joined to.
     fn is_alone(&self, body: u32) -> bool {
         let is_free = |kind| self.bodies.constraints(kind).of_body(body).next().is_none();
         is_free(ConstraintKind::Joint)

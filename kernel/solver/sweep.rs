@@ -1,7 +1,6 @@
 //! Bodies that moved far stop where they meet something; see [`ccd`](crate::ccd).
-#![expect(unsafe_code, reason = "rows of bodies are changed by several threads, each its own")]
 
-use super::{BodyRow, RowView, Solver, gyro::*};
+use super::{BodyRow, Solver, gyro::*};
 use crate::ccd::{Path, SweepBuffers, SweepInput, Swept};
 use crate::contact::ManifoldSource;
 use crate::data::BitSet;
@@ -27,22 +26,21 @@ impl Solver {
     ) {
         let first_dynamic = self.bodies.first_dynamic();
         let listed = &listed[..listed.len().min(self.bodies.rows.len().saturating_sub(1))];
-        let rows = &RowView::over(&mut self.bodies.rows, first_dynamic);
+        let rows = &self.bodies.rows;
         pool.each_into(workers, listed.chunks(BLOCK).enumerate(), |buffers, (block, ids)| {
             for (i, &body) in ids.iter().enumerate() {
                 let row = (1 + block * BLOCK + i) as u32;
                 if row < first_dynamic || input.bodies.row(body) != row {
                     continue;
                 }
-                // SAFETY: no thread writes bodies.
-                let moved: BodyRow = unsafe { *rows.get(row) };
+                let moved = &rows[row as usize];
                 let (way, turn) = moved.delta();
                 // What turns by more than half a turn seems to turn less.
                 let angle = max(turn.small_turn().length(), moved.velocity().1.length() * input.dt);
                 if !input.is_far(body, way.length(), angle) || !input.may_meet(body, way) {
                     continue;
                 }
-                let fraction = input.stop(body, &path(input, body, &moved), buffers);
+                let fraction = input.stop(body, &path(input, body, moved), buffers);
                 if fraction < 1.0 {
                     buffers.stops.push((body, fraction));
                 }
@@ -80,7 +78,7 @@ impl Solver {
     }
 
     /// Puts back all bodies that stop, each to the first of its impacts, and what they are joined to with them. Calls a function for
-    /// those that met something, with their fraction of the step.
+    /// each, with the fraction of the step.
     fn put_back_all<S: ManifoldSource>(
         &mut self,
         input: &SweepInput<S>,
@@ -93,49 +91,44 @@ impl Solver {
         }
         stops.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         stops.dedup_by_key(|stop| stop.0);
-        let joined = self.joined(input, &stops);
-        for (body, fraction, met) in joined {
+        for (body, fraction) in self.joined(input, &stops) {
             let row = input.bodies.row(body) as usize;
             let Some(moved) = self.bodies.rows.get_mut(row).filter(|_| row > 0) else { continue };
             let path = path(input, body, moved);
             put_back(moved, &path, fraction, self.bodies.motions[row].acceleration);
-            if met {
-                stopped(moved, fraction);
-            }
+            stopped(moved, fraction);
             self.bodies.moved.insert(row as u32);
             mark_outdated(input, body, &mut self.outdated);
         }
     }
 
-    /// All bodies that stop with some, given by ascending id, with the fraction of the step and whether they met something. What is joined
-    /// stops together, or its joints would open by its way.
-    fn joined<S>(&self, input: &SweepInput<S>, stops: &[(u32, f32)]) -> Vec<(u32, f32, bool)> {
+    /// All bodies that stop with some, given by ascending id, and the fractions of the step. What is joined stops together, or its joints
+    /// would open by its way. But what cannot move at all stops alone: it would hold the others in the air.
+    fn joined<S>(&self, input: &SweepInput<S>, stops: &[(u32, f32)]) -> Vec<(u32, f32)> {
         let own = |body: u32| stops.binary_search_by_key(&body, |stop| stop.0).ok().map(|k| stops[k].1);
-        let (first_dynamic, mut seen, mut all) = (self.bodies.first_dynamic(), BitSet::default(), Vec::new());
-        for (body, _) in stops {
-            let start = all.len();
-            let mut add = |body: u32, all: &mut Vec<_>| {
-                if seen.insert(body) {
-                    all.push((body, 1.0f32, own(body).is_some()));
-                }
-            };
-            add(*body, &mut all);
-            let mut next = start;
-            while let Some((body, ..)) = all.get(next).copied() {
+        let first_dynamic = self.bodies.first_dynamic();
+        let joints = input.bodies.constraints(ConstraintKind::Joint);
+        let (mut seen, mut all) = (BitSet::default(), Vec::new());
+        for (body, _) in stops.iter().copied() {
+            let mut next = all.len();
+            let start = next;
+            if seen.insert(body) {
+                all.push((body, 1.0));
+            }
+            while let Some((body, _)) = all.get(next).copied() {
                 next += 1;
-                for kind in [ConstraintKind::Joint, ConstraintKind::Custom] {
-                    let constraints = input.bodies.constraints(kind);
-                    for id in constraints.of_body(body) {
-                        let others = constraints.get(id).bodies.into_iter();
-                        others
-                            .filter(|other| input.bodies.row(*other) >= first_dynamic)
-                            .for_each(|other| add(other, &mut all));
-                    }
+                for id in joints.of_body(body).filter(|id| self.joints.holds(*id)) {
+                    let stops = |other: u32| input.bodies.row(other) >= first_dynamic || own(other).is_some();
+                    let others = joints.get(id).bodies.into_iter().filter(|other| stops(*other));
+                    all.extend(others.filter(|other| seen.insert(*other)).map(|other| (other, 1.0)));
                 }
             }
-            let first = all[start..].iter().filter_map(|one| own(one.0)).fold(1.0, min);
-            all[start..].iter_mut().for_each(|one| one.1 = first);
+            let group = &mut all[start..];
+            let impacts = group.iter().filter_map(|one| own(one.0)).filter(|fraction| *fraction > 0.0);
+            let first = impacts.fold(1.0, min);
+            group.iter_mut().for_each(|one| one.1 = if own(one.0) == Some(0.0) { 0.0 } else { first });
         }
+        all.retain(|one| one.1 < 1.0);
         all
     }
 }

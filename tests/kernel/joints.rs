@@ -49,7 +49,7 @@ pub(super) fn post(sim: &mut Sim, at: Vector) -> u32 {
 }
 
 /// The angle of a body in the plane of x and y, from −π to π.
-fn angle(sim: &Sim, id: u32) -> f32 {
+pub(super) fn angle(sim: &Sim, id: u32) -> f32 {
     let x = sim.bodies.frame(id).rotation.rotate(Vector::X);
     f64::from(x.y).atan2(f64::from(x.x)) as f32
 }

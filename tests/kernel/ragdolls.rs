@@ -183,7 +183,7 @@ fn a_heap_of_humans_comes_to_rest() {
         let [half, most] = [50, 99].map(|q| speeds.get(speeds.len() * q / 100).copied().unwrap_or(0.0));
         // The last of a heap may rock on.
         let is_restless = half > 0.001 || losses.damping > 0.0 && most > 0.1;
-        if open > 0.015 || past > 10.0 || is_restless {
+        if open > 0.015 || past > 8.0 || is_restless {
             failed.push(format!(
                 "{losses:?}: open {open} m, past {past} degrees, after {seconds} s {} awake, {half} and {most} m/s",
                 speeds.len()

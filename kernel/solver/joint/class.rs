@@ -41,10 +41,12 @@ pub(super) struct Summary {
     pub(super) batch: u8,
     /// Whether it may be part of a tree.
     pub(super) may_branch: bool,
+    /// Whether it locks something.
+    pub(super) holds: bool,
 }
 
 impl Summary {
-    pub(super) const OF_COUPLING: Self = Self { batch: COUPLINGS as u8, may_branch: false };
+    pub(super) const OF_COUPLING: Self = Self { batch: COUPLINGS as u8, may_branch: false, holds: false };
 
     pub(super) fn of(def: &JointDef) -> Self {
         let block = (0..BLOCK).rev().find(|k| def.is_in_block(*k)).map_or(0, |last| last + 1);
@@ -52,6 +54,6 @@ impl Summary {
         let turns = def.orientation.is_some();
         let fits = |class: &Class| class.block >= block && class.singles >= singles && class.turns >= turns;
         let batch = CLASSES.iter().position(fits).expect("the last one has room for all");
-        Self { batch: batch as u8, may_branch: def.may_branch() }
+        Self { batch: batch as u8, may_branch: def.may_branch(), holds: def.holds() }
     }
 }

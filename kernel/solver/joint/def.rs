@@ -145,6 +145,11 @@ impl Axis {
     /// Held at 0.
     pub const LOCKED: Self = Self::limited(0.0, 0.0);
 
+    /// Whether it is limited or driven.
+    fn is_set(&self) -> bool {
+        self.limits.is_some() || self.spring.is_some() || self.motor.is_some()
+    }
+
     /// Kept between two values.
     pub const fn limited(min: f32, max: f32) -> Self {
         Self { limits: Some([min, max]), ..Self::FREE }
@@ -256,14 +261,18 @@ impl JointDef {
 
     /// Whether a tree may hold it: something is locked, and nothing contradicts it.
     pub(super) fn may_branch(&self) -> bool {
-        let is_held = self.is_rod() || (0..BLOCK).any(|number| self.is_in_block(number));
-        is_held && !self.sets_twice()
+        self.holds() && !self.sets_twice()
     }
 
-    /// Whether a distance or an angle between axes has limits, and one of the coordinates of which it is made: such settings
-    /// may contradict each other.
+    /// Whether something is locked.
+    pub(super) fn holds(&self) -> bool {
+        self.is_rod() || (0..BLOCK).any(|number| self.is_in_block(number))
+    }
+
+    /// Whether a distance or an angle between axes is limited or driven, and one of the coordinates of which it is made has limits: such
+    /// settings may contradict each other.
     pub(super) fn sets_twice(&self) -> bool {
-        (BLOCK..AXES).any(|number| self.axes[number].limits.is_some() && self.has_set_parts(number))
+        (BLOCK..AXES).any(|number| self.axes[number].is_set() && self.has_set_parts(number))
     }
 
     /// Whether a coordinate is a distance or an angle between axes, and one of those of which it is made has limits.
@@ -273,9 +282,7 @@ impl JointDef {
 
     /// The coordinates that are solved one by one: outside the block those with limits, a spring or a motor.
     pub(super) fn is_single(&self, number: usize) -> bool {
-        let axis = &self.axes[number];
-        let is_set = axis.limits.is_some() || axis.spring.is_some() || axis.motor.is_some();
-        !self.is_in_block(number) && is_set
+        !self.is_in_block(number) && self.axes[number].is_set()
     }
 }
 

@@ -24,9 +24,6 @@ pub(super) const ROWS: usize = AXES;
 /// A motion of a body, or an impulse on it.
 pub(super) type Screw = [f64; DOF];
 
-/// The conductance of a row that does not give way.
-pub(super) const HARD: [f64; 2] = [f64::INFINITY, 0.0];
-
 /// Share of a row's own inverse mass below which its pivot is rounding.
 const NO_PIVOT: f64 = 1.0e-10;
 
@@ -96,13 +93,8 @@ pub(super) struct Link {
     pub(super) count: usize,
     /// J of parent and child, by row.
     pub(super) jacobians: [[Screw; ROWS]; 2],
-    /// Γ, or the part of it that does not depend on k.
+    /// Γ.
     pub(super) softness: [f64; ROWS],
-    /// a and c of a row that has k / (a + c k) besides, where k is what a unit impulse changes beside the rows before it, in this joint and
-    /// below the child. Infinite if it has not.
-    pub(super) conductance: [[f64; 2]; ROWS],
-    /// k.
-    pub(super) left: [f64; ROWS],
     /// r.
     pub(super) wanted: [f64; ROWS],
     /// λ.
@@ -121,8 +113,6 @@ impl Link {
         count: 0,
         jacobians: [[[0.0; DOF]; ROWS]; 2],
         softness: [0.0; ROWS],
-        conductance: [HARD; ROWS],
-        left: [0.0; ROWS],
         wanted: [0.0; ROWS],
         impulses: [0.0; ROWS],
         lower: [[0.0; ROWS]; ROWS],
@@ -140,7 +130,7 @@ impl Link {
     /// Replaces the lower half of E by its factors. Rows that depend on those before, or that nothing moves, are left out.
     #[inline(always)]
     fn factor(&mut self, count: usize) {
-        let Self { lower, inverse, conductance, left, .. } = self;
+        let Self { lower, inverse, .. } = self;
         for j in 0..count {
             let (own, mut pivot) = (lower[j][j], lower[j][j]);
             for m in 0..j {
@@ -149,10 +139,7 @@ impl Link {
                 pivot -= scaled * lower[j][m];
                 lower[j][m] = scaled;
             }
-            let counts = pivot > own * NO_PIVOT;
-            left[j] = if counts { pivot } else { 0.0 };
-            let [of_mass, besides] = conductance[j];
-            inverse[j] = if counts { 1.0 / (pivot + pivot / (of_mass + besides * pivot)) } else { 0.0 };
+            inverse[j] = if pivot > own * NO_PIVOT { 1.0 / pivot } else { 0.0 };
             for i in j + 1..count {
                 for m in 0..j {
                     lower[i][j] -= lower[i][m] * lower[j][m];
@@ -334,11 +321,6 @@ mod tests {
                     rows
                 });
                 (link.softness[i], link.wanted[i]) = (1.0e-3 * inv_mass, any(seed));
-                // The last row may be a limit, a spring or a motor.
-                if i + 1 == count && number % 2 == 0 {
-                    link.softness[i] = 0.0;
-                    link.conductance[i] = [[2.0, 0.0], [0.0, 3.0], [2.0, 3.0]][number % 3];
-                }
             }
             links.push(link);
             if ends[1] == GROUND && number > 0 {
@@ -363,9 +345,7 @@ mod tests {
         let mut most = 0.0f64;
         for link in links {
             for i in 0..link.count {
-                let [of_mass, besides] = link.conductance[i];
-                let softness = link.softness[i] + link.left[i] / (of_mass + besides * link.left[i]);
-                let mut sum = softness * link.impulses[i] - link.wanted[i];
+                let mut sum = link.softness[i] * link.impulses[i] - link.wanted[i];
                 for (side, place) in link.places.into_iter().enumerate().filter(|(_, place)| *place != GROUND)
                 {
                     let change = product(&nodes[place as usize].inverse, &impulses[place as usize]);

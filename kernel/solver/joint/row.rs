@@ -138,7 +138,13 @@ fn first_guess(angle: f32, [min, max]: [f32; 2]) -> f32 {
 
 impl<N: Lane> Single<N> {
     /// Copies a coordinate into a lane. `angle` is that of the turning coordinate, within a turn.
-    fn set(&mut self, lane: usize, number: usize, record: &Record, angle: f32, params: &SubstepParams) {
+    fn set(
+        &mut self,
+        (lane, hold): (usize, Hold),
+        number: usize,
+        (record, angle): (&Record, f32),
+        params: &SubstepParams,
+    ) {
         let axis: &Axis = &record.def.axes[number];
         match ANGLE_AXES.iter().position(|a| *a == number) {
             Some(k) => self.about[k].set(lane, 1.0),
@@ -149,7 +155,7 @@ impl<N: Lane> Single<N> {
         self.may_contradict.set(lane, f32::from(u8::from(record.def.has_set_parts(number))));
         self.limits[0].set(lane, min);
         self.limits[1].set(lane, max);
-        self.softening.set(lane, axis.give, Hold::Row, params.h);
+        self.softening.set(lane, axis.give, hold, params.h);
         let [lower, upper, spring, motor] = record.singles[number].map(|impulse| impulse * params.warm_start);
         self.impulses[0].set(lane, lower);
         self.impulses[1].set(lane, upper);
@@ -224,7 +230,7 @@ impl<N: Lane> Row<N> {
         let angle = super::dim::angles::<f32>(bases)[TURNING].0;
         let numbers = (0..AXES).filter(|k| def.is_single(*k));
         for (number, single) in numbers.zip(singles) {
-            single.set(lane, number, record, angle, params);
+            single.set((lane, hold), number, (record, angle), params);
         }
         if let (Some(row), Some(motor)) = (orientation, &def.orientation) {
             let impulses = record.orientation.map(|impulse| impulse * params.warm_start);

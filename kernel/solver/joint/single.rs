@@ -157,7 +157,7 @@ impl<N: Lane> Single<N> {
     /// Where the block may hold the coordinate, impulses are those of the mass without the block. To shorten a distance across a locked
     /// shift, the body would have to move along the other axis without bound.
     #[inline(always)]
-    pub(super) fn act(
+    fn act(
         &mut self,
         (gradient, value): (&Gradient<N>, N),
         (response, alone): (&Response<N>, &Response<N>),

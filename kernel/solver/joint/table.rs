@@ -221,6 +221,11 @@ impl JointTable {
         self.summaries[id as usize]
     }
 
+    /// Whether a joint locks something.
+    pub(in super::super) fn holds(&self, id: u32) -> bool {
+        self.summary(id).holds
+    }
+
     pub(in super::super) fn records(&mut self) -> Records<'_> {
         Records(Parts::of(&mut self.records))
     }

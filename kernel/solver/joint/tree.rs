@@ -152,6 +152,7 @@ impl JointTrees {
             for body in tree.bodies.iter_mut() {
                 body.share = from.bearing.share(body.row);
             }
+            tree.scratch.is_weighed = false;
             tree.scratch.coordinates.clear();
             tree.scratch.coordinates.resize(tree.singles.len(), Coordinate::NONE);
             for (k, branch) in forest.branches[range(span.branches)].iter().enumerate() {
@@ -171,9 +172,8 @@ impl JointTrees {
                 if record.def.is_rod() {
                     row.take_rod(singles, &record.def, hold, from.params.h);
                 }
-                let is_driven = |single: &Single<f32>| single.spring.most + single.motor.most > 0.0;
-                let drives = singles.iter().any(is_driven) || joint.orientation.is_some();
-                joint.is_warm = drives || row.damping != [0.0; 2];
+                let is_warm = singles.iter().any(Single::is_warm) || joint.orientation.is_some();
+                joint.is_warm = is_warm || row.damping != [0.0; 2];
                 let place = |place: u32| if place == GROUND { GROUND } else { place - span.bodies[0] };
                 let places = branch.places.map(place);
                 tree.links[k].places = places;

@@ -40,7 +40,7 @@ impl Tree<'_> {
 
     /// Solves the tree for a unit impulse along a coordinate of a joint, and adds the impulse to those on its bodies. The
     /// response of the joint's bodies.
-    fn unit_response(&mut self, k: usize, gradient: &Gradient<f32>) -> Response<f32> {
+    pub(super) fn unit_response(&mut self, k: usize, gradient: &Gradient<f32>) -> Response<f32> {
         let Self { joints, links, nodes, .. } = self;
         let ends: [(u32, Screw); 2] = core::array::from_fn(|end| {
             let sign = if joints[k].side(end) == 0 { -1.0 } else { 1.0 };

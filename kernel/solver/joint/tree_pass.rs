@@ -177,6 +177,7 @@ impl Tree<'_> {
             // SAFETY: by the contract.
             joint.pair = unsafe { Pair::load(&sweep.bodies, &joint.row.ids) };
         }
+        let mut is_driven = self.joints.iter().all(|joint| joint.orientation.is_none());
         for round in 0..JOINT_ROUNDS {
             if self.scratch.known != Known::Factors(sweep.pass) {
                 self.factor(sweep);
@@ -184,11 +185,17 @@ impl Tree<'_> {
             self.ask(sweep);
             elimination::solve(self.links, self.nodes);
             self.apply(sweep);
-            if round == 0 {
-                // SAFETY: by the contract.
-                (0..self.joints.len()).for_each(|k| unsafe { self.solve_orientation(k, sweep) });
+            // In the last rounds limits are only let go.
+            let adds = 2 * round < JOINT_ROUNDS;
+            if round + 1 < JOINT_ROUNDS && self.pivot(adds, sweep) {
+                continue;
             }
-            if round + 1 == JOINT_ROUNDS || !self.pivot(sweep) {
+            if core::mem::replace(&mut is_driven, true) {
+                break;
+            }
+            // SAFETY: by the contract.
+            (0..self.joints.len()).for_each(|k| unsafe { self.solve_orientation(k, sweep) });
+            if round + 1 == JOINT_ROUNDS || !self.pivot(adds, sweep) {
                 break;
             }
         }
@@ -218,8 +225,8 @@ impl Tree<'_> {
             let range = joint.singles_from(self.first_single);
             for (single, at) in self.singles[range.clone()].iter().zip(&self.scratch.coordinates[range]) {
                 let Some(row) = at.row else { continue };
-                let (rate, left) = (at.gradient.rate(&pair), link.left[row] as f32);
-                link.wanted[row] = f64::from(single.wanted(at, rate, left, sweep.params, biased));
+                let rate = at.gradient.rate(&pair);
+                link.wanted[row] = f64::from(single.wanted(at, rate, sweep.params, biased));
             }
         }
     }
@@ -242,42 +249,40 @@ impl Tree<'_> {
             }
             let pair = self.pair(k);
             for (single, at) in self.singles[range.clone()].iter_mut().zip(&self.scratch.coordinates[range]) {
-                let Some(row) = at.row.filter(|row| link.left[*row] > 0.0) else { continue };
-                let solved = (link.impulses[row] as f32, at.gradient.rate(&pair), link.left[row] as f32);
+                let Some(row) = at.row else { continue };
+                let solved = (link.impulses[row] as f32, at.gradient.rate(&pair));
                 single.share_out(at, solved, sweep.params, sweep.pass == Pass::Solve);
             }
         }
     }
 
     /// Finds which limits act and which motors are at their maximum. Returns whether others are than were solved for.
-    fn pivot(&mut self, sweep: &Sweep) -> bool {
-        let mut any = false;
+    fn pivot(&mut self, adds: bool, sweep: &Sweep) -> bool {
+        let mut changes = core::mem::take(&mut self.scratch.changes);
+        changes.clear();
         for k in 0..self.joints.len() {
             let range = self.joints[k].singles_from(self.first_single);
             if range.is_empty() {
                 continue;
             }
-            let mut pair = self.pair(k);
+            let pair = self.pair(k);
             for index in range {
                 let (single, at) = (&mut self.singles[index], &mut self.scratch.coordinates[index]);
-                let left = at.row.map_or(0.0, |row| self.links[k].left[row]) as f32;
                 let of_length = if at.gradient.normal == Vector::ZERO { SAME } else { sweep.params.max_sag };
-                let tolerance = SAME * of_length / sweep.params.dt;
-                let solved = (at.gradient.rate(&pair), left, tolerance);
-                let Some(change) = single.pivot(at, solved, sweep.params, sweep.pass == Pass::Solve) else {
-                    continue;
-                };
-                any = true;
-                if change != 0.0 {
-                    let gradient = at.gradient;
-                    self.push(k, &gradient, change);
-                    pair = self.pair(k);
-                }
+                let solved = (at.gradient.rate(&pair), SAME * of_length / sweep.params.dt, adds);
+                let change = single.pivot(at, solved, sweep.params, sweep.pass == Pass::Solve);
+                changes.extend(change.map(|change| (k, index, change)));
             }
         }
-        if any {
+        if !changes.is_empty() {
             self.scratch.known = Known::Places;
         }
+        for (k, index, change) in changes.iter().filter(|(.., change)| *change != 0.0) {
+            let gradient = self.scratch.coordinates[*index].gradient;
+            self.push(*k, &gradient, *change);
+        }
+        let any = !changes.is_empty();
+        self.scratch.changes = changes;
         any
     }
 
@@ -359,7 +364,7 @@ impl Tree<'_> {
             let angles = place.angles();
             for (single, at) in self.singles[range.clone()].iter_mut().zip(&mut coordinates[range]) {
                 (at.gradient, at.value) = single.gradient(&place, &angles);
-                // A blow has let go of others than this pass.
+                // A blow may have let go a limit whose impulse was given back.
                 at.limit = at.limit.or_else(|| single.limit());
             }
         }
@@ -407,16 +412,42 @@ impl Tree<'_> {
     /// Gives each coordinate along which something acts a row, and factors the tree.
     fn factor(&mut self, sweep: &Sweep) {
         let biased = sweep.pass == Pass::Solve;
+        if biased && !core::mem::replace(&mut self.scratch.is_weighed, true) {
+            self.weigh();
+        }
         for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
             joint.soften(link, sweep.pass);
             let range = joint.singles_from(self.first_single);
             for (single, at) in self.singles[range.clone()].iter().zip(&mut self.scratch.coordinates[range]) {
-                let conductance = single.conductance(at, sweep.params, biased);
-                at.row = conductance.map(|conductance| joint.add_row(&at.gradient, conductance, link));
+                at.alone = joint.row.masses.response(&at.gradient).along(&at.gradient);
+                let softness = single.softness(at, sweep.params, biased);
+                at.row = softness.map(|softness| joint.add_row(&at.gradient, softness, link));
             }
         }
         elimination::factor(self.links, self.nodes);
         self.scratch.known = Known::Factors(sweep.pass);
+    }
+
+    /// Finds which mass springs and motors move that are given per mass, with all that is rigid.
+    fn weigh(&mut self) {
+        let mut is_factored = false;
+        for k in 0..self.joints.len() {
+            for index in self.joints[k].singles_from(self.first_single) {
+                if !self.singles[index].is_per_mass() {
+                    continue;
+                }
+                if !core::mem::replace(&mut is_factored, true) {
+                    let joints = self.joints.iter_mut().zip(&mut *self.links);
+                    joints.for_each(|(joint, link)| joint.soften(link, Pass::Relax));
+                    elimination::factor(self.links, self.nodes);
+                }
+                let gradient = self.scratch.coordinates[index].gradient;
+                let alone = self.joints[k].row.masses.response(&gradient).along(&gradient);
+                let left = self.unit_response(k, &gradient).along(&gradient);
+                // What is locked already, nothing moves.
+                self.scratch.coordinates[index].left = if left > alone * NO_MASS { left } else { 0.0 };
+            }
+        }
     }
 }
 
@@ -434,21 +465,20 @@ impl TreeJoint {
             let (gradient, error) = (block.gradients[i], block.values[i] - self.row.block[i].target);
             let error = if i < DIM { error } else { wrapped(error) };
             self.locks[link.count] = Lock { gradient, error };
-            self.add_row(&gradient, [f32::INFINITY, 0.0], link);
+            self.add_row(&gradient, 0.0, link);
         }
         self.locked = link.count;
         self.arm = place.arm();
     }
 
     /// Adds a row to the link. Returns its number.
-    fn add_row(&self, gradient: &Gradient<f32>, conductance: [f32; 2], link: &mut Link) -> usize {
+    fn add_row(&self, gradient: &Gradient<f32>, softness: f32, link: &mut Link) -> usize {
         let number = link.count;
         let side = |side: usize, sign: f32| screw(gradient.normal * sign, gradient.moments[side] * sign);
         // The first one is the parent's, which is A if its side is 0.
         link.jacobians[self.parent_side][number] = side(0, -1.0);
         link.jacobians[1 - self.parent_side][number] = side(1, 1.0);
-        link.softness[number] = 0.0;
-        link.conductance[number] = conductance.map(f64::from);
+        link.softness[number] = f64::from(softness);
         link.count += 1;
         number
     }
