@@ -185,12 +185,10 @@ impl Single<f32> {
         }
         match at.limit {
             _ if self.is_locked() => {}
-            Some(side) => {
-                if self.impulses[side] < 0.0 {
-                    let sign = if side == 0 { 1.0 } else { -1.0 };
-                    change = Some(change.unwrap_or(0.0) - sign * self.impulses[side]);
-                    (self.impulses[side], at.limit) = (0.0, None);
-                }
+            Some(side) if self.impulses[side] < 0.0 => {
+                let sign = if side == 0 { 1.0 } else { -1.0 };
+                change = Some(change.unwrap_or(0.0) - sign * self.impulses[side]);
+                (self.impulses[side], at.limit) = (0.0, None);
             }
             None if adds => {
                 let passes = |side: &usize| {
@@ -203,7 +201,7 @@ impl Single<f32> {
                     change = Some(change.unwrap_or(0.0));
                 }
             }
-            None => {}
+            _ => {}
         }
         change
     }
