@@ -1,5 +1,6 @@
 //! Tests of the kernel's parts working together, written once for both dimensions.
 
+mod arms;
 mod blocks;
 mod blows;
 mod bounce;

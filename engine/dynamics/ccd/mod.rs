@@ -12,7 +12,7 @@
 //! - **[`SweptCcd`]**, for bodies with the component: the same against kinematic and dynamic bodies.
 //!
 //! A body that is put back loses the rest of the step: for a moment it seems slower. What it would have hit later in the same
-//! step, it hits in the next one.
+//! step, it hits in the next one. What joints hold to it is put back with it, so that they do not open.
 //!
 //! Bodies of 5 cm that spin at 20 rad/s, shot at a wall of 1 cm or more at 64 Hz:
 //!

@@ -1,6 +1,7 @@
 //! Trees of joints, solved directly in each pass.
 //!
-//! A pass solves what all joints of a tree lock, limit and drive at once (`elimination.rs`, `tree_single.rs`). Rows of contacts, loops and other joints come before it in the solve pass, and follow and win in the relax pass.
+//! A pass solves what all joints of a tree lock, limit and drive at once (`elimination.rs`, `tree_single.rs`). Rows of
+//! contacts, loops and other joints come before it in the solve pass, and follow and win in the relax pass.
 //!
 //! Being exact, the direct solution needs no warm start, and is soft at the rate of the substeps: one by one, rows that stiff
 //! would explode.
