@@ -185,6 +185,8 @@ pub struct Carrier {
     /// The point of the body under the feet, in its frame, in metres. It stays while the character does not move by itself, so
     /// that rounding does not add up.
     pub anchor: Vector,
+    /// The velocity at which it carries the character, in m/s.
+    pub velocity: Vector,
 }
 
 impl MapEntities for CharacterState {

@@ -85,6 +85,8 @@ pub(super) struct Planning<'a> {
     pub(super) unit: Scalar,
     /// Where its carrier brought it.
     pub(super) ridden_to: Vector,
+    /// The velocity of its fall at the start of the step.
+    pub(super) fell: Vector,
 }
 
 impl Planning<'_> {
@@ -157,9 +159,25 @@ impl Planning<'_> {
         let is_as_expected = (carrier.position, carrier.rotation) == (body.position, body.rotation);
         if !is_as_expected || body.is_moving() {
             let way = body.position.0 + body.rotation * carrier.anchor - self.walker.foot();
+            if let Some(given) = self.given(carrier.body, way / self.around.time) {
+                self.shift_with(carrier.body, given * self.around.time);
+                return;
+            }
             self.shift_with(carrier.body, way);
         }
         self.ridden_to = self.walker.position;
+    }
+
+    /// The part of a change of its velocity that a carrier gives to the character, if that is not all: what is more than gravity
+    /// does in a step is shared as between two bodies that strike each other. So a light limb that kicks does not throw it.
+    fn given(&self, carrier: Entity, change: Vector) -> Option<Vector> {
+        let (spare, length) = (self.gravity.length() * self.around.time, change.length());
+        if !(length > spare) {
+            return None;
+        }
+        let inverse = self.around.bodies.inverse_mass_at(carrier, self.walker.foot(), change / length);
+        let share = 1.0 / (1.0 + self.controller.mass * inverse);
+        (share < 1.0).then(|| change * ((spare + (length - spare) * share) / length))
     }
 
     /// Moves by a displacement, passing through the colliders of a body.
@@ -297,7 +315,7 @@ impl Planning<'_> {
         let surface = self.around.bodies.surface_of(ground) * time;
         let body = self.around.bodies.body_of(ground);
         let motion = body.and_then(|body| self.around.bodies.motion_of(body, time));
-        let before = self.state.carrier;
+        let (before, up) = (self.state.carrier, self.walker.up);
         self.state.carrier = body.zip(motion).map(|(body, motion)| {
             let is_at_rest = self.walker.position == self.ridden_to;
             let known = before.filter(|known| known.body == body && is_at_rest);
@@ -309,11 +327,16 @@ impl Planning<'_> {
                 Vector::ZERO
             };
             let start = self.walker.position;
-            self.shift_with(body, way);
+            let velocity = way / time;
+            let fell = || self.walker.horizontal(self.fell) + up * velocity.dot(up);
+            let carried = before.map_or_else(fell, |before| before.velocity);
+            let given = self.given(body, velocity - carried).map(|change| carried + change);
+            self.shift_with(body, given.map_or(way, |given| given * time));
             // What was in the way moved it on the body.
             let slid = self.walker.position - start - way;
             let anchor = if slid == Vector::ZERO { anchor } else { anchor + rotation.inverse() * slid };
-            Carrier { body, position, rotation, anchor, rider: Vector::ZERO }
+            let velocity = given.unwrap_or(velocity);
+            Carrier { body, position, rotation, anchor, rider: Vector::ZERO, velocity }
         });
         if surface != Vector::ZERO {
             let normal = self.state.ground_normal;

@@ -114,6 +114,7 @@ fn plan(character: &mut CharacterItem, around: &Surroundings) {
         gravity: -up * gravity,
         unit,
         ridden_to: from,
+        fell: character.state.fall,
     };
     planning.run(from);
     *character.state = planning.state;

@@ -282,3 +282,40 @@ fn who_stands_on_a_crate_weighs_on_it() {
         assert!(path[120..].iter().all(|p| (p.position - rest).length() < 1.0e-3), "{name}: it shakes");
     }
 }
+
+/// A raft of each mass that is struck to 5 m/s: the character gets what gravity could give it in a step, and of the rest what
+/// a body of its own 70 kg would. A limb that kicks does not throw it, and a ship takes it along.
+#[test]
+fn what_is_struck_below_a_character_gives_it_what_its_mass_can() {
+    let cases = each(&[0.7, 7.0, 70.0, 70_000.0]);
+    for rate in usual() {
+        let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::Y * (0.5 + STANDING)));
+        let mut course = Course::side_by_side(rate, starts);
+        floor(&mut course.app);
+        let raft = |course: &mut Course, (i, case): (usize, &(_, Scalar, _))| {
+            let shape =
+                block(Vector::X * 8.0 + Vector::Y * 0.5 + (Vector::ONE - Vector::X - Vector::Y) * 2.0);
+            let bundle = (RigidBody::Dynamic, shape, Position(Vector::Y * 0.25), Mass(case.1 as f32));
+            let raft = course.app.world_mut().spawn((bundle, LockedAxes::ROTATION_LOCKED, Friction::ZERO));
+            let raft = raft.id();
+            set(course, raft, lane(i));
+            raft
+        };
+        let rafts: Vec<Entity> = cases.iter().enumerate().map(|case| raft(&mut course, case)).collect();
+        course.walk(Vector::ZERO, 0.3);
+        let before: Vec<Vector> = course.tick_all().iter().map(|sample| sample.position).collect();
+        rafts.iter().for_each(|raft| set(&mut course, *raft, LinearVelocity(Vector::X * 5.0)));
+        let after = course.tick_all();
+        for ((before, after), (name, mass, _)) in before.into_iter().zip(after).zip(&cases) {
+            let spare = 9.81 / rate as Scalar;
+            let expected = spare + (5.0 - spare) * mass / (mass + 70.0);
+            let speed = (after.position.x - before.x) * rate as Scalar;
+            let what = (name, rate, mass);
+            assert!(
+                (speed - expected).abs() < 0.01 * expected,
+                "{what:?}: {speed} instead of {expected} m/s"
+            );
+            assert!(after.state.is_grounded(), "{what:?}: {after:?}");
+        }
+    }
+}
