@@ -79,6 +79,30 @@ pub(super) struct Block<N, const D: usize> {
     pub(super) responses: [Response<N>; D],
 }
 
+/// The gradients of the first `D` coordinates, and their values, given the angles if some are of them.
+#[inline(always)]
+pub(super) fn coordinates<N: Lane, const D: usize>(
+    place: &Place<N>,
+    of_world: N::Mask,
+    angles: &[(N, Angular<N>); ANGLES],
+) -> ([Gradient<N>; D], [N; D]) {
+    let axes = place.axes(of_world);
+    let mut values = [N::ZERO; D];
+    let mut gradients = [Gradient::NONE; D];
+    for k in 0..DIM.min(D) {
+        values[k] = axes[k].dot(place.between);
+        gradients[k] = place.gradient(axes[k], Angular::ZERO);
+    }
+    for i in 0..ANGLES {
+        let (value, axis) = angles[i];
+        if ANGLE_AXES[i] < D {
+            values[ANGLE_AXES[i]] = value;
+            gradients[ANGLE_AXES[i]] = Gradient { normal: Vector::ZERO, moments: [axis; 2] };
+        }
+    }
+    (gradients, values)
+}
+
 /// A block whose matrix is factored.
 pub(super) struct Solved<N, const D: usize> {
     takes_part: [N; D],
@@ -88,37 +112,12 @@ pub(super) struct Solved<N, const D: usize> {
 impl<N: Lane, const D: usize> Block<N, D> {
     #[inline(always)]
     pub(super) fn new(place: &Place<N>, of_world: N::Mask, masses: &Masses<N>) -> Self {
-        let axes = place.axes(of_world);
-        let mut values = [N::ZERO; D];
-        let mut gradients = [Gradient::NONE; D];
-        for k in 0..DIM.min(D) {
-            values[k] = axes[k].dot(place.between);
-            gradients[k] = place.gradient(axes[k], Angular::ZERO);
-        }
-        if D > DIM {
-            let angles = place.angles();
-            for i in 0..ANGLES {
-                let (value, axis) = angles[i];
-                if ANGLE_AXES[i] < D {
-                    values[ANGLE_AXES[i]] = value;
-                    gradients[ANGLE_AXES[i]] = Gradient { normal: Vector::ZERO, moments: [axis; 2] };
-                }
-            }
-        }
+        let (gradients, values) = coordinates::<N, D>(place, of_world, &place.angles_of::<D>());
         let mut responses = [Response::NONE; D];
         for k in 0..D {
             responses[k] = masses.response(&gradients[k]);
         }
         Self { gradients, values, responses }
-    }
-
-    /// Replaces the first coordinate by the distance of the anchors.
-    #[inline(always)]
-    pub(super) fn take_distance(&mut self, place: &Place<N>, masses: &Masses<N>) {
-        let (distance, direction) = place.apart();
-        let gradient = place.gradient(direction, Angular::ZERO);
-        (self.values[0], self.gradients[0], self.responses[0]) =
-            (distance, gradient, masses.response(&gradient));
     }
 
     /// Applies impulses.

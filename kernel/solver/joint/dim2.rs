@@ -63,8 +63,8 @@ pub(super) fn motion(screw: &[f64; DOF]) -> (Vector, Angular) {
 }
 
 /// M⁻¹ of a body.
-pub(super) fn inverse_of(mass: Vector, inertia: InvInertia) -> [[f64; DOF]; DOF] {
-    let diagonal = screw(mass, Angular { z: inertia.zz });
+pub(super) fn inverse_of(mass: Vector, inertia: InvInertia) -> [[f32; DOF]; DOF] {
+    let diagonal = numbers((mass, Angular { z: inertia.zz }));
     core::array::from_fn(|i| core::array::from_fn(|j| if i == j { diagonal[i] } else { 0.0 }))
 }
 

@@ -113,13 +113,12 @@ pub(super) fn motion(screw: &[f64; DOF]) -> (Vector, Angular) {
 }
 
 /// M⁻¹ of a body.
-pub(super) fn inverse_of(mass: Vector, i: InvInertia) -> [[f64; DOF]; DOF] {
-    let diagonal = screw(mass, Vector { x: i.xx, y: i.yy, z: i.zz });
-    let mut inverse: [[f64; DOF]; DOF] =
+pub(super) fn inverse_of(mass: Vector, i: InvInertia) -> [[f32; DOF]; DOF] {
+    let diagonal = numbers((mass, Vector { x: i.xx, y: i.yy, z: i.zz }));
+    let mut inverse: [[f32; DOF]; DOF] =
         core::array::from_fn(|i| core::array::from_fn(|j| if i == j { diagonal[i] } else { 0.0 }));
     for (row, column, number) in [(3, 4, i.xy), (3, 5, i.xz), (4, 5, i.yz)] {
-        inverse[row][column] = f64::from(number);
-        inverse[column][row] = f64::from(number);
+        (inverse[row][column], inverse[column][row]) = (number, number);
     }
     inverse
 }

@@ -15,8 +15,13 @@
 //!
 //! After Baraff, "Linear-time dynamics using Lagrange multipliers" (1996), and Featherstone's articulated bodies.
 
+#![expect(unsafe_code, reason = "entry points of CPU features")]
+
 use super::dim::{AXES, DOF};
 use super::forest::GROUND;
+#[cfg(target_arch = "x86_64")]
+use crate::math::F32x8;
+use crate::math::{Entry, F32x4, Job, Width};
 
 /// Most rows of a link: one of each coordinate.
 pub(super) const ROWS: usize = AXES;
@@ -26,6 +31,20 @@ pub(super) type Screw = [f64; DOF];
 
 /// Share of a row's own inverse mass below which its pivot is rounding.
 const NO_PIVOT: f64 = 1.0e-10;
+
+/// Number of entries of the lower half of a matrix of rows, with its diagonal.
+const LOWER: usize = ROWS * (ROWS + 1) / 2;
+
+/// The place of an entry of the lower half.
+#[inline(always)]
+const fn at(row: usize, column: usize) -> usize {
+    row * (row + 1) / 2 + column
+}
+
+#[inline(always)]
+fn widen(a: &[f32; DOF]) -> Screw {
+    a.map(f64::from)
+}
 
 /// Sums of three products each do not wait for each other.
 #[inline(always)]
@@ -47,10 +66,10 @@ pub(super) fn add(to: &mut Screw, a: &Screw, times: f64) {
 
 /// The product with a symmetric matrix, by columns: they are added side by side.
 #[inline(always)]
-fn product(matrix: &[Screw; DOF], a: &Screw) -> Screw {
+fn product(matrix: &[Screw; DOF], a: &[f32; DOF]) -> Screw {
     let mut sum = [0.0; DOF];
     for i in 0..DOF {
-        add(&mut sum, &matrix[i], a[i]);
+        add(&mut sum, &matrix[i], f64::from(a[i]));
     }
     sum
 }
@@ -59,7 +78,7 @@ fn product(matrix: &[Screw; DOF], a: &Screw) -> Screw {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     /// M⁻¹.
-    pub(super) inverse: [Screw; DOF],
+    pub(super) inverse: [[f32; DOF]; DOF],
     /// B, while joints are eliminated.
     left: [Screw; DOF],
     /// g, while joints are eliminated.
@@ -69,8 +88,8 @@ pub(super) struct Node {
 }
 
 impl Node {
-    pub(super) fn new(inverse: [Screw; DOF]) -> Self {
-        Self { inverse, left: inverse, motion: [0.0; DOF], impulse: [0.0; DOF] }
+    pub(super) fn new(inverse: [[f32; DOF]; DOF]) -> Self {
+        Self { inverse, left: [[0.0; DOF]; DOF], motion: [0.0; DOF], impulse: [0.0; DOF] }
     }
 
     /// What the impulse of its joints changes.
@@ -79,9 +98,45 @@ impl Node {
     }
 
     /// What an impulse changes.
+    #[inline(always)]
     pub(super) fn moved(&self, impulse: &Screw) -> Screw {
-        product(&self.inverse, impulse)
+        let mut sum = [0.0; DOF];
+        for i in 0..DOF {
+            add(&mut sum, &widen(&self.inverse[i]), impulse[i]);
+        }
+        sum
     }
+}
+
+/// A row of a link. What is used of a link lies together: trees are many times as large as caches are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LinkRow {
+    /// J of parent and child.
+    pub(super) jacobians: [[f32; DOF]; 2],
+    /// Γ.
+    pub(super) softness: f32,
+    /// By how much what is locked is off, in m or rad.
+    pub(super) error: f32,
+    /// r.
+    pub(super) wanted: f64,
+    /// λ.
+    pub(super) impulse: f64,
+    /// D⁻¹ of E = L D Lᵀ.
+    inverse: f64,
+    /// Y.
+    passed: Screw,
+}
+
+impl LinkRow {
+    const NONE: Self = Self {
+        jacobians: [[0.0; DOF]; 2],
+        softness: 0.0,
+        error: 0.0,
+        wanted: 0.0,
+        impulse: 0.0,
+        inverse: 0.0,
+        passed: [0.0; DOF],
+    };
 }
 
 /// A joint of a tree: some rows between a parent and a child.
@@ -91,58 +146,38 @@ pub(super) struct Link {
     pub(super) places: [u32; 2],
     /// Number of rows.
     pub(super) count: usize,
-    /// J of parent and child, by row.
-    pub(super) jacobians: [[Screw; ROWS]; 2],
-    /// Γ.
-    pub(super) softness: [f64; ROWS],
-    /// r.
-    pub(super) wanted: [f64; ROWS],
-    /// λ.
-    pub(super) impulses: [f64; ROWS],
-    /// E = L D Lᵀ: L below the diagonal.
-    lower: [[f64; ROWS]; ROWS],
-    /// D⁻¹.
-    inverse: [f64; ROWS],
-    /// Y.
-    passed: [Screw; ROWS],
+    /// E, and then L below the diagonal.
+    lower: [f64; LOWER],
+    pub(super) rows: [LinkRow; ROWS],
 }
 
 impl Link {
-    pub(super) const NONE: Self = Self {
-        places: [GROUND; 2],
-        count: 0,
-        jacobians: [[[0.0; DOF]; ROWS]; 2],
-        softness: [0.0; ROWS],
-        wanted: [0.0; ROWS],
-        impulses: [0.0; ROWS],
-        lower: [[0.0; ROWS]; ROWS],
-        inverse: [0.0; ROWS],
-        passed: [[0.0; DOF]; ROWS],
-    };
+    pub(super) const NONE: Self =
+        Self { places: [GROUND; 2], count: 0, lower: [0.0; LOWER], rows: [LinkRow::NONE; ROWS] };
 
     /// Wants a motion of an end taken back.
     pub(super) fn want_against(&mut self, end: usize, motion: &Screw) {
-        for i in 0..self.count {
-            self.wanted[i] -= dot(&self.jacobians[end][i], motion);
+        for row in &mut self.rows[..self.count] {
+            row.wanted -= dot(&widen(&row.jacobians[end]), motion);
         }
     }
 
     /// Replaces the lower half of E by its factors. Rows that depend on those before, or that nothing moves, are left out.
     #[inline(always)]
     fn factor(&mut self, count: usize) {
-        let Self { lower, inverse, .. } = self;
+        let Self { lower, rows, .. } = self;
         for j in 0..count {
-            let (own, mut pivot) = (lower[j][j], lower[j][j]);
+            let (own, mut pivot) = (lower[at(j, j)], lower[at(j, j)]);
             for m in 0..j {
                 // It is still times D.
-                let scaled = lower[j][m] * inverse[m];
-                pivot -= scaled * lower[j][m];
-                lower[j][m] = scaled;
+                let scaled = lower[at(j, m)] * rows[m].inverse;
+                pivot -= scaled * lower[at(j, m)];
+                lower[at(j, m)] = scaled;
             }
-            inverse[j] = if pivot > own * NO_PIVOT { 1.0 / pivot } else { 0.0 };
+            rows[j].inverse = if pivot > own * NO_PIVOT { 1.0 / pivot } else { 0.0 };
             for i in j + 1..count {
                 for m in 0..j {
-                    lower[i][j] -= lower[i][m] * lower[j][m];
+                    lower[at(i, j)] -= lower[at(i, m)] * lower[at(j, m)];
                 }
             }
         }
@@ -153,13 +188,13 @@ impl Link {
     fn solve(&self, x: &mut [f64; ROWS], count: usize) {
         for i in 0..count {
             for m in 0..i {
-                x[i] -= self.lower[i][m] * x[m];
+                x[i] -= self.lower[at(i, m)] * x[m];
             }
         }
         for i in (0..count).rev() {
-            x[i] *= self.inverse[i];
+            x[i] *= self.rows[i].inverse;
             for m in i + 1..count {
-                x[i] -= self.lower[m][i] * x[m];
+                x[i] -= self.lower[at(m, i)] * x[m];
             }
         }
     }
@@ -169,18 +204,20 @@ impl Link {
     fn eliminate(&mut self, nodes: &mut [Node], count: usize) {
         let [parent, child] = self.places;
         for i in 0..count {
-            self.lower[i] = [0.0; ROWS];
-            self.lower[i][i] = self.softness[i];
+            for j in 0..i {
+                self.lower[at(i, j)] = 0.0;
+            }
+            self.lower[at(i, i)] = f64::from(self.rows[i].softness);
         }
         for (side, place) in [parent, child].into_iter().enumerate() {
             let Some(node) = nodes.get(place as usize) else { continue };
             for i in 0..count {
-                let response = product(&node.left, &self.jacobians[side][i]);
+                let response = product(&node.left, &self.rows[i].jacobians[side]);
                 if side == 0 {
-                    self.passed[i] = response;
+                    self.rows[i].passed = response;
                 }
                 for j in i..count {
-                    self.lower[j][i] += dot(&response, &self.jacobians[side][j]);
+                    self.lower[at(j, i)] += dot(&response, &widen(&self.rows[j].jacobians[side]));
                 }
             }
         }
@@ -189,21 +226,20 @@ impl Link {
         // L⁻¹ W, then B − Wᵀ E⁻¹ W row by row, then Y.
         for i in 0..count {
             for m in 0..i {
-                let (of_m, times) = (self.passed[m], -self.lower[i][m]);
-                add(&mut self.passed[i], &of_m, times);
+                let (of_m, times) = (self.rows[m].passed, -self.lower[at(i, m)]);
+                add(&mut self.rows[i].passed, &of_m, times);
             }
         }
-        for i in 0..count {
-            let row = self.passed[i];
+        for row in &self.rows[..count] {
             for k in 0..DOF {
-                add(&mut node.left[k], &row, -row[k] * self.inverse[i]);
+                add(&mut node.left[k], &row.passed, -row.passed[k] * row.inverse);
             }
         }
         for i in (0..count).rev() {
-            self.passed[i] = self.passed[i].map(|x| x * self.inverse[i]);
+            self.rows[i].passed = self.rows[i].passed.map(|x| x * self.rows[i].inverse);
             for m in i + 1..count {
-                let (of_m, times) = (self.passed[m], -self.lower[m][i]);
-                add(&mut self.passed[i], &of_m, times);
+                let (of_m, times) = (self.rows[m].passed, -self.lower[at(m, i)]);
+                add(&mut self.rows[i].passed, &of_m, times);
             }
         }
     }
@@ -212,38 +248,43 @@ impl Link {
     #[inline(always)]
     fn rise(&mut self, nodes: &mut [Node], count: usize) {
         let is_still = |place: &u32| nodes.get(*place as usize).is_none_or(|node| node.motion == [0.0; DOF]);
-        if self.wanted == [0.0; ROWS] && self.places.iter().all(is_still) {
-            self.impulses = [0.0; ROWS];
+        if self.rows[..count].iter().all(|row| row.wanted == 0.0) && self.places.iter().all(is_still) {
+            self.rows[..count].iter_mut().for_each(|row| row.impulse = 0.0);
             return;
         }
-        let mut e = self.wanted;
+        let mut e = [0.0; ROWS];
+        for i in 0..count {
+            e[i] = self.rows[i].wanted;
+        }
         for (side, place) in self.places.into_iter().enumerate() {
             let Some(node) = nodes.get(place as usize) else { continue };
             for i in 0..count {
-                e[i] -= dot(&self.jacobians[side][i], &node.motion);
+                e[i] -= dot(&widen(&self.rows[i].jacobians[side]), &node.motion);
             }
         }
         if let Some(node) = nodes.get_mut(self.places[0] as usize) {
             for i in 0..count {
-                add(&mut node.motion, &self.passed[i], e[i]);
+                add(&mut node.motion, &self.rows[i].passed, e[i]);
             }
         }
         self.solve(&mut e, count);
-        self.impulses = e;
+        for i in 0..count {
+            self.rows[i].impulse = e[i];
+        }
     }
 
     /// Takes off what the parent's other joints do, and adds the impulses to those of both bodies.
     #[inline(always)]
     fn fall(&mut self, nodes: &mut [Node], count: usize) {
         if let Some(node) = nodes.get(self.places[0] as usize) {
-            for i in 0..count {
-                self.impulses[i] -= dot(&self.passed[i], &node.impulse);
+            for row in &mut self.rows[..count] {
+                row.impulse -= dot(&row.passed, &node.impulse);
             }
         }
         for (side, place) in self.places.into_iter().enumerate() {
             let Some(node) = nodes.get_mut(place as usize) else { continue };
-            for i in 0..count {
-                add(&mut node.impulse, &self.jacobians[side][i], self.impulses[i]);
+            for row in &self.rows[..count] {
+                add(&mut node.impulse, &widen(&row.jacobians[side]), row.impulse);
             }
         }
     }
@@ -256,31 +297,76 @@ macro_rules! by_count {
             1 => $link.$method($nodes, 1),
             2 => $link.$method($nodes, 2),
             3 => $link.$method($nodes, 3),
+            4 => $link.$method($nodes, 4),
+            5 => $link.$method($nodes, 5),
+            6 => $link.$method($nodes, 6),
             count => $link.$method($nodes, count),
         }
     };
 }
 
-/// Eliminates the joints of a tree, which are in an order from the root on.
-pub(super) fn factor(links: &mut [Link], nodes: &mut [Node]) {
-    nodes.iter_mut().for_each(|node| node.left = node.inverse);
-    for link in links.iter_mut().rev() {
-        by_count!(link.eliminate(nodes));
+/// The joints of a tree, in an order from the root on, and its bodies.
+struct Parts<'a> {
+    links: &'a mut [Link],
+    nodes: &'a mut [Node],
+}
+
+struct Factor<'a>(Parts<'a>);
+
+impl Job for Factor<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    unsafe fn run(self) {
+        let Parts { links, nodes } = self.0;
+        nodes.iter_mut().for_each(|node| node.left = node.inverse.map(|row| widen(&row)));
+        for link in links.iter_mut().rev() {
+            by_count!(link.eliminate(nodes));
+        }
     }
+}
+
+struct Solve<'a>(Parts<'a>);
+
+impl Job for Solve<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    unsafe fn run(self) {
+        let Parts { links, nodes } = self.0;
+        for node in nodes.iter_mut() {
+            (node.motion, node.impulse) = ([0.0; DOF], [0.0; DOF]);
+        }
+        for link in links.iter_mut().rev() {
+            by_count!(link.rise(nodes));
+        }
+        for link in links.iter_mut() {
+            by_count!(link.fall(nodes));
+        }
+    }
+}
+
+/// Runs a job in code for a width.
+fn enter(width: Width, job: impl Job<Output = ()>) {
+    // SAFETY: the jobs are safe.
+    unsafe {
+        match width {
+            #[cfg(target_arch = "x86_64")]
+            Width::Eight(avx2) => F32x8::enter(avx2, job),
+            _ => F32x4::enter((), job),
+        }
+    }
+}
+
+/// Eliminates the joints of a tree, which are in an order from the root on.
+pub(super) fn factor(links: &mut [Link], nodes: &mut [Node], width: Width) {
+    enter(width, Factor(Parts { links, nodes }));
 }
 
 /// Solves a factored tree for what its joints want. Afterwards joints have their impulses, and bodies those of all their
 /// joints.
-pub(super) fn solve(links: &mut [Link], nodes: &mut [Node]) {
-    for node in nodes.iter_mut() {
-        (node.motion, node.impulse) = ([0.0; DOF], [0.0; DOF]);
-    }
-    for link in links.iter_mut().rev() {
-        by_count!(link.rise(nodes));
-    }
-    for link in links.iter_mut() {
-        by_count!(link.fall(nodes));
-    }
+pub(super) fn solve(links: &mut [Link], nodes: &mut [Node], width: Width) {
+    enter(width, Solve(Parts { links, nodes }));
 }
 
 #[cfg(test)]
@@ -298,13 +384,13 @@ mod tests {
         };
         let (mut links, mut nodes): (Vec<Link>, Vec<Node>) = (Vec::new(), Vec::new());
         for (number, &(weight, parent, seed)) in seeds.iter().enumerate() {
-            let mut inverse = [[0.0; DOF]; DOF];
+            let mut inverse = [[0.0f32; DOF]; DOF];
             let inv_mass = 1.0 / ratio.powf(weight);
             let roots: [Screw; DOF] = core::array::from_fn(|_| core::array::from_fn(|_| any(seed)));
             for (i, row) in inverse.iter_mut().enumerate() {
                 for (j, x) in row.iter_mut().enumerate() {
                     let turn = if i >= DIM && j >= DIM { 0.3 * dot(&roots[i], &roots[j]) } else { 0.0 };
-                    *x = inv_mass * (turn + if i == j { 0.5 } else { 0.0 });
+                    *x = (inv_mass * (turn + if i == j { 0.5 } else { 0.0 })) as f32;
                 }
             }
             nodes.push(Node::new(inverse));
@@ -315,12 +401,9 @@ mod tests {
             };
             let count = 1 + seed as usize % ROWS;
             let mut link = Link { places: ends, count, ..Link::NONE };
-            for i in 0..count {
-                link.jacobians = link.jacobians.map(|mut rows| {
-                    rows[i] = core::array::from_fn(|_| any(seed));
-                    rows
-                });
-                (link.softness[i], link.wanted[i]) = (1.0e-3 * inv_mass, any(seed));
+            for row in &mut link.rows[..count] {
+                row.jacobians = core::array::from_fn(|_| core::array::from_fn(|_| any(seed) as f32));
+                (row.softness, row.wanted) = (1.0e-3 * inv_mass as f32, any(seed));
             }
             links.push(link);
             if ends[1] == GROUND && number > 0 {
@@ -337,19 +420,19 @@ mod tests {
         let mut impulses = vec![[0.0; DOF]; nodes.len()];
         for link in links {
             for (side, place) in link.places.into_iter().enumerate().filter(|(_, place)| *place != GROUND) {
-                for i in 0..link.count {
-                    add(&mut impulses[place as usize], &link.jacobians[side][i], link.impulses[i]);
+                for row in &link.rows[..link.count] {
+                    add(&mut impulses[place as usize], &widen(&row.jacobians[side]), row.impulse);
                 }
             }
         }
         let mut most = 0.0f64;
         for link in links {
-            for i in 0..link.count {
-                let mut sum = link.softness[i] * link.impulses[i] - link.wanted[i];
+            for row in &link.rows[..link.count] {
+                let mut sum = f64::from(row.softness) * row.impulse - row.wanted;
                 for (side, place) in link.places.into_iter().enumerate().filter(|(_, place)| *place != GROUND)
                 {
-                    let change = product(&nodes[place as usize].inverse, &impulses[place as usize]);
-                    sum += dot(&link.jacobians[side][i], &change);
+                    let change = nodes[place as usize].moved(&impulses[place as usize]);
+                    sum += dot(&widen(&row.jacobians[side]), &change);
                 }
                 most = most.max(sum.abs());
             }
@@ -370,29 +453,35 @@ mod tests {
             ratio in prop::sample::select(vec![1.0, 100.0, 1.0e6]),
         ) {
             let (mut links, mut nodes) = tree(&seeds, ratio);
-            factor(&mut links, &mut nodes);
+            let mut other = (links.clone(), nodes.clone());
+            factor(&mut links, &mut nodes, Width::default());
+            factor(&mut other.0, &mut other.1, Width::Four);
             for _ in 0..2 {
-                solve(&mut links, &mut nodes);
+                solve(&mut links, &mut nodes, Width::default());
+                solve(&mut other.0, &mut other.1, Width::Four);
                 let most = residual(&links, &nodes);
                 prop_assert!(most < 1.0e-6, "off by {most}");
+                let bits = |links: &[Link]| -> Vec<u64> {
+                    links.iter().flat_map(|link| link.rows.map(|row| row.impulse.to_bits())).collect()
+                };
+                prop_assert_eq!(bits(&links), bits(&other.0), "other bits with another width");
             }
         }
     }
 
     #[test]
     fn rows_that_nothing_moves_are_left_out() {
-        let mut rows = [[[0.0; DOF]; ROWS]; 2];
-        rows[0][0][0] = 1.0;
-        rows[0][1][1] = 1.0;
-        rows[0][2][1] = 1.0;
         let mut held = [[0.0; DOF]; DOF];
         held[1][1] = 2.0;
-        let wanted = core::array::from_fn(|_| 4.0);
-        let link = Link { places: [0, GROUND], count: 3, jacobians: rows, wanted, ..Link::NONE };
+        let mut link = Link { places: [0, GROUND], count: 3, ..Link::NONE };
+        for (row, axis) in link.rows.iter_mut().zip([0, 1, 1]) {
+            row.jacobians[0][axis] = 1.0;
+            row.wanted = 4.0;
+        }
         let (mut links, mut nodes) = ([link], [Node::new(held)]);
-        factor(&mut links, &mut nodes);
-        solve(&mut links, &mut nodes);
-        assert_eq!(links[0].impulses[..3], [0.0, 2.0, 0.0]);
+        factor(&mut links, &mut nodes, Width::default());
+        solve(&mut links, &mut nodes, Width::default());
+        assert_eq!(links[0].rows.map(|row| row.impulse)[..3], [0.0, 2.0, 0.0]);
         assert_eq!(nodes[0].change()[1], 4.0);
     }
 }

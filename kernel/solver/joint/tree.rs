@@ -10,7 +10,6 @@
 use super::super::BodyRows;
 use super::super::batch::{Filling, Pass, Sweep};
 use super::super::input::RowInput;
-use super::super::pair::Pair;
 use super::def::JointSolver;
 use super::dim::{AXES, BLOCK, DOF};
 use super::elimination::{Link, Node};
@@ -19,11 +18,11 @@ use super::orientation::OrientationRow;
 use super::row::{Hold, Row};
 use super::single::Single;
 use super::table::{JointTable, Records};
-use super::tree_pass::{Lock, Tree, TreeBody, TreeJoint, range};
+use super::tree_pass::{Tree, TreeBody, TreeJoint, range};
 use super::tree_scratch::{Coordinate, Scratch};
 use crate::data::{BitSet, Parts};
 use crate::graph::{COLOR_COUNT, ColorGraph, ConstraintKind};
-use crate::math::Vector;
+use crate::math::{Vector, Width};
 use crate::thread_pool::ThreadPool;
 use crate::tuning::solver::FEWEST;
 
@@ -43,6 +42,7 @@ pub(in super::super) struct JointTrees {
     numbered: Vec<u32>,
     pub(super) forest: Forest,
     hold: Hold,
+    width: Width,
     joints: Vec<TreeJoint>,
     pub(super) singles: Vec<Single<f32>>,
     links: Vec<Link>,
@@ -127,7 +127,7 @@ impl JointTrees {
             JointSolver::Rigid => (1, Hold::Exact),
             _ => (FEWEST, Hold::Tree),
         };
-        self.hold = hold;
+        (self.hold, self.width) = (hold, rows.width);
         forest.build(edges, numbered.len(), fewest);
         held.clear();
         forest.branches.iter().for_each(|branch| _ = held.insert(branch.id));
@@ -173,8 +173,7 @@ impl JointTrees {
                 if record.def.is_rod() {
                     row.take_rod(singles, &record.def, hold, from.params.h);
                 }
-                let is_warm = singles.iter().any(Single::is_warm) || joint.orientation.is_some();
-                joint.is_warm = is_warm || row.damping != [0.0; 2];
+                joint.is_warm = singles.iter().any(Single::is_warm) || joint.orientation.is_some();
                 let place = |place: u32| if place == GROUND { GROUND } else { place - span.bodies[0] };
                 let places = branch.places.map(place);
                 tree.links[k].places = places;
@@ -192,8 +191,9 @@ impl JointTrees {
 
     /// The forest, and the columns of its trees.
     fn split(&mut self) -> (&Forest, Trees<'_>) {
-        let Self { forest, joints, singles, links, nodes, bodies, scratch, .. } = self;
+        let Self { forest, width, joints, singles, links, nodes, bodies, scratch, .. } = self;
         let trees = Trees {
+            width: *width,
             joints: Parts::of(joints),
             singles: Parts::of(singles),
             links: Parts::of(links),
@@ -226,8 +226,7 @@ impl JointTrees {
                 load: 0.0,
                 besides: [0.0; DOF],
                 orientation: def.orientation.is_some().then_some(OrientationRow::NONE),
-                locks: [Lock::NONE; BLOCK],
-                pair: Pair::default(),
+                outside: [0.0; DOF],
             });
         }
         singles.clear();
@@ -286,6 +285,7 @@ impl JointTrees {
 
 /// All trees, changed by several threads.
 struct Trees<'a> {
+    width: Width,
     joints: Parts<'a, TreeJoint>,
     singles: Parts<'a, Single<f32>>,
     links: Parts<'a, Link>,
@@ -311,6 +311,7 @@ impl<'a> Trees<'a> {
                 nodes: self.nodes.take(range(span.bodies)),
                 bodies: self.bodies.take(range(span.bodies)),
                 scratch: self.scratch.one(number),
+                width: self.width,
             }
         }
     }

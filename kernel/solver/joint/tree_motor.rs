@@ -3,7 +3,7 @@
 
 use super::super::batch::{Pass, Sweep};
 use super::dim::{motion, screw};
-use super::elimination::{self, ROWS, Screw};
+use super::elimination::{self, Screw};
 use super::forest::GROUND;
 use super::place::{Gradient, Response};
 use super::tree_pass::Tree;
@@ -41,21 +41,21 @@ impl Tree<'_> {
     /// Solves the tree for a unit impulse along a coordinate of a joint, and adds the impulse to those on its bodies. The
     /// response of the joint's bodies.
     pub(super) fn unit_response(&mut self, k: usize, gradient: &Gradient<f32>) -> Response<f32> {
-        let Self { joints, links, nodes, .. } = self;
+        let Self { joints, links, nodes, width, .. } = self;
         let ends: [(u32, Screw); 2] = core::array::from_fn(|end| {
             let sign = if joints[k].side(end) == 0 { -1.0 } else { 1.0 };
             let moment = gradient.moments[joints[k].side(end)];
             (links[k].places[end], screw(gradient.normal * sign, moment * sign))
         });
         for link in links.iter_mut() {
-            link.wanted = [0.0; ROWS];
+            link.rows.iter_mut().for_each(|row| row.wanted = 0.0);
             for (place, push) in ends.iter().filter(|(place, _)| *place != GROUND) {
                 if let Some(end) = link.places.iter().position(|other| other == place) {
                     link.want_against(end, &nodes[*place as usize].moved(push));
                 }
             }
         }
-        elimination::solve(links, nodes);
+        elimination::solve(links, nodes, *width);
         let mut response = Response { v: [Vector::ZERO; 2], w: [Angular::ZERO; 2] };
         for (end, (place, push)) in ends.into_iter().enumerate().filter(|(_, (place, _))| *place != GROUND) {
             let node = &mut nodes[place as usize];

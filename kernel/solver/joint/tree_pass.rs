@@ -4,22 +4,22 @@
 use super::super::BodyRows;
 use super::super::batch::{Pass, Sweep};
 use super::super::pair::Pair;
-use super::block::{Block, Locked, wrapped};
-use super::dim::{BLOCK, inverse_of, motion, numbers, of_numbers, screw, with_least_inertia};
-use super::elimination::{self, Link, Node, Screw};
+use super::block::{Locked, coordinates, wrapped};
+use super::dim::{ANGLES, BLOCK, DOF, inverse_of, motion, numbers, of_numbers, screw, with_least_inertia};
+use super::elimination::{self, Link, LinkRow, Node, Screw};
 use super::forest::GROUND;
 use super::orientation::OrientationRow;
 use super::place::{Gradient, Place};
 use super::row::Row;
 use super::single::Single;
 use super::tree_scratch::{Known, Scratch};
-use crate::math::{DIM, InvInertia, Vector};
+use crate::math::{Angular, DIM, InvInertia, Vector, Width};
 use crate::tuning::manifold::SAME;
 use crate::tuning::solver::{JOINT_ROUNDS, NO_MASS, SMALL_TURN};
 use core::ops::Range;
 
 /// Softness of a spring in the relax pass, where it takes no part, as a multiple of its inverse mass.
-const LOOSE: f64 = 1.0e12;
+const LOOSE: f32 = 1.0e12;
 
 /// A body of a tree, as it is without what contacts add to its mass.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +55,7 @@ pub(super) struct TreeJoint {
     pub(super) is_rod: bool,
     /// Its side at the parent.
     pub(super) parent_side: usize,
-    /// Whether it has more than what is locked: single coordinates, or damping.
+    /// Whether some of its impulses are warm started.
     pub(super) is_warm: bool,
     /// From B's centre of mass to its anchor.
     pub(super) arm: Vector,
@@ -67,22 +67,8 @@ pub(super) struct TreeJoint {
     pub(super) besides: Screw,
     /// The orientation motor, if it has one.
     pub(super) orientation: Option<OrientationRow<f32>>,
-    /// What is locked, as the rows of its link.
-    pub(super) locks: [Lock; BLOCK],
-    /// Velocities of its bodies when the pass begins.
-    pub(super) pair: Pair<f32>,
-}
-
-/// A coordinate that is locked, where its bodies are now.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lock {
-    gradient: Gradient<f32>,
-    /// By how much it is off, in m or rad.
-    error: f32,
-}
-
-impl Lock {
-    pub(super) const NONE: Self = Self { gradient: Gradient::NONE, error: 0.0 };
+    /// The velocity of its body that is not of the tree, if one is not.
+    pub(super) outside: [f32; DOF],
 }
 
 pub(super) fn range([start, end]: [u32; 2]) -> Range<usize> {
@@ -137,6 +123,8 @@ pub(super) struct Tree<'a> {
     pub(super) nodes: &'a mut [Node],
     pub(super) bodies: &'a mut [TreeBody],
     pub(super) scratch: &'a mut Scratch,
+    /// For which elimination is compiled.
+    pub(super) width: Width,
 }
 
 impl Tree<'_> {
@@ -173,9 +161,11 @@ impl Tree<'_> {
             // SAFETY: by the contract.
             numbers(unsafe { sweep.bodies.get(body.row) }.velocity())
         }));
-        for joint in self.joints.iter_mut() {
+        for (joint, link) in self.joints.iter_mut().zip(&*self.links) {
+            let Some(end) = link.places.iter().position(|place| *place == GROUND) else { continue };
+            let [id] = joint.row.ids[joint.side(end)];
             // SAFETY: by the contract.
-            joint.pair = unsafe { Pair::load(&sweep.bodies, &joint.row.ids) };
+            joint.outside = numbers(unsafe { sweep.bodies.get(id) }.velocity());
         }
         let mut is_driven = self.joints.iter().all(|joint| joint.orientation.is_none());
         for round in 0..JOINT_ROUNDS {
@@ -183,7 +173,7 @@ impl Tree<'_> {
                 self.factor(sweep);
             }
             self.ask(sweep);
-            elimination::solve(self.links, self.nodes);
+            elimination::solve(self.links, self.nodes, self.width);
             self.apply(sweep);
             // In the last rounds limits are only let go.
             let adds = 2 * round < JOINT_ROUNDS;
@@ -206,13 +196,12 @@ impl Tree<'_> {
     /// The velocities of a joint's bodies now.
     pub(super) fn pair(&self, k: usize) -> Pair<f32> {
         let joint = &self.joints[k];
-        let mut pair = joint.pair;
-        for (end, place) in self.links[k].places.into_iter().enumerate().filter(|(_, place)| *place != GROUND)
-        {
-            let side = joint.side(end);
-            (pair.v[side], pair.w[side]) = of_numbers(self.scratch.velocities[place as usize]);
-        }
-        pair
+        let velocity = |end: usize| {
+            let place = self.links[k].places[end];
+            of_numbers(*self.scratch.velocities.get(place as usize).unwrap_or(&joint.outside))
+        };
+        let [a, b] = [velocity(joint.parent_side), velocity(1 - joint.parent_side)];
+        Pair { v: [a.0, b.0], w: [a.1, b.1] }
     }
 
     /// Writes what joints ask for.
@@ -226,7 +215,7 @@ impl Tree<'_> {
             for (single, at) in self.singles[range.clone()].iter().zip(&self.scratch.coordinates[range]) {
                 let Some(row) = at.row else { continue };
                 let rate = at.gradient.rate(&pair);
-                link.wanted[row] = f64::from(single.wanted(at, rate, sweep.params, biased));
+                link.rows[row].wanted = f64::from(single.wanted(at, rate, sweep.params, biased));
             }
         }
     }
@@ -240,8 +229,8 @@ impl Tree<'_> {
         }
         for k in 0..self.joints.len() {
             let link = &self.links[k];
-            for (locked, impulse) in self.joints[k].locks().zip(&link.impulses) {
-                locked.impulse += *impulse as f32;
+            for (locked, row) in self.joints[k].locks().zip(&link.rows) {
+                locked.impulse += row.impulse as f32;
             }
             let range = self.joints[k].singles_from(self.first_single);
             if self.scratch.coordinates[range.clone()].iter().all(|at| at.row.is_none()) {
@@ -250,7 +239,7 @@ impl Tree<'_> {
             let pair = self.pair(k);
             for (single, at) in self.singles[range.clone()].iter_mut().zip(&self.scratch.coordinates[range]) {
                 let Some(row) = at.row else { continue };
-                let solved = (link.impulses[row] as f32, at.gradient.rate(&pair));
+                let solved = (link.rows[row].impulse as f32, at.gradient.rate(&pair));
                 single.share_out(at, solved, sweep.params, sweep.pass == Pass::Solve);
             }
         }
@@ -333,13 +322,16 @@ impl Tree<'_> {
             for single in of_joint.iter_mut().filter(|single| single.softening.is_spring == 0.0) {
                 single.impulses = [0.0; 2];
             }
-            if !joint.is_warm {
-                continue;
-            }
             // SAFETY: by the contract.
             unsafe {
-                let more = (&mut self.singles[range], joint.orientation.as_mut());
-                joint.row.run::<0>(more, &sweep.bodies, sweep.params, sweep.pass);
+                if joint.is_warm {
+                    let more = (&mut self.singles[range], joint.orientation.as_mut());
+                    joint.row.run::<0>(more, &sweep.bodies, sweep.params, sweep.pass);
+                } else if joint.row.damping != [0.0; 2] {
+                    let mut pair = Pair::load(&sweep.bodies, &joint.row.ids);
+                    joint.row.damp(&mut pair);
+                    pair.store(&sweep.bodies, &joint.row.ids);
+                }
             }
         }
     }
@@ -353,15 +345,16 @@ impl Tree<'_> {
         for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
             // SAFETY: by the contract.
             let place = unsafe { joint.row.start.now(&sweep.bodies, &joint.row.ids) };
-            match joint.locked_end <= DIM {
-                true => joint.lock::<DIM>(&place, link),
-                false => joint.lock::<BLOCK>(&place, link),
-            }
             let range = joint.singles_from(self.first_single);
-            if range.is_empty() {
+            if range.is_empty() && joint.locked_end <= DIM {
+                joint.lock::<DIM>(&place, &place.angles_of::<DIM>(), link);
                 continue;
             }
             let angles = place.angles();
+            match joint.locked_end <= DIM {
+                true => joint.lock::<DIM>(&place, &angles, link),
+                false => joint.lock::<BLOCK>(&place, &angles, link),
+            }
             for (single, at) in self.singles[range.clone()].iter_mut().zip(&mut coordinates[range]) {
                 (at.gradient, at.value) = single.gradient(&place, &angles);
                 // A blow may have let go a limit whose impulse was given back.
@@ -424,7 +417,7 @@ impl Tree<'_> {
                 at.row = softness.map(|softness| joint.add_row(&at.gradient, softness, link));
             }
         }
-        elimination::factor(self.links, self.nodes);
+        elimination::factor(self.links, self.nodes, self.width);
         self.scratch.known = Known::Factors(sweep.pass);
     }
 
@@ -439,7 +432,7 @@ impl Tree<'_> {
                 if !core::mem::replace(&mut is_factored, true) {
                     let joints = self.joints.iter_mut().zip(&mut *self.links);
                     joints.for_each(|(joint, link)| joint.soften(link, Pass::Relax));
-                    elimination::factor(self.links, self.nodes);
+                    elimination::factor(self.links, self.nodes, self.width);
                 }
                 let gradient = self.scratch.coordinates[index].gradient;
                 let alone = self.joints[k].row.masses.response(&gradient).along(&gradient);
@@ -454,18 +447,23 @@ impl Tree<'_> {
 impl TreeJoint {
     /// Writes what is locked at a place: the rows of the link.
     #[inline(always)]
-    fn lock<const D: usize>(&mut self, place: &Place<f32>, link: &mut Link) {
-        let row = &self.row;
-        let mut block = Block::<f32, D>::new(place, row.of_world(), &row.masses);
+    fn lock<const D: usize>(
+        &mut self,
+        place: &Place<f32>,
+        angles: &[(f32, Angular); ANGLES],
+        link: &mut Link,
+    ) {
+        let (mut gradients, mut values) = coordinates::<f32, D>(place, self.row.of_world(), angles);
         if self.is_rod {
-            block.take_distance(place, &row.masses);
+            let (distance, direction) = place.apart();
+            (gradients[0], values[0]) = (place.gradient(direction, Angular::ZERO), distance);
         }
         link.count = 0;
         for i in (0..D).filter(|i| self.row.block[*i].is_locked > 0.0) {
-            let (gradient, error) = (block.gradients[i], block.values[i] - self.row.block[i].target);
+            let (gradient, error) = (gradients[i], values[i] - self.row.block[i].target);
             let error = if i < DIM { error } else { wrapped(error) };
-            self.locks[link.count] = Lock { gradient, error };
-            self.add_row(&gradient, 0.0, link);
+            let row = self.add_row(&gradient, 0.0, link);
+            link.rows[row].error = error;
         }
         self.locked = link.count;
         self.arm = place.arm();
@@ -474,58 +472,63 @@ impl TreeJoint {
     /// Adds a row to the link. Returns its number.
     fn add_row(&self, gradient: &Gradient<f32>, softness: f32, link: &mut Link) -> usize {
         let number = link.count;
-        let side = |side: usize, sign: f32| screw(gradient.normal * sign, gradient.moments[side] * sign);
+        let side = |side: usize, sign: f32| numbers((gradient.normal * sign, gradient.moments[side] * sign));
+        let row = &mut link.rows[number];
         // The first one is the parent's, which is A if its side is 0.
-        link.jacobians[self.parent_side][number] = side(0, -1.0);
-        link.jacobians[1 - self.parent_side][number] = side(1, 1.0);
-        link.softness[number] = f64::from(softness);
+        row.jacobians[self.parent_side] = side(0, -1.0);
+        row.jacobians[1 - self.parent_side] = side(1, 1.0);
+        row.softness = softness;
         link.count += 1;
         number
+    }
+
+    /// The gradient of a row of the link.
+    fn gradient(&self, row: &LinkRow) -> Gradient<f32> {
+        let [of_a, of_b] = [self.parent_side, 1 - self.parent_side].map(|end| of_numbers(row.jacobians[end]));
+        Gradient { normal: of_b.0, moments: [-of_a.1, of_b.1] }
     }
 
     /// Writes how soft what is locked is in a pass. The link has no other rows then.
     fn soften(&mut self, link: &mut Link, pass: Pass) {
         link.count = self.locked;
-        let masses = self.row.masses;
-        let locks = self.locks;
-        for ((locked, lock), softness) in self.locks().zip(&locks).zip(&mut link.softness) {
-            let soft = &locked.softening;
-            let own = masses.response(&lock.gradient).along(&lock.gradient);
-            *softness = match pass {
-                Pass::Solve => f64::from(own * soft.share + soft.more),
-                _ if soft.is_spring > 0.0 => LOOSE * f64::from(own),
-                _ => f64::from(own * NO_MASS),
+        let locked = self.row.block.iter().filter(|locked| locked.is_locked > 0.0);
+        for (locked, row) in locked.zip(&mut link.rows) {
+            let (soft, gradient) = (&locked.softening, self.gradient(row));
+            let own = self.row.masses.response(&gradient).along(&gradient);
+            row.softness = match pass {
+                Pass::Solve => own * soft.share + soft.more,
+                _ if soft.is_spring > 0.0 => LOOSE * own,
+                _ => own * NO_MASS,
             };
         }
     }
 
     /// Writes what the joint asks for in a pass.
     fn ask(&self, pair: &Pair<f32>, link: &mut Link, sweep: &Sweep) {
-        let (locks, mut row) = (&self.locks, 0);
-        for (i, locked) in self.row.block.iter().enumerate().filter(|(_, locked)| locked.is_locked > 0.0) {
-            let (Lock { gradient, error }, soft) = (&locks[row], &locked.softening);
-            let mut rate = gradient.rate(pair);
+        let locked = self.row.block.iter().enumerate().filter(|(_, locked)| locked.is_locked > 0.0);
+        for ((i, locked), row) in locked.zip(&mut link.rows) {
+            let soft = &locked.softening;
+            let mut rate = self.gradient(row).rate(pair);
             if sweep.pass == Pass::Solve {
-                let bias = soft.bias_rate * error;
+                let bias = soft.bias_rate * row.error;
                 let most =
                     if i < DIM { sweep.params.max_push_speed } else { SMALL_TURN * sweep.params.inv_h };
                 rate += if soft.is_spring > 0.0 { bias } else { bias.clamp(-most, most) };
-                rate += link.softness[row] as f32 * locked.impulse;
+                rate += row.softness * locked.impulse;
             } else if soft.is_spring > 0.0 {
                 rate = 0.0;
             }
-            link.wanted[row] = -f64::from(rate);
-            row += 1;
+            row.wanted = -f64::from(rate);
         }
     }
 
     /// Notes what the joint bears.
     fn bear(&mut self, link: &Link, sweep: &Sweep) {
         let mut sum = self.besides;
-        let of_b = &link.jacobians[1 - self.parent_side];
         let locked = self.row.block.iter().filter(|locked| locked.is_locked > 0.0);
-        for (locked, row) in locked.zip(of_b) {
-            elimination::add(&mut sum, row, f64::from(locked.impulse));
+        for (locked, row) in locked.zip(&link.rows) {
+            let of_b = row.jacobians[1 - self.parent_side].map(f64::from);
+            elimination::add(&mut sum, &of_b, f64::from(locked.impulse));
         }
         let (force, moment) = motion(&sum);
         self.load = force.length();
