@@ -65,7 +65,7 @@ pub struct CharacterController {
     pub snap_distance: Scalar,
     /// The distance kept from all colliders, in metres. 0.01 by default.
     pub skin_width: Scalar,
-    /// Its mass in kg, by which it pushes and weighs on dynamic bodies. 70 by default.
+    /// Its mass in kg, by which it pushes and weighs on dynamic bodies, and slides on light ones that jerk. 70 by default.
     pub mass: Scalar,
     /// The largest force by which it pushes dynamic bodies, in N. 500 by default, 0 for none.
     pub max_push_force: Scalar,
@@ -185,8 +185,10 @@ pub struct Carrier {
     /// The point of the body under the feet, in its frame, in metres. It stays while the character does not move by itself, so
     /// that rounding does not add up.
     pub anchor: Vector,
-    /// The velocity at which it carries the character, in m/s.
+    /// The velocity of the body under the feet, in m/s.
     pub velocity: Vector,
+    /// The velocity at which the character slides on it, in m/s: a light body that jerks does not take a heavy character along.
+    pub slip: Vector,
 }
 
 impl MapEntities for CharacterState {
@@ -202,6 +204,15 @@ impl CharacterState {
     /// Whether it stands on ground that it can walk on.
     pub fn is_grounded(&self) -> bool {
         self.ground == GroundState::OnGround
+    }
+
+    /// Its velocity that is not its own, in m/s.
+    pub(super) fn carried(&self) -> Vector {
+        if self.is_grounded() {
+            self.ground_velocity + self.carrier.map_or(Vector::ZERO, |carrier| carrier.slip)
+        } else {
+            self.fall
+        }
     }
 }
 

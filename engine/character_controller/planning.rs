@@ -85,8 +85,8 @@ pub(super) struct Planning<'a> {
     pub(super) unit: Scalar,
     /// Where its carrier brought it.
     pub(super) ridden_to: Vector,
-    /// The velocity of its fall at the start of the step.
-    pub(super) fell: Vector,
+    /// The velocity that is not its own, at the start of the step.
+    pub(super) carried: Vector,
 }
 
 impl Planning<'_> {
@@ -104,14 +104,14 @@ impl Planning<'_> {
             Some(floor) if self.input.jump > 0.0 => {
                 let normal = floor.floor.unwrap_or(up);
                 let rise = self.walker.lift(normal, own).max(0.0);
-                self.state.fall = self.state.ground_velocity + up * (self.input.jump + rise);
+                self.state.fall = self.carried + up * (self.input.jump + rise);
                 self.leave();
                 self.fall(own);
             }
             Some(floor) => self.walk(own, time, floor),
             None => {
                 if was_grounded {
-                    self.state.fall = self.state.ground_velocity;
+                    self.state.fall = self.carried;
                     self.leave();
                 }
                 self.fall(own);
@@ -157,27 +157,45 @@ impl Planning<'_> {
             return;
         }
         let is_as_expected = (carrier.position, carrier.rotation) == (body.position, body.rotation);
+        let velocity = body.velocity_at(self.walker.foot());
+        let change = velocity - carrier.velocity;
+        let slip = self.slip_after(carrier.body, carrier.slip, change);
+        self.state.carrier = Some(Carrier { velocity, slip, ..carrier });
         if !is_as_expected || body.is_moving() {
             let way = body.position.0 + body.rotation * carrier.anchor - self.walker.foot();
-            if let Some(given) = self.given(carrier.body, way / self.around.time) {
-                self.shift_with(carrier.body, given * self.around.time);
+            // The share of the way that comes from the change of velocity, and not from a teleport.
+            let by_change = way.dot(change) / (change.length_squared() * self.around.time);
+            let by_change = if by_change > 0.0 { by_change.min(1.0) } else { 0.0 };
+            let slid = (slip - carrier.slip) * (self.around.time * by_change);
+            self.shift_with(carrier.body, way + slid);
+            if slid != Vector::ZERO {
                 return;
             }
-            self.shift_with(carrier.body, way);
         }
         self.ridden_to = self.walker.position;
     }
 
-    /// The part of a change of its velocity that a carrier gives to the character, if that is not all: what is more than gravity
-    /// does in a step is shared as between two bodies that strike each other. So a light limb that kicks does not throw it.
-    fn given(&self, carrier: Entity, change: Vector) -> Option<Vector> {
-        let (spare, length) = (self.gravity.length() * self.around.time, change.length());
-        if !(length > spare) {
-            return None;
+    /// How fast the character slides on a carrier whose velocity changes. It gets the share of the change that a body of the carrier's mass
+    /// gives to one of its own, and friction then ends the slip by g h in a step. So only what is light and jerks leaves it
+    /// behind: a limb that kicks does not throw it.
+    fn slip_after(&self, carrier: Entity, slip: Vector, change: Vector) -> Vector {
+        let (up, length) = (self.walker.up, change.length());
+        let friction = self.gravity.length() * self.around.time;
+        if !(friction > 0.0) {
+            return Vector::ZERO;
         }
-        let inverse = self.around.bodies.inverse_mass_at(carrier, self.walker.foot(), change / length);
-        let share = 1.0 / (1.0 + self.controller.mass * inverse);
-        (share < 1.0).then(|| change * ((spare + (length - spare) * share) / length))
+        let mut slip = slip;
+        if length > 0.0 {
+            let inverse = self.around.bodies.inverse_mass_at(carrier, self.walker.foot(), change / length);
+            let relative = self.controller.mass.max(0.0) * inverse;
+            if relative > 0.0 {
+                slip -= change * (1.0 - 1.0 / (1.0 + relative));
+            }
+        }
+        // It does not slide into what rises.
+        slip -= up * slip.dot(up).min(0.0);
+        let speed = slip.length();
+        if speed > friction { slip * (1.0 - friction / speed) } else { Vector::ZERO }
     }
 
     /// Moves by a displacement, passing through the colliders of a body.
@@ -231,7 +249,8 @@ impl Planning<'_> {
             None => {
                 let climb = self.walker.climbed.map_or(0.0, |(_, height)| height) - climbed;
                 let rise = if climb > 0.0 { 0.0 } else { motion.dot(up) / time };
-                self.state.fall = self.state.ground_velocity + up * rise;
+                let slip = self.state.carrier.map_or(Vector::ZERO, |carrier| carrier.slip);
+                self.state.fall = self.state.ground_velocity + slip + up * rise;
                 self.leave();
                 self.note_air(&contacts);
             }
@@ -315,7 +334,7 @@ impl Planning<'_> {
         let surface = self.around.bodies.surface_of(ground) * time;
         let body = self.around.bodies.body_of(ground);
         let motion = body.and_then(|body| self.around.bodies.motion_of(body, time));
-        let (before, up) = (self.state.carrier, self.walker.up);
+        let before = self.state.carrier;
         self.state.carrier = body.zip(motion).map(|(body, motion)| {
             let is_at_rest = self.walker.position == self.ridden_to;
             let known = before.filter(|known| known.body == body && is_at_rest);
@@ -327,16 +346,19 @@ impl Planning<'_> {
                 Vector::ZERO
             };
             let start = self.walker.position;
-            let velocity = way / time;
-            let fell = || self.walker.horizontal(self.fell) + up * velocity.dot(up);
-            let carried = before.map_or_else(fell, |before| before.velocity);
-            let given = self.given(body, velocity - carried).map(|change| carried + change);
-            self.shift_with(body, given.map_or(way, |given| given * time));
+            let velocity = motion.velocity_at(self.walker.foot());
+            let slip = match before.filter(|before| before.body == body) {
+                Some(before) => before.slip,
+                None => {
+                    let change = self.walker.horizontal(velocity - self.carried);
+                    self.slip_after(body, Vector::ZERO, change)
+                }
+            };
+            self.shift_with(body, if slip == Vector::ZERO { way } else { way + slip * time });
             // What was in the way moved it on the body.
             let slid = self.walker.position - start - way;
             let anchor = if slid == Vector::ZERO { anchor } else { anchor + rotation.inverse() * slid };
-            let velocity = given.unwrap_or(velocity);
-            Carrier { body, position, rotation, anchor, rider: Vector::ZERO, velocity }
+            Carrier { body, position, rotation, anchor, rider: Vector::ZERO, velocity, slip }
         });
         if surface != Vector::ZERO {
             let normal = self.state.ground_normal;

@@ -114,7 +114,7 @@ fn plan(character: &mut CharacterItem, around: &Surroundings) {
         gravity: -up * gravity,
         unit,
         ridden_to: from,
-        fell: character.state.fall,
+        carried: character.state.carried(),
     };
     planning.run(from);
     *character.state = planning.state;

@@ -283,8 +283,8 @@ fn who_stands_on_a_crate_weighs_on_it() {
     }
 }
 
-/// A raft of each mass that is struck to 5 m/s: the character gets what gravity could give it in a step, and of the rest what
-/// a body of its own 70 kg would. A limb that kicks does not throw it, and a ship takes it along.
+/// Rafts of different masses on ice are struck to 5 m/s: a character gets what a raft's mass can give to its own 70 kg, and friction adds
+/// g h in each step. A limb that kicks does not throw it, also if it jumps, and a ship takes it along. Teleports take it along whole.
 #[test]
 fn what_is_struck_below_a_character_gives_it_what_its_mass_can() {
     let cases = each(&[0.7, 7.0, 70.0, 70_000.0]);
@@ -292,30 +292,45 @@ fn what_is_struck_below_a_character_gives_it_what_its_mass_can() {
         let starts = cases.iter().map(|(.., shape)| (shape.clone(), Vector::Y * (0.5 + STANDING)));
         let mut course = Course::side_by_side(rate, starts);
         floor(&mut course.app);
-        let raft = |course: &mut Course, (i, case): (usize, &(_, Scalar, _))| {
-            let shape =
-                block(Vector::X * 8.0 + Vector::Y * 0.5 + (Vector::ONE - Vector::X - Vector::Y) * 2.0);
-            let bundle = (RigidBody::Dynamic, shape, Position(Vector::Y * 0.25), Mass(case.1 as f32));
-            let raft = course.app.world_mut().spawn((bundle, LockedAxes::ROTATION_LOCKED, Friction::ZERO));
-            let raft = raft.id();
-            set(course, raft, lane(i));
-            raft
-        };
-        let rafts: Vec<Entity> = cases.iter().enumerate().map(|case| raft(&mut course, case)).collect();
+        let mut rafts = Vec::new();
+        for (i, (_, mass, _)) in cases.iter().enumerate() {
+            let shape = block(Vector::X * 6.0 + Vector::Y * -1.5 + Vector::ONE * 2.0);
+            let bundle = (RigidBody::Dynamic, shape, Position(Vector::Y * 0.25), Mass(*mass as f32));
+            let ice = Friction::ZERO.with_combine_rule(CoefficientCombine::Min);
+            rafts.push(course.app.world_mut().spawn((bundle, LockedAxes::ROTATION_LOCKED, ice)).id());
+            set(&mut course, rafts[i], lane(i));
+        }
+        let xs = |samples: Vec<Sample>| -> Vec<Scalar> { samples.iter().map(|s| s.position.x).collect() };
         course.walk(Vector::ZERO, 0.3);
-        let before: Vec<Vector> = course.tick_all().iter().map(|sample| sample.position).collect();
+        let start = xs(course.tick_all());
+        rafts.iter().for_each(|raft| set(&mut course, *raft, Position(Vector::X * 3.0 + Vector::Y * 0.25)));
+        let before = xs(course.tick_all());
         rafts.iter().for_each(|raft| set(&mut course, *raft, LinearVelocity(Vector::X * 5.0)));
-        let after = course.tick_all();
-        for ((before, after), (name, mass, _)) in before.into_iter().zip(after).zip(&cases) {
-            let spare = 9.81 / rate as Scalar;
-            let expected = spare + (5.0 - spare) * mass / (mass + 70.0);
-            let speed = (after.position.x - before.x) * rate as Scalar;
+        let [first, second] = [0; 2].map(|_| xs(course.tick_all()));
+        course.jump(3.0);
+        let jumped = course.tick_all();
+        for (i, (name, mass, _)) in cases.iter().enumerate() {
             let what = (name, rate, mass);
             assert!(
-                (speed - expected).abs() < 0.01 * expected,
-                "{what:?}: {speed} instead of {expected} m/s"
+                (before[i] - start[i] - 3.0).abs() < 1.0e-3,
+                "{what:?}: from {} to {}",
+                start[i],
+                before[i]
             );
-            assert!(after.state.is_grounded(), "{what:?}: {after:?}");
+            let after = |steps: Scalar| (5.0 * mass / (mass + 70.0) + 9.81 * steps / rate as Scalar).min(5.0);
+            let [a, b] = [first[i] - before[i], second[i] - first[i]].map(|way| way * rate as Scalar);
+            assert!(
+                (a - after(1.0)).abs() < 0.01 * after(1.0),
+                "{what:?}: {a} instead of {} m/s",
+                after(1.0)
+            );
+            assert!(
+                (b - after(2.0)).abs() < 0.01 * after(2.0),
+                "{what:?}: {b} instead of {} m/s",
+                after(2.0)
+            );
+            let flies = jumped[i].state.fall.x;
+            assert!((flies - after(2.0)).abs() < 0.01 * after(2.0), "{what:?}: jumps at {flies} m/s");
         }
     }
 }

@@ -79,7 +79,7 @@ pub(super) struct Block<N, const D: usize> {
     pub(super) responses: [Response<N>; D],
 }
 
-/// The gradients of the first `D` coordinates, and their values, given the angles if some are of them.
+/// The gradients and values of the first `D` coordinates. The angles count if some of these are angles.
 #[inline(always)]
 pub(super) fn coordinates<N: Lane, const D: usize>(
     place: &Place<N>,
@@ -112,7 +112,8 @@ pub(super) struct Solved<N, const D: usize> {
 impl<N: Lane, const D: usize> Block<N, D> {
     #[inline(always)]
     pub(super) fn new(place: &Place<N>, of_world: N::Mask, masses: &Masses<N>) -> Self {
-        let (gradients, values) = coordinates::<N, D>(place, of_world, &place.angles_of::<D>());
+        let angles = if D > DIM { place.angles() } else { Place::NO_ANGLES };
+        let (gradients, values) = coordinates::<N, D>(place, of_world, &angles);
         let mut responses = [Response::NONE; D];
         for k in 0..D {
             responses[k] = masses.response(&gradients[k]);

@@ -43,7 +43,11 @@ const fn at(row: usize, column: usize) -> usize {
 
 #[inline(always)]
 fn widen(a: &[f32; DOF]) -> Screw {
-    a.map(f64::from)
+    let mut wide = [0.0; DOF];
+    for i in 0..DOF {
+        wide[i] = f64::from(a[i]);
+    }
+    wide
 }
 
 /// Sums of three products each do not wait for each other.
@@ -108,7 +112,8 @@ impl Node {
     }
 }
 
-/// A row of a link. What is used of a link lies together: trees are many times as large as caches are.
+/// A row of a link: what passes use of it lies together, since all trees of a big scene are larger than caches. J, Γ and M⁻¹
+/// are stored as they are computed, in `f32`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LinkRow {
     /// J of parent and child.
@@ -236,7 +241,9 @@ impl Link {
             }
         }
         for i in (0..count).rev() {
-            self.rows[i].passed = self.rows[i].passed.map(|x| x * self.rows[i].inverse);
+            for k in 0..DOF {
+                self.rows[i].passed[k] *= self.rows[i].inverse;
+            }
             for m in i + 1..count {
                 let (of_m, times) = (self.rows[m].passed, -self.lower[at(m, i)]);
                 add(&mut self.rows[i].passed, &of_m, times);
@@ -306,34 +313,38 @@ macro_rules! by_count {
 }
 
 /// The joints of a tree, in an order from the root on, and its bodies.
-struct Parts<'a> {
+struct Slices<'a> {
     links: &'a mut [Link],
     nodes: &'a mut [Node],
 }
 
-struct Factor<'a>(Parts<'a>);
+struct Factor<'a>(Slices<'a>);
 
 impl Job for Factor<'_> {
     type Output = ();
 
     #[inline(always)]
     unsafe fn run(self) {
-        let Parts { links, nodes } = self.0;
-        nodes.iter_mut().for_each(|node| node.left = node.inverse.map(|row| widen(&row)));
+        let Slices { links, nodes } = self.0;
+        for node in nodes.iter_mut() {
+            for k in 0..DOF {
+                node.left[k] = widen(&node.inverse[k]);
+            }
+        }
         for link in links.iter_mut().rev() {
             by_count!(link.eliminate(nodes));
         }
     }
 }
 
-struct Solve<'a>(Parts<'a>);
+struct Solve<'a>(Slices<'a>);
 
 impl Job for Solve<'_> {
     type Output = ();
 
     #[inline(always)]
     unsafe fn run(self) {
-        let Parts { links, nodes } = self.0;
+        let Slices { links, nodes } = self.0;
         for node in nodes.iter_mut() {
             (node.motion, node.impulse) = ([0.0; DOF], [0.0; DOF]);
         }
@@ -346,9 +357,12 @@ impl Job for Solve<'_> {
     }
 }
 
-/// Runs a job in code for a width.
-fn enter(width: Width, job: impl Job<Output = ()>) {
-    // SAFETY: the jobs are safe.
+/// Runs a job in its entry point for a width of lanes.
+///
+/// # Safety
+/// As the job demands.
+unsafe fn enter(width: Width, job: impl Job<Output = ()>) {
+    // SAFETY: by the contract.
     unsafe {
         match width {
             #[cfg(target_arch = "x86_64")]
@@ -360,13 +374,15 @@ fn enter(width: Width, job: impl Job<Output = ()>) {
 
 /// Eliminates the joints of a tree, which are in an order from the root on.
 pub(super) fn factor(links: &mut [Link], nodes: &mut [Node], width: Width) {
-    enter(width, Factor(Parts { links, nodes }));
+    // SAFETY: the job demands nothing.
+    unsafe { enter(width, Factor(Slices { links, nodes })) };
 }
 
 /// Solves a factored tree for what its joints want. Afterwards joints have their impulses, and bodies those of all their
 /// joints.
 pub(super) fn solve(links: &mut [Link], nodes: &mut [Node], width: Width) {
-    enter(width, Solve(Parts { links, nodes }));
+    // SAFETY: the job demands nothing.
+    unsafe { enter(width, Solve(Slices { links, nodes })) };
 }
 
 #[cfg(test)]

@@ -181,11 +181,8 @@ impl<N: Lane> Place<N> {
         (distance, Vector::select(is_apart, scaled, Vector::splat(Vector::X)))
     }
 
-    /// The angles if the first `D` coordinates have some, else zeros.
-    #[inline(always)]
-    pub(super) fn angles_of<const D: usize>(&self) -> [(N, Angular<N>); ANGLES] {
-        if D > DIM { self.angles() } else { [(N::ZERO, Angular::ZERO); ANGLES] }
-    }
+    /// In place of the angles, where no coordinate is one.
+    pub(super) const NO_ANGLES: [(N, Angular<N>); ANGLES] = [(N::ZERO, Angular::ZERO); ANGLES];
 
     /// The angles, and the axes about which they grow.
     #[inline(always)]

@@ -67,7 +67,7 @@ pub(super) struct TreeJoint {
     pub(super) besides: Screw,
     /// The orientation motor, if it has one.
     pub(super) orientation: Option<OrientationRow<f32>>,
-    /// The velocity of its body that is not of the tree, if one is not.
+    /// The velocity of its body outside of the tree, if its place is `GROUND`.
     pub(super) outside: [f32; DOF],
 }
 
@@ -123,7 +123,7 @@ pub(super) struct Tree<'a> {
     pub(super) nodes: &'a mut [Node],
     pub(super) bodies: &'a mut [TreeBody],
     pub(super) scratch: &'a mut Scratch,
-    /// For which elimination is compiled.
+    /// The width of lanes whose entry point eliminates.
     pub(super) width: Width,
 }
 
@@ -198,7 +198,8 @@ impl Tree<'_> {
         let joint = &self.joints[k];
         let velocity = |end: usize| {
             let place = self.links[k].places[end];
-            of_numbers(*self.scratch.velocities.get(place as usize).unwrap_or(&joint.outside))
+            let is_outside = place == GROUND;
+            of_numbers(if is_outside { joint.outside } else { self.scratch.velocities[place as usize] })
         };
         let [a, b] = [velocity(joint.parent_side), velocity(1 - joint.parent_side)];
         Pair { v: [a.0, b.0], w: [a.1, b.1] }
@@ -347,7 +348,7 @@ impl Tree<'_> {
             let place = unsafe { joint.row.start.now(&sweep.bodies, &joint.row.ids) };
             let range = joint.singles_from(self.first_single);
             if range.is_empty() && joint.locked_end <= DIM {
-                joint.lock::<DIM>(&place, &place.angles_of::<DIM>(), link);
+                joint.lock::<DIM>(&place, &Place::NO_ANGLES, link);
                 continue;
             }
             let angles = place.angles();
