@@ -4,7 +4,7 @@
 use super::F32x4;
 #[cfg(target_arch = "x86_64")]
 use super::{Avx2, F32x8};
-use super::{Lane, Shared};
+use super::{Lane, Shared, Width};
 
 /// Work of an entry point.
 ///
@@ -76,5 +76,20 @@ impl Entry for F32x8 {
         }
         // SAFETY: the caller has the proof that the CPU has AVX2; and by the contract.
         unsafe { avx2(job) }
+    }
+}
+
+/// Runs a job that has no lanes of its own in the entry point of a width.
+///
+/// # Safety
+/// As the job demands.
+pub(crate) unsafe fn enter<J: Job>(width: Width, job: J) -> J::Output {
+    // SAFETY: by the contract.
+    unsafe {
+        match width {
+            #[cfg(target_arch = "x86_64")]
+            Width::Eight(avx2) => F32x8::enter(avx2, job),
+            _ => F32x4::enter((), job),
+        }
     }
 }

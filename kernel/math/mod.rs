@@ -81,7 +81,7 @@ mod tangent;
 mod trig;
 
 pub use dim::*;
-pub(crate) use entry::{Entry, Job};
+pub(crate) use entry::{Entry, Job, enter};
 pub(crate) use lane::inverse_of_positive;
 pub use lane::{Avx2, Ids, Lane, Num, Quad, Width, clamp, max, min};
 #[cfg(target_arch = "x86_64")]

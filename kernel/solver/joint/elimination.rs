@@ -19,9 +19,7 @@
 
 use super::dim::{AXES, DOF};
 use super::forest::GROUND;
-#[cfg(target_arch = "x86_64")]
-use crate::math::F32x8;
-use crate::math::{Entry, F32x4, Job, Width};
+use crate::math::{Job, Width, enter};
 
 /// Most rows of a link: one of each coordinate.
 pub(super) const ROWS: usize = AXES;
@@ -353,21 +351,6 @@ impl Job for Solve<'_> {
         }
         for link in links.iter_mut() {
             by_count!(link.fall(nodes));
-        }
-    }
-}
-
-/// Runs a job in its entry point for a width of lanes.
-///
-/// # Safety
-/// As the job demands.
-unsafe fn enter(width: Width, job: impl Job<Output = ()>) {
-    // SAFETY: by the contract.
-    unsafe {
-        match width {
-            #[cfg(target_arch = "x86_64")]
-            Width::Eight(avx2) => F32x8::enter(avx2, job),
-            _ => F32x4::enter((), job),
         }
     }
 }
