@@ -490,7 +490,7 @@ impl TreeJoint {
     }
 
     /// Writes how soft what is locked is in a pass. The link has no other rows then.
-    fn soften(&mut self, link: &mut Link, pass: Pass) {
+    fn soften(&self, link: &mut Link, pass: Pass) {
         link.count = self.locked;
         let locked = self.row.block.iter().filter(|locked| locked.is_locked > 0.0);
         for (locked, row) in locked.zip(&mut link.rows) {
