@@ -281,6 +281,18 @@ impl<N: Num> SymTensor<N> {
 }
 
 impl<N: Lane> SymTensor<N> {
+    /// `a` where the mask is set, else `b`.
+    #[inline(always)]
+    pub(crate) fn select(mask: N::Mask, a: Self, b: Self) -> Self {
+        Self { zz: N::select(mask, a.zz, b.zz) }
+    }
+
+    /// R I R⁻¹; in 2D the same.
+    #[inline(always)]
+    pub(crate) fn turned(self, _rotation: Rot<N>) -> Self {
+        self
+    }
+
     /// Sum of the eigenvalues.
     #[inline(always)]
     pub fn trace(self) -> N {
@@ -304,6 +316,11 @@ impl SymTensor {
     /// The inverse inertia in world axes of a body turned by `rotation`; in 2D the same.
     #[inline]
     pub fn rotated(self, _rotation: Rot) -> Self {
+        self
+    }
+    /// What [`rotated`](Self::rotated) turns.
+    #[inline]
+    pub(crate) fn blunt(self) -> Self {
         self
     }
     /// The inverse inertia of a body that does not turn about the axes in `locks`.

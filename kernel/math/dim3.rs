@@ -244,6 +244,21 @@ impl<N: Num> Rot<N> {
     /// No turn.
     pub const IDENTITY: Self = Self { x: N::ZERO, y: N::ZERO, z: N::ZERO, w: N::ONE };
 
+    /// The columns of the rotation matrix: the rotated axes.
+    #[inline(always)]
+    pub fn axes(self) -> [Vector<N>; DIM] {
+        let Self { x, y, z, w } = self;
+        let (x2, y2, z2) = (x + x, y + y, z + z);
+        let (xx, yy, zz) = (x * x2, y * y2, z * z2);
+        let (xy, xz, yz) = (x * y2, x * z2, y * z2);
+        let (wx, wy, wz) = (w * x2, w * y2, w * z2);
+        [
+            Vector { x: N::ONE - (yy + zz), y: xy + wz, z: xz - wy },
+            Vector { x: xy - wz, y: N::ONE - (xx + zz), z: yz + wx },
+            Vector { x: xz + wy, y: yz - wx, z: N::ONE - (xx + yy) },
+        ]
+    }
+
     /// Turns a vector: v + 2 w (u × v) + 2 u × (u × v), with u the imaginary part.
     #[inline(always)]
     pub fn rotate(self, v: Vector<N>) -> Vector<N> {
@@ -431,20 +446,6 @@ impl Rot {
         let length = square.sqrt();
         let [x, y, z, w] = [x, y, z, w].map(|c| (c / length) as f32);
         Self { x, y, z, w }
-    }
-    /// The columns of the rotation matrix: the rotated axes.
-    #[inline]
-    pub fn axes(self) -> [Vector; DIM] {
-        let Self { x, y, z, w } = self;
-        let (x2, y2, z2) = (x + x, y + y, z + z);
-        let (xx, yy, zz) = (x * x2, y * y2, z * z2);
-        let (xy, xz, yz) = (x * y2, x * z2, y * z2);
-        let (wx, wy, wz) = (w * x2, w * y2, w * z2);
-        [
-            Vector { x: 1.0 - (yy + zz), y: xy + wz, z: xz - wy },
-            Vector { x: xy - wz, y: 1.0 - (xx + zz), z: yz + wx },
-            Vector { x: xz + wy, y: yz - wx, z: 1.0 - (xx + yy) },
-        ]
     }
 }
 

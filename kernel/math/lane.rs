@@ -1,7 +1,9 @@
 //! Lanes: one `f32`, or several that are computed with side by side.
 
+use super::double::Double;
+use super::num::Num;
 use core::fmt::Debug;
-use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use core::ops::{AddAssign, Mul, SubAssign};
 
 /// Four floats loaded and stored as one: a quarter or a half of a body row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -78,29 +80,6 @@ impl Width {
     }
 }
 
-/// A number that vector types consist of.
-pub trait Num:
-    Copy
-    + Debug
-    + Send
-    + Sync
-    + Default
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-    + AddAssign
-    + SubAssign
-{
-    /// Zero in every lane.
-    const ZERO: Self;
-    /// One in every lane.
-    const ONE: Self;
-    /// The square root, correctly rounded.
-    fn sqrt(self) -> Self;
-}
-
 /// Indices of rows, one for each lane.
 pub trait Ids: Copy + Debug + Send + Sync {
     /// The same index in every lane.
@@ -136,6 +115,8 @@ pub trait Lane: Num {
     type Mask: Copy;
     /// The index of a row for each lane.
     type Ids: Ids;
+    /// As many `f64`.
+    type Double: Double;
 
     /// The same value in every lane.
     fn splat(value: f32) -> Self;
@@ -163,6 +144,10 @@ pub trait Lane: Num {
     fn bits(mask: Self::Mask) -> u32;
     /// `mask ? a : b`, lane by lane.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+    /// The same values as `f64`.
+    fn double(self) -> Self::Double;
+    /// Rounds `f64`.
+    fn of_double(values: Self::Double) -> Self;
     /// Loads one quad for each lane through `fetch` and transposes: element `k` of the result holds
     /// float `k` of every quad.
     fn gather<'a>(ids: &Self::Ids, fetch: impl Fn(u32) -> &'a Quad) -> [Self; 4];
@@ -170,28 +155,11 @@ pub trait Lane: Num {
     fn scatter(values: [Self; 4], ids: &Self::Ids, put: impl FnMut(u32, Quad));
 }
 
-impl Num for f32 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        f32::sqrt(self)
-    }
-}
-
-impl Num for f64 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        f64::sqrt(self)
-    }
-}
-
 impl Lane for f32 {
     const WIDTH: usize = 1;
     type Mask = bool;
     type Ids = [u32; 1];
+    type Double = f64;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -244,6 +212,14 @@ impl Lane for f32 {
     #[inline(always)]
     fn select(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
+    }
+    #[inline(always)]
+    fn double(self) -> f64 {
+        f64::from(self)
+    }
+    #[inline(always)]
+    fn of_double(value: f64) -> Self {
+        value as f32
     }
     #[inline(always)]
     fn gather<'a>(ids: &[u32; 1], fetch: impl Fn(u32) -> &'a Quad) -> [Self; 4] {

@@ -6,7 +6,9 @@
 //! four-lane type.
 #![expect(unsafe_code, reason = "AVX intrinsics; lanes of this width are only used where the CPU has them")]
 
-use super::lane::{Lane, Num, Quad};
+use super::double::Doubles;
+use super::lane::{Lane, Quad};
+use super::num::Num;
 use core::arch::x86_64::*;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -85,6 +87,12 @@ impl F32x8 {
         // SAFETY: __m256 and [f32; 8] have the same size, and any bits are valid for both.
         unsafe { core::mem::transmute(self.0) }
     }
+
+    #[inline(always)]
+    fn of_array(values: [f32; 8]) -> Self {
+        // SAFETY: as above.
+        Self(unsafe { core::mem::transmute::<[f32; 8], __m256>(values) })
+    }
 }
 
 /// The 4 × 4 transpose in both halves: rows become columns.
@@ -125,6 +133,7 @@ impl Lane for F32x8 {
     const WIDTH: usize = 8;
     type Mask = Mask8;
     type Ids = [u32; 8];
+    type Double = Doubles<8>;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -191,6 +200,14 @@ impl Lane for F32x8 {
     fn select(mask: Mask8, a: Self, b: Self) -> Self {
         // SAFETY: below an entry point that has an `Avx2` (see the module).
         Self(unsafe { _mm256_blendv_ps(b.0, a.0, mask.0) })
+    }
+    #[inline(always)]
+    fn double(self) -> Doubles<8> {
+        Doubles::of(self.array())
+    }
+    #[inline(always)]
+    fn of_double(values: Doubles<8>) -> Self {
+        Self::of_array(values.rounded())
     }
     #[inline(always)]
     fn gather<'a>(ids: &[u32; 8], fetch: impl Fn(u32) -> &'a Quad) -> [Self; 4] {

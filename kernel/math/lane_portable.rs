@@ -1,7 +1,9 @@
 //! Four lanes as plain arrays, for targets without an implementation of their own.
 #![expect(unsafe_code, reason = "lanes are looked at one by one")]
 
-use super::lane::{Lane, Num, Quad};
+use super::double::Doubles;
+use super::lane::{Lane, Quad};
+use super::num::Num;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// Four `f32` side by side.
@@ -75,6 +77,7 @@ impl Lane for F32x4 {
     const WIDTH: usize = 4;
     type Mask = [bool; 4];
     type Ids = [u32; 4];
+    type Double = Doubles<4>;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -127,6 +130,14 @@ impl Lane for F32x4 {
     #[inline(always)]
     fn select(mask: [bool; 4], a: Self, b: Self) -> Self {
         Self(core::array::from_fn(|i| if mask[i] { a.0[i] } else { b.0[i] }))
+    }
+    #[inline(always)]
+    fn double(self) -> Doubles<4> {
+        Doubles::of(self.0)
+    }
+    #[inline(always)]
+    fn of_double(values: Doubles<4>) -> Self {
+        Self(values.rounded())
     }
     #[inline(always)]
     fn gather<'a>(ids: &[u32; 4], fetch: impl Fn(u32) -> &'a Quad) -> [Self; 4] {

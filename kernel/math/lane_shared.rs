@@ -1,6 +1,7 @@
 //! Lanes of rows in which a body may be in several lanes.
 
-use super::lane::{Lane, Num, Quad};
+use super::lane::{Lane, Quad};
+use super::num::Num;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// Lanes of `N`, for rows that [share](Lane::SHARES) bodies. Computes as `N` does.
@@ -60,6 +61,7 @@ impl<N: Lane> Lane for Shared<N> {
     const SHARES: bool = true;
     type Mask = N::Mask;
     type Ids = N::Ids;
+    type Double = N::Double;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -112,6 +114,14 @@ impl<N: Lane> Lane for Shared<N> {
     #[inline(always)]
     fn select(mask: N::Mask, a: Self, b: Self) -> Self {
         Self(N::select(mask, a.0, b.0))
+    }
+    #[inline(always)]
+    fn double(self) -> N::Double {
+        self.0.double()
+    }
+    #[inline(always)]
+    fn of_double(values: N::Double) -> Self {
+        Self(N::of_double(values))
     }
     #[inline(always)]
     fn gather<'a>(ids: &N::Ids, fetch: impl Fn(u32) -> &'a Quad) -> [Self; 4] {

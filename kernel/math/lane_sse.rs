@@ -1,7 +1,9 @@
 //! Four lanes on x86-64's baseline, SSE2.
 #![expect(unsafe_code, reason = "SSE2 intrinsics; every x86-64 has them")]
 
-use super::lane::{Lane, Num, Quad};
+use super::double::Doubles;
+use super::lane::{Lane, Quad};
+use super::num::Num;
 use core::arch::x86_64::*;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -123,6 +125,7 @@ impl Lane for F32x4 {
     const WIDTH: usize = 4;
     type Mask = Mask4;
     type Ids = [u32; 4];
+    type Double = Doubles<4>;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -189,6 +192,14 @@ impl Lane for F32x4 {
     fn select(mask: Mask4, a: Self, b: Self) -> Self {
         // SAFETY: SSE2 is part of the x86-64 baseline.
         Self(unsafe { _mm_or_ps(_mm_and_ps(mask.0, a.0), _mm_andnot_ps(mask.0, b.0)) })
+    }
+    #[inline(always)]
+    fn double(self) -> Doubles<4> {
+        Doubles::of(self.array())
+    }
+    #[inline(always)]
+    fn of_double(values: Doubles<4>) -> Self {
+        Self::new(values.rounded())
     }
     #[inline(always)]
     fn gather<'a>(ids: &[u32; 4], fetch: impl Fn(u32) -> &'a Quad) -> [Self; 4] {

@@ -63,6 +63,7 @@ macro_rules! componentwise {
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
+mod double;
 mod entry;
 mod lane;
 #[cfg(target_arch = "x86_64")]
@@ -74,6 +75,7 @@ mod lane_shared;
 mod lane_sse;
 #[cfg(feature = "3d")]
 mod needle3;
+mod num;
 mod pose;
 #[cfg_attr(feature = "2d", path = "tangent2.rs")]
 #[cfg_attr(feature = "3d", path = "tangent3.rs")]
@@ -81,9 +83,10 @@ mod tangent;
 mod trig;
 
 pub use dim::*;
+pub use double::Double;
 pub(crate) use entry::{Entry, Job, enter};
 pub(crate) use lane::inverse_of_positive;
-pub use lane::{Avx2, Ids, Lane, Num, Quad, Width, clamp, max, min};
+pub use lane::{Avx2, Ids, Lane, Quad, Width, clamp, max, min};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lane_avx::F32x8;
 #[cfg(not(target_arch = "x86_64"))]
@@ -93,6 +96,7 @@ pub(crate) use lane_shared::Shared;
 pub use lane_sse::F32x4;
 #[cfg(feature = "3d")]
 pub(crate) use needle3::MAX_RATIO;
+pub use num::Num;
 pub use pose::{Pose, WorldPose, WorldVector};
 pub(crate) use pose::{wide_position, world_position};
 pub use tangent::{NormalMoment, Tangent, TangentFrame, TangentMass};

@@ -1,6 +1,6 @@
 //! Inverse inertia in world axes, also of needles: their moments differ by more than `f32` resolves.
 
-use super::{Rot, SymTensor, Vector};
+use super::{Lane, Rot, SymTensor, Vector};
 
 /// The largest ratio of principal moments of inertia that `f32` resolves in world axes: that of a box 140 times as
 /// long as thick. With more, energy comes from rounding.
@@ -16,7 +16,13 @@ impl SymTensor {
     /// pole a thousand times as long as thick would turn across its axis as easily as about it.
     #[inline]
     pub fn rotated(self, rotation: Rot) -> Self {
-        self.blunted(MAX_RATIO).turned(rotation)
+        self.blunt().turned(rotation)
+    }
+
+    /// What [`rotated`](Self::rotated) turns.
+    #[inline]
+    pub(crate) fn blunt(self) -> Self {
+        self.blunted(MAX_RATIO)
     }
 
     /// The ratio of one principal value to the mean of the others, if it is large. It is infinite or negative if the others
@@ -95,13 +101,15 @@ impl SymTensor {
             yz: self.yz - r.y * c.z,
         }
     }
+}
 
+impl<N: Lane> SymTensor<N> {
     /// R I R⁻¹.
-    #[inline]
-    fn turned(self, rotation: Rot) -> Self {
+    #[inline(always)]
+    pub(crate) fn turned(self, rotation: Rot<N>) -> Self {
         let [cx, cy, cz] = rotation.axes();
         // Rows of R are (cx.x, cy.x, cz.x), …; first T = R I, then T Rᵀ, of which six entries differ.
-        let row = |a: f32, b: f32, c: f32| Vector {
+        let row = |a: N, b: N, c: N| Vector {
             x: a * self.xx + b * self.xy + c * self.xz,
             y: a * self.xy + b * self.yy + c * self.yz,
             z: a * self.xz + b * self.yz + c * self.zz,

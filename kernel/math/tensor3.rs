@@ -32,6 +32,19 @@ impl<N: Num> SymTensor<N> {
 }
 
 impl<N: Lane> SymTensor<N> {
+    /// `a` where the mask is set, else `b`.
+    #[inline(always)]
+    pub(crate) fn select(mask: N::Mask, a: Self, b: Self) -> Self {
+        Self {
+            xx: N::select(mask, a.xx, b.xx),
+            yy: N::select(mask, a.yy, b.yy),
+            zz: N::select(mask, a.zz, b.zz),
+            xy: N::select(mask, a.xy, b.xy),
+            xz: N::select(mask, a.xz, b.xz),
+            yz: N::select(mask, a.yz, b.yz),
+        }
+    }
+
     /// Sum of the eigenvalues.
     #[inline(always)]
     pub fn trace(self) -> N {

@@ -225,3 +225,30 @@ fn a_human_thrown_at_a_thin_wall_neither_passes_nor_is_torn() {
     }
     assert!(failed.is_empty(), "{failed:#?}");
 }
+
+/// Trees of equal shape are solved side by side, four or eight of them: what strikes some must not change others.
+#[test]
+fn humans_side_by_side_do_not_disturb_each_other() {
+    for losses in [Losses::NONE, Losses::USUAL, Losses::FRICTION] {
+        let fall = |narrow: bool| {
+            let mut sim = Sim::new();
+            (sim.sleeping, sim.checked) = (false, false);
+            if narrow {
+                sim.set_narrow();
+            }
+            sim.floor();
+            let mut dice = Dice::new(7);
+            for k in 0..11 {
+                let place = Vector::X * (4.0 * k as f32 - 20.0) + Vector::Y * (1.5 + 0.3 * k as f32);
+                let turn = any_rotation(&mut dice);
+                human(&mut sim, place, turn, losses);
+            }
+            sim.steps(120);
+            sim.bodies.poses.iter().copied().zip(sim.bodies.velocities.iter().copied()).collect::<Vec<_>>()
+        };
+        let [wide, narrow] = [false, true].map(fall);
+        for (body, (wide, narrow)) in wide.iter().zip(&narrow).enumerate() {
+            assert!(wide == narrow, "{losses:?}, body {body}: {wide:?} and {narrow:?}");
+        }
+    }
+}

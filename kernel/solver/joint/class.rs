@@ -43,10 +43,14 @@ pub(super) struct Summary {
     pub(super) may_branch: bool,
     /// Whether it locks something.
     pub(super) holds: bool,
+    /// Bits of what is locked and what is set, by number of the coordinate, then of a rod and of an orientation motor: joints
+    /// with the same bits have the same rows in a tree.
+    pub(super) shape: u32,
 }
 
 impl Summary {
-    pub(super) const OF_COUPLING: Self = Self { batch: COUPLINGS as u8, may_branch: false, holds: false };
+    pub(super) const OF_COUPLING: Self =
+        Self { batch: COUPLINGS as u8, may_branch: false, holds: false, shape: 0 };
 
     pub(super) fn of(def: &JointDef) -> Self {
         let block = (0..BLOCK).rev().find(|k| def.is_in_block(*k)).map_or(0, |last| last + 1);
@@ -54,6 +58,9 @@ impl Summary {
         let turns = def.orientation.is_some();
         let fits = |class: &Class| class.block >= block && class.singles >= singles && class.turns >= turns;
         let batch = CLASSES.iter().position(fits).expect("the last one has room for all");
-        Self { batch: batch as u8, may_branch: def.may_branch(), holds: def.holds() }
+        let bits = (0..BLOCK).map(|k| def.is_in_block(k)).chain((0..AXES).map(|k| def.is_single(k)));
+        let bits = bits.chain([def.is_rod(), turns]);
+        let shape = bits.enumerate().map(|(bit, is_set)| u32::from(is_set) << bit).sum();
+        Self { batch: batch as u8, may_branch: def.may_branch(), holds: def.holds(), shape }
     }
 }

@@ -1,6 +1,6 @@
 //! The coordinates of a joint in 2D.
 
-use crate::math::{Angular, InvInertia, Lane, Rot, Vector, atan2_lanes, inverse_of_positive};
+use crate::math::{Angular, InvInertia, Lane, Num, Rot, Vector, atan2_lanes, inverse_of_positive};
 
 /// Numbers of coordinates of B's frame in A's.
 pub mod coordinate {
@@ -42,30 +42,47 @@ pub(super) fn parts_of(_number: usize) -> core::ops::RangeInclusive<usize> {
 pub(super) const DOF: usize = 3;
 
 /// A motion, or an impulse and its moment, as numbers.
-pub(super) fn numbers((v, w): (Vector, Angular)) -> [f32; DOF] {
+#[inline(always)]
+pub(super) fn numbers<N: Lane>((v, w): (Vector<N>, Angular<N>)) -> [N; DOF] {
     [v.x, v.y, w.z]
 }
 
 /// The motion of which these are the numbers.
-pub(super) fn of_numbers(numbers: [f32; DOF]) -> (Vector, Angular) {
+#[inline(always)]
+pub(super) fn of_numbers<N: Lane>(numbers: [N; DOF]) -> (Vector<N>, Angular<N>) {
     let [x, y, z] = numbers;
     (Vector { x, y }, Angular { z })
 }
 
 /// As [`numbers`], in the precision of elimination.
-pub(super) fn screw(v: Vector, w: Angular) -> [f64; DOF] {
-    numbers((v, w)).map(f64::from)
+#[inline(always)]
+pub(super) fn screw<N: Lane>(v: Vector<N>, w: Angular<N>) -> [N::Double; DOF] {
+    let (of, mut screw) = (numbers((v, w)), [N::Double::ZERO; DOF]);
+    for i in 0..DOF {
+        screw[i] = of[i].double();
+    }
+    screw
 }
 
 /// As [`of_numbers`], from the precision of elimination.
-pub(super) fn motion(screw: &[f64; DOF]) -> (Vector, Angular) {
-    of_numbers(screw.map(|number| number as f32))
+#[inline(always)]
+pub(super) fn motion<N: Lane>(screw: &[N::Double; DOF]) -> (Vector<N>, Angular<N>) {
+    let mut numbers = [N::ZERO; DOF];
+    for i in 0..DOF {
+        numbers[i] = N::of_double(screw[i]);
+    }
+    of_numbers(numbers)
 }
 
 /// M⁻¹ of a body.
-pub(super) fn inverse_of(mass: Vector, inertia: InvInertia) -> [[f32; DOF]; DOF] {
+#[inline(always)]
+pub(super) fn inverse_of<N: Lane>(mass: Vector<N>, inertia: InvInertia<N>) -> [[N; DOF]; DOF] {
     let diagonal = numbers((mass, Angular { z: inertia.zz }));
-    core::array::from_fn(|i| core::array::from_fn(|j| if i == j { diagonal[i] } else { 0.0 }))
+    let mut inverse = [[N::ZERO; DOF]; DOF];
+    for i in 0..DOF {
+        inverse[i][i] = diagonal[i];
+    }
+    inverse
 }
 
 /// Number of axes about which bodies turn.
@@ -95,8 +112,20 @@ pub(super) fn inverses<N: Lane>(v: Vector<N>) -> Vector<N> {
     Vector { x: inverse_of_positive(v.x), y: inverse_of_positive(v.y) }
 }
 
-/// An inverse of inertia with no less inertia than given, in kg·m².
-pub(super) fn with_least_inertia(inverse: InvInertia, least: f32) -> InvInertia {
-    let most = 1.0 / least;
-    InvInertia { zz: if inverse.zz > most { most } else { inverse.zz } }
+/// The smallest component.
+#[inline(always)]
+pub(super) fn least_element<N: Lane>(v: Vector<N>) -> N {
+    v.x.min(v.y)
+}
+
+/// How much inertia a body lacks to have the least that is given, in kg·m². 0 if it lacks none.
+#[inline(always)]
+pub(super) fn lacking<N: Lane>(inverse: InvInertia<N>, least: N) -> N {
+    N::select((N::ONE / least).lt(inverse.zz), least, N::ZERO)
+}
+
+/// An inverse of inertia with what it [lacks](lacking).
+#[inline(always)]
+pub(super) fn with_inertia<N: Lane>(inverse: InvInertia<N>, lacking: N) -> InvInertia<N> {
+    InvInertia { zz: N::select(N::ZERO.lt(lacking), N::ONE / lacking, inverse.zz) }
 }

@@ -1,6 +1,6 @@
 //! The coordinates of a joint in 3D.
 
-use crate::math::{Angular, InvInertia, Lane, Rot, Vector, atan2_lanes, inverse_of_positive};
+use crate::math::{Angular, InvInertia, Lane, Num, Rot, Vector, atan2_lanes, inverse_of_positive};
 
 /// Numbers of coordinates of B's frame in A's.
 pub mod coordinate {
@@ -92,31 +92,46 @@ pub(super) fn parts_of(number: usize) -> core::ops::RangeInclusive<usize> {
 pub(super) const DOF: usize = 6;
 
 /// A motion, or an impulse and its moment, as numbers.
-pub(super) fn numbers((v, w): (Vector, Angular)) -> [f32; DOF] {
+#[inline(always)]
+pub(super) fn numbers<N: Lane>((v, w): (Vector<N>, Angular<N>)) -> [N; DOF] {
     [v.x, v.y, v.z, w.x, w.y, w.z]
 }
 
 /// The motion of which these are the numbers.
-pub(super) fn of_numbers(numbers: [f32; DOF]) -> (Vector, Angular) {
+#[inline(always)]
+pub(super) fn of_numbers<N: Lane>(numbers: [N; DOF]) -> (Vector<N>, Angular<N>) {
     let [x, y, z, a, b, c] = numbers;
     (Vector { x, y, z }, Vector { x: a, y: b, z: c })
 }
 
 /// As [`numbers`], in the precision of elimination.
-pub(super) fn screw(v: Vector, w: Angular) -> [f64; DOF] {
-    numbers((v, w)).map(f64::from)
+#[inline(always)]
+pub(super) fn screw<N: Lane>(v: Vector<N>, w: Angular<N>) -> [N::Double; DOF] {
+    let (of, mut screw) = (numbers((v, w)), [N::Double::ZERO; DOF]);
+    for i in 0..DOF {
+        screw[i] = of[i].double();
+    }
+    screw
 }
 
 /// As [`of_numbers`], from the precision of elimination.
-pub(super) fn motion(screw: &[f64; DOF]) -> (Vector, Angular) {
-    of_numbers(screw.map(|number| number as f32))
+#[inline(always)]
+pub(super) fn motion<N: Lane>(screw: &[N::Double; DOF]) -> (Vector<N>, Angular<N>) {
+    let mut numbers = [N::ZERO; DOF];
+    for i in 0..DOF {
+        numbers[i] = N::of_double(screw[i]);
+    }
+    of_numbers(numbers)
 }
 
 /// M⁻¹ of a body.
-pub(super) fn inverse_of(mass: Vector, i: InvInertia) -> [[f32; DOF]; DOF] {
+#[inline(always)]
+pub(super) fn inverse_of<N: Lane>(mass: Vector<N>, i: InvInertia<N>) -> [[N; DOF]; DOF] {
     let diagonal = numbers((mass, Vector { x: i.xx, y: i.yy, z: i.zz }));
-    let mut inverse: [[f32; DOF]; DOF] =
-        core::array::from_fn(|i| core::array::from_fn(|j| if i == j { diagonal[i] } else { 0.0 }));
+    let mut inverse = [[N::ZERO; DOF]; DOF];
+    for k in 0..DOF {
+        inverse[k][k] = diagonal[k];
+    }
     for (row, column, number) in [(3, 4, i.xy), (3, 5, i.xz), (4, 5, i.yz)] {
         (inverse[row][column], inverse[column][row]) = (number, number);
     }
@@ -158,14 +173,31 @@ pub(super) fn inverses<N: Lane>(v: Vector<N>) -> Vector<N> {
     Vector { x: inverse_of_positive(v.x), y: inverse_of_positive(v.y), z: inverse_of_positive(v.z) }
 }
 
-/// An inverse of inertia with about no less inertia than given about any axis, in kg·m²: what lacks about the axis of
-/// least inertia is added about all.
-pub(super) fn with_least_inertia(inverse: InvInertia, least: f32) -> InvInertia {
-    let lacks = least - 1.0 / inverse.trace();
-    let more = if lacks > 0.0 { inverse.inverse() } else { InvInertia::ZERO };
-    // A body that does not turn about some axis has no inertia to add to.
-    if more == InvInertia::ZERO {
-        return inverse;
+/// The smallest component.
+#[inline(always)]
+pub(super) fn least_element<N: Lane>(v: Vector<N>) -> N {
+    v.x.min(v.y).min(v.z)
+}
+
+/// How much inertia a body lacks about the axis of least inertia to have about the least that is given, in kg·m². 0 if it
+/// lacks none.
+#[inline(always)]
+pub(super) fn lacking<N: Lane>(inverse: InvInertia<N>, least: N) -> N {
+    (least - N::ONE / inverse.trace()).max(N::ZERO)
+}
+
+/// An inverse of inertia with what it [lacks](lacking), about all axes.
+#[inline(always)]
+pub(super) fn with_inertia<N: Lane>(inverse: InvInertia<N>, lacking: N) -> InvInertia<N> {
+    let mut with = inverse;
+    let lacks = N::bits(N::ZERO.lt(lacking));
+    for lane in (0..N::WIDTH).filter(|lane| lacks >> lane & 1 != 0) {
+        let (more, lacking) = (inverse.get(lane).inverse(), lacking.get(lane));
+        // A body that does not turn about some axis has no inertia to add to.
+        if more != InvInertia::ZERO {
+            let [xx, yy, zz] = [more.xx, more.yy, more.zz].map(|moment| moment + lacking);
+            with.set(lane, InvInertia { xx, yy, zz, ..more }.inverse());
+        }
     }
-    InvInertia { xx: more.xx + lacks, yy: more.yy + lacks, zz: more.zz + lacks, ..more }.inverse()
+    with
 }

@@ -13,19 +13,19 @@
 //! and on the way back F is known. Only inverses of inertia are used: bodies with locked axes are nothing special. B is a
 //! difference of near numbers where a light body holds a heavy one, which takes `f64`.
 //!
+//! Trees of equal shape are solved side by side, one in each lane. A row that only some of them have is 0 in the others.
+//!
 //! After Baraff, "Linear-time dynamics using Lagrange multipliers" (1996), and Featherstone's articulated bodies.
-
-#![expect(unsafe_code, reason = "entry points of CPU features")]
 
 use super::dim::{AXES, DOF};
 use super::forest::GROUND;
-use crate::math::{Job, Width, enter};
+use crate::math::{Double, Lane, Num};
 
 /// Most rows of a link: one of each coordinate.
 pub(super) const ROWS: usize = AXES;
 
 /// A motion of a body, or an impulse on it.
-pub(super) type Screw = [f64; DOF];
+pub(super) type Screw<N> = [<N as Lane>::Double; DOF];
 
 /// Share of a row's own inverse mass below which its pivot is rounding.
 const NO_PIVOT: f64 = 1.0e-10;
@@ -40,18 +40,18 @@ const fn at(row: usize, column: usize) -> usize {
 }
 
 #[inline(always)]
-fn widen(a: &[f32; DOF]) -> Screw {
-    let mut wide = [0.0; DOF];
+pub(super) fn widen<N: Lane>(a: &[N; DOF]) -> Screw<N> {
+    let mut wide = [N::Double::ZERO; DOF];
     for i in 0..DOF {
-        wide[i] = f64::from(a[i]);
+        wide[i] = a[i].double();
     }
     wide
 }
 
 /// Sums of three products each do not wait for each other.
 #[inline(always)]
-fn dot(a: &Screw, b: &Screw) -> f64 {
-    let mut sum = 0.0;
+fn dot<N: Lane>(a: &Screw<N>, b: &Screw<N>) -> N::Double {
+    let mut sum = N::Double::ZERO;
     for k in (0..DOF).step_by(3) {
         sum += a[k] * b[k] + a[k + 1] * b[k + 1] + a[k + 2] * b[k + 2];
     }
@@ -60,7 +60,7 @@ fn dot(a: &Screw, b: &Screw) -> f64 {
 
 /// Adds a multiple.
 #[inline(always)]
-pub(super) fn add(to: &mut Screw, a: &Screw, times: f64) {
+pub(super) fn add<N: Lane>(to: &mut Screw<N>, a: &Screw<N>, times: N::Double) {
     for i in 0..DOF {
         to[i] += a[i] * times;
     }
@@ -68,43 +68,46 @@ pub(super) fn add(to: &mut Screw, a: &Screw, times: f64) {
 
 /// The product with a symmetric matrix, by columns: they are added side by side.
 #[inline(always)]
-fn product(matrix: &[Screw; DOF], a: &[f32; DOF]) -> Screw {
-    let mut sum = [0.0; DOF];
+fn product<N: Lane>(matrix: &[Screw<N>; DOF], a: &[N; DOF]) -> Screw<N> {
+    let mut sum = [N::Double::ZERO; DOF];
     for i in 0..DOF {
-        add(&mut sum, &matrix[i], f64::from(a[i]));
+        add::<N>(&mut sum, &matrix[i], a[i].double());
     }
     sum
 }
 
 /// A body of a tree.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(super) struct Node<N: Lane> {
     /// M⁻¹.
-    pub(super) inverse: [[f32; DOF]; DOF],
+    pub(super) inverse: [[N; DOF]; DOF],
     /// B, while joints are eliminated.
-    left: [Screw; DOF],
+    left: [Screw<N>; DOF],
     /// g, while joints are eliminated.
-    motion: Screw,
+    motion: Screw<N>,
     /// The impulse of its joints, after solving.
-    pub(super) impulse: Screw,
+    pub(super) impulse: Screw<N>,
 }
 
-impl Node {
-    pub(super) fn new(inverse: [[f32; DOF]; DOF]) -> Self {
-        Self { inverse, left: [[0.0; DOF]; DOF], motion: [0.0; DOF], impulse: [0.0; DOF] }
+impl<N: Lane> Node<N> {
+    #[inline(always)]
+    pub(super) fn new(inverse: [[N; DOF]; DOF]) -> Self {
+        let none = [N::Double::ZERO; DOF];
+        Self { inverse, left: [none; DOF], motion: none, impulse: none }
     }
 
     /// What the impulse of its joints changes.
-    pub(super) fn change(&self) -> Screw {
+    #[inline(always)]
+    pub(super) fn change(&self) -> Screw<N> {
         self.moved(&self.impulse)
     }
 
     /// What an impulse changes.
     #[inline(always)]
-    pub(super) fn moved(&self, impulse: &Screw) -> Screw {
-        let mut sum = [0.0; DOF];
+    pub(super) fn moved(&self, impulse: &Screw<N>) -> Screw<N> {
+        let mut sum = [N::Double::ZERO; DOF];
         for i in 0..DOF {
-            add(&mut sum, &widen(&self.inverse[i]), impulse[i]);
+            add::<N>(&mut sum, &widen(&self.inverse[i]), impulse[i]);
         }
         sum
     }
@@ -113,55 +116,56 @@ impl Node {
 /// A row of a link: what passes use of it lies together, since all trees of a big scene are larger than caches. J, Γ and M⁻¹
 /// are stored as they are computed, in `f32`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LinkRow {
+pub(super) struct LinkRow<N: Lane> {
     /// J of parent and child.
-    pub(super) jacobians: [[f32; DOF]; 2],
+    pub(super) jacobians: [[N; DOF]; 2],
     /// Γ.
-    pub(super) softness: f32,
+    pub(super) softness: N,
     /// By how much what is locked is off, in m or rad.
-    pub(super) error: f32,
+    pub(super) error: N,
     /// r.
-    pub(super) wanted: f64,
+    pub(super) wanted: N::Double,
     /// λ.
-    pub(super) impulse: f64,
+    pub(super) impulse: N::Double,
     /// D⁻¹ of E = L D Lᵀ.
-    inverse: f64,
+    inverse: N::Double,
     /// Y.
-    passed: Screw,
+    passed: Screw<N>,
 }
 
-impl LinkRow {
+impl<N: Lane> LinkRow<N> {
     const NONE: Self = Self {
-        jacobians: [[0.0; DOF]; 2],
-        softness: 0.0,
-        error: 0.0,
-        wanted: 0.0,
-        impulse: 0.0,
-        inverse: 0.0,
-        passed: [0.0; DOF],
+        jacobians: [[N::ZERO; DOF]; 2],
+        softness: N::ZERO,
+        error: N::ZERO,
+        wanted: N::Double::ZERO,
+        impulse: N::Double::ZERO,
+        inverse: N::Double::ZERO,
+        passed: [N::Double::ZERO; DOF],
     };
 }
 
 /// A joint of a tree: some rows between a parent and a child.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Link {
+pub(super) struct Link<N: Lane> {
     /// Parent and child among the bodies of the tree, or [`GROUND`].
     pub(super) places: [u32; 2],
     /// Number of rows.
     pub(super) count: usize,
     /// E, and then L below the diagonal.
-    lower: [f64; LOWER],
-    pub(super) rows: [LinkRow; ROWS],
+    lower: [N::Double; LOWER],
+    pub(super) rows: [LinkRow<N>; ROWS],
 }
 
-impl Link {
+impl<N: Lane> Link<N> {
     pub(super) const NONE: Self =
-        Self { places: [GROUND; 2], count: 0, lower: [0.0; LOWER], rows: [LinkRow::NONE; ROWS] };
+        Self { places: [GROUND; 2], count: 0, lower: [N::Double::ZERO; LOWER], rows: [LinkRow::NONE; ROWS] };
 
     /// Wants a motion of an end taken back.
-    pub(super) fn want_against(&mut self, end: usize, motion: &Screw) {
+    #[inline(always)]
+    pub(super) fn want_against(&mut self, end: usize, motion: &Screw<N>) {
         for row in &mut self.rows[..self.count] {
-            row.wanted -= dot(&widen(&row.jacobians[end]), motion);
+            row.wanted -= dot::<N>(&widen(&row.jacobians[end]), motion);
         }
     }
 
@@ -177,10 +181,11 @@ impl Link {
                 pivot -= scaled * lower[at(j, m)];
                 lower[at(j, m)] = scaled;
             }
-            rows[j].inverse = if pivot > own * NO_PIVOT { 1.0 / pivot } else { 0.0 };
+            rows[j].inverse = pivot.inverse_above(own * N::Double::splat(NO_PIVOT));
             for i in j + 1..count {
                 for m in 0..j {
-                    lower[at(i, j)] -= lower[at(i, m)] * lower[at(j, m)];
+                    let of_both = lower[at(i, m)] * lower[at(j, m)];
+                    lower[at(i, j)] -= of_both;
                 }
             }
         }
@@ -188,29 +193,31 @@ impl Link {
 
     /// E⁻¹ x.
     #[inline(always)]
-    fn solve(&self, x: &mut [f64; ROWS], count: usize) {
+    fn solve(&self, x: &mut [N::Double; ROWS], count: usize) {
         for i in 0..count {
             for m in 0..i {
-                x[i] -= self.lower[at(i, m)] * x[m];
+                let passed = self.lower[at(i, m)] * x[m];
+                x[i] -= passed;
             }
         }
         for i in (0..count).rev() {
-            x[i] *= self.rows[i].inverse;
+            x[i] = x[i] * self.rows[i].inverse;
             for m in i + 1..count {
-                x[i] -= self.lower[at(m, i)] * x[m];
+                let passed = self.lower[at(m, i)] * x[m];
+                x[i] -= passed;
             }
         }
     }
 
     /// Eliminates the joint: B of its parent is what is left.
     #[inline(always)]
-    fn eliminate(&mut self, nodes: &mut [Node], count: usize) {
+    fn eliminate(&mut self, nodes: &mut [Node<N>], count: usize) {
         let [parent, child] = self.places;
         for i in 0..count {
             for j in 0..i {
-                self.lower[at(i, j)] = 0.0;
+                self.lower[at(i, j)] = N::Double::ZERO;
             }
-            self.lower[at(i, i)] = f64::from(self.rows[i].softness);
+            self.lower[at(i, i)] = self.rows[i].softness.double();
         }
         for (side, place) in [parent, child].into_iter().enumerate() {
             let Some(node) = nodes.get(place as usize) else { continue };
@@ -220,7 +227,7 @@ impl Link {
                     self.rows[i].passed = response;
                 }
                 for j in i..count {
-                    self.lower[at(j, i)] += dot(&response, &widen(&self.rows[j].jacobians[side]));
+                    self.lower[at(j, i)] += dot::<N>(&response, &widen(&self.rows[j].jacobians[side]));
                 }
             }
         }
@@ -230,46 +237,58 @@ impl Link {
         for i in 0..count {
             for m in 0..i {
                 let (of_m, times) = (self.rows[m].passed, -self.lower[at(i, m)]);
-                add(&mut self.rows[i].passed, &of_m, times);
+                add::<N>(&mut self.rows[i].passed, &of_m, times);
             }
         }
         for row in &self.rows[..count] {
             for k in 0..DOF {
-                add(&mut node.left[k], &row.passed, -row.passed[k] * row.inverse);
+                add::<N>(&mut node.left[k], &row.passed, -row.passed[k] * row.inverse);
             }
         }
         for i in (0..count).rev() {
             for k in 0..DOF {
-                self.rows[i].passed[k] *= self.rows[i].inverse;
+                self.rows[i].passed[k] = self.rows[i].passed[k] * self.rows[i].inverse;
             }
             for m in i + 1..count {
                 let (of_m, times) = (self.rows[m].passed, -self.lower[at(m, i)]);
-                add(&mut self.rows[i].passed, &of_m, times);
+                add::<N>(&mut self.rows[i].passed, &of_m, times);
             }
         }
     }
 
     /// Writes E⁻¹ e, and passes e on to the parent.
     #[inline(always)]
-    fn rise(&mut self, nodes: &mut [Node], count: usize) {
-        let is_still = |place: &u32| nodes.get(*place as usize).is_none_or(|node| node.motion == [0.0; DOF]);
-        if self.rows[..count].iter().all(|row| row.wanted == 0.0) && self.places.iter().all(is_still) {
-            self.rows[..count].iter_mut().for_each(|row| row.impulse = 0.0);
+    fn rise(&mut self, nodes: &mut [Node<N>], count: usize) {
+        let mut is_still = true;
+        for row in &self.rows[..count] {
+            is_still &= row.wanted.is_zero();
+        }
+        for place in self.places {
+            if let (true, Some(node)) = (is_still, nodes.get(place as usize)) {
+                for number in &node.motion {
+                    is_still &= number.is_zero();
+                }
+            }
+        }
+        if is_still {
+            for row in &mut self.rows[..count] {
+                row.impulse = N::Double::ZERO;
+            }
             return;
         }
-        let mut e = [0.0; ROWS];
+        let mut e = [N::Double::ZERO; ROWS];
         for i in 0..count {
             e[i] = self.rows[i].wanted;
         }
         for (side, place) in self.places.into_iter().enumerate() {
             let Some(node) = nodes.get(place as usize) else { continue };
             for i in 0..count {
-                e[i] -= dot(&widen(&self.rows[i].jacobians[side]), &node.motion);
+                e[i] -= dot::<N>(&widen(&self.rows[i].jacobians[side]), &node.motion);
             }
         }
         if let Some(node) = nodes.get_mut(self.places[0] as usize) {
             for i in 0..count {
-                add(&mut node.motion, &self.rows[i].passed, e[i]);
+                add::<N>(&mut node.motion, &self.rows[i].passed, e[i]);
             }
         }
         self.solve(&mut e, count);
@@ -280,16 +299,16 @@ impl Link {
 
     /// Takes off what the parent's other joints do, and adds the impulses to those of both bodies.
     #[inline(always)]
-    fn fall(&mut self, nodes: &mut [Node], count: usize) {
+    fn fall(&mut self, nodes: &mut [Node<N>], count: usize) {
         if let Some(node) = nodes.get(self.places[0] as usize) {
             for row in &mut self.rows[..count] {
-                row.impulse -= dot(&row.passed, &node.impulse);
+                row.impulse -= dot::<N>(&row.passed, &node.impulse);
             }
         }
         for (side, place) in self.places.into_iter().enumerate() {
             let Some(node) = nodes.get_mut(place as usize) else { continue };
             for row in &self.rows[..count] {
-                add(&mut node.impulse, &widen(&row.jacobians[side]), row.impulse);
+                add::<N>(&mut node.impulse, &widen(&row.jacobians[side]), row.impulse);
             }
         }
     }
@@ -310,85 +329,56 @@ macro_rules! by_count {
     };
 }
 
-/// The joints of a tree, in an order from the root on, and its bodies.
-struct Slices<'a> {
-    links: &'a mut [Link],
-    nodes: &'a mut [Node],
-}
-
-struct Factor<'a>(Slices<'a>);
-
-impl Job for Factor<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    unsafe fn run(self) {
-        let Slices { links, nodes } = self.0;
-        for node in nodes.iter_mut() {
-            for k in 0..DOF {
-                node.left[k] = widen(&node.inverse[k]);
-            }
-        }
-        for link in links.iter_mut().rev() {
-            by_count!(link.eliminate(nodes));
-        }
-    }
-}
-
-struct Solve<'a>(Slices<'a>);
-
-impl Job for Solve<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    unsafe fn run(self) {
-        let Slices { links, nodes } = self.0;
-        for node in nodes.iter_mut() {
-            (node.motion, node.impulse) = ([0.0; DOF], [0.0; DOF]);
-        }
-        for link in links.iter_mut().rev() {
-            by_count!(link.rise(nodes));
-        }
-        for link in links.iter_mut() {
-            by_count!(link.fall(nodes));
-        }
-    }
-}
-
 /// Eliminates the joints of a tree, which are in an order from the root on.
-pub(super) fn factor(links: &mut [Link], nodes: &mut [Node], width: Width) {
-    // SAFETY: the job demands nothing.
-    unsafe { enter(width, Factor(Slices { links, nodes })) };
+#[inline(always)]
+pub(super) fn factor<N: Lane>(links: &mut [Link<N>], nodes: &mut [Node<N>]) {
+    for node in nodes.iter_mut() {
+        for k in 0..DOF {
+            node.left[k] = widen(&node.inverse[k]);
+        }
+    }
+    for link in links.iter_mut().rev() {
+        by_count!(link.eliminate(nodes));
+    }
 }
 
 /// Solves a factored tree for what its joints want. Afterwards joints have their impulses, and bodies those of all their
 /// joints.
-pub(super) fn solve(links: &mut [Link], nodes: &mut [Node], width: Width) {
-    // SAFETY: the job demands nothing.
-    unsafe { enter(width, Solve(Slices { links, nodes })) };
+#[inline(always)]
+pub(super) fn solve<N: Lane>(links: &mut [Link<N>], nodes: &mut [Node<N>]) {
+    for node in nodes.iter_mut() {
+        (node.motion, node.impulse) = ([N::Double::ZERO; DOF], [N::Double::ZERO; DOF]);
+    }
+    for link in links.iter_mut().rev() {
+        by_count!(link.rise(nodes));
+    }
+    for link in links.iter_mut() {
+        by_count!(link.fall(nodes));
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::DIM;
+    use crate::math::{DIM, F32x4};
     use proptest::prelude::*;
 
     /// A tree by seeds: masses, parents, rows and directions.
-    fn tree(seeds: &[(f64, u32, u64)], ratio: f64) -> (Vec<Link>, Vec<Node>) {
+    fn tree(seeds: &[(f64, u32, u64)], ratio: f64) -> (Vec<Link<f32>>, Vec<Node<f32>>) {
         let mut state = 1u64;
         let mut any = |seed: u64| {
             state = (state ^ seed).wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
             (state >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
         };
-        let (mut links, mut nodes): (Vec<Link>, Vec<Node>) = (Vec::new(), Vec::new());
+        let (mut links, mut nodes): (Vec<Link<f32>>, Vec<Node<f32>>) = (Vec::new(), Vec::new());
         for (number, &(weight, parent, seed)) in seeds.iter().enumerate() {
             let mut inverse = [[0.0f32; DOF]; DOF];
             let inv_mass = 1.0 / ratio.powf(weight);
-            let roots: [Screw; DOF] = core::array::from_fn(|_| core::array::from_fn(|_| any(seed)));
+            let roots: [Screw<f32>; DOF] = core::array::from_fn(|_| core::array::from_fn(|_| any(seed)));
             for (i, row) in inverse.iter_mut().enumerate() {
                 for (j, x) in row.iter_mut().enumerate() {
-                    let turn = if i >= DIM && j >= DIM { 0.3 * dot(&roots[i], &roots[j]) } else { 0.0 };
+                    let turn =
+                        if i >= DIM && j >= DIM { 0.3 * dot::<f32>(&roots[i], &roots[j]) } else { 0.0 };
                     *x = (inv_mass * (turn + if i == j { 0.5 } else { 0.0 })) as f32;
                 }
             }
@@ -402,7 +392,7 @@ mod tests {
             let mut link = Link { places: ends, count, ..Link::NONE };
             for row in &mut link.rows[..count] {
                 row.jacobians = core::array::from_fn(|_| core::array::from_fn(|_| any(seed) as f32));
-                (row.softness, row.wanted) = (1.0e-3 * inv_mass as f32, any(seed));
+                (row.softness, row.wanted) = (1.0e-3 * inv_mass as f32, f64::from(any(seed) as f32));
             }
             links.push(link);
             if ends[1] == GROUND && number > 0 {
@@ -415,12 +405,12 @@ mod tests {
     }
 
     /// J Δv + Γ λ − r, with Δv = M⁻¹ Σ Jᵀ λ.
-    fn residual(links: &[Link], nodes: &[Node]) -> f64 {
+    fn residual(links: &[Link<f32>], nodes: &[Node<f32>]) -> f64 {
         let mut impulses = vec![[0.0; DOF]; nodes.len()];
         for link in links {
             for (side, place) in link.places.into_iter().enumerate().filter(|(_, place)| *place != GROUND) {
                 for row in &link.rows[..link.count] {
-                    add(&mut impulses[place as usize], &widen(&row.jacobians[side]), row.impulse);
+                    add::<f32>(&mut impulses[place as usize], &widen(&row.jacobians[side]), row.impulse);
                 }
             }
         }
@@ -431,7 +421,7 @@ mod tests {
                 for (side, place) in link.places.into_iter().enumerate().filter(|(_, place)| *place != GROUND)
                 {
                     let change = nodes[place as usize].moved(&impulses[place as usize]);
-                    sum += dot(&widen(&row.jacobians[side]), &change);
+                    sum += dot::<f32>(&widen(&row.jacobians[side]), &change);
                 }
                 most = most.max(sum.abs());
             }
@@ -445,6 +435,30 @@ mod tests {
         most
     }
 
+    /// A tree in one of four lanes.
+    fn side_by_side(
+        links: &[Link<f32>],
+        nodes: &[Node<f32>],
+        lane: usize,
+    ) -> (Vec<Link<F32x4>>, Vec<Node<F32x4>>) {
+        let put = |value: f32| {
+            let mut wide = F32x4::ZERO;
+            wide.set(lane, value);
+            wide
+        };
+        let of_link = |link: &Link<f32>| {
+            let mut wide = Link { places: link.places, count: link.count, ..Link::NONE };
+            for (wide, row) in wide.rows.iter_mut().zip(&link.rows) {
+                wide.jacobians = row.jacobians.map(|jacobian| jacobian.map(put));
+                wide.softness = put(row.softness);
+                wide.wanted = put(row.wanted as f32).double();
+            }
+            wide
+        };
+        let of_node = |node: &Node<f32>| Node::new(node.inverse.map(|row| row.map(put)));
+        (links.iter().map(of_link).collect(), nodes.iter().map(of_node).collect())
+    }
+
     proptest! {
         #[test]
         fn all_joints_of_a_tree_get_what_they_want(
@@ -452,18 +466,23 @@ mod tests {
             ratio in prop::sample::select(vec![1.0, 100.0, 1.0e6]),
         ) {
             let (mut links, mut nodes) = tree(&seeds, ratio);
-            let mut other = (links.clone(), nodes.clone());
-            factor(&mut links, &mut nodes, Width::default());
-            factor(&mut other.0, &mut other.1, Width::Four);
+            // The same tree in a lane, beside empty ones.
+            let lane = seeds.len() % 4;
+            let (mut wide_links, mut wide_nodes) = side_by_side(&links, &nodes, lane);
+            factor(&mut links, &mut nodes);
+            factor(&mut wide_links, &mut wide_nodes);
             for _ in 0..2 {
-                solve(&mut links, &mut nodes, Width::default());
-                solve(&mut other.0, &mut other.1, Width::Four);
+                solve(&mut links, &mut nodes);
+                solve(&mut wide_links, &mut wide_nodes);
                 let most = residual(&links, &nodes);
                 prop_assert!(most < 1.0e-6, "off by {most}");
-                let bits = |links: &[Link]| -> Vec<u64> {
-                    links.iter().flat_map(|link| link.rows.map(|row| row.impulse.to_bits())).collect()
-                };
-                prop_assert_eq!(bits(&links), bits(&other.0), "other bits with another width");
+                for (link, wide) in links.iter().zip(&wide_links) {
+                    for (row, wide) in link.rows.iter().zip(&wide.rows) {
+                        let wide = F32x4::of_double(wide.impulse);
+                        prop_assert_eq!((row.impulse as f32).to_bits(), wide.get(lane).to_bits());
+                        prop_assert!((0..4).all(|other| other == lane || wide.get(other) == 0.0));
+                    }
+                }
             }
         }
     }
@@ -472,14 +491,14 @@ mod tests {
     fn rows_that_nothing_moves_are_left_out() {
         let mut held = [[0.0; DOF]; DOF];
         held[1][1] = 2.0;
-        let mut link = Link { places: [0, GROUND], count: 3, ..Link::NONE };
+        let mut link = Link::<f32> { places: [0, GROUND], count: 3, ..Link::NONE };
         for (row, axis) in link.rows.iter_mut().zip([0, 1, 1]) {
             row.jacobians[0][axis] = 1.0;
             row.wanted = 4.0;
         }
         let (mut links, mut nodes) = ([link], [Node::new(held)]);
-        factor(&mut links, &mut nodes, Width::default());
-        solve(&mut links, &mut nodes, Width::default());
+        factor(&mut links, &mut nodes);
+        solve(&mut links, &mut nodes);
         assert_eq!(links[0].rows.map(|row| row.impulse)[..3], [0.0, 2.0, 0.0]);
         assert_eq!(nodes[0].change()[1], 4.0);
     }

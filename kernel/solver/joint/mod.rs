@@ -32,10 +32,14 @@ mod single;
 mod table;
 mod tree;
 mod tree_blow;
+mod tree_group;
+mod tree_joint;
 mod tree_motor;
+mod tree_parts;
 mod tree_pass;
 mod tree_scratch;
 mod tree_single;
+mod tree_view;
 
 pub(super) use batch::{JOINT_BATCHES, JointRows, JointViews, joints, sort_joints};
 pub use coupling::{CouplingDef, CouplingEnd, EndCoordinate};

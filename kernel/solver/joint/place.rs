@@ -36,6 +36,19 @@ pub(super) struct Masses<N> {
 impl<N: Lane> Masses<N> {
     pub(super) const NONE: Self = Self { linear: [Vector::ZERO; 2], angular: [InvInertia::ZERO; 2] };
 
+    /// Writes those of a side where a mask is set.
+    #[inline(always)]
+    pub(super) fn set_where(
+        &mut self,
+        mask: N::Mask,
+        side: usize,
+        linear: Vector<N>,
+        angular: InvInertia<N>,
+    ) {
+        self.linear[side] = Vector::select(mask, linear, self.linear[side]);
+        self.angular[side] = InvInertia::select(mask, angular, self.angular[side]);
+    }
+
     /// The changes of velocity by a unit impulse along a gradient.
     #[inline(always)]
     pub(super) fn response(&self, gradient: &Gradient<N>) -> Response<N> {

@@ -238,16 +238,24 @@ impl<N: Lane> Row<N> {
         }
     }
 
-    /// Makes a distance that is locked the first coordinate of the block, instead of a single one.
-    pub(super) fn take_rod(&mut self, singles: &mut [Single<N>], def: &JointDef, hold: Hold, h: f32) {
+    /// Makes a distance that is locked the first coordinate of the block in a lane, instead of a single one.
+    pub(super) fn take_rod(
+        &mut self,
+        singles: &mut [Single<N>],
+        def: &JointDef,
+        (lane, hold): (usize, Hold),
+        h: f32,
+    ) {
         let axis = &def.axes[coordinate::DISTANCE];
-        let Some(single) = singles.iter_mut().find(|single| single.apart.get(0) > 0.0) else { return };
-        single.limits = [N::splat(f32::NEG_INFINITY), N::splat(f32::INFINITY)];
-        single.impulses = [N::ZERO; 2];
+        let Some(single) = singles.iter_mut().find(|single| single.apart.get(lane) > 0.0) else { return };
+        for (limit, none) in single.limits.iter_mut().zip([f32::NEG_INFINITY, f32::INFINITY]) {
+            limit.set(lane, none);
+        }
+        single.impulses.iter_mut().for_each(|impulse| impulse.set(lane, 0.0));
         let rod = &mut self.block[0];
-        rod.is_locked.set(0, 1.0);
-        rod.target.set(0, axis.locked_at().unwrap_or(0.0));
-        rod.softening.set(0, axis.give, hold, h);
+        rod.is_locked.set(lane, 1.0);
+        rod.target.set(lane, axis.locked_at().unwrap_or(0.0));
+        rod.softening.set(lane, axis.give, hold, h);
     }
 
     /// Computes derived values, for all lanes at once.

@@ -4,7 +4,7 @@ use super::super::{MassRow, RowInput};
 use super::class::Summary;
 use super::coupling::{CouplingDef, CouplingRecord};
 use super::def::{JointDef, JointError};
-use super::dim::{AXES, BLOCK, TURNS, with_least_inertia};
+use super::dim::{AXES, BLOCK, TURNS, lacking, with_inertia};
 use super::gap::JointGap;
 use crate::contact::Link;
 use crate::data::Parts;
@@ -213,7 +213,7 @@ impl JointTable {
         }
         for (row, least) in least.iter().enumerate().filter(|(_, least)| **least > 0.0) {
             let (inv_mass, inverse) = MassRow::gather::<f32>(masses, &[row as u32]);
-            masses[row] = MassRow::new(inv_mass, with_least_inertia(inverse, *least));
+            masses[row] = MassRow::new(inv_mass, with_inertia(inverse, lacking(inverse, *least)));
         }
     }
 

@@ -8,8 +8,8 @@
 use super::super::batch::Sweep;
 use super::super::{BodyRow, RowView};
 use super::forest::GROUND;
-use super::tree::JointTrees;
-use super::tree_pass::range;
+use super::tree::{JointTrees, each};
+use super::tree_joint::range;
 use crate::data::BitSet;
 use crate::math::{Angular, Rot, Vector, min};
 use crate::thread_pool::ThreadPool;
@@ -25,8 +25,6 @@ pub(in super::super) struct TreeBlows {
     before: Vec<Motion>,
     /// By body, velocity before the tree was last solved.
     earlier: Vec<(Vector, Angular)>,
-    /// By single coordinate, its impulses before all blows.
-    impulses: Vec<[f32; 2]>,
 }
 
 /// Velocity, and displacement and rotation since the start of the step.
@@ -41,8 +39,8 @@ fn displace(row: &mut BodyRow, (v, w): (Vector, Angular), (position, rotation): 
 impl TreeBlows {
     /// Starts the blows of a substep. Limits begin without impulses.
     pub(in super::super) fn begin(&mut self, trees: &mut JointTrees, bodies: &RowView<BodyRow>) {
-        let JointTrees { forest, singles, bodies: listed, .. } = trees;
-        let Self { times, is_due, before, earlier, impulses } = self;
+        let JointTrees { forest, bodies: listed, .. } = &*trees;
+        let Self { times, is_due, before, earlier } = self;
         times.clear();
         times.resize(forest.trees.len(), f32::MAX);
         is_due.clear();
@@ -55,8 +53,10 @@ impl TreeBlows {
         }));
         earlier.clear();
         earlier.extend(before.iter().map(|(velocity, _)| *velocity));
-        impulses.clear();
-        impulses.extend(singles.iter_mut().map(|single| core::mem::take(&mut single.impulses)));
+        // SAFETY: no other thread runs.
+        trees.with(|_, _, trees| unsafe {
+            trees.iter().for_each(|trees| (0..trees.len()).for_each(|group| trees.begin_blows(group)));
+        });
     }
 
     /// Marks the trees of struck body rows, given with the times of their blows. Returns whether there are any, and adds their bodies.
@@ -100,16 +100,12 @@ impl TreeBlows {
                 self.earlier[k] = unsafe { sweep.bodies.get(trees.bodies[k].row) }.velocity();
             }
         }
-        // SAFETY: each tree is run once, and no two share a joint or a dynamic body. Of the bodies only dynamic ones are written.
-        trees.each(
-            pool,
-            due.len(),
-            |k| due[k],
-            |mut tree| unsafe {
-                tree.scratch.forget();
-                tree.project(sweep);
-            },
-        );
+        let is_due = &self.is_due;
+        trees.with(|_, _, trees| {
+            // SAFETY: each group is run once, and no two share a joint or a dynamic body. Of the bodies only dynamic ones are
+            // written.
+            each(trees, pool, |trees, group| unsafe { trees.follow(group, is_due, sweep) });
+        });
         for tree in due {
             self.is_due[tree] = false;
             let time = min(self.times[tree], time);
@@ -124,7 +120,7 @@ impl TreeBlows {
     /// Ends the blows of a substep: the bodies of a tree that was struck have moved with their old velocities until its first blow.
     pub(in super::super) fn end(&self, trees: &mut JointTrees, bodies: &RowView<BodyRow>, time: f32) {
         trees.forget_places();
-        let JointTrees { forest, singles, bodies: listed, .. } = trees;
+        let JointTrees { forest, bodies: listed, .. } = &*trees;
         for (span, first) in forest.trees.iter().zip(&self.times).filter(|(_, first)| **first < f32::MAX) {
             for k in range(span.bodies) {
                 let (velocity, delta) = self.before[k];
@@ -133,8 +129,9 @@ impl TreeBlows {
                 unsafe { bodies.put(listed[k].row, change) };
             }
         }
-        for (single, impulses) in singles.iter_mut().zip(&self.impulses) {
-            single.impulses = *impulses;
-        }
+        // SAFETY: no other thread runs.
+        trees.with(|_, _, trees| unsafe {
+            trees.iter().for_each(|trees| (0..trees.len()).for_each(|group| trees.end_blows(group)));
+        });
     }
 }

@@ -1,69 +1,152 @@
-//! Orientation motors of a tree, each solved by the responses of the whole tree to impulses along its axes.
+//! Orientation motors of trees, each solved by the responses of the whole tree to impulses along its axes.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::super::batch::{Pass, Sweep};
-use super::dim::{motion, screw};
+use super::dim::{DOF, TURNS, motion, screw};
 use super::elimination::{self, Screw};
 use super::forest::GROUND;
 use super::place::{Gradient, Response};
-use super::tree_pass::Tree;
-use crate::math::{Angular, Vector};
+use super::tree_pass::{Tree, TreeEntry};
+use super::tree_single::{is, number};
+use crate::math::{Angular, Entry, Job, Num, Vector};
 
-impl Tree<'_> {
+/// Finds the lanes whose motors are due: nothing else changes in them. Returns whether there are any.
+struct Begin<'t, 'a, N: Entry>(&'t mut Tree<'a, N>);
+
+impl<N: Entry> Job for Begin<'_, '_, N> {
+    type Output = bool;
+
+    #[inline(always)]
+    unsafe fn run(self) -> bool {
+        let scratch = &mut *self.0.scratch;
+        let is_done = (scratch.open + scratch.driven).eq(N::ZERO);
+        let due = N::and(is_done, is(scratch.was_open));
+        scratch.due = number(due);
+        scratch.driven = N::select(due, N::ONE, scratch.driven);
+        N::any(due)
+    }
+}
+
+/// Solves the motor of a joint in the lanes that are due.
+struct Solve<'t, 'a, N: Entry>(&'t mut Tree<'a, N>, usize, &'t Sweep<'t>);
+
+impl<N: Entry> Job for Solve<'_, '_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    unsafe fn run(self) {
+        // SAFETY: by the contract.
+        unsafe { self.0.solve_orientation(self.1, self.2) };
+    }
+}
+
+/// Opens the lanes that were open before, besides. Returns whether any are.
+struct End<'t, 'a, N: Entry>(&'t mut Tree<'a, N>, N);
+
+impl<N: Entry> Job for End<'_, '_, N> {
+    type Output = bool;
+
+    #[inline(always)]
+    unsafe fn run(self) -> bool {
+        let open = N::or(is(self.0.scratch.open), is(self.1));
+        self.0.scratch.open = number(open);
+        N::any(open)
+    }
+}
+
+impl<N: Entry> Tree<'_, N> {
+    /// Solves the motors of the lanes in which nothing else changes, once, and pivots again. Returns whether lanes are open.
+    ///
+    /// # Safety
+    /// As [`solve`](Self::solve).
+    pub(super) unsafe fn turn(&mut self, sweep: &Sweep) -> bool {
+        let (entry, open): (TreeEntry<N>, N) = (self.entry, self.scratch.open);
+        // SAFETY: by the contract.
+        unsafe {
+            if entry.run(Begin(self)) {
+                for k in 0..self.joints.len() {
+                    entry.run(Solve(self, k, sweep));
+                }
+                self.scratch.open = self.scratch.due;
+                self.pivot_again(sweep);
+            }
+            entry.run(End(self, open))
+        }
+    }
+
     /// Solves the orientation motor of a joint.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
-    pub(super) unsafe fn solve_orientation(&mut self, k: usize, sweep: &Sweep) {
+    #[inline(always)]
+    unsafe fn solve_orientation(&mut self, k: usize, sweep: &Sweep) {
+        let due = is(self.scratch.due);
         let joint = &mut self.joints[k];
-        joint.row.turning = Angular::ZERO;
         let Some(mut motor) = joint.orientation else { return };
         // SAFETY: by the contract.
         let place = unsafe { joint.row.start.now(&sweep.bodies, &joint.row.ids) };
         let turning = motor.look(&place);
         if sweep.pass == Pass::Solve {
-            let alone = turning.gradients.map(|gradient| joint.row.masses.response(&gradient));
-            let responses = turning.gradients.map(|gradient| self.unit_response(k, &gradient));
-            let changes = motor.act(&turning, (&responses, &alone), &self.pair(k), sweep.params.h);
-            self.joints[k].orientation = Some(motor);
-            let mut sum = Angular::ZERO;
-            for (gradient, change) in turning.gradients.iter().zip(changes) {
-                sum += gradient.moments[1] * change;
+            let before = motor.impulses;
+            let mut alone = [Response::NONE; TURNS];
+            for (alone, gradient) in alone.iter_mut().zip(&turning.gradients) {
+                *alone = joint.row.masses.response(gradient);
             }
+            let mut responses = [Response::NONE; TURNS];
+            for (response, gradient) in responses.iter_mut().zip(&turning.gradients) {
+                *response = self.unit_response(k, gradient);
+            }
+            let changes = motor.act(&turning, (&responses, &alone), &self.pair(k), sweep.params.h);
+            let mut sum = Angular::ZERO;
+            for i in 0..changes.len() {
+                motor.impulses[i] = N::select(due, motor.impulses[i], before[i]);
+                sum += turning.gradients[i].moments[1] * changes[i];
+            }
+            self.joints[k].orientation = Some(motor);
             self.unit_response(k, &place.gradient(Vector::ZERO, sum));
-            self.apply(sweep);
+            self.apply(self.scratch.due, sweep);
         }
+        let mut sum = Angular::ZERO;
         for (gradient, impulse) in turning.gradients.iter().zip(motor.impulses) {
-            self.joints[k].row.turning += gradient.moments[1] * impulse;
+            sum += gradient.moments[1] * impulse;
         }
+        let row = &mut self.joints[k].row;
+        row.turning = Angular::select(due, sum, row.turning);
     }
 
-    /// Solves the tree for a unit impulse along a coordinate of a joint, and adds the impulse to those on its bodies. The
+    /// Solves the trees for a unit impulse along a coordinate of a joint, and adds the impulse to those on its bodies. The
     /// response of the joint's bodies.
-    pub(super) fn unit_response(&mut self, k: usize, gradient: &Gradient<f32>) -> Response<f32> {
-        let Self { joints, links, nodes, width, .. } = self;
-        let ends: [(u32, Screw); 2] = core::array::from_fn(|end| {
-            let sign = if joints[k].side(end) == 0 { -1.0 } else { 1.0 };
-            let moment = gradient.moments[joints[k].side(end)];
-            (links[k].places[end], screw(gradient.normal * sign, moment * sign))
-        });
+    #[inline(always)]
+    pub(super) fn unit_response(&mut self, k: usize, gradient: &Gradient<N>) -> Response<N> {
+        let Self { joints, links, nodes, .. } = self;
+        let (joint, places) = (&joints[k], links[k].places);
+        let mut pushes: [Screw<N>; 2] = [[N::Double::ZERO; DOF]; 2];
+        for end in 0..2 {
+            let side = joint.side(end);
+            let moment = gradient.moments[side];
+            pushes[end] = match side {
+                0 => screw(-gradient.normal, -moment),
+                _ => screw(gradient.normal, moment),
+            };
+        }
         for link in links.iter_mut() {
-            link.rows.iter_mut().for_each(|row| row.wanted = 0.0);
-            for (place, push) in ends.iter().filter(|(place, _)| *place != GROUND) {
-                if let Some(end) = link.places.iter().position(|other| other == place) {
-                    link.want_against(end, &nodes[*place as usize].moved(push));
+            for row in &mut link.rows {
+                row.wanted = N::Double::ZERO;
+            }
+            for (place, push) in places.into_iter().zip(&pushes).filter(|(place, _)| *place != GROUND) {
+                if let Some(end) = link.places.iter().position(|other| *other == place) {
+                    link.want_against(end, &nodes[place as usize].moved(push));
                 }
             }
         }
-        elimination::solve(links, nodes, *width);
-        let mut response = Response { v: [Vector::ZERO; 2], w: [Angular::ZERO; 2] };
-        for (end, (place, push)) in ends.into_iter().enumerate().filter(|(_, (place, _))| *place != GROUND) {
-            let node = &mut nodes[place as usize];
-            elimination::add(&mut node.impulse, &push, 1.0);
-            let (v, w) = motion(&node.change());
-            let side = joints[k].side(end);
-            let sign = if side == 0 { -1.0 } else { 1.0 };
-            (response.v[side], response.w[side]) = (v * sign, w * sign);
+        elimination::solve(links, nodes);
+        let mut response = Response::NONE;
+        for end in 0..2 {
+            let Some(node) = nodes.get_mut(places[end] as usize) else { continue };
+            elimination::add::<N>(&mut node.impulse, &pushes[end], N::Double::ONE);
+            let (v, w) = motion::<N>(&node.change());
+            let side = joint.side(end);
+            (response.v[side], response.w[side]) = if side == 0 { (-v, -w) } else { (v, w) };
         }
         response
     }

@@ -9,6 +9,7 @@
 use super::super::SubstepParams;
 use super::single::{MotorRow, Single};
 use super::tree_scratch::Coordinate;
+use crate::math::Lane;
 use crate::tuning::solver::NO_MASS;
 
 /// What acts along a coordinate.
@@ -16,193 +17,283 @@ const LIMIT: usize = 0;
 const SPRING: usize = 1;
 const MOTOR: usize = 2;
 
-/// What one of them asks for.
-#[derive(Clone, Copy, Debug)]
-struct Law {
-    /// G. 0 if it does not act.
-    conductance: f32,
-    bias: f32,
+/// 1 where a mask is set, else 0.
+#[inline(always)]
+pub(super) fn number<N: Lane>(mask: N::Mask) -> N {
+    N::select(mask, N::ONE, N::ZERO)
 }
 
-impl Law {
-    const NONE: Self = Self { conductance: 0.0, bias: 0.0 };
+/// Where a number is positive.
+#[inline(always)]
+pub(super) fn is<N: Lane>(number: N) -> N::Mask {
+    N::ZERO.lt(number)
+}
 
-    fn acts(&self) -> bool {
-        self.conductance > 0.0
+/// The first mask without the second one.
+#[inline(always)]
+fn without<N: Lane>(mask: N::Mask, but: N::Mask) -> N::Mask {
+    N::and(mask, N::select(but, N::ZERO, N::ONE).eq(N::ONE))
+}
+
+/// Adds where a mask is set.
+#[inline(always)]
+fn add_where<N: Lane>(to: &mut N, mask: N::Mask, change: N) {
+    *to = N::select(mask, *to + change, *to);
+}
+
+/// What one of them asks for.
+#[derive(Clone, Copy, Debug)]
+struct Law<N> {
+    /// G. 0 if it does not act.
+    conductance: N,
+    bias: N,
+}
+
+impl<N: Lane> Law<N> {
+    const NONE: Self = Self { conductance: N::ZERO, bias: N::ZERO };
+
+    #[inline(always)]
+    fn acts(&self) -> N::Mask {
+        is(self.conductance)
+    }
+
+    /// The law where a mask is set.
+    #[inline(always)]
+    fn only(self, mask: N::Mask) -> Self {
+        Self { conductance: N::select(mask, self.conductance, N::ZERO), bias: self.bias }
     }
 
     /// The impulse that it asks for at a rate.
-    fn asks(&self, rate: f32) -> f32 {
+    #[inline(always)]
+    fn asks(&self, rate: N) -> N {
         -self.conductance * (rate + self.bias)
     }
 }
 
-impl MotorRow<f32> {
+impl<N: Lane> MotorRow<N> {
     /// The law of a substep. What is per mass is per the mass that the coordinate moves in the tree.
-    fn law(&self, at: &Coordinate, h: f32) -> Law {
-        let [stiffness, damping] = [0, 1].map(|i| match self.of_mass[i] {
-            of_mass if of_mass > 0.0 && at.left > 0.0 => of_mass / at.left + self.besides[i],
-            _ => self.besides[i],
-        });
-        let resistance = damping + h * stiffness;
-        if self.most <= 0.0 || resistance <= 0.0 {
-            return Law::NONE;
+    #[inline(always)]
+    fn law(&self, at: &Coordinate<N>, h: f32) -> Law<N> {
+        let h = N::splat(h);
+        let moves = is(at.left);
+        let left = N::select(moves, at.left, N::ONE);
+        let mut of_law = self.besides;
+        for i in 0..2 {
+            let is_of_mass = N::and(is(self.of_mass[i]), moves);
+            of_law[i] = N::select(is_of_mass, self.of_mass[i] / left + self.besides[i], self.besides[i]);
         }
+        let [stiffness, damping] = of_law;
+        let resistance = damping + h * stiffness;
+        let acts = N::and(is(self.most), is(resistance));
         let off = at.value - self.target_position;
-        let bias = (stiffness * off - damping * self.target_velocity) / resistance;
-        Law { conductance: h * resistance, bias }
+        let bias = (stiffness * off - damping * self.target_velocity) / N::select(acts, resistance, N::ONE);
+        Law { conductance: N::select(acts, h * resistance, N::ZERO), bias }
     }
 
-    fn is_per_mass(&self) -> bool {
-        self.most > 0.0 && self.of_mass != [0.0; 2]
+    /// Where it is per mass.
+    #[inline(always)]
+    fn is_per_mass(&self) -> N::Mask {
+        N::and(is(self.most), N::or(is(self.of_mass[0]), is(self.of_mass[1])))
     }
 }
 
-impl Single<f32> {
-    /// Whether both limits are one: it acts both ways.
-    fn is_locked(&self) -> bool {
-        self.limits[0] == self.limits[1]
+impl<N: Lane> Single<N> {
+    /// Where both limits are one: it acts both ways.
+    #[inline(always)]
+    fn is_locked(&self) -> N::Mask {
+        self.limits[0].eq(self.limits[1])
     }
 
     /// The limit that has an impulse.
-    pub(super) fn limit(&self) -> Option<usize> {
-        if self.is_locked() { Some(0) } else { self.impulses.iter().position(|impulse| *impulse > 0.0) }
+    #[inline(always)]
+    pub(super) fn held(&self) -> [N; 2] {
+        let lower = N::or(self.is_locked(), is(self.impulses[0]));
+        [number(lower), number(without::<N>(is(self.impulses[1]), lower))]
+    }
+
+    /// 1 where the motor is at its maximum.
+    #[inline(always)]
+    pub(super) fn is_capped(&self) -> N {
+        let MotorRow { impulse, most, .. } = self.motor;
+        number(N::and(is(most), most.le(impulse.max(-impulse))))
     }
 
     /// Whether its laws depend on the mass that the coordinate moves.
+    #[inline(always)]
     pub(super) fn is_per_mass(&self) -> bool {
-        self.spring.is_per_mass() || self.motor.is_per_mass()
+        N::any(N::or(self.spring.is_per_mass(), self.motor.is_per_mass()))
     }
 
     /// Whether something acts along it that is warm started.
+    #[inline(always)]
     pub(super) fn is_warm(&self) -> bool {
-        self.spring.most + self.motor.most + self.softening.is_spring > 0.0
+        N::any(is(self.spring.most + self.motor.most + self.softening.is_spring))
     }
 
     /// What the limit of a side asks for, if it takes part in the pass.
-    fn limit_law(&self, side: usize, at: &Coordinate, params: &SubstepParams, biased: bool) -> Law {
+    #[inline(always)]
+    fn limit_law(&self, side: usize, at: &Coordinate<N>, params: &SubstepParams, biased: bool) -> Law<N> {
         let softening = &self.softening;
-        if !biased && softening.is_spring > 0.0 || at.alone <= 0.0 {
-            return Law::NONE;
-        }
         let past = at.value - self.limits[side];
-        let is_open = !self.is_locked() && (if side == 0 { past > 0.0 } else { past < 0.0 });
-        let bias_rate = if is_open { params.inv_h } else { softening.bias_rate };
-        let bias = if is_open || biased { bias_rate * past } else { 0.0 };
-        let gives = if is_open || !biased { 0.0 } else { at.alone * softening.share + softening.more };
-        Law { conductance: 1.0 / gives.max(at.alone * NO_MASS), bias }
+        let is_past = if side == 0 { is(past) } else { past.lt(N::ZERO) };
+        let is_open = without::<N>(is_past, self.is_locked());
+        let bias_rate = N::select(is_open, N::splat(params.inv_h), softening.bias_rate);
+        let bias = bias_rate * past;
+        let bias = if biased { bias } else { N::select(is_open, bias, N::ZERO) };
+        let gives = if biased { at.alone * softening.share + softening.more } else { N::ZERO };
+        let gives = N::select(is_open, N::ZERO, gives).max(at.alone * N::splat(NO_MASS));
+        let mut acts = is(at.alone);
+        if !biased {
+            acts = without::<N>(acts, is(softening.is_spring));
+        }
+        let conductance = N::select(acts, N::ONE / N::select(acts, gives, N::ONE), N::ZERO);
+        Law { conductance, bias }
     }
 
     /// What limit, spring and motor ask for in a pass.
-    fn laws(&self, at: &Coordinate, params: &SubstepParams, biased: bool) -> [Law; 3] {
+    #[inline(always)]
+    fn laws(&self, at: &Coordinate<N>, params: &SubstepParams, biased: bool) -> [Law<N>; 3] {
         let mut laws = [Law::NONE; 3];
-        if let Some(side) = at.limit {
-            laws[LIMIT] = self.limit_law(side, at, params, biased);
+        let [lower, upper] = [is(at.held[0]), is(at.held[1])];
+        if N::any(N::or(lower, upper)) {
+            let of_lower = self.limit_law(0, at, params, biased);
+            let of_upper = self.limit_law(1, at, params, biased);
+            laws[LIMIT] = Law {
+                conductance: N::select(lower, of_lower.conductance, of_upper.conductance),
+                bias: N::select(lower, of_lower.bias, of_upper.bias),
+            }
+            .only(N::or(lower, upper));
         }
         if biased {
             laws[SPRING] = self.spring.law(at, params.h);
-            laws[MOTOR] = if at.is_capped { Law::NONE } else { self.motor.law(at, params.h) };
+            laws[MOTOR] = self.motor.law(at, params.h).only(at.is_capped.eq(N::ZERO));
         }
         laws
     }
 
-    /// The softness of all that acts, if anything does.
-    pub(super) fn softness(&self, at: &Coordinate, params: &SubstepParams, biased: bool) -> Option<f32> {
-        let sum: f32 = self.laws(at, params, biased).iter().map(|law| law.conductance).sum();
-        (sum > 0.0).then(|| 1.0 / sum)
+    /// The softness of all that acts. Not positive if nothing does.
+    #[inline(always)]
+    pub(super) fn softness(&self, at: &Coordinate<N>, params: &SubstepParams, biased: bool) -> N {
+        let laws = self.laws(at, params, biased);
+        let sum = laws[0].conductance + laws[1].conductance + laws[2].conductance;
+        N::select(is(sum), N::ONE / N::select(is(sum), sum, N::ONE), N::ZERO)
     }
 
     /// What the row wants at a rate.
-    pub(super) fn wanted(&self, at: &Coordinate, rate: f32, params: &SubstepParams, biased: bool) -> f32 {
+    #[inline(always)]
+    pub(super) fn wanted(&self, at: &Coordinate<N>, rate: N, params: &SubstepParams, biased: bool) -> N {
         let laws = self.laws(at, params, biased);
-        let (mut sum, mut asked) = (0.0, 0.0);
-        for (law, impulse) in laws.iter().zip(self.parts()).filter(|(law, _)| law.acts()) {
-            sum += law.conductance;
-            asked += law.conductance * law.bias + impulse;
+        let parts = self.parts();
+        let (mut sum, mut asked) = (N::ZERO, N::ZERO);
+        for part in 0..3 {
+            let Law { conductance, bias } = laws[part];
+            let more = conductance * bias + parts[part];
+            sum += conductance;
+            asked += N::select(is(conductance), more, N::ZERO);
         }
-        -(rate + asked / sum)
+        let acts = is(sum);
+        N::select(acts, -(rate + asked / N::select(acts, sum, N::ONE)), N::ZERO)
     }
 
     /// The impulses of limit, spring and motor.
-    fn parts(&self) -> [f32; 3] {
+    #[inline(always)]
+    fn parts(&self) -> [N; 3] {
         [self.impulses[0] - self.impulses[1], self.spring.impulse, self.motor.impulse]
     }
 
-    /// Adds to the impulse of one of them.
-    fn add(&mut self, at: &Coordinate, part: usize, change: f32) {
-        match (part, at.limit) {
-            (LIMIT, Some(1)) => self.impulses[1] -= change,
-            (LIMIT, _) => self.impulses[0] += change,
-            (SPRING, _) => self.spring.impulse += change,
-            _ => self.motor.impulse += change,
+    /// Adds to the impulse of one of them where a mask is set.
+    #[inline(always)]
+    fn add(&mut self, at: &Coordinate<N>, part: usize, mask: N::Mask, change: N) {
+        match part {
+            LIMIT => {
+                let upper = is(at.held[1]);
+                add_where(&mut self.impulses[0], without::<N>(mask, upper), change);
+                add_where(&mut self.impulses[1], N::and(mask, upper), -change);
+            }
+            SPRING => add_where(&mut self.spring.impulse, mask, change),
+            _ => add_where(&mut self.motor.impulse, mask, change),
         }
     }
 
-    /// Shares an impulse out, given the rate after it: each takes what it asks for, and the stiffest one the rest.
+    /// Shares an impulse out where a mask is set, given the rate after it: each takes what it asks for, and the stiffest one the
+    /// rest.
+    #[inline(always)]
     pub(super) fn share_out(
         &mut self,
-        at: &Coordinate,
-        (change, rate): (f32, f32),
+        at: &Coordinate<N>,
+        mask: N::Mask,
+        (change, rate): (N, N),
         params: &SubstepParams,
         biased: bool,
     ) {
         let laws = self.laws(at, params, biased);
-        let stiffest = |a: &usize, b: &usize| laws[*a].conductance.total_cmp(&laws[*b].conductance);
-        let stiffest = (0..3).rev().max_by(stiffest).unwrap_or(LIMIT);
+        let [a, b, c] = [laws[0].conductance, laws[1].conductance, laws[2].conductance];
+        // The first of those that are equal.
+        let stiffest = [N::and(b.le(a), c.le(a)), N::and(a.lt(b), c.le(b)), N::and(a.lt(c), b.lt(c))];
         let mut rest = change;
-        for part in (0..3).filter(|part| *part != stiffest && laws[*part].acts()) {
-            let more = laws[part].asks(rate) - self.parts()[part];
-            self.add(at, part, more);
-            rest -= more;
+        for part in 0..3 {
+            let law = &laws[part];
+            let shares = N::and(without::<N>(law.acts(), stiffest[part]), mask);
+            if N::any(shares) {
+                let more = law.asks(rate) - self.parts()[part];
+                self.add(at, part, shares, more);
+                rest = N::select(shares, rest - more, rest);
+            }
         }
-        self.add(at, stiffest, rest);
+        for part in 0..3 {
+            self.add(at, part, N::and(stiffest[part], mask), rest);
+        }
     }
 
-    /// Finds what acts by the rate that was solved for: a limit that would pull is let go, one that would be passed by more than a
-    /// speed acts if some may be added, and a motor that exceeds its maximum is held there. Returns the impulse by which those that are
-    /// let go or held change, if anything does.
+    /// Finds what acts by the rate that was solved for, where a mask is set: a limit that would pull is let go, one that would be
+    /// passed by more than a speed acts if some may be added, and a motor that exceeds its maximum is held there. Returns where
+    /// anything changes, and the impulse by which those that are let go or held change.
+    #[inline(always)]
     pub(super) fn pivot(
         &mut self,
-        at: &mut Coordinate,
-        (rate, tolerance, adds): (f32, f32, bool),
+        at: &mut Coordinate<N>,
+        mask: N::Mask,
+        (rate, tolerance, adds): (N, N, bool),
         params: &SubstepParams,
         biased: bool,
-    ) -> Option<f32> {
-        let mut change = None;
-        if biased && self.motor.most > 0.0 {
-            let most = self.motor.most;
-            if at.is_capped {
-                let asked = self.motor.law(at, params.h).asks(rate);
-                if adds && asked * self.motor.impulse.signum() < most {
-                    at.is_capped = false;
-                    change = Some(0.0);
-                }
-            } else if self.motor.impulse.abs() > most {
-                let held = self.motor.impulse.clamp(-most, most);
-                change = Some(held - self.motor.impulse);
-                (self.motor.impulse, at.is_capped) = (held, true);
-            }
+    ) -> (N::Mask, N) {
+        let (mut changed, mut change) = (N::ONE.lt(N::ZERO), N::ZERO);
+        let driven = N::and(is(self.motor.most), mask);
+        if biased && N::any(driven) {
+            let MotorRow { most, impulse, .. } = self.motor;
+            let capped = N::and(is(at.is_capped), driven);
+            let asked = self.motor.law(at, params.h).asks(rate);
+            let asked = N::select(impulse.lt(N::ZERO), -asked, asked);
+            let freed = if adds { N::and(capped, asked.lt(most)) } else { changed };
+            let exceeds = without::<N>(N::and(driven, most.lt(impulse.max(-impulse))), capped);
+            let most = N::select(impulse.lt(N::ZERO), -most, most);
+            change = N::select(exceeds, most - impulse, N::ZERO);
+            self.motor.impulse = N::select(exceeds, most, impulse);
+            at.is_capped = N::select(freed, N::ZERO, N::select(exceeds, N::ONE, at.is_capped));
+            changed = N::or(freed, exceeds);
         }
-        match at.limit {
-            _ if self.is_locked() => {}
-            Some(side) if self.impulses[side] < 0.0 => {
-                let sign = if side == 0 { 1.0 } else { -1.0 };
-                change = Some(change.unwrap_or(0.0) - sign * self.impulses[side]);
-                (self.impulses[side], at.limit) = (0.0, None);
-            }
-            None if adds => {
-                let passes = |side: &usize| {
-                    let law = self.limit_law(*side, at, params, biased);
-                    let sign = if *side == 0 { 1.0 } else { -1.0 };
-                    law.acts() && (rate + law.bias) * sign < -tolerance
-                };
-                at.limit = (0..2).find(passes);
-                if at.limit.is_some() {
-                    change = Some(change.unwrap_or(0.0));
-                }
-            }
-            _ => {}
+        let limited = without::<N>(mask, self.is_locked());
+        let is_free = without::<N>(limited, is(at.held[0] + at.held[1]));
+        for side in 0..2 {
+            let pulls = N::and(is(at.held[side]), self.impulses[side].lt(N::ZERO));
+            let pulls = N::and(limited, pulls);
+            let given = if side == 0 { change - self.impulses[0] } else { change + self.impulses[1] };
+            change = N::select(pulls, given, change);
+            self.impulses[side] = N::select(pulls, N::ZERO, self.impulses[side]);
+            at.held[side] = N::select(pulls, N::ZERO, at.held[side]);
+            changed = N::or(changed, pulls);
         }
-        change
+        if adds && N::any(is_free) {
+            let (lower, upper) =
+                (self.limit_law(0, at, params, biased), self.limit_law(1, at, params, biased));
+            let is_passed = N::and(lower.acts(), (rate + lower.bias).lt(-tolerance));
+            let lower = N::and(is_free, is_passed);
+            let is_passed = N::and(upper.acts(), (-(rate + upper.bias)).lt(-tolerance));
+            let upper = without::<N>(N::and(is_free, is_passed), lower);
+            at.held[0] = N::select(lower, N::ONE, at.held[0]);
+            at.held[1] = N::select(upper, N::ONE, at.held[1]);
+            changed = N::or(changed, N::or(lower, upper));
+        }
+        (changed, change)
     }
 }
