@@ -100,6 +100,7 @@ impl<const W: usize> Neg for Doubles<W> {
 }
 
 impl<const W: usize> Default for Doubles<W> {
+    #[inline(always)]
     fn default() -> Self {
         Self::ZERO
     }

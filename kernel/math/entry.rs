@@ -32,6 +32,15 @@ pub(crate) trait Entry: Lane {
     /// # Safety
     /// As the job demands.
     unsafe fn enter<J: Job>(proof: Self::Proof, job: J) -> J::Output;
+
+    /// The same, but a job of one lane is compiled for the features of a width.
+    ///
+    /// # Safety
+    /// As the job demands.
+    unsafe fn enter_widest<J: Job>(proof: Self::Proof, _width: Width, job: J) -> J::Output {
+        // SAFETY: by the contract.
+        unsafe { Self::enter(proof, job) }
+    }
 }
 
 impl Entry for f32 {
@@ -41,6 +50,17 @@ impl Entry for f32 {
     unsafe fn enter<J: Job>((): (), job: J) -> J::Output {
         // SAFETY: by the contract.
         unsafe { job.run() }
+    }
+
+    unsafe fn enter_widest<J: Job>((): (), width: Width, job: J) -> J::Output {
+        // SAFETY: by the contract.
+        unsafe {
+            match width {
+                #[cfg(target_arch = "x86_64")]
+                Width::Eight(avx2) => F32x8::enter(avx2, job),
+                _ => f32::enter((), job),
+            }
+        }
     }
 }
 
@@ -76,20 +96,5 @@ impl Entry for F32x8 {
         }
         // SAFETY: the caller has the proof that the CPU has AVX2; and by the contract.
         unsafe { avx2(job) }
-    }
-}
-
-/// Runs a job that has no lanes of its own in the entry point of a width.
-///
-/// # Safety
-/// As the job demands.
-pub(crate) unsafe fn enter<J: Job>(width: Width, job: J) -> J::Output {
-    // SAFETY: by the contract.
-    unsafe {
-        match width {
-            #[cfg(target_arch = "x86_64")]
-            Width::Eight(avx2) => F32x8::enter(avx2, job),
-            _ => F32x4::enter((), job),
-        }
     }
 }

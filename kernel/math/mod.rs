@@ -84,7 +84,7 @@ mod trig;
 
 pub use dim::*;
 pub use double::Double;
-pub(crate) use entry::{Entry, Job, enter};
+pub(crate) use entry::{Entry, Job};
 pub(crate) use lane::inverse_of_positive;
 pub use lane::{Avx2, Ids, Lane, Quad, Width, clamp, max, min};
 #[cfg(target_arch = "x86_64")]

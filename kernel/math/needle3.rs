@@ -104,22 +104,27 @@ impl SymTensor {
 }
 
 impl<N: Lane> SymTensor<N> {
+    /// v I.
+    #[inline(always)]
+    fn row(self, v: Vector<N>) -> Vector<N> {
+        Vector {
+            x: v.x * self.xx + v.y * self.xy + v.z * self.xz,
+            y: v.x * self.xy + v.y * self.yy + v.z * self.yz,
+            z: v.x * self.xz + v.y * self.yz + v.z * self.zz,
+        }
+    }
+
     /// R I R⁻¹.
     #[inline(always)]
     pub(crate) fn turned(self, rotation: Rot<N>) -> Self {
         let [cx, cy, cz] = rotation.axes();
         // Rows of R are (cx.x, cy.x, cz.x), …; first T = R I, then T Rᵀ, of which six entries differ.
-        let row = |a: N, b: N, c: N| Vector {
-            x: a * self.xx + b * self.xy + c * self.xz,
-            y: a * self.xy + b * self.yy + c * self.yz,
-            z: a * self.xz + b * self.yz + c * self.zz,
-        };
         let r = [
             Vector { x: cx.x, y: cy.x, z: cz.x },
             Vector { x: cx.y, y: cy.y, z: cz.y },
             Vector { x: cx.z, y: cy.z, z: cz.z },
         ];
-        let t = [row(r[0].x, r[0].y, r[0].z), row(r[1].x, r[1].y, r[1].z), row(r[2].x, r[2].y, r[2].z)];
+        let t = [self.row(r[0]), self.row(r[1]), self.row(r[2])];
         Self {
             xx: t[0].dot(r[0]),
             yy: t[1].dot(r[1]),

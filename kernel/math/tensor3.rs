@@ -54,9 +54,14 @@ impl<N: Lane> SymTensor<N> {
     /// Reads lane `i`.
     #[inline(always)]
     pub fn get(&self, i: usize) -> SymTensor {
-        let [xx, yy, zz] = [self.xx, self.yy, self.zz].map(|entry| entry.get(i));
-        let [xy, xz, yz] = [self.xy, self.xz, self.yz].map(|entry| entry.get(i));
-        SymTensor { xx, yy, zz, xy, xz, yz }
+        SymTensor {
+            xx: self.xx.get(i),
+            yy: self.yy.get(i),
+            zz: self.zz.get(i),
+            xy: self.xy.get(i),
+            xz: self.xz.get(i),
+            yz: self.yz.get(i),
+        }
     }
 
     /// Writes lane `i`.

@@ -354,8 +354,10 @@ impl<N: Lane> Row<N> {
     pub(super) fn damp(&self, pair: &mut Pair<N>) {
         let [a, b] = [self.masses.linear[0].diagonal(), self.masses.linear[1].diagonal()];
         let impulse = (pair.v[1] - pair.v[0]).scale(inverses(a + b)) * self.damping[0];
-        pair.v[0] += impulse.scale(a);
-        pair.v[1] -= impulse.scale(b);
+        // What is not damped keeps its bits beside lanes that are.
+        let [shifts, turns] = [N::ZERO.lt(self.damping[0]), N::ZERO.lt(self.damping[1])];
+        pair.v[0] = Vector::select(shifts, pair.v[0] + impulse.scale(a), pair.v[0]);
+        pair.v[1] = Vector::select(shifts, pair.v[1] - impulse.scale(b), pair.v[1]);
         let [ia, ib] = self.masses.angular;
         let units = units::<N>();
         let relative = (pair.w[1] - pair.w[0]) * self.damping[1];
@@ -367,10 +369,13 @@ impl<N: Lane> Row<N> {
             }
         }
         let moments = Factors::of(k).solve(wanted);
+        let mut turned = pair.w;
         for i in 0..TURNS {
-            pair.w[0] += ia.apply(units[i] * moments[i]);
-            pair.w[1] -= ib.apply(units[i] * moments[i]);
+            turned[0] += ia.apply(units[i] * moments[i]);
+            turned[1] -= ib.apply(units[i] * moments[i]);
         }
+        pair.w[0] = Angular::select(turns, turned[0], pair.w[0]);
+        pair.w[1] = Angular::select(turns, turned[1], pair.w[1]);
     }
 
     /// Notes what the joint does: an impulse on B at its anchor, and its moment.

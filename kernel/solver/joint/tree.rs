@@ -214,9 +214,8 @@ impl JointTrees {
 }
 
 /// Calls a function with each group.
-pub(super) fn each(trees: [&dyn Trees; 2], pool: &ThreadPool, f: impl Fn(&dyn Trees, usize) + Sync) {
+fn each(trees: [&dyn Trees; 2], pool: &ThreadPool, f: impl Fn(&dyn Trees, usize) + Sync) {
     let [ones, wide] = trees;
-    // Those that take longest come first.
     pool.run(wide.len() + ones.len(), |k, _| match k.checked_sub(wide.len()) {
         None => f(wide, k),
         Some(k) => f(ones, k),

@@ -8,7 +8,7 @@
 use super::super::batch::Sweep;
 use super::super::{BodyRow, RowView};
 use super::forest::GROUND;
-use super::tree::{JointTrees, each};
+use super::tree::JointTrees;
 use super::tree_joint::range;
 use crate::data::BitSet;
 use crate::math::{Angular, Rot, Vector, min};
@@ -102,9 +102,14 @@ impl TreeBlows {
         }
         let is_due = &self.is_due;
         trees.with(|_, _, trees| {
-            // SAFETY: each group is run once, and no two share a joint or a dynamic body. Of the bodies only dynamic ones are
-            // written.
-            each(trees, pool, |trees, group| unsafe { trees.follow(group, is_due, sweep) });
+            let groups = trees.iter().flat_map(|trees| (0..trees.len()).map(move |group| (trees, group)));
+            let due: Vec<_> = groups.filter(|(trees, group)| trees.is_due(*group, is_due)).collect();
+            pool.run(due.len(), |k, _| {
+                let (trees, group) = due[k];
+                // SAFETY: each group is run once, and no two share a joint or a dynamic body. Of the bodies only dynamic ones
+                // are written.
+                unsafe { trees.follow(group, is_due, sweep) }
+            });
         });
         for tree in due {
             self.is_due[tree] = false;

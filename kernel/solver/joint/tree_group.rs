@@ -4,10 +4,10 @@ use super::forest::{Branch, Forest, GROUND};
 use super::tree_joint::range;
 
 /// Most trees side by side.
-pub(super) const MOST: usize = 8;
+pub(super) const MAX_LANES: usize = 8;
 
 /// Some trees of equal shape, one in each lane, by number. [`GROUND`] for none.
-pub(super) type Group = [u32; MOST];
+pub(super) type Group = [u32; MAX_LANES];
 
 /// Finds trees of equal shape: their joints connect the same places and have the same rows.
 #[derive(Clone, Debug, Default)]
@@ -45,7 +45,7 @@ impl Shapes {
         while let [(hash, first), ..] = *rest {
             let is_alike = |(other, tree): &&(u64, u32)| *other == hash && words(*tree).eq(words(first));
             let count = rest.iter().take(width).take_while(is_alike).count();
-            let mut group = [GROUND; MOST];
+            let mut group = [GROUND; MAX_LANES];
             for (place, (_, tree)) in group.iter_mut().zip(&rest[..count]) {
                 *place = *tree;
             }
@@ -88,7 +88,7 @@ mod tests {
         let (mut ones, mut wide) = (Vec::new(), Vec::new());
         Shapes::default().group(&forest, |id| id, 4, [&mut ones, &mut wide]);
         let alike = |trees: [u32; 3]| {
-            let mut group = [GROUND; MOST];
+            let mut group = [GROUND; MAX_LANES];
             group[..3].copy_from_slice(&trees);
             group
         };
@@ -103,7 +103,7 @@ mod tests {
         #[test]
         fn each_tree_is_in_one_group_of_its_shape(
             kinds in prop::collection::vec((0u32..3, 1u32..4), 0..60),
-            width in 1usize..=MOST,
+            width in 1usize..=MAX_LANES,
         ) {
             let (mut edges, mut nodes) = (Vec::new(), 0);
             for (kind, length) in &kinds {

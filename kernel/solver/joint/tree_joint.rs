@@ -58,7 +58,7 @@ pub(super) struct TreeBody<N: Lane> {
     pub(super) turned: InvInertia<N>,
     /// The same now, with what its joints ask for.
     pub(super) now: InvInertia<N>,
-    /// How much of that it lacks, kg·m².
+    /// How much inertia is added to its own, kg·m².
     pub(super) lacking: N,
     /// What they ask for: h Σ |impulse| |arm|, kg·m².
     pub(super) least: N,
@@ -104,7 +104,7 @@ impl<N: Lane> TreeBody<N> {
             ids: N::Ids::splat(0),
             linear: Vector::ZERO,
             angular: InvInertia::ZERO,
-            share: Vector::splat(Vector::ONE),
+            share: Vector::ZERO,
             turns: N::ZERO,
             turned: InvInertia::ZERO,
             now: InvInertia::ZERO,

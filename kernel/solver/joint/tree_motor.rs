@@ -59,13 +59,15 @@ impl<N: Entry> Tree<'_, N> {
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
-    pub(super) unsafe fn turn(&mut self, sweep: &Sweep) -> bool {
+    pub(super) unsafe fn solve_motors(&mut self, sweep: &Sweep) -> bool {
         let (entry, open): (TreeEntry<N>, N) = (self.entry, self.scratch.open);
         // SAFETY: by the contract.
         unsafe {
             if entry.run(Begin(self)) {
                 for k in 0..self.joints.len() {
-                    entry.run(Solve(self, k, sweep));
+                    if self.joints[k].orientation.is_some() {
+                        entry.run(Solve(self, k, sweep));
+                    }
                 }
                 self.scratch.open = self.scratch.due;
                 self.pivot_again(sweep);

@@ -36,7 +36,8 @@ impl<N: Entry> Tree<'_, N> {
     /// Until it returns, no other thread writes the bodies of the trees.
     #[inline(always)]
     pub(super) unsafe fn place(&mut self, sweep: &Sweep) {
-        let Scratch { known, coordinates, .. } = &mut *self.scratch;
+        let Scratch { known, coordinates, open, .. } = &mut *self.scratch;
+        let open = is(*open);
         for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
             // SAFETY: by the contract.
             let place = unsafe { joint.row.start.now(&sweep.bodies, &joint.row.ids) };
@@ -51,7 +52,10 @@ impl<N: Entry> Tree<'_, N> {
                 true => joint.lock::<BLOCK>(&place, &angles, link),
             }
             for (single, at) in self.singles[range.clone()].iter_mut().zip(&mut coordinates[range]) {
+                let (turns, near) = (single.turns, single.near);
                 (at.gradient, at.value) = single.gradient(&place, &angles);
+                single.turns = N::select(open, single.turns, turns);
+                single.near = N::select(open, single.near, near);
                 // A blow may have let go a limit whose impulse was given back.
                 let (held, is_free) = (single.held(), (at.held[0] + at.held[1]).eq(N::ZERO));
                 for side in 0..2 {
@@ -62,7 +66,8 @@ impl<N: Entry> Tree<'_, N> {
         *known = Known::Places;
     }
 
-    /// Loads velocities, and sums up the inertia that joints ask for. Returns whether it is another than before.
+    /// Loads velocities, and sums up the inertia that joints ask for. Returns whether it changed in
+    /// an open lane.
     ///
     /// # Safety
     /// As [`place`](Self::place).
@@ -129,7 +134,7 @@ impl<N: Entry> Tree<'_, N> {
     /// Factors the trees with what is locked alone, as in the relax pass.
     ///
     /// # Safety
-    /// None.
+    /// No condition: unsafe as all parts are.
     #[inline(always)]
     pub(super) unsafe fn factor_locked(&mut self, _: &Sweep) {
         for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
@@ -152,7 +157,7 @@ impl<N: Entry> Tree<'_, N> {
     /// Gives each coordinate along which something acts a row, and factors the trees.
     ///
     /// # Safety
-    /// None.
+    /// No condition: unsafe as all parts are.
     #[inline(always)]
     pub(super) unsafe fn factor_all(&mut self, sweep: &Sweep) {
         let biased = sweep.pass == Pass::Solve;
@@ -180,7 +185,7 @@ impl<N: Entry> Tree<'_, N> {
     /// Solves what joints ask for.
     ///
     /// # Safety
-    /// None.
+    /// No condition: unsafe as all parts are.
     #[inline(always)]
     pub(super) unsafe fn round(&mut self, sweep: &Sweep) {
         self.ask(sweep);
@@ -241,11 +246,11 @@ impl<N: Entry> Tree<'_, N> {
         }
     }
 
-    /// Finds which limits act and which motors are at their maximum. Lanes where others are than were solved for stay open.
-    /// Returns whether any do.
+    /// Finds which limits act and which motors are at their maximum. Lanes in
+    /// which any changed stay open. Returns whether there are any.
     ///
     /// # Safety
-    /// None.
+    /// No condition: unsafe as all parts are.
     #[inline(always)]
     pub(super) unsafe fn pivot(&mut self, sweep: &Sweep) -> bool {
         let (open, mut any_changed) = (is(self.scratch.open), N::ZERO);
@@ -328,7 +333,7 @@ impl<N: Entry> Tree<'_, N> {
     /// Notes what joints bear.
     ///
     /// # Safety
-    /// None.
+    /// No condition: unsafe as all parts are.
     #[inline(always)]
     pub(super) unsafe fn bear(&mut self, sweep: &Sweep) {
         for (joint, link) in self.joints.iter_mut().zip(&*self.links) {

@@ -7,7 +7,7 @@ use super::elimination::{Link, Node};
 use super::single::Single;
 use super::tree_joint::{TreeBody, TreeJoint};
 use super::tree_scratch::{Coordinate, Known, Scratch};
-use crate::math::{Entry, Job, Width, enter};
+use crate::math::{Entry, Job, Width};
 use crate::tuning::solver::JOINT_ROUNDS;
 
 /// How code with the CPU features of a lane is entered.
@@ -21,8 +21,8 @@ impl<N: Entry> TreeEntry<N> {
     /// # Safety
     /// As the job demands.
     pub(super) unsafe fn run<J: Job>(self, job: J) -> J::Output {
-        // SAFETY: by the contract. What is not wide uses the features of the widest lane as well.
-        unsafe { if N::WIDTH == 1 { enter(self.width, job) } else { N::enter(self.proof, job) } }
+        // SAFETY: by the contract.
+        unsafe { N::enter_widest(self.proof, self.width, job) }
     }
 }
 
@@ -59,7 +59,7 @@ macro_rules! parts {
 parts! {
     PlaceAll: place -> ();
     Load: load -> bool;
-    Turn: turn_bodies -> ();
+    TurnInertia: turn_bodies -> ();
     Lock: factor_locked -> ();
     Factor: factor_all -> ();
     Round: round -> ();
@@ -136,7 +136,7 @@ impl<N: Entry> Tree<'_, N> {
             }
             let is_other = entry.run(Load(self, sweep));
             if self.scratch.known != Known::Factors(sweep.pass) || is_other {
-                entry.run(Turn(self, sweep));
+                entry.run(TurnInertia(self, sweep));
             }
         }
         let has_turns = self.joints.iter().any(|joint| joint.orientation.is_some());
@@ -153,7 +153,7 @@ impl<N: Entry> Tree<'_, N> {
             let goes_on = unsafe {
                 entry.run(Round(self, sweep));
                 let goes_on = entry.run(Pivot(self, sweep));
-                if has_turns { self.turn(sweep) } else { goes_on }
+                if has_turns { self.solve_motors(sweep) } else { goes_on }
             };
             if !goes_on {
                 break;

@@ -28,8 +28,9 @@ pub(super) struct Scratch<N: Lane> {
     pub(super) open: N,
     /// The same before the last pivots.
     pub(super) was_open: N,
-    /// 1 in lanes whose orientation motors were solved, and 1 in those where they are now, else 0.
+    /// 1 in lanes whose orientation motors were solved, else 0.
     pub(super) driven: N,
+    /// 1 in lanes whose orientation motors are solved next, else 0.
     pub(super) due: N,
     /// Whether limits may be added in this round.
     pub(super) adds: bool,
@@ -96,6 +97,7 @@ impl<N: Lane> Coordinate<N> {
     };
 
     /// At the start of a step: what acted at the end of the last one acts again.
+    #[inline(always)]
     pub(super) fn new(single: &Single<N>) -> Self {
         let is_per_mass = single.is_per_mass();
         Self { held: single.held(), is_capped: single.is_capped(), is_per_mass, ..Self::NONE }

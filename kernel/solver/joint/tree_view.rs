@@ -90,9 +90,10 @@ impl<N: Entry> TreeRows<N> {
         scratch.resize_with(scratch.len().max(groups.len()), Scratch::default);
     }
 
-    /// Gives back the memory of buffers.
+    /// Gives back the memory of all but the groups.
     pub(super) fn give_back(&mut self) {
-        self.scratch = Vec::new();
+        let groups = core::mem::take(&mut self.groups);
+        *self = Self { groups, ..Self::default() };
     }
 
     /// Notes that bodies have moved.
@@ -149,6 +150,9 @@ pub(super) trait Trees: Sync {
     /// # Safety
     /// Until it returns, no other thread uses the group.
     unsafe fn begin_blows(&self, group: usize);
+
+    /// Whether a tree of a group is due.
+    fn is_due(&self, group: usize, is_due: &[bool]) -> bool;
 
     /// Solves the trees of a group that are due, without bias.
     ///
@@ -266,19 +270,21 @@ impl<N: Entry> Trees for TreeView<'_, N> {
         }
     }
 
+    fn is_due(&self, group: usize, is_due: &[bool]) -> bool {
+        lanes(&self.groups[group]).any(|(_, tree)| is_due[tree])
+    }
+
     unsafe fn follow(&self, group: usize, is_due: &[bool], sweep: &Sweep) {
         let mut due = N::ZERO;
         for (lane, _) in lanes(&self.groups[group]).filter(|(_, tree)| is_due[*tree]) {
             due.set(lane, 1.0);
         }
-        if lanes(&self.groups[group]).any(|(_, tree)| is_due[tree]) {
-            // SAFETY: by the contract.
-            let mut tree = unsafe { self.take(group) };
-            tree.scratch.forget();
-            tree.scratch.open = due;
-            // SAFETY: by the contract.
-            unsafe { tree.project(sweep) };
-        }
+        // SAFETY: by the contract.
+        let mut tree = unsafe { self.take(group) };
+        tree.scratch.forget();
+        tree.scratch.open = due;
+        // SAFETY: by the contract.
+        unsafe { tree.project(sweep) };
     }
 
     unsafe fn end_blows(&self, group: usize) {
