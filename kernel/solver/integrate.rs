@@ -4,9 +4,9 @@
 use super::body::OnceEach;
 use super::{BodyRow, BodyRows, RowView, gyro::*, spin::Spin};
 use crate::data::Parts;
+use crate::math::{Angular, Entry, F32x4, Ids, Job, Lane, Rot};
 #[cfg(target_arch = "x86_64")]
-use crate::math::F32x8;
-use crate::math::{Angular, Entry, F32x4, Ids, Job, Lane, Rot, Width};
+use crate::math::{F32x8, Width};
 use crate::thread_pool::ThreadPool;
 use core::marker::PhantomData;
 use core::ops::Range;
