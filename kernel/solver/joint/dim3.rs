@@ -1,6 +1,6 @@
 //! The coordinates of a joint in 3D.
 
-use crate::math::{Angular, InvInertia, Lane, Num, Rot, Vector, atan2_lanes, inverse_of_positive};
+use crate::math::{Angular, InvInertia, Lane, Rot, Vector, atan2_lanes, inverse_of_positive};
 
 /// Numbers of coordinates of B's frame in A's.
 pub mod coordinate {
@@ -102,26 +102,6 @@ pub(super) fn numbers<N: Lane>((v, w): (Vector<N>, Angular<N>)) -> [N; DOF] {
 pub(super) fn of_numbers<N: Lane>(numbers: [N; DOF]) -> (Vector<N>, Angular<N>) {
     let [x, y, z, a, b, c] = numbers;
     (Vector { x, y, z }, Vector { x: a, y: b, z: c })
-}
-
-/// As [`numbers`], in the precision of elimination.
-#[inline(always)]
-pub(super) fn screw<N: Lane>(v: Vector<N>, w: Angular<N>) -> [N::Double; DOF] {
-    let (of, mut screw) = (numbers((v, w)), [N::Double::ZERO; DOF]);
-    for i in 0..DOF {
-        screw[i] = of[i].double();
-    }
-    screw
-}
-
-/// As [`of_numbers`], from the precision of elimination.
-#[inline(always)]
-pub(super) fn motion<N: Lane>(screw: &[N::Double; DOF]) -> (Vector<N>, Angular<N>) {
-    let mut numbers = [N::ZERO; DOF];
-    for i in 0..DOF {
-        numbers[i] = N::of_double(screw[i]);
-    }
-    of_numbers(numbers)
 }
 
 /// M⁻¹ of a body.

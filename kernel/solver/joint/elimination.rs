@@ -17,9 +17,9 @@
 //!
 //! After Baraff, "Linear-time dynamics using Lagrange multipliers" (1996), and Featherstone's articulated bodies.
 
-use super::dim::{AXES, DOF};
+use super::dim::{AXES, DOF, numbers, of_numbers};
 use super::forest::GROUND;
-use crate::math::{Double, Lane, Num};
+use crate::math::{Angular, Double, Lane, Num, Vector};
 
 /// Most rows of a link: one of each coordinate.
 pub(super) const ROWS: usize = AXES;
@@ -37,6 +37,22 @@ const LOWER: usize = ROWS * (ROWS + 1) / 2;
 #[inline(always)]
 const fn at(row: usize, column: usize) -> usize {
     row * (row + 1) / 2 + column
+}
+
+/// A motion, or an impulse and its moment, in the precision of elimination.
+#[inline(always)]
+pub(super) fn screw<N: Lane>(v: Vector<N>, w: Angular<N>) -> Screw<N> {
+    widen(&numbers((v, w)))
+}
+
+/// The motion of a screw.
+#[inline(always)]
+pub(super) fn motion<N: Lane>(screw: &Screw<N>) -> (Vector<N>, Angular<N>) {
+    let mut rounded = [N::ZERO; DOF];
+    for i in 0..DOF {
+        rounded[i] = N::of_double(screw[i]);
+    }
+    of_numbers(rounded)
 }
 
 #[inline(always)]

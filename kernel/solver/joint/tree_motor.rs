@@ -2,8 +2,8 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::super::batch::{Pass, Sweep};
-use super::dim::{DOF, TURNS, motion, screw};
-use super::elimination::{self, Screw};
+use super::dim::{DOF, TURNS};
+use super::elimination::{self, Screw, motion, screw};
 use super::forest::GROUND;
 use super::place::{Gradient, Response};
 use super::tree_pass::{Tree, TreeEntry};

@@ -4,8 +4,8 @@
 use super::super::BodyRow;
 use super::super::batch::{Pass, Sweep};
 use super::super::pair::Pair;
-use super::dim::{BLOCK, DOF, inverse_of, least_element, numbers, of_numbers, screw, with_inertia};
-use super::elimination;
+use super::dim::{BLOCK, DOF, inverse_of, least_element, numbers, of_numbers, with_inertia};
+use super::elimination::{self, screw};
 use super::forest::GROUND;
 use super::place::{Gradient, Place};
 use super::tree_pass::Tree;
