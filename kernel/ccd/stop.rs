@@ -131,11 +131,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
     }
 
     /// Whether there is anything that does not move, and that a body may meet on a way of the step however it turns. Most fast
-    /// bodies are far from all that.
+    /// bodies are far from all that, so the few boxes of the trees are asked before the many contacts of a heap.
     pub fn may_meet(&self, body: u32, way: Vector) -> bool {
-        if self.contacts_of(body).any(|(contact, moving)| self.is_fixed(contact.bodies[1 - moving])) {
-            return true;
-        }
         let (mut reach, mut is_known) = (0.0, true);
         for id in self.colliders.of_body(body, self.bodies) {
             let Reach { extent, margin, .. } = self.colliders.reaches[id as usize];
@@ -144,9 +141,12 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             let around = self.ball(body, extent + margin).swept(way).grown(MET * self.tolerance);
             is_known &= self.colliders.fat[id as usize].contains(&around);
         }
-        // Within its fat boxes a body meets only what has contacts with it.
         let around = self.ball(body, reach).swept(way).grown(self.tolerance);
-        !is_known && FIXED.iter().any(|kind| !self.trees[*kind].query(&around, |_| false))
+        let is_near = FIXED.iter().any(|kind| !self.trees[*kind].query(&around, |_| false));
+        // Within its fat boxes a body meets only what has contacts with it.
+        is_near
+            && (!is_known
+                || self.contacts_of(body).any(|(contact, side)| self.is_fixed(contact.bodies[1 - side])))
     }
 
     /// The tree that colliders of a body are in.
