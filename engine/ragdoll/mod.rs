@@ -44,7 +44,7 @@ pub struct HumanRagdoll {
     pub height: Scalar,
     /// Of all bones, in kg. 75 by default.
     pub mass: Scalar,
-    /// The rate at which joints lose velocity, in 1/s. 2 by default; less lets limbs swing on for long.
+    /// The rate at which joints lose velocity, in 1/s. 10 by default; less lets limbs swing on for long, and heaps sleep late or never.
     pub damping: Scalar,
     /// The motor of each joint, if there is one. Its targets do not count: all joints are driven to the pose in which it is
     /// spawned until [`RagdollJoints`] says otherwise. None by default.
@@ -53,7 +53,7 @@ pub struct HumanRagdoll {
 
 impl Default for HumanRagdoll {
     fn default() -> Self {
-        Self { height: 1.8, mass: 75.0, damping: 2.0, drive: None }
+        Self { height: 1.8, mass: 75.0, damping: 10.0, drive: None }
     }
 }
 
