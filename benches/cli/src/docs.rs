@@ -3,6 +3,7 @@
 use std::{fmt::Write as _, path::Path};
 
 use bench_core::{
+    chains::Strain,
     engine::{SHARED, Share, Stage},
     measure::{Report, sum_of},
     scene::Family,
@@ -30,6 +31,7 @@ pub fn write_all(results: &Results, folder: &Path) -> Result<(), String> {
         growth(&mut page, &plain, dim, &threads, folder)?;
         still(&mut page, &plain, dim);
         bulk(&mut page, &plain, dim);
+        chains(&mut page, &plain, dim);
         queries(&mut page, &plain, dim);
         stages(&mut page, &cells(&results.reports, true), dim);
         serial(&mut page, &cells(&results.reports, true), dim);
@@ -252,6 +254,38 @@ fn bulk(page: &mut String, cells: &[Cell], dim: u32) {
         let all = columns.iter().copied().chain([BARE]);
         all.map(|engine| ms(mean_of(beside, engine))).collect()
     });
+}
+
+/// How well chains with a weight hold.
+fn chains(page: &mut String, cells: &[Cell], dim: u32) {
+    let chosen = of(cells, dim, Family::Joints);
+    if chosen.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        page,
+        "### Chains\n\n30 links of 1 kg and 1 m with a weight of so many kg at the end, for ten seconds: *chain* hangs, *swing* is let go level. \
+         Milliseconds a step; the widest gap of a joint in any step; of what hangs, by how much it is longer at the end; the most energy above that \
+         of the start, without what turns, for each kg of the weight.\n"
+    );
+    table(page, &chosen, &[], |beside, columns| {
+        let said =
+            |engine: &&str| engine_cell(beside.iter().copied(), engine).map_or("–".to_owned(), strained);
+        columns.iter().map(said).collect()
+    });
+}
+
+fn strained(cell: &Cell) -> String {
+    let q = &cell.first.quality;
+    let Some(Strain { widest, stretch, gained }) = q.strain else { return "–".to_owned() };
+    if q.not_finite > 0 {
+        return "**not finite**".to_owned();
+    }
+    let longer = match cell.first.scene.starts_with("chain") {
+        true => format!(", {:.3} % longer", 100.0 * stretch),
+        false => String::new(),
+    };
+    format!("{} ms, gap {:.1} mm{longer}, {gained:.2} J", ms(cell.mean()), 1e3 * widest)
 }
 
 fn queries(page: &mut String, cells: &[Cell], dim: u32) {

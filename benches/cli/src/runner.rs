@@ -110,8 +110,8 @@ impl<'a> Runner<'a> {
         for scene in scenes {
             for repeat in 0..repeats {
                 for &threads in &self.plan.threads {
-                    // Queries run on one thread.
-                    if threads > 1 && scene.family == Family::Queries {
+                    // Queries and chains run on one thread.
+                    if threads > 1 && [Family::Queries, Family::Joints].contains(&scene.family) {
                         continue;
                     }
                     for engine in &scene.engines {

@@ -3,6 +3,7 @@
 //!
 //! Everything is written once for both dimensions, over the types of a [`world::Dimension`].
 
+pub mod chains;
 pub mod dim2;
 pub mod dim3;
 pub mod engine;

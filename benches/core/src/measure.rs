@@ -5,6 +5,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    chains::Strain,
     engine::{Share, Stage},
     scene::Family,
 };
@@ -34,6 +35,9 @@ pub struct Quality {
     pub overlaps: usize,
     /// The largest distance of a joint's two anchors, in metres.
     pub max_joint_error: f32,
+    /// Chains only: what they did in all steps of a second run without a clock.
+    #[serde(default)]
+    pub strain: Option<Strain>,
     /// How far the watched body is from where it started, in metres.
     pub drift: Option<f32>,
     /// Queries only: the number of hits.

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::chains::Chain;
 use crate::world::{Body, Dimension, Joint, Ray};
 
 /// The family of a scene. Tables and plots are per family.
@@ -19,6 +20,8 @@ pub enum Family {
     Bulk,
     /// Growth of the time with the number of bodies.
     Growth,
+    /// How well joints hold.
+    Joints,
 }
 
 impl Family {
@@ -133,6 +136,8 @@ pub struct Scene<D: Dimension> {
     pub watch: Option<usize>,
     /// A body that moves along a path.
     pub drive: Option<Drive<D>>,
+    /// A chain that is watched in every step.
+    pub chain: Option<Chain>,
 }
 
 impl<D: Dimension> Scene<D> {
@@ -154,6 +159,7 @@ impl<D: Dimension> Scene<D> {
             bounds: (low, high),
             watch: None,
             drive: None,
+            chain: None,
         }
     }
 }

@@ -4,13 +4,14 @@
 use std::time::Instant;
 
 use crate::{
+    chains,
     engine::{DT, Engine, Engines, Make, Settings},
     machine::{Usage, pin},
     measure::{Clock, Quality, Report, StageSums, time_of},
     passed::Passed,
     ruler::judge,
     scene::{Need, Plan, Scene, Scenes, Work, find},
-    world::Dimension,
+    world::{Dimension, State},
 };
 
 /// Prefix of the error that makes the parent skip the scene for this engine.
@@ -102,6 +103,10 @@ fn run<D: Scenes>(engines: &[(&str, Make<D>)], job: &Job) -> Result<Report, Stri
     if scene.bodies.iter().any(|body| body.bullet) {
         quality.passed = Some(count_passed(make(scene.gravity, &settings), &scene, timed));
     }
+    quality.strain = chains::Watch::new(&scene).map(|mut watch| {
+        run_again(make(scene.gravity, &settings), &scene, timed, |states| watch.look(states));
+        watch.strain()
+    });
     let times = clock.times();
     Ok(Report {
         engine: job.engine.clone(),
@@ -124,9 +129,20 @@ fn run<D: Scenes>(engines: &[(&str, Make<D>)], job: &Job) -> Result<Report, Stri
     })
 }
 
-/// Runs the scene once more, without a clock, and looks after each step at what went through a wall.
-fn count_passed<D: Dimension>(mut engine: Box<dyn Engine<D>>, scene: &Scene<D>, timed: usize) -> usize {
+/// Runs the scene once more, and counts what went through a wall.
+fn count_passed<D: Dimension>(engine: Box<dyn Engine<D>>, scene: &Scene<D>, timed: usize) -> usize {
     let mut passed = Passed::new(scene);
+    run_again(engine, scene, timed, |states| passed.look(states));
+    passed.count()
+}
+
+/// Runs the scene without a clock, and gives the state after each step to a function.
+fn run_again<D: Dimension>(
+    mut engine: Box<dyn Engine<D>>,
+    scene: &Scene<D>,
+    timed: usize,
+    mut look: impl FnMut(&[State<D>]),
+) {
     let mut states = Vec::new();
     fill(&mut *engine, scene);
     engine.ready();
@@ -134,9 +150,8 @@ fn count_passed<D: Dimension>(mut engine: Box<dyn Engine<D>>, scene: &Scene<D>, 
         step(&mut *engine, scene, steps);
         states.clear();
         engine.states(&mut states);
-        passed.look(&states);
+        look(&states);
     }
-    passed.count()
 }
 
 /// Refuses a scene that needs a feature that the engine's build lacks.

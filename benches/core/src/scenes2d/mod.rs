@@ -2,6 +2,7 @@
 //! then says.
 
 use crate::{
+    chains,
     dim2::{Body2, D2, Shape2, V2},
     scene::{Entry, Family, Scene, Scenes, Work},
 };
@@ -45,6 +46,12 @@ impl Scenes for D2 {
         Entry { name: "hundred", family: Family::Small, build: || still::few(100) },
         Entry { name: "spawn", family: Family::Bulk, build: || still::bulk(Work::Spawn) },
         Entry { name: "despawn", family: Family::Bulk, build: || still::bulk(Work::Despawn) },
+        joints("chain_1", || chain(1, 1.0)),
+        joints("chain_100", || chain(1, 100.0)),
+        joints("chain_1000", || chain(1, 1000.0)),
+        joints("swing_1", || chain(0, 1.0)),
+        joints("swing_100", || chain(0, 100.0)),
+        joints("swing_1000", || chain(0, 1000.0)),
         growth("growth_100", || pyramids::field(2, 1)),
         growth("growth_300", || pyramids::field(6, 1)),
         growth("growth_1000", || pyramids::field(9, 2)),
@@ -61,6 +68,16 @@ const fn speed(name: &'static str, build: fn() -> Scene<D2>) -> Entry<D2> {
 
 const fn idle(name: &'static str, build: fn() -> Scene<D2>) -> Entry<D2> {
     Entry { name, family: Family::Idle, build }
+}
+
+const fn joints(name: &'static str, build: fn() -> Scene<D2>) -> Entry<D2> {
+    Entry { name, family: Family::Joints, build }
+}
+
+/// A chain along an axis with a weight of a mass.
+fn chain(axis: usize, mass: f32) -> Scene<D2> {
+    let link = [Shape2::Box(0.5, 0.05), Shape2::Box(0.05, 0.5)][axis].clone();
+    chains::chain(axis, (link, 10.0), (Shape2::Box(0.5, 0.5), mass), mass)
 }
 
 const fn growth(name: &'static str, build: fn() -> Scene<D2>) -> Entry<D2> {

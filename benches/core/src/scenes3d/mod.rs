@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use crate::{
+    chains,
     dim3::{Body3, D3, Shape3, V3},
     scene::{Entry, Family, Scene, Scenes, Work},
 };
@@ -47,6 +48,12 @@ impl Scenes for D3 {
         Entry { name: "hundred", family: Family::Small, build: || still::few(100) },
         Entry { name: "spawn", family: Family::Bulk, build: || still::bulk(Work::Spawn) },
         Entry { name: "despawn", family: Family::Bulk, build: || still::bulk(Work::Despawn) },
+        joints("chain_1", || chain(1, 1.0)),
+        joints("chain_100", || chain(1, 100.0)),
+        joints("chain_1000", || chain(1, 1000.0)),
+        joints("swing_1", || chain(0, 1.0)),
+        joints("swing_100", || chain(0, 100.0)),
+        joints("swing_1000", || chain(0, 1000.0)),
         growth("growth_100", || pyramids::field(2, 1)),
         growth("growth_300", || pyramids::field(6, 1)),
         growth("growth_1000", || pyramids::field(6, 3)),
@@ -63,6 +70,16 @@ const fn speed(name: &'static str, build: fn() -> Scene<D3>) -> Entry<D3> {
 
 const fn idle(name: &'static str, build: fn() -> Scene<D3>) -> Entry<D3> {
     Entry { name, family: Family::Idle, build }
+}
+
+const fn joints(name: &'static str, build: fn() -> Scene<D3>) -> Entry<D3> {
+    Entry { name, family: Family::Joints, build }
+}
+
+/// A chain along an axis with a weight of a mass.
+fn chain(axis: usize, mass: f32) -> Scene<D3> {
+    let link = [Shape3::Box(0.5, 0.05, 0.05), Shape3::Box(0.05, 0.5, 0.05)][axis].clone();
+    chains::chain(axis, (link, 100.0), (Shape3::Box(0.5, 0.5, 0.5), mass), mass)
 }
 
 const fn growth(name: &'static str, build: fn() -> Scene<D3>) -> Entry<D3> {
