@@ -173,10 +173,11 @@ fn against_peers(beside: &[&Cell]) -> String {
     let ratio = |measure: fn(&Cell) -> Option<f32>| {
         let peers = beside.iter().filter(|cell| cell.first.engine != "ours");
         let least = peers.filter_map(|cell| measure(cell)).reduce(f32::min)?;
-        Some(format!("{:.2}", measure(ours)? / least))
+        (least > 0.0).then_some(format!("{:.2}", measure(ours)? / least))
     };
     let overlap = ratio(|cell| Some(cell.first.quality.max_overlap));
-    [overlap, ratio(|cell| cell.first.quality.drift)].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let ratios: Vec<_> = [overlap, ratio(|cell| cell.first.quality.drift)].into_iter().flatten().collect();
+    if ratios.is_empty() { "–".to_owned() } else { ratios.join(", ") }
 }
 
 fn judged(cell: &Cell) -> String {
