@@ -267,7 +267,7 @@ fn chains(page: &mut String, cells: &[Cell], dim: u32) {
         page,
         "### Chains\n\n30 links of 1 kg and 1 m with a weight of so many kg at the end, for ten seconds: *chain* hangs, *swing* is let go level. \
          Milliseconds a step; the widest gap of a joint in any step; of what hangs, by how much it is longer at the end; the most energy above that \
-         of the start, without what turns, for each kg of the weight.\n"
+         of the start, without that of rotation, for each kg of the weight.\n"
     );
     table(page, &chosen, &[], |beside, columns| {
         let said =

@@ -23,7 +23,7 @@ pub struct Strain {
     pub widest: f32,
     /// By what share of its length the chain is longer at the end than it was.
     pub stretch: f32,
-    /// The most that the energy of the centres of mass was above that of the start, in J per kg of the weight. What turns has more.
+    /// The most that the energy of the centres of mass was above that of the start, in J per kg of the weight. Rotation is left out.
     pub gained: f32,
 }
 
