@@ -29,6 +29,9 @@ pub struct StepTimes {
     parts: Vec<(&'static str, Duration)>,
     #[reflect(ignore)]
     last: Option<Instant>,
+    /// Where the next part is, if parts run as in the last step.
+    #[reflect(ignore)]
+    next: usize,
     counts_shared: bool,
     /// In the last step, and in all before.
     shared: [Duration; 2],
@@ -67,17 +70,24 @@ impl StepTimes {
 
     /// Begins the next part.
     pub(crate) fn begin(&mut self) {
-        self.last = Some(Instant::now());
+        (self.last, self.next) = (Some(Instant::now()), 0);
     }
 
     /// Ends a part: the time since the last one ended is its time.
     pub(crate) fn end(&mut self, part: &'static str) {
         let now = Instant::now();
         let Some(last) = self.last.replace(now) else { return };
-        match self.parts.iter_mut().find(|(name, _)| *name == part) {
-            Some((_, time)) => *time = now - last,
-            None => self.parts.push((part, now - last)),
-        }
+        let is_part = |(name, _): &(&str, Duration)| *name == part;
+        let place = match self.parts.get(self.next) {
+            Some(expected) if is_part(expected) => Some(self.next),
+            _ => self.parts.iter().position(is_part),
+        };
+        let place = place.unwrap_or_else(|| {
+            self.parts.push((part, Duration::ZERO));
+            self.parts.len() - 1
+        });
+        self.parts[place].1 = now - last;
+        self.next = place + 1;
     }
 }
 

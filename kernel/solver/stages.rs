@@ -10,7 +10,7 @@ use super::contact_batch::Room;
 use super::custom::CustomTable;
 use super::exclusive;
 use super::input::RowInput;
-use super::joint::{JointTable, JointTrees, TreeBlows};
+use super::joint::{InertiaFloors, JointTable, JointTrees, TreeBlows};
 use super::layer::Sorter;
 use super::plan::{Block, Plan, Stage};
 use super::release::Released;
@@ -50,8 +50,7 @@ pub struct Solver {
     trees: JointTrees,
     /// What blows do to them.
     tree_blows: TreeBlows,
-    /// Inertia that joints ask for, by row of the body.
-    least_inertia: Vec<f32>,
+    inertia_floors: InertiaFloors,
     rows: AllRows,
     layers: Layers,
     seen: exclusive::Seen,
@@ -114,7 +113,7 @@ impl Solver {
         params: &SubstepParams,
         pool: &ThreadPool,
     ) {
-        let Self { bodies, joints, trees, least_inertia, shares, deep, first_dynamic, seen, .. } = self;
+        let Self { bodies, joints, trees, inertia_floors, shares, deep, first_dynamic, seen, .. } = self;
         debug_assert!(params.is_valid(), "{params:?}");
         debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
         if cfg!(debug_assertions) {
@@ -125,7 +124,7 @@ impl Solver {
         bodies.find_fast_turns(input, colors, params.h);
         trees.find(joints, input, colors, (params.joints, bodies));
         bodies.turn_inertia(0.5 * (params.dt + params.h));
-        joints.stiffen(input, colors, params.h, &mut bodies.masses, least_inertia);
+        joints.stiffen(input, colors, (params.h, pool), &mut bodies.masses, inertia_floors);
         shares.divide(pool.workers(), *first_dynamic, input, colors);
         self.plan_rows(input, colors, pool);
         let rows = self.plan.rows().iter().sum::<u32>();
@@ -379,7 +378,7 @@ impl Solver {
             "the rows came from these contacts"
         );
         let Self { joints, customs, trees, rows, plan, layers, .. } = self;
-        trees.store(&joints.records());
+        trees.store(&joints.records(), pool);
         let manifolds = &contacts.manifolds_view();
         rows.with(joints, customs, |batches| {
             for Stage { blocks, parts } in plan.stages() {

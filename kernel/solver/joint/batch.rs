@@ -9,9 +9,10 @@ use super::class::{CLASSES, COUPLINGS, Class};
 use super::coupling_row::{CouplingRow, CouplingView};
 use super::dim::BLOCK;
 use super::orientation::OrientationRow;
-use super::row::{Hold, Row};
+use super::records::Records;
+use super::row::{Hold, Row, Stiffness};
 use super::single::Single;
-use super::table::{JointTable, Records};
+use super::table::JointTable;
 use super::tree::JointTrees;
 use crate::contact::ManifoldsView;
 use crate::data::Parts;
@@ -21,7 +22,7 @@ use core::ops::Range;
 
 const KIND: ConstraintKind = ConstraintKind::Joint;
 
-/// How many joints ahead records are prefetched.
+/// How many joints ahead they are prefetched.
 const PREFETCH_DISTANCE: usize = 3;
 
 /// Number of batches of joints in one width: one for each class, and couplings.
@@ -178,20 +179,19 @@ impl<'a, N: Entry> JointView<'a, N> {
 
 impl<N: Entry> Batch for JointView<'_, N> {
     unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes {
-        let constraints = from.input.bodies.constraints(KIND);
         // SAFETY: by the contract.
         let mut taken = unsafe { self.take(rows) };
         taken.rows.fill(Row::default());
         taken.singles.fill(Single::NONE);
         taken.turns.fill(OrientationRow::NONE);
+        let stiffness = &Stiffness::new(Hold::Row, from.params.h);
         let mut ahead = items.iter().skip(PREFETCH_DISTANCE);
         for ((row, (singles, mut turns)), lanes) in taken.each().zip(items.chunks(N::WIDTH)) {
             for (lane, item) in lanes.iter().enumerate() {
-                ahead.next().into_iter().for_each(|item| self.records.0.prefetch(item.id));
-                // SAFETY: a joint is in one row, so by the contract no other thread has its record.
-                let record = unsafe { self.records.0.one(item.id as usize) };
-                let bodies = constraints.get(item.id).bodies;
-                row.set((singles, turns.as_deref_mut()), (lane, Hold::Row), record, bodies, from);
+                ahead.next().into_iter().for_each(|item| self.records.prefetch(item.id));
+                // SAFETY: a joint is in one row, so by the contract no other thread has its state.
+                let joint = &unsafe { self.records.joint(item.id) };
+                row.set((singles, turns.as_deref_mut()), (lane, stiffness), joint, from);
             }
         }
         // SAFETY: the job has no further condition.
@@ -213,10 +213,10 @@ impl<N: Entry> Batch for JointView<'_, N> {
         let mut ahead = items.iter().skip(PREFETCH_DISTANCE);
         for ((row, (singles, turns)), lanes) in taken.each().zip(items.chunks(N::WIDTH)) {
             for (lane, item) in lanes.iter().enumerate() {
-                ahead.next().into_iter().for_each(|item| self.records.0.prefetch(item.id));
-                // SAFETY: a joint is in one row, so by the contract no other thread has its record.
-                let record = unsafe { self.records.0.one(item.id as usize) };
-                row.store((singles, turns.as_deref()), lane, record);
+                ahead.next().into_iter().for_each(|item| self.records.prefetch_state(item.id));
+                // SAFETY: a joint is in one row, so by the contract no other thread has its state.
+                let joint = &mut unsafe { self.records.joint(item.id) };
+                row.store((singles, turns.as_deref()), lane, joint);
             }
         }
     }

@@ -34,7 +34,7 @@ impl Class {
     }
 }
 
-/// What sorts a joint, kept beside its record, which is long.
+/// What a definition says in short: what sorts a joint, and which of its coordinates have rows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Summary {
     /// The number of its batch among those of joints.
@@ -43,6 +43,8 @@ pub(super) struct Summary {
     pub(super) may_branch: bool,
     /// Whether it locks something.
     pub(super) holds: bool,
+    /// Whether all shifts are locked at 0 and give way alike, so that any axes serve.
+    pub(super) is_locked_alike: bool,
     /// Bits of what is locked and what is set, by number of the coordinate, then of a rod and of an orientation motor: joints
     /// with the same bits have the same rows in a tree.
     pub(super) shape: u32,
@@ -50,7 +52,7 @@ pub(super) struct Summary {
 
 impl Summary {
     pub(super) const OF_COUPLING: Self =
-        Self { batch: COUPLINGS as u8, may_branch: false, holds: false, shape: 0 };
+        Self { batch: COUPLINGS as u8, may_branch: false, holds: false, is_locked_alike: false, shape: 0 };
 
     pub(super) fn of(def: &JointDef) -> Self {
         let block = (0..BLOCK).rev().find(|k| def.is_in_block(*k)).map_or(0, |last| last + 1);
@@ -61,6 +63,36 @@ impl Summary {
         let bits = (0..BLOCK).map(|k| def.is_in_block(k)).chain((0..AXES).map(|k| def.is_single(k)));
         let bits = bits.chain([def.is_rod(), turns]);
         let shape = bits.enumerate().map(|(bit, is_set)| u32::from(is_set) << bit).sum();
-        Self { batch: batch as u8, may_branch: def.may_branch(), holds: def.holds(), shape }
+        Self {
+            batch: batch as u8,
+            may_branch: def.may_branch(),
+            holds: def.holds(),
+            is_locked_alike: def.is_locked_alike(),
+            shape,
+        }
+    }
+
+    /// [`JointDef::is_in_block`].
+    pub(super) fn is_in_block(self, number: usize) -> bool {
+        number < BLOCK && self.has(number)
+    }
+
+    /// [`JointDef::is_single`].
+    pub(super) fn is_single(self, number: usize) -> bool {
+        self.has(BLOCK + number)
+    }
+
+    /// [`JointDef::is_rod`].
+    pub(super) fn is_rod(self) -> bool {
+        self.has(BLOCK + AXES)
+    }
+
+    /// Whether it has an orientation motor.
+    pub(super) fn turns(self) -> bool {
+        self.has(BLOCK + AXES + 1)
+    }
+
+    fn has(self, bit: usize) -> bool {
+        self.shape >> bit & 1 != 0
     }
 }

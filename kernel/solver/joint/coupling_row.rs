@@ -10,8 +10,9 @@ use super::block::Softening;
 use super::coupling::{CouplingRecord, EndCoordinate};
 use super::dim::{TURNING, angles};
 use super::place::Masses;
-use super::row::Hold;
-use super::table::{JointReaction, Record, Records};
+use super::records::Records;
+use super::row::{Hold, Stiffness};
+use super::table::JointReaction;
 use crate::contact::ManifoldsView;
 use crate::data::Parts;
 use crate::math::{Angular, Entry, Ids, Job, Lane, Rot, Vector};
@@ -152,7 +153,7 @@ impl<N: Lane> CouplingRow<N> {
             self.limits[i].set(lane, (f64::from(limit) - zero) as f32);
             self.impulses[i].set(lane, record.impulses[i] * params.warm_start);
         }
-        self.softening.set(lane, def.give, Hold::Row, params.h);
+        self.softening.set(lane, def.give, &Stiffness::new(Hold::Row, params.h));
         self.inv_h = params.inv_h;
     }
 
@@ -216,14 +217,13 @@ impl<N: Lane> CouplingRow<N> {
     }
 
     /// Copies a lane back into the coupling.
-    fn store(&self, lane: usize, record: &mut Record) {
+    fn store(&self, lane: usize, reaction: &mut JointReaction, coupling: &mut CouplingRecord) {
         let inv_h = self.inv_h;
-        record.reaction = JointReaction {
+        *reaction = JointReaction {
             force: self.on_b.0.get(lane) * inv_h,
             torque: self.on_b.1.get(lane) * inv_h,
             ..JointReaction::default()
         };
-        let Some(coupling) = &mut record.coupling else { return };
         coupling.impulses = self.impulses.map(|impulse| impulse.get(lane));
         coupling.force = (coupling.impulses[0] - coupling.impulses[1]) * inv_h;
         for side in 0..2 {
@@ -259,8 +259,7 @@ impl<N: Entry> Batch for CouplingView<'_, N> {
             *row = CouplingRow::default();
             for (lane, item) in lanes.iter().enumerate() {
                 // SAFETY: a coupling is in one row, so by the contract no other thread has its record.
-                let record = unsafe { self.records.0.one(item.id as usize) };
-                if let Some(coupling) = &mut record.coupling {
+                if let Some(coupling) = unsafe { self.records.coupling(item.id) } {
                     row.set(lane, coupling, from);
                 }
             }
@@ -280,8 +279,12 @@ impl<N: Entry> Batch for CouplingView<'_, N> {
         let rows = unsafe { self.rows.take(rows) };
         for (row, lanes) in rows.iter().zip(items.chunks(N::WIDTH)) {
             for (lane, item) in lanes.iter().enumerate() {
-                // SAFETY: a coupling is in one row, so by the contract no other thread has its record.
-                row.store(lane, unsafe { self.records.0.one(item.id as usize) });
+                // SAFETY: a coupling is in one row, so by the contract no other thread has its record or state.
+                let (joint, coupling) =
+                    unsafe { (self.records.joint(item.id), self.records.coupling(item.id)) };
+                if let Some(coupling) = coupling {
+                    row.store(lane, &mut joint.state.reaction, coupling);
+                }
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::dim::coordinate::DISTANCE;
 use super::dim::{AXES, BLOCK, parts_of};
-use crate::math::{Angular, Rot, Vector};
+use crate::math::{Angular, DIM, Rot, Vector};
 use core::fmt;
 
 /// Stiffness and damping as those of an oscillator with the mass that the coordinate moves.
@@ -257,6 +257,11 @@ impl JointDef {
         let is_driven = distance.motor.is_some() || distance.spring.is_some();
         let has_block = (0..BLOCK).any(|number| self.is_in_block(number));
         distance.locked_at().is_some_and(|length| length > 0.0) && !is_driven && !has_block
+    }
+
+    /// Whether all shifts are locked at 0 and give way alike, so that any axes serve.
+    pub(super) fn is_locked_alike(&self) -> bool {
+        (0..DIM).all(|k| self.axes[k].locked_at() == Some(0.0) && self.axes[k].give == self.axes[0].give)
     }
 
     /// Whether a tree may hold it: something is locked, and nothing contradicts it.

@@ -27,6 +27,7 @@ mod forest;
 mod gap;
 mod orientation;
 mod place;
+mod records;
 mod row;
 mod single;
 mod table;
@@ -49,7 +50,8 @@ pub use def::{
 };
 pub use dim::{AXES, coordinate};
 pub use gap::JointGap;
-pub(super) use table::Records;
+pub(super) use records::Records;
+pub(super) use table::InertiaFloors;
 pub use table::{JointReaction, JointTable};
 pub(super) use tree::JointTrees;
 pub(super) use tree_blow::TreeBlows;

@@ -10,9 +10,10 @@ use super::def::{Axis, AxisSpring, Give, JointDef, Motor};
 use super::dim::{ANGLE_AXES, ANGLES, AXES, BLOCK, TURNING, TURNS, coordinate, inverses, units};
 use super::orientation::OrientationRow;
 use super::place::{Gradient, Masses, Start};
+use super::records::Joint;
 use super::single::{MotorRow, Single, laws, turns_near};
-use super::table::{JointReaction, Record};
-use crate::math::{Angular, DIM, Ids, Lane, Vector};
+use super::table::JointReaction;
+use crate::math::{Angular, Ids, Lane, Vector};
 use crate::tuning::solver::{DIRECT_FREQUENCY, NO_MASS, RIGID_DAMPING, RIGID_FREQUENCY};
 
 /// How what is rigid is held.
@@ -79,32 +80,47 @@ impl<N: Lane> Default for Row<N> {
     }
 }
 
-/// The coefficients of an oscillator: bias rate, share of the mass, and what is added besides.
-fn softening(give: Give, hold: Hold, h: f32) -> (f32, f32, f32, bool) {
-    let of_spring = |frequency: f32, damping_ratio: f32| {
-        let s = Softness::new(frequency, damping_ratio, h);
-        (s.bias_rate, if s.mass_scale > 0.0 { s.impulse_scale / s.mass_scale } else { 0.0 })
-    };
-    match give {
-        Give::Rigid => {
-            let (rate, share) = match hold {
-                Hold::Row => of_spring(RIGID_FREQUENCY / h, RIGID_DAMPING),
-                Hold::Tree => of_spring(DIRECT_FREQUENCY / h, RIGID_DAMPING),
-                Hold::Exact => (RIGID_FREQUENCY / h, NO_MASS),
-            };
-            (rate, share, 0.0, false)
+/// How coordinates of joints that are held alike give way in substeps of one length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stiffness {
+    h: f32,
+    /// Bias rate and share of the mass where a coordinate is rigid.
+    rigid: (f32, f32),
+}
+
+impl Stiffness {
+    pub(super) fn new(hold: Hold, h: f32) -> Self {
+        let rigid = match hold {
+            Hold::Row => of_spring(RIGID_FREQUENCY / h, RIGID_DAMPING, h),
+            Hold::Tree => of_spring(DIRECT_FREQUENCY / h, RIGID_DAMPING, h),
+            Hold::Exact => (RIGID_FREQUENCY / h, NO_MASS),
+        };
+        Self { h, rigid }
+    }
+
+    /// The coefficients of an oscillator: bias rate, share of the mass, and what is added besides.
+    fn of(&self, give: Give) -> (f32, f32, f32, bool) {
+        let h = self.h;
+        match give {
+            Give::Rigid => (self.rigid.0, self.rigid.1, 0.0, false),
+            Give::Spring(spring) => {
+                let (rate, share) = of_spring(spring.frequency, spring.damping_ratio, h);
+                (rate, share, 0.0, true)
+            }
+            Give::Compliance(compliance) => (1.0 / h, 0.0, compliance / (h * h), true),
         }
-        Give::Spring(spring) => {
-            let (rate, share) = of_spring(spring.frequency, spring.damping_ratio);
-            (rate, share, 0.0, true)
-        }
-        Give::Compliance(compliance) => (1.0 / h, 0.0, compliance / (h * h), true),
     }
 }
 
+/// Bias rate, and share of the mass.
+fn of_spring(frequency: f32, damping_ratio: f32, h: f32) -> (f32, f32) {
+    let s = Softness::new(frequency, damping_ratio, h);
+    (s.bias_rate, if s.mass_scale > 0.0 { s.impulse_scale / s.mass_scale } else { 0.0 })
+}
+
 impl<N: Lane> Softening<N> {
-    pub(super) fn set(&mut self, lane: usize, give: Give, hold: Hold, h: f32) {
-        let (rate, share, more, is_spring) = softening(give, hold, h);
+    pub(super) fn set(&mut self, lane: usize, give: Give, stiffness: &Stiffness) {
+        let (rate, share, more, is_spring) = stiffness.of(give);
         self.bias_rate.set(lane, rate);
         self.share.set(lane, share);
         self.more.set(lane, more);
@@ -140,23 +156,24 @@ impl<N: Lane> Single<N> {
     /// Copies a coordinate into a lane. `angle` is that of the turning coordinate, within a turn.
     fn set(
         &mut self,
-        (lane, hold): (usize, Hold),
+        (lane, stiffness): (usize, &Stiffness),
         number: usize,
-        (record, angle): (&Record, f32),
+        (joint, angle): (&Joint, f32),
         params: &SubstepParams,
     ) {
-        let axis: &Axis = &record.def.axes[number];
+        let Joint { def, state, .. } = joint;
+        let axis: &Axis = &def.axes[number];
         match ANGLE_AXES.iter().position(|a| *a == number) {
             Some(k) => self.about[k].set(lane, 1.0),
             None if number == coordinate::DISTANCE => self.apart.set(lane, 1.0),
             None => self.along[number].set(lane, 1.0),
         }
         let [min, max] = axis.limits.unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
-        self.may_contradict.set(lane, f32::from(u8::from(record.def.has_set_parts(number))));
+        self.may_contradict.set(lane, f32::from(u8::from(def.has_set_parts(number))));
         self.limits[0].set(lane, min);
         self.limits[1].set(lane, max);
-        self.softening.set(lane, axis.give, hold, params.h);
-        let [lower, upper, spring, motor] = record.singles[number].map(|impulse| impulse * params.warm_start);
+        self.softening.set(lane, axis.give, stiffness);
+        let [lower, upper, spring, motor] = state.singles[number].map(|impulse| impulse * params.warm_start);
         self.impulses[0].set(lane, lower);
         self.impulses[1].set(lane, upper);
         if let Some(AxisSpring { rest, law }) = axis.spring {
@@ -175,8 +192,8 @@ impl<N: Lane> Single<N> {
             let of_motor = axis.motor.map_or(0.0, |motor| motor.target_position);
             let target = axis.spring.map_or(of_motor, |spring| spring.rest);
             let near = match axis.limits {
-                Some(limits) if record.angle.is_nan() => first_guess(angle, limits),
-                Some(_) => record.angle,
+                Some(limits) if state.angle.is_nan() => first_guess(angle, limits),
+                Some(_) => state.angle,
                 None => target,
             };
             let turns = turns_near(angle, near);
@@ -187,22 +204,18 @@ impl<N: Lane> Single<N> {
     }
 }
 
-/// Whether all shifts are locked at 0 and give way alike, so that any axes serve.
-fn is_locked_alike(def: &JointDef) -> bool {
-    (0..DIM).all(|k| def.axes[k].locked_at() == Some(0.0) && def.axes[k].give == def.axes[0].give)
-}
-
 impl<N: Lane> Row<N> {
     /// Copies a joint into a lane.
     pub(super) fn set(
         &mut self,
         (singles, orientation): (&mut [Single<N>], Option<&mut OrientationRow<N>>),
-        (lane, hold): (usize, Hold),
-        record: &Record,
-        bodies: [u32; 2],
+        (lane, stiffness): (usize, &Stiffness),
+        joint: &Joint,
         from: &Filling,
     ) {
-        let (table, def, params) = (from.input.bodies, &record.def, from.params);
+        let (table, params) = (from.input.bodies, from.params);
+        let Joint { def, summary, state } = joint;
+        let bodies = def.bodies;
         let poses = bodies.map(|body| &table.poses[body as usize]);
         for side in 0..2 {
             let row = from.input.row_of(bodies[side]);
@@ -219,21 +232,23 @@ impl<N: Lane> Row<N> {
         for (share, rate) in self.damping.iter_mut().zip(def.damping) {
             share.set(lane, rate * params.h / (1.0 + rate * params.h));
         }
-        self.of_world.set(lane, f32::from(u8::from(is_locked_alike(def))));
-        for (number, locked) in self.block.iter_mut().enumerate().filter(|(k, _)| def.is_in_block(*k)) {
+        self.of_world.set(lane, f32::from(u8::from(summary.is_locked_alike)));
+        for (number, locked) in self.block.iter_mut().enumerate().filter(|(k, _)| summary.is_in_block(*k)) {
             locked.is_locked.set(lane, 1.0);
             locked.target.set(lane, def.axes[number].locked_at().unwrap_or(0.0));
-            locked.softening.set(lane, def.axes[number].give, hold, params.h);
-            locked.impulse.set(lane, record.block[number] * params.warm_start);
+            locked.softening.set(lane, def.axes[number].give, stiffness);
+            locked.impulse.set(lane, state.block[number] * params.warm_start);
         }
-        let bases = self.start.bases.map(|basis| basis.get(lane));
-        let angle = super::dim::angles::<f32>(bases)[TURNING].0;
-        let numbers = (0..AXES).filter(|k| def.is_single(*k));
-        for (number, single) in numbers.zip(singles) {
-            single.set((lane, hold), number, (record, angle), params);
+        if !singles.is_empty() {
+            let bases = self.start.bases.map(|basis| basis.get(lane));
+            let angle = super::dim::angles::<f32>(bases)[TURNING].0;
+            let numbers = (0..AXES).filter(|k| summary.is_single(*k));
+            for (number, single) in numbers.zip(singles) {
+                single.set((lane, stiffness), number, (joint, angle), params);
+            }
         }
         if let (Some(row), Some(motor)) = (orientation, &def.orientation) {
-            let impulses = record.orientation.map(|impulse| impulse * params.warm_start);
+            let impulses = state.orientation.map(|impulse| impulse * params.warm_start);
             row.set(lane, motor, impulses, params.h);
         }
     }
@@ -243,8 +258,7 @@ impl<N: Lane> Row<N> {
         &mut self,
         singles: &mut [Single<N>],
         def: &JointDef,
-        (lane, hold): (usize, Hold),
-        h: f32,
+        (lane, stiffness): (usize, &Stiffness),
     ) {
         let axis = &def.axes[coordinate::DISTANCE];
         let Some(single) = singles.iter_mut().find(|single| single.apart.get(lane) > 0.0) else { return };
@@ -255,7 +269,7 @@ impl<N: Lane> Row<N> {
         let rod = &mut self.block[0];
         rod.is_locked.set(lane, 1.0);
         rod.target.set(lane, axis.locked_at().unwrap_or(0.0));
-        rod.softening.set(lane, axis.give, hold, h);
+        rod.softening.set(lane, axis.give, stiffness);
     }
 
     /// Computes derived values, for all lanes at once.
@@ -389,31 +403,31 @@ impl<N: Lane> Row<N> {
         &self,
         (singles, orientation): (&[Single<N>], Option<&OrientationRow<N>>),
         lane: usize,
-        record: &mut Record,
+        joint: &mut Joint,
     ) {
-        let def = &record.def;
+        let Joint { summary, state, .. } = joint;
         let mut reaction = JointReaction {
             force: self.force.get(lane),
             torque: self.torque.get(lane),
             orientation: self.turning.get(lane) * self.inv_h,
             ..JointReaction::default()
         };
-        for (number, locked) in self.block.iter().enumerate().filter(|(k, _)| def.is_in_block(*k)) {
-            record.block[number] = locked.impulse.get(lane);
+        for (number, locked) in self.block.iter().enumerate().filter(|(k, _)| summary.is_in_block(*k)) {
+            state.block[number] = locked.impulse.get(lane);
         }
-        let numbers = (0..AXES).filter(|k| def.is_single(*k));
+        let numbers = (0..AXES).filter(|k| summary.is_single(*k));
         for (number, single) in numbers.zip(singles) {
             let [lower, upper] = single.impulses.map(|impulse| impulse.get(lane));
             let [spring, motor] = [&single.spring, &single.motor].map(|row| row.impulse.get(lane));
-            record.singles[number] = [lower, upper, spring, motor];
+            state.singles[number] = [lower, upper, spring, motor];
             reaction.motors[number] = motor * self.inv_h;
             if number == ANGLE_AXES[TURNING] && single.counts_turns.get(lane) > 0.0 {
-                record.angle = single.near.get(lane);
+                state.angle = single.near.get(lane);
             }
         }
         if let Some(motor) = orientation {
-            record.orientation = motor.impulses.map(|impulse| impulse.get(lane));
+            state.orientation = motor.impulses.map(|impulse| impulse.get(lane));
         }
-        record.reaction = reaction;
+        state.reaction = reaction;
     }
 }

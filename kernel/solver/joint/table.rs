@@ -6,11 +6,12 @@ use super::coupling::{CouplingDef, CouplingRecord};
 use super::def::{JointDef, JointError};
 use super::dim::{AXES, BLOCK, TURNS, lacking, with_inertia};
 use super::gap::JointGap;
+use super::records::Records;
 use crate::contact::Link;
-use crate::data::Parts;
 use crate::graph::{COLOR_COUNT, ColorGraph, ConstraintKind};
 use crate::math::{Angular, Vector};
 use crate::table::BodyTable;
+use crate::thread_pool::ThreadPool;
 
 /// What a joint did to body B in the last substep, and against which it pushed A.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,43 +26,50 @@ pub struct JointReaction {
     pub orientation: Angular,
 }
 
-/// State of a joint between steps.
-#[derive(Clone, Debug)]
-pub(super) struct Record {
-    pub(super) def: JointDef,
+/// What a joint keeps between steps, beside its definition.
+///
+/// What every joint has is first: the others' share of the cache lines is hardly touched.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct State {
     /// Impulses of what is locked in A's frame, N·s or N·m·s, by number of the coordinate.
     pub(super) block: [f32; BLOCK],
+    pub(super) reaction: JointReaction,
+    /// The angle that counts turns, at the end of the last step. NaN before the first.
+    pub(super) angle: f32,
     /// Impulses of lower limit, upper limit, spring and motor, by number of the coordinate.
     pub(super) singles: [[f32; 4]; AXES],
     /// Impulses of the orientation motor along A's axes, N·m·s.
     pub(super) orientation: [f32; TURNS],
-    /// The angle that counts turns, at the end of the last step. NaN before the first.
-    pub(super) angle: f32,
-    pub(super) reaction: JointReaction,
-    /// Set if it is a coupling. Then the definition has its bodies and anchors only.
-    pub(super) coupling: Option<Box<CouplingRecord>>,
 }
 
-impl Record {
-    fn new(def: JointDef) -> Self {
+impl State {
+    fn new() -> Self {
         let (block, singles, orientation) = ([0.0; BLOCK], [[0.0; 4]; AXES], [0.0; TURNS]);
         let (angle, reaction) = (f32::NAN, JointReaction::default());
-        Self { def, block, singles, orientation, angle, reaction, coupling: None }
-    }
-
-    fn of_coupling(def: CouplingDef) -> Self {
-        let joint = JointDef::free(def.bodies, def.ends.map(|end| end.frame.anchor));
-        Self { coupling: Some(Box::new(CouplingRecord::new(def))), ..Self::new(joint) }
+        Self { block, singles, orientation, angle, reaction }
     }
 }
 
-/// All joints by id. Their bodies are in [`BodyTable::constraints`](crate::table::BodyTable::constraints).
+/// Buffers of [`JointTable::stiffen`].
+#[derive(Clone, Debug, Default)]
+pub(in super::super) struct InertiaFloors {
+    /// By colour and joint, for both bodies: the row, and the inertia, kg·m².
+    asked: Vec<Vec<[(u32, f32); 2]>>,
+    /// By row of the body, kg·m².
+    least: Vec<f32>,
+}
+
+/// All joints by id. Their bodies are in [`BodyTable::constraints`](crate::table::BodyTable::constraints). Columns of free ids are
+/// stale.
 #[derive(Clone, Debug, Default)]
 pub struct JointTable {
-    /// Records by id. Those of free ids are stale.
-    records: Vec<Record>,
-    /// Of each record.
+    /// Those of couplings have bodies and anchors only.
+    defs: Vec<JointDef>,
     summaries: Vec<Summary>,
+    states: Vec<State>,
+    /// Set where a joint is a coupling.
+    couplings: Vec<Option<Box<CouplingRecord>>>,
 }
 
 const KIND: ConstraintKind = ConstraintKind::Joint;
@@ -70,30 +78,37 @@ impl JointTable {
     /// Adds a joint and wakes its bodies. They are in one island if both are dynamic.
     pub fn add(&mut self, link: &mut Link, def: JointDef) -> Result<u32, JointError> {
         def.check()?;
-        self.enter(link, Record::new(def), Summary::of(&def))
+        self.enter(link, def, Summary::of(&def), None)
     }
 
     /// Adds a coupling, as a joint with an id among joints, and wakes its bodies.
     pub fn add_coupling(&mut self, link: &mut Link, def: CouplingDef) -> Result<u32, JointError> {
         def.check()?;
-        self.enter(link, Record::of_coupling(def), Summary::OF_COUPLING)
+        let joint = JointDef::free(def.bodies, def.ends.map(|end| end.frame.anchor));
+        self.enter(link, joint, Summary::OF_COUPLING, Some(Box::new(CouplingRecord::new(def))))
     }
 
-    fn enter(&mut self, link: &mut Link, record: Record, summary: Summary) -> Result<u32, JointError> {
-        let bodies = record.def.bodies;
+    fn enter(
+        &mut self,
+        link: &mut Link,
+        def: JointDef,
+        summary: Summary,
+        coupling: Option<Box<CouplingRecord>>,
+    ) -> Result<u32, JointError> {
+        let bodies = def.bodies;
         if let Some(dead) = bodies.into_iter().find(|body| !link.bodies.ids.is_live(*body)) {
             return Err(JointError::NoBody(dead));
         }
         let id = link.connect(KIND, bodies);
-        match self.records.get_mut(id as usize) {
-            Some(place) => {
-                *place = record;
-                self.summaries[id as usize] = summary;
-            }
-            None => {
-                self.records.push(record);
-                self.summaries.push(summary);
-            }
+        let index = id as usize;
+        if index == self.defs.len() {
+            self.defs.push(def);
+            self.summaries.push(summary);
+            self.states.push(State::new());
+            self.couplings.push(coupling);
+        } else {
+            (self.defs[index], self.summaries[index]) = (def, summary);
+            (self.states[index], self.couplings[index]) = (State::new(), coupling);
         }
         Ok(id)
     }
@@ -102,8 +117,8 @@ impl JointTable {
     pub fn set_coupling(&mut self, link: &mut Link, id: u32, def: CouplingDef) -> Result<(), JointError> {
         def.check()?;
         let is_live = link.bodies.constraints(KIND).is_live(id);
-        let record = self.records.get_mut(id as usize).filter(|_| is_live);
-        let Some(coupling) = record.and_then(|record| record.coupling.as_deref_mut()) else {
+        let coupling = self.couplings.get_mut(id as usize).filter(|_| is_live);
+        let Some(coupling) = coupling.and_then(Option::as_deref_mut) else {
             return Err(JointError::NoJoint(id));
         };
         if let Some(other) = (0..2).find(|side| coupling.def.bodies[*side] != def.bodies[*side]) {
@@ -120,7 +135,7 @@ impl JointTable {
     /// The force of a coupling along the coordinate at A in the last substep, N or N·m: positive where it increases the coordinate.
     /// Along the one at B it is the ratio times that. 0 for an unknown id.
     pub fn coupling_force(&self, id: u32) -> f32 {
-        let coupling = self.records.get(id as usize).and_then(|record| record.coupling.as_deref());
+        let coupling = self.couplings.get(id as usize).and_then(Option::as_deref);
         coupling.map_or(0.0, |coupling| coupling.force)
     }
 
@@ -128,10 +143,10 @@ impl JointTable {
     /// id.
     pub fn gap(&self, id: u32, bodies: &BodyTable) -> Option<JointGap> {
         bodies.constraints(KIND).is_live(id).then(|| {
-            let Record { def, angle, coupling, .. } = &self.records[id as usize];
-            match coupling {
+            let id = id as usize;
+            match &self.couplings[id] {
                 Some(coupling) => JointGap::of_coupling(coupling, bodies),
-                None => JointGap::of_joint(def, *angle, bodies),
+                None => JointGap::of_joint(&self.defs[id], self.states[id].angle, bodies),
             }
         })
     }
@@ -142,28 +157,29 @@ impl JointTable {
         if !link.bodies.constraints(KIND).is_live(id) {
             return Err(JointError::NoJoint(id));
         }
-        let record = &mut self.records[id as usize];
-        if record.coupling.is_some() {
+        if self.couplings[id as usize].is_some() {
             return Err(JointError::NoJoint(id));
         }
-        if let Some(other) = (0..2).find(|side| record.def.bodies[*side] != def.bodies[*side]) {
+        let old = &mut self.defs[id as usize];
+        if let Some(other) = (0..2).find(|side| old.bodies[*side] != def.bodies[*side]) {
             return Err(JointError::NoBody(def.bodies[other]));
         }
-        if record.def == def {
+        if *old == def {
             return Ok(());
         }
+        let state = &mut self.states[id as usize];
         for number in 0..AXES {
-            if def.is_in_block(number) != record.def.is_in_block(number) && number < BLOCK {
-                record.block[number] = 0.0;
+            if def.is_in_block(number) != old.is_in_block(number) && number < BLOCK {
+                state.block[number] = 0.0;
             }
-            if def.is_single(number) != record.def.is_single(number) {
-                record.singles[number] = [0.0; 4];
+            if def.is_single(number) != old.is_single(number) {
+                state.singles[number] = [0.0; 4];
             }
         }
         if def.orientation.is_none() {
-            record.orientation = [0.0; TURNS];
+            state.orientation = [0.0; TURNS];
         }
-        record.def = def;
+        *old = def;
         self.summaries[id as usize] = Summary::of(&def);
         def.bodies.into_iter().for_each(|body| link.wake_body(body));
         Ok(())
@@ -180,7 +196,7 @@ impl JointTable {
 
     /// What the joint did in the last substep. Nothing for an unknown id.
     pub fn reaction(&self, id: u32) -> JointReaction {
-        self.records.get(id as usize).map_or_else(JointReaction::default, |record| record.reaction)
+        self.states.get(id as usize).map_or_else(JointReaction::default, |state| state.reaction)
     }
 
     /// Gives bodies more inertia in this step where their joints bear much: h² Σ |force| |arm|.
@@ -192,29 +208,40 @@ impl JointTable {
         &self,
         input: &RowInput,
         colors: &ColorGraph,
-        h: f32,
+        (h, pool): (f32, &ThreadPool),
         masses: &mut [MassRow],
-        least: &mut Vec<f32>,
+        floors: &mut InertiaFloors,
     ) {
-        if (0..COLOR_COUNT as u8).all(|color| colors.constraints(KIND, color).is_empty()) {
+        let ids = |color: usize| colors.constraints(KIND, color as u8);
+        if (0..COLOR_COUNT).all(|color| ids(color).is_empty()) {
             return;
         }
+        let InertiaFloors { asked, least } = floors;
+        asked.resize_with(COLOR_COUNT, Vec::new);
+        pool.each(asked.iter_mut().enumerate(), |(color, asked)| {
+            asked.clear();
+            asked.extend(ids(color).iter().map(|id| self.asked_inertia(*id, input, h)));
+        });
         least.clear();
         least.resize(masses.len(), 0.0);
-        for color in 0..COLOR_COUNT as u8 {
-            for id in colors.constraints(KIND, color) {
-                let record = &self.records[*id as usize];
-                let force = record.reaction.force.length();
-                for (body, frame) in record.def.bodies.iter().zip(&record.def.frames) {
-                    let arm = (frame.anchor - input.bodies[*body].local_center).length();
-                    least[input.row_of(*body) as usize] += h * h * force * arm;
-                }
-            }
+        for (row, asked) in asked.iter().flatten().flatten() {
+            least[*row as usize] += asked;
         }
         for (row, least) in least.iter().enumerate().filter(|(_, least)| **least > 0.0) {
             let (inv_mass, inverse) = MassRow::gather::<f32>(masses, &[row as u32]);
             masses[row] = MassRow::new(inv_mass, with_inertia(inverse, lacking(inverse, *least)));
         }
+    }
+
+    /// The rows of a joint's bodies, and the inertia that it asks for.
+    fn asked_inertia(&self, id: u32, input: &RowInput, h: f32) -> [(u32, f32); 2] {
+        let (def, state) = (&self.defs[id as usize], &self.states[id as usize]);
+        let force = state.reaction.force.length();
+        core::array::from_fn(|side| {
+            let body = def.bodies[side];
+            let arm = (def.frames[side].anchor - input.bodies[body].local_center).length();
+            (input.row_of(body), h * h * force * arm)
+        })
     }
 
     pub(super) fn summary(&self, id: u32) -> Summary {
@@ -227,9 +254,7 @@ impl JointTable {
     }
 
     pub(in super::super) fn records(&mut self) -> Records<'_> {
-        Records(Parts::of(&mut self.records))
+        let Self { defs, summaries, states, couplings } = self;
+        Records::of((defs, summaries), states, couplings)
     }
 }
-
-/// The records of all joints, changed by several threads.
-pub(in super::super) struct Records<'a>(pub(super) Parts<'a, Record>);

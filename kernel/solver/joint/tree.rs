@@ -12,8 +12,9 @@ use super::super::batch::{Filling, Pass, Sweep};
 use super::super::input::RowInput;
 use super::def::JointSolver;
 use super::forest::{Edge, Forest, GROUND};
+use super::records::Records;
 use super::row::Hold;
-use super::table::{JointTable, Records};
+use super::table::JointTable;
 use super::tree_group::Shapes;
 use super::tree_joint::ListedBody;
 use super::tree_view::{TreeFilling, TreeRows, Trees};
@@ -203,12 +204,10 @@ impl JointTrees {
     }
 
     /// Stores impulses in the joints.
-    pub(in super::super) fn store(&mut self, records: &Records) {
+    pub(in super::super) fn store(&mut self, records: &Records, pool: &ThreadPool) {
         self.with(|forest, _, trees| {
-            for trees in trees {
-                // SAFETY: no other thread runs.
-                (0..trees.len()).for_each(|group| unsafe { trees.store(group, forest, records) });
-            }
+            // SAFETY: each group is stored once, and no two share a joint.
+            each(trees, pool, |trees, group| unsafe { trees.store(group, forest, records) });
         });
     }
 }

@@ -6,18 +6,15 @@ use super::dim::{AXES, BLOCK, DOF};
 use super::elimination::{Link, Node};
 use super::forest::{Forest, GROUND};
 use super::orientation::OrientationRow;
-use super::row::Hold;
+use super::records::Records;
+use super::row::{Hold, Stiffness};
 use super::single::Single;
-use super::table::Records;
 use super::tree_group::Group;
 use super::tree_joint::{ListedBody, TreeBody, TreeJoint, range};
 use super::tree_pass::{BeginStep, Tree, TreeEntry};
 use super::tree_scratch::Scratch;
 use crate::data::Parts;
-use crate::graph::ConstraintKind;
 use crate::math::{Entry, Lane, Width};
-
-const KIND: ConstraintKind = ConstraintKind::Joint;
 
 /// The ranges of a group in the columns.
 #[derive(Clone, Copy, Debug)]
@@ -55,21 +52,20 @@ impl<N: Entry> TreeRows<N> {
             let (first, begin, first_body) = (joints.len() as u32, end, last);
             last += tree.bodies[1] - tree.bodies[0];
             for branch in &forest.branches[range(tree.branches)] {
-                // SAFETY: no other thread runs.
-                let def = unsafe { &records.0.one(branch.id as usize).def };
+                let summary = records.summaries[branch.id as usize];
                 let start = end - begin;
-                end += (0..AXES).filter(|k| def.is_single(*k)).count() as u32;
+                end += (0..AXES).filter(|k| summary.is_single(*k)).count() as u32;
                 let (mut locks, mut locked) = ([0; BLOCK], 0);
-                for k in (0..BLOCK).filter(|k| def.is_in_block(*k) || def.is_rod() && *k == 0) {
+                for k in (0..BLOCK).filter(|k| summary.is_in_block(*k) || summary.is_rod() && *k == 0) {
                     (locks[locked], locked) = (k as u8, locked + 1);
                 }
                 joints.push(TreeJoint {
                     singles: [start, end - begin],
                     locks,
                     locked,
-                    is_rod: def.is_rod(),
+                    is_rod: summary.is_rod(),
                     parent_side: branch.parent_side,
-                    orientation: def.orientation.is_some().then_some(OrientationRow::NONE),
+                    orientation: summary.turns().then_some(OrientationRow::NONE),
                     ..TreeJoint::none()
                 });
             }
@@ -219,7 +215,7 @@ impl<N: Entry> Trees for TreeView<'_, N> {
 
     unsafe fn fill(&self, group: usize, filling: &TreeFilling) {
         let TreeFilling { forest, bodies, records, hold, from } = *filling;
-        let constraints = from.input.bodies.constraints(KIND);
+        let stiffness = &Stiffness::new(hold, from.params.h);
         // SAFETY: by the contract.
         let tree = unsafe { self.take(group) };
         for (lane, number) in lanes(&self.groups[group]) {
@@ -229,21 +225,20 @@ impl<N: Entry> Trees for TreeView<'_, N> {
             }
             for (k, branch) in forest.branches[range(span.branches)].iter().enumerate() {
                 // SAFETY: by the contract.
-                let record = unsafe { records.0.one(branch.id as usize) };
+                let of = &unsafe { records.joint(branch.id) };
                 let joint = &mut tree.joints[k];
                 let singles = &mut tree.singles[joint.singles()];
                 let TreeJoint { row, orientation, .. } = joint;
-                let of_bodies = constraints.get(branch.id).bodies;
-                row.set((singles, orientation.as_mut()), (lane, hold), record, of_bodies, from);
-                if record.def.is_rod() {
-                    row.take_rod(singles, &record.def, (lane, hold), from.params.h);
+                row.set((singles, orientation.as_mut()), (lane, stiffness), of, from);
+                if of.summary.is_rod() {
+                    row.take_rod(singles, of.def, (lane, stiffness));
                 }
                 let place = |place: u32| if place == GROUND { GROUND } else { place - span.bodies[0] };
                 tree.links[k].places = branch.places.map(place);
                 for side in 0..2 {
                     joint.arms[side].set(lane, joint.row.start.arms[side].get(lane).length());
                 }
-                joint.load.set(lane, record.reaction.force.length() * from.params.h);
+                joint.load.set(lane, of.state.reaction.force.length() * from.params.h);
             }
         }
         // SAFETY: the job has no further condition.
@@ -304,8 +299,8 @@ impl<N: Entry> Trees for TreeView<'_, N> {
                 tree.joints.iter().zip(&forest.branches[range(forest.trees[number].branches)])
             {
                 // SAFETY: by the contract.
-                let record = unsafe { records.0.one(branch.id as usize) };
-                joint.row.store((&tree.singles[joint.singles()], joint.orientation.as_ref()), lane, record);
+                let of = &mut unsafe { records.joint(branch.id) };
+                joint.row.store((&tree.singles[joint.singles()], joint.orientation.as_ref()), lane, of);
             }
         }
     }
