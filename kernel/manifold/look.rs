@@ -1,6 +1,15 @@
 //! How far, and at what, two shapes are looked at.
 
-use crate::math::Vector;
+use crate::math::{Pose, Vector};
+
+/// Where two convex shapes are, and how far apart their points may be.
+#[derive(Clone, Copy)]
+pub(super) struct PairInput<'a> {
+    /// The pose of B in A's frame.
+    pub pose: &'a Pose,
+    /// Points up to this distance are found, in metres.
+    pub prediction: f32,
+}
 
 /// How far two shapes are looked at.
 #[derive(Clone, Copy, Debug)]

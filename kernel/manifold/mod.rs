@@ -24,4 +24,5 @@ pub use composite::{CompositeBuffers, collide_composite, collide_each_part};
 pub use dim::lead_rims;
 pub use local::{LocalManifold, LocalPoint};
 pub use look::Look;
+use look::PairInput;
 pub use pairs::collide;

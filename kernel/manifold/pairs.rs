@@ -1,6 +1,6 @@
 //! The contact of two convex shapes: what all pairs share. The function of each pair is in `dim2` and `dim3`.
 
-use super::{FeatureCache, LocalManifold, dim};
+use super::{FeatureCache, LocalManifold, PairInput, dim};
 use crate::math::{Pose, Vector};
 use crate::shape::Shape;
 
@@ -27,15 +27,16 @@ pub fn collide(
     if !is_near(pose_b_in_a) {
         return;
     }
+    let input = PairInput { pose: pose_b_in_a, prediction };
     if let (Shape::Cuboid(a), Shape::Cuboid(b)) = (a, b) {
-        dim::collide_cuboids(a, b, pose_b_in_a, prediction, cache, out);
+        dim::collide_cuboids(a, b, input, cache, out);
     } else if dim::rank(a) > dim::rank(b) {
         let inverse = pose_b_in_a.inverse();
-        dim::dispatch(b, a, &inverse, prediction, cache, out);
+        dim::dispatch(b, a, PairInput { pose: &inverse, prediction }, cache, out);
         *out = out.flipped(&inverse);
         out.points.iter_mut().for_each(|p| p.feature = dim::swapped_feature(p.feature));
     } else {
-        dim::dispatch(a, b, pose_b_in_a, prediction, cache, out);
+        dim::dispatch(a, b, input, cache, out);
     }
     if !matches!((a, b), (Shape::Curved(_), _) | (_, Shape::Curved(_))) {
         out.radii = [a.radius(), b.radius()];

@@ -5,7 +5,7 @@
 
 use super::dim::{Convex, borders, face_normal};
 use super::screen::{Gaps, LANES, Screen};
-use super::{FeatureCache, LocalManifold, Look, collide};
+use super::{FeatureCache, LocalManifold, Look, PairInput, collide};
 use crate::math::{F32x4, Lane, MAX_POINTS, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Shape, Surface};
 use crate::tuning::manifold::{FACING, MARGIN, POKE, SAME, SAME_NORMAL, SIDEWAYS, TURNED};
@@ -108,6 +108,10 @@ impl<'a> Pass<'a> {
         let (other_group, name) = (0, 0);
         let (on_composite, is_b, cache, skin) = (false, false, None, None);
         Self { composite, other, pose, look, other_group, name, alone, on_composite, is_b, cache, skin }
+    }
+
+    fn input(&self, prediction: f32) -> PairInput<'a> {
+        PairInput { pose: self.pose, prediction }
     }
 
     /// Adds the manifolds of all parts to `buffers.found`, in the composite's frame. Returns a lower bound of the distance to
@@ -323,7 +327,7 @@ impl<'a> Pass<'a> {
     fn collide_alone(&self, part: u32, prediction: f32, local: &mut LocalManifold) {
         match (self.composite.surface(), self.composite.solids().get(part as usize)) {
             (Some(surface), _) => {
-                self.other.collide_facet(surface.corners(part), self.pose, prediction, local);
+                self.other.collide_facet(surface.corners(part), self.input(prediction), local);
             }
             (None, Some((at, solid))) => {
                 let pose = at.inverse().then(self.pose);
@@ -446,7 +450,7 @@ impl<'a> Pass<'a> {
         if own.dot(skin.outward) > SIDEWAYS {
             (local.count, local.gap) = (0, gap);
         } else {
-            self.other.collide_face(corners, own, self.pose, prediction, local);
+            self.other.collide_face(corners, own, self.input(prediction), local);
         }
     }
 
@@ -486,7 +490,7 @@ impl<'a> Pass<'a> {
         }
         let (found, nearest) = (local.normal, local.lower_bound());
         let own = self.toward_other(corners[0], face, found);
-        self.other.collide_face(corners, own, self.pose, prediction, local);
+        self.other.collide_face(corners, own, self.input(prediction), local);
         let is_doubtful = own.dot(found) < TURNED || local.lower_bound() < nearest - SAME * prediction;
         is_doubtful.then_some(Doubt { normal: found, nearest, share: 0.0, is_needless: false })
     }

@@ -1,20 +1,19 @@
 //! Two cuboids, the most frequent pair. The signs of the offset give the edges to test: four separations are computed, where
 //! polygons need sixteen vertices.
 
-use super::super::{FeatureCache, LocalManifold};
+use super::super::{FeatureCache, LocalManifold, PairInput};
 use super::clip::{Facing, Side};
 use super::points::Limits;
 use super::polygonal::{Edge, NORMALS};
 use super::polygons::{Best, choose, known_edge, preference, remember};
-use crate::math::{Pose, Vector};
+use crate::math::Vector;
 use crate::shape::Cuboid;
 
 /// Fills `out` for two cuboids. Edges and vertices are numbered as for polygons.
 pub(in crate::manifold) fn collide(
     a: &Cuboid,
     b: &Cuboid,
-    pose: &Pose,
-    prediction: f32,
+    PairInput { pose, prediction }: PairInput,
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {

@@ -3,9 +3,9 @@
 //! Along the best axis the farthest points of both shapes are across from each other. So the side to which they are shifted
 //! tells to which side the axis has to turn, and it is found by bisection. Edges of polygons are axes of their own.
 
-use super::super::LocalManifold;
+use super::super::{LocalManifold, PairInput};
 use super::polygonal::Polygonal;
-use crate::math::{Pose, Rot, Vector, max};
+use crate::math::{Rot, Vector, max};
 use crate::shape::{Curved, direction};
 use crate::tuning::contact::DEEP;
 use crate::tuning::manifold::ALIKE;
@@ -46,14 +46,13 @@ impl Rounded for Curved {
 /// The pair of a shape A and an ellipse B.
 struct Pair<'a> {
     b: &'a Curved,
-    pose: &'a Pose,
-    prediction: f32,
+    input: PairInput<'a>,
 }
 
 impl Pair<'_> {
     /// The farthest point of B against a direction.
     fn lowest(&self, normal: Vector) -> Vector {
-        self.pose.transform(self.b.support(self.pose.rotation.inverse_rotate(-normal)))
+        self.input.pose.transform(self.b.support(self.input.pose.rotation.inverse_rotate(-normal)))
     }
 
     /// Fills `out` from a unit normal, a point of A's core and that of B, and A's radii: around its core, and of curvature.
@@ -61,8 +60,8 @@ impl Pair<'_> {
         let [radius, curvature] = radii;
         let separation = normal.dot(on_b - on_a) - radius;
         out.normal = normal;
-        if separation <= self.prediction {
-            out.radii = [curvature, self.b.curvature_radius(self.pose.rotation.inverse_rotate(normal))];
+        if separation <= self.input.prediction {
+            out.radii = [curvature, self.b.curvature_radius(self.input.pose.rotation.inverse_rotate(normal))];
             out.push((on_a + on_b + normal * radius) * 0.5, separation, 0);
         } else {
             out.gap = max(separation, 0.0);
@@ -72,7 +71,7 @@ impl Pair<'_> {
     /// The normal of the largest separation from a core: the best of several directions, improved.
     fn best_normal(&self, a: &impl Rounded) -> Vector {
         let of_a = self.best_in_fan(a, |around| normal_of(a.half(), around));
-        let rotation = self.pose.rotation;
+        let rotation = self.input.pose.rotation;
         let of_b = self.best_in_fan(a, |around| rotation.rotate(normal_of(self.b.half, around)));
         if of_b.0 > of_a.0 { of_b.1 } else { of_a.1 }
     }
@@ -159,26 +158,20 @@ impl Rounded for Polygonal<'_> {
 }
 
 /// A ball or ellipse A and an ellipse B.
-pub(super) fn collide_round(
-    a: &impl Rounded,
-    b: &Curved,
-    pose: &Pose,
-    prediction: f32,
-    out: &mut LocalManifold,
-) {
-    let pair = Pair { b, pose, prediction };
+pub(super) fn collide_round(a: &impl Rounded, b: &Curved, input: PairInput, out: &mut LocalManifold) {
+    let pair = Pair { b, input };
     let normal = pair.best_normal(a);
     let points = [a.farthest(normal), pair.lowest(normal)];
     pair.push(normal, points, [a.radius(), a.curvature(normal)], out);
 }
 
 /// A ball or polygon A and an ellipse B.
-pub(super) fn collide(a: &Polygonal, b: &Curved, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+pub(super) fn collide(a: &Polygonal, b: &Curved, input: PairInput, out: &mut LocalManifold) {
     if a.len() == 1 {
         let point = Point { at: a.vertices[0], radius: a.radius };
-        return collide_round(&point, b, pose, prediction, out);
+        return collide_round(&point, b, input, out);
     }
-    let pair = Pair { b, pose, prediction };
+    let pair = Pair { b, input };
     let (mut most, mut edge) = (f32::NEG_INFINITY, 0);
     for (i, (v, n)) in a.vertices.iter().zip(a.normals).enumerate() {
         let separation = pair.separation(*n, *v);
@@ -218,8 +211,8 @@ pub(super) fn collide(a: &Polygonal, b: &Curved, pose: &Pose, prediction: f32, o
 }
 
 /// A half-space A, of the given normal, and an ellipse B.
-pub(super) fn half_space(normal: Vector, b: &Curved, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
-    let pair = Pair { b, pose, prediction };
+pub(super) fn half_space(normal: Vector, b: &Curved, input: PairInput, out: &mut LocalManifold) {
+    let pair = Pair { b, input };
     let lowest = pair.lowest(normal);
     pair.push(normal, [lowest - normal * normal.dot(lowest), lowest], [0.0; 2], out);
     if out.count == 0 {

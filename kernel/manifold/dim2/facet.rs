@@ -4,8 +4,8 @@ use super::clip::{Facing, Side};
 use super::points::Limits;
 use super::polygonal::{Buffer, Edge, view};
 use crate::manifold::border::{Border, is_beside};
-use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, collide};
-use crate::math::{F32x4, Pose, Vector};
+use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, PairInput, collide};
+use crate::math::{F32x4, Vector};
 use crate::shape::{Curved, Segment, Shape, direction};
 use crate::tuning::contact::DEEP;
 use crate::tuning::manifold::MARGIN;
@@ -47,9 +47,9 @@ impl<'a> Convex<'a> {
     }
 
     /// Fills `out` with the contact of a segment as if there were no other; see [`collide`].
-    pub fn collide_facet(&self, [a, b]: [Vector; 2], pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+    pub fn collide_facet(&self, [a, b]: [Vector; 2], input: PairInput, out: &mut LocalManifold) {
         let facet = Shape::Segment(Segment { a, b });
-        collide(&facet, self.shape, pose, prediction, &mut FeatureCache::NONE.clone(), out);
+        collide(&facet, self.shape, input.pose, input.prediction, &mut FeatureCache::NONE.clone(), out);
     }
 
     /// Fills `out` with the contact of a segment's side alone, where the shape is over it. `normal` is the segment's, towards
@@ -58,11 +58,10 @@ impl<'a> Convex<'a> {
         &self,
         corners: [Vector; 2],
         normal: Vector,
-        pose: &Pose,
-        prediction: f32,
+        input: PairInput,
         out: &mut LocalManifold,
     ) {
-        collide_side(corners, normal, self.shape, pose, prediction, out);
+        collide_side(corners, normal, self.shape, input, out);
     }
 }
 
@@ -71,14 +70,14 @@ fn collide_side(
     corners: [Vector; 2],
     normal: Vector,
     other: &Shape,
-    pose: &Pose,
-    prediction: f32,
+    input: PairInput,
     out: &mut LocalManifold,
 ) {
     (out.count, out.gap) = (0, 0.0);
     if let Shape::Curved(other) = other {
-        return collide_curved(corners, normal, other, pose, prediction, out);
+        return collide_curved(corners, normal, other, input, out);
     }
+    let PairInput { pose, prediction } = input;
     let mut room = Buffer::EMPTY;
     let Some(polygon) = view(other, &mut room) else { return };
     let facing = pose.rotation.inverse_rotate(normal);
@@ -146,10 +145,10 @@ fn collide_curved(
     corners: [Vector; 2],
     normal: Vector,
     other: &Curved,
-    pose: &Pose,
-    prediction: f32,
+    input: PairInput,
     out: &mut LocalManifold,
 ) {
+    let PairInput { pose, prediction } = input;
     let facing = pose.rotation.inverse_rotate(-normal);
     let lowest = pose.transform(other.support(facing));
     let separation = (lowest - corners[0]).dot(normal);

@@ -1,17 +1,16 @@
 //! A half-space against bounded shapes: the ends of the lowest edge.
 
-use super::super::LocalManifold;
+use super::super::{LocalManifold, PairInput};
 use super::clip::pair;
 use super::polygonal::Polygonal;
-use crate::math::{Pose, Vector};
+use crate::math::Vector;
 use crate::shape::HalfSpace;
 
 /// Fills `out` in the half-space's frame, with the normal out of it.
 pub(super) fn collide(
     plane: &HalfSpace,
     other: &Polygonal,
-    pose: &Pose,
-    prediction: f32,
+    PairInput { pose, prediction }: PairInput,
     out: &mut LocalManifold,
 ) {
     let normal = plane.normal;

@@ -21,7 +21,7 @@ mod tests_curved;
 #[cfg(test)]
 pub(super) mod tests_pairs;
 
-use super::{FeatureCache, LocalManifold};
+use super::{FeatureCache, LocalManifold, PairInput};
 use crate::math::{Angular, Pose, Rot};
 use crate::shape::Shape;
 pub(super) use cuboids::collide as collide_cuboids;
@@ -52,18 +52,17 @@ pub(super) fn swapped_feature(feature: u32) -> u32 {
 pub(super) fn dispatch(
     a: &Shape,
     b: &Shape,
-    pose: &Pose,
-    prediction: f32,
+    input: PairInput,
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
     use Shape::{Ball, Capsule, Composite, Cuboid, Curved, Foreign, HalfSpace, Hull, Segment, Triangle};
     let (mut room_a, mut room_b) = (Buffer::EMPTY, Buffer::EMPTY);
     match (a, b) {
-        (HalfSpace(a), Curved(b)) => curved::half_space(a.normal, b, pose, prediction, out),
+        (HalfSpace(a), Curved(b)) => curved::half_space(a.normal, b, input, out),
         (HalfSpace(a), b) => {
             if let Some(b) = polygonal::view(b, &mut room_b) {
-                half_space::collide(a, &b, pose, prediction, out);
+                half_space::collide(a, &b, input, out);
             }
         }
         (
@@ -71,13 +70,13 @@ pub(super) fn dispatch(
             Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_),
         ) => {
             if let (Some(a), Some(b)) = (polygonal::view(a, &mut room_a), polygonal::view(b, &mut room_b)) {
-                collide_polygonal(&a, &b, pose, prediction, cache, out);
+                collide_polygonal(&a, &b, input, cache, out);
             }
         }
-        (Curved(a), Curved(b)) => curved::collide_round(a, b, pose, prediction, out),
+        (Curved(a), Curved(b)) => curved::collide_round(a, b, input, out),
         (Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_), Curved(b)) => {
             if let Some(a) = polygonal::view(a, &mut room_a) {
-                curved::collide(&a, b, pose, prediction, out);
+                curved::collide(&a, b, input, out);
             }
         }
         // Composites are collided part by part, and foreign shapes by their `ManifoldSource`. `collide` swaps the others.
@@ -88,20 +87,19 @@ pub(super) fn dispatch(
 fn collide_polygonal(
     a: &Polygonal,
     b: &Polygonal,
-    pose: &Pose,
-    prediction: f32,
+    input: PairInput,
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
     match (a.len(), b.len()) {
-        (1, 1) => points::collide_points(a, b, pose, prediction, out),
-        (_, 1) => points::collide_with_point(a, b, pose, prediction, out),
+        (1, 1) => points::collide_points(a, b, input, out),
+        (_, 1) => points::collide_with_point(a, b, input, out),
         (1, _) => {
-            let inverse = pose.inverse();
-            points::collide_with_point(b, a, &inverse, prediction, out);
+            let inverse = input.pose.inverse();
+            points::collide_with_point(b, a, PairInput { pose: &inverse, ..input }, out);
             *out = out.flipped(&inverse);
         }
-        (2, 2) => segments::collide(a, b, pose, prediction, out),
-        _ => polygons::collide(a, b, pose, prediction, cache, out),
+        (2, 2) => segments::collide(a, b, input, out),
+        _ => polygons::collide(a, b, input, cache, out),
     }
 }

@@ -1,8 +1,8 @@
 //! Contacts with a ball, of one point at most: two centres, or a centre and a polygon.
 
-use super::super::LocalManifold;
+use super::super::{LocalManifold, PairInput};
 use super::polygonal::Polygonal;
-use crate::math::{Pose, Vector};
+use crate::math::Vector;
 use crate::shape::direction;
 
 /// The radii of the two shapes, and the prediction distance.
@@ -37,8 +37,7 @@ pub(super) fn push_between(
 pub(super) fn collide_points(
     a: &Polygonal,
     b: &Polygonal,
-    pose: &Pose,
-    prediction: f32,
+    PairInput { pose, prediction }: PairInput,
     out: &mut LocalManifold,
 ) {
     let (p, q) = (a.vertices[0], pose.transform(b.vertices[0]));
@@ -50,8 +49,7 @@ pub(super) fn collide_points(
 pub(super) fn collide_with_point(
     a: &Polygonal,
     b: &Polygonal,
-    pose: &Pose,
-    prediction: f32,
+    PairInput { pose, prediction }: PairInput,
     out: &mut LocalManifold,
 ) {
     let center = pose.transform(b.vertices[0]);

@@ -3,7 +3,7 @@
 //! Where the separation along a direction is positive, it grows towards the best direction and falls behind it. So the best
 //! edge of separated polygons is beside the nearest corner, and this edge and the one facing it have the closest features.
 
-use super::super::{FeatureCache, LocalManifold};
+use super::super::{FeatureCache, LocalManifold, PairInput};
 use super::clip::{Facing, Side};
 use super::points::Limits;
 use super::polygonal::Polygonal;
@@ -29,8 +29,7 @@ pub(super) fn preference(prediction: f32, pose: &Pose) -> f32 {
 pub(super) fn collide(
     a: &Polygonal,
     b: &Polygonal,
-    pose: &Pose,
-    prediction: f32,
+    PairInput { pose, prediction }: PairInput,
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {

@@ -2,11 +2,11 @@
 //!
 //! Edge normals do not separate segments on one line, so the closest points are computed first.
 
-use super::super::LocalManifold;
+use super::super::{LocalManifold, PairInput};
 use super::clip::{Facing, Side, pair};
 use super::points::{Limits, push_between};
 use super::polygonal::{Edge, Polygonal};
-use crate::math::{Pose, Vector};
+use crate::math::Vector;
 use crate::tuning::manifold::ALIKE;
 
 /// An end of one segment against the other segment.
@@ -24,7 +24,8 @@ struct Candidate {
 }
 
 /// Fills `out` for two segments. Parallel segments side by side get two points.
-pub(super) fn collide(a: &Polygonal, b: &Polygonal, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction } = input;
     let p = [a.vertices[0], a.vertices[1]];
     let q = [pose.transform(b.vertices[0]), pose.transform(b.vertices[1])];
     let axes = [a.normals[0].perp(), pose.rotation.rotate(b.normals[0].perp())];

@@ -6,8 +6,8 @@ use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference, clip};
 use super::gjk;
 use super::sat::{self, EdgeAxis, FaceAxis, Known};
 use super::view::{MatrixPose, View, extents};
-use crate::manifold::{FeatureCache, LocalManifold};
-use crate::math::{Pose, Vector, clamp, max};
+use crate::manifold::{FeatureCache, LocalManifold, PairInput};
+use crate::math::{Vector, clamp, max};
 use crate::tuning::manifold::MARGIN;
 
 /// The number of faces of a triangle, which no solid has.
@@ -38,12 +38,11 @@ struct Clipping<'a> {
 pub(super) fn collide(
     a: &View,
     b: &View,
-    pose: &Pose,
-    prediction: f32,
+    input: PairInput,
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    let pair = Pair::new(a, b, pose, prediction);
+    let pair = Pair::new(a, b, input);
     if a.faces.is_empty() && b.faces.is_empty() {
         return pair.build_faceless(out);
     }
@@ -57,15 +56,8 @@ pub(super) fn collide(
 
 /// One point between the closest features of two separated polyhedra, where the axis understates the distance. Keeps present
 /// points if the distance is no larger.
-pub(super) fn collide_apart(
-    a: &View,
-    b: &View,
-    pose: &Pose,
-    separation: f32,
-    prediction: f32,
-    out: &mut LocalManifold,
-) {
-    Pair::new(a, b, pose, prediction).fill_apart(separation, out);
+pub(super) fn collide_apart(a: &View, b: &View, input: PairInput, separation: f32, out: &mut LocalManifold) {
+    Pair::new(a, b, input).fill_apart(separation, out);
 }
 
 impl axis::Pair for Pair<'_> {
@@ -109,10 +101,10 @@ impl axis::Pair for Pair<'_> {
 }
 
 impl<'a> Pair<'a> {
-    fn new(a: &'a View<'a>, b: &'a View<'a>, pose: &Pose, prediction: f32) -> Self {
-        let b_in_a = MatrixPose::new(pose);
+    fn new(a: &'a View<'a>, b: &'a View<'a>, input: PairInput) -> Self {
+        let b_in_a = MatrixPose::new(input.pose);
         let (larger, smaller) = extents(a, b);
-        let sizes = Sizes { prediction, radius: a.radius + b.radius, smaller, larger };
+        let sizes = Sizes { prediction: input.prediction, radius: a.radius + b.radius, smaller, larger };
         Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), sizes }
     }
 

@@ -8,8 +8,8 @@ use super::convex;
 use super::reduce::Patch;
 use super::sat::{EdgeAxis, FaceAxis};
 use super::view::{MatrixPose, Small};
-use crate::manifold::{FeatureCache, LocalManifold};
-use crate::math::{F32x4, Lane, Num, Pose, Vector, clamp, max, min};
+use crate::manifold::{FeatureCache, LocalManifold, PairInput};
+use crate::math::{F32x4, Lane, Num, Vector, clamp, max, min};
 use crate::shape::Cuboid;
 use crate::tuning::manifold::{MARGIN, PARALLEL};
 
@@ -23,7 +23,7 @@ struct Pair<'a> {
     frame: MatrixPose,
     /// The centre of B in A's frame, and minus that of A in B's frame.
     offset: [Vector; 2],
-    pose: &'a Pose,
+    input: PairInput<'a>,
     sizes: Sizes,
 }
 
@@ -31,17 +31,16 @@ struct Pair<'a> {
 pub(in crate::manifold) fn collide(
     &Cuboid { half: half_a }: &Cuboid,
     &Cuboid { half: half_b }: &Cuboid,
-    pose: &Pose,
-    prediction: f32,
+    input: PairInput,
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    let frame = MatrixPose::new(pose);
+    let frame = MatrixPose::new(input.pose);
     let (size_a, size_b) = (half_a.max_element(), half_b.max_element());
     let (larger, smaller) = (max(size_a, size_b), min(size_a, size_b));
     let offset = [frame.position, frame.direction_in(frame.position)];
-    let sizes = Sizes { prediction, radius: 0.0, smaller, larger };
-    let pair = Pair { half_a, half_b, frame, offset, pose, sizes };
+    let sizes = Sizes { prediction: input.prediction, radius: 0.0, smaller, larger };
+    let pair = Pair { half_a, half_b, frame, offset, input, sizes };
     if pair.cached(cache).is_some_and(|axis| pair.try_known(&axis, cache.separation, out)) {
         return;
     }
@@ -87,7 +86,7 @@ impl axis::Pair for Pair<'_> {
     #[inline(never)]
     fn build_apart(&self, axis: &Axis, out: &mut LocalManifold) {
         let (a, b) = (Small::cuboid(self.half_a), Small::cuboid(self.half_b));
-        convex::collide_apart(&a.view(), &b.view(), self.pose, axis.separation(), self.sizes.prediction, out);
+        convex::collide_apart(&a.view(), &b.view(), self.input, axis.separation(), out);
     }
 
     #[cold]

@@ -1,12 +1,12 @@
 //! The triangles of a surface: their borders, and contacts with their face alone.
 
 use super::reduce::{Candidates, MAX_CANDIDATES, keep, reduce_faces};
-use super::view::{Facing, Small, View};
-use super::{curved, triangle, with_view};
+use super::view::{Facing, Small, View, with_view};
+use super::{curved, triangle};
 use crate::manifold::border::{Border, is_beside};
 use crate::manifold::pairs::{collide, drop_unusable, is_near};
-use crate::manifold::{FeatureCache, LocalManifold, LocalPoint};
-use crate::math::{F32x4, Pose, Vector, max};
+use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, PairInput};
+use crate::math::{F32x4, Vector, max};
 use crate::shape::{Shape, Triangle};
 
 /// The unit normal of a triangle, counter-clockwise from outside; `None` if it has no area.
@@ -53,17 +53,17 @@ impl<'a> Convex<'a> {
     }
 
     /// Fills `out` with the contact of a triangle as if there were no other; see [`collide`].
-    pub fn collide_facet(&self, corners: [Vector; 3], pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+    pub fn collide_facet(&self, corners: [Vector; 3], input: PairInput, out: &mut LocalManifold) {
         if let Some(core) = self.core
-            && is_near(pose)
-            && triangle::collide(corners, core, pose, prediction, out)
+            && is_near(input.pose)
+            && triangle::collide(corners, core, input, out)
         {
             out.radii = [0.0, core.radius];
             return drop_unusable(out);
         }
         let [a, b, c] = corners;
         let facet = Shape::Triangle(Triangle { a, b, c });
-        collide(&facet, self.shape, pose, prediction, &mut FeatureCache::NONE.clone(), out);
+        collide(&facet, self.shape, input.pose, input.prediction, &mut FeatureCache::NONE.clone(), out);
     }
 
     /// Fills `out` with the contact of a triangle's face alone, where the shape is over it. `normal` is the face's, towards
@@ -72,18 +72,18 @@ impl<'a> Convex<'a> {
         &self,
         corners: [Vector; 3],
         normal: Vector,
-        pose: &Pose,
-        prediction: f32,
+        input: PairInput,
         out: &mut LocalManifold,
     ) {
         if let Some(core) = self.core {
-            return triangle::collide_face(corners, normal, core, pose, prediction, out);
+            return triangle::collide_face(corners, normal, core, input, out);
         }
         (out.count, out.gap) = (0, 0.0);
         if let Shape::Curved(other) = self.shape {
             let small = Small::triangle(corners);
-            return curved::collide_face(&small.view(), normal, other, pose, prediction, out);
+            return curved::collide_face(&small.view(), normal, other, input, out);
         }
+        let PairInput { pose, prediction } = input;
         let Some(lowest) = self.shape.support(pose.rotation.inverse_rotate(-normal)) else { return };
         let lowest = pose.transform(lowest);
         let separation = (lowest - corners[0]).dot(normal);

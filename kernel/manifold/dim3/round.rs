@@ -1,8 +1,8 @@
 //! Balls and capsules against each other and against shapes with a closed form for the closest point.
 
-use crate::manifold::LocalManifold;
-use crate::math::{Pose, Vector, clamp, max, min};
-use crate::shape::{Capsule, Triangle, nearest_fraction};
+use crate::manifold::{LocalManifold, PairInput};
+use crate::math::{Vector, clamp, max, min};
+use crate::shape::{Ball, Capsule, Cuboid, Triangle, nearest_fraction};
 use crate::tuning::manifold::{CROSSED, LINE_SINE, MARGIN, ROUNDING, SAME};
 
 /// The closest points of both cores, and the radii.
@@ -55,18 +55,14 @@ pub(super) fn unit_or(v: Vector, fallback: Vector) -> Vector {
 }
 
 /// Two balls, the first at the origin.
-pub(super) fn balls(radius_a: f32, center: Vector, radius_b: f32, prediction: f32, out: &mut LocalManifold) {
-    Cores { a: Vector::ZERO, b: center, radius_a, radius_b }.contact(Vector::Y, 0.0, prediction, out);
+pub(super) fn balls(a: &Ball, b: &Ball, input: PairInput, out: &mut LocalManifold) {
+    let cores = Cores { a: Vector::ZERO, b: input.pose.position, radius_a: a.radius, radius_b: b.radius };
+    cores.contact(Vector::Y, 0.0, input.prediction, out);
 }
 
 /// A capsule (or segment, with no radius) and a ball.
-pub(super) fn capsule_ball(
-    a: &Capsule,
-    center: Vector,
-    radius: f32,
-    prediction: f32,
-    out: &mut LocalManifold,
-) {
+pub(super) fn capsule_ball(a: &Capsule, &Ball { radius }: &Ball, input: PairInput, out: &mut LocalManifold) {
+    let center = input.pose.position;
     let axis = a.b - a.a;
     let t = nearest_fraction(a.a, a.b, center);
     let fallback = unit_or(axis, Vector::X).any_orthonormal();
@@ -74,22 +70,22 @@ pub(super) fn capsule_ball(
     // A centre within rounding of the axis counts as on it.
     let rounding = rounding_of(&[a.a, a.b]);
     let cores = Cores { a: point, b: center, radius_a: a.radius, radius_b: radius };
-    cores.contact(fallback, rounding, prediction, out);
+    cores.contact(fallback, rounding, input.prediction, out);
 }
 
 /// A box and a ball. The normal of a centre inside is that of the nearest face.
 pub(super) fn cuboid_ball(
-    half: Vector,
-    center: Vector,
-    radius: f32,
-    prediction: f32,
+    &Cuboid { half }: &Cuboid,
+    &Ball { radius }: &Ball,
+    input: PairInput,
     out: &mut LocalManifold,
 ) {
+    let center = input.pose.position;
     let nearest = center.max(-half).min(half);
     let cores = Cores { a: nearest, b: center, radius_a: 0.0, radius_b: radius };
     if center != nearest {
         // The centre is clamped to the box without rounding.
-        return cores.contact(Vector::Y, 0.0, prediction, out);
+        return cores.contact(Vector::Y, 0.0, input.prediction, out);
     }
     let (h, c) = (half.to_array(), center.to_array());
     let mut face = 0;
@@ -102,17 +98,17 @@ pub(super) fn cuboid_ball(
     let mut on_face = c;
     on_face[face] = sign * h[face];
     out.normal = Vector::AXES[face] * sign;
-    Cores { a: Vector::from_array(on_face), ..cores }.push(out.normal, prediction, 0, out);
+    Cores { a: Vector::from_array(on_face), ..cores }.push(out.normal, input.prediction, 0, out);
 }
 
 /// A triangle and a ball, from either side. For a centre in the plane the normal is the triangle's.
 pub(super) fn triangle_ball(
     t: &Triangle,
-    center: Vector,
-    radius: f32,
-    prediction: f32,
+    &Ball { radius }: &Ball,
+    input: PairInput,
     out: &mut LocalManifold,
 ) {
+    let center = input.pose.position;
     let mut normal = match face(t) {
         Some(normal) => normal,
         None => {
@@ -128,7 +124,7 @@ pub(super) fn triangle_ball(
     }
     let nearest = nearest_on_triangle(t, center);
     let cores = Cores { a: nearest, b: center, radius_a: 0.0, radius_b: radius };
-    cores.contact(normal, rounding_of(&[t.a, t.b, t.c]), prediction, out);
+    cores.contact(normal, rounding_of(&[t.a, t.b, t.c]), input.prediction, out);
 }
 
 /// A triangle's unit normal; `None` if its corners are on a line, or in one place.
@@ -192,7 +188,8 @@ fn nearest_on_sides(t: &Triangle, p: Vector) -> Vector {
 }
 
 /// Two capsules (or segments). Parallel ones get a point at each end of the range in which they are side by side.
-pub(super) fn capsules(a: &Capsule, b: &Capsule, pose: &Pose, prediction: f32, out: &mut LocalManifold) {
+pub(super) fn capsules(a: &Capsule, b: &Capsule, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction } = input;
     let (b0, b1) = (pose.transform(b.a), pose.transform(b.b));
     let (u, v) = (a.b - a.a, b1 - b0);
     let (s, t) = closest_parameters(a.a, u, b0, v);

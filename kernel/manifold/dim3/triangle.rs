@@ -9,8 +9,8 @@ use super::convex::closest_of_lines;
 use super::gjk::{self, Core};
 use super::sat::{EdgeAxis, FaceAxis, open_edges, remaining};
 use super::view::{Facing, MatrixPose, View, four};
-use crate::manifold::LocalManifold;
-use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
+use crate::manifold::{LocalManifold, PairInput};
+use crate::math::{F32x4, Lane, Num, Vector, max, min};
 use crate::shape::largest;
 use crate::tuning::manifold::{MARGIN, PARALLEL, REACH};
 
@@ -83,15 +83,9 @@ fn greatest(of: [f32; 3]) -> usize {
 
 /// Fills `out` with the contact of a triangle and a polyhedron, in the triangle's frame; see
 /// [`convex::collide`](super::convex::collide). Returns `false` for a triangle without area.
-pub(super) fn collide(
-    corners: [Vector; 3],
-    view: &View,
-    pose: &Pose,
-    prediction: f32,
-    out: &mut LocalManifold,
-) -> bool {
+pub(super) fn collide(corners: [Vector; 3], view: &View, input: PairInput, out: &mut LocalManifold) -> bool {
     (out.count, out.gap) = (0, 0.0);
-    let Some(mut pair) = Pair::new(corners, view, pose, prediction) else { return false };
+    let Some(mut pair) = Pair::new(corners, view, input) else { return false };
     let mut plane = pair.nearest_plane();
     if plane.separation > pair.sizes.limit() {
         out.gap = max(plane.separation - view.radius, 0.0);
@@ -116,12 +110,11 @@ pub(super) fn collide_face(
     corners: [Vector; 3],
     normal: Vector,
     view: &View,
-    pose: &Pose,
-    prediction: f32,
+    input: PairInput,
     out: &mut LocalManifold,
 ) {
     (out.count, out.gap) = (0, 0.0);
-    let Some(pair) = Pair::new(corners, view, pose, prediction) else { return };
+    let Some(pair) = Pair::new(corners, view, input) else { return };
     let plane = pair.plane(usize::from(pair.face.dot(normal) < 0.0));
     if plane.separation <= pair.sizes.limit() {
         pair.build_plane(&plane, out);
@@ -248,12 +241,12 @@ impl axis::Pair for Pair<'_> {
 impl<'a> Pair<'a> {
     /// `None` for a triangle without area.
     #[inline(always)]
-    fn new(corners: [Vector; 3], view: &'a View<'a>, pose: &Pose, prediction: f32) -> Option<Self> {
+    fn new(corners: [Vector; 3], view: &'a View<'a>, input: PairInput) -> Option<Self> {
         let given = corners;
         let [a, b, c] = corners;
         let sides = [b - a, c - b, a - c];
         let Facing { normal: face, scale } = Facing::of(sides)?;
-        let frame = MatrixPose::new(pose);
+        let frame = MatrixPose::new(input.pose);
         // Taken relative to the polyhedron first, so that rounding is small where they are near.
         let [a, b, c] = corners.map(|corner| corner - frame.position);
         let placed = frame.direction_in(four([a, b, c, c]));
@@ -279,7 +272,7 @@ impl<'a> Pair<'a> {
             view,
             frame,
             sizes: Sizes {
-                prediction,
+                prediction: input.prediction,
                 radius: view.radius,
                 smaller: min(extent, view.extent),
                 larger: max(extent, view.extent),

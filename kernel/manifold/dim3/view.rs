@@ -2,7 +2,7 @@
 //! The same code collides all of them.
 
 use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
-use crate::shape::{Capsule, Edge, EdgeBlock, Face, FaceBlock, Hull, farthest};
+use crate::shape::{Capsule, Edge, EdgeBlock, Face, FaceBlock, Hull, Shape, farthest};
 
 /// The convex polyhedron, possibly flat, that a shape is without its radius.
 #[derive(Clone, Copy)]
@@ -330,6 +330,21 @@ impl Small {
             radius: self.radius,
         }
     }
+}
+
+/// Calls `f` with the polyhedral core of a shape, if it has one.
+#[inline(always)]
+pub(super) fn with_view<R>(shape: &Shape, f: impl FnOnce(Option<&View>) -> R) -> R {
+    let small = match shape {
+        Shape::Hull(hull) => return f(Some(&View::from(&**hull))),
+        Shape::Cuboid(s) => Small::cuboid(s.half),
+        Shape::Triangle(s) => Small::triangle([s.a, s.b, s.c]),
+        Shape::Capsule(s) => Small::capsule(s),
+        Shape::Segment(s) => Small::segment(s.a, s.b, 0.0),
+        Shape::Ball(s) => Small::point(Vector::ZERO, s.radius),
+        Shape::Composite(_) | Shape::Curved(_) | Shape::HalfSpace(_) | Shape::Foreign(_) => return f(None),
+    };
+    f(Some(&small.view()))
 }
 
 /// Where a triangle faces.

@@ -15,10 +15,10 @@ mod tests;
 use super::gjk;
 use super::reduce::{keep, reduce};
 use super::round::unit_or;
-use super::view::{MatrixPose, View};
-use crate::manifold::{FeatureCache, LocalManifold};
-use crate::math::{Pose, Vector, max, min};
-use crate::shape::Curved;
+use super::view::{MatrixPose, View, with_view};
+use crate::manifold::{FeatureCache, LocalManifold, PairInput};
+use crate::math::{Vector, max, min};
+use crate::shape::{Ball, Curved, Shape};
 use crate::tuning::contact::DEEP;
 use crate::tuning::manifold::{FACING, KEPT, MARGIN, ROUNDING};
 use crate::tuning::sweeps::ROUNDS;
@@ -65,16 +65,16 @@ struct Pair<'a, A> {
     larger: f32,
 }
 
-/// The contact of a polyhedron with a radius and a frustum.
+/// The contact of a shape with a polyhedral core and a frustum. Not inlined, since its stack frame is large.
+#[inline(never)]
 pub(super) fn with_polyhedron(
-    a: &View,
+    a: &Shape,
     b: &Curved,
-    pose: &Pose,
-    prediction: f32,
+    input: PairInput,
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    collide(a, b, pose, prediction, cache, out);
+    with_view(a, |a| a.map(|a| collide(a, b, input, cache, out)));
 }
 
 /// The contact of two frusta. Not inlined, since its stack frame is large.
@@ -82,41 +82,26 @@ pub(super) fn with_polyhedron(
 pub(super) fn frusta(
     a: &Curved,
     b: &Curved,
-    pose: &Pose,
-    prediction: f32,
+    input: PairInput,
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    collide(&a.with_equal_discs(), b, pose, prediction, cache, out);
+    collide(&a.with_equal_discs(), b, input, cache, out);
 }
 
-fn collide<A: Party>(
-    a: &A,
-    b: &Curved,
-    pose: &Pose,
-    prediction: f32,
-    cache: &mut FeatureCache,
-    out: &mut LocalManifold,
-) {
+fn collide<A: Party>(a: &A, b: &Curved, input: PairInput, cache: &mut FeatureCache, out: &mut LocalManifold) {
     let b = &b.with_equal_discs();
-    let pair = Pair::new(a, b, pose, prediction);
+    let pair = Pair::new(a, b, input);
     if !pair.try_cached(cache, out) {
         pair.search(cache, out);
     }
 }
 
 /// The contact of one face of a polyhedron, that with the given normal, and a frustum: its points over the face, if any.
-pub(super) fn collide_face(
-    a: &View,
-    normal: Vector,
-    b: &Curved,
-    pose: &Pose,
-    prediction: f32,
-    out: &mut LocalManifold,
-) {
+pub(super) fn collide_face(a: &View, normal: Vector, b: &Curved, input: PairInput, out: &mut LocalManifold) {
     let Some(face) = (0..a.faces.len()).find(|i| a.faces[*i].normal.dot(normal) > FACING) else { return };
     let b = &b.with_equal_discs();
-    let pair = Pair::new(a, b, pose, prediction);
+    let pair = Pair::new(a, b, input);
     let found = pair.plane_a(face);
     if found.separation > pair.limit() {
         out.gap = found.separation - a.radius;
@@ -133,20 +118,19 @@ pub(super) fn collide_face(
 pub(super) fn half_space(
     normal: Vector,
     b: &Curved,
-    pose: &Pose,
-    prediction: f32,
+    input: PairInput,
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
-    let (b, frame) = (&b.with_equal_discs(), MatrixPose::new(pose));
+    let (b, frame) = (&b.with_equal_discs(), MatrixPose::new(input.pose));
     let down = -frame.direction_in(normal);
     out.normal = normal;
     out.gap = normal.dot(frame.point(b.support(down)));
-    if !(out.gap <= prediction) {
+    if !(out.gap <= input.prediction) {
         return;
     }
     let phase = if cache.kind == PLANE_A { cache.b } else { 0 };
-    let mut region = Region::new(normal, 0.0, prediction, b.extent(Vector::ZERO), phase);
+    let mut region = Region::new(normal, 0.0, input.prediction, b.extent(Vector::ZERO), phase);
     region.fill_plane(&party::facing(b, down, &frame));
     *cache = FeatureCache { kind: PLANE_A, a: 0, b: region.phase, separation: out.gap };
     take(&region, out);
@@ -154,11 +138,11 @@ pub(super) fn half_space(
 }
 
 /// The contact of a frustum and a ball.
-pub(super) fn ball(a: &Curved, center: Vector, radius: f32, prediction: f32, out: &mut LocalManifold) {
-    let a = &a.with_equal_discs();
+pub(super) fn ball(a: &Curved, &Ball { radius }: &Ball, input: PairInput, out: &mut LocalManifold) {
+    let (a, center) = (&a.with_equal_discs(), input.pose.position);
     let nearest = a.nearest(center);
     let separation = nearest.distance - radius;
-    if !(separation <= prediction) {
+    if !(separation <= input.prediction) {
         out.gap = separation;
         return;
     }
@@ -177,10 +161,10 @@ fn take(region: &Region, out: &mut LocalManifold) {
 }
 
 impl<'a, A: Party> Pair<'a, A> {
-    fn new(a: &'a A, b: &'a Curved, pose: &Pose, prediction: f32) -> Self {
+    fn new(a: &'a A, b: &'a Curved, input: PairInput) -> Self {
         let extents = [a.extent(), b.extent(Vector::ZERO)];
         let (smaller, larger) = (min(extents[0], extents[1]), max(extents[0], extents[1]));
-        Self { a, b, b_in_a: MatrixPose::new(pose), prediction, smaller, larger }
+        Self { a, b, b_in_a: MatrixPose::new(input.pose), prediction: input.prediction, smaller, larger }
     }
 
     /// Cores farther apart than this have no contact.

@@ -1,7 +1,7 @@
 //! Frusta against the best of many directions, and where their points are.
 
 use super::super::tests::{bounded, deepest, fresh, pose, rotation, scaled, v, vector};
-use super::super::with_view;
+use super::super::view::with_view;
 use super::{bytes_of, normal_of};
 use crate::distance::{Accuracy, Convex, Frame, closest_cores};
 use crate::manifold::pairs::FARTHEST;
