@@ -76,6 +76,15 @@ impl Sizes {
 pub(super) trait Pair {
     fn sizes(&self) -> &Sizes;
 
+    /// The axis of a cache as it is now. Pairs that keep no cache have none.
+    #[inline(always)]
+    fn cached(&self, _: &FeatureCache) -> Option<Axis> {
+        None
+    }
+
+    /// The face of A with the largest separation.
+    fn best_face_of_a(&self) -> FaceAxis;
+
     /// The face of B with the largest separation.
     fn best_face_of_b(&self) -> FaceAxis;
 
@@ -95,6 +104,17 @@ pub(super) trait Pair {
     /// axes: under the face of an earlier step there may be nothing left.
     fn push_deepest(&self, axis: &Axis, out: &mut LocalManifold);
 
+    /// Fills the manifold from the cached axis if it still decides the contact, else from the best of all.
+    #[inline(always)]
+    fn collide(&self, cache: &mut FeatureCache, out: &mut LocalManifold) {
+        if self.cached(cache).is_some_and(|axis| self.try_known(&axis, cache.separation, out)) {
+            return;
+        }
+        let axis = self.search();
+        *cache = axis.cache();
+        self.decide(&axis, out);
+    }
+
     /// Whether an axis that separated by `before` metres when it was found still decides the contact.
     #[inline(always)]
     fn try_known(&self, axis: &Axis, before: f32, out: &mut LocalManifold) -> bool {
@@ -110,10 +130,10 @@ pub(super) trait Pair {
         is_exact || (out.count > 0 && separation <= sizes.resolution())
     }
 
-    /// The axis of least penetration or largest separation, or the first beyond the limit, given the best face of A.
+    /// The axis of least penetration or largest separation, or the first beyond the limit.
     #[inline(always)]
-    fn search(&self, of_a: FaceAxis) -> Axis {
-        let sizes = self.sizes();
+    fn search(&self) -> Axis {
+        let (sizes, of_a) = (self.sizes(), self.best_face_of_a());
         if of_a.separation > sizes.limit() {
             return Axis::FaceA(of_a);
         }

@@ -46,12 +46,7 @@ pub(super) fn collide(
     if a.faces.is_empty() && b.faces.is_empty() {
         return pair.build_faceless(out);
     }
-    if pair.cached(cache).is_some_and(|axis| pair.try_known(&axis, cache.separation, out)) {
-        return;
-    }
-    let axis = pair.search(sat::best_face(a, b, &pair.b_in_a, pair.sizes.limit()));
-    *cache = axis.cache();
-    pair.decide(&axis, out);
+    pair.collide(cache, out);
 }
 
 /// One point between the closest features of two separated polyhedra, where the axis understates the distance. Keeps present
@@ -63,6 +58,26 @@ pub(super) fn collide_apart(a: &View, b: &View, input: PairInput, separation: f3
 impl axis::Pair for Pair<'_> {
     fn sizes(&self) -> &Sizes {
         &self.sizes
+    }
+
+    fn cached(&self, cache: &FeatureCache) -> Option<Axis> {
+        let (i, j) = (cache.a as usize, cache.b as usize);
+        match cache.kind {
+            FACE_A if i < self.a.faces.len() => {
+                Some(Axis::FaceA(sat::face_separation(self.a, i, self.b, &self.b_in_a)))
+            }
+            FACE_B if j < self.b.faces.len() => {
+                Some(Axis::FaceB(sat::face_separation(self.b, j, self.a, &self.a_in_b)))
+            }
+            EDGES if i < self.a.edges.len() && j < self.b.edges.len() => {
+                sat::edge_separation(self.a, i, self.b, j, &self.b_in_a).map(Axis::Edges)
+            }
+            _ => None,
+        }
+    }
+
+    fn best_face_of_a(&self) -> FaceAxis {
+        sat::best_face(self.a, self.b, &self.b_in_a, self.sizes.limit())
     }
 
     fn best_face_of_b(&self) -> FaceAxis {
@@ -106,23 +121,6 @@ impl<'a> Pair<'a> {
         let (larger, smaller) = extents(a, b);
         let sizes = Sizes { prediction: input.prediction, radius: a.radius + b.radius, smaller, larger };
         Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), sizes }
-    }
-
-    /// The cached axis as it is now.
-    fn cached(&self, cache: &FeatureCache) -> Option<Axis> {
-        let (i, j) = (cache.a as usize, cache.b as usize);
-        match cache.kind {
-            FACE_A if i < self.a.faces.len() => {
-                Some(Axis::FaceA(sat::face_separation(self.a, i, self.b, &self.b_in_a)))
-            }
-            FACE_B if j < self.b.faces.len() => {
-                Some(Axis::FaceB(sat::face_separation(self.b, j, self.a, &self.a_in_b)))
-            }
-            EDGES if i < self.a.edges.len() && j < self.b.edges.len() => {
-                sat::edge_separation(self.a, i, self.b, j, &self.b_in_a).map(Axis::Edges)
-            }
-            _ => None,
-        }
     }
 
     fn build_face(&self, axis: &FaceAxis, of_b: bool, out: &mut LocalManifold) -> bool {

@@ -40,13 +40,7 @@ pub(in crate::manifold) fn collide(
     let (larger, smaller) = (max(size_a, size_b), min(size_a, size_b));
     let offset = [frame.position, frame.direction_in(frame.position)];
     let sizes = Sizes { prediction: input.prediction, radius: 0.0, smaller, larger };
-    let pair = Pair { half_a, half_b, frame, offset, input, sizes };
-    if pair.cached(cache).is_some_and(|axis| pair.try_known(&axis, cache.separation, out)) {
-        return;
-    }
-    let axis = pair.search(largest_of(pair.faces_of_a()));
-    *cache = axis.cache();
-    pair.decide(&axis, out);
+    Pair { half_a, half_b, frame, offset, input, sizes }.collide(cache, out);
 }
 
 /// The face with the largest separation, of those along each axis.
@@ -62,6 +56,44 @@ impl axis::Pair for Pair<'_> {
     #[inline(always)]
     fn sizes(&self) -> &Sizes {
         &self.sizes
+    }
+
+    #[inline(always)]
+    fn cached(&self, cache: &FeatureCache) -> Option<Axis> {
+        let (i, j) = (cache.a as usize, cache.b as usize);
+        if i > 2 || j > 2 {
+            return None;
+        }
+        match cache.kind {
+            FACE_A => {
+                let along = |k: usize| self.frame.axes[k].to_array()[i].abs();
+                let (x, y, z) = (along(0), along(1), along(2));
+                let reach = x * self.half_b.x + y * self.half_b.y + z * self.half_b.z;
+                let separation = self.offset[0].to_array()[i].abs() - self.half_a.to_array()[i] - reach;
+                Some(Axis::FaceA(FaceAxis { face: i, separation, lowest: 0 }))
+            }
+            FACE_B => {
+                let reach = self.frame.axes[j].abs().dot(self.half_a);
+                let separation = self.offset[1].to_array()[j].abs() - self.half_b.to_array()[j] - reach;
+                Some(Axis::FaceB(FaceAxis { face: j, separation, lowest: 0 }))
+            }
+            EDGES => {
+                let (value, _, square) = self.edges(i, j);
+                let separation = value / square.sqrt();
+                (square > PARALLEL * PARALLEL).then_some(Axis::Edges(EdgeAxis {
+                    a: i,
+                    b: j,
+                    normal: Vector::ZERO,
+                    separation,
+                }))
+            }
+            _ => None,
+        }
+    }
+
+    #[inline(always)]
+    fn best_face_of_a(&self) -> FaceAxis {
+        largest_of(self.faces_of_a())
     }
 
     #[inline(always)]
@@ -138,40 +170,6 @@ impl Pair<'_> {
         let of_a = ha[i1] * b[i2].abs() + ha[i2] * b[i1].abs();
         let of_b = hb[j1] * axes[j2].to_array()[i].abs() + hb[j2] * axes[j1].to_array()[i].abs();
         (distance.abs() - of_a - of_b, distance, b[i1] * b[i1] + b[i2] * b[i2])
-    }
-
-    /// The cached axis as it is now.
-    #[inline(always)]
-    fn cached(&self, cache: &FeatureCache) -> Option<Axis> {
-        let (i, j) = (cache.a as usize, cache.b as usize);
-        if i > 2 || j > 2 {
-            return None;
-        }
-        match cache.kind {
-            FACE_A => {
-                let along = |k: usize| self.frame.axes[k].to_array()[i].abs();
-                let (x, y, z) = (along(0), along(1), along(2));
-                let reach = x * self.half_b.x + y * self.half_b.y + z * self.half_b.z;
-                let separation = self.offset[0].to_array()[i].abs() - self.half_a.to_array()[i] - reach;
-                Some(Axis::FaceA(FaceAxis { face: i, separation, lowest: 0 }))
-            }
-            FACE_B => {
-                let reach = self.frame.axes[j].abs().dot(self.half_a);
-                let separation = self.offset[1].to_array()[j].abs() - self.half_b.to_array()[j] - reach;
-                Some(Axis::FaceB(FaceAxis { face: j, separation, lowest: 0 }))
-            }
-            EDGES => {
-                let (value, _, square) = self.edges(i, j);
-                let separation = value / square.sqrt();
-                (square > PARALLEL * PARALLEL).then_some(Axis::Edges(EdgeAxis {
-                    a: i,
-                    b: j,
-                    normal: Vector::ZERO,
-                    separation,
-                }))
-            }
-            _ => None,
-        }
     }
 
     /// The best pair of edges if it is better than `least`. Its normal is left open.

@@ -9,7 +9,7 @@ use super::convex::closest_of_lines;
 use super::gjk::{self, Core};
 use super::sat::{EdgeAxis, FaceAxis, open_edges, remaining};
 use super::view::{Facing, MatrixPose, View, four};
-use crate::manifold::{LocalManifold, PairInput};
+use crate::manifold::{FeatureCache, LocalManifold, PairInput};
 use crate::math::{F32x4, Lane, Num, Vector, max, min};
 use crate::shape::largest;
 use crate::tuning::manifold::{MARGIN, PARALLEL, REACH};
@@ -32,6 +32,8 @@ struct Pair<'a> {
     /// Transforms the polyhedron to the frame of the triangle.
     frame: MatrixPose,
     sizes: Sizes,
+    /// The side of the face that the polyhedron is on.
+    nearest: FaceAxis,
     /// The sides that may make an axis, as bits.
     open: u32,
 }
@@ -86,21 +88,17 @@ fn greatest(of: [f32; 3]) -> usize {
 pub(super) fn collide(corners: [Vector; 3], view: &View, input: PairInput, out: &mut LocalManifold) -> bool {
     (out.count, out.gap) = (0, 0.0);
     let Some(mut pair) = Pair::new(corners, view, input) else { return false };
-    let mut plane = pair.nearest_plane();
-    if plane.separation > pair.sizes.limit() {
-        out.gap = max(plane.separation - view.radius, 0.0);
+    pair.nearest = pair.nearest_plane();
+    if pair.nearest.separation > pair.sizes.limit() {
+        out.gap = max(pair.nearest.separation - view.radius, 0.0);
         return true;
     }
-    pair.open = pair.open_sides(&plane);
+    pair.open = pair.open_sides(&pair.nearest);
     if pair.open == 0 {
-        pair.build_plane(&plane, out);
-        return true;
+        pair.build_plane(&pair.nearest, out);
+    } else {
+        pair.collide(&mut FeatureCache::NONE.clone(), out);
     }
-    if plane.separation < 0.0 {
-        let back = pair.plane(1 - plane.face);
-        plane = if back.separation > plane.separation { back } else { plane };
-    }
-    pair.decide(&pair.search(plane), out);
     true
 }
 
@@ -127,6 +125,16 @@ impl axis::Pair for Pair<'_> {
     #[inline(always)]
     fn sizes(&self) -> &Sizes {
         &self.sizes
+    }
+
+    #[inline(always)]
+    fn best_face_of_a(&self) -> FaceAxis {
+        let nearest = self.nearest;
+        if !(nearest.separation < 0.0) {
+            return nearest;
+        }
+        let back = self.plane(1 - nearest.face);
+        if back.separation > nearest.separation { back } else { nearest }
     }
 
     fn best_face_of_b(&self) -> FaceAxis {
@@ -277,6 +285,7 @@ impl<'a> Pair<'a> {
                 smaller: min(extent, view.extent),
                 larger: max(extent, view.extent),
             },
+            nearest: FaceAxis { face: 0, separation: f32::NEG_INFINITY, lowest: 0 },
             open: SIDES,
         })
     }
