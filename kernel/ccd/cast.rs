@@ -1,10 +1,11 @@
-//! When two moving shapes meet, by conservative advancement (B. Mirtich, "Impulse-based Dynamic Simulation", 1996).
+//! When two moving shapes meet, by conservative [`advance`](crate::distance::advance).
 //!
 //! A manifold's normal and least separation are a slab between the shapes. Time advances by what the slab takes to be
 //! crossed at least, until the shapes are as near as they may come.
 
 use super::path::Path;
 use crate::contact::ManifoldSource;
+use crate::distance::{Approach, advance};
 use crate::manifold::{self, CompositeBuffers, FeatureCache, LocalManifold, Look};
 use crate::math::{Pose, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
@@ -97,36 +98,37 @@ impl<S: ManifoldSource> Pair<'_, S> {
         if !(fastest > 0.0) {
             return Cast::Miss;
         }
-        let mut fraction = 0.0;
-        for round in 0..ROUNDS {
+        let cast = advance(0.0, ROUNDS, |fraction, round| {
+            // A NaN is a miss.
+            if !(fraction < 1.0) {
+                return None;
+            }
             let other = self.other.pose(fraction);
             let left = 1.0 - fraction;
             let rest = Rest { way: way * left, turning: left * turning + 2.0 * self.target };
             let gap = self.look(caster, &other, fraction, rest, buffers);
-            let mut advance = gap / fastest;
+            let mut apart = gap / fastest;
             for local in &buffers.found {
                 let (gap, normal) = (local.lower_bound() - self.margin, other.rotation.rotate(local.normal));
-                if round == 0 && gap <= touching {
-                    return Cast::Touching;
+                if round == 1 && gap <= touching {
+                    return Some(Approach::Met(Cast::Touching));
                 }
                 let rate = turning - way.dot(normal);
                 if !(rate > 0.0) {
                     continue;
                 }
                 if gap <= self.target {
-                    return Cast::Hit(fraction);
+                    return Some(Approach::Met(Cast::Hit(fraction)));
                 }
                 // So that the shapes stop apart.
                 let left = gap - 0.5 * self.target;
-                advance = min(advance, left / rate);
+                apart = min(apart, left / rate);
             }
-            fraction += max(advance, 0.5 * self.target / fastest);
-            // A NaN is a miss.
-            if !(fraction < 1.0) {
-                return Cast::Miss;
-            }
-        }
-        Cast::Hit(fraction)
+            let later = fraction + max(apart, 0.5 * self.target / fastest);
+            let is_hit = round == ROUNDS && later < 1.0;
+            Some(if is_hit { Approach::Met(Cast::Hit(later)) } else { Approach::ApartUntil(later) })
+        });
+        cast.unwrap_or(Cast::Miss)
     }
 
     /// The way of a point of the moving shape over the step.

@@ -1,7 +1,7 @@
 //! Where shapes will meet that do not touch now.
 //!
 //! The plane at the present closest points is no wall: what passes by would be stopped by it, and a point far out on a
-//! turning body moves along an arc. So the pair is followed to when it meets (conservative advancement, after B. Mirtich).
+//! turning body moves along an arc. So the pair is followed to when it meets ([conservative advancement](advance)).
 //! The solver gets the contact of that time, with separations that bring it there. A pair that does not meet has none.
 
 #[cfg(test)]
@@ -10,6 +10,7 @@ mod tests;
 
 use super::input::{NarrowPhaseInput, smaller};
 use super::record::{Contact, Manifold};
+use crate::distance::{Approach, advance};
 use crate::manifold::{self, LocalManifold};
 use crate::math::{Angular, Rot, Vector, WorldPose, max, min};
 use crate::shape::Shape;
@@ -45,7 +46,7 @@ pub(super) fn find_meeting<S>(
     input: &NarrowPhaseInput<S>,
     contact: &mut Contact,
     poses: [&BodyPose; 2],
-    mut gap: f32,
+    gap: f32,
     prediction: f32,
     local: &mut LocalManifold,
 ) -> Option<Meeting> {
@@ -60,43 +61,45 @@ pub(super) fn find_meeting<S>(
         motion.met *= MET;
     }
     let margin = input.margin(contact);
-    let mut offset = (poses[1].center - poses[0].center).to_local();
     let end = min(input.dt, MOST_TURN / max(motion.spins[0], motion.spins[1]));
-    let mut placed: [Placed; 2] = core::array::from_fn(|side| Placed {
+    let placed: [Placed; 2] = core::array::from_fn(|side| Placed {
         body: *poses[side],
         turn: Rot::IDENTITY,
         shape: input.colliders.poses[contact.colliders[side] as usize],
     });
-    let mut time = 0.0;
-    for round in 1..=MEETING_ROUNDS {
-        let slab = Slab { shapes, placed: &placed, motion: &motion, offset, margin };
-        time += match local.count {
+    // Until when they stay apart at least, from a time on.
+    let apart_until = |placed: &[Placed; 2], local: &LocalManifold, gap: f32, time: f32| {
+        let offset = (placed[1].body.center - placed[0].body.center).to_local();
+        let slab = Slab { shapes, placed, motion: &motion, offset, margin };
+        time + match local.count {
             0 => max(gap, 0.5 * motion.met) / motion.fastest(offset),
             _ => slab.time_to_cross(placed[0].shape.rotation.rotate(local.normal), gap, end - time),
-        };
+        }
+    };
+    let first = apart_until(&placed, local, gap, 0.0);
+    let meeting = advance(first, MEETING_ROUNDS, |time, round| {
         // A NaN ends it as well.
         if !(time >= 0.0 && time < end) {
-            break;
+            return None;
         }
-        placed = place_at(input, contact, poses, time);
-        offset = (placed[1].body.center - placed[0].body.center).to_local();
+        let placed = place_at(input, contact, poses, time);
         let relative = placed[0].shape.relative(&placed[1].shape);
         // What is farther away than the rest of the motion does not meet.
         let rest = max(farthest * (1.0 - time / input.dt), input.near(contact)) + margin;
         manifold::collide(shapes[0], shapes[1], &relative, rest, &mut contact.cache, local);
-        gap = local.lower_bound() - margin;
+        let gap = local.lower_bound() - margin;
         if gap <= motion.met || (round == MEETING_ROUNDS && local.count > 0) {
             // Points that only turning brings together are found again when they are near.
             let prediction = prediction + margin;
             manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, local);
-            if local.count == 0 {
-                return None;
-            }
-            return Some(Meeting::new(&placed, poses));
+            return (local.count > 0).then(|| Approach::Met(Meeting::new(&placed, poses)));
         }
+        Some(Approach::ApartUntil(apart_until(&placed, local, gap, time)))
+    });
+    if meeting.is_none() {
+        local.count = 0;
     }
-    local.count = 0;
-    None
+    meeting
 }
 
 /// Whether two shapes that have points, and do not touch, may pass each other by in this step: their motion may cross the

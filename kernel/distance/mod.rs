@@ -3,6 +3,7 @@
 //! A convex shape is a core (a point, a segment, a polytope, or whatever has support points) and a radius around it.
 //! Cores that are apart have closest points ([`closest_cores`]); what overlaps deeper is measured by manifolds.
 
+mod advance;
 mod convex;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -10,5 +11,6 @@ mod dim;
 pub(crate) mod gjk;
 mod simplex;
 
+pub(crate) use advance::{Approach, advance};
 pub(crate) use convex::Convex;
 pub(crate) use gjk::{Accuracy, Cores, Frame, Search, closest_cores};

@@ -6,6 +6,7 @@
 use super::dim::{Convex, borders, face_normal};
 use super::screen::{Gaps, LANES, Screen};
 use super::{FeatureCache, LocalManifold, Look, PairInput, collide};
+use crate::distance::{Approach, advance};
 use crate::math::{F32x4, Lane, MAX_POINTS, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Shape, Surface};
 use crate::tuning::manifold::{FACING, MARGIN, POKE, SAME, SAME_NORMAL, SIDEWAYS, TURNED};
@@ -351,15 +352,18 @@ impl<'a> Pass<'a> {
     /// separations of now, if they meet. Returns what it replaced, if it is doubtful.
     fn cast(&self, part: u32, met: f32, local: &mut LocalManifold) -> Option<Doubt> {
         let way = self.look.motion;
-        let (mut share, mut beside) = (0.0, None);
-        for round in 1..=ROUNDS {
+        let mut beside = None;
+        let meeting = advance(0.0, ROUNDS, |mut share, round| {
+            if !(share <= 1.0) {
+                return None;
+            }
             let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
             let there = Pass { pose: &pose, ..*self };
             there.collide_alone(part, (1.0 - share) * way.length() + self.look.prediction, local);
             let closing = -local.normal.dot(way);
             // A plane between convex shapes that does not close is never crossed.
             if local.count == 0 || !(closing > 0.0) {
-                break;
+                return None;
             }
             let gap = local.lower_bound();
             if gap <= met || round == ROUNDS {
@@ -372,21 +376,20 @@ impl<'a> Pass<'a> {
                     && beside.is_none_or(|beside: Vector| beside.dot(local.normal) > SAME_NORMAL)
                 {
                     self.bring_back(share, local);
-                    return doubt.map(|doubt| Doubt { share, ..doubt });
+                    return Some(Approach::Met(doubt.map(|doubt| Doubt { share, ..doubt })));
                 }
                 // What meets a facet beside a border may cross it before it touches: the neighbour was met on this side.
                 if local.count > 0 || gap < -met {
-                    break;
+                    return None;
                 }
                 beside.get_or_insert(normal);
             }
-            share += max(gap, met) / closing;
-            if !(share <= 1.0) {
-                break;
-            }
+            Some(Approach::ApartUntil(share + max(gap, met) / closing))
+        });
+        if meeting.is_none() {
+            local.count = 0;
         }
-        local.count = 0;
-        None
+        meeting?
     }
 
     /// Gives a contact that is met after a share of the motion the separations of now.

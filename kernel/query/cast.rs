@@ -1,5 +1,4 @@
-//! When a shape that moves along a line meets another, by conservative advancement (B. Mirtich, "Impulse-based Dynamic
-//! Simulation", 1996).
+//! When a shape that moves along a line meets another, by conservative [`advance`](crate::distance::advance).
 //!
 //! The distance of two convex shapes is a convex function of the way. The plane between both closes at a constant rate,
 //! and the distance is never less than its gap: advancing by gap / rate is Newton's method on a convex function, from
@@ -7,7 +6,7 @@
 //! on curves.
 
 use super::closest::{Closest, closest};
-use crate::distance::{Accuracy, Convex, Cores, Frame, Search, closest_cores};
+use crate::distance::{Accuracy, Approach, Convex, Cores, Frame, Search, advance, closest_cores};
 use crate::math::{Pose, Vector, max};
 use crate::shape::{Aabb, Composite, HalfSpace, Part, Shape};
 
@@ -184,12 +183,16 @@ fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, way: &Way, limit: f3
     let accuracy = Accuracy { tolerance: 0.1 * met, beyond: f64::INFINITY };
     let mut search = Search::of_cores(&a, &b, Frame::from(pose), direction * -1.0);
     let free = search.advance(direction, target, met, f64::from(limit))?;
-    let (mut way_done, mut normal) = (free.length, free.normal);
-    for _ in 0..MAX_ROUNDS {
+    let mut normal = free.normal;
+    advance(free.length, MAX_ROUNDS, |way_done, _| {
+        // A NaN is a miss.
+        if !(way_done <= f64::from(limit)) {
+            return None;
+        }
         let cores = search.closest(accuracy)?;
         let gap = cores.distance - target;
         if way_done == 0.0 && gap <= 0.0 {
-            return at_start(shape_a, shape_b, pose, way);
+            return at_start(shape_a, shape_b, pose, way).map(Approach::Met);
         }
         // Where cores touch the normal is that of the plane which was crossed.
         if cores.distance > 0.0 {
@@ -207,21 +210,16 @@ fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, way: &Way, limit: f3
             let distance = (way_done + rest).min(f64::from(limit).max(way_done));
             let meeting = Meeting { shapes: [&a, &b], frame: search.frame(), direction, met, target };
             let (normal, points) = meeting.contact(cores, normal)?;
-            return Some(CastHit { distance: distance as f32, points, normal });
+            return Some(Approach::Met(CastHit { distance: distance as f32, points, normal }));
         }
-        // A NaN is a miss.
         if !(rate > 0.0) {
             return None;
         }
         // The plane's gap may be less than the distance by the tolerance.
         let left = (cores.gap - target - 0.5 * met).max(0.25 * met) / rate;
-        way_done += left;
-        if !(way_done <= f64::from(limit)) {
-            return None;
-        }
         search.move_by(direction * left);
-    }
-    None
+        Some(Approach::ApartUntil(way_done + left))
+    })
 }
 
 /// Two convex shapes, a little before they meet.

@@ -1,0 +1,30 @@
+//! When two shapes that move first meet, by conservative advancement (B. Mirtich, "Impulse-based Dynamic Simulation", 1996).
+//!
+//! The time advances by what the gap between the shapes takes to close at least, until they are near enough. Casts, sweeps and
+//! predicted contacts differ in how they bound that time.
+
+/// How near two shapes are at a time of their motion.
+pub(crate) enum Approach<N, M> {
+    /// Apart, and so at least until a later time.
+    ApartUntil(N),
+    /// Near enough.
+    Met(M),
+}
+
+/// Advances the time from `start` to where two shapes meet. `look` gets a time and the number of the look, from 1 to `rounds`.
+/// It tells how near the shapes are then, or that they do not meet. Shapes that are still apart at the last look do not meet.
+#[inline(always)]
+pub(crate) fn advance<N, M>(
+    start: N,
+    rounds: usize,
+    mut look: impl FnMut(N, usize) -> Option<Approach<N, M>>,
+) -> Option<M> {
+    let mut time = start;
+    for round in 1..=rounds {
+        match look(time, round)? {
+            Approach::ApartUntil(later) => time = later,
+            Approach::Met(meeting) => return Some(meeting),
+        }
+    }
+    None
+}
