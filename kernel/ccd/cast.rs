@@ -157,38 +157,34 @@ impl<S: ManifoldSource> Pair<'_, S> {
         let is_composite = |shape: &Shape| matches!(shape, Shape::Composite(_));
         let motion = other.rotation.inverse_rotate(rest.way);
         let look = Look { motion, ..Look::up_to(rest.turning + self.margin) };
-        let mut local = LocalManifold::default();
-        let mut cache = FeatureCache::NONE;
-        match caster {
-            Caster::Whole => {
-                let pose = other.relative(&b.pose(fraction));
-                if is_foreign(a.shape) || is_foreign(b.shape) {
-                    self.source.manifolds([a.collider, b.collider], &pose, near, source, found);
-                    return near - self.margin;
-                }
-                if is_composite(a.shape) || is_composite(b.shape) {
-                    manifold::collide_each_part(a.shape, b.shape, &pose, look, parts, found);
-                    return f32::INFINITY;
-                }
-                manifold::collide(a.shape, b.shape, &pose, reach, &mut cache, &mut local);
-            }
+        let ball;
+        let (shape, pose) = match caster {
+            Caster::Whole => (b.shape, b.pose(fraction)),
             Caster::Ball(center, radius) => {
                 let mut position = b.pose(0.0).transform(center);
                 position += (self.chord(center) * fraction).to_world();
-                let pose = other.relative(&WorldPose { position, rotation: other.rotation });
-                if is_foreign(a.shape) {
-                    let center = pose.position;
-                    self.source.ball_manifolds(a.collider, center, radius, near, source, found);
-                    return near - self.margin;
-                }
-                let ball = Shape::Ball(Ball { radius });
-                if is_composite(a.shape) {
-                    manifold::collide_each_part(a.shape, &ball, &pose, look, parts, found);
-                    return f32::INFINITY;
-                }
-                manifold::collide(a.shape, &ball, &pose, reach, &mut cache, &mut local);
+                ball = Shape::Ball(Ball { radius });
+                (&ball, WorldPose { position, rotation: other.rotation })
             }
+        };
+        let pose = other.relative(&pose);
+        if is_foreign(a.shape) || is_foreign(shape) {
+            match caster {
+                Caster::Whole => {
+                    self.source.manifolds([a.collider, b.collider], &pose, near, source, found);
+                }
+                Caster::Ball(_, radius) => {
+                    self.source.ball_manifolds(a.collider, pose.position, radius, near, source, found);
+                }
+            }
+            return near - self.margin;
         }
+        if is_composite(a.shape) || is_composite(shape) {
+            manifold::collide_each_part(a.shape, shape, &pose, look, parts, found);
+            return f32::INFINITY;
+        }
+        let mut local = LocalManifold::default();
+        manifold::collide(a.shape, shape, &pose, reach, &mut FeatureCache::NONE.clone(), &mut local);
         // Beyond the distance there is nothing that may be met.
         found.extend((local.count > 0).then_some(local));
         f32::INFINITY

@@ -4,7 +4,6 @@ use super::input::{NarrowPhaseInput, smaller};
 use super::record::{Contact, ContactFlags};
 use crate::math::min;
 use crate::shape::Shape;
-use crate::table::{BodyKind, NONE};
 use crate::tuning::contact::DEEP;
 use crate::tuning::manifold::SAME;
 
@@ -41,14 +40,13 @@ fn overlaps_by<S>(input: &NarrowPhaseInput<S>, share: f32, contact: &Contact) ->
 /// roll under the same normal; what stands on its flat end is not round there.
 #[inline(always)]
 pub(super) fn set_platform<S>(input: &NarrowPhaseInput<S>, contact: &mut Contact) {
-    let is_platform = |body: u32| body == NONE || input.bodies[body].kind != BodyKind::Dynamic;
-    let is_round = |side: usize| match &input.colliders[contact.colliders[side]].def.shape {
+    let is_round = |side: usize| match input.shapes(contact)[side] {
         Shape::Ball(_) | Shape::Capsule(_) | Shape::Segment(_) => true,
         Shape::Curved(_) => contact.manifold.radii[side] != 0.0,
         _ => false,
     };
     let are_round = is_round(0) && is_round(1);
-    let [a, b] = contact.bodies.map(|body| !are_round && is_platform(body));
+    let [a, b] = contact.bodies.map(|body| !are_round && !input.is_dynamic(body));
     contact.flags.set(ContactFlags::PLATFORM_A, a);
     contact.flags.set(ContactFlags::PLATFORM_B, b && !a);
 }

@@ -3,7 +3,8 @@
 use super::record::Contact;
 use crate::manifold::LocalManifold;
 use crate::math::{Lane, Pose, Vector, WorldPose, max, min};
-use crate::table::{BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity, is_swinging, turn};
+use crate::shape::Shape;
+use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity, is_swinging, turn};
 
 /// Computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign).
 pub trait ManifoldSource: Sync {
@@ -191,9 +192,29 @@ impl<S> NarrowPhaseInput<'_, S> {
     /// What a [`ManifoldSource`] is asked of a contact with a foreign shape: where B is in A's frame, and how far apart points
     /// may be.
     pub fn foreign_view(&self, contact: &Contact) -> (Pose, f32) {
-        let [a, b] = contact.colliders.map(|id| &self.colliders.poses[id as usize]);
+        let [a, b] = self.shape_poses(contact);
         let prediction = self.prediction(contact);
         (a.relative(b), self.farthest(contact, prediction) + self.margin(contact))
+    }
+
+    /// The shapes of both sides.
+    #[inline(always)]
+    pub(super) fn shapes(&self, contact: &Contact) -> [&Shape; 2] {
+        let [a, b] = contact.colliders;
+        [&self.colliders[a].def.shape, &self.colliders[b].def.shape]
+    }
+
+    /// The poses of both colliders.
+    #[inline(always)]
+    pub(super) fn shape_poses(&self, contact: &Contact) -> [&WorldPose; 2] {
+        let [a, b] = contact.colliders;
+        [&self.colliders.poses[a as usize], &self.colliders.poses[b as usize]]
+    }
+
+    /// Whether a body is dynamic. [`NONE`] is not.
+    #[inline(always)]
+    pub(super) fn is_dynamic(&self, body: u32) -> bool {
+        body != NONE && self.bodies[body].kind == BodyKind::Dynamic
     }
 
     /// The gap between the tight boxes of both sides, margins not subtracted.

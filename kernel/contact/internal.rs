@@ -17,7 +17,7 @@ use super::record::{Contact, ContactFlags, Manifold, Parallel, Sliding};
 use super::table::{ContactTable, PointCount};
 use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
-use crate::table::{BodyKind, NONE};
+use crate::table::NONE;
 use crate::thread_pool::ThreadPool;
 use crate::tuning::contact::{FLUSH, MOVING, RESTING, RISES, SAME_FACE, SLIDING};
 use crate::tuning::manifold::{ALIKE, MARGIN, PARALLEL, SIDEWAYS};
@@ -64,7 +64,7 @@ impl<'a> Seen<'a> {
         let origin = (poses[ground].center - poses[side].center).to_local() - frozen;
         let sign = if side == 0 { -1.0 } else { 1.0 };
         let [a, b] = input.reaches(contact);
-        let shapes = contact.colliders.map(|id| &input.colliders[id].def.shape);
+        let shapes = input.shapes(contact);
         let is_curved = shapes.iter().any(|shape| matches!(shape, Shape::Curved(_)));
         let is_clipped =
             manifold.radii == [0.0; 2] || is_curved || !shapes.iter().any(|shape| is_line(shape));
@@ -186,10 +186,6 @@ fn unit(v: Vector) -> Vector {
 impl<S> NarrowPhaseInput<'_, S> {
     fn speed_squared(&self, body: u32) -> f32 {
         if body == NONE { 0.0 } else { self.bodies.velocities[body as usize].linear.length_squared() }
-    }
-
-    pub(super) fn is_dynamic(&self, body: u32) -> bool {
-        body != NONE && self.bodies[body].kind == BodyKind::Dynamic
     }
 
     /// The side of a contact whose collider slides over the other one as over ground.

@@ -9,7 +9,7 @@ use super::record::Contact;
 use super::sweep::{Meeting, place_at};
 use crate::manifold::{self, LocalManifold};
 use crate::math::{max, min};
-use crate::table::{BodyKind, BodyPose, NONE};
+use crate::table::BodyPose;
 use crate::tuning::contact::{MOST_WAY, SAME_FACE, STILL};
 use crate::tuning::solver::SMALL_TURN;
 use crate::tuning::sweeps::MOST_TURN;
@@ -24,7 +24,6 @@ pub(super) fn lead<S>(
     local: &mut LocalManifold,
 ) -> Option<Meeting> {
     let is_round = |local: &LocalManifold| local.count == 1 && max(local.radii[0], local.radii[1]) > 0.0;
-    let is_dynamic = |body: &u32| *body != NONE && input.bodies[*body].kind == BodyKind::Dynamic;
     let presses = is_round(local) && local.points[0].separation <= input.margin(contact);
     if !presses || contact.is_inert() {
         return None;
@@ -35,15 +34,15 @@ pub(super) fn lead<S>(
     let way = (vb.linear - va.linear).length() * input.dt;
     let size = min(smaller(input.reaches(contact).map(|reach| reach.extent)), smaller(local.radii));
     let rocks = turn > STILL && turn < SMALL_TURN && fastest < MOST_TURN && way < MOST_WAY * size;
-    if !(rocks && contact.bodies.iter().all(is_dynamic)) {
+    if !(rocks && contact.bodies.iter().all(|body| input.is_dynamic(*body))) {
         return None;
     }
     let placed = place_at(input, contact, poses, 0.5 * input.dt);
     let relative = placed[0].shape.relative(&placed[1].shape);
-    let shapes = contact.colliders.map(|id| &input.colliders[id].def.shape);
+    let [a, b] = input.shapes(contact);
     let mut then = LocalManifold::default();
-    manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, &mut then);
-    let normal = input.colliders.poses[contact.colliders[0] as usize].rotation.rotate(local.normal);
+    manifold::collide(a, b, &relative, prediction, &mut contact.cache, &mut then);
+    let normal = input.shape_poses(contact)[0].rotation.rotate(local.normal);
     let continues = placed[0].shape.rotation.rotate(then.normal).dot(normal) > SAME_FACE;
     if !(is_round(&then) && continues) {
         return None;

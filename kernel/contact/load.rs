@@ -31,6 +31,22 @@ fn place(side: usize, p: &ManifoldPoint, offset: Vector) -> Vector {
     if side == 0 { p.anchor } else { p.anchor - offset }
 }
 
+/// The points under load of a manifold of a contact, numbered from `first` on, each with what is lost with it. `side` is the
+/// one of the collider that slides. `offset` is as in [`Frozen`](super::Frozen).
+fn loaded(
+    [contact, first]: [u32; 2],
+    collider: u32,
+    side: usize,
+    m: &Manifold,
+    offset: Vector,
+) -> impl Iterator<Item = (&ManifoldPoint, Lost)> {
+    let normal = toward(side, m);
+    m.points().iter().zip(first..).filter(|(p, _)| p.impulse > 0.0).map(move |(p, number)| {
+        let (place, impulse) = (place(side, p, offset), p.impulse);
+        (p, Lost { contact, number, collider, place, normal, impulse })
+    })
+}
+
 impl Before {
     /// The manifolds of a contact, if it slides under load.
     #[inline(always)]
@@ -52,21 +68,13 @@ impl Before {
         lost: &mut Vec<Lost>,
     ) {
         for (number, old) in core::iter::once(&self.manifold).chain(old_extra).enumerate() {
-            let normal = toward(self.side, old);
-            for (i, p) in old.points().iter().enumerate().filter(|(_, p)| p.impulse > 0.0) {
+            let is_kept = |p: &ManifoldPoint| {
                 let has = |m: &Manifold| m.points().iter().any(|q| q.feature == p.feature && q.impulse > 0.0);
-                if new.clone().any(|m| m.normal.dot(old.normal) > SAME_NORMAL && has(m)) {
-                    continue;
-                }
-                lost.push(Lost {
-                    contact: id,
-                    number: (number * old.points.len() + i) as u32,
-                    collider: contact.colliders[self.side],
-                    place: place(self.side, p, self.offset),
-                    normal,
-                    impulse: p.impulse,
-                });
-            }
+                new.clone().any(|m| m.normal.dot(old.normal) > SAME_NORMAL && has(m))
+            };
+            let first = (number * old.points.len()) as u32;
+            let points = loaded([id, first], contact.colliders[self.side], self.side, old, self.offset);
+            lost.extend(points.filter(|(p, _)| !is_kept(p)).map(|(_, lost)| lost));
         }
     }
 }
@@ -81,16 +89,8 @@ pub(super) fn note_internal(
 ) {
     // After those that were lost before.
     let first = (1 << 31) + index * m.points.len() as u32;
-    for (i, p) in m.points().iter().enumerate().filter(|(_, p)| p.impulse > 0.0) {
-        lost.push(Lost {
-            contact: id,
-            number: first + i as u32,
-            collider: contact.colliders[side],
-            place: place(side, p, contact.frozen.offset),
-            normal: toward(side, m),
-            impulse: p.impulse,
-        });
-    }
+    let points = loaded([id, first], contact.colliders[side], side, m, contact.frozen.offset);
+    lost.extend(points.map(|(_, lost)| lost));
 }
 
 /// The axis along which points are spread farthest.

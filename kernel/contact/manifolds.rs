@@ -20,13 +20,11 @@ pub(super) fn collide<S>(
     prediction: f32,
     local: &mut LocalManifold,
 ) -> f32 {
-    let [a, b] = contact.colliders;
-    let shapes = [&input.colliders[a].def.shape, &input.colliders[b].def.shape];
-    let [pose_a, pose_b] = [&input.colliders.poses[a as usize], &input.colliders.poses[b as usize]];
+    let (shapes, [pose_a, pose_b]) = (input.shapes(contact), input.shape_poses(contact));
     let relative = pose_a.relative(pose_b);
     manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, local);
-    let is_curved = |id: u32| matches!(input.colliders[id].def.shape, Shape::Curved(_));
-    if local.count == 0 || !(is_curved(a) || is_curved(b)) {
+    let is_curved = |shape: &Shape| matches!(shape, Shape::Curved(_));
+    if local.count == 0 || !(is_curved(shapes[0]) || is_curved(shapes[1])) {
         return f32::INFINITY;
     }
     let spin = input.velocity(contact, 1).angular - input.velocity(contact, 0).angular;
@@ -62,11 +60,9 @@ pub(super) fn collide_parts<S: ManifoldSource>(
     (motion, met): (Vector, f32),
     buffers: &mut WorkerBuffers<S::Workspace>,
 ) -> f32 {
-    let [a, b] = contact.colliders;
-    let shapes = [&input.colliders[a].def.shape, &input.colliders[b].def.shape];
-    let [pose_a, pose_b] = [&input.colliders.poses[a as usize], &input.colliders.poses[b as usize]];
+    let (shapes, [pose_a, pose_b]) = (input.shapes(contact), input.shape_poses(contact));
     let relative = pose_a.relative(pose_b);
-    let groups = [a, b].map(|id| {
+    let groups = contact.colliders.map(|id| {
         let facets = input.colliders[id].def.facets.as_ref();
         facets.map_or(&[][..], |facets| facets.groups())
     });
@@ -86,7 +82,7 @@ pub(super) fn keep_met<S>(
     contact: &Contact,
     found: &mut Vec<LocalManifold>,
 ) -> f32 {
-    let pose_a = &input.colliders.poses[contact.colliders[0] as usize];
+    let [pose_a, _] = input.shape_poses(contact);
     let motion = pose_a.rotation.inverse_rotate(input.predicted_motion(contact));
     let margin = input.margin(contact);
     let mut gap = f32::INFINITY;
@@ -122,10 +118,8 @@ pub(super) fn replace<S: ManifoldSource>(
         contact.flags.set(ContactFlags::TOUCHING, false);
         return;
     }
-    let [a, b] = contact.colliders;
-    let (ca, cb) = (&input.colliders[a].def, &input.colliders[b].def);
     let margin = input.margin(contact);
-    let pose_a = meeting.map_or(&input.colliders.poses[a as usize], |meeting| &meeting.pose_a);
+    let pose_a = meeting.map_or(input.shape_poses(contact)[0], |meeting| &meeting.pose_a);
     let body_a = meeting.map_or(body_a, |meeting| &meeting.body_a);
     // From body A's centre of mass to collider A's origin, in world axes.
     let to_shape = (pose_a.position - body_a.center).to_local();
@@ -133,7 +127,7 @@ pub(super) fn replace<S: ManifoldSource>(
     let is_foreign = contact.flags.has(ContactFlags::FOREIGN);
     for (i, local) in buffers.local.iter().enumerate() {
         let mut m = to_world(local, pose_a.rotation, to_shape, margin);
-        m.radii = if is_foreign { [ca.shape.radius(), cb.shape.radius()] } else { local.radii };
+        m.radii = if is_foreign { input.shapes(contact).map(Shape::radius) } else { local.radii };
         if let Some(meeting) = meeting {
             meeting.rewind(&mut m);
         }

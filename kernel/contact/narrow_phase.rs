@@ -18,7 +18,7 @@ use super::table::{ContactTable, PointCount, Stored};
 use crate::data::{BitSet, Parts};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Vector, max, min};
-use crate::table::{BodyKind, BodyPose, BodyTable, NONE};
+use crate::table::{BodyPose, NONE};
 use crate::thread_pool::ThreadPool;
 
 /// The size of a block of contacts, in words of 64 ids. Recycling a block takes some microseconds. Smaller blocks cost more
@@ -69,7 +69,7 @@ impl ContactTable {
             workers.resize_with(pool.workers(), WorkerBuffers::default);
         }
         self.forget_changes();
-        self.find_crowded(input.bodies);
+        self.find_crowded(input);
         let Self { contacts, points, active, extra, .. } = self;
         let crowded = self.any_deep.then_some(&self.crowded);
         let pass = Pass {
@@ -96,7 +96,7 @@ impl ContactTable {
     }
 
     /// Finds the dynamic bodies that overlap others deeply.
-    fn find_crowded(&mut self, bodies: &BodyTable) {
+    fn find_crowded<S>(&mut self, input: &NarrowPhaseInput<S>) {
         self.crowded.clear();
         if !self.any_deep {
             return;
@@ -104,8 +104,8 @@ impl ContactTable {
         for id in self.active.iter() {
             let contact = &self.contacts[id as usize];
             if contact.flags.has(ContactFlags::DEEP) {
-                let dynamic = |body: &u32| *body != NONE && bodies[*body].kind == BodyKind::Dynamic;
-                contact.bodies.into_iter().filter(dynamic).for_each(|body| _ = self.crowded.insert(body));
+                let dynamic = contact.bodies.into_iter().filter(|body| input.is_dynamic(*body));
+                dynamic.for_each(|body| _ = self.crowded.insert(body));
             }
         }
     }

@@ -54,8 +54,7 @@ pub(super) fn find_meeting<S>(
     if gap > farthest || (local.count == 0 && !(farthest > prediction)) {
         return None;
     }
-    let [a, b] = contact.colliders;
-    let shapes = [&input.colliders[a].def.shape, &input.colliders[b].def.shape];
+    let shapes = input.shapes(contact);
     let mut motion = Motion::new(input, contact);
     if local.count > 0 {
         motion.met *= MET;
@@ -65,7 +64,7 @@ pub(super) fn find_meeting<S>(
     let placed: [Placed; 2] = core::array::from_fn(|side| Placed {
         body: *poses[side],
         turn: Rot::IDENTITY,
-        shape: input.colliders.poses[contact.colliders[side] as usize],
+        shape: *input.shape_poses(contact)[side],
     });
     // Until when they stay apart at least, from a time on.
     let apart_until = |placed: &[Placed; 2], local: &LocalManifold, gap: f32, time: f32| {
@@ -113,7 +112,7 @@ pub(super) fn may_pass_by<S>(
 ) -> bool {
     let motion = Motion::new(input, contact);
     let gap = local.lower_bound() - input.margin(contact);
-    let normal = input.colliders.poses[contact.colliders[0] as usize].rotation.rotate(local.normal);
+    let normal = input.shape_poses(contact)[0].rotation.rotate(local.normal);
     let offset = (poses[1].center - poses[0].center).to_local();
     is_straight(input, contact)
         && gap > MET * motion.met
@@ -140,7 +139,7 @@ pub(super) fn pushes<S>(
     poses: [&BodyPose; 2],
     local: &LocalManifold,
 ) -> bool {
-    let frame = &input.colliders.poses[contact.colliders[0] as usize];
+    let [frame, _] = input.shape_poses(contact);
     let normal = frame.rotation.rotate(local.normal);
     let margin = input.margin(contact);
     local.points().iter().any(|p| {
