@@ -4,7 +4,7 @@
 use super::super::{FeatureCache, LocalManifold, PairInput};
 use super::clip::{Facing, Side};
 use super::points::Limits;
-use super::polygonal::{Edge, NORMALS};
+use super::polygonal::{Edge, NORMALS, corners};
 use super::polygons::{Best, choose, known_edge, preference, remember};
 use crate::math::Vector;
 use crate::shape::Cuboid;
@@ -72,13 +72,6 @@ fn facing_edge(cuboid: &Cuboid, normal: Vector) -> Edge {
 /// The edge `i`, from corner `i` to the next.
 #[inline]
 fn edge(cuboid: &Cuboid, i: usize) -> Edge {
-    let Vector { x, y } = cuboid.half;
-    let corner = |i: usize| match i {
-        0 => Vector { x: -x, y: -y },
-        1 => Vector { x, y: -y },
-        2 => Vector { x, y },
-        _ => Vector { x: -x, y },
-    };
-    let j = (i + 1) & 3;
-    Edge { ends: [corner(i), corner(j)], indices: [i, j] }
+    let (corners, j) = (corners(cuboid.half), (i + 1) & 3);
+    Edge { ends: [corners[i & 3], corners[j]], indices: [i, j] }
 }

@@ -2,9 +2,11 @@
 //! Polygon Clipping", 1974), with a feature id for each corner.
 
 use super::reduce::{Candidates, keep, reduce};
+use super::sat::FaceAxis;
 use super::view::{MatrixPose, View};
 use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{F32x4, Lane, Vector, min};
+use crate::shape::Face;
 use crate::tuning::manifold::MARGIN;
 
 /// Clipped polygons have less corners than this. A cut adds at most one per side.
@@ -136,7 +138,7 @@ pub(super) fn incident_polygon<const N: usize, H: Carried>(
 /// Cuts a polygon by the side planes of a face; `extent` is that of the smaller shape. Alternates between two buffers and returns
 /// the one with the result.
 #[inline(always)]
-pub(super) fn clip<'a, const N: usize>(
+fn clip<'a, const N: usize>(
     view: &View,
     face: usize,
     [mut polygon, mut spare]: [&'a mut Polygon<N>; 2],
@@ -210,6 +212,14 @@ pub(super) struct Reference<'a> {
 }
 
 impl Reference<'_> {
+    /// A face of `view`, which is B if `of_b`. `radius` is the one around the incident polyhedron.
+    #[inline(always)]
+    pub fn of_face(view: &View, face: usize, of_b: bool, radius: f32, prediction: f32) -> Self {
+        let Face { normal, offset, .. } = view.faces[face];
+        let feature = Self::feature_of(of_b, face);
+        Self { normal, offset, radii: [view.radius, radius], prediction, to_a: None, feature }
+    }
+
     /// The bits of a face of A or B in features.
     pub fn feature_of(of_b: bool, face: usize) -> u32 {
         u32::from(of_b) << 30 | (face as u32 & 0x3ff) << 20
@@ -254,6 +264,23 @@ impl Reference<'_> {
         let list = candidates.as_slice();
         keep(list, reduce(list, out.normal), out);
         least
+    }
+
+    /// Fills a manifold, whose normal is set, with the part of an incident polygon over the face of an axis. `extent` is that of
+    /// the smaller shape. Returns whether the least height of the corners is that of the axis.
+    #[inline(always)]
+    pub fn fill_clipped<const N: usize>(
+        &self,
+        view: &View,
+        axis: &FaceAxis,
+        polygon: &mut Polygon<N>,
+        extent: f32,
+        out: &mut LocalManifold,
+    ) -> bool {
+        let mut spare = Polygon::new();
+        let polygon = clip(view, axis.face, [polygon, &mut spare], extent);
+        let least = self.fill(polygon, |corner| self.height(corner.point), out);
+        least <= axis.separation + MARGIN * extent
     }
 
     /// Adds the deepest vertex alone, where the shapes overlap beside the face.

@@ -2,7 +2,7 @@
 
 use super::across;
 use super::axis::{self, Axis, EDGES, FACE_A, FACE_B, Pair as _, Sizes};
-use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference, clip};
+use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference};
 use super::gjk;
 use super::sat::{self, EdgeAxis, FaceAxis, Known};
 use super::view::{MatrixPose, View, extents};
@@ -20,18 +20,6 @@ struct Pair<'a> {
     b_in_a: MatrixPose,
     a_in_b: MatrixPose,
     sizes: Sizes,
-}
-
-/// A reference face, and the incident polyhedron.
-struct Clipping<'a> {
-    reference: &'a View<'a>,
-    incident: &'a View<'a>,
-    /// Transforms the incident polyhedron into the frame of the other.
-    frame: &'a MatrixPose,
-    /// The face of the incident polyhedron, if it has faces.
-    face: Option<usize>,
-    /// Whether the reference face is of B.
-    of_b: bool,
 }
 
 /// The contact of two polyhedra; see the module.
@@ -109,7 +97,7 @@ impl axis::Pair for Pair<'_> {
             Axis::FaceB(face) => (face, true),
             Axis::Edges(_) => return,
         };
-        let (incident, frame) = if of_b { (self.a, &self.a_in_b) } else { (self.b, &self.b_in_a) };
+        let (_, incident, frame) = self.ordered(of_b);
         let corner = frame.point(incident.vertices[axis.lowest]);
         self.reference(axis, of_b).push_deepest(corner, axis.separation, out);
     }
@@ -123,55 +111,46 @@ impl<'a> Pair<'a> {
         Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), sizes }
     }
 
+    /// The polyhedron of a reference face, of B if `of_b`, the incident one, and the incident frame in the other.
+    #[inline(always)]
+    fn ordered(&self, of_b: bool) -> (&View<'a>, &View<'a>, &MatrixPose) {
+        if of_b { (self.b, self.a, &self.a_in_b) } else { (self.a, self.b, &self.b_in_a) }
+    }
+
     fn build_face(&self, axis: &FaceAxis, of_b: bool, out: &mut LocalManifold) -> bool {
-        let (reference, incident, frame) =
-            if of_b { (self.b, self.a, &self.a_in_b) } else { (self.a, self.b, &self.b_in_a) };
+        let (reference, incident, frame) = self.ordered(of_b);
         let local = frame.direction_in(reference.faces[axis.face].normal);
-        let clipping = Clipping {
-            reference,
-            incident,
-            frame,
-            face: clip::incident_face(incident, local, axis.lowest),
-            of_b,
-        };
-        if clip::most_corners(reference, axis.face, incident, clipping.face) < FEW_CORNERS {
-            self.clip_face::<FEW_CORNERS>(axis, &clipping, out)
+        let face = clip::incident_face(incident, local, axis.lowest);
+        if clip::most_corners(reference, axis.face, incident, face) < FEW_CORNERS {
+            self.clip_face::<FEW_CORNERS>(axis, of_b, face, out)
         } else {
-            self.clip_face::<MAX_CORNERS>(axis, &clipping, out)
+            self.clip_face::<MAX_CORNERS>(axis, of_b, face, out)
         }
     }
 
+    /// `face` is the incident one, if the incident polyhedron has faces.
     #[inline(never)]
     fn clip_face<const N: usize>(
         &self,
         axis: &FaceAxis,
-        clipping: &Clipping,
+        of_b: bool,
+        face: Option<usize>,
         out: &mut LocalManifold,
     ) -> bool {
-        let &Clipping { reference, incident, frame, face, of_b } = clipping;
-        let normal = reference.faces[axis.face].normal;
-        let (mut polygon, mut spare) = (Polygon::<N>::new(), Polygon::<N>::new());
+        let (view, incident, frame) = self.ordered(of_b);
+        let mut polygon = Polygon::<N>::new();
         clip::incident_polygon(incident, face, |v| (frame.point(v), ()), &mut polygon);
-        let polygon = clip(reference, axis.face, [&mut polygon, &mut spare], self.sizes.smaller);
-        out.normal = if of_b { -self.b_in_a.direction(normal) } else { normal };
         let reference = self.reference(axis, of_b);
-        let least = reference.fill(polygon, |corner| reference.height(corner.point), out);
-        least <= axis.separation + MARGIN * self.sizes.smaller
+        out.normal = if of_b { -self.b_in_a.direction(reference.normal) } else { reference.normal };
+        reference.fill_clipped(view, axis, &mut polygon, self.sizes.smaller, out)
     }
 
     /// The face of an axis.
     #[inline(always)]
     fn reference(&self, axis: &FaceAxis, of_b: bool) -> Reference<'_> {
-        let (reference, incident) = if of_b { (self.b, self.a) } else { (self.a, self.b) };
-        let plane = &reference.faces[axis.face];
-        Reference {
-            normal: plane.normal,
-            offset: plane.offset,
-            radii: [reference.radius, incident.radius],
-            prediction: self.sizes.prediction,
-            to_a: of_b.then_some(&self.b_in_a),
-            feature: Reference::feature_of(of_b, axis.face),
-        }
+        let (view, incident, _) = self.ordered(of_b);
+        let reference = Reference::of_face(view, axis.face, of_b, incident.radius, self.sizes.prediction);
+        Reference { to_a: of_b.then_some(&self.b_in_a), ..reference }
     }
 
     fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {

@@ -4,7 +4,7 @@
 //! often a proof that its face is the best axis, which saves the search for others. Everything is in the polyhedron's frame.
 
 use super::axis::{self, Axis, Pair as _, Sizes};
-use super::clip::{self, Corner, FEW_CORNERS, LEAST_CORNERS, MAX_CORNERS, Polygon, Reference, clip};
+use super::clip::{self, Corner, FEW_CORNERS, LEAST_CORNERS, MAX_CORNERS, Polygon, Reference};
 use super::convex::closest_of_lines;
 use super::gjk::{self, Core};
 use super::sat::{EdgeAxis, FaceAxis, open_edges, remaining};
@@ -345,15 +345,8 @@ impl<'a> Pair<'a> {
     /// A face of the polyhedron as the reference of a contact.
     #[inline(always)]
     fn reference_of(&self, face: usize) -> Reference<'_> {
-        let plane = &self.view.faces[face];
-        Reference {
-            normal: plane.normal,
-            offset: plane.offset,
-            radii: [self.view.radius, 0.0],
-            prediction: self.sizes.prediction,
-            to_a: Some(&self.frame),
-            feature: Reference::feature_of(true, face),
-        }
+        let reference = Reference::of_face(self.view, face, true, 0.0, self.sizes.prediction);
+        Reference { to_a: Some(&self.frame), ..reference }
     }
 
     fn build_plane(&self, plane: &FaceAxis, out: &mut LocalManifold) -> bool {
@@ -422,13 +415,11 @@ impl<'a> Pair<'a> {
     /// The triangle over a face of the polyhedron.
     #[inline(never)]
     fn clip_triangle<const N: usize>(&self, axis: &FaceAxis, out: &mut LocalManifold) -> bool {
-        let (mut polygon, mut spare) = (Polygon::<N>::new(), Polygon::<N>::new());
+        let mut polygon = Polygon::<N>::new();
         (0..3).for_each(|i| polygon.push(i, self.corners[i as usize], ()));
         let reference = self.reference_of(axis.face);
-        let polygon = clip(self.view, axis.face, [&mut polygon, &mut spare], self.sizes.smaller);
         out.normal = -self.frame.direction(reference.normal);
-        let height = |corner: &Corner| reference.height(corner.point);
-        reference.fill(polygon, height, out) <= axis.separation + MARGIN * self.sizes.smaller
+        reference.fill_clipped(self.view, axis, &mut polygon, self.sizes.smaller, out)
     }
 
     fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {
