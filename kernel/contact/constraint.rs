@@ -19,7 +19,7 @@ impl Link<'_> {
     /// its id.
     pub(crate) fn connect(&mut self, kind: ConstraintKind, bodies: [u32; 2]) -> u32 {
         debug_assert!(kind != ConstraintKind::Contact, "contacts are created from colliders");
-        bodies.into_iter().for_each(|body| self.wake_body(body));
+        self.wake_bodies(bodies);
         let id = self.bodies.constraints_mut(kind).add(bodies);
         self.attach(ConstraintId { kind, id });
         id
@@ -30,7 +30,7 @@ impl Link<'_> {
         let constraint = ConstraintId { kind, id };
         let tie = self.tie(constraint);
         if tie.is_solved {
-            tie.bodies.into_iter().for_each(|body| self.wake_body(body));
+            self.wake_bodies(tie.bodies);
         }
         self.detach(constraint);
         self.bodies.constraints_mut(kind).remove(id);

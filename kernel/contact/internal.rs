@@ -321,30 +321,25 @@ impl ContactTable {
     fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, collider: u32, worker: &mut WorkerBuffers<W>) {
         let mut all = core::mem::take(&mut worker.slides);
         all.clear();
-        for id in self.of_collider(collider, input.colliders).filter(|id| self.slides(*id, collider)) {
-            let contact = self.get(id);
-            let side = usize::from(contact.colliders[1] == collider);
-            for index in 0..=u32::from(contact.extra_count) {
-                let Some(m) = self.manifold(contact, index).filter(|m| m.count > 0) else { continue };
-                let is_round = m.radii != [0.0; 2];
-                let line = match m.points() {
-                    [p, q] if is_round => unit(q.anchor - p.anchor),
-                    _ => Vector::ZERO,
-                };
-                all.push(Sliding {
-                    contact: id,
-                    index,
-                    order: all.len() as u32,
-                    side,
-                    normal: if side == 0 { -m.normal } else { m.normal },
-                    is_round,
-                    is_face: m.count > 2,
-                    line,
-                    is_marked: m.is_internal,
-                    group: 0,
-                    height: 0.0,
-                });
-            }
+        for (contact, index, side, m) in self.sliding_manifolds(input, collider).filter(|m| m.3.count > 0) {
+            let is_round = m.radii != [0.0; 2];
+            let line = match m.points() {
+                [p, q] if is_round => unit(q.anchor - p.anchor),
+                _ => Vector::ZERO,
+            };
+            all.push(Sliding {
+                contact,
+                index,
+                order: all.len() as u32,
+                side,
+                normal: if side == 0 { -m.normal } else { m.normal },
+                is_round,
+                is_face: m.count > 2,
+                line,
+                is_marked: m.is_internal,
+                group: 0,
+                height: 0.0,
+            });
         }
         let mut groups = core::mem::take(&mut worker.parallel);
         self.group_parallel(input, &mut all, &mut groups);
@@ -400,13 +395,6 @@ impl ContactTable {
             end += of_one.len();
             groups[of_one[0].group as usize].range = start..end;
         }
-    }
-
-    /// Whether a collider slides over the other one of a contact in this update.
-    pub(super) fn slides(&self, id: u32, collider: u32) -> bool {
-        let contact = self.get(id);
-        let sides = [ContactFlags::SLIDES_A, ContactFlags::SLIDES_B];
-        contact.flags.has(sides[usize::from(contact.colliders[1] == collider)]) && self.is_active(id)
     }
 
     fn see<'a, S>(&'a self, input: &NarrowPhaseInput<S>, sliding: &Sliding) -> Seen<'a> {

@@ -93,7 +93,7 @@ impl Link<'_> {
     /// Has the next narrow phase update those contacts of a collider that push nothing, although both bodies are at rest:
     /// after the collider was moved, or added. Others wait until a body wakes.
     pub fn visit_of_collider(&mut self, collider: u32) {
-        let ids: Vec<u32> = self.contacts.of_collider(collider, self.colliders).collect();
+        let ids = self.contacts_of_collider(collider);
         for id in ids {
             self.visit(id);
         }
@@ -111,9 +111,7 @@ impl Link<'_> {
     pub fn destroy(&mut self, id: u32) {
         let contact = self.contacts.get(id);
         if contact.is_solved() {
-            for body in contact.bodies {
-                self.wake_body(body);
-            }
+            self.wake_bodies(contact.bodies);
         }
         self.detach(ConstraintId::contact(id));
         self.contacts.remove(id, self.colliders);
@@ -153,18 +151,13 @@ impl Link<'_> {
         self.wake_body(body);
         let constraints = self.constraints_of_body(body);
         for constraint in &constraints {
-            for other in self.tie(*constraint).bodies {
-                self.wake_body(other);
-            }
+            self.wake_bodies(self.tie(*constraint).bodies);
             self.detach(*constraint);
         }
         self.leave_island(body);
         self.bodies.set_kind(body, kind);
-        let mut collider = self.bodies[body].first_collider;
-        while collider != NONE {
-            self.colliders.update_reach(collider, self.bodies);
-            collider = self.colliders.next_of_body(collider);
-        }
+        let colliders: Vec<u32> = self.colliders.of_body(body, self.bodies).collect();
+        colliders.into_iter().for_each(|collider| self.colliders.update_reach(collider, self.bodies));
         self.enter(body);
         for constraint in constraints {
             if let ConstraintId { kind: ConstraintKind::Contact, id } = constraint {
@@ -178,7 +171,7 @@ impl Link<'_> {
     /// Re-reads what its colliders say of a contact after one of them was redefined in place. Its manifold is
     /// computed anew; its colour and island change only if it responds now and did not before, or the reverse.
     pub fn reflag_of_collider(&mut self, collider: u32) {
-        let ids: Vec<u32> = self.contacts.of_collider(collider, self.colliders).collect();
+        let ids = self.contacts_of_collider(collider);
         for id in ids {
             let flags = self.fresh_flags(id);
             let contact = self.contacts.get_mut(id);
@@ -215,6 +208,11 @@ impl Link<'_> {
                 }
             }
         }
+    }
+
+    /// Wakes both bodies of a constraint.
+    pub(super) fn wake_bodies(&mut self, bodies: [u32; 2]) {
+        bodies.into_iter().for_each(|body| self.wake_body(body));
     }
 
     /// The island of a body, if it is in one.
@@ -254,7 +252,7 @@ impl Link<'_> {
         for constraint in self.constraints_of_body(body) {
             let tie = self.tie(constraint);
             if tie.is_solved {
-                tie.bodies.into_iter().for_each(|other| self.wake_body(other));
+                self.wake_bodies(tie.bodies);
             }
         }
     }
@@ -331,6 +329,11 @@ impl Link<'_> {
         }
     }
 
+    /// The contacts of a collider.
+    fn contacts_of_collider(&self, collider: u32) -> Vec<u32> {
+        self.contacts.of_collider(collider, self.colliders).collect()
+    }
+
     /// The contacts of a body's colliders, ascending.
     pub(super) fn contacts_of_body(&self, body: u32) -> Vec<u32> {
         let mut ids = Vec::new();
@@ -358,7 +361,7 @@ impl Link<'_> {
 
     /// Mixes the surfaces of a collider's contacts anew.
     fn mix_of_collider(&mut self, collider: u32) {
-        let ids: Vec<u32> = self.contacts.of_collider(collider, self.colliders).collect();
+        let ids = self.contacts_of_collider(collider);
         for id in ids {
             self.contacts.get_mut(id).surface = self.mixed(self.contacts.get(id).colliders);
         }

@@ -8,7 +8,7 @@
 //! Points are lost in parallel, and handed on by one thread in the order of contacts.
 
 use super::input::NarrowPhaseInput;
-use super::record::{Bearing, Contact, Lost, Manifold, ManifoldPoint};
+use super::record::{Bearing, Contact, ContactFlags, Lost, Manifold, ManifoldPoint};
 use super::table::ContactTable;
 use crate::math::{DIM, Vector};
 use crate::tuning::manifold::SAME_NORMAL;
@@ -155,24 +155,43 @@ impl ContactTable {
     /// Lists the points of a sliding collider that bear load.
     fn list_bearings<S>(&self, input: &NarrowPhaseInput<S>, collider: u32, points: &mut Vec<Bearing>) {
         points.clear();
-        for id in self.of_collider(collider, input.colliders).filter(|id| self.slides(*id, collider)) {
-            let contact = self.get(id);
-            let side = usize::from(contact.colliders[1] == collider);
-            for index in 0..=u32::from(contact.extra_count) {
-                let Some(m) = self.manifold(contact, index).filter(|m| !m.is_internal) else { continue };
-                for (point, p) in
-                    m.points().iter().enumerate().filter(|(_, p)| p.separation < input.tolerance)
-                {
-                    points.push(Bearing {
-                        contact: id,
-                        index,
-                        point: point as u32,
-                        order: points.len() as u32,
-                        place: place(side, p, contact.frozen.offset),
-                        normal: toward(side, m),
-                    });
-                }
+        for (id, index, side, m) in self.sliding_manifolds(input, collider).filter(|m| !m.3.is_internal) {
+            let offset = self.get(id).frozen.offset;
+            for (p, point) in m.points().iter().zip(0..).filter(|(p, _)| p.separation < input.tolerance) {
+                let (order, normal) = (points.len() as u32, toward(side, m));
+                points.push(Bearing {
+                    contact: id,
+                    index,
+                    point,
+                    order,
+                    place: place(side, p, offset),
+                    normal,
+                });
             }
         }
+    }
+
+    /// Whether a collider slides over the other one of a contact in this update.
+    fn slides(&self, id: u32, collider: u32) -> bool {
+        let contact = self.get(id);
+        let sides = [ContactFlags::SLIDES_A, ContactFlags::SLIDES_B];
+        contact.flags.has(sides[usize::from(contact.colliders[1] == collider)]) && self.is_active(id)
+    }
+
+    /// The manifolds of the contacts in which a collider slides: the contact, the number of the manifold in it, and the side of
+    /// the collider.
+    pub(super) fn sliding_manifolds<S>(
+        &self,
+        input: &NarrowPhaseInput<S>,
+        collider: u32,
+    ) -> impl Iterator<Item = (u32, u32, usize, &Manifold)> {
+        let contacts =
+            self.of_collider(collider, input.colliders).filter(move |id| self.slides(*id, collider));
+        contacts.flat_map(move |id| {
+            let contact = self.get(id);
+            let side = usize::from(contact.colliders[1] == collider);
+            let manifolds = core::iter::once(&contact.manifold).chain(self.extra_of(contact));
+            manifolds.zip(0..).map(move |(manifold, index)| (id, index, side, manifold))
+        })
     }
 }
