@@ -1,14 +1,18 @@
 //! How far, and at what, two shapes are looked at.
 
+use super::FeatureCache;
 use crate::math::{Pose, Vector};
+use core::cell::Cell;
 
-/// Where two convex shapes are, and how far apart their points may be.
+/// What the function of a pair of convex shapes is given besides the shapes.
 #[derive(Clone, Copy)]
 pub(super) struct PairInput<'a> {
     /// The pose of B in A's frame.
     pub pose: &'a Pose,
     /// Points up to this distance are found, in metres.
     pub prediction: f32,
+    /// The cache of the pair, from the last step and for the next one.
+    pub cache: &'a Cell<FeatureCache>,
 }
 
 /// How far two shapes are looked at.

@@ -3,6 +3,7 @@
 use super::{FeatureCache, LocalManifold, PairInput, dim};
 use crate::math::{Pose, Vector};
 use crate::shape::Shape;
+use core::cell::Cell;
 
 /// Centres farther apart than this, in metres, have no contact: their squares would overflow.
 pub(super) const FARTHEST: f32 = 1.0e15;
@@ -23,20 +24,25 @@ pub fn collide(
     cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
+    let cache = Cell::from_mut(cache);
+    collide_pair(a, b, PairInput { pose: pose_b_in_a, prediction, cache }, out);
+}
+
+/// See [`collide`].
+pub(super) fn collide_pair(a: &Shape, b: &Shape, input: PairInput, out: &mut LocalManifold) {
     (out.count, out.gap) = (0, 0.0);
-    if !is_near(pose_b_in_a) {
+    if !is_near(input.pose) {
         return;
     }
-    let input = PairInput { pose: pose_b_in_a, prediction };
     if let (Shape::Cuboid(a), Shape::Cuboid(b)) = (a, b) {
-        dim::collide_cuboids(a, b, input, cache, out);
+        dim::collide_cuboids(a, b, input, out);
     } else if dim::rank(a) > dim::rank(b) {
-        let inverse = pose_b_in_a.inverse();
-        dim::dispatch(b, a, PairInput { pose: &inverse, prediction }, cache, out);
+        let inverse = input.pose.inverse();
+        dim::dispatch(b, a, PairInput { pose: &inverse, ..input }, out);
         *out = out.flipped(&inverse);
         out.points.iter_mut().for_each(|p| p.feature = dim::swapped_feature(p.feature));
     } else {
-        dim::dispatch(a, b, input, cache, out);
+        dim::dispatch(a, b, input, out);
     }
     if !matches!((a, b), (Shape::Curved(_), _) | (_, Shape::Curved(_))) {
         out.radii = [a.radius(), b.radius()];

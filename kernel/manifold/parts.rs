@@ -4,10 +4,11 @@
 //! replaced by the facet's own: there the neighbour is nearer (convex edges keep the normals between both facets).
 
 use super::dim::{Convex, borders, face_normal};
+use super::pairs::collide_pair;
 use super::screen::{Gaps, LANES, Screen};
-use super::{FeatureCache, LocalManifold, Look, PairInput, collide};
+use super::{FeatureCache, LocalManifold, Look, PairInput};
 use crate::distance::{Approach, advance};
-use crate::math::{F32x4, Lane, MAX_POINTS, Pose, Vector, max, min};
+use crate::math::{DIM, F32x4, Lane, MAX_POINTS, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Shape, Surface};
 use crate::tuning::manifold::{FACING, MARGIN, POKE, SAME, SAME_NORMAL, SIDEWAYS, TURNED};
 use crate::tuning::sweeps::{AHEAD, MET, ROUNDS};
@@ -111,8 +112,10 @@ impl<'a> Pass<'a> {
         Self { composite, other, pose, look, other_group, name, alone, on_composite, is_b, cache, skin }
     }
 
-    fn input(&self, prediction: f32) -> PairInput<'a> {
-        PairInput { pose: self.pose, prediction }
+    /// Fills `local` with the contact of a facet's face alone.
+    fn collide_face(&self, corners: [Vector; DIM], face: Vector, prediction: f32, local: &mut LocalManifold) {
+        let cache = &Cell::new(FeatureCache::NONE);
+        self.other.collide_face(corners, face, PairInput { pose: self.pose, prediction, cache }, local);
     }
 
     /// Adds the manifolds of all parts to `buffers.found`, in the composite's frame. Returns a lower bound of the distance to
@@ -326,21 +329,22 @@ impl<'a> Pass<'a> {
 
     /// Fills `local` with the contact of one part as if there were no other.
     fn collide_alone(&self, part: u32, prediction: f32, local: &mut LocalManifold) {
+        let none = Cell::new(FeatureCache::NONE);
         match (self.composite.surface(), self.composite.solids().get(part as usize)) {
             (Some(surface), _) => {
-                self.other.collide_facet(surface.corners(part), self.input(prediction), local);
+                let input = PairInput { pose: self.pose, prediction, cache: &none };
+                self.other.collide_facet(surface.corners(part), input, local);
             }
             (None, Some((at, solid))) => {
                 let pose = at.inverse().then(self.pose);
-                let mut cache = self.cache.map_or(FeatureCache::NONE, Cell::get);
+                let input = PairInput { pose: &pose, prediction, cache: self.cache.unwrap_or(&none) };
                 if self.is_b {
                     let inverse = pose.inverse();
-                    collide(self.other.shape, solid, &inverse, prediction, &mut cache, local);
+                    collide_pair(self.other.shape, solid, PairInput { pose: &inverse, ..input }, local);
                     *local = local.flipped(&inverse);
                 } else {
-                    collide(solid, self.other.shape, &pose, prediction, &mut cache, local);
+                    collide_pair(solid, self.other.shape, input, local);
                 }
-                self.cache.inspect(|last| last.set(cache));
                 local.normal = at.rotation.rotate(local.normal);
                 local.points[..local.count].iter_mut().for_each(|p| p.point = at.transform(p.point));
             }
@@ -453,7 +457,7 @@ impl<'a> Pass<'a> {
         if own.dot(skin.outward) > SIDEWAYS {
             (local.count, local.gap) = (0, gap);
         } else {
-            self.other.collide_face(corners, own, self.input(prediction), local);
+            self.collide_face(corners, own, prediction, local);
         }
     }
 
@@ -493,7 +497,7 @@ impl<'a> Pass<'a> {
         }
         let (found, nearest) = (local.normal, local.lower_bound());
         let own = self.toward_other(corners[0], face, found);
-        self.other.collide_face(corners, own, self.input(prediction), local);
+        self.collide_face(corners, own, prediction, local);
         let is_doubtful = own.dot(found) < TURNED || local.lower_bound() < nearest - SAME * prediction;
         is_doubtful.then_some(Doubt { normal: found, nearest, share: 0.0, is_needless: false })
     }

@@ -1,11 +1,11 @@
 //! Two cuboids, the most frequent pair. The signs of the offset give the edges to test: four separations are computed, where
 //! polygons need sixteen vertices.
 
-use super::super::{FeatureCache, LocalManifold, PairInput};
+use super::super::{LocalManifold, PairInput};
 use super::clip::{Facing, Side};
 use super::points::Limits;
 use super::polygonal::{Edge, NORMALS, corners};
-use super::polygons::{Best, choose, known_edge, preference, remember};
+use super::polygons::{Best, cache_of, choose, known_edge, preference};
 use crate::math::Vector;
 use crate::shape::Cuboid;
 
@@ -13,8 +13,7 @@ use crate::shape::Cuboid;
 pub(in crate::manifold) fn collide(
     a: &Cuboid,
     b: &Cuboid,
-    PairInput { pose, prediction }: PairInput,
-    cache: &mut FeatureCache,
+    PairInput { pose, prediction, cache }: PairInput,
     out: &mut LocalManifold,
 ) {
     // In A's frame B's axes are the columns of R, in B's frame A's axes are its rows; |R| is symmetric
@@ -25,7 +24,7 @@ pub(in crate::manifold) fn collide(
     let (over_a, over_b) = (in_a.abs() - a.half - reach(b.half), in_b.abs() - b.half - reach(a.half));
 
     let (on_a, on_b) = (best_edge(in_a, over_a), best_edge(in_b, over_b));
-    let known = known_edge(cache).and_then(|(side, edge)| {
+    let known = known_edge(cache.get()).and_then(|(side, edge)| {
         let (offset, half, other) = if side == Side::A { (in_a, a, b) } else { (in_b, b, a) };
         let normal = NORMALS.get(edge)?;
         let extent = half.half + reach(other.half);
@@ -33,7 +32,7 @@ pub(in crate::manifold) fn collide(
         Some((side, Best { edge, support: 0, separation }))
     });
     let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
-    remember(cache, side, best);
+    cache.set(cache_of(side, best));
     if best.separation > prediction {
         out.gap = best.separation;
         return;

@@ -4,7 +4,8 @@ use super::clip::{Facing, Side};
 use super::points::Limits;
 use super::polygonal::{Buffer, Edge, view};
 use crate::manifold::border::{Border, is_beside};
-use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, PairInput, collide};
+use crate::manifold::pairs::collide_pair;
+use crate::manifold::{LocalManifold, LocalPoint, PairInput};
 use crate::math::{F32x4, Vector};
 use crate::shape::{Curved, Segment, Shape, direction};
 use crate::tuning::contact::DEEP;
@@ -46,10 +47,10 @@ impl<'a> Convex<'a> {
         Self { shape }
     }
 
-    /// Fills `out` with the contact of a segment as if there were no other; see [`collide`].
+    /// Fills `out` with the contact of a segment as if there were no other; see [`collide_pair`].
     pub fn collide_facet(&self, [a, b]: [Vector; 2], input: PairInput, out: &mut LocalManifold) {
         let facet = Shape::Segment(Segment { a, b });
-        collide(&facet, self.shape, input.pose, input.prediction, &mut FeatureCache::NONE.clone(), out);
+        collide_pair(&facet, self.shape, input, out);
     }
 
     /// Fills `out` with the contact of a segment's side alone, where the shape is over it. `normal` is the segment's, towards
@@ -77,7 +78,7 @@ fn collide_side(
     if let Shape::Curved(other) = other {
         return collide_curved(corners, normal, other, input, out);
     }
-    let PairInput { pose, prediction } = input;
+    let PairInput { pose, prediction, .. } = input;
     let mut room = Buffer::EMPTY;
     let Some(polygon) = view(other, &mut room) else { return };
     let facing = pose.rotation.inverse_rotate(normal);
@@ -148,7 +149,7 @@ fn collide_curved(
     input: PairInput,
     out: &mut LocalManifold,
 ) {
-    let PairInput { pose, prediction } = input;
+    let PairInput { pose, prediction, .. } = input;
     let facing = pose.rotation.inverse_rotate(-normal);
     let lowest = pose.transform(other.support(facing));
     let separation = (lowest - corners[0]).dot(normal);
@@ -163,6 +164,6 @@ fn collide_curved(
         // What is deep under a side need not be over it.
         let [a, b] = corners;
         let segment = Shape::Segment(Segment { a, b });
-        collide(&segment, &Shape::Curved(*other), pose, prediction, &mut FeatureCache::NONE.clone(), out);
+        collide_pair(&segment, &Shape::Curved(*other), input, out);
     }
 }

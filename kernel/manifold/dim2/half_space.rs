@@ -10,7 +10,7 @@ use crate::shape::HalfSpace;
 pub(super) fn collide(
     plane: &HalfSpace,
     other: &Polygonal,
-    PairInput { pose, prediction }: PairInput,
+    PairInput { pose, prediction, .. }: PairInput,
     out: &mut LocalManifold,
 ) {
     let normal = plane.normal;

@@ -21,7 +21,7 @@ mod tests_curved;
 #[cfg(test)]
 pub(super) mod tests_pairs;
 
-use super::{FeatureCache, LocalManifold, PairInput};
+use super::{LocalManifold, PairInput};
 use crate::math::{Angular, Pose, Rot};
 use crate::shape::Shape;
 pub(super) use cuboids::collide as collide_cuboids;
@@ -49,13 +49,7 @@ pub(super) fn swapped_feature(feature: u32) -> u32 {
 }
 
 /// The function of each pair, all by name: a new shape does not compile until its pairs are here.
-pub(super) fn dispatch(
-    a: &Shape,
-    b: &Shape,
-    input: PairInput,
-    cache: &mut FeatureCache,
-    out: &mut LocalManifold,
-) {
+pub(super) fn dispatch(a: &Shape, b: &Shape, input: PairInput, out: &mut LocalManifold) {
     use Shape::{Ball, Capsule, Composite, Cuboid, Curved, Foreign, HalfSpace, Hull, Segment, Triangle};
     let (mut room_a, mut room_b) = (Buffer::EMPTY, Buffer::EMPTY);
     match (a, b) {
@@ -70,7 +64,7 @@ pub(super) fn dispatch(
             Ball(_) | Capsule(_) | Cuboid(_) | Hull(_) | Triangle(_) | Segment(_),
         ) => {
             if let (Some(a), Some(b)) = (polygonal::view(a, &mut room_a), polygonal::view(b, &mut room_b)) {
-                collide_polygonal(&a, &b, input, cache, out);
+                collide_polygonal(&a, &b, input, out);
             }
         }
         (Curved(a), Curved(b)) => curved::collide_round(a, b, input, out),
@@ -84,13 +78,7 @@ pub(super) fn dispatch(
     }
 }
 
-fn collide_polygonal(
-    a: &Polygonal,
-    b: &Polygonal,
-    input: PairInput,
-    cache: &mut FeatureCache,
-    out: &mut LocalManifold,
-) {
+fn collide_polygonal(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
     match (a.len(), b.len()) {
         (1, 1) => points::collide_points(a, b, input, out),
         (_, 1) => points::collide_with_point(a, b, input, out),
@@ -100,6 +88,6 @@ fn collide_polygonal(
             *out = out.flipped(&inverse);
         }
         (2, 2) => segments::collide(a, b, input, out),
-        _ => polygons::collide(a, b, input, cache, out),
+        _ => polygons::collide(a, b, input, out),
     }
 }

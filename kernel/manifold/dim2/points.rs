@@ -37,7 +37,7 @@ pub(super) fn push_between(
 pub(super) fn collide_points(
     a: &Polygonal,
     b: &Polygonal,
-    PairInput { pose, prediction }: PairInput,
+    PairInput { pose, prediction, .. }: PairInput,
     out: &mut LocalManifold,
 ) {
     let (p, q) = (a.vertices[0], pose.transform(b.vertices[0]));
@@ -49,7 +49,7 @@ pub(super) fn collide_points(
 pub(super) fn collide_with_point(
     a: &Polygonal,
     b: &Polygonal,
-    PairInput { pose, prediction }: PairInput,
+    PairInput { pose, prediction, .. }: PairInput,
     out: &mut LocalManifold,
 ) {
     let center = pose.transform(b.vertices[0]);

@@ -29,27 +29,26 @@ pub(super) fn preference(prediction: f32, pose: &Pose) -> f32 {
 pub(super) fn collide(
     a: &Polygonal,
     b: &Polygonal,
-    PairInput { pose, prediction }: PairInput,
-    cache: &mut FeatureCache,
+    PairInput { pose, prediction, cache }: PairInput,
     out: &mut LocalManifold,
 ) {
     let reach = prediction + a.radius + b.radius;
     let inverse = pose.inverse();
-    let known = cached(a, b, pose, &inverse, cache);
+    let known = cached(a, b, pose, &inverse, cache.get());
     if let Some((_, best)) = known.filter(|(_, best)| best.separation > reach) {
-        cache.separation = best.separation;
+        cache.set(FeatureCache { separation: best.separation, ..cache.get() });
         out.gap = best.separation - a.radius - b.radius;
         return;
     }
     let on_a = most_separating(a, b, &inverse, reach);
     if on_a.separation > reach {
-        remember(cache, Side::A, on_a);
+        cache.set(cache_of(Side::A, on_a));
         out.gap = on_a.separation - a.radius - b.radius;
         return;
     }
     let on_b = most_separating(b, a, pose, reach);
     let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
-    remember(cache, side, best);
+    cache.set(cache_of(side, best));
     if best.separation > reach {
         out.gap = best.separation - a.radius - b.radius;
         return;
@@ -141,7 +140,7 @@ fn cached(
     b: &Polygonal,
     pose: &Pose,
     inverse: &Pose,
-    cache: &FeatureCache,
+    cache: FeatureCache,
 ) -> Option<(Side, Best)> {
     let (side, edge) = known_edge(cache)?;
     let (own, other, pose) = if side == Side::A { (a, b, inverse) } else { (b, a, pose) };
@@ -153,7 +152,7 @@ fn cached(
 
 /// The side and edge in a cache.
 #[inline]
-pub(super) fn known_edge(cache: &FeatureCache) -> Option<(Side, usize)> {
+pub(super) fn known_edge(cache: FeatureCache) -> Option<(Side, usize)> {
     match cache.kind {
         EDGE_OF_A => Some((Side::A, usize::from(cache.a))),
         EDGE_OF_B => Some((Side::B, usize::from(cache.b))),
@@ -163,13 +162,10 @@ pub(super) fn known_edge(cache: &FeatureCache) -> Option<(Side, usize)> {
 
 /// The cache of a reference edge; empty if its index does not fit.
 #[inline]
-pub(super) fn remember(cache: &mut FeatureCache, side: Side, best: Best) {
-    *cache = FeatureCache::NONE;
-    if let Ok(edge) = u8::try_from(best.edge) {
-        cache.separation = best.separation;
-        match side {
-            Side::A => (cache.kind, cache.a) = (EDGE_OF_A, edge),
-            Side::B => (cache.kind, cache.b) = (EDGE_OF_B, edge),
-        }
+pub(super) fn cache_of(side: Side, Best { edge, separation, .. }: Best) -> FeatureCache {
+    match (side, u8::try_from(edge)) {
+        (Side::A, Ok(a)) => FeatureCache { kind: EDGE_OF_A, a, b: 0, separation },
+        (Side::B, Ok(b)) => FeatureCache { kind: EDGE_OF_B, a: 0, b, separation },
+        (_, Err(_)) => FeatureCache::NONE,
     }
 }

@@ -25,7 +25,7 @@ struct Candidate {
 
 /// Fills `out` for two segments. Parallel segments side by side get two points.
 pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
-    let PairInput { pose, prediction } = input;
+    let PairInput { pose, prediction, .. } = input;
     let p = [a.vertices[0], a.vertices[1]];
     let q = [pose.transform(b.vertices[0]), pose.transform(b.vertices[1])];
     let axes = [a.normals[0].perp(), pose.rotation.rotate(b.normals[0].perp())];

@@ -8,6 +8,7 @@ use super::sat::{EdgeAxis, FaceAxis};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::max;
 use crate::tuning::manifold::{KEPT, MARGIN};
+use core::cell::Cell;
 
 /// [`FeatureCache::kind`] of a face of A.
 pub(super) const FACE_A: u8 = 1;
@@ -78,7 +79,7 @@ pub(super) trait Pair {
 
     /// The axis of a cache as it is now. Pairs that keep no cache have none.
     #[inline(always)]
-    fn cached(&self, _: &FeatureCache) -> Option<Axis> {
+    fn cached(&self, _: FeatureCache) -> Option<Axis> {
         None
     }
 
@@ -106,12 +107,13 @@ pub(super) trait Pair {
 
     /// Fills the manifold from the cached axis if it still decides the contact, else from the best of all.
     #[inline(always)]
-    fn collide(&self, cache: &mut FeatureCache, out: &mut LocalManifold) {
-        if self.cached(cache).is_some_and(|axis| self.try_known(&axis, cache.separation, out)) {
+    fn collide(&self, cache: &Cell<FeatureCache>, out: &mut LocalManifold) {
+        let known = cache.get();
+        if self.cached(known).is_some_and(|axis| self.try_known(&axis, known.separation, out)) {
             return;
         }
         let axis = self.search();
-        *cache = axis.cache();
+        cache.set(axis.cache());
         self.decide(&axis, out);
     }
 

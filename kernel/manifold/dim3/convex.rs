@@ -23,18 +23,12 @@ struct Pair<'a> {
 }
 
 /// The contact of two polyhedra; see the module.
-pub(super) fn collide(
-    a: &View,
-    b: &View,
-    input: PairInput,
-    cache: &mut FeatureCache,
-    out: &mut LocalManifold,
-) {
+pub(super) fn collide(a: &View, b: &View, input: PairInput, out: &mut LocalManifold) {
     let pair = Pair::new(a, b, input);
     if a.faces.is_empty() && b.faces.is_empty() {
         return pair.build_faceless(out);
     }
-    pair.collide(cache, out);
+    pair.collide(input.cache, out);
 }
 
 /// One point between the closest features of two separated polyhedra, where the axis understates the distance. Keeps present
@@ -48,7 +42,7 @@ impl axis::Pair for Pair<'_> {
         &self.sizes
     }
 
-    fn cached(&self, cache: &FeatureCache) -> Option<Axis> {
+    fn cached(&self, cache: FeatureCache) -> Option<Axis> {
         let (i, j) = (cache.a as usize, cache.b as usize);
         match cache.kind {
             FACE_A if i < self.a.faces.len() => {

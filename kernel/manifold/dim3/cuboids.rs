@@ -32,7 +32,6 @@ pub(in crate::manifold) fn collide(
     &Cuboid { half: half_a }: &Cuboid,
     &Cuboid { half: half_b }: &Cuboid,
     input: PairInput,
-    cache: &mut FeatureCache,
     out: &mut LocalManifold,
 ) {
     let frame = MatrixPose::new(input.pose);
@@ -40,7 +39,7 @@ pub(in crate::manifold) fn collide(
     let (larger, smaller) = (max(size_a, size_b), min(size_a, size_b));
     let offset = [frame.position, frame.direction_in(frame.position)];
     let sizes = Sizes { prediction: input.prediction, radius: 0.0, smaller, larger };
-    Pair { half_a, half_b, frame, offset, input, sizes }.collide(cache, out);
+    Pair { half_a, half_b, frame, offset, input, sizes }.collide(input.cache, out);
 }
 
 /// The face with the largest separation, of those along each axis.
@@ -59,7 +58,7 @@ impl axis::Pair for Pair<'_> {
     }
 
     #[inline(always)]
-    fn cached(&self, cache: &FeatureCache) -> Option<Axis> {
+    fn cached(&self, cache: FeatureCache) -> Option<Axis> {
         let (i, j) = (cache.a as usize, cache.b as usize);
         if i > 2 || j > 2 {
             return None;

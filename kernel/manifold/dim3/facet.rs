@@ -4,8 +4,8 @@ use super::reduce::{Candidates, MAX_CANDIDATES, keep, reduce_faces};
 use super::view::{Facing, Small, View, with_view};
 use super::{curved, triangle};
 use crate::manifold::border::{Border, is_beside};
-use crate::manifold::pairs::{collide, drop_unusable, is_near};
-use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, PairInput};
+use crate::manifold::pairs::{collide_pair, drop_unusable, is_near};
+use crate::manifold::{LocalManifold, LocalPoint, PairInput};
 use crate::math::{F32x4, Vector, max};
 use crate::shape::{Shape, Triangle};
 
@@ -52,7 +52,7 @@ impl<'a> Convex<'a> {
         Self { shape, core: None }
     }
 
-    /// Fills `out` with the contact of a triangle as if there were no other; see [`collide`].
+    /// Fills `out` with the contact of a triangle as if there were no other; see [`collide_pair`].
     pub fn collide_facet(&self, corners: [Vector; 3], input: PairInput, out: &mut LocalManifold) {
         if let Some(core) = self.core
             && is_near(input.pose)
@@ -63,7 +63,7 @@ impl<'a> Convex<'a> {
         }
         let [a, b, c] = corners;
         let facet = Shape::Triangle(Triangle { a, b, c });
-        collide(&facet, self.shape, input.pose, input.prediction, &mut FeatureCache::NONE.clone(), out);
+        collide_pair(&facet, self.shape, input, out);
     }
 
     /// Fills `out` with the contact of a triangle's face alone, where the shape is over it. `normal` is the face's, towards
@@ -83,7 +83,7 @@ impl<'a> Convex<'a> {
             let small = Small::triangle(corners);
             return curved::collide_face(&small.view(), normal, other, input, out);
         }
-        let PairInput { pose, prediction } = input;
+        let PairInput { pose, prediction, .. } = input;
         let Some(lowest) = self.shape.support(pose.rotation.inverse_rotate(-normal)) else { return };
         let lowest = pose.transform(lowest);
         let separation = (lowest - corners[0]).dot(normal);

@@ -26,7 +26,7 @@ fn vertices(
     normal: Vector,
     points: impl IntoIterator<Item = Vector>,
     radius: f32,
-    PairInput { pose, prediction }: PairInput,
+    PairInput { pose, prediction, .. }: PairInput,
     out: &mut LocalManifold,
 ) {
     // Heights are computed in the frame of B: one product per vertex, and only near vertices are transformed.

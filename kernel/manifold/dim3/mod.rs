@@ -28,7 +28,7 @@ mod tests_triangle;
 mod triangle;
 mod view;
 
-use super::{FeatureCache, LocalManifold, PairInput};
+use super::{LocalManifold, PairInput};
 use crate::shape::{Capsule, Segment, Shape};
 pub(super) use cuboids::collide as collide_cuboids;
 pub use curved::lead_rims;
@@ -53,16 +53,10 @@ pub(super) fn swapped_feature(feature: u32) -> u32 {
 }
 
 /// The function of each pair, all by name: a new shape does not compile until its pairs are here.
-pub(super) fn dispatch(
-    a: &Shape,
-    b: &Shape,
-    input: PairInput,
-    cache: &mut FeatureCache,
-    out: &mut LocalManifold,
-) {
+pub(super) fn dispatch(a: &Shape, b: &Shape, input: PairInput, out: &mut LocalManifold) {
     use Shape::{Ball, Capsule, Composite, Cuboid, Curved, Foreign, HalfSpace, Hull, Segment, Triangle};
     match (a, b) {
-        (HalfSpace(a), Curved(b)) => curved::half_space(a.normal, b, input, cache, out),
+        (HalfSpace(a), Curved(b)) => curved::half_space(a.normal, b, input, out),
         (HalfSpace(a), b) => half_space::collide(a.normal, b, input, out),
         (Ball(a), Ball(b)) => round::balls(a, b, input, out),
         (Cuboid(a), Ball(b)) => round::cuboid_ball(a, b, input, out),
@@ -74,13 +68,13 @@ pub(super) fn dispatch(
         (Capsule(a), Segment(b)) => round::capsules(a, &capsule(b), input, out),
         (Segment(a), Capsule(b)) => round::capsules(&capsule(a), b, input, out),
         (Segment(a), Segment(b)) => round::capsules(&capsule(a), &capsule(b), input, out),
-        (Curved(a), Curved(b)) => curved::frusta(a, b, input, cache, out),
+        (Curved(a), Curved(b)) => curved::frusta(a, b, input, out),
         (Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_), Curved(b)) => {
-            curved::with_polyhedron(a, b, input, cache, out);
+            curved::with_polyhedron(a, b, input, out);
         }
         (Hull(_), Ball(_))
         | (Cuboid(_) | Hull(_) | Triangle(_), Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_)) => {
-            polyhedra(a, b, input, cache, out);
+            polyhedra(a, b, input, out);
         }
         // Composites are collided part by part, and foreign shapes by their `ManifoldSource`.
         (_, Composite(_) | Foreign(_)) => {}
@@ -104,11 +98,11 @@ pub(super) fn dispatch(
 
 /// Two shapes with polyhedral cores. Not inlined, since its stack frame is large.
 #[inline(never)]
-fn polyhedra(a: &Shape, b: &Shape, input: PairInput, cache: &mut FeatureCache, out: &mut LocalManifold) {
+fn polyhedra(a: &Shape, b: &Shape, input: PairInput, out: &mut LocalManifold) {
     with_view(a, |a| {
         with_view(b, |b| {
             if let (Some(a), Some(b)) = (a, b) {
-                convex::collide(a, b, input, cache, out);
+                convex::collide(a, b, input, out);
             }
         });
     });

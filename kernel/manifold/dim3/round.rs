@@ -189,7 +189,7 @@ fn nearest_on_sides(t: &Triangle, p: Vector) -> Vector {
 
 /// Two capsules (or segments). Parallel ones get a point at each end of the range in which they are side by side.
 pub(super) fn capsules(a: &Capsule, b: &Capsule, input: PairInput, out: &mut LocalManifold) {
-    let PairInput { pose, prediction } = input;
+    let PairInput { pose, prediction, .. } = input;
     let (b0, b1) = (pose.transform(b.a), pose.transform(b.b));
     let (u, v) = (a.b - a.a, b1 - b0);
     let (s, t) = closest_parameters(a.a, u, b0, v);

@@ -4,9 +4,10 @@ use super::facet::{borders, face_normal, with_convex};
 use super::oracle::Solid;
 use super::tests::{deepest, fresh};
 use crate::manifold::tests_pairs::Dice;
-use crate::manifold::{CompositeBuffers, LocalManifold, Look, PairInput, collide_composite};
+use crate::manifold::{CompositeBuffers, FeatureCache, LocalManifold, Look, PairInput, collide_composite};
 use crate::math::{Pose, Vector};
 use crate::shape::{Capsule, Composite, Cuboid, Hull, Segment, Shape, Surface, Triangle};
+use core::cell::Cell;
 use std::sync::Arc;
 
 /// Sizes of triangles in metres, beside shapes of about a metre.
@@ -69,7 +70,8 @@ fn pose(corners: [Vector; 3], shape: &Shape, dice: &mut Dice) -> Pose {
 
 fn of_facet(corners: [Vector; 3], shape: &Shape, pose: &Pose, prediction: f32) -> LocalManifold {
     let mut out = LocalManifold::default();
-    let input = PairInput { pose, prediction };
+    let cache = &Cell::new(FeatureCache::NONE);
+    let input = PairInput { pose, prediction, cache };
     with_convex(shape, |convex| convex.collide_facet(corners, input, &mut out));
     out
 }
@@ -149,7 +151,8 @@ fn a_face_alone_has_points_between_it_and_the_shape_over_it() {
                     normal = -normal;
                 }
                 let mut out = LocalManifold::default();
-                let input = PairInput { pose: &pose, prediction: 0.02 };
+                let cache = &Cell::new(FeatureCache::NONE);
+                let input = PairInput { pose: &pose, prediction: 0.02, cache };
                 with_convex(&shape, |convex| convex.collide_face(corners, normal, input, &mut out));
                 let reach = corners.iter().fold(1.0, |most: f32, c| most.max((*c - pose.position).length()));
                 let room = 2.0e-3 + 2.0e-5 * reach;

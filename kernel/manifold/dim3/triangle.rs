@@ -9,7 +9,7 @@ use super::convex::closest_of_lines;
 use super::gjk::{self, Core};
 use super::sat::{EdgeAxis, FaceAxis, open_edges, remaining};
 use super::view::{Facing, MatrixPose, View, four};
-use crate::manifold::{FeatureCache, LocalManifold, PairInput};
+use crate::manifold::{LocalManifold, PairInput};
 use crate::math::{F32x4, Lane, Num, Vector, max, min};
 use crate::shape::largest;
 use crate::tuning::manifold::{MARGIN, PARALLEL, REACH};
@@ -97,7 +97,7 @@ pub(super) fn collide(corners: [Vector; 3], view: &View, input: PairInput, out: 
     if pair.open == 0 {
         pair.build_plane(&pair.nearest, out);
     } else {
-        pair.collide(&mut FeatureCache::NONE.clone(), out);
+        pair.collide(input.cache, out);
     }
     true
 }

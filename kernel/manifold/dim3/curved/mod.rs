@@ -22,6 +22,7 @@ use crate::shape::{Ball, Curved, Shape};
 use crate::tuning::contact::DEEP;
 use crate::tuning::manifold::{FACING, KEPT, MARGIN, ROUNDING};
 use crate::tuning::sweeps::ROUNDS;
+use core::cell::Cell;
 use party::Party;
 use patch::{Phase, Region};
 pub use rim::lead_rims;
@@ -60,6 +61,7 @@ struct Pair<'a, A> {
     a: &'a A,
     b: &'a Curved,
     b_in_a: MatrixPose,
+    cache: &'a Cell<FeatureCache>,
     prediction: f32,
     smaller: f32,
     larger: f32,
@@ -67,33 +69,21 @@ struct Pair<'a, A> {
 
 /// The contact of a shape with a polyhedral core and a frustum. Not inlined, since its stack frame is large.
 #[inline(never)]
-pub(super) fn with_polyhedron(
-    a: &Shape,
-    b: &Curved,
-    input: PairInput,
-    cache: &mut FeatureCache,
-    out: &mut LocalManifold,
-) {
-    with_view(a, |a| a.map(|a| collide(a, b, input, cache, out)));
+pub(super) fn with_polyhedron(a: &Shape, b: &Curved, input: PairInput, out: &mut LocalManifold) {
+    with_view(a, |a| a.map(|a| collide(a, b, input, out)));
 }
 
 /// The contact of two frusta. Not inlined, since its stack frame is large.
 #[inline(never)]
-pub(super) fn frusta(
-    a: &Curved,
-    b: &Curved,
-    input: PairInput,
-    cache: &mut FeatureCache,
-    out: &mut LocalManifold,
-) {
-    collide(&a.with_equal_discs(), b, input, cache, out);
+pub(super) fn frusta(a: &Curved, b: &Curved, input: PairInput, out: &mut LocalManifold) {
+    collide(&a.with_equal_discs(), b, input, out);
 }
 
-fn collide<A: Party>(a: &A, b: &Curved, input: PairInput, cache: &mut FeatureCache, out: &mut LocalManifold) {
+fn collide<A: Party>(a: &A, b: &Curved, input: PairInput, out: &mut LocalManifold) {
     let b = &b.with_equal_discs();
     let pair = Pair::new(a, b, input);
-    if !pair.try_cached(cache, out) {
-        pair.search(cache, out);
+    if !pair.try_cached(out) {
+        pair.search(out);
     }
 }
 
@@ -110,18 +100,12 @@ pub(super) fn collide_face(a: &View, normal: Vector, b: &Curved, input: PairInpu
     pair.build_plane(&found, &mut 0, out);
     // What is deep under a face need not be over it.
     if out.count == 0 && found.separation < -DEEP * pair.smaller {
-        pair.search(&mut FeatureCache::NONE.clone(), out);
+        pair.search(out);
     }
 }
 
 /// The contact of a half-space with the given normal and a frustum.
-pub(super) fn half_space(
-    normal: Vector,
-    b: &Curved,
-    input: PairInput,
-    cache: &mut FeatureCache,
-    out: &mut LocalManifold,
-) {
+pub(super) fn half_space(normal: Vector, b: &Curved, input: PairInput, out: &mut LocalManifold) {
     let (b, frame) = (&b.with_equal_discs(), MatrixPose::new(input.pose));
     let down = -frame.direction_in(normal);
     out.normal = normal;
@@ -129,10 +113,11 @@ pub(super) fn half_space(
     if !(out.gap <= input.prediction) {
         return;
     }
-    let phase = if cache.kind == PLANE_A { cache.b } else { 0 };
+    let known = input.cache.get();
+    let phase = if known.kind == PLANE_A { known.b } else { 0 };
     let mut region = Region::new(normal, 0.0, input.prediction, b.extent(Vector::ZERO), phase);
     region.fill_plane(&party::facing(b, down, &frame));
-    *cache = FeatureCache { kind: PLANE_A, a: 0, b: region.phase, separation: out.gap };
+    input.cache.set(FeatureCache { kind: PLANE_A, a: 0, b: region.phase, separation: out.gap });
     take(&region, out);
     out.radii = [0.0, b.rolling(down)];
 }
@@ -161,10 +146,11 @@ fn take(region: &Region, out: &mut LocalManifold) {
 }
 
 impl<'a, A: Party> Pair<'a, A> {
-    fn new(a: &'a A, b: &'a Curved, input: PairInput) -> Self {
+    fn new(a: &'a A, b: &'a Curved, input: PairInput<'a>) -> Self {
         let extents = [a.extent(), b.extent(Vector::ZERO)];
         let (smaller, larger) = (min(extents[0], extents[1]), max(extents[0], extents[1]));
-        Self { a, b, b_in_a: MatrixPose::new(input.pose), prediction: input.prediction, smaller, larger }
+        let PairInput { pose, prediction, cache } = input;
+        Self { a, b, b_in_a: MatrixPose::new(pose), cache, prediction, smaller, larger }
     }
 
     /// Cores farther apart than this have no contact.
@@ -193,7 +179,8 @@ impl<'a, A: Party> Pair<'a, A> {
     }
 
     /// Whether the cached axis decides the contact.
-    fn try_cached(&self, cache: &mut FeatureCache, out: &mut LocalManifold) -> bool {
+    fn try_cached(&self, out: &mut LocalManifold) -> bool {
+        let cache = self.cache.get();
         let index = usize::from(cache.a);
         let found = match cache.kind {
             PLANE_A if index < self.a.planes() => self.plane_a(index),
@@ -216,14 +203,14 @@ impl<'a, A: Party> Pair<'a, A> {
         let mut phase = cache.b;
         let is_best = self.build_plane(&found, &mut phase, out) && self.is_best(&found, self.middle(out));
         if is_best {
-            cache.b = phase;
+            self.cache.set(FeatureCache { b: phase, ..cache });
         }
         is_best
     }
 
     /// Finds the axis and fills the manifold.
-    fn search(&self, cache: &mut FeatureCache, out: &mut LocalManifold) {
-        let known = *cache;
+    fn search(&self, out: &mut LocalManifold) {
+        let known = self.cache.get();
         let phase = if known.kind == PLANE_A || known.kind == PLANE_B { known.b } else { 0 };
         let preference = 2.0 * MARGIN * self.smaller;
         let mut best = self.plane_b(0);
@@ -235,14 +222,14 @@ impl<'a, A: Party> Pair<'a, A> {
         consider(self.plane_b(1), 0.0);
         (0..self.a.planes()).for_each(|plane| consider(self.plane_a(plane), 0.1 * preference));
         if best.separation > self.limit() {
-            self.remember(&best, phase, cache);
+            self.remember(&best, phase);
             out.gap = best.separation - self.a.radius();
             return;
         }
         let plane = best;
         let mut lines = [None; 2];
         lines[0] = self.across_axes();
-        lines[1] = (known.kind == LINE).then(|| normal_of(&known));
+        lines[1] = (known.kind == LINE).then(|| normal_of(known));
         let mut start = plane;
         for (i, normal) in lines.into_iter().enumerate() {
             let Some(normal) = normal else { continue };
@@ -252,11 +239,11 @@ impl<'a, A: Party> Pair<'a, A> {
             }
             start = line;
             if line.separation > self.limit() {
-                return self.finish_line(&line, None, cache, out);
+                return self.finish_line(&line, None, out);
             }
             // The cached axis is rounded.
             if i == 0 && self.build_line(&line, None, out) && self.is_best(&line, self.middle(out)) {
-                self.remember(&line, 0, cache);
+                self.remember(&line, 0);
                 return;
             }
         }
@@ -264,7 +251,7 @@ impl<'a, A: Party> Pair<'a, A> {
         let is_exact = self.build_plane(&plane, &mut turned, out);
         let is_start = matches!(start.axis, Axis::PlaneA(_) | Axis::PlaneB(_));
         if is_exact && is_start && self.is_best(&plane, self.middle(out)) {
-            return self.remember(&plane, turned, cache);
+            return self.remember(&plane, turned);
         }
         let refined = self.refine_all(&start);
         let resolution = gjk::resolution(self.larger, self.smaller);
@@ -273,9 +260,9 @@ impl<'a, A: Party> Pair<'a, A> {
             if !is_exact {
                 self.add_deepest(&refined.0, refined.1, out);
             }
-            return self.remember(&plane, turned, cache);
+            return self.remember(&plane, turned);
         }
-        self.finish_line(&refined.0, refined.1, cache, out);
+        self.finish_line(&refined.0, refined.1, out);
     }
 
     /// Adds the nearest points to the region of a plane that lacks them.
@@ -289,14 +276,8 @@ impl<'a, A: Party> Pair<'a, A> {
     }
 
     /// Fills the manifold along an axis that is no plane.
-    fn finish_line(
-        &self,
-        line: &Found,
-        witness: Option<[Vector; 2]>,
-        cache: &mut FeatureCache,
-        out: &mut LocalManifold,
-    ) {
-        self.remember(line, 0, cache);
+    fn finish_line(&self, line: &Found, witness: Option<[Vector; 2]>, out: &mut LocalManifold) {
+        self.remember(line, 0);
         out.count = 0;
         if !(line.separation <= self.limit()) {
             out.gap = max(line.separation - self.a.radius(), 0.0);
@@ -306,7 +287,7 @@ impl<'a, A: Party> Pair<'a, A> {
     }
 
     /// The cache for the next step.
-    fn remember(&self, found: &Found, phase: Phase, cache: &mut FeatureCache) {
+    fn remember(&self, found: &Found, phase: Phase) {
         let (kind, a, b) = match found.axis {
             Axis::PlaneA(plane) => (PLANE_A, plane, phase),
             Axis::PlaneB(end) => (PLANE_B, end, phase),
@@ -315,10 +296,10 @@ impl<'a, A: Party> Pair<'a, A> {
                 (LINE, usize::from(a), b)
             }
         };
-        *cache = match u8::try_from(a) {
+        self.cache.set(match u8::try_from(a) {
             Ok(a) => FeatureCache { kind, a, b, separation: found.separation },
             Err(_) => FeatureCache::NONE,
-        };
+        });
     }
 
     /// Fills the manifold from a plane. Returns whether its nearest point is as near as the plane.
@@ -518,7 +499,7 @@ fn bytes_of(normal: Vector) -> [u8; 2] {
 }
 
 /// The direction in the bytes of a cache.
-fn normal_of(cache: &FeatureCache) -> Vector {
+fn normal_of(cache: FeatureCache) -> Vector {
     let [x, y] = [cache.a, cache.b].map(|c| (f32::from(c) - 127.0) / 127.0);
     let z = 1.0 - x.abs() - y.abs();
     let fold = |own: f32, other: f32| if own < 0.0 { other.abs() - 1.0 } else { 1.0 - other.abs() };

@@ -251,7 +251,7 @@ proptest! {
         prop_assume!(n.length() > 0.1);
         let n = n * (1.0 / n.length());
         let [a, b] = bytes_of(n);
-        let back = normal_of(&FeatureCache { a, b, ..FeatureCache::NONE });
+        let back = normal_of(FeatureCache { a, b, ..FeatureCache::NONE });
         // Half a step of 1/127 both ways moves a point of the octahedron by √6/254, and that of the sphere by up to √3 as far.
         prop_assert!((back - n).length() < 18.0_f32.sqrt() / 254.0 + 1e-4, "{n:?} {back:?}");
     }
