@@ -24,8 +24,8 @@ pub struct WorkerBuffers<W = ()> {
     pub(super) stored: Vec<(u32, usize)>,
     /// The manifolds of `stored`, one contact's after the other's.
     pub(super) pool: Vec<Manifold>,
-    /// Colliders that slide, by each of their contacts.
-    pub(super) sliding: Vec<u32>,
+    /// Colliders that slide, by each of their contacts with points, and whether its manifolds have to be compared in any case.
+    pub(super) sliding: Vec<(u32, bool)>,
     /// The manifolds of the sliding collider at hand.
     pub(super) slides: Vec<Sliding>,
     /// Those that are parallel.

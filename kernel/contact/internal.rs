@@ -207,20 +207,22 @@ impl<S> NarrowPhaseInput<'_, S> {
     }
 
     /// Notes a contact whose manifolds are to be compared with others of the same collider, and the manifolds of one that slides no
-    /// more. `extra` are its recycled manifolds after the first.
+    /// more. `extra` are its recycled manifolds after the first; `has_more` also counts new ones.
     #[inline(always)]
     pub(super) fn note_sliding<W>(
         &self,
         id: u32,
         contact: &mut Contact,
-        extra: &[Manifold],
+        (extra, has_more): (&[Manifold], bool),
         worker: &mut WorkerBuffers<W>,
     ) {
         let side = if contact.is_solved() { self.sliding_side(contact) } else { None };
         contact.flags.set(ContactFlags::SLIDES_A, side == Some(0));
         contact.flags.set(ContactFlags::SLIDES_B, side == Some(1));
         if let Some(side) = side {
-            worker.sliding.push(contact.colliders[side]);
+            if has_more || contact.manifold.count > 0 {
+                worker.sliding.push((contact.colliders[side], has_more || contact.manifold.is_internal));
+            }
         } else {
             let marked =
                 core::iter::once(&contact.manifold).chain(extra).zip(0..).filter(|(m, _)| m.is_internal);
@@ -280,14 +282,22 @@ impl ContactTable {
         workers: &mut Vec<WorkerBuffers<S::Workspace>>,
     ) {
         let mut sliding = core::mem::take(&mut self.sliding);
-        let noted = workers.iter().flat_map(|worker| &worker.sliding);
-        sliding.extend(noted.filter(|collider| self.sliders.insert(**collider)));
+        // A manifold without others stops what it stops.
+        for (collider, is_compared) in workers.iter().flat_map(|worker| &worker.sliding) {
+            let is_first = self.sliders.insert(*collider);
+            if (*is_compared || !is_first) && self.compared.insert(*collider) {
+                sliding.push(*collider);
+            }
+        }
         let this = &*self;
         pool.each_into(workers, sliding.chunks(BLOCK), |worker, colliders| {
             colliders.iter().for_each(|collider| this.find_internal(input, *collider, worker));
         });
-        sliding.drain(..).for_each(|collider| _ = self.sliders.remove(collider));
+        sliding.drain(..).for_each(|collider| _ = self.compared.remove(collider));
         self.sliding = sliding;
+        for (collider, _) in workers.iter().flat_map(|worker| &worker.sliding) {
+            self.sliders.remove(*collider);
+        }
         let mut lost = core::mem::take(&mut self.lost);
         for (id, index) in workers.iter_mut().flat_map(|worker| worker.internal.drain(..)) {
             let contact = &self.contacts[id as usize];

@@ -189,7 +189,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
             let extra = unsafe { self.extra(contact) };
             if recycle(self.input, &worker.batch, place, contact, extra) {
                 worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
-                self.input.note_sliding(id, contact, extra, worker);
+                self.input.note_sliding(id, contact, (extra, !extra.is_empty()), worker);
             } else {
                 self.recompute(id, contact, count, worker);
             }
@@ -253,7 +253,8 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
             worker.pool.extend_from_slice(&worker.extra);
         }
         worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
-        self.input.note_sliding(id, contact, &[], worker);
+        let has_more = !worker.extra.is_empty();
+        self.input.note_sliding(id, contact, (&[], has_more), worker);
         // Blocks share cache lines of counts, so equal counts are not written.
         let now = PointCount::of(contact);
         if *count != now {

@@ -40,9 +40,11 @@ pub struct ContactTable {
     pub(super) surfaces: BTreeMap<(u32, u32), ManifoldSurface>,
     /// Bodies to which the solver gave more mass in the last step, by id, and how long it lasts.
     raised_masses: Vec<(u32, [u8; DIM])>,
-    /// Colliders that slide; empty between updates.
+    /// Sliding colliders whose manifolds are compared; empty between updates.
     pub(super) sliding: Vec<u32>,
     /// The same as a set.
+    pub(super) compared: BitSet,
+    /// Colliders that slide; empty between updates.
     pub(super) sliders: BitSet,
     /// Points under load that sliding colliders lost; empty between updates.
     pub(super) lost: Vec<Lost>,
