@@ -1,4 +1,4 @@
-//! When two moving shapes meet, by conservative [`advance`](crate::distance::advance).
+//! When two moving shapes meet, by conservative [advancement](crate::distance::advance()).
 //!
 //! A manifold's normal and least separation are a slab between the shapes. Time advances by what the slab takes to be
 //! crossed at least, until the shapes are as near as they may come.
@@ -125,6 +125,7 @@ impl<S: ManifoldSource> Pair<'_, S> {
                 apart = min(apart, left / rate);
             }
             let later = fraction + max(apart, 0.5 * self.target / fastest);
+            // What is still apart after the last look counts as a hit: it stops early rather than passes.
             let is_hit = round == ROUNDS && later < 1.0;
             Some(if is_hit { Approach::Met(Cast::Hit(later)) } else { Approach::ApartUntil(later) })
         });

@@ -207,7 +207,7 @@ impl<S> NarrowPhaseInput<'_, S> {
     }
 
     /// Notes a contact whose manifolds are to be compared with others of the same collider, and the manifolds of one that slides no
-    /// more. `extra` are its recycled manifolds after the first; `has_more` also counts new ones.
+    /// more. `extra` are its recycled manifolds after the first; `has_more` tells whether it has several, recycled or new.
     #[inline(always)]
     pub(super) fn note_sliding<W>(
         &self,
@@ -281,20 +281,20 @@ impl ContactTable {
         pool: &ThreadPool,
         workers: &mut Vec<WorkerBuffers<S::Workspace>>,
     ) {
-        let mut sliding = core::mem::take(&mut self.sliding);
-        // A manifold without others stops what it stops.
-        for (collider, is_compared) in workers.iter().flat_map(|worker| &worker.sliding) {
+        let mut compared = core::mem::take(&mut self.compared);
+        // A collider's only manifold cannot be internal, so it is not compared.
+        for (collider, has_several) in workers.iter().flat_map(|worker| &worker.sliding) {
             let is_first = self.sliders.insert(*collider);
-            if (*is_compared || !is_first) && self.compared.insert(*collider) {
-                sliding.push(*collider);
+            if (*has_several || !is_first) && self.is_compared.insert(*collider) {
+                compared.push(*collider);
             }
         }
         let this = &*self;
-        pool.each_into(workers, sliding.chunks(BLOCK), |worker, colliders| {
+        pool.each_into(workers, compared.chunks(BLOCK), |worker, colliders| {
             colliders.iter().for_each(|collider| this.find_internal(input, *collider, worker));
         });
-        sliding.drain(..).for_each(|collider| _ = self.compared.remove(collider));
-        self.sliding = sliding;
+        compared.drain(..).for_each(|collider| _ = self.is_compared.remove(collider));
+        self.compared = compared;
         for (collider, _) in workers.iter().flat_map(|worker| &worker.sliding) {
             self.sliders.remove(*collider);
         }
@@ -331,7 +331,8 @@ impl ContactTable {
     fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, collider: u32, worker: &mut WorkerBuffers<W>) {
         let mut all = core::mem::take(&mut worker.slides);
         all.clear();
-        for (contact, index, side, m) in self.sliding_manifolds(input, collider).filter(|m| m.3.count > 0) {
+        for (contact, index, side, m) in self.sliding_manifolds(input, collider).filter(|(.., m)| m.count > 0)
+        {
             let is_round = m.radii != [0.0; 2];
             let line = match m.points() {
                 [p, q] if is_round => unit(q.anchor - p.anchor),

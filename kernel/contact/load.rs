@@ -155,7 +155,7 @@ impl ContactTable {
     /// Lists the points of a sliding collider that bear load.
     fn list_bearings<S>(&self, input: &NarrowPhaseInput<S>, collider: u32, points: &mut Vec<Bearing>) {
         points.clear();
-        for (id, index, side, m) in self.sliding_manifolds(input, collider).filter(|m| !m.3.is_internal) {
+        for (id, index, side, m) in self.sliding_manifolds(input, collider).filter(|(.., m)| !m.is_internal) {
             let offset = self.get(id).frozen.offset;
             for (p, point) in m.points().iter().zip(0..).filter(|(p, _)| p.separation < input.tolerance) {
                 let (order, normal) = (points.len() as u32, toward(side, m));

@@ -41,9 +41,9 @@ pub struct ContactTable {
     /// Bodies to which the solver gave more mass in the last step, by id, and how long it lasts.
     raised_masses: Vec<(u32, [u8; DIM])>,
     /// Sliding colliders whose manifolds are compared; empty between updates.
-    pub(super) sliding: Vec<u32>,
+    pub(super) compared: Vec<u32>,
     /// The same as a set.
-    pub(super) compared: BitSet,
+    pub(super) is_compared: BitSet,
     /// Colliders that slide; empty between updates.
     pub(super) sliders: BitSet,
     /// Points under load that sliding colliders lost; empty between updates.

@@ -4,20 +4,21 @@
 //! predicted contacts differ in how they bound that time.
 
 /// How near two shapes are at a time of their motion.
-pub(crate) enum Approach<N, M> {
+pub(crate) enum Approach<T, M> {
     /// Apart, and so at least until a later time.
-    ApartUntil(N),
+    ApartUntil(T),
     /// Near enough.
     Met(M),
 }
 
 /// Advances the time from `start` to where two shapes meet. `look` gets a time and the number of the look, from 1 to `rounds`.
-/// It tells how near the shapes are then, or that they do not meet. Shapes that are still apart at the last look do not meet.
+/// It tells how near the shapes are then, or that they do not meet. Shapes that are still apart at the last look do not meet: a caller that
+/// would rather have them meet says so in that look.
 #[inline(always)]
-pub(crate) fn advance<N, M>(
-    start: N,
+pub(crate) fn advance<T, M>(
+    start: T,
     rounds: usize,
-    mut look: impl FnMut(N, usize) -> Option<Approach<N, M>>,
+    mut look: impl FnMut(T, usize) -> Option<Approach<T, M>>,
 ) -> Option<M> {
     let mut time = start;
     for round in 1..=rounds {

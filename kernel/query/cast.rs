@@ -1,4 +1,4 @@
-//! When a shape that moves along a line meets another, by conservative [`advance`](crate::distance::advance).
+//! When a shape that moves along a line meets another, by conservative [advancement](crate::distance::advance()).
 //!
 //! The distance of two convex shapes is a convex function of the way. The plane between both closes at a constant rate,
 //! and the distance is never less than its gap: advancing by gap / rate is Newton's method on a convex function, from

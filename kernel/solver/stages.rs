@@ -124,7 +124,7 @@ impl Solver {
         bodies.find_fast_turns(input, colors, params.h);
         trees.find(joints, input, colors, (params.joints, bodies));
         bodies.turn_inertia(0.5 * (params.dt + params.h));
-        joints.stiffen(input, colors, (params.h, pool), &mut bodies.masses, inertia_floors);
+        joints.raise_inertia(input, colors, (params.h, pool), &mut bodies.masses, inertia_floors);
         shares.divide(pool.workers(), *first_dynamic, input, colors);
         self.plan_rows(input, colors, pool);
         let rows = self.plan.rows().iter().sum::<u32>();

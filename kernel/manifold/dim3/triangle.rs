@@ -32,7 +32,7 @@ struct Pair<'a> {
     /// Transforms the polyhedron to the frame of the triangle.
     frame: MatrixPose,
     sizes: Sizes,
-    /// The side of the face that the polyhedron is on.
+    /// The side of the face that the polyhedron is on; set by [`collide`], before any axis is searched.
     nearest: FaceAxis,
     /// The sides that may make an axis, as bits.
     open: u32,

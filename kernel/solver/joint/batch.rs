@@ -22,7 +22,7 @@ use core::ops::Range;
 
 const KIND: ConstraintKind = ConstraintKind::Joint;
 
-/// How many joints ahead they are prefetched.
+/// How many joints ahead of the one at hand the next are prefetched.
 const PREFETCH_DISTANCE: usize = 3;
 
 /// Number of batches of joints in one width: one for each class, and couplings.
@@ -44,6 +44,7 @@ pub(in super::super) fn sort_joints(
     let parts = layer.parts();
     for &id in joints.iter().filter(|id| !trees.holds(**id)) {
         let bodies = sorter.input.bodies.constraints(KIND).get(id).bodies;
+        debug_assert_eq!(bodies, table.bodies(id), "a joint keeps its bodies");
         let batch = first + usize::from(table.summary(id).batch);
         layer.push(sorter.part(id, bodies, parts), batch, Item { id, index: 0 });
     }

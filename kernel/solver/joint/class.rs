@@ -34,7 +34,7 @@ impl Class {
     }
 }
 
-/// What a definition says in short: what sorts a joint, and which of its coordinates have rows.
+/// A digest of a definition: which batch the joint is in, and which of its coordinates have rows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Summary {
     /// The number of its batch among those of joints.
@@ -94,5 +94,45 @@ impl Summary {
 
     fn has(self, bit: usize) -> bool {
         self.shape >> bit & 1 != 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::def::{Axis, Drive, Give, Motor};
+    use super::*;
+    use crate::math::Vector;
+    use proptest::prelude::*;
+
+    /// Free, locked, limited, driven, and a lock that gives way and is driven.
+    fn axis(kind: u8) -> Axis {
+        let drive = Drive::Force { stiffness: 1.0, damping: 0.0 };
+        let motor = Some(Motor { target_velocity: 1.0, target_position: 0.0, max_force: 1.0, drive });
+        match kind {
+            0 => Axis::FREE,
+            1 => Axis::LOCKED,
+            2 => Axis::limited(-1.0, 1.0),
+            3 => Axis { motor, ..Axis::FREE },
+            4 => Axis { motor, give: Give::Compliance(0.1), ..Axis::LOCKED },
+            _ => Axis::limited(1.0, 1.0),
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_summary_says_what_its_definition_says(kinds in proptest::array::uniform8(0u8..6)) {
+            let mut def = JointDef::free([0, 1], [Vector::ZERO; 2]);
+            for (number, of) in def.axes.iter_mut().enumerate() {
+                *of = axis(kinds[number]);
+            }
+            let summary = Summary::of(&def);
+            for number in 0..AXES {
+                prop_assert_eq!(summary.is_in_block(number), def.is_in_block(number));
+                prop_assert_eq!(summary.is_single(number), def.is_single(number));
+            }
+            prop_assert_eq!(summary.is_rod(), def.is_rod());
+            prop_assert_eq!(summary.turns(), def.orientation.is_some());
+            prop_assert_eq!(summary.is_locked_alike, def.is_locked_alike());
+        }
     }
 }

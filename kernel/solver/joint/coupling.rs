@@ -1,7 +1,7 @@
 //! What a coupling does: gears, racks, pulleys. One coordinate of each of two bodies in frames of the world, and limits of their
 //! weighted sum.
 
-use super::def::{Give, JointError, JointFrame, are_in_order};
+use super::def::{Give, JointDef, JointError, JointFrame, are_in_order};
 use super::dim::{TURNING, angles};
 use crate::math::{Rot, Vector, WorldPose, WorldVector};
 use crate::table::BodyTable;
@@ -95,6 +95,11 @@ impl CouplingDef {
     pub fn sum(&self, bodies: &BodyTable) -> f32 {
         let [a, b] = core::array::from_fn(|side| self.ends[side].value(bodies, self.bodies[side], 0.0));
         (a + f64::from(self.ratio) * b) as f32
+    }
+
+    /// A joint with its bodies and anchors that does nothing.
+    pub(super) fn joint(&self) -> JointDef {
+        JointDef::free(self.bodies, self.ends.map(|end| end.frame.anchor))
     }
 
     /// Whether it and a pair of bodies can be used. Bodies are not looked at.

@@ -12,7 +12,7 @@ use super::dim::{TURNING, angles};
 use super::place::Masses;
 use super::records::Records;
 use super::row::{Hold, Stiffness};
-use super::table::JointReaction;
+use super::state::JointReaction;
 use crate::contact::ManifoldsView;
 use crate::data::Parts;
 use crate::math::{Angular, Entry, Ids, Job, Lane, Rot, Vector};

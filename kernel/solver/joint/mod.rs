@@ -30,6 +30,7 @@ mod place;
 mod records;
 mod row;
 mod single;
+mod state;
 mod table;
 mod tree;
 mod tree_blow;
@@ -51,7 +52,8 @@ pub use def::{
 pub use dim::{AXES, coordinate};
 pub use gap::JointGap;
 pub(super) use records::Records;
+pub use state::JointReaction;
 pub(super) use table::InertiaFloors;
-pub use table::{JointReaction, JointTable};
+pub use table::JointTable;
 pub(super) use tree::JointTrees;
 pub(super) use tree_blow::TreeBlows;

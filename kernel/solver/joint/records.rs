@@ -4,7 +4,7 @@
 use super::class::Summary;
 use super::coupling::CouplingRecord;
 use super::def::JointDef;
-use super::table::State;
+use super::state::State;
 use crate::data::{Parts, prefetch};
 
 /// All joints, whose states are changed by several threads.

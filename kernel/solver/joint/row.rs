@@ -12,7 +12,7 @@ use super::orientation::OrientationRow;
 use super::place::{Gradient, Masses, Start};
 use super::records::Joint;
 use super::single::{MotorRow, Single, laws, turns_near};
-use super::table::JointReaction;
+use super::state::JointReaction;
 use crate::math::{Angular, Ids, Lane, Vector};
 use crate::tuning::solver::{DIRECT_FREQUENCY, NO_MASS, RIGID_DAMPING, RIGID_FREQUENCY};
 

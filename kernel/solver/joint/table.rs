@@ -7,51 +7,13 @@ use super::def::{JointDef, JointError};
 use super::dim::{AXES, BLOCK, TURNS, lacking, with_inertia};
 use super::gap::JointGap;
 use super::records::Records;
+use super::state::{JointReaction, State};
 use crate::contact::Link;
 use crate::graph::{COLOR_COUNT, ColorGraph, ConstraintKind};
-use crate::math::{Angular, Vector};
 use crate::table::BodyTable;
 use crate::thread_pool::ThreadPool;
 
-/// What a joint did to body B in the last substep, and against which it pushed A.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct JointReaction {
-    /// In world axes, in N.
-    pub force: Vector,
-    /// About B's anchor, in world axes, in N·m.
-    pub torque: Angular,
-    /// Forces in N, or torques in N·m, of the motors, by number of the coordinate.
-    pub motors: [f32; AXES],
-    /// Torque of the orientation motor on B, in world axes, in N·m. It is part of `torque`.
-    pub orientation: Angular,
-}
-
-/// What a joint keeps between steps, beside its definition.
-///
-/// What every joint has is first: the others' share of the cache lines is hardly touched.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub(super) struct State {
-    /// Impulses of what is locked in A's frame, N·s or N·m·s, by number of the coordinate.
-    pub(super) block: [f32; BLOCK],
-    pub(super) reaction: JointReaction,
-    /// The angle that counts turns, at the end of the last step. NaN before the first.
-    pub(super) angle: f32,
-    /// Impulses of lower limit, upper limit, spring and motor, by number of the coordinate.
-    pub(super) singles: [[f32; 4]; AXES],
-    /// Impulses of the orientation motor along A's axes, N·m·s.
-    pub(super) orientation: [f32; TURNS],
-}
-
-impl State {
-    fn new() -> Self {
-        let (block, singles, orientation) = ([0.0; BLOCK], [[0.0; 4]; AXES], [0.0; TURNS]);
-        let (angle, reaction) = (f32::NAN, JointReaction::default());
-        Self { block, singles, orientation, angle, reaction }
-    }
-}
-
-/// Buffers of [`JointTable::stiffen`].
+/// Buffers of [`JointTable::raise_inertia`].
 #[derive(Clone, Debug, Default)]
 pub(in super::super) struct InertiaFloors {
     /// By colour and joint, for both bodies: the row, and the inertia, kg·m².
@@ -60,8 +22,8 @@ pub(in super::super) struct InertiaFloors {
     least: Vec<f32>,
 }
 
-/// All joints by id. Their bodies are in [`BodyTable::constraints`](crate::table::BodyTable::constraints). Columns of free ids are
-/// stale.
+/// All joints by id. Their bodies are those in [`BodyTable::constraints`](crate::table::BodyTable::constraints). Columns of free
+/// ids are stale.
 #[derive(Clone, Debug, Default)]
 pub struct JointTable {
     /// Those of couplings have bodies and anchors only.
@@ -84,8 +46,7 @@ impl JointTable {
     /// Adds a coupling, as a joint with an id among joints, and wakes its bodies.
     pub fn add_coupling(&mut self, link: &mut Link, def: CouplingDef) -> Result<u32, JointError> {
         def.check()?;
-        let joint = JointDef::free(def.bodies, def.ends.map(|end| end.frame.anchor));
-        self.enter(link, joint, Summary::OF_COUPLING, Some(Box::new(CouplingRecord::new(def))))
+        self.enter(link, def.joint(), Summary::OF_COUPLING, Some(Box::new(CouplingRecord::new(def))))
     }
 
     fn enter(
@@ -128,6 +89,7 @@ impl JointTable {
             return Ok(());
         }
         coupling.def = def;
+        self.defs[id as usize] = def.joint();
         def.bodies.into_iter().for_each(|body| link.wake_body(body));
         Ok(())
     }
@@ -204,7 +166,7 @@ impl JointTable {
     /// An impulse acts in one direction for a whole substep. A light body under a large force turns so far in that time that
     /// the next impulse turns it back further, and the motion grows (Andrews, Teichmann and Kry, "Geometric Stiffness for
     /// Real-time Constrained Multibody Dynamics", 2017).
-    pub(in super::super) fn stiffen(
+    pub(in super::super) fn raise_inertia(
         &self,
         input: &RowInput,
         colors: &ColorGraph,
@@ -242,6 +204,11 @@ impl JointTable {
             let arm = (def.frames[side].anchor - input.bodies[body].local_center).length();
             (input.row_of(body), h * h * force * arm)
         })
+    }
+
+    /// Its bodies.
+    pub(super) fn bodies(&self, id: u32) -> [u32; 2] {
+        self.defs[id as usize].bodies
     }
 
     pub(super) fn summary(&self, id: u32) -> Summary {

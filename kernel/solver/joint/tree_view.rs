@@ -225,20 +225,20 @@ impl<N: Entry> Trees for TreeView<'_, N> {
             }
             for (k, branch) in forest.branches[range(span.branches)].iter().enumerate() {
                 // SAFETY: by the contract.
-                let of = &unsafe { records.joint(branch.id) };
+                let record = &unsafe { records.joint(branch.id) };
                 let joint = &mut tree.joints[k];
                 let singles = &mut tree.singles[joint.singles()];
                 let TreeJoint { row, orientation, .. } = joint;
-                row.set((singles, orientation.as_mut()), (lane, stiffness), of, from);
-                if of.summary.is_rod() {
-                    row.take_rod(singles, of.def, (lane, stiffness));
+                row.set((singles, orientation.as_mut()), (lane, stiffness), record, from);
+                if record.summary.is_rod() {
+                    row.take_rod(singles, record.def, (lane, stiffness));
                 }
                 let place = |place: u32| if place == GROUND { GROUND } else { place - span.bodies[0] };
                 tree.links[k].places = branch.places.map(place);
                 for side in 0..2 {
                     joint.arms[side].set(lane, joint.row.start.arms[side].get(lane).length());
                 }
-                joint.load.set(lane, of.state.reaction.force.length() * from.params.h);
+                joint.load.set(lane, record.state.reaction.force.length() * from.params.h);
             }
         }
         // SAFETY: the job has no further condition.
@@ -299,8 +299,8 @@ impl<N: Entry> Trees for TreeView<'_, N> {
                 tree.joints.iter().zip(&forest.branches[range(forest.trees[number].branches)])
             {
                 // SAFETY: by the contract.
-                let of = &mut unsafe { records.joint(branch.id) };
-                joint.row.store((&tree.singles[joint.singles()], joint.orientation.as_ref()), lane, of);
+                let record = &mut unsafe { records.joint(branch.id) };
+                joint.row.store((&tree.singles[joint.singles()], joint.orientation.as_ref()), lane, record);
             }
         }
     }
