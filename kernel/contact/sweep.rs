@@ -66,7 +66,7 @@ pub(super) fn find_meeting<S>(
         turn: Rot::IDENTITY,
         shape: *input.shape_poses(contact)[side],
     });
-    // The time until which the shapes stay apart at least, seen from another.
+    // A lower bound of the time when the shapes meet, given their gap at `time`.
     let apart_until = |placed: &[Placed; 2], local: &LocalManifold, gap: f32, time: f32| {
         let offset = (placed[1].body.center - placed[0].body.center).to_local();
         let slab = Slab { shapes, placed, motion: &motion, offset, margin };

@@ -5,15 +5,16 @@
 
 /// How near two shapes are at a time of their motion.
 pub(crate) enum Approach<T, M> {
-    /// Apart, and so at least until a later time.
+    /// Apart, and they stay apart at least until this time.
     ApartUntil(T),
     /// Near enough.
     Met(M),
 }
 
 /// Advances the time from `start` to where two shapes meet. `look` gets a time and the number of the look, from 1 to `rounds`.
-/// It tells how near the shapes are then, or that they do not meet. Shapes that are still apart at the last look do not meet: a caller that
-/// would rather have them meet says so in that look.
+/// It tells how near the shapes are then, or that they do not meet.
+///
+/// Shapes that are still apart after the last look count as a miss, unless `look` returns [`Approach::Met`] there.
 #[inline(always)]
 pub(crate) fn advance<T, M>(
     start: T,

@@ -22,7 +22,7 @@ use core::ops::Range;
 
 const KIND: ConstraintKind = ConstraintKind::Joint;
 
-/// How many joints ahead of the one at hand the next are prefetched.
+/// Prefetch distance, in joints.
 const PREFETCH_DISTANCE: usize = 3;
 
 /// Number of batches of joints in one width: one for each class, and couplings.

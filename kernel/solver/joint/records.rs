@@ -23,7 +23,7 @@ pub(super) struct Joint<'a> {
 }
 
 impl<'a> Records<'a> {
-    /// Of columns, by id.
+    /// A view of the columns of a table.
     pub(super) fn of(
         (defs, summaries): (&'a [JointDef], &'a [Summary]),
         states: &'a mut [State],

@@ -18,7 +18,7 @@ pub struct JointReaction {
 
 /// What a joint keeps between steps, beside its definition.
 ///
-/// What every joint has is first: the others' share of the cache lines is hardly touched.
+/// Fields that all joints use come first. Only joints with limits, springs or motors touch the cache lines after them.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct State {
