@@ -29,9 +29,14 @@ pub(super) struct Blows {
     pub(super) reached: BitSet,
     /// Those of this substep, in order of groups.
     struck: Vec<Struck>,
+    /// The same while they are put in order.
+    unordered: Vec<Struck>,
+    order: Vec<Place>,
     /// Struck body rows of this substep, in ascending order.
     bodies: Vec<u32>,
     sets: DisjointSets,
+    /// The first body of each set, by its representative, which depends on the order of what is found.
+    firsts: Vec<u32>,
     /// By worker.
     groups: Vec<GroupBuffers>,
     /// How often a manifold was solved in this substep, about.
@@ -43,6 +48,14 @@ pub(super) struct Blows {
     pub(super) times: Vec<(u32, f32)>,
     /// The time from the start of the step to the end of this substep, in seconds.
     pub(super) elapsed: f32,
+}
+
+/// A struck manifold that is put in order: what decides it mostly, and where it was.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    group: u32,
+    rows: [u32; 2],
+    at: u32,
 }
 
 /// What a manifold got in a round.
@@ -106,8 +119,8 @@ impl Blows {
         if self.found.iter().all(Vec::is_empty) {
             return false;
         }
-        self.merge_found();
         self.find_groups(first_dynamic);
+        self.sort();
         let Self { struck, groups, given, reached, times, solved, .. } = self;
         let mut count = 0;
         for group in struck.chunk_by(|a, b| a.group == b.group).filter(|group| is_due(group)) {
@@ -137,37 +150,53 @@ impl Blows {
         count > 0
     }
 
-    /// Adds what was found to the struck manifolds. What was struck in an earlier round is replaced.
-    fn merge_found(&mut self) {
-        let Self { found, struck, .. } = self;
-        struck.extend(found.iter_mut().flat_map(|found| found.drain(..)));
-        struck.sort_unstable_by_key(|one| (one.item.id, one.item.index, one.is_old));
-        struck.dedup_by(|old, new| {
-            let is_same = (old.item.id, old.item.index) == (new.item.id, new.item.index);
-            new.is_jammed |= is_same && old.is_jammed;
-            is_same
-        });
-    }
-
-    /// Finds groups of manifolds that bodies connect, and sorts by them.
+    /// Lists what was struck in earlier rounds and what was found in this one, by groups of manifolds that bodies connect.
     fn find_groups(&mut self, first_dynamic: u32) {
-        let Self { struck, bodies, sets, .. } = self;
-        struck.sort_unstable_by(Struck::in_order);
+        let Self { found, struck, unordered, order, bodies, sets, firsts, .. } = self;
+        core::mem::swap(struck, unordered);
+        unordered.extend(found.iter_mut().flat_map(|found| found.drain(..)));
         bodies.clear();
-        bodies.extend(struck.iter().flat_map(|one| movable(one, first_dynamic)));
+        bodies.extend(unordered.iter().flat_map(|one| movable(one, first_dynamic)));
         bodies.sort_unstable();
         bodies.dedup();
         sets.reset(bodies.len());
         let place = |row: u32| bodies.binary_search(&row).unwrap_or(0) as u32;
-        for one in struck.iter() {
+        for one in unordered.iter() {
             if let [Some(a), Some(b)] = one.row.ids.map(|[row]| (row >= first_dynamic).then(|| place(row))) {
                 sets.unite(a, b);
             }
         }
-        for one in struck.iter_mut() {
-            one.group = movable(one, first_dynamic).next().map_or(u32::MAX, |row| sets.find(place(row)));
+        firsts.clear();
+        firsts.resize(bodies.len(), u32::MAX);
+        for body in 0..bodies.len() as u32 {
+            let first = &mut firsts[sets.find(body) as usize];
+            *first = body.min(*first);
         }
-        struck.sort_unstable_by(|a, b| a.group.cmp(&b.group).then_with(|| a.in_order(b)));
+        order.clear();
+        for (one, at) in unordered.iter_mut().zip(0..) {
+            let body = movable(one, first_dynamic).next();
+            one.group = body.map_or(u32::MAX, |row| firsts[sets.find(place(row)) as usize]);
+            order.push(Place { group: one.group, rows: one.row.ids.map(|[row]| row), at });
+        }
+    }
+
+    /// Puts the struck manifolds in order. What was struck in an earlier round and found again is replaced.
+    fn sort(&mut self) {
+        let Self { struck, unordered, order, .. } = self;
+        order.sort_unstable_by(|a, b| {
+            let [one, other] = [a, b].map(|place| &unordered[place.at as usize]);
+            let by_rows = (a.group, a.rows).cmp(&(b.group, b.rows));
+            by_rows.then_with(|| one.in_order(other)).then_with(|| one.is_old.cmp(&other.is_old))
+        });
+        struck.clear();
+        for place in order.iter() {
+            let one = &unordered[place.at as usize];
+            match struck.last_mut() {
+                Some(new) if new.item == one.item => new.is_jammed |= one.is_jammed,
+                _ => struck.push(one.clone()),
+            }
+        }
+        unordered.clear();
     }
 
     /// Adds the impulses to the sums of the manifolds.
