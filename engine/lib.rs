@@ -184,6 +184,7 @@ pub mod ragdoll;
 pub mod schedule;
 pub mod spatial_query;
 
+mod asked;
 mod columns;
 mod noted;
 mod plugins;

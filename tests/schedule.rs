@@ -426,6 +426,8 @@ fn the_parts_of_a_step_are_timed_in_their_order() {
     app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin, PhysicsPlugins::default()))
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(20)));
     app.finish();
+    app.update();
+    assert_eq!(app.world().resource::<StepTimes>().parts().count(), 0, "nobody asked before");
     for _ in 0..3 {
         app.world_mut().spawn((RigidBody::Dynamic, Collider::default()));
         app.update();

@@ -7,8 +7,13 @@ use core::time::Duration;
 use kernel::thread_pool::ThreadPool;
 use std::sync::OnceLock;
 
+use crate::asked::Asked;
+
 /// Time of each part of the last step, in the order they ran: from `Prepare`, where transforms are read, through the
 /// stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
+///
+/// Empty until it is read for the first time, as clocks cost a tenth of the step of a small world; filled by the next step and those
+/// after it.
 ///
 /// The time of the app's systems between two parts is included in the later one. `DrainLifecycle`, `ReadAwake`,
 /// `Gather`, `Scatter`, `WriteTransforms` and `MirrorSleep`, besides `Prepare` and `Writeback`, only copy between
@@ -32,6 +37,8 @@ pub struct StepTimes {
     /// Where the next part is, if parts run as in the last step.
     #[reflect(ignore)]
     next: usize,
+    #[reflect(ignore)]
+    asked: Asked,
     counts_shared: bool,
     /// In the last step, and in all before.
     shared: [Duration; 2],
@@ -40,12 +47,13 @@ pub struct StepTimes {
 impl StepTimes {
     /// The parts and their times.
     pub fn parts(&self) -> impl Iterator<Item = (&'static str, Duration)> + '_ {
+        self.asked.note();
         self.parts.iter().copied()
     }
 
     /// The time of all parts.
     pub fn total(&self) -> Duration {
-        self.parts.iter().map(|(_, time)| *time).sum()
+        self.parts().map(|(_, time)| time).sum()
     }
 
     /// Measures [`shared`](Self::shared) from the next step on.
@@ -68,15 +76,21 @@ impl StepTimes {
         }
     }
 
-    /// Begins the next part.
+    /// Whether a step is timed.
+    pub(crate) fn is_running(&self) -> bool {
+        self.last.is_some()
+    }
+
+    /// Begins the first part of a step, if times were ever read.
     pub(crate) fn begin(&mut self) {
-        (self.last, self.next) = (Some(Instant::now()), 0);
+        (self.last, self.next) = (self.asked.is_set().then(Instant::now), 0);
     }
 
     /// Ends a part: the time since the last one ended is its time.
     pub(crate) fn end(&mut self, part: &'static str) {
+        let Some(last) = self.last else { return };
         let now = Instant::now();
-        let Some(last) = self.last.replace(now) else { return };
+        self.last = Some(now);
         let is_part = |(name, _): &(&str, Duration)| *name == part;
         let place = match self.parts.get(self.next) {
             Some(expected) if is_part(expected) => Some(self.next),

@@ -35,7 +35,9 @@ fn stay() {
 /// The share of events in a step without any.
 fn nobody_listens() {
     let (mut send, mut link, mut step) = (Vec::new(), Vec::new(), Vec::new());
-    in_turn([&mut boxes(5_100, |_| (), || ())], |_, app| {
+    let mut app = boxes(5_100, |_| (), || ());
+    app.world().resource::<StepTimes>().total();
+    in_turn([&mut app], |_, app| {
         app.update();
         let times = app.world().resource::<StepTimes>();
         let part = |name| {

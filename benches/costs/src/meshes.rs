@@ -16,6 +16,7 @@ pub fn measure() {
         let mut app = app(|app| {
             app.add_plugins(PhysicsPlugins::new(Update));
         });
+        app.world().resource::<StepTimes>().total();
         app.update();
         let (vertices, indices) = hills();
         count = indices.len();

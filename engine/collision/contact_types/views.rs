@@ -1,7 +1,6 @@
 //! Contacts of the kernel as the app sees them, made when they are read.
 
 use bevy_ecs::prelude::*;
-use core::sync::atomic::{AtomicBool, Ordering};
 use kernel::{
     contact::{Contact, ContactFlags, Manifold, ManifoldPoint, ManifoldSurface},
     math as k,
@@ -17,6 +16,7 @@ use super::{
     point::ContactPoint,
 };
 use crate::{
+    asked::Asked,
     dynamics::tables::{Bodies, Colliders, Contacts},
     math::{AdjustPrecision, Scalar, to_f32, vector_from_kernel, vector_to_kernel, world_from_kernel},
 };
@@ -31,7 +31,7 @@ pub(crate) struct ContactViews {
     pairs: OnceLock<Box<[OnceLock<Box<ContactPair>>]>>,
     graph: OnceLock<Box<ContactGraph>>,
     /// Whether any system ever asked for contacts.
-    asked: AtomicBool,
+    asked: Asked,
 }
 
 /// Forgets what was read. Piped behind each system that changes contacts, so that no system of the app reads in between.
@@ -59,14 +59,12 @@ impl ContactViews {
 
     /// Notes that a system asks for contacts: from the next step on, impulses are summed over the substeps.
     pub(crate) fn note_reader(&self) {
-        if !self.has_readers() {
-            self.asked.store(true, Ordering::Relaxed);
-        }
+        self.asked.note();
     }
 
     /// Whether any system ever asked for contacts.
     pub(crate) fn has_readers(&self) -> bool {
-        self.asked.load(Ordering::Relaxed)
+        self.asked.is_set()
     }
 
     /// A contact in use.

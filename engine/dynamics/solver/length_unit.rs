@@ -92,7 +92,7 @@ fn judge(sizes: Sizes, gravity: Scalar, unit: Scalar) -> Option<Verdict> {
 }
 
 /// How far the search is.
-#[derive(Clone, Copy, Default)]
+#[derive(Resource, Clone, Copy, Default)]
 pub(super) enum Search {
     /// No collider on a moving body was seen.
     #[default]
@@ -103,9 +103,14 @@ pub(super) enum Search {
     Over,
 }
 
+/// Whether there is more to search.
+pub(super) fn goes_on(search: Res<Search>) -> bool {
+    !matches!(*search, Search::Over)
+}
+
 /// Warns once if all that moves is out of range for a second.
 pub(super) fn check_length_unit(
-    mut search: Local<Search>,
+    mut search: ResMut<Search>,
     colliders: Query<(&Collider, &ColliderOf), Without<ColliderDisabled>>,
     bodies: Query<&RigidBody>,
     unit: Option<Res<PhysicsLengthUnit>>,
@@ -114,7 +119,7 @@ pub(super) fn check_length_unit(
 ) {
     let (Some(unit), Some(gravity), Some(time)) = (unit, gravity, time) else { return };
     let (unit, gravity) = (Scalar::from(unit.metres()), gravity.0.length());
-    if matches!(*search, Search::Over) || !(gravity > 0.0) {
+    if !(gravity > 0.0) {
         return;
     }
     let mut all: Option<Sizes> = None;

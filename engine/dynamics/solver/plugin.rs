@@ -99,7 +99,9 @@ pub struct LengthUnitCheckPlugin;
 #[cfg(feature = "default-collider")]
 impl Plugin for LengthUnitCheckPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(bevy_app::Last, super::length_unit::check_length_unit);
+        use super::length_unit::{Search, check_length_unit, goes_on};
+        use bevy_ecs::schedule::IntoScheduleConfigs;
+        app.init_resource::<Search>().add_systems(bevy_app::Last, check_length_unit.run_if(goes_on));
     }
 }
 

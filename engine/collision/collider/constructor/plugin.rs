@@ -3,7 +3,10 @@
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::IntoScheduleConfigs;
 
-use super::{set::ConstructorSystems, systems::construct};
+use super::{
+    set::ConstructorSystems,
+    systems::{are_any, construct},
+};
 use crate::schedule::PhysicsSystems;
 
 /// Makes colliders from [`ColliderConstructor`](super::ColliderConstructor) and
@@ -16,6 +19,7 @@ pub struct ColliderConstructorPlugin;
 impl Plugin for ColliderConstructorPlugin {
     fn build(&self, app: &mut App) {
         // If physics runs in `Update`, the step of the same frame has the colliders.
-        app.add_systems(Update, construct.in_set(ConstructorSystems).before(PhysicsSystems::First));
+        let construct = construct.run_if(are_any).in_set(ConstructorSystems);
+        app.add_systems(Update, construct.before(PhysicsSystems::First));
     }
 }

@@ -25,16 +25,19 @@ pub(super) struct Awaited(Vec<Entity>);
 /// What there is to do.
 type HasConstructor = Or<(With<ColliderConstructor>, With<ColliderConstructorHierarchy>, With<Awaited>)>;
 
-/// Makes colliders, if there are constructors. In a command: in a chain of systems, most frames would pay for two
-/// points of synchronisation and have nothing to do.
-pub(super) fn construct(work: Query<(), HasConstructor>, mut commands: Commands) {
-    if !work.is_empty() {
-        commands.queue(|world: &mut World| {
-            run(world, give_constructors);
-            run(world, make_colliders);
-            run(world, finish_hierarchies);
-        });
-    }
+/// Whether there is anything to do.
+pub(super) fn are_any(work: Query<(), HasConstructor>) -> bool {
+    !work.is_empty()
+}
+
+/// Makes colliders. In a command: in a chain of systems, most frames would pay for two points of synchronisation and have
+/// nothing to do.
+pub(super) fn construct(mut commands: Commands) {
+    commands.queue(|world: &mut World| {
+        run(world, give_constructors);
+        run(world, make_colliders);
+        run(world, finish_hierarchies);
+    });
 }
 
 /// Runs a system and its commands.
