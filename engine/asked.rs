@@ -1,10 +1,11 @@
-//! Whether anything ever asked for data that is made only then.
+//! A flag that the first reader sets of data that is computed only for readers.
 
 use core::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
 
-/// Set by the first reader, for good.
-#[derive(Debug, Default)]
-pub(crate) struct Asked(AtomicBool);
+/// Whether anything ever asked. Clones share the flag, which is never cleared.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Asked(Arc<AtomicBool>);
 
 impl Asked {
     pub(crate) fn note(&self) {
@@ -16,11 +17,5 @@ impl Asked {
 
     pub(crate) fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)
-    }
-}
-
-impl Clone for Asked {
-    fn clone(&self) -> Self {
-        Self(AtomicBool::new(self.is_set()))
     }
 }

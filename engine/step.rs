@@ -307,7 +307,7 @@ pub(crate) fn install(app: &mut App) {
     removal::watch(app);
     Stage::ALL.iter().for_each(|(stage, _)| place(app, *stage));
     add_systems_of(Owner::Step, app, PhysicsSchedule.intern());
-    app.configure_sets(PhysicsSchedule, Timers.run_if(|times: Res<StepTimes>| times.is_running()));
+    app.configure_sets(PhysicsSchedule, Timers.run_if(|times: Res<StepTimes>| times.are_read()));
     for (i, &(stage, name)) in Stage::ALL.iter().enumerate() {
         let end = (move |mut times: ResMut<StepTimes>| times.end(name)).in_set(Timers).after(stage);
         let end = match Stage::ALL.get(i + 1) {

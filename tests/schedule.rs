@@ -420,24 +420,56 @@ fn an_ambiguous_order_of_systems_in_a_step_or_substep_is_an_error() {
     }
 }
 
+fn are_in_order(parts: &[(&str, Duration)]) -> bool {
+    let place = |name: &str| parts.iter().position(|(part, _)| *part == name);
+    let order =
+        ["Prepare", "DrainLifecycle", "Gather", "Substeps", "Scatter", "Refit", "Writeback"].map(place);
+    order.iter().all(Option::is_some) && order.is_sorted()
+}
+
+#[test]
+fn parts_are_in_order_when_first_read_while_paused_by_a_clone() {
+    let mut app = app();
+    app.world_mut().spawn((RigidBody::Dynamic, Collider::default()));
+    let read = |app: &App| app.world().resource::<StepTimes>().clone().parts().collect::<Vec<_>>();
+    tick(&mut app, 10);
+    clock(&mut app).pause();
+    assert_eq!(read(&app), []);
+    tick(&mut app, 10);
+    clock(&mut app).unpause();
+    tick(&mut app, 10);
+    assert!(are_in_order(&read(&app)), "{:?}", read(&app));
+}
+
+#[test]
+fn parts_of_steps_by_hand_are_timed() {
+    let mut app = app();
+    app.world_mut().spawn((RigidBody::Dynamic, Collider::default()));
+    app.world().resource::<StepTimes>().total();
+    for _ in 0..2 {
+        clock(&mut app).advance_by(Duration::from_millis(10));
+        app.world_mut().run_schedule(PhysicsSchedule);
+    }
+    let times = app.world().resource::<StepTimes>();
+    assert!(times.parts().any(|(part, time)| part == "Substeps" && time > Duration::ZERO), "{times:?}");
+}
+
 #[test]
 fn the_parts_of_a_step_are_timed_in_their_order() {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin, PhysicsPlugins::default()))
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(20)));
     app.finish();
-    app.update();
-    assert_eq!(app.world().resource::<StepTimes>().parts().count(), 0, "nobody asked before");
-    for _ in 0..3 {
+    let mut step = || {
         app.world_mut().spawn((RigidBody::Dynamic, Collider::default()));
         app.update();
-    }
+    };
+    (0..3).for_each(|_| step());
+    assert_eq!(app.world().resource::<StepTimes>().parts().count(), 0, "nobody asked before");
+    (0..3).for_each(|_| app.update());
     let times = app.world().resource::<StepTimes>().clone();
     let parts: Vec<_> = times.parts().collect();
-    let place = |name: &str| parts.iter().position(|(part, _)| *part == name);
-    let order =
-        ["Prepare", "DrainLifecycle", "Gather", "Substeps", "Scatter", "Refit", "Writeback"].map(place);
-    assert!(order.iter().all(Option::is_some) && order.is_sorted(), "{parts:?}");
+    assert!(are_in_order(&parts), "{parts:?}");
     assert_eq!(times.total(), parts.iter().map(|(_, time)| *time).sum());
     assert!(times.total() > Duration::ZERO && times.total() < Duration::from_secs(1));
     for _ in 0..3 {

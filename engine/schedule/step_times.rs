@@ -12,8 +12,8 @@ use crate::asked::Asked;
 /// Time of each part of the last step, in the order they ran: from `Prepare`, where transforms are read, through the
 /// stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
 ///
-/// Empty until it is read for the first time, as clocks cost a tenth of the step of a small world; filled by the next step and those
-/// after it.
+/// Empty until [`parts`](Self::parts) or [`total`](Self::total) is first called, of the resource or a clone, and filled by every
+/// step from then on: the clocks take a tenth of a small world's step.
 ///
 /// The time of the app's systems between two parts is included in the later one. `DrainLifecycle`, `ReadAwake`,
 /// `Gather`, `Scatter`, `WriteTransforms` and `MirrorSleep`, besides `Prepare` and `Writeback`, only copy between
@@ -76,29 +76,31 @@ impl StepTimes {
         }
     }
 
-    /// Whether a step is timed.
-    pub(crate) fn is_running(&self) -> bool {
-        self.last.is_some()
+    /// Whether times were ever read.
+    pub(crate) fn are_read(&self) -> bool {
+        self.asked.is_set()
     }
 
-    /// Begins the first part of a step, if times were ever read.
+    /// Begins the first part of a step.
     pub(crate) fn begin(&mut self) {
-        (self.last, self.next) = (self.asked.is_set().then(Instant::now), 0);
+        (self.last, self.next) = (self.are_read().then(Instant::now), 0);
     }
 
     /// Ends a part: the time since the last one ended is its time.
     pub(crate) fn end(&mut self, part: &'static str) {
-        let Some(last) = self.last else { return };
+        if !self.are_read() {
+            return;
+        }
         let now = Instant::now();
-        self.last = Some(now);
+        let Some(last) = self.last.replace(now) else { return };
         let is_part = |(name, _): &(&str, Duration)| *name == part;
         let place = match self.parts.get(self.next) {
             Some(expected) if is_part(expected) => Some(self.next),
             _ => self.parts.iter().position(is_part),
         };
         let place = place.unwrap_or_else(|| {
-            self.parts.push((part, Duration::ZERO));
-            self.parts.len() - 1
+            self.parts.insert(self.next, (part, Duration::ZERO));
+            self.next
         });
         self.parts[place].1 = now - last;
         self.next = place + 1;

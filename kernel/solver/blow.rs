@@ -29,13 +29,14 @@ pub(super) struct Blows {
     pub(super) reached: BitSet,
     /// Those of this substep, in order of groups.
     struck: Vec<Struck>,
-    /// The same while they are put in order.
+    /// Manifolds before they are sorted. Empty between rounds.
     unordered: Vec<Struck>,
     order: Vec<Place>,
     /// Struck body rows of this substep, in ascending order.
     bodies: Vec<u32>,
     sets: DisjointSets,
-    /// The first body of each set, by its representative, which depends on the order of what is found.
+    /// By the representative of a set, its first body. Representatives depend on the order in which workers find manifolds, first
+    /// bodies do not.
     firsts: Vec<u32>,
     /// By worker.
     groups: Vec<GroupBuffers>,
@@ -50,7 +51,7 @@ pub(super) struct Blows {
     pub(super) elapsed: f32,
 }
 
-/// A struck manifold that is put in order: what decides it mostly, and where it was.
+/// The key by which a struck manifold is sorted, and its place before.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     group: u32,
@@ -180,7 +181,8 @@ impl Blows {
         }
     }
 
-    /// Puts the struck manifolds in order. What was struck in an earlier round and found again is replaced.
+    /// Sorts the struck manifolds. What was struck in an earlier round and found again is replaced: the two are neighbours, as
+    /// rows and anchors do not change within a step.
     fn sort(&mut self) {
         let Self { struck, unordered, order, .. } = self;
         order.sort_unstable_by(|a, b| {

@@ -120,7 +120,7 @@ impl Struck {
         struck
     }
 
-    /// An order of manifolds by their bodies and places. Ids of contacts depend on what else was there before.
+    /// An order of manifolds of the same bodies, by their places. Ids of contacts depend on what else was there before.
     pub(super) fn in_order(&self, other: &Self) -> Ordering {
         let places = [self, other].map(|one| one.row.points[0].anchor.to_array());
         let by_place = || {
@@ -128,7 +128,7 @@ impl Struck {
             all.fold(Ordering::Equal, Ordering::then)
         };
         let by_id = || (self.item.id, self.item.index).cmp(&(other.item.id, other.item.index));
-        self.row.ids.cmp(&other.row.ids).then_with(by_place).then_with(by_id)
+        by_place().then_with(by_id)
     }
 
     /// One sweep of compression: stops a share of the approach of each point, then rubs. Returns the largest change of

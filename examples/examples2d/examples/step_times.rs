@@ -29,9 +29,12 @@ fn show(times: Res<StepTimes>, mut readout: Single<&mut Text, With<Readout>>) {
 
 fn setup(
     mut commands: Commands,
+    times: Res<StepTimes>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<ColorMaterial>>,
 ) {
+    // Steps are timed from the first reading on.
+    times.total();
     let grey = materials.add(Color::srgb(0.35, 0.4, 0.45));
     for (x, angle) in [(-6.0, -0.5f32), (6.0, 0.5)] {
         commands.spawn((

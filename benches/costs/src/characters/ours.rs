@@ -38,6 +38,7 @@ fn time<M>(
 ) -> [f64; 2] {
     let mut app = app(|app| _ = app.add_plugins(plugins));
     spawn(app.world_mut());
+    part(app.world());
     (0..STEPS[0]).for_each(|_| app.update());
     let (mut steps, mut parts) = (Vec::new(), Vec::new());
     for _ in 0..STEPS[1] {
