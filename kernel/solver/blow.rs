@@ -31,7 +31,7 @@ pub(super) struct Blows {
     struck: Vec<Struck>,
     /// Manifolds before they are sorted. Empty between rounds.
     unordered: Vec<Struck>,
-    order: Vec<Place>,
+    order: Vec<SortKey>,
     /// Struck body rows of this substep, in ascending order.
     bodies: Vec<u32>,
     sets: DisjointSets,
@@ -53,7 +53,7 @@ pub(super) struct Blows {
 
 /// The key by which a struck manifold is sorted, and its place before.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct SortKey {
     group: u32,
     rows: [u32; 2],
     at: u32,
@@ -177,7 +177,7 @@ impl Blows {
         for (one, at) in unordered.iter_mut().zip(0..) {
             let body = movable(one, first_dynamic).next();
             one.group = body.map_or(u32::MAX, |row| firsts[sets.find(place(row)) as usize]);
-            order.push(Place { group: one.group, rows: one.row.ids.map(|[row]| row), at });
+            order.push(SortKey { group: one.group, rows: one.row.ids.map(|[row]| row), at });
         }
     }
 
@@ -186,13 +186,13 @@ impl Blows {
     fn sort(&mut self) {
         let Self { struck, unordered, order, .. } = self;
         order.sort_unstable_by(|a, b| {
-            let [one, other] = [a, b].map(|place| &unordered[place.at as usize]);
+            let [one, other] = [a, b].map(|key| &unordered[key.at as usize]);
             let by_rows = (a.group, a.rows).cmp(&(b.group, b.rows));
             by_rows.then_with(|| one.in_order(other)).then_with(|| one.is_old.cmp(&other.is_old))
         });
         struck.clear();
-        for place in order.iter() {
-            let one = &unordered[place.at as usize];
+        for key in order.iter() {
+            let one = &unordered[key.at as usize];
             match struck.last_mut() {
                 Some(new) if new.item == one.item => new.is_jammed |= one.is_jammed,
                 _ => struck.push(one.clone()),
