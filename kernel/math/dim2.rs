@@ -254,6 +254,11 @@ impl<N: Lane> Angular<N> {
     pub fn get(&self, i: usize) -> Angular {
         Angular { z: self.z.get(i) }
     }
+    /// Writes lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, w: Angular) {
+        self.z.set(i, w.z);
+    }
 }
 
 impl Angular {

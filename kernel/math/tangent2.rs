@@ -114,12 +114,10 @@ impl<N: Lane> TangentMass<N> {
     pub fn rub(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
         (impulse - self.apply(v)).clamp_length(limit)
     }
-}
-
-impl TangentMass {
     /// The change of slip per impulse, 1/kg; 0 if nothing moves.
-    pub fn mean_inverse(self) -> f32 {
-        if self.xx > 0.0 { 1.0 / self.xx } else { 0.0 }
+    #[inline(always)]
+    pub fn mean_inverse(self) -> N {
+        N::select(N::ZERO.lt(self.xx), N::ONE / self.xx, N::ZERO)
     }
 }
 

@@ -164,9 +164,12 @@ impl<N: Lane> TangentMass<N> {
         let slide = Tangent::select(regular, against * factor, stick.clamp_length(limit));
         Tangent::select(slides, slide, stick)
     }
-}
-
-impl<N: Lane> TangentMass<N> {
+    /// The change of slip per impulse, 1/kg, about: that along both tangents is not the same. 0 if nothing moves.
+    #[inline(always)]
+    pub fn mean_inverse(self) -> N {
+        let sum = self.xx + self.yy;
+        N::select(N::ZERO.lt(sum), N::splat(2.0) / sum, N::ZERO)
+    }
     /// The slip that an impulse stops.
     #[inline(always)]
     pub fn slip(self, impulse: Tangent<N>) -> Tangent<N> {
@@ -175,14 +178,6 @@ impl<N: Lane> TangentMass<N> {
         let adjugate = Self { xx: self.yy, yy: self.xx, xy: -self.xy };
         let slip = adjugate.apply(impulse) * (N::ONE / determinant);
         Tangent::select(regular, slip, impulse * (N::ONE / trace.max(N::splat(f32::MIN_POSITIVE))))
-    }
-}
-
-impl TangentMass {
-    /// The change of slip per impulse, 1/kg, about: that along both tangents is not the same. 0 if nothing moves.
-    pub fn mean_inverse(self) -> f32 {
-        let sum = self.xx + self.yy;
-        if sum > 0.0 { 2.0 / sum } else { 0.0 }
     }
 }
 

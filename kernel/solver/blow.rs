@@ -16,9 +16,12 @@ use super::struck::{Striking, Struck};
 use crate::contact::ContactTable;
 use crate::data::BitSet;
 use crate::graph::DisjointSets;
-use crate::math::{MAX_POINTS, Vector};
+use crate::math::{MAX_POINTS, Vector, Width};
 use crate::thread_pool::ThreadPool;
-use crate::tuning::solver::{BLOW_SWEEPS, BLOW_WORK};
+use crate::tuning::solver::{BLOW_SWEEPS, BLOW_WORK, ROUND_OF_SWEEPS};
+
+/// Fewest manifolds of a batch of groups that a worker solves, if there are several. Fewer fill fewer lanes.
+const BATCH: usize = 64;
 
 /// The manifolds that are struck in a substep. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
@@ -27,12 +30,18 @@ pub(super) struct Blows {
     pub(super) found: Vec<Vec<Struck>>,
     /// Body rows that were struck in this step.
     pub(super) reached: BitSet,
-    /// Those of this substep, in order of groups.
+    /// 1 for body rows that may have changed since contacts were last looked at, else 0.
+    pub(super) changed: Vec<u8>,
+    /// Those of a round, in order of groups.
     struck: Vec<Struck>,
+    /// Those of earlier rounds of this substep, group by group. [`GONE`] if a later round took their group.
+    resting: Vec<Struck>,
+    /// Bodies of manifolds that were found in a round.
+    touched: BitSet,
     /// Manifolds before they are sorted. Empty between rounds.
     unordered: Vec<Struck>,
     order: Vec<SortKey>,
-    /// Struck body rows of this substep, in ascending order.
+    /// Struck body rows of a round, in ascending order.
     bodies: Vec<u32>,
     sets: DisjointSets,
     /// By the representative of a set, its first body. Representatives depend on the order in which workers find manifolds, first
@@ -50,6 +59,9 @@ pub(super) struct Blows {
     /// The time from the start of the step to the end of this substep, in seconds.
     pub(super) elapsed: f32,
 }
+
+/// The group of manifolds that were taken to another place, and of those that nothing moves.
+const GONE: u32 = u32::MAX;
 
 /// The key by which a struck manifold is sorted, and its place before.
 #[derive(Clone, Copy, Debug)]
@@ -88,10 +100,13 @@ impl Blows {
         self.elapsed = 0.0;
     }
 
-    /// Starts a substep.
-    pub(super) fn begin(&mut self) {
+    /// Starts a substep with this number of body rows.
+    pub(super) fn begin(&mut self, bodies: usize) {
         self.struck.clear();
+        self.resting.clear();
         self.times.clear();
+        self.changed.clear();
+        self.changed.resize(bodies, 1);
         self.solved = 0;
     }
 
@@ -116,28 +131,46 @@ impl Blows {
     }
 
     /// Solves a round with the manifolds that were found. Returns whether any was due.
-    pub(super) fn strike(&mut self, first_dynamic: u32, striking: &Striking, pool: &ThreadPool) -> bool {
-        if self.found.iter().all(Vec::is_empty) {
-            return false;
-        }
+    pub(super) fn strike(
+        &mut self,
+        (first_dynamic, width): (u32, Width),
+        striking: &Striking,
+        pool: &ThreadPool,
+    ) -> bool {
         self.find_groups(first_dynamic);
         self.sort();
-        let Self { struck, groups, given, reached, times, solved, .. } = self;
+        let Self { struck, resting, groups, given, reached, changed, times, solved, .. } = self;
         let mut count = 0;
         for group in struck.chunk_by(|a, b| a.group == b.group).filter(|group| is_due(group)) {
             count += group.len();
-            group.iter().flat_map(|one| movable(one, first_dynamic)).for_each(|row| _ = reached.insert(row));
+            for row in group.iter().flat_map(|one| movable(one, first_dynamic)) {
+                reached.insert(row);
+                changed[row as usize] = 1;
+            }
         }
         let most_sweeps = (BLOW_WORK.saturating_sub(*solved) / count.max(1)).min(BLOW_SWEEPS);
-        let of_groups = struck.chunk_by_mut(|a, b| a.group == b.group).filter(|group| is_due(group));
-        pool.each_into(groups, of_groups, |buffers, group| {
+        let limits = (first_dynamic, width, most_sweeps.max(ROUND_OF_SWEEPS));
+        let batch = if pool.workers() > 1 { BATCH.max(count / (4 * pool.workers())) } else { usize::MAX };
+        let mut in_batch = 0;
+        let batches = struck.chunk_by_mut(move |a, b| {
+            in_batch += 1;
+            let ends = a.group != b.group && in_batch >= batch;
+            in_batch = if ends { 0 } else { in_batch };
+            !ends
+        });
+        pool.each_into(groups, batches, |buffers, batch| {
             // SAFETY: no two groups have a body that may be written in common.
-            unsafe { solve(group, buffers, (first_dynamic, most_sweeps), striking) };
+            unsafe { solve(batch, buffers, limits, striking) };
         });
         // To find and to sort them takes about as long as to solve each once.
-        *solved += struck.len();
+        *solved += struck.len() + resting.iter().filter(|one| one.group != GONE).count();
         *solved += groups.iter_mut().map(|worker| core::mem::take(&mut worker.solved)).sum::<usize>();
         for one in struck.iter_mut() {
+            // What is not due is as it was found.
+            one.is_old = true;
+            if !movable(one, first_dynamic).any(|row| changed[row as usize] != 0) {
+                continue;
+            }
             let impulses = one.impulses();
             if impulses.iter().any(|impulse| *impulse > 0.0) {
                 let (normal, gained) = (one.row.normal, one.gained);
@@ -148,14 +181,23 @@ impl Blows {
             }
             one.rest();
         }
+        resting.append(struck);
         count > 0
     }
 
-    /// Lists what was struck in earlier rounds and what was found in this one, by groups of manifolds that bodies connect.
+    /// Lists what was found, and what it touches of what was struck in earlier rounds, by groups of manifolds that bodies connect.
     fn find_groups(&mut self, first_dynamic: u32) {
-        let Self { found, struck, unordered, order, bodies, sets, firsts, .. } = self;
-        core::mem::swap(struck, unordered);
+        let Self { found, resting, touched, unordered, order, bodies, sets, firsts, .. } = self;
         unordered.extend(found.iter_mut().flat_map(|found| found.drain(..)));
+        touched.clear();
+        unordered.iter().flat_map(|one| movable(one, first_dynamic)).for_each(|row| _ = touched.insert(row));
+        for group in resting.chunk_by_mut(|a, b| a.group == b.group) {
+            let mut rows = group.iter().flat_map(|one| movable(one, first_dynamic));
+            if group[0].group != GONE && rows.any(|row| touched.contains(row)) {
+                unordered.extend_from_slice(group);
+                group.iter_mut().for_each(|one| one.group = GONE);
+            }
+        }
         bodies.clear();
         bodies.extend(unordered.iter().flat_map(|one| movable(one, first_dynamic)));
         bodies.sort_unstable();
@@ -176,7 +218,7 @@ impl Blows {
         order.clear();
         for (one, at) in unordered.iter_mut().zip(0..) {
             let body = movable(one, first_dynamic).next();
-            one.group = body.map_or(u32::MAX, |row| firsts[sets.find(place(row)) as usize]);
+            one.group = body.map_or(GONE, |row| firsts[sets.find(place(row)) as usize]);
             order.push(SortKey { group: one.group, rows: one.row.ids.map(|[row]| row), at });
         }
     }
@@ -219,6 +261,6 @@ impl Blows {
 }
 
 /// Whether a manifold of a group touches in time.
-fn is_due(group: &[Struck]) -> bool {
+pub(super) fn is_due(group: &[Struck]) -> bool {
     group.iter().any(|one| one.is_due && !one.is_jammed)
 }

@@ -258,6 +258,9 @@ impl<N: Lane, const P: usize> Twist<N, P> {
     pub(super) fn lane<const Q: usize>(&self, _i: usize) -> Twist<f32, Q> {
         Twist::default()
     }
+    /// Writes lane `i`: nothing in 2D.
+    #[inline(always)]
+    pub(super) fn set(&mut self, _i: usize, _one: &Twist<f32, P>) {}
     /// The accumulated impulse of lane `i`, N·m·s.
     pub(super) fn impulse(&self, _i: usize) -> f32 {
         0.0

@@ -356,6 +356,15 @@ impl<N: Lane, const P: usize> Twist<N, P> {
         let levers = core::array::from_fn(|k| self.levers.get(k).map_or(0.0, |lever| lever.get(i)));
         Twist { levers, mass: self.mass.get(i), impulse: 0.0 }
     }
+    /// Writes lane `i`.
+    #[inline(always)]
+    pub(super) fn set(&mut self, i: usize, one: &Twist<f32, P>) {
+        for k in 0..P {
+            self.levers[k].set(i, one.levers[k]);
+        }
+        self.mass.set(i, one.mass);
+        self.impulse.set(i, one.impulse);
+    }
     /// The accumulated impulse of lane `i`, N·m·s.
     pub(super) fn impulse(&self, i: usize) -> f32 {
         self.impulse.get(i)

@@ -10,10 +10,13 @@
 //! (Stronge), e being the greatest share. Without friction that is what equal shares return, exactly.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
+use super::blow::is_due;
+use super::compression::Compression;
 use super::struck::{Striking, Struck};
 use super::{BodyRow, RowView};
-use crate::math::{Angular, Vector, max, min};
+use crate::math::{Angular, Vector, Width, max, min};
 use crate::tuning::solver::{BOUNCE_TOLERANCE, CONVERGED, ROUND_OF_SWEEPS};
+use core::ops::Range;
 
 /// A body of a group.
 #[derive(Clone, Copy, Debug)]
@@ -27,12 +30,93 @@ pub(super) struct StruckBody {
     time: f32,
 }
 
-/// What a worker keeps between groups.
+/// What a worker keeps between batches of groups.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GroupBuffers {
+    /// The bodies of all groups, group by group.
     bodies: Vec<StruckBody>,
+    groups: Vec<Progress>,
+    compression: Compression,
     /// How often a manifold was solved since the caller last took this.
     pub(super) solved: usize,
+}
+
+/// How far the sweeps over a group are.
+#[derive(Clone, Debug)]
+pub(super) struct Progress {
+    /// Its manifolds in the batch.
+    manifolds: Range<usize>,
+    /// Its bodies.
+    bodies: Range<usize>,
+    /// The number of sweeps in which impulses rise evenly.
+    rise: usize,
+    /// Sweeps end when velocities change by no more than this, m/s.
+    calm: f32,
+    /// The largest change of velocity in the present sweep, m/s.
+    change: f32,
+    /// The least change of this round of sweeps and of those before.
+    least: [f32; 2],
+    sweeps: usize,
+    is_open: bool,
+    /// Whether more sweeps would not help.
+    is_stuck: bool,
+}
+
+impl Progress {
+    fn new([manifolds, bodies]: [Range<usize>; 2], rise: usize, calm: f32) -> Self {
+        let least = [f32::INFINITY; 2];
+        Self { manifolds, bodies, rise, calm, change: 0.0, least, sweeps: 0, is_open: true, is_stuck: false }
+    }
+
+    /// Starts sweeps anew, without a rise.
+    fn restart(&mut self) {
+        *self = Self::new([self.manifolds.clone(), self.bodies.clone()], 1, self.calm);
+    }
+
+    /// Whether sweeps go on.
+    #[inline(always)]
+    pub(super) fn is_open(&self) -> bool {
+        self.is_open
+    }
+
+    /// The number of sweeps in which impulses rise evenly.
+    #[inline(always)]
+    pub(super) fn rise(&self) -> usize {
+        self.rise
+    }
+
+    /// The number of sweeps so far. Odd ones are backward.
+    #[inline(always)]
+    pub(super) fn sweeps(&self) -> usize {
+        self.sweeps
+    }
+
+    /// Notes a change of velocity in the present sweep, m/s.
+    #[inline(always)]
+    pub(super) fn note(&mut self, change: f32) {
+        self.change = max(self.change, change);
+    }
+
+    /// Ends a sweep of `most` at most, if the group is open. Returns whether it was the last.
+    #[inline(always)]
+    pub(super) fn end_sweep(&mut self, most: usize) -> bool {
+        if !self.is_open {
+            return false;
+        }
+        let change = core::mem::take(&mut self.change);
+        self.sweeps += 1;
+        if self.sweeps >= self.rise {
+            self.is_open = change > self.calm;
+            self.least[0] = min(self.least[0], change);
+            if self.is_open && self.sweeps.is_multiple_of(ROUND_OF_SWEEPS) {
+                self.is_stuck = self.least[0] > 0.99 * self.least[1];
+                self.is_open = !self.is_stuck;
+                self.least = [f32::INFINITY, self.least[0]];
+            }
+        }
+        self.is_open &= self.sweeps < most;
+        !self.is_open
+    }
 }
 
 /// The body rows of a manifold that may be written.
@@ -40,20 +124,64 @@ pub(super) fn movable(one: &Struck, first_dynamic: u32) -> impl Iterator<Item = 
     one.row.ids.into_iter().map(|[row]| row).filter(move |row| *row >= first_dynamic)
 }
 
-/// Solves the impacts of a group, with `most_sweeps` at most, but for a round of sweeps.
+/// Solves the impacts of a batch of groups that are due, with `most_sweeps` at most.
 ///
 /// # Safety
-/// Until it returns, no other thread reads or writes the bodies of the group that may be written, or writes the others.
+/// Until it returns, no other thread reads or writes the bodies of the groups that may be written, or writes the others.
 pub(super) unsafe fn solve(
-    group: &mut [Struck],
-    GroupBuffers { bodies, solved }: &mut GroupBuffers,
-    (first_dynamic, most_sweeps): (u32, usize),
+    batch: &mut [Struck],
+    GroupBuffers { bodies, groups, compression, solved }: &mut GroupBuffers,
+    (first_dynamic, width, most_sweeps): (u32, Width, usize),
     striking: &Striking,
 ) {
     let rows = &striking.bodies;
-    let most_sweeps = most_sweeps.max(ROUND_OF_SWEEPS);
     bodies.clear();
-    for one in group.iter() {
+    groups.clear();
+    compression.begin();
+    let mut end = 0;
+    for group in batch.chunk_by_mut(|a, b| a.group == b.group) {
+        let manifolds = end..end + group.len();
+        end = manifolds.end;
+        if !is_due(group) {
+            compression.leave_out(group.len());
+            continue;
+        }
+        // SAFETY: by the contract.
+        let range = unsafe { list_bodies(group, bodies, first_dynamic, rows) };
+        let place = |row: u32| bodies[range.clone()].binary_search_by_key(&row, |body| body.row);
+        compression.add(group, groups.len(), |row| place(row).ok().map(|k| range.start + k));
+        let fastest = group.iter().fold(0.0, |fastest, one| max(fastest, one.speed));
+        let bounces = group.iter().any(|one| one.bounces);
+        // Where something bounces, its height depends on the rest.
+        let tolerance = if bounces { BOUNCE_TOLERANCE } else { CONVERGED };
+        let shares = bounces && group.len() > 1 && group.iter().any(|one| one.row.friction > 0.0);
+        let rise = if shares { ROUND_OF_SWEEPS } else { 1 };
+        groups.push(Progress::new([manifolds, range], rise, tolerance * fastest));
+        // SAFETY: by the contract.
+        group.iter_mut().for_each(|one| unsafe { one.begin(rows) });
+    }
+    // SAFETY: by the contract.
+    unsafe { compression.run(batch, (groups, bodies.len()), rows, (width, most_sweeps)) };
+    for progress in groups {
+        let (group, bodies) = (&mut batch[progress.manifolds.clone()], &mut bodies[progress.bodies.clone()]);
+        *solved += progress.sweeps * group.len();
+        // SAFETY: by the contract.
+        *solved += unsafe { finish(group, (progress, most_sweeps), bodies, striking) } * group.len();
+    }
+}
+
+/// Lists the bodies of a group that may be written, by row. Returns their range.
+///
+/// # Safety
+/// Until it returns, no other thread writes the bodies of the group.
+unsafe fn list_bodies(
+    group: &[Struck],
+    bodies: &mut Vec<StruckBody>,
+    first_dynamic: u32,
+    rows: &RowView<BodyRow>,
+) -> Range<usize> {
+    let start = bodies.len();
+    for one in group {
         let time = if one.speed > 0.0 { one.time } else { f32::MAX };
         for row in movable(one, first_dynamic) {
             // SAFETY: by the contract.
@@ -61,26 +189,34 @@ pub(super) unsafe fn solve(
             bodies.push(StruckBody { row, before, slow: before, time });
         }
     }
-    bodies.sort_unstable_by(|a, b| a.row.cmp(&b.row).then(a.time.total_cmp(&b.time)));
-    bodies.dedup_by_key(|body| body.row);
+    bodies[start..].sort_unstable_by(|a, b| a.row.cmp(&b.row).then(a.time.total_cmp(&b.time)));
+    let mut end = start;
+    for k in start..bodies.len() {
+        if end == start || bodies[end - 1].row != bodies[k].row {
+            bodies[end] = bodies[k];
+            end += 1;
+        }
+    }
+    bodies.truncate(end);
+    start..end
+}
 
-    let fastest = group.iter().fold(0.0, |fastest, one| max(fastest, one.speed));
-    let bounces = group.iter().any(|one| one.bounces);
-    // Where something bounces, its height depends on the rest.
-    let tolerance = if bounces { BOUNCE_TOLERANCE } else { CONVERGED };
-    let shares = bounces && group.len() > 1 && group.iter().any(|one| one.row.friction > 0.0);
-    let rise = if shares { ROUND_OF_SWEEPS } else { 1 };
-    // SAFETY: by the contract.
-    group.iter_mut().for_each(|one| unsafe { one.begin(rows) });
-    let calm = tolerance * fastest;
-    // SAFETY: by the contract.
-    let compress = |one: &mut Struck, is_backward, share| unsafe { one.compress(rows, is_backward, share) };
-    let (sweeps, is_stuck) = sweep(group, (rise, most_sweeps), calm, compress);
-    *solved += sweeps * group.len();
-    if is_stuck {
+/// Returns what a compressed group returns, and displaces its bodies. Returns the number of sweeps of friction.
+///
+/// # Safety
+/// As [`solve`].
+unsafe fn finish(
+    group: &mut [Struck],
+    (progress, most_sweeps): (&mut Progress, usize),
+    bodies: &mut [StruckBody],
+    striking: &Striking,
+) -> usize {
+    let rows = &striking.bodies;
+    if progress.is_stuck {
         // SAFETY: by the contract.
         group.iter_mut().for_each(|one| unsafe { one.find_jam(rows, striking.params) });
     }
+    let mut sweeps = 0;
     let share = group.iter().map(Struck::share).fold(0.0, max);
     if share > 0.0 {
         // SAFETY: by the contract.
@@ -93,9 +229,17 @@ pub(super) unsafe fn solve(
         group.iter_mut().for_each(|one| unsafe { one.stop(rows) });
         // SAFETY: by the contract.
         group.iter_mut().for_each(|one| unsafe { one.restitute(rows) });
-        // SAFETY: by the contract.
-        let (sweeps, _) = sweep(group, (1, most_sweeps), calm, |one, _, _| unsafe { one.rub(rows) });
-        *solved += sweeps * group.len();
+        progress.restart();
+        while progress.is_open {
+            let is_backward = progress.sweeps % 2 == 1;
+            for k in 0..group.len() {
+                let k = if is_backward { group.len() - 1 - k } else { k };
+                // SAFETY: by the contract.
+                progress.note(unsafe { group[k].rub(rows) });
+            }
+            progress.end_sweep(most_sweeps);
+        }
+        sweeps = progress.sweeps;
         // SAFETY: by the contract.
         unsafe { return_at_most(share * share * max(lost, 0.0), group, bodies, rows) };
     }
@@ -110,6 +254,7 @@ pub(super) unsafe fn solve(
         // SAFETY: by the contract.
         unsafe { rows.put(body.row, change) };
     }
+    sweeps
 }
 
 /// Scales the impulses of restitution and what they changed so that they add no more than this energy, J.
@@ -143,41 +288,4 @@ unsafe fn return_at_most(most: f32, group: &mut [Struck], bodies: &[StruckBody],
 unsafe fn work(group: &[Struck], rows: &RowView<BodyRow>) -> [f32; 2] {
     // SAFETY: by the contract.
     group.iter().map(|one| unsafe { one.work(rows) }).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
-}
-
-/// Sweeps over a group, forward and backward in turns, until velocities change by no more than this, m/s. In the first `rise`
-/// sweeps impulses rise evenly. Returns how many there were, and whether more would not help.
-fn sweep(
-    group: &mut [Struck],
-    (rise, most): (usize, usize),
-    calm: f32,
-    mut solve: impl FnMut(&mut Struck, bool, f32) -> f32,
-) -> (usize, bool) {
-    // The least change of these sweeps and of those before.
-    let [mut least, mut earlier] = [f32::INFINITY; 2];
-    for count in 0..most {
-        let is_backward = count % 2 == 1;
-        let share = 1.0 / max(rise as f32 - count as f32, 1.0);
-        let mut change = 0.0;
-        let mut one = |one: &mut Struck| change = max(change, solve(one, is_backward, share));
-        if is_backward {
-            group.iter_mut().rev().for_each(&mut one);
-        } else {
-            group.iter_mut().for_each(&mut one);
-        }
-        if share < 1.0 {
-            continue;
-        }
-        if change <= calm {
-            return (count + 1, false);
-        }
-        least = min(least, change);
-        if count % ROUND_OF_SWEEPS == ROUND_OF_SWEEPS - 1 {
-            if least > 0.99 * earlier {
-                return (count + 1, true);
-            }
-            (earlier, least) = (least, f32::INFINITY);
-        }
-    }
-    (most, false)
 }

@@ -17,6 +17,7 @@ mod batches;
 mod bearing;
 mod blow;
 mod body;
+mod compression;
 mod contact_batch;
 mod contact_fill;
 mod custom;

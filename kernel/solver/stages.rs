@@ -218,11 +218,11 @@ impl Solver {
 
     /// Strikes what closes fast in this substep, then applies the accumulated impulses.
     pub fn warm_start(&mut self, params: &SubstepParams, pool: &ThreadPool) {
-        self.bodies.enter_rows(pool);
         let was_struck = self.strike(params.h, params, pool);
         if core::mem::take(&mut self.gaps_are_old) || was_struck {
             self.sweep(Pass::Measure, params, pool);
         }
+        self.bodies.enter_rows(pool);
         if !self.bodies.begin_gains(pool) {
             self.sweep(Pass::WarmStart, params, pool);
         }
@@ -231,7 +231,6 @@ impl Solver {
 
     /// Solves constraints with soft bias.
     pub fn solve(&mut self, params: &SubstepParams, pool: &ThreadPool) {
-        self.bodies.enter_rows(pool);
         if core::mem::take(&mut self.gaps_are_old) {
             self.sweep(Pass::Measure, params, pool);
         }
@@ -248,11 +247,11 @@ impl Solver {
 
     /// Removes split impulses from the velocities, then solves constraints without bias, and applies friction.
     pub fn relax(&mut self, params: &SubstepParams, pool: &ThreadPool) {
-        self.bodies.enter_rows(pool);
         if self.plan.blocks.iter().any(|block| block.passes.has(Pass::UndoSplit)) {
             self.sweep(Pass::UndoSplit, params, pool);
         }
         self.sweep(Pass::Relax, params, pool);
+        self.bodies.enter_rows(pool);
         self.bodies.end_gains(pool);
         self.bodies.leave_rows(pool);
     }
@@ -275,7 +274,6 @@ impl Solver {
 
     /// Strikes what closes fast and touches, after the last substep.
     pub fn restitute(&mut self, params: &SubstepParams, pool: &ThreadPool) {
-        self.bodies.enter_rows(pool);
         if self.strike(0.0, params, pool) {
             let BodyRows { moved, .. } = &mut self.bodies;
             self.blows.reached.iter().for_each(|row| _ = moved.insert(row));
@@ -291,16 +289,13 @@ impl Solver {
         if !is_watched && self.blows.reached.is_empty() {
             return false;
         }
-        self.blows.begin();
-        let is_jointed = self.trees.len() > 0;
-        if is_jointed {
-            self.with_true_turns(pool, |blows, trees, (bodies, _)| blows.begin(trees, &bodies));
-        }
+        self.blows.begin(self.bodies.rows.len());
+        self.tree_blows.are_begun = false;
         let any = self.strike_contacts(time, params, pool);
-        if is_jointed {
+        if self.tree_blows.are_begun {
             for _ in 0..JOINT_ROUNDS {
                 let Self { trees, tree_blows, blows, .. } = self;
-                if !tree_blows.mark(trees, &mut blows.times, &mut blows.reached) {
+                if !tree_blows.mark(trees, blows) {
                     break;
                 }
                 self.with_true_turns(pool, |blows, trees, (bodies, gains)| {
@@ -311,6 +306,7 @@ impl Solver {
             }
             self.with_true_turns(pool, |blows, trees, (bodies, _)| blows.end(trees, &bodies, time));
         }
+        self.bodies.enter_rows(pool);
         self.bodies.follow_blows(&self.blows.reached, params.h);
         any
     }
@@ -323,42 +319,55 @@ impl Solver {
     ) {
         self.bodies.leave_rows(pool);
         f(&mut self.tree_blows, &mut self.trees, self.bodies.views(self.first_dynamic));
-        self.bodies.enter_rows(pool);
     }
 
     /// Strikes the contacts that close fast, and those that are reached then, in rounds. Returns whether there were any.
     fn strike_contacts(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) -> bool {
-        let Self { bodies, joints, customs, rows, plan, layers, blows, bearing, first_dynamic, .. } = self;
-        let BodyRows { rows: body_rows, motions, .. } = bodies;
-        let bodies_view = RowView::over(body_rows, *first_dynamic);
-        let striking =
-            Striking { bodies: bodies_view, motions, bearing, params, time, elapsed: blows.elapsed };
         let mut any = false;
+        for _ in 0..BLOW_SWEEPS {
+            if self.blows.is_spent() || !self.find_struck(time, params, pool) {
+                break;
+            }
+            if self.trees.len() > 0 && !self.tree_blows.are_begun {
+                self.with_true_turns(pool, |blows, trees, (bodies, _)| blows.begin(trees, &bodies));
+            }
+            self.bodies.enter_rows(pool);
+            let Self { bodies: BodyRows { rows, motions, width, .. }, blows, bearing, .. } = self;
+            let bodies = RowView::over(rows, self.first_dynamic);
+            let striking = Striking { bodies, motions, bearing, params, time, elapsed: blows.elapsed };
+            if !blows.strike((self.first_dynamic, *width), &striking, pool) {
+                break;
+            }
+            any = true;
+        }
+        any
+    }
+
+    /// Finds the contacts that close fast: in a substep at first all, then those of bodies that blows have changed since. Returns
+    /// whether there are any.
+    fn find_struck(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) -> bool {
+        self.bodies.enter_rows(pool);
+        let Self { bodies, joints, customs, rows, plan, layers, blows, bearing, .. } = self;
+        let BodyRows { rows: body_rows, motions, .. } = bodies;
+        let bodies = RowView::over(body_rows, self.first_dynamic);
+        let Blows { found, reached, changed, elapsed, .. } = blows;
+        let striking = Striking { bodies, motions, bearing, params, time, elapsed: *elapsed };
+        let seek = &Seek { striking, reached, changed };
         let mut blocks = core::mem::take(&mut plan.blocks);
         rows.with(joints, customs, |batches| {
-            for _ in 0..BLOW_SWEEPS {
-                if blows.is_spent() {
-                    break;
+            let looked_at = |block: &&mut Block| !seek.reached.is_empty() || block.passes.are_watched();
+            pool.each_into(found, blocks.iter_mut().filter(looked_at), |found, block| {
+                let items = plan.items(block, layers.colors());
+                let batch = batches[usize::from(block.batch)];
+                // SAFETY: each block is looked at once, and bodies are only read.
+                if unsafe { batch.find_struck(block.rows(), (items, block.passes), seek, found) } {
+                    block.passes = block.passes.watched();
                 }
-                let Blows { found, reached, .. } = blows;
-                let seek = &Seek { striking, reached };
-                let looked_at = |block: &&mut Block| !seek.reached.is_empty() || block.passes.are_watched();
-                pool.each_into(found, blocks.iter_mut().filter(looked_at), |found, block| {
-                    let items = plan.items(block, layers.colors());
-                    let batch = batches[usize::from(block.batch)];
-                    // SAFETY: each block is looked at once, and bodies are only read.
-                    if unsafe { batch.find_struck(block.rows(), (items, block.passes), seek, found) } {
-                        block.passes = block.passes.watched();
-                    }
-                });
-                if !blows.strike(*first_dynamic, &striking, pool) {
-                    break;
-                }
-                any = true;
-            }
+            });
         });
         plan.blocks = blocks;
-        any
+        changed.fill(0);
+        found.iter().any(|found| !found.is_empty())
     }
 
     /// The blows of the step, in the order of time. A manifold may be struck several times. They are kept until the next step.
@@ -435,12 +444,12 @@ impl Solver {
             bodies.leave_rows(pool);
             let (rows, gains) = bodies.views(*first_dynamic);
             trees.run(&Sweep { pass, bodies: rows, gains, params }, pool);
-            bodies.enter_rows(pool);
         }
     }
 
     /// Runs a pass over all blocks that need it, stage by stage.
     fn sweep_rows(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
+        self.bodies.enter_rows(pool);
         let Self { bodies, joints, customs, rows, plan, first_dynamic, .. } = self;
         debug_assert!(
             plan.blocks.is_empty() || *first_dynamic == bodies.first_dynamic(),

@@ -6,7 +6,7 @@ use super::impact::Motions;
 use super::input::Item;
 use super::pair::Pair;
 use super::{BodyRow, ContactRow, Motion, PointRow, RowView, SubstepParams};
-use crate::math::{Angular, MAX_POINTS, Tangent, TangentFrame, Vector, max, min};
+use crate::math::{Angular, Ids, Lane, MAX_POINTS, Tangent, TangentFrame, Vector, max, min};
 use crate::tuning::solver::{NEARLY, TOUCHING};
 use core::cmp::Ordering;
 
@@ -33,7 +33,7 @@ pub(super) struct Struck {
     pub(super) time: f32,
     /// The approach speed along the normal that accelerations added since the start of the step, m/s.
     pub(super) gained: f32,
-    moments: [[Angular; 2]; MAX_POINTS],
+    pub(super) moments: [[Angular; 2]; MAX_POINTS],
     /// The ratio of the impulse that a point returns to the one that stops it. Negative for points that do not take part.
     returned: [f32; MAX_POINTS],
     /// The normal impulses that stopped the points, N·s, in the phase of restitution.
@@ -131,31 +131,10 @@ impl Struck {
         by_place().then_with(by_id)
     }
 
-    /// One sweep of compression: stops a share of the approach of each point, then rubs. Returns the largest change of
-    /// velocity, m/s.
-    ///
-    /// # Safety
-    /// Until it returns, no other thread reads or writes the bodies of the manifold that may be written, or writes the others.
-    pub(super) unsafe fn compress(&mut self, rows: &RowView<BodyRow>, is_backward: bool, share: f32) -> f32 {
-        // SAFETY: by the contract.
-        let mut pair = unsafe { Pair::load(rows, &self.row.ids) };
-        let (n, mut change) = (self.row.normal, 0.0f32);
-        for k in 0..MAX_POINTS {
-            let i = if is_backward { MAX_POINTS - 1 - k } else { k };
-            let PointRow { mass, impulse, .. } = self.row.points[i];
-            if self.returned[i] < 0.0 {
-                continue;
-            }
-            let new = max(impulse - share * mass * pair.along(n, self.moments[i]), 0.0);
-            let delta = new - impulse;
-            self.row.points[i].impulse = new;
-            change = max(change, delta.abs() / mass);
-            self.row.push(&mut pair, n * delta, self.moments[i].map(|moment| moment * delta));
-        }
-        change = max(change, self.row.rub(&mut pair));
-        // SAFETY: by the contract.
-        unsafe { pair.store(rows, &self.row.ids) };
-        change
+    /// Whether a point takes part in the impact.
+    #[inline(always)]
+    pub(super) fn takes_part(&self, point: usize) -> bool {
+        self.returned[point] >= 0.0
     }
 
     /// Starts compression.
@@ -181,7 +160,7 @@ impl Struck {
     /// Returns to each point its share of the impulse that stopped it.
     ///
     /// # Safety
-    /// As [`compress`](Self::compress).
+    /// Until it returns, no other thread reads or writes the bodies of the manifold that may be written, or writes the others.
     pub(super) unsafe fn restitute(&mut self, rows: &RowView<BodyRow>) {
         // SAFETY: by the contract.
         let mut pair = unsafe { Pair::load(rows, &self.row.ids) };
@@ -239,7 +218,7 @@ impl Struck {
     /// One sweep of friction alone. Returns the largest change of velocity, m/s.
     ///
     /// # Safety
-    /// As [`compress`](Self::compress).
+    /// As [`restitute`](Self::restitute).
     pub(super) unsafe fn rub(&mut self, rows: &RowView<BodyRow>) -> f32 {
         // SAFETY: by the contract.
         let mut pair = unsafe { Pair::load(rows, &self.row.ids) };
@@ -276,7 +255,7 @@ impl Struck {
     pub(super) fn rest(&mut self) {
         self.row.forget();
         self.stopped = [0.0; MAX_POINTS];
-        (self.speed, self.is_due, self.is_old, self.bounces) = (0.0, false, true, false);
+        (self.speed, self.is_due, self.bounces) = (0.0, false, false);
         self.returned = self.returned.map(|share| if share < 0.0 { share } else { 0.0 });
     }
 }
@@ -288,15 +267,41 @@ impl ContactRow<f32, Vector, MAX_POINTS> {
         self.tangent_impulse = Tangent::ZERO;
         self.twist.set_impulse(0, 0.0);
     }
+}
 
+impl<N: Lane, const P: usize> ContactRow<N, Vector<N>, P> {
     /// Friction of an impact. Returns the change of the slip, m/s, about.
-    fn rub(&mut self, pair: &mut Pair<f32>) -> f32 {
+    #[inline(always)]
+    pub(super) fn rub(&mut self, pair: &mut Pair<N>) -> N {
         let (before, pressure) = (self.tangent_impulse, self.pressure());
-        if self.friction * pressure == 0.0 && before == Tangent::ZERO {
-            return 0.0;
+        let is_frictionless = (self.friction * pressure).eq(N::ZERO);
+        if N::bits(N::and(is_frictionless, before.length().eq(N::ZERO))) == (1 << N::WIDTH) - 1 {
+            return N::ZERO;
         }
         self.solve_friction(pair, Vector::ZERO, pressure);
         (self.tangent_impulse - before).length() * self.tangent_mass.mean_inverse()
+    }
+
+    /// Copies one manifold into a lane. The effective mass of friction is left out.
+    #[inline(always)]
+    pub(super) fn set(&mut self, lane: usize, one: &ContactRow<f32, Vector, P>) {
+        for side in 0..2 {
+            self.ids[side].set(lane, one.ids[side][0]);
+            self.inv_mass[side].set(lane, one.inv_mass[side]);
+            self.inv_inertia[side].set(lane, one.inv_inertia[side]);
+        }
+        self.normal.set(lane, one.normal);
+        self.offset.set(lane, one.offset);
+        self.radius.set(lane, one.radius);
+        self.friction.set(lane, one.friction);
+        self.surface_velocity.set(lane, one.surface_velocity);
+        self.center.set(lane, one.center);
+        self.tangent_impulse.set(lane, one.tangent_impulse);
+        self.twist.set(lane, &one.twist);
+        for (point, of) in self.points.iter_mut().zip(&one.points) {
+            point.mass.set(lane, of.mass);
+            point.impulse.set(lane, of.impulse);
+        }
     }
 }
 

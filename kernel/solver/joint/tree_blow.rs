@@ -6,17 +6,19 @@
 #![expect(unsafe_code, reason = "bodies and joints of different trees are changed at once")]
 
 use super::super::batch::Sweep;
+use super::super::blow::Blows;
 use super::super::{BodyRow, RowView};
 use super::forest::GROUND;
 use super::tree::JointTrees;
 use super::tree_joint::range;
-use crate::data::BitSet;
 use crate::math::{Angular, Rot, Vector, min};
 use crate::thread_pool::ThreadPool;
 
 /// State of the trees while blows are solved. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(in super::super) struct TreeBlows {
+    /// Whether they have begun in this substep: with the first blow.
+    pub(in super::super) are_begun: bool,
     /// By tree, the time of its first blow from the start of the substep, in seconds. `f32::MAX` if it was not struck.
     times: Vec<f32>,
     /// By tree, whether it was struck since it was last solved.
@@ -40,7 +42,8 @@ impl TreeBlows {
     /// Starts the blows of a substep. Limits begin without impulses.
     pub(in super::super) fn begin(&mut self, trees: &mut JointTrees, bodies: &RowView<BodyRow>) {
         let JointTrees { forest, bodies: listed, .. } = &*trees;
-        let Self { times, is_due, before, earlier } = self;
+        let Self { are_begun, times, is_due, before, earlier } = self;
+        *are_begun = true;
         times.clear();
         times.resize(forest.trees.len(), f32::MAX);
         is_due.clear();
@@ -63,24 +66,25 @@ impl TreeBlows {
     pub(in super::super) fn mark(
         &mut self,
         trees: &JointTrees,
-        struck: &mut Vec<(u32, f32)>,
-        reached: &mut BitSet,
+        Blows { times, reached, changed, .. }: &mut Blows,
     ) -> bool {
         let mut any = false;
-        for (row, time) in struck.drain(..) {
+        for (row, time) in times.drain(..) {
             let node = trees.numbers.get(row as usize).copied().unwrap_or(GROUND);
             let Some(tree) = trees.forest.owners.get(node as usize).copied().filter(|tree| *tree != GROUND)
             else {
                 continue;
             };
             any = true;
-            self.is_due[tree as usize] = true;
             let first = &mut self.times[tree as usize];
-            if *first == f32::MAX {
-                let of_tree = &trees.bodies[range(trees.forest.trees[tree as usize].bodies)];
-                of_tree.iter().for_each(|body| _ = reached.insert(body.row));
-            }
             *first = min(*first, time);
+            if core::mem::replace(&mut self.is_due[tree as usize], true) {
+                continue;
+            }
+            for body in &trees.bodies[range(trees.forest.trees[tree as usize].bodies)] {
+                reached.insert(body.row);
+                changed[body.row as usize] = 1;
+            }
         }
         any
     }
