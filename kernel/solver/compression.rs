@@ -298,3 +298,42 @@ impl<N: Lane> Side<N> {
         unsafe { pair.or_where_not(open, before).store(rows, &self.row.ids) };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn manifolds_of_a_body_keep_their_order(
+            manifolds in prop::collection::vec((0u32..12, 0u32..16, 0u32..4), 0..80),
+            lanes in prop::sample::select(vec![1usize, 4, 8]),
+        ) {
+            // Bodies of a group are its own. From 12 on nothing moves them, and the last group is not due.
+            let mut compression = Compression::default();
+            for (a, b, group) in &manifolds {
+                let end = |body: u32| if body < 12 { group * 12 + body } else { NONE };
+                compression.ends.push([end(*a), end(*b)]);
+                compression.groups.push(if *group < 3 { *group } else { NONE });
+            }
+            let groups = vec![Progress::new([0..0, 0..0], 1, 0.0); 3];
+            let count = compression.schedule(&groups, 36, lanes);
+            let mut places = vec![None; manifolds.len()];
+            for (place, manifold) in compression.order.iter().enumerate().filter(|(_, manifold)| **manifold != NONE) {
+                prop_assert_eq!(places[*manifold as usize].replace(place / lanes), None);
+            }
+            prop_assert_eq!(count, places.iter().flatten().count());
+            for (i, place) in places.iter().enumerate() {
+                prop_assert_eq!(place.is_some(), manifolds[i].2 < 3);
+                let Some(place) = place else { continue };
+                for j in (0..i).filter(|j| places[*j].is_some()) {
+                    let [one, other] = [i, j].map(|k| compression.ends[k]);
+                    if one.iter().any(|end| *end != NONE && other.contains(end)) {
+                        prop_assert!(places[j] < Some(*place), "{j} before {i}");
+                    }
+                }
+            }
+        }
+    }
+}

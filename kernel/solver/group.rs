@@ -63,7 +63,7 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    fn new([manifolds, bodies]: [Range<usize>; 2], rise: usize, calm: f32) -> Self {
+    pub(super) fn new([manifolds, bodies]: [Range<usize>; 2], rise: usize, calm: f32) -> Self {
         let least = [f32::INFINITY; 2];
         Self { manifolds, bodies, rise, calm, change: 0.0, least, sweeps: 0, is_open: true, is_stuck: false }
     }

@@ -11,9 +11,19 @@ use super::place::{Gradient, Place};
 use super::tree_pass::Tree;
 use super::tree_scratch::{Known, Scratch};
 use super::tree_single::{is, number};
-use crate::math::{Angular, DIM, Entry, InvInertia, Rot, Vector};
+use crate::math::{Angular, DIM, Entry, InvInertia, Lane, Rot, Vector};
 use crate::tuning::manifold::SAME;
 use crate::tuning::solver::NO_MASS;
+
+/// Where two velocities differ.
+#[inline(always)]
+fn differs<N: Lane>(a: &[N; DOF], b: &[N; DOF]) -> N::Mask {
+    let mut any = a[0].lt(a[0]);
+    for i in 0..DOF {
+        any = N::or(any, N::or(a[i].lt(b[i]), b[i].lt(a[i])));
+    }
+    any
+}
 
 impl<N: Entry> Tree<'_, N> {
     /// The velocities of a joint's bodies now.
@@ -66,47 +76,55 @@ impl<N: Entry> Tree<'_, N> {
         *known = Known::Places;
     }
 
-    /// Loads velocities, and sums up the inertia that joints ask for. Returns whether it changed in
-    /// an open lane.
+    /// Loads velocities. If the tree was solved in the same way just before, lanes in which none has changed since are closed.
+    /// Returns whether any lane is open.
     ///
     /// # Safety
     /// As [`place`](Self::place).
     #[inline(always)]
     pub(super) unsafe fn load(&mut self, sweep: &Sweep) -> bool {
-        let h = N::splat(sweep.params.h);
-        let velocities = &mut self.scratch.velocities;
-        velocities.clear();
-        for body in self.bodies.iter_mut() {
-            body.least = N::ZERO;
+        let Scratch { known, velocities, settled, open, .. } = &mut *self.scratch;
+        let is_repeated = *known == Known::Factors(sweep.pass) && velocities.len() == self.bodies.len();
+        let mut changed = if is_repeated { N::ONE - *settled } else { N::ONE };
+        velocities.resize(self.bodies.len(), [N::ZERO; DOF]);
+        for (body, velocity) in self.bodies.iter().zip(velocities) {
             // SAFETY: by the contract.
-            velocities.push(numbers(unsafe { BodyRow::gather_velocity::<N>(&sweep.bodies, &body.ids) }));
+            let now = numbers(unsafe { BodyRow::gather_velocity::<N>(&sweep.bodies, &body.ids) });
+            changed = N::select(differs::<N>(velocity, &now), N::ONE, changed);
+            *velocity = now;
         }
         for (joint, link) in self.joints.iter_mut().zip(&*self.links) {
             for (end, place) in link.places.into_iter().enumerate() {
-                let side = joint.side(end);
-                if let Some(body) = self.bodies.get_mut(place as usize) {
-                    body.least += h * joint.load * joint.arms[side];
-                } else {
-                    let ids = &joint.row.ids[side];
+                if place == GROUND {
+                    let ids = &joint.row.ids[joint.side(end)];
                     // SAFETY: by the contract.
-                    joint.outside = numbers(unsafe { BodyRow::gather_velocity::<N>(&sweep.bodies, ids) });
+                    let now = numbers(unsafe { BodyRow::gather_velocity::<N>(&sweep.bodies, ids) });
+                    changed = N::select(differs::<N>(&joint.outside, &now), N::ONE, changed);
+                    joint.outside = now;
                 }
             }
         }
-        let (open, mut is_other) = (is(self.scratch.open), false);
-        for body in self.bodies.iter() {
-            let (before, now) = (body.lacking, body.lacks());
-            is_other |= N::any(N::and(open, N::or(before.lt(now), now.lt(before))));
-        }
-        is_other
+        *open = N::select(is(changed), *open, N::ZERO);
+        N::any(is(*open))
     }
 
-    /// Finds the inertia of bodies where they are now.
+    /// Finds the inertia of bodies where they are now, with what joints ask for.
     ///
     /// # Safety
     /// As [`place`](Self::place).
     #[inline(always)]
     pub(super) unsafe fn turn_bodies(&mut self, sweep: &Sweep) {
+        let h = N::splat(sweep.params.h);
+        for body in self.bodies.iter_mut() {
+            body.least = N::ZERO;
+        }
+        for (joint, link) in self.joints.iter().zip(&*self.links) {
+            for (end, place) in link.places.into_iter().enumerate() {
+                if let Some(body) = self.bodies.get_mut(place as usize) {
+                    body.least += h * joint.load * joint.arms[joint.side(end)];
+                }
+            }
+        }
         // Lanes that are not solved keep what their warm start uses.
         let open = is(self.scratch.open);
         for (body, node) in self.bodies.iter_mut().zip(&mut *self.nodes) {
@@ -128,7 +146,6 @@ impl<N: Entry> Tree<'_, N> {
                 joint.row.masses.set_where(open, side, linear, angular);
             }
         }
-        self.scratch.known = Known::Places;
     }
 
     /// Factors the trees with what is locked alone, as in the relax pass.
@@ -253,7 +270,10 @@ impl<N: Entry> Tree<'_, N> {
     /// No condition: unsafe as all parts are.
     #[inline(always)]
     pub(super) unsafe fn pivot(&mut self, sweep: &Sweep) -> bool {
-        let (open, mut any_changed) = (is(self.scratch.open), N::ZERO);
+        let Scratch { settled, open, is_last, .. } = &mut *self.scratch;
+        // Lanes that are open in the last round are not settled.
+        *settled = if *is_last { settled.min(N::ONE - *open) } else { N::ONE };
+        let (open, mut any_changed) = (is(*open), N::ZERO);
         let mut changes = core::mem::take(&mut self.scratch.changes);
         changes.clear();
         let adds = self.scratch.adds;

@@ -133,10 +133,10 @@ impl<N: Entry> Tree<'_, N> {
         unsafe {
             if self.scratch.known == Known::Nothing {
                 entry.run(PlaceAll(self, sweep));
-            }
-            let is_other = entry.run(Load(self, sweep));
-            if self.scratch.known != Known::Factors(sweep.pass) || is_other {
                 entry.run(TurnInertia(self, sweep));
+            }
+            if !entry.run(Load(self, sweep)) {
+                return;
             }
         }
         let has_turns = self.joints.iter().any(|joint| joint.orientation.is_some());

@@ -22,6 +22,8 @@ pub(super) enum Known {
 #[derive(Clone, Debug)]
 pub(super) struct Scratch<N: Lane> {
     pub(super) known: Known,
+    /// 1 in lanes in which the last pass found what acts, else 0.
+    pub(super) settled: N,
     /// Whether the masses that coordinates move are known in this step.
     pub(super) is_weighed: bool,
     /// 1 in lanes that are solved, and not done yet, else 0.
@@ -48,6 +50,7 @@ impl<N: Lane> Default for Scratch<N> {
     fn default() -> Self {
         Self {
             known: Known::Nothing,
+            settled: N::ZERO,
             is_weighed: false,
             open: N::ONE,
             was_open: N::ONE,
