@@ -194,6 +194,7 @@ fn eight_lanes_stay_behind_their_entry_points() {
         "math/lane_avx.rs",
         "math/entry.rs",
         "solver/batches.rs",
+        "solver/compression.rs",
         "solver/integrate.rs",
         "solver/joint/tree.rs",
         "contact/recycle.rs",

@@ -97,8 +97,6 @@ pub(super) struct Seek<'a> {
     pub(super) striking: Striking<'a>,
     /// Body rows that were struck in this step.
     pub(super) reached: &'a BitSet,
-    /// 1 for body rows that may have changed since contacts were last looked at, else 0.
-    pub(super) changed: &'a [u8],
 }
 
 /// One pass over all rows.

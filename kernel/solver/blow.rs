@@ -10,9 +10,9 @@
 //! Bodies move with their old velocity until they touch: each is displaced by the time until then, times the change of its velocity.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::group::{GroupBuffers, movable, solve};
+use super::group::{GroupBuffers, solve};
 use super::input::Item;
-use super::struck::{Striking, Struck};
+use super::struck::{Striking, Struck, is_due, movable};
 use crate::contact::ContactTable;
 use crate::data::BitSet;
 use crate::graph::DisjointSets;
@@ -20,7 +20,7 @@ use crate::math::{MAX_POINTS, Vector, Width};
 use crate::thread_pool::ThreadPool;
 use crate::tuning::solver::{BLOW_SWEEPS, BLOW_WORK, ROUND_OF_SWEEPS};
 
-/// Fewest manifolds of a batch of groups that a worker solves, if there are several. Fewer fill fewer lanes.
+/// Fewest manifolds of a batch of groups, if several workers solve them. Fewer fill fewer lanes.
 const BATCH: usize = 64;
 
 /// The manifolds that are struck in a substep. Buffers are kept between steps.
@@ -30,18 +30,12 @@ pub(super) struct Blows {
     pub(super) found: Vec<Vec<Struck>>,
     /// Body rows that were struck in this step.
     pub(super) reached: BitSet,
-    /// 1 for body rows that may have changed since contacts were last looked at, else 0.
-    pub(super) changed: Vec<u8>,
-    /// Those of a round, in order of groups.
+    /// Those of this substep, in order of groups.
     struck: Vec<Struck>,
-    /// Those of earlier rounds of this substep, group by group. [`GONE`] if a later round took their group.
-    resting: Vec<Struck>,
-    /// Bodies of manifolds that were found in a round.
-    touched: BitSet,
     /// Manifolds before they are sorted. Empty between rounds.
     unordered: Vec<Struck>,
     order: Vec<SortKey>,
-    /// Struck body rows of a round, in ascending order.
+    /// Struck body rows of this substep, in ascending order.
     bodies: Vec<u32>,
     sets: DisjointSets,
     /// By the representative of a set, its first body. Representatives depend on the order in which workers find manifolds, first
@@ -59,9 +53,6 @@ pub(super) struct Blows {
     /// The time from the start of the step to the end of this substep, in seconds.
     pub(super) elapsed: f32,
 }
-
-/// The group of manifolds that were taken to another place, and of those that nothing moves.
-const GONE: u32 = u32::MAX;
 
 /// The key by which a struck manifold is sorted, and its place before.
 #[derive(Clone, Copy, Debug)]
@@ -100,13 +91,10 @@ impl Blows {
         self.elapsed = 0.0;
     }
 
-    /// Starts a substep with this number of body rows.
-    pub(super) fn begin(&mut self, bodies: usize) {
+    /// Starts a substep.
+    pub(super) fn begin(&mut self) {
         self.struck.clear();
-        self.resting.clear();
         self.times.clear();
-        self.changed.clear();
-        self.changed.resize(bodies, 1);
         self.solved = 0;
     }
 
@@ -139,14 +127,11 @@ impl Blows {
     ) -> bool {
         self.find_groups(first_dynamic);
         self.sort();
-        let Self { struck, resting, groups, given, reached, changed, times, solved, .. } = self;
+        let Self { struck, groups, given, reached, times, solved, .. } = self;
         let mut count = 0;
         for group in struck.chunk_by(|a, b| a.group == b.group).filter(|group| is_due(group)) {
             count += group.len();
-            for row in group.iter().flat_map(|one| movable(one, first_dynamic)) {
-                reached.insert(row);
-                changed[row as usize] = 1;
-            }
+            group.iter().flat_map(|one| movable(one, first_dynamic)).for_each(|row| _ = reached.insert(row));
         }
         let most_sweeps = (BLOW_WORK.saturating_sub(*solved) / count.max(1)).min(BLOW_SWEEPS);
         let limits = (first_dynamic, width, most_sweeps.max(ROUND_OF_SWEEPS));
@@ -163,14 +148,9 @@ impl Blows {
             unsafe { solve(batch, buffers, limits, striking) };
         });
         // To find and to sort them takes about as long as to solve each once.
-        *solved += struck.len() + resting.iter().filter(|one| one.group != GONE).count();
+        *solved += struck.len();
         *solved += groups.iter_mut().map(|worker| core::mem::take(&mut worker.solved)).sum::<usize>();
         for one in struck.iter_mut() {
-            // What is not due is as it was found.
-            one.is_old = true;
-            if !movable(one, first_dynamic).any(|row| changed[row as usize] != 0) {
-                continue;
-            }
             let impulses = one.impulses();
             if impulses.iter().any(|impulse| *impulse > 0.0) {
                 let (normal, gained) = (one.row.normal, one.gained);
@@ -181,23 +161,14 @@ impl Blows {
             }
             one.rest();
         }
-        resting.append(struck);
         count > 0
     }
 
-    /// Lists what was found, and what it touches of what was struck in earlier rounds, by groups of manifolds that bodies connect.
+    /// Lists what was struck in earlier rounds and what was found in this one, by groups of manifolds that bodies connect.
     fn find_groups(&mut self, first_dynamic: u32) {
-        let Self { found, resting, touched, unordered, order, bodies, sets, firsts, .. } = self;
+        let Self { found, struck, unordered, order, bodies, sets, firsts, .. } = self;
+        core::mem::swap(struck, unordered);
         unordered.extend(found.iter_mut().flat_map(|found| found.drain(..)));
-        touched.clear();
-        unordered.iter().flat_map(|one| movable(one, first_dynamic)).for_each(|row| _ = touched.insert(row));
-        for group in resting.chunk_by_mut(|a, b| a.group == b.group) {
-            let mut rows = group.iter().flat_map(|one| movable(one, first_dynamic));
-            if group[0].group != GONE && rows.any(|row| touched.contains(row)) {
-                unordered.extend_from_slice(group);
-                group.iter_mut().for_each(|one| one.group = GONE);
-            }
-        }
         bodies.clear();
         bodies.extend(unordered.iter().flat_map(|one| movable(one, first_dynamic)));
         bodies.sort_unstable();
@@ -218,7 +189,7 @@ impl Blows {
         order.clear();
         for (one, at) in unordered.iter_mut().zip(0..) {
             let body = movable(one, first_dynamic).next();
-            one.group = body.map_or(GONE, |row| firsts[sets.find(place(row)) as usize]);
+            one.group = body.map_or(u32::MAX, |row| firsts[sets.find(place(row)) as usize]);
             order.push(SortKey { group: one.group, rows: one.row.ids.map(|[row]| row), at });
         }
     }
@@ -258,9 +229,4 @@ impl Blows {
             }
         }
     }
-}
-
-/// Whether a manifold of a group touches in time.
-pub(super) fn is_due(group: &[Struck]) -> bool {
-    group.iter().any(|one| one.is_due && !one.is_jammed)
 }

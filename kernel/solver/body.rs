@@ -204,8 +204,8 @@ pub struct BodyRows {
     pub(super) thrusts: OnceEach<LocalThrust>,
     /// Bodies with constraints that turn far within the step. None in 2D.
     pub(super) fast_turns: OnceEach<FastTurn>,
-    /// Whether those have the angular velocity that rows see.
-    pub(super) are_entered: bool,
+    /// Whether bodies that turn far have the angular velocity that rows see, and not the true one.
+    pub(super) see_rows: bool,
     /// Rows of bodies with constraints. Filled only if a body turns far.
     pub(super) constrained: BitSet,
     /// Rows of bodies that cannot turn about each axis.
@@ -235,7 +235,7 @@ impl BodyRows {
         self.limits.clear();
         self.spins.clear();
         self.fast_turns.clear();
-        self.are_entered = false;
+        self.see_rows = false;
         self.turn_locked.clear();
         self.moved.clear();
         self.thrusts.clear();

@@ -421,14 +421,6 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for FindJob<'_, N, M, P> {
         let Striking { bodies, params, time, .. } = seek.striking;
         let mut is_watched = passes.are_watched();
         for (i, (row, impact)) in block.rows.iter().zip(block.impacts).enumerate() {
-            let (mut lanes, [a, b]) = (0, [row.ids[0].lanes(), row.ids[1].lanes()]);
-            for lane in 0..N::WIDTH {
-                let is_changed = seek.changed[a[lane] as usize] | seek.changed[b[lane] as usize];
-                lanes |= u32::from(is_changed) << lane;
-            }
-            if lanes == 0 {
-                continue;
-            }
             for ids in &row.ids {
                 let reached = Blows::reached_lanes(seek.reached, ids.lanes());
                 for lane in (0..N::WIDTH).filter(|lane| reached >> lane & 1 != 0) {
@@ -437,7 +429,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for FindJob<'_, N, M, P> {
                     }
                 }
             }
-            lanes &= N::bits(N::ZERO.lt(impact.watched));
+            let mut lanes = N::bits(N::ZERO.lt(impact.watched));
             if lanes == 0 {
                 continue;
             }

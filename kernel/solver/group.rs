@@ -10,9 +10,8 @@
 //! (Stronge), e being the greatest share. Without friction that is what equal shares return, exactly.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::blow::is_due;
-use super::compression::Compression;
-use super::struck::{Striking, Struck};
+use super::compression::{Compression, Progress};
+use super::struck::{Striking, Struck, is_due, movable};
 use super::{BodyRow, RowView};
 use crate::math::{Angular, Vector, Width, max, min};
 use crate::tuning::solver::{BOUNCE_TOLERANCE, CONVERGED, ROUND_OF_SWEEPS};
@@ -39,89 +38,6 @@ pub(super) struct GroupBuffers {
     compression: Compression,
     /// How often a manifold was solved since the caller last took this.
     pub(super) solved: usize,
-}
-
-/// How far the sweeps over a group are.
-#[derive(Clone, Debug)]
-pub(super) struct Progress {
-    /// Its manifolds in the batch.
-    manifolds: Range<usize>,
-    /// Its bodies.
-    bodies: Range<usize>,
-    /// The number of sweeps in which impulses rise evenly.
-    rise: usize,
-    /// Sweeps end when velocities change by no more than this, m/s.
-    calm: f32,
-    /// The largest change of velocity in the present sweep, m/s.
-    change: f32,
-    /// The least change of this round of sweeps and of those before.
-    least: [f32; 2],
-    sweeps: usize,
-    is_open: bool,
-    /// Whether more sweeps would not help.
-    is_stuck: bool,
-}
-
-impl Progress {
-    pub(super) fn new([manifolds, bodies]: [Range<usize>; 2], rise: usize, calm: f32) -> Self {
-        let least = [f32::INFINITY; 2];
-        Self { manifolds, bodies, rise, calm, change: 0.0, least, sweeps: 0, is_open: true, is_stuck: false }
-    }
-
-    /// Starts sweeps anew, without a rise.
-    fn restart(&mut self) {
-        *self = Self::new([self.manifolds.clone(), self.bodies.clone()], 1, self.calm);
-    }
-
-    /// Whether sweeps go on.
-    #[inline(always)]
-    pub(super) fn is_open(&self) -> bool {
-        self.is_open
-    }
-
-    /// The number of sweeps in which impulses rise evenly.
-    #[inline(always)]
-    pub(super) fn rise(&self) -> usize {
-        self.rise
-    }
-
-    /// The number of sweeps so far. Odd ones are backward.
-    #[inline(always)]
-    pub(super) fn sweeps(&self) -> usize {
-        self.sweeps
-    }
-
-    /// Notes a change of velocity in the present sweep, m/s.
-    #[inline(always)]
-    pub(super) fn note(&mut self, change: f32) {
-        self.change = max(self.change, change);
-    }
-
-    /// Ends a sweep of `most` at most, if the group is open. Returns whether it was the last.
-    #[inline(always)]
-    pub(super) fn end_sweep(&mut self, most: usize) -> bool {
-        if !self.is_open {
-            return false;
-        }
-        let change = core::mem::take(&mut self.change);
-        self.sweeps += 1;
-        if self.sweeps >= self.rise {
-            self.is_open = change > self.calm;
-            self.least[0] = min(self.least[0], change);
-            if self.is_open && self.sweeps.is_multiple_of(ROUND_OF_SWEEPS) {
-                self.is_stuck = self.least[0] > 0.99 * self.least[1];
-                self.is_open = !self.is_stuck;
-                self.least = [f32::INFINITY, self.least[0]];
-            }
-        }
-        self.is_open &= self.sweeps < most;
-        !self.is_open
-    }
-}
-
-/// The body rows of a manifold that may be written.
-pub(super) fn movable(one: &Struck, first_dynamic: u32) -> impl Iterator<Item = u32> + use<> {
-    one.row.ids.into_iter().map(|[row]| row).filter(move |row| *row >= first_dynamic)
 }
 
 /// Solves the impacts of a batch of groups that are due, with `most_sweeps` at most.
@@ -164,7 +80,7 @@ pub(super) unsafe fn solve(
     unsafe { compression.run(batch, (groups, bodies.len()), rows, (width, most_sweeps)) };
     for progress in groups {
         let (group, bodies) = (&mut batch[progress.manifolds.clone()], &mut bodies[progress.bodies.clone()]);
-        *solved += progress.sweeps * group.len();
+        *solved += progress.sweeps() * group.len();
         // SAFETY: by the contract.
         *solved += unsafe { finish(group, (progress, most_sweeps), bodies, striking) } * group.len();
     }
@@ -230,8 +146,8 @@ unsafe fn finish(
         // SAFETY: by the contract.
         group.iter_mut().for_each(|one| unsafe { one.restitute(rows) });
         progress.restart();
-        while progress.is_open {
-            let is_backward = progress.sweeps % 2 == 1;
+        while progress.is_open() {
+            let is_backward = progress.sweeps() % 2 == 1;
             for k in 0..group.len() {
                 let k = if is_backward { group.len() - 1 - k } else { k };
                 // SAFETY: by the contract.
@@ -239,7 +155,7 @@ unsafe fn finish(
             }
             progress.end_sweep(most_sweeps);
         }
-        sweeps = progress.sweeps;
+        sweeps = progress.sweeps();
         // SAFETY: by the contract.
         unsafe { return_at_most(share * share * max(lost, 0.0), group, bodies, rows) };
     }

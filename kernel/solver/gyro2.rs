@@ -58,3 +58,9 @@ pub(super) fn swing_of(_axis: Angular, _turn: Rot) -> Rot {
 pub(super) fn spin(angle: f32) -> Angular {
     Angular { z: angle }
 }
+
+/// The inverse inertia of something round.
+#[cfg(test)]
+pub(super) fn round(inverse: f32) -> InvInertia {
+    InvInertia { zz: inverse }
+}

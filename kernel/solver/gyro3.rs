@@ -170,3 +170,9 @@ pub(super) fn swing_of(axis: Angular, turn: Rot) -> Rot {
 pub(super) fn spin(angle: f32) -> Angular {
     Vector::Z * angle
 }
+
+/// The inverse inertia of something round.
+#[cfg(test)]
+pub(super) fn round(inverse: f32) -> InvInertia {
+    InvInertia::from_diagonal(Vector::ONE * inverse)
+}

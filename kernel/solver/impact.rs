@@ -126,7 +126,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
 
 impl ContactRow<f32, Vector, MAX_POINTS> {
     /// Computes the effective masses of points that have any.
-    fn weigh_points(&mut self) {
+    pub(super) fn weigh_points(&mut self) {
         let arms = self.points.map(|point| [point.anchor, point.anchor - self.offset]);
         self.weigh(&arms.map(|arms| arms.map(|arm| arm.cross(self.normal))));
     }

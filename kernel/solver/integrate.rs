@@ -143,14 +143,14 @@ impl BodyRows {
 
     /// Before a sweep: bodies that turn far have the angular velocity that rows see.
     pub(super) fn enter_rows(&mut self, pool: &ThreadPool) {
-        if !core::mem::replace(&mut self.are_entered, true) {
+        if !core::mem::replace(&mut self.see_rows, true) {
             self.fast_turns.each(&mut self.rows, pool, |fast, row| fast.enter(row));
         }
     }
 
     /// After a sweep: bodies that turn far have their true angular velocity.
     pub(super) fn leave_rows(&mut self, pool: &ThreadPool) {
-        if core::mem::replace(&mut self.are_entered, false) {
+        if core::mem::replace(&mut self.see_rows, false) {
             self.fast_turns.each(&mut self.rows, pool, |fast, row| fast.leave(row));
         }
     }

@@ -251,7 +251,6 @@ impl Solver {
             self.sweep(Pass::UndoSplit, params, pool);
         }
         self.sweep(Pass::Relax, params, pool);
-        self.bodies.enter_rows(pool);
         self.bodies.end_gains(pool);
         self.bodies.leave_rows(pool);
     }
@@ -289,10 +288,10 @@ impl Solver {
         if !is_watched && self.blows.reached.is_empty() {
             return false;
         }
-        self.blows.begin(self.bodies.rows.len());
-        self.tree_blows.are_begun = false;
+        self.blows.begin();
+        self.tree_blows.has_begun = false;
         let any = self.strike_contacts(time, params, pool);
-        if self.tree_blows.are_begun {
+        if self.tree_blows.has_begun {
             for _ in 0..JOINT_ROUNDS {
                 let Self { trees, tree_blows, blows, .. } = self;
                 if !tree_blows.mark(trees, blows) {
@@ -328,7 +327,7 @@ impl Solver {
             if self.blows.is_spent() || !self.find_struck(time, params, pool) {
                 break;
             }
-            if self.trees.len() > 0 && !self.tree_blows.are_begun {
+            if self.trees.len() > 0 && !self.tree_blows.has_begun {
                 self.with_true_turns(pool, |blows, trees, (bodies, _)| blows.begin(trees, &bodies));
             }
             self.bodies.enter_rows(pool);
@@ -343,16 +342,15 @@ impl Solver {
         any
     }
 
-    /// Finds the contacts that close fast: in a substep at first all, then those of bodies that blows have changed since. Returns
-    /// whether there are any.
+    /// Finds the contacts that close fast. Returns whether there are any.
     fn find_struck(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) -> bool {
         self.bodies.enter_rows(pool);
         let Self { bodies, joints, customs, rows, plan, layers, blows, bearing, .. } = self;
         let BodyRows { rows: body_rows, motions, .. } = bodies;
         let bodies = RowView::over(body_rows, self.first_dynamic);
-        let Blows { found, reached, changed, elapsed, .. } = blows;
+        let Blows { found, reached, elapsed, .. } = blows;
         let striking = Striking { bodies, motions, bearing, params, time, elapsed: *elapsed };
-        let seek = &Seek { striking, reached, changed };
+        let seek = &Seek { striking, reached };
         let mut blocks = core::mem::take(&mut plan.blocks);
         rows.with(joints, customs, |batches| {
             let looked_at = |block: &&mut Block| !seek.reached.is_empty() || block.passes.are_watched();
@@ -366,7 +364,6 @@ impl Solver {
             });
         });
         plan.blocks = blocks;
-        changed.fill(0);
         found.iter().any(|found| !found.is_empty())
     }
 

@@ -120,6 +120,32 @@ impl Struck {
         struck
     }
 
+    /// A manifold by its row, whose points with a mass take part.
+    #[cfg(test)]
+    pub(super) fn of_row(mut row: ContactRow<f32, Vector, MAX_POINTS>) -> Self {
+        row.weigh_points();
+        row.weigh_friction(&TangentFrame::new(row.normal));
+        let moments = row
+            .points
+            .map(|point| [point.anchor, point.anchor - row.offset].map(|arm| arm.cross(row.normal)));
+        Self {
+            item: Item { id: 0, index: 0 },
+            returned: row.points.map(|point| if point.mass > 0.0 { 0.0 } else { ABSENT }),
+            row,
+            group: 0,
+            speed: 1.0,
+            is_due: true,
+            is_old: false,
+            is_jammed: false,
+            bounces: false,
+            time: 0.0,
+            gained: 0.0,
+            moments,
+            stopped: [0.0; MAX_POINTS],
+            before: Pair::default(),
+        }
+    }
+
     /// An order of manifolds of the same bodies, by their places. Ids of contacts depend on what else was there before.
     pub(super) fn in_order(&self, other: &Self) -> Ordering {
         let places = [self, other].map(|one| one.row.points[0].anchor.to_array());
@@ -255,7 +281,7 @@ impl Struck {
     pub(super) fn rest(&mut self) {
         self.row.forget();
         self.stopped = [0.0; MAX_POINTS];
-        (self.speed, self.is_due, self.bounces) = (0.0, false, false);
+        (self.speed, self.is_due, self.is_old, self.bounces) = (0.0, false, true, false);
         self.returned = self.returned.map(|share| if share < 0.0 { share } else { 0.0 });
     }
 }
@@ -274,10 +300,6 @@ impl<N: Lane, const P: usize> ContactRow<N, Vector<N>, P> {
     #[inline(always)]
     pub(super) fn rub(&mut self, pair: &mut Pair<N>) -> N {
         let (before, pressure) = (self.tangent_impulse, self.pressure());
-        let is_frictionless = (self.friction * pressure).eq(N::ZERO);
-        if N::bits(N::and(is_frictionless, before.length().eq(N::ZERO))) == (1 << N::WIDTH) - 1 {
-            return N::ZERO;
-        }
         self.solve_friction(pair, Vector::ZERO, pressure);
         (self.tangent_impulse - before).length() * self.tangent_mass.mean_inverse()
     }
@@ -303,6 +325,16 @@ impl<N: Lane, const P: usize> ContactRow<N, Vector<N>, P> {
             point.impulse.set(lane, of.impulse);
         }
     }
+}
+
+/// The body rows of a manifold that may be written.
+pub(super) fn movable(one: &Struck, first_dynamic: u32) -> impl Iterator<Item = u32> + use<> {
+    one.row.ids.into_iter().map(|[row]| row).filter(move |row| *row >= first_dynamic)
+}
+
+/// Whether a manifold of a group touches in time.
+pub(super) fn is_due(group: &[Struck]) -> bool {
+    group.iter().any(|one| one.is_due && !one.is_jammed)
 }
 
 /// How a point rebounds within a substep.

@@ -22,7 +22,7 @@ pub const GOLDEN: [(&str, u64, u64); 18] = [
     ("mixer", 0xb8cd16da9d80a52e, 0x32b20e2b293cd4e7),
     ("changes", 0x8a029d2a9c035904, 0x01db8db2209ebbe6),
     ("wall", 0xa51aa86ad759539a, 0x87c0a9e51682ce12),
-    ("joints", 0x3865fbba8f3322ec, 0x29a89c0ca68d2dc4),
+    ("joints", 0x70b6a73cc4ddb17f, 0xfda33ce1d0b05e52),
     ("landing", 0xbe4c9592a5fa192f, 0xc739ee8aaa2704f4),
 ];
 

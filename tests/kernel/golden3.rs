@@ -22,7 +22,7 @@ pub const GOLDEN: [(&str, u64, u64); 18] = [
     ("mixer", 0xf93b63ebdc32cc0b, 0x2dc3e690da72e532),
     ("changes", 0x7c70aac3a9880d5f, 0x656da7a304fec832),
     ("wall", 0x1a14414069ea5647, 0x0e9f3179e745a925),
-    ("joints", 0xec8623a1415bcca4, 0xf8f302a2df188743),
+    ("joints", 0x3650d6c24a344010, 0x8e3b369830958df6),
     ("landing", 0x55721de09ba4fee2, 0x1c823c7f0feda48c),
 ];
 

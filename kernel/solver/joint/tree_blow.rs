@@ -17,8 +17,8 @@ use crate::thread_pool::ThreadPool;
 /// State of the trees while blows are solved. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(in super::super) struct TreeBlows {
-    /// Whether they have begun in this substep: with the first blow.
-    pub(in super::super) are_begun: bool,
+    /// Whether velocities before blows are known: from the first contact in a substep on that closes fast.
+    pub(in super::super) has_begun: bool,
     /// By tree, the time of its first blow from the start of the substep, in seconds. `f32::MAX` if it was not struck.
     times: Vec<f32>,
     /// By tree, whether it was struck since it was last solved.
@@ -42,8 +42,8 @@ impl TreeBlows {
     /// Starts the blows of a substep. Limits begin without impulses.
     pub(in super::super) fn begin(&mut self, trees: &mut JointTrees, bodies: &RowView<BodyRow>) {
         let JointTrees { forest, bodies: listed, .. } = &*trees;
-        let Self { are_begun, times, is_due, before, earlier } = self;
-        *are_begun = true;
+        let Self { has_begun, times, is_due, before, earlier } = self;
+        *has_begun = true;
         times.clear();
         times.resize(forest.trees.len(), f32::MAX);
         is_due.clear();
@@ -66,7 +66,7 @@ impl TreeBlows {
     pub(in super::super) fn mark(
         &mut self,
         trees: &JointTrees,
-        Blows { times, reached, changed, .. }: &mut Blows,
+        Blows { times, reached, .. }: &mut Blows,
     ) -> bool {
         let mut any = false;
         for (row, time) in times.drain(..) {
@@ -83,7 +83,6 @@ impl TreeBlows {
             }
             for body in &trees.bodies[range(trees.forest.trees[tree as usize].bodies)] {
                 reached.insert(body.row);
-                changed[body.row as usize] = 1;
             }
         }
         any

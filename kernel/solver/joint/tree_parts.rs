@@ -76,8 +76,8 @@ impl<N: Entry> Tree<'_, N> {
         *known = Known::Places;
     }
 
-    /// Loads velocities. If the tree was solved in the same way just before, lanes in which none has changed since are closed.
-    /// Returns whether any lane is open.
+    /// Loads velocities. Closes lanes that the last pass solved with the same factors and whose velocities are the same. Returns
+    /// whether any lane is open.
     ///
     /// # Safety
     /// As [`place`](Self::place).
@@ -270,9 +270,9 @@ impl<N: Entry> Tree<'_, N> {
     /// No condition: unsafe as all parts are.
     #[inline(always)]
     pub(super) unsafe fn pivot(&mut self, sweep: &Sweep) -> bool {
-        let Scratch { settled, open, is_last, .. } = &mut *self.scratch;
-        // Lanes that are open in the last round are not settled.
-        *settled = if *is_last { settled.min(N::ONE - *open) } else { N::ONE };
+        let Scratch { settled, open, adds, .. } = &mut *self.scratch;
+        // What closes where nothing may be added is not settled.
+        *settled = if *adds { N::ONE } else { settled.min(N::ONE - *open) };
         let (open, mut any_changed) = (is(*open), N::ZERO);
         let mut changes = core::mem::take(&mut self.scratch.changes);
         changes.clear();

@@ -159,6 +159,10 @@ impl<N: Entry> Tree<'_, N> {
                 break;
             }
         }
+        if has_turns {
+            // Motors are solved one after the other.
+            self.scratch.settled = N::ZERO;
+        }
         // SAFETY: by the contract.
         unsafe { entry.run(Finish(self, sweep)) };
     }

@@ -22,7 +22,7 @@ pub(super) enum Known {
 #[derive(Clone, Debug)]
 pub(super) struct Scratch<N: Lane> {
     pub(super) known: Known,
-    /// 1 in lanes in which the last pass found what acts, else 0.
+    /// 1 in lanes that would come to the same again, else 0: the last pass found what acts, and no orientation motor is in turn.
     pub(super) settled: N,
     /// Whether the masses that coordinates move are known in this step.
     pub(super) is_weighed: bool,
