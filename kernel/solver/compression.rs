@@ -444,8 +444,8 @@ mod tests {
                 (0..1 + 4 * sizes.len()).map(|_| BodyRow::new(vector(), angular(vector()))).collect();
             let groups: Vec<Vec<Struck>> = sizes.iter().enumerate().map(|(group, size)| (0..*size).map(|k| {
                 let [a, b] = [1 + 4 * group + k % 4, if k % 3 == 0 { 0 } else { 1 + 4 * group + (k + 1) % 4 }];
-                let mut row = ContactRow::<f32, Vector, MAX_POINTS>::default();
-                row.ids = [[a as u32], [b as u32]];
+                let ids = [[a as u32], [b as u32]];
+                let mut row = ContactRow::<f32, Vector, MAX_POINTS> { ids, ..Default::default() };
                 for side in 0..2 {
                     if row.ids[side][0] != 0 {
                         row.inv_mass[side] = Vector::ONE;
@@ -468,7 +468,7 @@ mod tests {
                 let mut progress = Vec::new();
                 for (number, group) in groups.iter().enumerate() {
                     compression.add(group, number, |row| (row > 0).then_some(row as usize));
-                    let rise = if (first + number) % 2 == 0 { 1 } else { ROUND_OF_SWEEPS };
+                    let rise = if (first + number).is_multiple_of(2) { 1 } else { ROUND_OF_SWEEPS };
                     progress.push(Progress::new([0..0, 0..0], rise, 1.0e-3));
                 }
                 let count = rows.len();
