@@ -81,7 +81,7 @@ impl Facing {
     }
 
     /// One point between a corner of the reference edge and one of the incident edge.
-    fn corners(&self, own_end: usize, end: usize, out: &mut LocalManifold) {
+    pub(super) fn corners(&self, own_end: usize, end: usize, out: &mut LocalManifold) {
         let (p, q) = (self.reference.ends[own_end], self.incident.ends[end]);
         let feature = self.feature(self.reference.indices[own_end], self.incident.indices[end]);
         let normal = push_between(p, q, self.normal, self.limits, feature, out);

@@ -10,12 +10,8 @@ use crate::math::Vector;
 use crate::shape::Cuboid;
 
 /// Fills `out` for two cuboids. Edges and vertices are numbered as for polygons.
-pub(in crate::manifold) fn collide(
-    a: &Cuboid,
-    b: &Cuboid,
-    PairInput { pose, prediction, cache }: PairInput,
-    out: &mut LocalManifold,
-) {
+pub(in crate::manifold) fn collide(a: &Cuboid, b: &Cuboid, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction, cache } = input;
     // In A's frame B's axes are the columns of R, in B's frame A's axes are its rows; |R| is symmetric
     // but for signs: |R h| = (|c| hx + |s| hy, |s| hx + |c| hy) either way.
     let (c, s) = (pose.rotation.cos.abs(), pose.rotation.sin.abs());

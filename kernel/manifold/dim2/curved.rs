@@ -122,26 +122,6 @@ fn normal_of(half: Vector, around: Vector) -> Vector {
     direction(Vector { x, y }).map_or(around, |(normal, _)| normal)
 }
 
-/// A circle's core.
-struct Point {
-    at: Vector,
-    radius: f32,
-}
-
-impl Rounded for Point {
-    fn farthest(&self, _: Vector) -> Vector {
-        self.at
-    }
-
-    fn radius(&self) -> f32 {
-        self.radius
-    }
-
-    fn curvature(&self, _: Vector) -> f32 {
-        self.radius
-    }
-}
-
 impl Rounded for Polygonal<'_> {
     fn farthest(&self, direction: Vector) -> Vector {
         let higher = |p: Vector, q: &Vector| if q.dot(direction) > p.dot(direction) { *q } else { p };
@@ -168,8 +148,7 @@ pub(super) fn collide_round(a: &impl Rounded, b: &Curved, input: PairInput, out:
 /// A ball or polygon A and an ellipse B.
 pub(super) fn collide(a: &Polygonal, b: &Curved, input: PairInput, out: &mut LocalManifold) {
     if a.len() == 1 {
-        let point = Point { at: a.vertices[0], radius: a.radius };
-        return collide_round(&point, b, input, out);
+        return collide_round(a, b, input, out);
     }
     let pair = Pair { b, input };
     let (mut most, mut edge) = (f32::NEG_INFINITY, 0);

@@ -62,57 +62,46 @@ impl<'a> Convex<'a> {
         input: PairInput,
         out: &mut LocalManifold,
     ) {
-        collide_side(corners, normal, self.shape, input, out);
-    }
-}
-
-/// See [`Convex::collide_face`].
-fn collide_side(
-    corners: [Vector; 2],
-    normal: Vector,
-    other: &Shape,
-    input: PairInput,
-    out: &mut LocalManifold,
-) {
-    (out.count, out.gap) = (0, 0.0);
-    if let Shape::Curved(other) = other {
-        return collide_curved(corners, normal, other, input, out);
-    }
-    let PairInput { pose, prediction, .. } = input;
-    let mut room = Buffer::EMPTY;
-    let Some(polygon) = view(other, &mut room) else { return };
-    let facing = pose.rotation.inverse_rotate(normal);
-    let (lowest, _) = polygon.lowest(facing);
-    let vertex = pose.transform(polygon.vertices[lowest]);
-    let [a, b] = corners;
-    // Counter-clockwise, the edge has its normal on the right.
-    let forward = normal.dot((b - a).perp()) < 0.0;
-    let (ends, indices) = if forward { ([a, b], [0, 1]) } else { ([b, a], [1, 0]) };
-    let separation = (vertex - ends[0]).dot(normal) - polygon.radius;
-    if !(separation <= prediction) {
-        out.gap = separation;
-        return;
-    }
-    if polygon.len() == 1 {
-        if !is_beside(&borders(corners, normal), vertex) {
-            out.normal = normal;
-            out.push(vertex - normal * (0.5 * (separation + 2.0 * polygon.radius)), separation, 0);
+        (out.count, out.gap) = (0, 0.0);
+        if let Shape::Curved(other) = self.shape {
+            return collide_curved(corners, normal, other, input, out);
         }
-        return;
-    }
-    Facing {
-        side: Side::A,
-        normal,
-        reference: Edge { ends, indices },
-        incident: polygon.edge(polygon.edge_facing(facing, lowest)).moved(pose),
-        limits: Limits { radii: [0.0, polygon.radius], prediction },
-    }
-    .contact(false, out);
-    let tangent = normal.perp();
-    let along = |p: &LocalPoint| (p.point - ends[0]).dot(tangent);
-    let length = (ends[1] - ends[0]).dot(tangent);
-    if out.count == 1 && !(-MARGIN * length..=(1.0 + MARGIN) * length).contains(&along(&out.points[0])) {
-        out.count = 0;
+        let PairInput { pose, prediction, .. } = input;
+        let mut room = Buffer::EMPTY;
+        let Some(polygon) = view(self.shape, &mut room) else { return };
+        let facing = pose.rotation.inverse_rotate(normal);
+        let (lowest, _) = polygon.lowest(facing);
+        let vertex = pose.transform(polygon.vertices[lowest]);
+        let [a, b] = corners;
+        // Counter-clockwise, the edge has its normal on the right.
+        let forward = normal.dot((b - a).perp()) < 0.0;
+        let (ends, indices) = if forward { ([a, b], [0, 1]) } else { ([b, a], [1, 0]) };
+        let separation = (vertex - ends[0]).dot(normal) - polygon.radius;
+        if !(separation <= prediction) {
+            out.gap = separation;
+            return;
+        }
+        if polygon.len() == 1 {
+            if !is_beside(&borders(corners, normal), vertex) {
+                out.normal = normal;
+                out.push(vertex - normal * (0.5 * (separation + 2.0 * polygon.radius)), separation, 0);
+            }
+            return;
+        }
+        Facing {
+            side: Side::A,
+            normal,
+            reference: Edge { ends, indices },
+            incident: polygon.edge(polygon.edge_facing(facing, lowest)).moved(pose),
+            limits: Limits { radii: [0.0, polygon.radius], prediction },
+        }
+        .contact(false, out);
+        let tangent = normal.perp();
+        let along = |p: &LocalPoint| (p.point - ends[0]).dot(tangent);
+        let length = (ends[1] - ends[0]).dot(tangent);
+        if out.count == 1 && !(-MARGIN * length..=(1.0 + MARGIN) * length).contains(&along(&out.points[0])) {
+            out.count = 0;
+        }
     }
 }
 

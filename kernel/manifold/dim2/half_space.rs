@@ -7,12 +7,8 @@ use crate::math::Vector;
 use crate::shape::HalfSpace;
 
 /// Fills `out` in the half-space's frame, with the normal out of it.
-pub(super) fn collide(
-    plane: &HalfSpace,
-    other: &Polygonal,
-    PairInput { pose, prediction, .. }: PairInput,
-    out: &mut LocalManifold,
-) {
+pub(super) fn collide(plane: &HalfSpace, other: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction, .. } = input;
     let normal = plane.normal;
     // The plane's normal and offset in the polygon's frame, so that only contact points are transformed.
     let down = pose.rotation.inverse_rotate(normal);

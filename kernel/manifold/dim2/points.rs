@@ -34,24 +34,16 @@ pub(super) fn push_between(
 }
 
 /// Two balls. The normal of concentric ones is upward.
-pub(super) fn collide_points(
-    a: &Polygonal,
-    b: &Polygonal,
-    PairInput { pose, prediction, .. }: PairInput,
-    out: &mut LocalManifold,
-) {
+pub(super) fn collide_points(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction, .. } = input;
     let (p, q) = (a.vertices[0], pose.transform(b.vertices[0]));
     out.normal = push_between(p, q, Vector::Y, Limits { radii: [a.radius, b.radius], prediction }, 0, out);
 }
 
 /// A polygon `a` and a ball `b`: the edge with the largest separation of the centre, or one of its ends if the centre is
 /// beyond it.
-pub(super) fn collide_with_point(
-    a: &Polygonal,
-    b: &Polygonal,
-    PairInput { pose, prediction, .. }: PairInput,
-    out: &mut LocalManifold,
-) {
+pub(super) fn collide_with_point(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction, .. } = input;
     let center = pose.transform(b.vertices[0]);
     let limits = Limits { radii: [a.radius, b.radius], prediction };
     let reach = prediction + a.radius + b.radius;

@@ -26,12 +26,8 @@ pub(super) fn preference(prediction: f32, pose: &Pose) -> f32 {
 }
 
 /// Fills `out` for two polygons.
-pub(super) fn collide(
-    a: &Polygonal,
-    b: &Polygonal,
-    PairInput { pose, prediction, cache }: PairInput,
-    out: &mut LocalManifold,
-) {
+pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction, cache } = input;
     let reach = prediction + a.radius + b.radius;
     let inverse = pose.inverse();
     let known = cached(a, b, pose, &inverse, cache.get());

@@ -3,8 +3,8 @@
 //! Edge normals do not separate segments on one line, so the closest points are computed first.
 
 use super::super::{LocalManifold, PairInput};
-use super::clip::{Facing, Side, pair};
-use super::points::{Limits, push_between};
+use super::clip::{Facing, Side};
+use super::points::Limits;
 use super::polygonal::{Edge, Polygonal};
 use crate::math::Vector;
 use crate::tuning::manifold::ALIKE;
@@ -45,24 +45,10 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut 
         return;
     }
 
-    let (own, other) = if best.side == Side::A { (p, q) } else { (q, p) };
-    let limits = Limits {
-        radii: if best.side == Side::A { [a.radius, b.radius] } else { [b.radius, a.radius] },
-        prediction,
-    };
-    if let (Some(corner), false) = (best.corner, crossing) {
-        let feature = if best.side == Side::A { pair(corner, best.end) } else { pair(best.end, corner) };
-        let fallback = own_axis(&axes, best.side).perp();
-        let normal = push_between(own[corner], other[best.end], fallback, limits, feature, out);
-        out.normal = if best.side == Side::A { normal } else { -normal };
-        return;
-    }
-    // The side of the segment where the other one is. The nearest end is there too, unless the segments cross or the end lies
-    // on the line; then the far end decides.
-    let far_end = (other[1 - best.end] - own[0]).dot(own_axis(&axes, best.side).perp());
-    let on_line = best.height.abs() <= 1.0e-6 * far_end.abs();
-    let faces_left = if crossing || on_line { far_end > 0.0 } else { best.height > 0.0 };
-    let normal = own_axis(&axes, best.side).perp() * if faces_left { 1.0 } else { -1.0 };
+    let (ends, normals, radii) = ([p, q], axes.map(|axis| axis.perp()), [a.radius, b.radius]);
+    let (side, this, that) = (best.side, best.side as usize, 1 - best.side as usize);
+    let (own, other, up) = (ends[this], ends[that], normals[this]);
+    let limits = Limits { radii: [radii[this], radii[that]], prediction };
     let edge = |v: [Vector; 2], backward: bool| {
         if backward {
             Edge { ends: [v[1], v[0]], indices: [1, 0] }
@@ -70,21 +56,20 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut 
             Edge { ends: v, indices: [0, 1] }
         }
     };
-    // Counter-clockwise, an edge with its normal on the right runs forward, on the left backward.
-    let incident_backward = normal.perp().dot(other[1] - other[0]) > 0.0;
-    Facing {
-        side: best.side,
-        normal,
-        reference: edge(own, faces_left),
-        incident: edge(other, incident_backward),
-        limits,
+    if let (Some(corner), false) = (best.corner, crossing) {
+        let (reference, incident) = (edge(own, false), edge(other, false));
+        return Facing { side, normal: up, reference, incident, limits }.corners(corner, best.end, out);
     }
-    .contact(false, out);
-}
-
-#[inline]
-fn own_axis(axes: &[Vector; 2], side: Side) -> Vector {
-    if side == Side::A { axes[0] } else { axes[1] }
+    // The side of the segment where the other one is. The nearest end is there too, unless the segments cross or the end lies
+    // on the line; then the far end decides.
+    let far_end = (other[1 - best.end] - own[0]).dot(up);
+    let on_line = best.height.abs() <= 1.0e-6 * far_end.abs();
+    let faces_left = if crossing || on_line { far_end > 0.0 } else { best.height > 0.0 };
+    let normal = up * if faces_left { 1.0 } else { -1.0 };
+    // Counter-clockwise, an edge with its normal on the right runs forward, on the left backward.
+    let is_backward = normal.perp().dot(other[1] - other[0]) > 0.0;
+    let (reference, incident) = (edge(own, faces_left), edge(other, is_backward));
+    Facing { side, normal, reference, incident, limits }.contact(false, out);
 }
 
 #[inline]
