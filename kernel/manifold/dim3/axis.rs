@@ -4,9 +4,8 @@
 //! Faces are preferred to edges unless edges are clearly better, so that the choice of points is the same from step to step.
 
 use super::gjk;
-use super::sat::{EdgeAxis, FaceAxis};
 use crate::manifold::{FeatureCache, LocalManifold};
-use crate::math::max;
+use crate::math::{Vector, max};
 use crate::tuning::manifold::{KEPT, MARGIN};
 use core::cell::Cell;
 
@@ -16,11 +15,33 @@ pub(super) const FACE_A: u8 = 1;
 pub(super) const FACE_B: u8 = 2;
 /// [`FeatureCache::kind`] of an edge of each.
 pub(super) const EDGES: u8 = 3;
+
+/// A face of one polyhedron with its separation.
+#[derive(Clone, Copy)]
+pub(super) struct FaceAxis {
+    pub face: usize,
+    /// Whether the face is B's.
+    pub of_b: bool,
+    /// The signed distance of the other polyhedron from the face's plane.
+    pub separation: f32,
+    /// The vertex of the other polyhedron at that distance.
+    pub lowest: usize,
+}
+
+/// A pair of edges with its separation.
+#[derive(Clone, Copy)]
+pub(super) struct EdgeAxis {
+    pub a: usize,
+    pub b: usize,
+    /// The unit normal from A to B, in the frame of the search.
+    pub normal: Vector,
+    pub separation: f32,
+}
+
 /// A feature that separates the pair.
 #[derive(Clone, Copy)]
 pub(super) enum Axis {
-    FaceA(FaceAxis),
-    FaceB(FaceAxis),
+    Face(FaceAxis),
     Edges(EdgeAxis),
 }
 
@@ -28,7 +49,7 @@ impl Axis {
     #[inline(always)]
     pub fn separation(&self) -> f32 {
         match self {
-            Self::FaceA(face) | Self::FaceB(face) => face.separation,
+            Self::Face(face) => face.separation,
             Self::Edges(edges) => edges.separation,
         }
     }
@@ -37,8 +58,8 @@ impl Axis {
     #[inline(always)]
     pub fn cache(&self) -> FeatureCache {
         let (kind, a, b) = match self {
-            Self::FaceA(f) => (FACE_A, f.face, 0),
-            Self::FaceB(f) => (FACE_B, 0, f.face),
+            Self::Face(f) if f.of_b => (FACE_B, 0, f.face),
+            Self::Face(f) => (FACE_A, f.face, 0),
             Self::Edges(e) => (EDGES, e.a, e.b),
         };
         match (u8::try_from(a), u8::try_from(b)) {
@@ -83,11 +104,8 @@ pub(super) trait Pair {
         None
     }
 
-    /// The face of A with the largest separation.
-    fn best_face_of_a(&self) -> FaceAxis;
-
-    /// The face of B with the largest separation.
-    fn best_face_of_b(&self) -> FaceAxis;
+    /// The face of A, or of B, with the largest separation.
+    fn best_face(&self, of_b: bool) -> FaceAxis;
 
     /// The pair of edges with the largest separation, if it is larger than `known`. The best faces of A and B tell where the
     /// shapes are near.
@@ -95,7 +113,19 @@ pub(super) trait Pair {
 
     /// Fills the manifold from an axis. Returns whether its nearest point is as near as the separation along the axis, which is
     /// then the true distance.
-    fn build(&self, axis: &Axis, out: &mut LocalManifold) -> bool;
+    #[inline(always)]
+    fn build(&self, axis: &Axis, out: &mut LocalManifold) -> bool {
+        match axis {
+            Axis::Face(face) => self.build_face(face, out),
+            Axis::Edges(edges) => self.build_edges(edges, out),
+        }
+    }
+
+    /// See [`build`](Self::build).
+    fn build_face(&self, axis: &FaceAxis, out: &mut LocalManifold) -> bool;
+
+    /// See [`build`](Self::build).
+    fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool;
 
     /// Fills the manifold with one point between the closest features, where the axis understates the distance. Keeps present
     /// points if the distance is no larger.
@@ -103,7 +133,7 @@ pub(super) trait Pair {
 
     /// Adds the deepest vertex under a face alone, where the shapes overlap beside the face. Only for the best of all
     /// axes: under the face of an earlier step there may be nothing left.
-    fn push_deepest(&self, axis: &Axis, out: &mut LocalManifold);
+    fn push_deepest(&self, axis: &FaceAxis, out: &mut LocalManifold);
 
     /// Fills the manifold from the cached axis if it still decides the contact, else from the best of all.
     #[inline(always)]
@@ -135,18 +165,18 @@ pub(super) trait Pair {
     /// The axis of least penetration or largest separation, or the first beyond the limit.
     #[inline(always)]
     fn search(&self) -> Axis {
-        let (sizes, of_a) = (self.sizes(), self.best_face_of_a());
+        let (sizes, of_a) = (self.sizes(), self.best_face(false));
         if of_a.separation > sizes.limit() {
-            return Axis::FaceA(of_a);
+            return Axis::Face(of_a);
         }
-        let of_b = self.best_face_of_b();
+        let of_b = self.best_face(true);
         if of_b.separation > sizes.limit() {
-            return Axis::FaceB(of_b);
+            return Axis::Face(of_b);
         }
         let preference = 2.0 * MARGIN * sizes.smaller;
         let is_of_b = of_b.separation > of_a.separation + 0.1 * preference;
-        let face = if is_of_b { Axis::FaceB(of_b) } else { Axis::FaceA(of_a) };
-        self.best_edges(&of_a, &of_b, face.separation() + preference).map_or(face, Axis::Edges)
+        let face = if is_of_b { of_b } else { of_a };
+        self.best_edges(&of_a, &of_b, face.separation + preference).map_or(Axis::Face(face), Axis::Edges)
     }
 
     /// Fills the manifold from the best of all axes.
@@ -164,8 +194,8 @@ pub(super) trait Pair {
             if !is_exact {
                 self.build_apart(axis, out);
             }
-        } else if out.count == 0 {
-            self.push_deepest(axis, out);
+        } else if let (Axis::Face(face), 0) = (axis, out.count) {
+            self.push_deepest(face, out);
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The part of an incident face that lies over a reference face (Sutherland and Hodgman, "Reentrant
 //! Polygon Clipping", 1974), with a feature id for each corner.
 
+use super::axis::FaceAxis;
 use super::reduce::{Candidates, keep, reduce};
-use super::sat::FaceAxis;
 use super::view::{MatrixPose, View};
 use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{F32x4, Lane, Vector, min};

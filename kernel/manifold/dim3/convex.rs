@@ -1,10 +1,10 @@
 //! Any two polyhedra, with radii: the points along their separating axis.
 
 use super::across;
-use super::axis::{self, Axis, EDGES, FACE_A, FACE_B, Pair as _, Sizes};
+use super::axis::{self, Axis, EDGES, EdgeAxis, FACE_A, FACE_B, FaceAxis, Pair as _, Sizes};
 use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference};
 use super::gjk;
-use super::sat::{self, EdgeAxis, FaceAxis, Known};
+use super::sat::{self, Known};
 use super::view::{MatrixPose, View, extents};
 use crate::manifold::{FeatureCache, LocalManifold, PairInput};
 use crate::math::{Vector, clamp, max};
@@ -14,7 +14,7 @@ use crate::tuning::manifold::MARGIN;
 const TRIANGLE_FACES: usize = 2;
 
 /// Two polyhedra and their relative pose.
-struct Pair<'a> {
+pub(super) struct Pair<'a> {
     a: &'a View<'a>,
     b: &'a View<'a>,
     b_in_a: MatrixPose,
@@ -31,12 +31,6 @@ pub(super) fn collide(a: &View, b: &View, input: PairInput, out: &mut LocalManif
     pair.collide(input.cache, out);
 }
 
-/// One point between the closest features of two separated polyhedra, where the axis understates the distance. Keeps present
-/// points if the distance is no larger.
-pub(super) fn collide_apart(a: &View, b: &View, input: PairInput, separation: f32, out: &mut LocalManifold) {
-    Pair::new(a, b, input).fill_apart(separation, out);
-}
-
 impl axis::Pair for Pair<'_> {
     fn sizes(&self) -> &Sizes {
         &self.sizes
@@ -46,10 +40,11 @@ impl axis::Pair for Pair<'_> {
         let (i, j) = (cache.a as usize, cache.b as usize);
         match cache.kind {
             FACE_A if i < self.a.faces.len() => {
-                Some(Axis::FaceA(sat::face_separation(self.a, i, self.b, &self.b_in_a)))
+                Some(Axis::Face(sat::face_separation(self.a, i, self.b, &self.b_in_a)))
             }
             FACE_B if j < self.b.faces.len() => {
-                Some(Axis::FaceB(sat::face_separation(self.b, j, self.a, &self.a_in_b)))
+                let face = sat::face_separation(self.b, j, self.a, &self.a_in_b);
+                Some(Axis::Face(FaceAxis { of_b: true, ..face }))
             }
             EDGES if i < self.a.edges.len() && j < self.b.edges.len() => {
                 sat::edge_separation(self.a, i, self.b, j, &self.b_in_a).map(Axis::Edges)
@@ -58,12 +53,9 @@ impl axis::Pair for Pair<'_> {
         }
     }
 
-    fn best_face_of_a(&self) -> FaceAxis {
-        sat::best_face(self.a, self.b, &self.b_in_a, self.sizes.limit())
-    }
-
-    fn best_face_of_b(&self) -> FaceAxis {
-        sat::best_face(self.b, self.a, &self.a_in_b, self.sizes.limit())
+    fn best_face(&self, of_b: bool) -> FaceAxis {
+        let (this, other, frame) = self.ordered(of_b);
+        FaceAxis { of_b, ..sat::best_face(this, other, frame, self.sizes.limit()) }
     }
 
     fn best_edges(&self, of_a: &FaceAxis, of_b: &FaceAxis, separation: f32) -> Option<EdgeAxis> {
@@ -73,78 +65,15 @@ impl axis::Pair for Pair<'_> {
         sat::best_edges(self.a, self.b, &self.b_in_a, &known, self.sizes.limit())
     }
 
-    fn build(&self, axis: &Axis, out: &mut LocalManifold) -> bool {
-        match axis {
-            Axis::FaceA(face) => self.build_face(face, false, out),
-            Axis::FaceB(face) => self.build_face(face, true, out),
-            Axis::Edges(edges) => self.build_edges(edges, out),
-        }
-    }
-
-    fn build_apart(&self, axis: &Axis, out: &mut LocalManifold) {
-        self.fill_apart(axis.separation(), out);
-    }
-
-    fn push_deepest(&self, axis: &Axis, out: &mut LocalManifold) {
-        let (axis, of_b) = match axis {
-            Axis::FaceA(face) => (face, false),
-            Axis::FaceB(face) => (face, true),
-            Axis::Edges(_) => return,
-        };
-        let (_, incident, frame) = self.ordered(of_b);
-        let corner = frame.point(incident.vertices[axis.lowest]);
-        self.reference(axis, of_b).push_deepest(corner, axis.separation, out);
-    }
-}
-
-impl<'a> Pair<'a> {
-    fn new(a: &'a View<'a>, b: &'a View<'a>, input: PairInput) -> Self {
-        let b_in_a = MatrixPose::new(input.pose);
-        let (larger, smaller) = extents(a, b);
-        let sizes = Sizes { prediction: input.prediction, radius: a.radius + b.radius, smaller, larger };
-        Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), sizes }
-    }
-
-    /// The polyhedron of a reference face, of B if `of_b`, the incident one, and the incident frame in the other.
-    #[inline(always)]
-    fn ordered(&self, of_b: bool) -> (&View<'a>, &View<'a>, &MatrixPose) {
-        if of_b { (self.b, self.a, &self.a_in_b) } else { (self.a, self.b, &self.b_in_a) }
-    }
-
-    fn build_face(&self, axis: &FaceAxis, of_b: bool, out: &mut LocalManifold) -> bool {
-        let (reference, incident, frame) = self.ordered(of_b);
+    fn build_face(&self, axis: &FaceAxis, out: &mut LocalManifold) -> bool {
+        let (reference, incident, frame) = self.ordered(axis.of_b);
         let local = frame.direction_in(reference.faces[axis.face].normal);
         let face = clip::incident_face(incident, local, axis.lowest);
         if clip::most_corners(reference, axis.face, incident, face) < FEW_CORNERS {
-            self.clip_face::<FEW_CORNERS>(axis, of_b, face, out)
+            self.clip_face::<FEW_CORNERS>(axis, face, out)
         } else {
-            self.clip_face::<MAX_CORNERS>(axis, of_b, face, out)
+            self.clip_face::<MAX_CORNERS>(axis, face, out)
         }
-    }
-
-    /// `face` is the incident one, if the incident polyhedron has faces.
-    #[inline(never)]
-    fn clip_face<const N: usize>(
-        &self,
-        axis: &FaceAxis,
-        of_b: bool,
-        face: Option<usize>,
-        out: &mut LocalManifold,
-    ) -> bool {
-        let (view, incident, frame) = self.ordered(of_b);
-        let mut polygon = Polygon::<N>::new();
-        clip::incident_polygon(incident, face, |v| (frame.point(v), ()), &mut polygon);
-        let reference = self.reference(axis, of_b);
-        out.normal = if of_b { -self.b_in_a.direction(reference.normal) } else { reference.normal };
-        reference.fill_clipped(view, axis, &mut polygon, self.sizes.smaller, out)
-    }
-
-    /// The face of an axis.
-    #[inline(always)]
-    fn reference(&self, axis: &FaceAxis, of_b: bool) -> Reference<'_> {
-        let (view, incident, _) = self.ordered(of_b);
-        let reference = Reference::of_face(view, axis.face, of_b, incident.radius, self.sizes.prediction);
-        Reference { to_a: of_b.then_some(&self.b_in_a), ..reference }
     }
 
     fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {
@@ -161,6 +90,58 @@ impl<'a> Pair<'a> {
             self.push_far_ends(axis, [ends_a, ends_b], out);
         }
         inside
+    }
+
+    fn build_apart(&self, axis: &Axis, out: &mut LocalManifold) {
+        if let Some(closest) = gjk::closest(self.a, self.b, &self.b_in_a) {
+            closest.fill_apart(self.radii(), axis.separation(), self.sizes.prediction, out);
+        }
+    }
+
+    fn push_deepest(&self, axis: &FaceAxis, out: &mut LocalManifold) {
+        let (_, incident, frame) = self.ordered(axis.of_b);
+        let corner = frame.point(incident.vertices[axis.lowest]);
+        self.reference(axis).push_deepest(corner, axis.separation, out);
+    }
+}
+
+impl<'a> Pair<'a> {
+    pub fn new(a: &'a View<'a>, b: &'a View<'a>, input: PairInput) -> Self {
+        let b_in_a = MatrixPose::new(input.pose);
+        let (larger, smaller) = extents(a, b);
+        let sizes = Sizes { prediction: input.prediction, radius: a.radius + b.radius, smaller, larger };
+        Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), sizes }
+    }
+
+    /// The polyhedron of a reference face, of B if `of_b`, the incident one, and the incident frame in the other.
+    #[inline(always)]
+    fn ordered(&self, of_b: bool) -> (&View<'a>, &View<'a>, &MatrixPose) {
+        if of_b { (self.b, self.a, &self.a_in_b) } else { (self.a, self.b, &self.b_in_a) }
+    }
+
+    /// `face` is the incident one, if the incident polyhedron has faces.
+    #[inline(never)]
+    fn clip_face<const N: usize>(
+        &self,
+        axis: &FaceAxis,
+        face: Option<usize>,
+        out: &mut LocalManifold,
+    ) -> bool {
+        let (view, incident, frame) = self.ordered(axis.of_b);
+        let mut polygon = Polygon::<N>::new();
+        clip::incident_polygon(incident, face, |v| (frame.point(v), ()), &mut polygon);
+        let reference = self.reference(axis);
+        out.normal = if axis.of_b { -self.b_in_a.direction(reference.normal) } else { reference.normal };
+        reference.fill_clipped(view, axis, &mut polygon, self.sizes.smaller, out)
+    }
+
+    /// The face of an axis.
+    #[inline(always)]
+    fn reference(&self, axis: &FaceAxis) -> Reference<'_> {
+        let (view, incident, _) = self.ordered(axis.of_b);
+        let reference =
+            Reference::of_face(view, axis.face, axis.of_b, incident.radius, self.sizes.prediction);
+        Reference { to_a: axis.of_b.then_some(&self.b_in_a), ..reference }
     }
 
     /// Adds the other ends of the lines along which the edges pass over each other's faces, where these are near.
@@ -196,13 +177,6 @@ impl<'a> Pair<'a> {
                 out.normal = Vector::Y;
                 out.push(self.a.center, -self.sizes.radius, 3 << 30);
             }
-        }
-    }
-
-    /// See [`collide_apart`].
-    fn fill_apart(&self, separation: f32, out: &mut LocalManifold) {
-        if let Some(closest) = gjk::closest(self.a, self.b, &self.b_in_a) {
-            closest.fill_apart(self.radii(), separation, self.sizes.prediction, out);
         }
     }
 

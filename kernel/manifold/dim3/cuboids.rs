@@ -3,10 +3,9 @@
 //! Fifteen axes (Gottschalk, Lin and Manocha, "OBBTree", 1996): three face normals each, nine products
 //! of edges. The rules of choice are those of [`axis`](super::axis).
 
-use super::axis::{self, Axis, EDGES, FACE_A, FACE_B, Pair as _, Sizes};
+use super::axis::{self, Axis, EDGES, EdgeAxis, FACE_A, FACE_B, FaceAxis, Pair as _, Sizes};
 use super::convex;
 use super::reduce::Patch;
-use super::sat::{EdgeAxis, FaceAxis};
 use super::view::{MatrixPose, Small};
 use crate::manifold::{FeatureCache, LocalManifold, PairInput};
 use crate::math::{F32x4, Lane, Num, Vector, clamp, max, min};
@@ -28,12 +27,8 @@ struct Pair<'a> {
 }
 
 /// The contact of two boxes; see the module.
-pub(in crate::manifold) fn collide(
-    &Cuboid { half: half_a }: &Cuboid,
-    &Cuboid { half: half_b }: &Cuboid,
-    input: PairInput,
-    out: &mut LocalManifold,
-) {
+pub(in crate::manifold) fn collide(a: &Cuboid, b: &Cuboid, input: PairInput, out: &mut LocalManifold) {
+    let (half_a, half_b) = (a.half, b.half);
     let frame = MatrixPose::new(input.pose);
     let (size_a, size_b) = (half_a.max_element(), half_b.max_element());
     let (larger, smaller) = (max(size_a, size_b), min(size_a, size_b));
@@ -44,11 +39,11 @@ pub(in crate::manifold) fn collide(
 
 /// The face with the largest separation, of those along each axis.
 #[inline(always)]
-fn largest_of(separations: Vector) -> FaceAxis {
+fn largest_of(separations: Vector, of_b: bool) -> FaceAxis {
     let v = separations.to_array();
     let i = usize::from(v[1] > v[0]);
     let face = if v[2] > v[i] { 2 } else { i };
-    FaceAxis { face, separation: v[face], lowest: 0 }
+    FaceAxis { face, of_b, separation: v[face], lowest: 0 }
 }
 
 impl axis::Pair for Pair<'_> {
@@ -69,12 +64,12 @@ impl axis::Pair for Pair<'_> {
                 let (x, y, z) = (along(0), along(1), along(2));
                 let reach = x * self.half_b.x + y * self.half_b.y + z * self.half_b.z;
                 let separation = self.offset[0].to_array()[i].abs() - self.half_a.to_array()[i] - reach;
-                Some(Axis::FaceA(FaceAxis { face: i, separation, lowest: 0 }))
+                Some(Axis::Face(FaceAxis { face: i, of_b: false, separation, lowest: 0 }))
             }
             FACE_B => {
                 let reach = self.frame.axes[j].abs().dot(self.half_a);
                 let separation = self.offset[1].to_array()[j].abs() - self.half_b.to_array()[j] - reach;
-                Some(Axis::FaceB(FaceAxis { face: j, separation, lowest: 0 }))
+                Some(Axis::Face(FaceAxis { face: j, of_b: true, separation, lowest: 0 }))
             }
             EDGES => {
                 let (value, _, square) = self.edges(i, j);
@@ -91,89 +86,13 @@ impl axis::Pair for Pair<'_> {
     }
 
     #[inline(always)]
-    fn best_face_of_a(&self) -> FaceAxis {
-        largest_of(self.faces_of_a())
+    fn best_face(&self, of_b: bool) -> FaceAxis {
+        largest_of(if of_b { self.faces_of_b() } else { self.faces_of_a() }, of_b)
     }
 
-    #[inline(always)]
-    fn best_face_of_b(&self) -> FaceAxis {
-        largest_of(self.faces_of_b())
-    }
-
+    /// The normal is left open.
     #[inline(always)]
     fn best_edges(&self, _: &FaceAxis, _: &FaceAxis, known: f32) -> Option<EdgeAxis> {
-        self.search_edges(known)
-    }
-
-    #[inline(always)]
-    fn build(&self, axis: &Axis, out: &mut LocalManifold) -> bool {
-        match axis {
-            Axis::FaceA(face) => self.build_face(false, face.face, face.separation, out),
-            Axis::FaceB(face) => self.build_face(true, face.face, face.separation, out),
-            Axis::Edges(edges) => self.build_edges(edges, out),
-        }
-    }
-
-    #[inline(never)]
-    fn build_apart(&self, axis: &Axis, out: &mut LocalManifold) {
-        let (a, b) = (Small::cuboid(self.half_a), Small::cuboid(self.half_b));
-        convex::collide_apart(&a.view(), &b.view(), self.input, axis.separation(), out);
-    }
-
-    #[cold]
-    fn push_deepest(&self, axis: &Axis, out: &mut LocalManifold) {
-        let n = out.normal;
-        let sign = |v: f32| if v < 0.0 { -1.0 } else { 1.0 };
-        let (face, of_b, point) = match axis {
-            Axis::FaceA(face) => {
-                let d = self.frame.direction_in(-n);
-                let corner = Vector { x: sign(d.x), y: sign(d.y), z: sign(d.z) }.scale(self.half_b);
-                (face, false, self.frame.point(corner) - n * (0.5 * face.separation))
-            }
-            Axis::FaceB(face) => {
-                let corner = Vector { x: sign(n.x), y: sign(n.y), z: sign(n.z) }.scale(self.half_a);
-                (face, true, corner + n * (0.5 * face.separation))
-            }
-            Axis::Edges(_) => return,
-        };
-        out.push(point, face.separation, (face.face as u32 | u32::from(of_b) << 2) << 9 | 0xff);
-    }
-}
-
-impl Pair<'_> {
-    /// The separations along A's face normals.
-    #[inline(always)]
-    fn faces_of_a(&self) -> Vector {
-        let [x, y, z] = self.frame.axes;
-        let h = self.half_b;
-        self.offset[0].abs() - self.half_a - x.abs() * h.x - y.abs() * h.y - z.abs() * h.z
-    }
-
-    /// The separations along B's face normals.
-    #[inline(always)]
-    fn faces_of_b(&self) -> Vector {
-        let reach = |axis: Vector| axis.abs().dot(self.half_a);
-        let [x, y, z] = self.frame.axes;
-        self.offset[1].abs() - self.half_b - Vector { x: reach(x), y: reach(y), z: reach(z) }
-    }
-
-    /// The separation along e_i × b_j before its division by the length, the signed distance of the
-    /// centres along it, and the squared length.
-    #[inline(always)]
-    fn edges(&self, i: usize, j: usize) -> (f32, f32, f32) {
-        let (i1, i2, j1, j2) = (NEXT[i], NEXT[NEXT[i]], NEXT[j], NEXT[NEXT[j]]);
-        let (ha, hb, t) = (self.half_a.to_array(), self.half_b.to_array(), self.offset[0].to_array());
-        let axes = self.frame.axes;
-        let b = axes[j].to_array();
-        let distance = t[i2] * b[i1] - t[i1] * b[i2];
-        let of_a = ha[i1] * b[i2].abs() + ha[i2] * b[i1].abs();
-        let of_b = hb[j1] * axes[j2].to_array()[i].abs() + hb[j2] * axes[j1].to_array()[i].abs();
-        (distance.abs() - of_a - of_b, distance, b[i1] * b[i1] + b[i2] * b[i2])
-    }
-
-    /// The best pair of edges if it is better than `least`. Its normal is left open.
-    #[inline(always)]
-    fn search_edges(&self, least: f32) -> Option<EdgeAxis> {
         // Row i of the rotation: the components of B's axes along axis i of A.
         let [x, y, z] = self.frame.axes;
         let rows = [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
@@ -182,7 +101,7 @@ impl Pair<'_> {
         let (signed, sizes) = (rows.map(lanes), rows.map(|r| turned(r, 0)));
         let (t, ha, hb) = (self.offset[0].to_array(), self.half_a.to_array(), self.half_b.to_array());
         let of_b = [lanes([hb[1], hb[2], hb[0]]), lanes([hb[2], hb[0], hb[1]])];
-        let (bar, parallel) = (F32x4::splat(min(least, 0.0)), F32x4::splat(PARALLEL * PARALLEL));
+        let (bar, parallel) = (F32x4::splat(min(known, 0.0)), F32x4::splat(PARALLEL * PARALLEL));
         let axis = |i: usize| {
             let (i1, i2) = (NEXT[i], NEXT[NEXT[i]]);
             let distance = F32x4::splat(t[i2]) * signed[i1] - F32x4::splat(t[i1]) * signed[i2];
@@ -197,14 +116,14 @@ impl Pair<'_> {
         if !F32x4::any(F32x4::or(F32x4::or(axes[0].2, axes[1].2), axes[2].2)) {
             return None;
         }
-        let (mut found, mut least) = (None, least);
+        let (mut found, mut best) = (None, known);
         for (i, (value, square, open)) in axes.into_iter().enumerate() {
             let none = F32x4::splat(f32::NEG_INFINITY);
             let separations = F32x4::select(open, value / square.sqrt(), none);
             for j in 0..3 {
                 let separation = separations.get(j);
-                if separation > least {
-                    least = separation;
+                if separation > best {
+                    best = separation;
                     found = Some(EdgeAxis { a: i, b: j, normal: Vector::ZERO, separation });
                 }
             }
@@ -216,7 +135,8 @@ impl Pair<'_> {
     ///
     /// Coordinates are permuted so that the axis comes first. Axes and faces are looked up in tables, since branches on them
     /// would be mispredicted.
-    fn build_face(&self, of_b: bool, axis: usize, separation: f32, out: &mut LocalManifold) -> bool {
+    fn build_face(&self, face: &FaceAxis, out: &mut LocalManifold) -> bool {
+        let &FaceAxis { face: axis, of_b, separation, .. } = face;
         let [x, y, z] = self.frame.axes;
         // The axes and centre of the other box in the frame of the box with the face, and those of the latter in A's.
         let (axes, position, this, other, columns, origin) = if of_b {
@@ -266,11 +186,8 @@ impl Pair<'_> {
         clipped.least <= separation + MARGIN * self.sizes.smaller
     }
 
-    fn build_edges(
-        &self,
-        &EdgeAxis { a: i, b: j, separation, .. }: &EdgeAxis,
-        out: &mut LocalManifold,
-    ) -> bool {
+    fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {
+        let &EdgeAxis { a: i, b: j, separation, .. } = axis;
         let direction = self.frame.axes[j];
         let axis = Vector::AXES[i].cross(direction);
         let (_, distance, square) = self.edges(i, j);
@@ -319,6 +236,57 @@ impl Pair<'_> {
             }
         }
         beyond <= MARGIN * self.sizes.smaller
+    }
+
+    #[inline(never)]
+    fn build_apart(&self, axis: &Axis, out: &mut LocalManifold) {
+        let (a, b) = (Small::cuboid(self.half_a), Small::cuboid(self.half_b));
+        convex::Pair::new(&a.view(), &b.view(), self.input).build_apart(axis, out);
+    }
+
+    #[cold]
+    fn push_deepest(&self, &FaceAxis { face, of_b, separation, .. }: &FaceAxis, out: &mut LocalManifold) {
+        let n = out.normal;
+        let sign = |v: f32| if v < 0.0 { -1.0 } else { 1.0 };
+        let corner = |d: Vector, half| Vector { x: sign(d.x), y: sign(d.y), z: sign(d.z) }.scale(half);
+        let point = if of_b {
+            corner(n, self.half_a) + n * (0.5 * separation)
+        } else {
+            self.frame.point(corner(self.frame.direction_in(-n), self.half_b)) - n * (0.5 * separation)
+        };
+        out.push(point, separation, (face as u32 | u32::from(of_b) << 2) << 9 | 0xff);
+    }
+}
+
+impl Pair<'_> {
+    /// The separations along A's face normals.
+    #[inline(always)]
+    fn faces_of_a(&self) -> Vector {
+        let [x, y, z] = self.frame.axes;
+        let h = self.half_b;
+        self.offset[0].abs() - self.half_a - x.abs() * h.x - y.abs() * h.y - z.abs() * h.z
+    }
+
+    /// The separations along B's face normals.
+    #[inline(always)]
+    fn faces_of_b(&self) -> Vector {
+        let reach = |axis: Vector| axis.abs().dot(self.half_a);
+        let [x, y, z] = self.frame.axes;
+        self.offset[1].abs() - self.half_b - Vector { x: reach(x), y: reach(y), z: reach(z) }
+    }
+
+    /// The separation along e_i × b_j before its division by the length, the signed distance of the
+    /// centres along it, and the squared length.
+    #[inline(always)]
+    fn edges(&self, i: usize, j: usize) -> (f32, f32, f32) {
+        let (i1, i2, j1, j2) = (NEXT[i], NEXT[NEXT[i]], NEXT[j], NEXT[NEXT[j]]);
+        let (ha, hb, t) = (self.half_a.to_array(), self.half_b.to_array(), self.offset[0].to_array());
+        let axes = self.frame.axes;
+        let b = axes[j].to_array();
+        let distance = t[i2] * b[i1] - t[i1] * b[i2];
+        let of_a = ha[i1] * b[i2].abs() + ha[i2] * b[i1].abs();
+        let of_b = hb[j1] * axes[j2].to_array()[i].abs() + hb[j2] * axes[j1].to_array()[i].abs();
+        (distance.abs() - of_a - of_b, distance, b[i1] * b[i1] + b[i2] * b[i2])
     }
 }
 

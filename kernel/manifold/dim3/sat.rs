@@ -7,6 +7,7 @@
 //! parts. The point is the vertex of B that is lowest over the best face, since shapes touch near there. Of the 40 faces of two
 //! hulls with 12 vertices some nine remain, of their 900 pairs of edges about a tenth.
 
+use super::axis::{EdgeAxis, FaceAxis};
 use super::view::{MatrixPose, View};
 use crate::math::{F32x4, Lane, Num, Vector, min};
 use crate::shape::{EdgeBlock, largest};
@@ -15,39 +16,19 @@ use crate::tuning::manifold::PARALLEL;
 /// The number of blocks of A's edges that are tested beforehand. Of hulls with more, all other blocks are searched.
 const LISTED: usize = 64;
 
-/// A face of one polyhedron with its separation.
-#[derive(Clone, Copy)]
-pub(super) struct FaceAxis {
-    pub face: usize,
-    /// The signed distance of the other polyhedron from the face's plane.
-    pub separation: f32,
-    /// The vertex of the other polyhedron at that distance.
-    pub lowest: usize,
-}
-
-/// A pair of edges with its separation.
-#[derive(Clone, Copy)]
-pub(super) struct EdgeAxis {
-    pub a: usize,
-    pub b: usize,
-    /// The unit normal from A to B, in the frame of the search.
-    pub normal: Vector,
-    pub separation: f32,
-}
-
-/// The signed distance of `other` from a face of `this`, where `frame` transforms `other` into its frame.
+/// The signed distance of `other` from a face of `this`, where `frame` transforms `other` into its frame. `this` counts as A.
 #[inline(always)]
 pub(super) fn face_separation(this: &View, face: usize, other: &View, frame: &MatrixPose) -> FaceAxis {
     let f = &this.faces[face];
     let (lowest, depth) = other.farthest(-frame.direction_in(f.normal));
-    FaceAxis { face, separation: (f.normal.dot(frame.position) - f.offset) - depth, lowest }
+    FaceAxis { face, of_b: false, separation: (f.normal.dot(frame.position) - f.offset) - depth, lowest }
 }
 
 /// The face of `this` with the largest separation, where `frame` transforms `other` into the frame of `this`. Stops at the
-/// first above `limit`.
+/// first above `limit`. `this` counts as A.
 pub(super) fn best_face(this: &View, other: &View, frame: &MatrixPose, limit: f32) -> FaceAxis {
     if this.faces.is_empty() {
-        return FaceAxis { face: 0, separation: f32::NEG_INFINITY, lowest: 0 };
+        return FaceAxis { face: 0, of_b: false, separation: f32::NEG_INFINITY, lowest: 0 };
     }
     let mut best = face_separation(this, face_under(this, frame.point(other.center)), other, frame);
     let mut point = frame.point(other.vertices[best.lowest]);

@@ -3,11 +3,11 @@
 //! It decides as all of [`axis`] do, and adds what a triangle has of its own: a single plane, arcs of 180° on the Gauss map, and
 //! often a proof that its face is the best axis, which saves the search for others. Everything is in the polyhedron's frame.
 
-use super::axis::{self, Axis, Pair as _, Sizes};
+use super::axis::{self, Axis, EdgeAxis, FaceAxis, Pair as _, Sizes};
 use super::clip::{self, Corner, FEW_CORNERS, LEAST_CORNERS, MAX_CORNERS, Polygon, Reference};
 use super::convex::closest_of_lines;
 use super::gjk::{self, Core};
-use super::sat::{EdgeAxis, FaceAxis, open_edges, remaining};
+use super::sat::{open_edges, remaining};
 use super::view::{Facing, MatrixPose, View, four};
 use crate::manifold::{LocalManifold, PairInput};
 use crate::math::{F32x4, Lane, Num, Vector, max, min};
@@ -128,34 +128,16 @@ impl axis::Pair for Pair<'_> {
     }
 
     #[inline(always)]
-    fn best_face_of_a(&self) -> FaceAxis {
+    fn best_face(&self, of_b: bool) -> FaceAxis {
+        if of_b {
+            return self.best_face_of_view();
+        }
         let nearest = self.nearest;
         if !(nearest.separation < 0.0) {
             return nearest;
         }
         let back = self.plane(1 - nearest.face);
         if back.separation > nearest.separation { back } else { nearest }
-    }
-
-    fn best_face_of_b(&self) -> FaceAxis {
-        let corners = self.corners.map(Vector::<F32x4>::splat);
-        let mut best = F32x4::splat(f32::NEG_INFINITY);
-        let (mut at, mut number) = (F32x4::ZERO, F32x4::ZERO);
-        for block in self.view.face_blocks {
-            let [a, b, c] = corners.map(|corner| block.normal.dot(corner));
-            let height = a.min(b).min(c) - block.offset;
-            let better = best.lt(height);
-            best = F32x4::select(better, height, best);
-            at = F32x4::select(better, number, at);
-            number += F32x4::ONE;
-        }
-        if self.view.faces.is_empty() {
-            return FaceAxis { face: 0, separation: f32::NEG_INFINITY, lowest: 0 };
-        }
-        let (face, separation) = largest(best, at);
-        let face = face.min(self.view.faces.len() - 1);
-        let normal = self.view.faces[face].normal;
-        FaceAxis { face, separation, lowest: greatest(self.corners.map(|corner| -corner.dot(normal))) }
     }
 
     /// See [`sat`](super::sat); the arc of a side goes from the face's normal to its reverse.
@@ -200,25 +182,35 @@ impl axis::Pair for Pair<'_> {
         Some(EdgeAxis { a: side, b: edge, normal: axis * (sign / axis.length()), separation: best })
     }
 
-    fn build(&self, axis: &Axis, out: &mut LocalManifold) -> bool {
-        match axis {
-            Axis::FaceA(plane) => self.build_plane(plane, out),
-            Axis::FaceB(face) => {
-                let sides = self.view.faces[face.face].count as usize;
-                if sides + 3 < FEW_CORNERS {
-                    self.clip_triangle::<FEW_CORNERS>(face, out)
-                } else {
-                    self.clip_triangle::<MAX_CORNERS>(face, out)
-                }
-            }
-            Axis::Edges(edges) => self.build_edges(edges, out),
+    fn build_face(&self, face: &FaceAxis, out: &mut LocalManifold) -> bool {
+        if !face.of_b {
+            self.build_plane(face, out)
+        } else if self.view.faces[face.face].count as usize + 3 < FEW_CORNERS {
+            self.clip_triangle::<FEW_CORNERS>(face, out)
+        } else {
+            self.clip_triangle::<MAX_CORNERS>(face, out)
         }
+    }
+
+    fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {
+        let (view, &EdgeAxis { a: side, b: edge, normal, separation }) = (self.view, axis);
+        let ends = [self.corners[side], self.corners[(side + 1) % 3]];
+        let ends_of = [view.edges[edge].tail, view.edges[edge].head].map(|i| view.vertices[i as usize]);
+        let (point, point_of, is_inside) = closest_of_lines(ends, ends_of);
+        let separation = separation - view.radius;
+        (out.count, out.normal) = (0, self.frame.direction(normal));
+        if separation <= self.sizes.prediction {
+            let between = (point + point_of - normal * view.radius) * 0.5;
+            let feature = 2 << 30 | (side as u32) << 15 | edge as u32 & 0x7fff;
+            out.push(self.frame.point(between), separation, feature);
+        }
+        is_inside
     }
 
     fn build_apart(&self, axis: &Axis, out: &mut LocalManifold) {
         let start = match axis {
-            Axis::FaceA(plane) => self.face * sign_of(plane),
-            Axis::FaceB(face) => -self.frame.direction(self.view.faces[face.face].normal),
+            Axis::Face(plane) if !plane.of_b => self.face * sign_of(plane),
+            Axis::Face(face) => -self.frame.direction(self.view.faces[face.face].normal),
             Axis::Edges(edges) => self.frame.direction(edges.normal),
         };
         let limit = self.sizes.limit();
@@ -231,18 +223,13 @@ impl axis::Pair for Pair<'_> {
         }
     }
 
-    fn push_deepest(&self, axis: &Axis, out: &mut LocalManifold) {
-        match axis {
-            Axis::FaceA(plane) => {
-                let vertex = self.view.vertices[plane.lowest];
-                self.reference(plane).push_deepest(vertex, plane.separation, out);
-            }
-            Axis::FaceB(face) => {
-                let corner = self.corners[face.lowest];
-                self.reference_of(face.face).push_deepest(corner, face.separation, out);
-            }
-            Axis::Edges(_) => {}
-        }
+    fn push_deepest(&self, axis: &FaceAxis, out: &mut LocalManifold) {
+        let (reference, lowest) = if axis.of_b {
+            (self.reference_of(axis.face), self.corners[axis.lowest])
+        } else {
+            (self.reference(axis), self.view.vertices[axis.lowest])
+        };
+        reference.push_deepest(lowest, axis.separation, out);
     }
 }
 
@@ -285,7 +272,7 @@ impl<'a> Pair<'a> {
                 smaller: min(extent, view.extent),
                 larger: max(extent, view.extent),
             },
-            nearest: FaceAxis { face: 0, separation: f32::NEG_INFINITY, lowest: 0 },
+            nearest: FaceAxis { face: 0, of_b: false, separation: f32::NEG_INFINITY, lowest: 0 },
             open: SIDES,
         })
     }
@@ -295,7 +282,8 @@ impl<'a> Pair<'a> {
     fn plane(&self, face: usize) -> FaceAxis {
         let sign = if face == 0 { 1.0 } else { -1.0 };
         let (lowest, depth) = self.view.farthest(self.normal * -sign);
-        FaceAxis { face, lowest, separation: -depth - sign * self.normal.dot(self.corners[0]) }
+        let separation = -depth - sign * self.normal.dot(self.corners[0]);
+        FaceAxis { face, of_b: false, separation, lowest }
     }
 
     /// The side of the face that the polyhedron's centre is on.
@@ -303,6 +291,29 @@ impl<'a> Pair<'a> {
     fn nearest_plane(&self) -> FaceAxis {
         let height = self.normal.dot(self.view.center - self.corners[0]);
         self.plane(usize::from(height < 0.0))
+    }
+
+    /// The polyhedron's face with the largest separation.
+    fn best_face_of_view(&self) -> FaceAxis {
+        let corners = self.corners.map(Vector::<F32x4>::splat);
+        let mut best = F32x4::splat(f32::NEG_INFINITY);
+        let (mut at, mut number) = (F32x4::ZERO, F32x4::ZERO);
+        for block in self.view.face_blocks {
+            let [a, b, c] = corners.map(|corner| block.normal.dot(corner));
+            let height = a.min(b).min(c) - block.offset;
+            let better = best.lt(height);
+            best = F32x4::select(better, height, best);
+            at = F32x4::select(better, number, at);
+            number += F32x4::ONE;
+        }
+        if self.view.faces.is_empty() {
+            return FaceAxis { face: 0, of_b: true, separation: f32::NEG_INFINITY, lowest: 0 };
+        }
+        let (face, separation) = largest(best, at);
+        let face = face.min(self.view.faces.len() - 1);
+        let normal = self.view.faces[face].normal;
+        let lowest = greatest(self.corners.map(|corner| -corner.dot(normal)));
+        FaceAxis { face, of_b: true, separation, lowest }
     }
 
     /// The sides that may make an axis which separates more than a plane does, as bits. Without any the plane is the best of all
@@ -420,20 +431,5 @@ impl<'a> Pair<'a> {
         let reference = self.reference_of(axis.face);
         out.normal = -self.frame.direction(reference.normal);
         reference.fill_clipped(self.view, axis, &mut polygon, self.sizes.smaller, out)
-    }
-
-    fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool {
-        let (view, &EdgeAxis { a: side, b: edge, normal, separation }) = (self.view, axis);
-        let ends = [self.corners[side], self.corners[(side + 1) % 3]];
-        let ends_of = [view.edges[edge].tail, view.edges[edge].head].map(|i| view.vertices[i as usize]);
-        let (point, point_of, is_inside) = closest_of_lines(ends, ends_of);
-        let separation = separation - view.radius;
-        (out.count, out.normal) = (0, self.frame.direction(normal));
-        if separation <= self.sizes.prediction {
-            let between = (point + point_of - normal * view.radius) * 0.5;
-            let feature = 2 << 30 | (side as u32) << 15 | edge as u32 & 0x7fff;
-            out.push(self.frame.point(between), separation, feature);
-        }
-        is_inside
     }
 }
