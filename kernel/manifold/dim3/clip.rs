@@ -2,7 +2,7 @@
 //! Polygon Clipping", 1974), with a feature id for each corner.
 
 use super::axis::FaceAxis;
-use super::reduce::{Candidates, keep, reduce};
+use super::reduce::{Candidates, keep};
 use super::view::{MatrixPose, View};
 use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{F32x4, Lane, Vector, min};
@@ -80,20 +80,6 @@ impl<const N: usize, H: Carried> Polygon<N, H> {
         self.corners[self.count] = corner;
         self.count += usize::from(wanted & (self.count < N - 1));
     }
-}
-
-/// The most corners when a face of `reference` clips one of `incident`.
-pub(super) fn most_corners(
-    reference: &View,
-    face: usize,
-    incident: &View,
-    incident_face: Option<usize>,
-) -> usize {
-    let of_incident = match incident_face {
-        Some(face) => incident.faces[face].count as usize,
-        None => incident.vertices.len(),
-    };
-    of_incident + reference.faces[face].count as usize
 }
 
 /// The face of `incident` most opposite to a direction in its own frame, among the faces around the vertex `deepest` along it;
@@ -261,8 +247,7 @@ impl Reference<'_> {
                 });
             }
         }
-        let list = candidates.as_slice();
-        keep(list, reduce(list, out.normal), out);
+        keep::<false>(candidates.as_slice(), out);
         least
     }
 

@@ -69,7 +69,7 @@ impl axis::Pair for Pair<'_> {
         let (reference, incident, frame) = self.ordered(axis.of_b);
         let local = frame.direction_in(reference.faces[axis.face].normal);
         let face = clip::incident_face(incident, local, axis.lowest);
-        if clip::most_corners(reference, axis.face, incident, face) < FEW_CORNERS {
+        if reference.corners_of(Some(axis.face)) + incident.corners_of(face) < FEW_CORNERS {
             self.clip_face::<FEW_CORNERS>(axis, face, out)
         } else {
             self.clip_face::<MAX_CORNERS>(axis, face, out)

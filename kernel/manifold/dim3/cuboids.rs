@@ -176,7 +176,7 @@ impl axis::Pair for Pair<'_> {
         let face = ((axis | usize::from(of_b) << 2) * 2 + usize::from(side > 0.0)) as u32;
         let base = face << 8 | ((incident * 2 + usize::from(away > 0.0)) << 5) as u32;
         let (up, right, ahead) = (columns[i0] * side, columns[i1], columns[i2]);
-        let (kept, count) = clipped.patch.reduce();
+        let (kept, count) = clipped.patch.reduce::<false>();
         for k in &kept[..count] {
             let height = F32x4::flat(&clipped.patch.separation)[*k];
             let (x, y) = clipped.patch.at(*k);

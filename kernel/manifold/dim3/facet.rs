@@ -1,6 +1,6 @@
 //! The triangles of a surface: their borders, and contacts with their face alone.
 
-use super::reduce::{Candidates, MAX_CANDIDATES, keep, reduce_faces};
+use super::reduce::{Candidates, MAX_CANDIDATES, keep};
 use super::view::{Facing, Small, View, with_view};
 use super::{curved, triangle};
 use crate::manifold::border::{Border, is_beside};
@@ -102,6 +102,5 @@ impl<'a> Convex<'a> {
 pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalManifold) {
     let mut candidates = Candidates::<MAX_CANDIDATES>::new();
     points.iter().for_each(|p| candidates.push(*p));
-    let list = candidates.as_slice();
-    keep(list, reduce_faces(list, out.normal), out);
+    keep::<true>(candidates.as_slice(), out);
 }

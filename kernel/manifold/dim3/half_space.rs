@@ -1,6 +1,6 @@
 //! A half-space against the vertices of anything.
 
-use super::reduce::{Candidates, MAX_CANDIDATES, keep, reduce};
+use super::reduce::{Candidates, MAX_CANDIDATES, keep};
 use crate::manifold::{LocalManifold, LocalPoint, PairInput};
 use crate::math::{Vector, min};
 use crate::shape::Shape;
@@ -42,6 +42,5 @@ fn vertices(
         }
     }
     out.normal = normal;
-    let list = candidates.as_slice();
-    keep(list, reduce(list, normal), out);
+    keep::<false>(candidates.as_slice(), out);
 }

@@ -40,32 +40,18 @@ impl<const N: usize> Candidates<N> {
     }
 }
 
-/// The indices of the candidates to keep, and their number; see [`Patch::reduce`].
-#[inline]
-pub(super) fn reduce(list: &[LocalPoint], normal: Vector) -> ([usize; 4], usize) {
-    match list.len() {
-        0..=4 => ([0, 1, 2, 3], list.len()),
-        5..=16 => Patch::<4>::of(list, normal).reduce(),
-        _ => Patch::<16>::of(list, normal).reduce(),
-    }
-}
-
-/// As [`reduce`], of candidates from several faces: those above the deepest one are worth less.
+/// Fills a manifold, whose normal is set, with at most four candidates; see [`Patch::reduce`].
 ///
-/// Candidates of one face are in a plane, so that its ends hold it. Of several faces the ends may be in the air while the body
-/// leans on an edge between them. One end of that would be dropped, sink in, and be pushed out, which adds energy.
+/// Candidates of one face are in a plane, so that its ends hold it. Of several faces (`FACES`) the ends may be in the air while
+/// the body leans on an edge between them. One end of that would be dropped, sink in, and be pushed out, which adds energy. So
+/// candidates above the deepest one are worth less.
 #[inline]
-pub(super) fn reduce_faces(list: &[LocalPoint], normal: Vector) -> ([usize; 4], usize) {
-    match list.len() {
+pub(super) fn keep<const FACES: bool>(list: &[LocalPoint], out: &mut LocalManifold) {
+    let (kept, count) = match list.len() {
         0..=4 => ([0, 1, 2, 3], list.len()),
-        5..=16 => Patch::<4>::of(list, normal).reduce_faces(),
-        _ => Patch::<16>::of(list, normal).reduce_faces(),
-    }
-}
-
-/// Fills a manifold, whose normal is set, with the kept ones of some candidates.
-#[inline]
-pub(super) fn keep(list: &[LocalPoint], (kept, count): ([usize; 4], usize), out: &mut LocalManifold) {
+        5..=16 => Patch::<4>::of(list, out.normal).reduce::<FACES>(),
+        _ => Patch::<16>::of(list, out.normal).reduce::<FACES>(),
+    };
     out.count = 0;
     for k in &kept[..count] {
         out.push(list[*k].point, list[*k].separation, list[*k].feature);
@@ -138,25 +124,7 @@ impl<const B: usize> Patch<B> {
     /// The indices of the candidates to keep, and their number, at most four. The first is the deepest, within 0.1 % of the
     /// patch's size. Then come the one farthest from it, the one of the largest triangle, and the one that adds most to the
     /// triangle's area.
-    pub fn reduce(&self) -> ([usize; 4], usize) {
-        self.reduce_by(|_, _| [F32x4::ONE; B])
-    }
-
-    /// See [`reduce_faces`].
-    fn reduce_faces(&self) -> ([usize; 4], usize) {
-        self.reduce_by(|deepest, size| {
-            let (deepest, slope) = (F32x4::splat(deepest), F32x4::splat((1.0 - IN_THE_AIR) / (HIGH * size)));
-            let mut weights = self.separation;
-            for weight in &mut weights {
-                *weight = (F32x4::ONE - (*weight - deepest) * slope).max(F32x4::splat(IN_THE_AIR));
-            }
-            weights
-        })
-    }
-
-    /// As [`reduce`](Self::reduce), with weights by the least separation and the patch's size.
-    #[inline(always)]
-    fn reduce_by(&self, weights: impl Fn(f32, f32) -> [F32x4; B]) -> ([usize; 4], usize) {
+    pub fn reduce<const FACES: bool>(&self) -> ([usize; 4], usize) {
         let mut present = self.present();
         let count = present.count_ones() as usize;
         if count <= 4 {
@@ -180,7 +148,13 @@ impl<const B: usize> Patch<B> {
         }
         let size_squared = greatest(size);
         let (size, deepest) = (size_squared.sqrt(), -greatest(-least));
-        let weights = weights(deepest, size);
+        let mut weights = [F32x4::ONE; B];
+        if FACES {
+            let (deepest, slope) = (F32x4::splat(deepest), F32x4::splat((1.0 - IN_THE_AIR) / (HIGH * size)));
+            for (weight, separation) in weights.iter_mut().zip(self.separation) {
+                *weight = (F32x4::ONE - (separation - deepest) * slope).max(F32x4::splat(IN_THE_AIR));
+            }
+        }
         let bar = F32x4::splat(MARGIN * size + deepest);
         let first = self.those_with(|k, _| self.separation[k].le(bar)).trailing_zeros() as usize % (4 * B);
         let a = self.at(first);

@@ -185,7 +185,7 @@ impl axis::Pair for Pair<'_> {
     fn build_face(&self, face: &FaceAxis, out: &mut LocalManifold) -> bool {
         if !face.of_b {
             self.build_plane(face, out)
-        } else if self.view.faces[face.face].count as usize + 3 < FEW_CORNERS {
+        } else if self.view.corners_of(Some(face.face)) + 3 < FEW_CORNERS {
             self.clip_triangle::<FEW_CORNERS>(face, out)
         } else {
             self.clip_triangle::<MAX_CORNERS>(face, out)
@@ -363,7 +363,7 @@ impl<'a> Pair<'a> {
     fn build_plane(&self, plane: &FaceAxis, out: &mut LocalManifold) -> bool {
         let view = self.view;
         let incident = clip::incident_face(view, self.normal * sign_of(plane), plane.lowest);
-        let most = 3 + incident.map_or(view.vertices.len(), |face| view.faces[face].count as usize);
+        let most = 3 + view.corners_of(incident);
         if most < LEAST_CORNERS {
             self.clip_face::<LEAST_CORNERS>(plane, incident, out)
         } else if most < FEW_CORNERS {

@@ -46,6 +46,12 @@ impl View<'_> {
         &self.fans[self.fan_starts[vertex] as usize..self.fan_starts[vertex + 1] as usize]
     }
 
+    /// The number of vertices of a face, or of all if there is none.
+    #[inline]
+    pub fn corners_of(&self, face: Option<usize>) -> usize {
+        face.map_or(self.vertices.len(), |face| self.faces[face].count as usize)
+    }
+
     /// The vertices of a face, counter-clockwise.
     #[inline]
     pub fn outline(&self, face: usize) -> &[u32] {

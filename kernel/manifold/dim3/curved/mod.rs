@@ -13,7 +13,7 @@ mod rim;
 mod tests;
 
 use super::gjk;
-use super::reduce::{keep, reduce};
+use super::reduce::keep;
 use super::round::unit_or;
 use super::view::{MatrixPose, View, with_view};
 use crate::manifold::{FeatureCache, LocalManifold, PairInput};
@@ -141,8 +141,7 @@ pub(super) fn ball(a: &Curved, &Ball { radius }: &Ball, input: PairInput, out: &
 /// Takes at most four points of a region.
 fn take(region: &Region, out: &mut LocalManifold) {
     out.normal = region.normal;
-    let list = region.candidates.as_slice();
-    keep(list, reduce(list, region.normal), out);
+    keep::<false>(region.candidates.as_slice(), out);
 }
 
 impl<'a, A: Party> Pair<'a, A> {
