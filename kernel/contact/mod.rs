@@ -21,7 +21,6 @@ mod recycle;
 mod surface;
 mod sweep;
 mod table;
-mod view;
 
 pub use buffers::WorkerBuffers;
 pub use input::{ManifoldSource, NarrowPhaseInput};
@@ -30,7 +29,7 @@ pub use narrow_phase::{Outcome, update_contact};
 pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint, ManifoldSurface};
 pub(crate) use recycle::CHORD;
 pub use table::ContactTable;
-pub(crate) use view::ManifoldsView;
+pub(crate) use table::ManifoldsView;
 
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,7 @@
 //! All contacts by id, the map from pairs to contacts, and the set of awake contacts.
 
 use super::record::{Bearing, Contact, ContactFlags, Lost, Manifold, ManifoldSurface};
-use crate::data::{BitSet, IdPool, PairSet, Slack, prefetch};
+use crate::data::{BitSet, IdPool, PairSet, Parts, Slack, prefetch};
 use crate::math::DIM;
 use crate::table::{ColliderTable, NONE};
 use std::collections::BTreeMap;
@@ -189,12 +189,17 @@ impl ContactTable {
 
     /// A contact's manifold by its number, which it has.
     #[inline(always)]
-    pub(super) fn manifold_mut(&mut self, id: u32, index: u32) -> &mut Manifold {
+    pub(crate) fn manifold_mut(&mut self, id: u32, index: u32) -> &mut Manifold {
         let contact = &mut self.contacts[id as usize];
         match index {
             0 => &mut contact.manifold,
             _ => &mut self.extra[contact.extra as usize][index as usize - 1],
         }
+    }
+
+    /// The manifolds, changed by several threads at once.
+    pub(crate) fn manifolds_view(&mut self) -> ManifoldsView<'_> {
+        ManifoldsView { contacts: Parts::of(&mut self.contacts), extra: Parts::of(&mut self.extra) }
     }
 
     /// A contact's manifold by its number, if there is one.
@@ -380,5 +385,53 @@ impl ContactTable {
         assert_eq!(listed, 2 * live, "colliders list their contacts");
         assert_eq!(live, self.len());
         assert_eq!(self.pairs.len(), live, "every pair has one contact");
+    }
+}
+
+/// The manifolds of all contacts, changed by several threads at once.
+pub(crate) struct ManifoldsView<'a> {
+    contacts: Parts<'a, Contact>,
+    extra: Parts<'a, Vec<Manifold>>,
+}
+
+#[expect(unsafe_code, reason = "several threads change manifolds, each of other contacts")]
+impl ManifoldsView<'_> {
+    /// Prefetches contacts that are needed soon. Ids without a contact are skipped.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, ids: &[u32]) {
+        ids.iter().for_each(|id| self.contacts.prefetch(*id));
+    }
+
+    /// A contact's manifold by its number, which must exist.
+    ///
+    /// # Safety
+    /// While the manifold is in use no other thread may take one of the same contact.
+    #[inline(always)]
+    #[expect(clippy::mut_from_ref, reason = "that is what it is for")]
+    pub(crate) unsafe fn manifold(&self, id: u32, index: u32) -> &mut Manifold {
+        // SAFETY: by the contract the contact and its manifolds in the side pool are this caller's alone.
+        unsafe {
+            let contact = self.contacts.one(id as usize);
+            match index {
+                0 => &mut contact.manifold,
+                _ => &mut self.extra.one(contact.extra as usize)[index as usize - 1],
+            }
+        }
+    }
+
+    /// The same at the end of a step, and whether its separations are to be set to those of now, as the next update may keep them.
+    ///
+    /// # Safety
+    /// As [`manifold`](Self::manifold).
+    #[inline(always)]
+    #[expect(clippy::mut_from_ref, reason = "that is what it is for")]
+    pub(crate) unsafe fn at_end(&self, id: u32, index: u32) -> (&mut Manifold, bool) {
+        // SAFETY: by the contract the contact and its manifolds in the side pool are this caller's alone.
+        unsafe {
+            let contact = self.contacts.one(id as usize);
+            let may_be_calm = contact.may_be_calm();
+            contact.flags.set(ContactFlags::CALM, may_be_calm);
+            (self.manifold(id, index), may_be_calm)
+        }
     }
 }

@@ -219,10 +219,8 @@ impl Blows {
         if !contacts.sum_impulses {
             return;
         }
-        let manifolds = contacts.manifolds_view();
         for Given { item, impulses, .. } in &self.given {
-            // SAFETY: one thread uses the view, and one manifold of it at a time.
-            let manifold = unsafe { manifolds.manifold(item.id, item.index) };
+            let manifold = contacts.manifold_mut(item.id, item.index);
             let count = usize::from(manifold.count);
             for (point, impulse) in manifold.points[..count].iter_mut().zip(impulses) {
                 point.total_impulse += impulse;
