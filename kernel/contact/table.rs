@@ -29,7 +29,7 @@ pub struct ContactTable {
     /// default: it costs time.
     pub sum_impulses: bool,
     /// Whether the last update found a deeply overlapping contact.
-    pub(super) any_deep: bool,
+    pub(crate) any_deep: bool,
     /// The dynamic bodies that overlapped others deeply when contacts were last updated.
     pub(super) crowded: BitSet,
     pub(super) extra: Vec<Vec<Manifold>>,
@@ -39,7 +39,7 @@ pub struct ContactTable {
     /// The surfaces of changed manifolds, by contact and index.
     pub(super) surfaces: BTreeMap<(u32, u32), ManifoldSurface>,
     /// Bodies to which the solver gave more mass in the last step, by id, and how long it lasts.
-    raised_masses: Vec<(u32, [u8; DIM])>,
+    pub(crate) raised_masses: Vec<(u32, [u8; DIM])>,
     /// Sliding colliders whose manifolds are compared; empty between updates.
     pub(super) compared: Vec<u32>,
     /// The same as a set.
@@ -116,11 +116,6 @@ impl ContactTable {
     /// Whether an id is in use.
     pub fn is_live(&self, id: u32) -> bool {
         self.ids.is_live(id)
-    }
-
-    /// Whether the last update found a deeply overlapping contact.
-    pub fn any_deep(&self) -> bool {
-        self.any_deep
     }
 
     /// The contacts with an awake body, by id.
@@ -217,18 +212,6 @@ impl ContactTable {
             NONE => &[],
             slot => &self.extra[slot as usize][..usize::from(contact.extra_count)],
         }
-    }
-
-    /// Bodies to which the solver gave more mass in the last step, by id, and how long it lasts.
-    pub(crate) fn raised_masses(&self) -> &[(u32, [u8; DIM])] {
-        &self.raised_masses
-    }
-
-    /// Sets the bodies to which the solver gave more mass in this step, in the order of ids.
-    pub(crate) fn set_raised_masses(&mut self, raised: &[(u32, [u8; DIM])]) {
-        debug_assert!(raised.is_sorted(), "bodies are in the order of ids");
-        self.raised_masses.clear();
-        self.raised_masses.extend_from_slice(raised);
     }
 
     /// Makes ids that were freed before this usable again: to be called in every step. Gives back what a crowd needed that is gone.

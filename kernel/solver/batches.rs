@@ -172,7 +172,7 @@ fn sort_overflow(
     shared.begin(CONTACT_BATCHES, 1);
     sort_joints(joints, JOINT, tables.joints, sorter, singles);
     sort_customs(customs, CUSTOM, tables.customs, sorter, singles);
-    let many = colors.overflow().len() >= WORTH_SHARED_ROWS && !sorter.input.contacts.any_deep();
+    let many = colors.overflow().len() >= WORTH_SHARED_ROWS && !sorter.input.contacts.any_deep;
     for contact in colors.overflow() {
         let layer = if many { &mut *shared } else { &mut *singles };
         let mut index = 0;

@@ -99,7 +99,7 @@ impl Bearing {
         let sag_rate = sag_rate(params) / params.max_sag;
         self.sum_up(input, bodies, params, are_joined);
         self.spread();
-        let before = input.contacts.raised_masses();
+        let before = &input.contacts.raised_masses;
         for body in input.bodies.awake_dynamic() {
             let row = input.row_of(body) as usize;
             let load = &mut self.loads[row];
@@ -134,7 +134,7 @@ impl Bearing {
 
     /// Stores which bodies have more mass, for the next step.
     pub(super) fn store(&self, contacts: &mut ContactTable) {
-        contacts.set_raised_masses(&self.raised);
+        contacts.raised_masses.clone_from(&self.raised);
     }
 
     /// Sums up the impulses of the last substep by body row, in the order of contacts, and lists contacts that press.

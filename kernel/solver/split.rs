@@ -16,7 +16,7 @@ pub(super) struct DeepCounts(Vec<u32>);
 impl DeepCounts {
     pub(super) fn count(&mut self, input: &RowInput, bodies: &BodyRows) {
         self.0.clear();
-        if !input.contacts.any_deep() {
+        if !input.contacts.any_deep {
             return;
         }
         self.0.resize(bodies.rows.len(), 0);

@@ -143,7 +143,7 @@ impl Solver {
         self.fill_rows(input, params, pool);
         let Self { bodies, trees, plan, bearing, .. } = self;
         let any_overloaded = plan.blocks.iter().any(|block| block.passes.are_overloaded());
-        let was_any = !input.contacts.raised_masses().is_empty();
+        let was_any = !input.contacts.raised_masses.is_empty();
         if (any_overloaded || was_any)
             && bearing.raise_masses(input, bodies, params, |rows| trees.connects(rows))
         {
