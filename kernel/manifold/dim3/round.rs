@@ -74,12 +74,8 @@ pub(super) fn capsule_ball(a: &Capsule, &Ball { radius }: &Ball, input: PairInpu
 }
 
 /// A box and a ball. The normal of a centre inside is that of the nearest face.
-pub(super) fn cuboid_ball(
-    &Cuboid { half }: &Cuboid,
-    &Ball { radius }: &Ball,
-    input: PairInput,
-    out: &mut LocalManifold,
-) {
+pub(super) fn cuboid_ball(a: &Cuboid, b: &Ball, input: PairInput, out: &mut LocalManifold) {
+    let (half, radius) = (a.half, b.radius);
     let center = input.pose.position;
     let nearest = center.max(-half).min(half);
     let cores = Cores { a: nearest, b: center, radius_a: 0.0, radius_b: radius };
@@ -102,12 +98,7 @@ pub(super) fn cuboid_ball(
 }
 
 /// A triangle and a ball, from either side. For a centre in the plane the normal is the triangle's.
-pub(super) fn triangle_ball(
-    t: &Triangle,
-    &Ball { radius }: &Ball,
-    input: PairInput,
-    out: &mut LocalManifold,
-) {
+pub(super) fn triangle_ball(t: &Triangle, b: &Ball, input: PairInput, out: &mut LocalManifold) {
     let center = input.pose.position;
     let mut normal = match face(t) {
         Some(normal) => normal,
@@ -123,7 +114,7 @@ pub(super) fn triangle_ball(
         normal = -normal;
     }
     let nearest = nearest_on_triangle(t, center);
-    let cores = Cores { a: nearest, b: center, radius_a: 0.0, radius_b: radius };
+    let cores = Cores { a: nearest, b: center, radius_a: 0.0, radius_b: b.radius };
     cores.contact(normal, rounding_of(&[t.a, t.b, t.c]), input.prediction, out);
 }
 
@@ -210,9 +201,9 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, input: PairInput, out: &mut Loc
     if side < 0.0 {
         fallback = -fallback;
     }
-    let touching = Touching { lines: Lines::new(a.a, u, [b0, b0 + v], v), cores };
+    let lines = Lines::new(a.a, u, [b0, b0 + v], v);
     if is_within(LINE_SINE)
-        && touching.touch(parallel, |middle| middle.direction_or(fallback, rounding), prediction, out)
+        && cores.touch(&lines, parallel, |middle| middle.direction_or(fallback, rounding), prediction, out)
     {
         return;
     }
@@ -258,36 +249,29 @@ impl Lines {
     }
 }
 
-/// Two capsules side by side.
-struct Touching {
-    lines: Lines,
-    /// The closest points.
-    cores: Cores,
-}
-
-impl Touching {
-    /// A contact with a point at each end of the range in which both are side by side, if they are nearly parallel there.
-    /// The normal is that in the middle of the range.
+impl Cores {
+    /// The contact of two capsules, of which these are the closest points, with a point at each end of the range in which both are
+    /// side by side, if they are nearly parallel there. The normal is that in the middle of the range.
     fn touch(
         &self,
+        lines: &Lines,
         parallel: bool,
-        normal_or: impl Fn(&Cores) -> Vector,
+        normal_or: impl Fn(&Self) -> Vector,
         prediction: f32,
         out: &mut LocalManifold,
     ) -> bool {
-        let &Self { ref lines, cores } = self;
         if lines.uu == 0.0 || lines.vv == 0.0 {
             return false;
         }
         let Some([low, high]) = lines.shared() else { return false };
         let across = |t: f32| {
             let [a, b] = lines.at(t);
-            Cores { a, b, ..cores }
+            Self { a, b, ..*self }
         };
         let [first, last] = [low, high].map(across);
-        let between = cores.b - cores.a;
+        let between = self.b - self.a;
         let sway = [first, last].map(|end| ((end.b - end.a) - between).length_squared());
-        let size = CROSSED * min(between.length(), cores.radius_a + cores.radius_b);
+        let size = CROSSED * min(between.length(), self.radius_a + self.radius_b);
         let is_line = parallel || max(sway[0], sway[1]) < size * size;
         if !is_line {
             return false;
