@@ -48,5 +48,5 @@ pub(super) fn lead<S>(
         return None;
     }
     *local = then;
-    Some(Meeting::new(&placed, poses))
+    Some(Meeting::new(placed, poses))
 }

@@ -119,8 +119,8 @@ pub(super) fn replace<S: ManifoldSource>(
         return;
     }
     let margin = input.margin(contact);
-    let pose_a = meeting.map_or(input.shape_poses(contact)[0], |meeting| &meeting.pose_a);
-    let body_a = meeting.map_or(body_a, |meeting| &meeting.body_a);
+    let pose_a = meeting.map_or(input.shape_poses(contact)[0], |meeting| &meeting.placed[0].shape);
+    let body_a = meeting.map_or(body_a, |meeting| &meeting.placed[0].body);
     // From body A's centre of mass to collider A's origin, in world axes.
     let to_shape = (pose_a.position - body_a.center).to_local();
     let old = core::mem::take(&mut contact.manifold);

@@ -14,27 +14,24 @@ use crate::distance::{Approach, advance};
 use crate::manifold::{self, LocalManifold};
 use crate::math::{Angular, Rot, Vector, WorldPose, max, min};
 use crate::shape::Shape;
-use crate::table::{BodyPose, NONE};
+use crate::table::{BodyPose, NONE, Reach};
 use crate::tuning::sweeps::{AHEAD, CHORDS, LAG, MEETING_ROUNDS, MET, MOST_TURN};
 
 /// The poses at a time within the step: when the shapes meet, or in its middle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
-    /// The pose of A's collider.
-    pub(super) pose_a: WorldPose,
-    /// The pose of A's body.
-    pub(super) body_a: BodyPose,
+    pub(super) placed: [Placed; 2],
     /// From A's to B's centre of mass.
     pub(super) offset: Vector,
-    /// How far the bodies turn until then.
-    turns: [Rot; 2],
     /// How far B's centre of mass shifts against A's until then.
     shift: Vector,
 }
 
 /// One side of a contact at some time within the step.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
-    body: BodyPose,
+    pub(super) body: BodyPose,
+    /// How far the body turns until then.
     turn: Rot,
     pub(super) shape: WorldPose,
 }
@@ -91,7 +88,7 @@ pub(super) fn find_meeting<S>(
             // Points that only turning brings together are found again when they are near.
             let prediction = prediction + margin;
             manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, local);
-            return (local.count > 0).then(|| Approach::Met(Meeting::new(&placed, poses)));
+            return (local.count > 0).then(|| Approach::Met(Meeting::new(placed, poses)));
         }
         Some(Approach::ApartUntil(apart_until(&placed, local, gap, time)))
     });
@@ -153,29 +150,26 @@ pub(super) fn pushes<S>(
 }
 
 /// How fast two shapes may close in this step.
-struct Motion {
+struct Motion<'a> {
     /// The velocity of B against A.
     linear: Vector,
     angular: [Angular; 2],
     spins: [f32; 2],
-    arms: [f32; 2],
-    extents: [f32; 2],
+    reaches: [&'a Reach; 2],
     /// The distance at which they count as having met.
     met: f32,
 }
 
-impl Motion {
-    fn new<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> Self {
+impl<'a> Motion<'a> {
+    fn new<S>(input: &'a NarrowPhaseInput<S>, contact: &Contact) -> Self {
         let reaches = input.reaches(contact);
-        let extents = reaches.map(|reach| reach.extent);
         let [a, b] = [input.velocity(contact, 0), input.velocity(contact, 1)];
         Self {
             linear: b.linear - a.linear,
             angular: [a.angular, b.angular],
             spins: [a.angular.length(), b.angular.length()],
-            arms: reaches.map(|reach| reach.arm),
-            extents,
-            met: min(input.tolerance, LAG * smaller(extents)),
+            reaches,
+            met: min(input.tolerance, LAG * smaller(reaches.map(|reach| reach.extent))),
         }
     }
 
@@ -183,9 +177,9 @@ impl Motion {
     /// shape reaches; `offset` is from A's to B's centre of mass.
     fn turning(&self, offset: Vector) -> f32 {
         let far = offset.length();
-        let arm = |side: usize| match self.extents[1 - side] {
-            0.0 => self.arms[side],
-            other => min(self.arms[side], far + other),
+        let arm = |side: usize| match self.reaches[1 - side].extent {
+            0.0 => self.reaches[side].arm,
+            other => min(self.reaches[side].arm, far + other),
         };
         arm(0) * self.spins[0] + arm(1) * self.spins[1]
     }
@@ -205,7 +199,7 @@ impl Motion {
 struct Slab<'a> {
     shapes: [&'a Shape; 2],
     placed: &'a [Placed; 2],
-    motion: &'a Motion,
+    motion: &'a Motion<'a>,
     /// From A's to B's centre of mass.
     offset: Vector,
     margin: f32,
@@ -255,7 +249,7 @@ impl<'a> Slab<'a> {
     /// The views of both bodies; `None` if a shape has no farthest points.
     fn views(&'a self, normal: Vector, end: f32) -> Option<[View<'a>; 2]> {
         let heights = [self.height(0, normal)?, self.height(1, -normal)?];
-        let Motion { linear, angular, spins, extents, .. } = self.motion;
+        let Motion { linear, angular, spins, reaches, .. } = self.motion;
         let width = self.offset.dot(normal) - heights[0] - heights[1] - self.margin;
         let view = |moving: usize| {
             let still = 1 - moving;
@@ -274,7 +268,7 @@ impl<'a> Slab<'a> {
                 speed: (linear - angular[still].cross(offset)).dot(normal),
                 angular: angular[moving] - angular[still],
                 acceleration: spins[still] * (spins[still] * away + 2.0 * speed)
-                    + both * both * extents[moving],
+                    + both * both * reaches[moving].extent,
                 height: heights[moving],
             }
         };
@@ -345,15 +339,9 @@ pub(super) fn place_at<S>(
 
 impl Meeting {
     /// From both sides at that time, and the poses of their bodies at the step's start.
-    pub(super) fn new(placed: &[Placed; 2], poses: [&BodyPose; 2]) -> Self {
+    pub(super) fn new(placed: [Placed; 2], poses: [&BodyPose; 2]) -> Self {
         let offset = (placed[1].body.center - placed[0].body.center).to_local();
-        Self {
-            pose_a: placed[0].shape,
-            body_a: placed[0].body,
-            offset,
-            turns: [placed[0].turn, placed[1].turn],
-            shift: offset - (poses[1].center - poses[0].center).to_local(),
-        }
+        Self { placed, offset, shift: offset - (poses[1].center - poses[0].center).to_local() }
     }
 
     /// Changes the separations of a manifold to those at the step's start. The solver moves the bodies with these arms, and
@@ -365,7 +353,7 @@ impl Meeting {
         for p in &mut m.points[..usize::from(m.count)] {
             let shifts: [f32; 2] = core::array::from_fn(|side| {
                 let arm = p.anchor - cores[side];
-                self.turns[side].shift_along(arm, arm.cross(n), n)
+                self.placed[side].turn.shift_along(arm, arm.cross(n), n)
             });
             p.separation -= along + shifts[1] - shifts[0];
         }

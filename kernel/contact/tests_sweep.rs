@@ -5,7 +5,7 @@ use crate::math::{Angular, Pose, Rot, Vector, WorldPose, max, min};
 use crate::query::closest;
 use crate::query::tests::{convex, pose, vector};
 use crate::shape::Shape;
-use crate::table::BodyPose;
+use crate::table::{BodyPose, Reach};
 use crate::tuning::sweeps::MOST_TURN;
 use proptest::prelude::*;
 
@@ -68,13 +68,13 @@ proptest! {
             return Ok(());
         }
         let reaches = [of_a.reach(&a), of_b.reach(&b)];
+        let reaches = reaches.map(|extent| Reach { extent, arm: extent, ..Reach::default() });
         let spins = bodies.map(|body| body.angular.length());
         let motion = Motion {
             linear: of_b.linear - of_a.linear,
             angular: bodies.map(|body| body.angular),
             spins,
-            arms: reaches,
-            extents: reaches,
+            reaches: reaches.each_ref(),
             met: 1.0e-3,
         };
         let offset = of_b.center(0.0) - of_a.center(0.0);
