@@ -1,13 +1,16 @@
-//! Contacts that need no look: their bodies have moved too little since the last one.
+//! What follows from a look at a contact: its bits of deep overlap and platform, and how long it needs no other look.
 //!
-//! A look at a contact tells how far its surfaces may move against each other until its manifold is to be computed anew. Half of that
-//! way is what its bodies may travel until the next look. Each body adds up a bound of its surface's way. The solver stores the
+//! A look tells how far the surfaces may move against each other until the manifold is to be computed anew. Half of that way is
+//! what the bodies may travel until the next look. Each body adds up a bound of its surface's way. The solver stores the
 //! separations at its end, as long as they are those of the next step's start.
 
-use super::input::NarrowPhaseInput;
+use super::input::{NarrowPhaseInput, smaller};
 use super::record::{Contact, ContactFlags};
+use crate::math::min;
+use crate::shape::Shape;
 use crate::table::{BodyPose, TravelScale};
-use crate::tuning::contact::CALM_SHARE;
+use crate::tuning::contact::{CALM_SHARE, DEEP};
+use crate::tuning::manifold::SAME;
 
 /// What has to be looked at in each step.
 const LOOKED_AT: ContactFlags = ContactFlags::DEEP
@@ -73,5 +76,49 @@ impl<S> NarrowPhaseInput<'_, S> {
             return false;
         }
         self.sliding_side(contact).is_none()
+    }
+
+    /// Sets the bits that follow from a recomputed manifold: that of deep overlap, and that the embedder has changed nothing.
+    /// Only contacts whose bodies were `placed` where they are can become deep. What pushes nothing is never deep.
+    #[inline(always)]
+    pub(super) fn after_recomputing(&self, contact: &mut Contact, placed: bool) {
+        let deep = match (contact.flags.has(ContactFlags::DEEP), placed && !contact.is_inert()) {
+            (true, _) => self.overlaps_by(SAME, contact),
+            (false, true) => self.overlaps_by(DEEP, contact),
+            (false, false) => false,
+        };
+        contact.flags.set(ContactFlags::DEEP, deep);
+        contact.flags.set(ContactFlags::CHANGED, false);
+    }
+
+    /// Clears the bit of deep overlap if a recycled contact does not overlap deeply any more.
+    #[inline(always)]
+    pub(super) fn after_recycling(&self, contact: &mut Contact) {
+        if contact.flags.has(ContactFlags::DEEP) {
+            contact.flags.set(ContactFlags::DEEP, self.overlaps_by(SAME, contact));
+        }
+    }
+
+    /// Whether the shapes overlap by more than a share of the smaller one's reach.
+    fn overlaps_by(&self, share: f32, contact: &Contact) -> bool {
+        let deepest = contact.manifold.points().iter().fold(0.0, |d, p| min(d, p.separation));
+        let [a, b] = self.reaches(contact);
+        let reach = smaller([a.extent, b.extent]);
+        deepest < 0.0 && deepest < -share * reach
+    }
+
+    /// Sets the bits that name the platform, the body which contacts do not turn. Two round shapes have none, since one can
+    /// roll under the same normal; what stands on its flat end is not round there.
+    #[inline(always)]
+    pub(super) fn set_platform(&self, contact: &mut Contact) {
+        let is_round = |side: usize| match self.shapes(contact)[side] {
+            Shape::Ball(_) | Shape::Capsule(_) | Shape::Segment(_) => true,
+            Shape::Curved(_) => contact.manifold.radii[side] != 0.0,
+            _ => false,
+        };
+        let are_round = is_round(0) && is_round(1);
+        let [a, b] = contact.bodies.map(|body| !are_round && !self.is_dynamic(body));
+        contact.flags.set(ContactFlags::PLATFORM_A, a);
+        contact.flags.set(ContactFlags::PLATFORM_B, b && !a);
     }
 }

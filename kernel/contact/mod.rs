@@ -1,16 +1,14 @@
 //! Pairs of colliders that are near each other: their records, the narrow phase that keeps manifolds up to date, and
 //! [`Link`], which alone changes contacts, colours and islands.
 //!
-//! `narrow_phase` is read top to bottom; `input`, `recycle`, `manifolds`, `sweep`, `lead`, `flags`, `internal` and `load` are
-//! its helpers and do not know it. `modify` takes what the embedder makes of its results.
+//! `narrow_phase` is read top to bottom; `input`, `recycle`, `manifolds`, `sweep`, `calm`, `internal` and `load` are its
+//! helpers and do not know it. `modify` takes what the embedder makes of its results.
 
 mod buffers;
 mod calm;
 mod constraint;
-mod flags;
 mod input;
 mod internal;
-mod lead;
 mod link;
 mod load;
 mod manifolds;
@@ -18,7 +16,6 @@ mod modify;
 mod narrow_phase;
 mod record;
 mod recycle;
-mod surface;
 mod sweep;
 mod table;
 

@@ -1,14 +1,12 @@
 //! The narrow phase, top to bottom: awake contacts are classified by their boxes and motion, then recycled or recomputed,
 //! and what only the table can store is committed at the end.
 //!
-//! Helpers are called from here and do not call back: [`recycle`](super::recycle) keeps manifolds, [`manifolds`], [`sweep`]
-//! and [`lead`] compute them, [`load`](super::load) hands on their impulses, [`flags`] holds what follows from them.
+//! Helpers are called from here and do not call back: [`recycle`](super::recycle) keeps manifolds, [`manifolds`] and [`sweep`]
+//! compute them, [`load`](super::load) hands on their impulses, [`calm`](super::calm) holds what follows from them.
 #![expect(unsafe_code, reason = "several threads change contacts, each other ones")]
 
 use super::buffers::WorkerBuffers;
-use super::flags;
 use super::input::{ManifoldSource, NarrowPhaseInput};
-use super::lead;
 use super::load::Before;
 use super::manifolds;
 use super::record::{Contact, ContactFlags, Frozen, Manifold};
@@ -320,7 +318,7 @@ fn recycle<S>(
 ) -> bool {
     let is_kept = batch.apply(place, contact, extra);
     if is_kept {
-        flags::recycled(input, contact);
+        input.after_recycling(contact);
         let [allowed, moved] = batch.ways(place);
         contact.calm_down(input.poses(contact, &mut [None; 2]), input.bodies.travel_scale, allowed, moved);
     }
@@ -360,11 +358,11 @@ fn recompute<S: ManifoldSource>(
     freeze(input, contact, poses, &search, &buffers.local);
     manifolds::replace(input, contact, old_extra, poses[0], search.meeting.as_ref(), buffers);
     if contact.flags.any(ContactFlags::TOUCHING.union(ContactFlags::COMPOSITE)) {
-        flags::set_platform(input, contact);
+        input.set_platform(contact);
     }
     // Only what has just come together, or was changed by hand, was placed where it is; all else was pressed there,
     // unless its bodies are crowded by those that were placed.
-    flags::recomputed(input, contact, is_crowded || is_changed);
+    input.after_recomputing(contact, is_crowded || is_changed);
 }
 
 /// The result of looking for points, beside the points themselves.
@@ -460,7 +458,7 @@ fn search_native<S>(
             }
         }
         if meeting.is_none() && until_lag == f32::INFINITY {
-            meeting = lead::lead(input, contact, poses, with_margin, &mut local);
+            meeting = sweep::lead(input, contact, poses, with_margin, &mut local);
         }
     }
     if local.count == 0 {

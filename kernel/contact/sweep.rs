@@ -1,8 +1,9 @@
-//! Where shapes will meet that do not touch now.
+//! Contacts of a later time in the step: of shapes that will meet, and of round ones that rock on each other.
 //!
 //! The plane at the present closest points is no wall: what passes by would be stopped by it, and a point far out on a
 //! turning body moves along an arc. So the pair is followed to when it meets ([conservative advancement](advance)).
 //! The solver gets the contact of that time, with separations that bring it there. A pair that does not meet has none.
+//! Round bodies that rock get the contact of the middle of the step; see [`lead`].
 
 #[cfg(test)]
 #[path = "tests_sweep.rs"]
@@ -15,6 +16,8 @@ use crate::manifold::{self, LocalManifold};
 use crate::math::{Angular, Rot, Vector, WorldPose, max, min};
 use crate::shape::Shape;
 use crate::table::{BodyPose, NONE, Reach};
+use crate::tuning::contact::{MOST_WAY, SAME_FACE, STILL};
+use crate::tuning::solver::SMALL_TURN;
 use crate::tuning::sweeps::{AHEAD, CHORDS, LAG, MEETING_ROUNDS, MET, MOST_TURN};
 
 /// The poses at a time within the step: when the shapes meet, or in its middle.
@@ -147,6 +150,46 @@ pub(super) fn pushes<S>(
         });
         (a - b).dot(normal) * (AHEAD * input.dt) > p.separation - margin
     })
+}
+
+/// Moves the only point of `local`, with a round surface that presses another body, to where it is in the middle of the step,
+/// up to `prediction` apart. Leaves all other points as they are.
+///
+/// The solver keeps normals and arms for a step. The point where a round body rocks on another runs along both, and an arm
+/// that lags behind it feeds the rocking like a negative damper: a light body between heavy ones never came to rest.
+pub(super) fn lead<S>(
+    input: &NarrowPhaseInput<S>,
+    contact: &mut Contact,
+    poses: [&BodyPose; 2],
+    prediction: f32,
+    local: &mut LocalManifold,
+) -> Option<Meeting> {
+    let is_round = |local: &LocalManifold| local.count == 1 && max(local.radii[0], local.radii[1]) > 0.0;
+    let presses = is_round(local) && local.points[0].separation <= input.margin(contact);
+    if !presses || contact.is_inert() {
+        return None;
+    }
+    let [va, vb] = [input.velocity(contact, 0), input.velocity(contact, 1)];
+    let turn = (vb.angular - va.angular).length() * input.dt;
+    let fastest = max(va.angular.length(), vb.angular.length()) * input.dt;
+    let way = (vb.linear - va.linear).length() * input.dt;
+    let size = min(smaller(input.reaches(contact).map(|reach| reach.extent)), smaller(local.radii));
+    let rocks = turn > STILL && turn < SMALL_TURN && fastest < MOST_TURN && way < MOST_WAY * size;
+    if !(rocks && contact.bodies.iter().all(|body| input.is_dynamic(*body))) {
+        return None;
+    }
+    let placed = place_at(input, contact, poses, 0.5 * input.dt);
+    let relative = placed[0].shape.relative(&placed[1].shape);
+    let [a, b] = input.shapes(contact);
+    let mut then = LocalManifold::default();
+    manifold::collide(a, b, &relative, prediction, &mut contact.cache, &mut then);
+    let normal = input.shape_poses(contact)[0].rotation.rotate(local.normal);
+    let continues = placed[0].shape.rotation.rotate(then.normal).dot(normal) > SAME_FACE;
+    if !(is_round(&then) && continues) {
+        return None;
+    }
+    *local = then;
+    Some(Meeting::new(placed, poses))
 }
 
 /// How fast two shapes may close in this step.
@@ -315,7 +358,7 @@ impl View<'_> {
 }
 
 /// Both sides of the contact, `time` seconds after the step's start.
-pub(super) fn place_at<S>(
+fn place_at<S>(
     input: &NarrowPhaseInput<S>,
     contact: &Contact,
     poses: [&BodyPose; 2],
@@ -339,7 +382,7 @@ pub(super) fn place_at<S>(
 
 impl Meeting {
     /// From both sides at that time, and the poses of their bodies at the step's start.
-    pub(super) fn new(placed: [Placed; 2], poses: [&BodyPose; 2]) -> Self {
+    fn new(placed: [Placed; 2], poses: [&BodyPose; 2]) -> Self {
         let offset = (placed[1].body.center - placed[0].body.center).to_local();
         Self { placed, offset, shift: offset - (poses[1].center - poses[0].center).to_local() }
     }

@@ -5,7 +5,6 @@
 //! have separations up to the prediction distance; those with a positive separation are speculative contacts.
 
 mod border;
-mod cache;
 mod composite;
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
@@ -19,10 +18,9 @@ mod screen;
 #[cfg(test)]
 mod tests_pairs;
 
-pub use cache::FeatureCache;
 pub use composite::{CompositeBuffers, collide_composite, collide_each_part};
 pub use dim::lead_rims;
 pub use local::{LocalManifold, LocalPoint};
-pub use look::Look;
 use look::PairInput;
+pub use look::{FeatureCache, Look};
 pub use pairs::collide;

@@ -1,14 +1,14 @@
 //! Any two polyhedra, with radii: the points along their separating axis.
 
-use super::across;
 use super::axis::{self, Axis, EDGES, EdgeAxis, FACE_A, FACE_B, FaceAxis, Pair as _, Sizes};
-use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference};
+use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference, clip_line};
 use super::gjk;
 use super::sat::{self, Known};
 use super::view::{MatrixPose, View, extents};
 use crate::manifold::{FeatureCache, LocalManifold, PairInput};
 use crate::math::{Vector, clamp, max};
-use crate::tuning::manifold::MARGIN;
+use crate::shape::Edge;
+use crate::tuning::manifold::{FACING, MARGIN};
 
 /// The number of faces of a triangle, which no solid has.
 const TRIANGLE_FACES: usize = 2;
@@ -157,12 +157,12 @@ impl<'a> Pair<'a> {
                 out.push(point, gap - self.sizes.radius, 7 << 29 | feature);
             }
         };
-        if let Some((on_b, gap)) = across::far_end(self.a, &self.a.edges[axis.a], ends_b, normal) {
+        if let Some((on_b, gap)) = far_end(self.a, &self.a.edges[axis.a], ends_b, normal) {
             push(on_b - normal * gap, on_b, gap, axis.b as u32 & 0x7fff);
         }
         let ends_a = ends_a.map(|end| self.a_in_b.point(end));
         let out_of_b = self.b_in_a.direction_in(-normal);
-        if let Some((on_a, gap)) = across::far_end(self.b, &self.b.edges[axis.b], ends_a, out_of_b) {
+        if let Some((on_a, gap)) = far_end(self.b, &self.b.edges[axis.b], ends_a, out_of_b) {
             let on_a = self.b_in_a.point(on_a);
             push(on_a, on_a + normal * gap, gap, 1 << 28 | axis.a as u32 & 0x7fff);
         }
@@ -199,4 +199,72 @@ pub(super) fn closest_of_lines(a: [Vector; 2], b: [Vector; 2]) -> (Vector, Vecto
     let t = (uw * uv - vw * uu) / determinant;
     let inside = max(max(-s, s - 1.0), max(-t, t - 1.0)) < MARGIN;
     (a[0] + u * clamp(s, 0.0, 1.0), b[0] + v * clamp(t, 0.0, 1.0), inside)
+}
+
+/// The end of the line along which an edge passes over the face of `reference` beside `edge`, of the two ends the one
+/// farther from that face: the point on the edge, and its distance from the face along `normal`. The ends of the edge are in
+/// the frame of `reference`; `normal` is the unit normal of the contact, out of `reference`.
+///
+/// Two edges touch in one point. A thin rod on the edge of another would rock on that, from one of its own edges to the next:
+/// the other end of the line across its face is hardly farther from the surface. So that end is a point, too.
+fn far_end(reference: &View, edge: &Edge, ends: [Vector; 2], normal: Vector) -> Option<(Vector, f32)> {
+    // A segment has no faces.
+    let [left, right] = [edge.left, edge.right].map(|face| reference.faces.get(face as usize));
+    let (left, right) = (left?, right?);
+    let face = if left.normal.dot(normal) > right.normal.dot(normal) { left } else { right };
+    let cosine = face.normal.dot(normal);
+    if cosine < FACING {
+        return None;
+    }
+    let along = ends[1] - ends[0];
+    let outline = &reference.loops[face.first as usize..(face.first + face.count) as usize];
+    let outline = outline.iter().map(|corner| reference.vertices[*corner as usize]);
+    let [(low, _), (high, _)] = clip_line(normal, outline, ends, 0.0).filter(|[low, high]| low.0 < high.0)?;
+    let end = |t: f32| {
+        let point = ends[0] + along * t;
+        (point, (face.normal.dot(point) - face.offset) / cosine)
+    };
+    let (first, last) = (end(low), end(high));
+    Some(if first.1 > last.1 { first } else { last })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::manifold::{FeatureCache, LocalManifold, collide};
+    use crate::math::{Pose, Rot, Vector};
+    use crate::shape::{Cuboid, Hull, Shape};
+    use std::sync::Arc;
+
+    /// The distance of a point from the nearest face of a rod, of those along it; 0 on the surface.
+    fn above(half: Vector, p: Vector) -> f32 {
+        (p.x.abs() - half.x).max(p.y.abs() - half.y)
+    }
+
+    /// One rod along z on another along x, which it overlaps by a millimetre, inclined by 0.1 and rolled by 0.02: it lies on
+    /// an edge of that with its width of 6 cm, not only with one of its own edges.
+    #[test]
+    fn issue_a_rod_across_an_edge_stood_on_one_of_its_own_edges() {
+        let half = Vector { x: 0.03, y: 0.03, z: 0.5 };
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
+            Vector { x: sign(1), y: sign(2), z: sign(4) }.scale(half)
+        };
+        let corners: Vec<_> = (0..8).map(corner).collect();
+        let hull = Shape::Hull(Arc::new(Hull::convex_hull_of(&corners).expect("a box is solid")));
+        let rolled = Rot::from_axis_angle(Vector::Z, 0.02);
+        let inclined = Rot::from_axis_angle(Vector::X, 0.1);
+        let across = Rot::from_axis_angle(Vector::Y, core::f32::consts::FRAC_PI_2);
+        let pose = Pose::new(Vector { x: 0.0, y: 0.062, z: 0.0 }, across.mul(inclined).mul(rolled));
+        for rod in [Shape::Cuboid(Cuboid { half }), hull] {
+            let mut out = LocalManifold::default();
+            collide(&rod, &rod, &pose, 0.02, &mut FeatureCache::NONE.clone(), &mut out);
+            assert!(out.count > 1, "{:?}", out.points());
+            for p in out.points() {
+                let on_a = p.point - out.normal * (0.5 * p.separation);
+                let on_b = pose.inverse_transform(p.point + out.normal * (0.5 * p.separation));
+                let off = above(half, on_a).abs().max(above(half, on_b).abs());
+                assert!(off < 1.0e-4, "{p:?} is {off} m off a surface");
+            }
+        }
+    }
 }

@@ -3,7 +3,6 @@
 //! Balls and capsules have closed forms where they exist, two boxes have a function of their own, and all other pairs of
 //! polyhedra (with radii) share [`convex`]. What is round about an axis is in [`curved`].
 
-mod across;
 mod axis;
 mod clip;
 mod convex;
