@@ -100,10 +100,9 @@ fn to_local(manifold: &ContactManifold, first: &WorldPose, prediction: f32) -> O
         .points
         .iter()
         .zip(1..)
-        .map(|(point, number)| LocalPoint {
-            point: first.inverse_transform(world_to_kernel(point.point)),
-            separation: -to_f32(point.penetration),
-            feature: feature_of(point, number),
+        .map(|(point, number)| {
+            let at = first.inverse_transform(world_to_kernel(point.point));
+            LocalPoint::new(at, -to_f32(point.penetration), feature_of(point, number))
         })
         .filter(|p| p.separation <= prediction && p.separation.is_finite() && p.point.is_finite())
         .collect();
@@ -111,7 +110,7 @@ fn to_local(manifold: &ContactManifold, first: &WorldPose, prediction: f32) -> O
     let normal = first.rotation.inverse_rotate(normal * (1.0 / length));
     let mut local = LocalManifold { normal, ..LocalManifold::default() };
     for p in points {
-        local.push(p.point, p.separation, p.feature);
+        local.add(p);
     }
     (local.count > 0).then_some(local)
 }

@@ -13,7 +13,7 @@ use super::buffers::WorkerBuffers;
 use super::input::{ManifoldSource, NarrowPhaseInput, smaller};
 use super::load;
 use super::manifolds;
-use super::record::{Contact, ContactFlags, Manifold, Parallel, Sliding};
+use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint, Parallel, Sliding};
 use super::table::{ContactTable, PointCount};
 use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
@@ -36,8 +36,10 @@ struct Seen<'a> {
     flush: f32,
     /// How far below the plane the collider may reach.
     below: f32,
-    /// How far the collider moves against the ground until they meet here; 0 where it is now.
+    /// How far the collider moves against the ground until they meet; 0 where it is now.
     motion: Vector,
+    /// How far it moves in the step, where points of a composite are met one after the other.
+    way: Vector,
     place: Place,
 }
 
@@ -72,11 +74,13 @@ impl<'a> Seen<'a> {
         let is_recycled = contact.flags.has(ContactFlags::FROZEN);
         let now = (poses[1].center - poses[0].center).to_local();
         let until_met = if is_recycled { Vector::ZERO } else { contact.frozen.offset - now };
-        let (mut motion, mut place) = (until_met * sign, Place::Meeting);
-        let closing = manifold.points[0].separation - manifold.points[0].frozen_separation;
-        if contact.flags.has(ContactFlags::COMPOSITE) && !is_recycled && closing != 0.0 {
-            let all = input.predicted_motion(contact);
-            motion = all * (sign * closing / -manifold.normal.dot(all));
+        let (mut way, mut place) = (Vector::ZERO, Place::Meeting);
+        let is_met_later = |p: &ManifoldPoint| p.separation != p.frozen_separation;
+        if contact.flags.has(ContactFlags::COMPOSITE)
+            && !is_recycled
+            && manifold.points().iter().any(is_met_later)
+        {
+            way = input.predicted_motion(contact) * sign;
             let is_dynamic = contact.bodies.map(|body| input.is_dynamic(body));
             let placed_on = usize::from(matches!(shapes[0], Shape::Composite(_)));
             place = match is_dynamic {
@@ -88,19 +92,28 @@ impl<'a> Seen<'a> {
         }
         let unit = input.bodies.length_unit();
         let (flush, below) = (FLUSH * unit + clipped, input.tolerance);
-        Self { manifold, normal: manifold.normal * sign, origin, flush, below, motion, place }
+        let motion = until_met * sign;
+        Self { manifold, normal: manifold.normal * sign, origin, flush, below, motion, way, place }
+    }
+
+    /// How far the collider moves until a point is met.
+    fn motion(&self, p: &ManifoldPoint) -> Vector {
+        let share = (p.separation - p.frozen_separation) / -self.normal.dot(self.way);
+        // What slides along a plane hardly closes.
+        if share > 0.0 { self.motion + self.way * min(share, 1.0) } else { self.motion }
     }
 
     /// The points on the ground, and those across on the collider, when they meet.
     fn points(&self) -> impl Iterator<Item = [Vector; 2]> + '_ {
         self.manifold.points().iter().map(|p| {
+            let motion = self.motion(p);
             let (middle, gap) = (self.origin + p.anchor, self.normal * p.frozen_separation);
             let half = self.normal * (0.5 * p.separation);
             let ground = match self.place {
                 Place::Meeting => middle - gap * 0.5,
                 Place::Ground => middle - half,
-                Place::Collider => middle + half + self.motion - gap,
-                Place::Moved => middle + self.motion - gap * 0.5,
+                Place::Collider => middle + half + motion - gap,
+                Place::Moved => middle + motion - gap * 0.5,
             };
             [ground, ground + gap]
         })
@@ -137,12 +150,13 @@ impl<'a> Seen<'a> {
         if !(highest < of_other || of_other >= -self.flush && is_plane_of_both()) {
             return false;
         }
-        let lowest = self.points().fold(f32::INFINITY, |low, [_, own]| min(low, own.dot(other.normal)));
         let nearest = other.manifold.points().iter().fold(f32::INFINITY, |s, p| min(s, p.separation));
-        // Until they meet the collider goes down to the plane, not into it.
-        let down = self.motion.dot(other.normal);
-        let held = max(-max(nearest, 0.0) - down, 0.0);
-        lowest + held - other.plane() >= min(nearest, 0.0) - self.below
+        let lowest = self.points().zip(self.manifold.points()).fold(f32::INFINITY, |low, ([_, own], p)| {
+            // Until they meet the collider goes down to the plane, not into it.
+            let down = self.motion(p).dot(other.normal);
+            min(low, own.dot(other.normal) + max(-max(nearest, 0.0) - down, 0.0))
+        });
+        lowest - other.plane() >= min(nearest, 0.0) - self.below
     }
 }
 

@@ -162,7 +162,7 @@ fn to_world(local: &LocalManifold, rotation: Rot, to_shape: Vector, margin: f32)
         let separation = p.separation - margin;
         *out = ManifoldPoint {
             anchor: to_shape + rotation.rotate(p.point),
-            frozen_separation: separation - local.closing,
+            frozen_separation: separation - p.closing,
             separation,
             impulse: 0.0,
             total_impulse: 0.0,

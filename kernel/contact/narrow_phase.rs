@@ -486,7 +486,7 @@ fn freeze<S>(
     };
     let is_native = !contact.flags.has(ContactFlags::FOREIGN);
     let is_lasting =
-        search.meeting.is_none() && !search.has_far && found.iter().all(|local| local.closing == 0.0);
+        search.meeting.is_none() && !search.has_far && !found.iter().any(LocalManifold::is_met_later);
     let is_recyclable = input.recycle_distance > 0.0 && is_native && is_lasting;
     let is_kept = found.is_empty() || !contact.flags.has(ContactFlags::SENSOR);
     contact.flags.set(ContactFlags::FROZEN, is_recyclable && is_kept);

@@ -11,6 +11,17 @@ pub struct LocalPoint {
     pub separation: f32,
     /// The features of both shapes that make this point; equal in the next step if the features are.
     pub feature: u32,
+    /// How far [`Look::motion`](super::Look::motion) closes the shapes along the normal until they meet here, in metres; 0 if they are near
+    /// now. If not 0, the point is where they meet, moved back with the shape that moves. If both do, with that which is not
+    /// composite, or with B, and half of the distance above it.
+    pub closing: f32,
+}
+
+impl LocalPoint {
+    /// A point of shapes that are near now.
+    pub fn new(point: Vector, separation: f32, feature: u32) -> Self {
+        Self { point, separation, feature, closing: 0.0 }
+    }
 }
 
 /// The contact of two convex shapes in the frame of shape A.
@@ -28,16 +39,17 @@ pub struct LocalManifold {
     pub radii: [f32; 2],
     /// The groups of the facets of A and B, see [`Look::groups`](super::Look::groups); 0 without.
     pub groups: [u8; 2],
-    /// How far [`Look::motion`](super::Look::motion) closes the shapes along the normal until they meet, in metres; 0 if they are near now. If not 0, points
-    /// are where they meet, moved back with the shape that moves. If both do, with that which is not composite, or with B, and half
-    /// of the distance above it.
-    pub closing: f32,
 }
 
 impl LocalManifold {
     /// The valid points.
     pub fn points(&self) -> &[LocalPoint] {
         &self.points[..self.count]
+    }
+
+    /// Whether the motion has to bring the shapes together at some of the points.
+    pub fn is_met_later(&self) -> bool {
+        self.points().iter().any(|p| p.closing != 0.0)
     }
 
     /// A lower bound of the distance between the shapes, in metres.
@@ -55,16 +67,21 @@ impl LocalManifold {
             [false, true] => -1.0,
             _ => return,
         };
-        let shift = self.normal * (0.5 * side * self.closing);
+        let half = self.normal * (0.5 * side);
         let count = self.count;
-        self.points[..count].iter_mut().for_each(|p| p.point += shift);
+        self.points[..count].iter_mut().for_each(|p| p.point += half * p.closing);
+    }
+
+    /// Adds a point of shapes that are near now.
+    pub fn push(&mut self, point: Vector, separation: f32, feature: u32) {
+        self.add(LocalPoint::new(point, separation, feature));
     }
 
     /// Adds a point. Points beyond `MAX_POINTS` are dropped: functions that find more reduce first.
-    pub fn push(&mut self, point: Vector, separation: f32, feature: u32) {
+    pub fn add(&mut self, point: LocalPoint) {
         debug_assert!(self.count < MAX_POINTS, "a manifold is reduced before it is filled");
         if self.count < MAX_POINTS {
-            self.points[self.count] = LocalPoint { point, separation, feature };
+            self.points[self.count] = point;
             self.count += 1;
         }
     }

@@ -400,7 +400,6 @@ impl<'a> Pass<'a> {
     fn bring_back(&self, share: f32, local: &mut LocalManifold) {
         let way = self.look.motion * share;
         let along = local.normal.dot(way);
-        local.closing = -along;
         let half = local.normal * (0.5 * along);
         let on_composite = match self.look.ground {
             [true, false] => false,
@@ -412,6 +411,7 @@ impl<'a> Pass<'a> {
         for p in &mut local.points[..count] {
             p.point -= back;
             p.separation -= along;
+            p.closing = -along;
         }
     }
 

@@ -134,6 +134,7 @@ impl Bearing {
 
     /// Stores which bodies have more mass, for the next step.
     pub(super) fn store(&self, contacts: &mut ContactTable) {
+        debug_assert!(self.raised.is_sorted(), "bodies are in the order of ids");
         contacts.raised_masses.clone_from(&self.raised);
     }
 

@@ -1,7 +1,7 @@
 //! Closed meshes and polylines as solids: blocks that lie on wide floors, and planks that lie on blocks.
 
 use super::dim::floors::{blocks, laid, on_edge, wall_and_floor, yawed};
-use super::dim::{any_rotation, riders, sized};
+use super::dim::{any_rotation, channel, riders, sized};
 use super::extreme::Dice;
 use super::sim::Sim;
 use crate::kernel;
@@ -304,4 +304,28 @@ fn an_edge_that_pokes_into_a_seam_of_a_wall_is_held() {
             }
         }
     }
+}
+
+/// Facets of different materials are not merged, and so tell when each point is met.
+#[test]
+fn merged_points_keep_when_each_is_met() {
+    let floor = channel(&core::array::from_fn::<_, 40, _>(|k| [0.17 * k as f32 - 3.0, 0.0]));
+    let shape = Shape::Cuboid(Cuboid { half: Vector::ONE * 0.5 });
+    let (motion, pose) = (sized(0.4, -0.03, 0.0), Pose::new(Vector::Y * 0.5, Rot::IDENTITY));
+    let groups: Vec<u8> = (0..80).collect();
+    let [merged, apart] = [&[][..], &groups].map(|groups| {
+        let look = Look { motion, ground: [true, false], groups: [groups, &[]], ..Look::up_to(PREDICTION) };
+        let (mut buffers, mut out) = (CompositeBuffers::default(), Vec::new());
+        collide_composite(&floor, &shape, &pose, look, &mut buffers, &mut out);
+        out
+    });
+    let mut has_several = false;
+    for m in &merged {
+        has_several |= m.points().iter().any(|p| p.closing != m.points[0].closing);
+        for p in m.points() {
+            let alone = apart.iter().flat_map(|m| m.points()).find(|q| q.feature == p.feature);
+            assert_eq!(Some(p), alone, "{merged:?}, {apart:?}");
+        }
+    }
+    assert!(has_several && apart.len() > merged.len(), "{merged:?}");
 }

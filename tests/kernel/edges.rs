@@ -269,3 +269,32 @@ fn compounds_do_not_pass_thin_walls() {
     }
     assert!(bad.is_empty(), "{bad:#?}");
 }
+
+/// A floor that bends up a little: facets of the slope are met one after the other, all within a step.
+#[test]
+fn boxes_slide_up_gentle_bends_of_fine_surfaces() {
+    let mut bad = Vec::new();
+    for bend in [0.3f32, 1.0, 1.9, 5.0] {
+        let (sin, cos) = bend.to_radians().sin_cos();
+        for size in [0.1f32, 0.5] {
+            let height = |x: f32| [x, x.max(0.0) * sin / cos];
+            let profile: Vec<_> = (-100..100).map(|k| height(size * k as f32)).collect();
+            for rider in [cuboid(0.5, 0.5), cuboid(0.2, 0.1)] {
+                for (speed, phase) in [(10.0f32, 0.0f32), (15.0, 0.3), (20.0, 0.6), (35.0, 0.9)] {
+                    let mut sim = world(&[(channel(&profile), Vector::ZERO)], (0.0, 0.0));
+                    sim.gravity = Vector::Y * -10.0;
+                    let half = rider.local_aabb(Rot::IDENTITY).max;
+                    let at = Vector::X * (-half.x - (1.0 + phase) * speed * sim.dt) + Vector::Y * half.y;
+                    let id = sim.add_with(BodyKind::Dynamic, rider.clone(), at, Rot::IDENTITY, 0.0, 0.0);
+                    sim.bodies.set_velocity(id, Velocity { linear: Vector::X * speed, ..Default::default() });
+                    sim.steps(6);
+                    let v = velocity_of(&sim, id).length();
+                    if !((v / (speed * cos) - 1.0).abs() < 0.02) {
+                        bad.push(format!("{half:?} at {speed} m/s, {bend}°, facets of {size} m: {v} m/s"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(bad.is_empty(), "{}: {bad:#?}", bad.len());
+}

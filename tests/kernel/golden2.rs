@@ -12,7 +12,7 @@ pub const GOLDEN: [(&str, u64, u64); 18] = [
     ("heap", 0x123210f470b9ddef, 0x72392a4de5c695f7),
     ("terrain", 0x65c41a9c57e278d8, 0x85f18fcd9bac3ff4),
     ("slopes", 0x9ce56aa15f282302, 0x92fc75e3881edcb4),
-    ("composites", 0xf7129cddd265431b, 0xcd06acc45b78f03b),
+    ("composites", 0x808ce203b7923fbc, 0xdedf11a27d34cc2f),
     ("bounces", 0x8eb9224e06cc1647, 0x65b756a55857f3c2),
     ("crowd", 0x095518fd556d9025, 0xfefda5f494f9861e),
     ("sleepers", 0x8123a61c2e1f4724, 0xf84338b02e8ee25c),

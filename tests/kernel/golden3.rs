@@ -12,7 +12,7 @@ pub const GOLDEN: [(&str, u64, u64); 18] = [
     ("heap", 0xbd9e12334b994ff6, 0x83062b74af7bb675),
     ("terrain", 0x46043cb31072c7b7, 0x7b1cd3f9e68ecb43),
     ("slopes", 0x55f726aa762cc626, 0xb09a5330719137a1),
-    ("composites", 0xc4b2f3a5c142ce75, 0x93f6aebb0d363210),
+    ("composites", 0xa2845e4a73d3d709, 0xb7765966d46d3862),
     ("bounces", 0x05c839afa3ec9580, 0xa0f79f02324f3581),
     ("crowd", 0x616a4b767dec6efb, 0x346682d82f27dad5),
     ("sleepers", 0x0bb7d60363846a8f, 0x1e1e4adc8b7f808a),

@@ -6,7 +6,7 @@ use super::polygonal::Edge;
 use crate::math::{Pose, Vector, max};
 use crate::tuning::manifold::FLAT;
 
-/// The shape of the reference edge.
+/// The shape of the reference edge; as a number, its place in arrays of both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     A,

@@ -126,9 +126,7 @@ pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalMani
         if first.separation <= last.separation { last = deepest } else { first = deepest }
     }
     out.count = 0;
-    for p in [first, last].iter().take(points.len().min(2)) {
-        out.push(p.point, p.separation, p.feature);
-    }
+    [first, last].into_iter().take(points.len().min(2)).for_each(|p| out.add(p));
 }
 
 fn collide_curved(

@@ -240,11 +240,8 @@ impl Reference<'_> {
             let s = height(corner);
             least = min(s, least);
             if s - radius <= self.prediction {
-                candidates.push(LocalPoint {
-                    point: self.middle(corner.point, s),
-                    separation: s - radius,
-                    feature: self.feature | corner.name,
-                });
+                let feature = self.feature | corner.name;
+                candidates.push(LocalPoint::new(self.middle(corner.point, s), s - radius, feature));
             }
         }
         keep::<false>(candidates.as_slice(), out);

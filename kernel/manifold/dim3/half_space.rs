@@ -38,7 +38,7 @@ fn vertices(
         out.gap = min(out.gap, separation);
         if separation <= prediction {
             let point = pose.transform(p) - normal * (radius + 0.5 * separation);
-            candidates.push(LocalPoint { point, separation, feature: i as u32 });
+            candidates.push(LocalPoint::new(point, separation, i as u32));
         }
     }
     out.normal = normal;

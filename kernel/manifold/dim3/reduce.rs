@@ -54,7 +54,7 @@ pub(super) fn keep<const FACES: bool>(list: &[LocalPoint], out: &mut LocalManifo
     };
     out.count = 0;
     for k in &kept[..count] {
-        out.push(list[*k].point, list[*k].separation, list[*k].feature);
+        out.add(list[*k]);
     }
 }
 

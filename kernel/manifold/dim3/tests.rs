@@ -252,7 +252,7 @@ proptest! {
         points in prop::collection::vec((-1.0f32..1.0, -1.0f32..1.0, -0.1f32..0.1), 5..40),
     ) {
         let list: Vec<LocalPoint> = points.iter().enumerate()
-            .map(|(i, (x, z, s))| LocalPoint { point: v(*x, 0.0, *z), separation: *s, feature: i as u32 }).collect();
+            .map(|(i, (x, z, s))| LocalPoint::new(v(*x, 0.0, *z), *s, i as u32)).collect();
         let mut out = LocalManifold { normal: Vector::Y, ..LocalManifold::default() };
         keep::<false>(&list, &mut out);
         let least = list.iter().map(|c| c.separation).fold(f32::INFINITY, f32::min);

@@ -126,11 +126,7 @@ fn local_point(
     let p1 = in_shape(manifold.subshape_pos1(), contact.local_p1);
     let p2 = *pose * in_shape(manifold.subshape_pos2(), contact.local_p2);
     let features = [contact.fid1.0, contact.fid2.0, manifold.subshape1, manifold.subshape2];
-    LocalPoint {
-        point: vector_to_kernel(p1.midpoint(p2)),
-        separation: contact.dist as f32,
-        feature: features.into_iter().fold(0, mix),
-    }
+    LocalPoint::new(vector_to_kernel(p1.midpoint(p2)), contact.dist as f32, features.into_iter().fold(0, mix))
 }
 
 /// One round of a hash of words. Features must only differ, and be the same in the next step.

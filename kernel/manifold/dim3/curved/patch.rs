@@ -91,7 +91,7 @@ impl Region {
         let separation = gap - self.radius;
         if separation <= self.prediction {
             let point = on_a + self.normal * (0.5 * (gap + self.radius));
-            self.candidates.push(LocalPoint { point, separation, feature });
+            self.candidates.push(LocalPoint::new(point, separation, feature));
         }
     }
 
