@@ -95,8 +95,8 @@ pub(super) struct Filling<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Seek<'a> {
     pub(super) striking: Striking<'a>,
-    /// Body rows that were struck in this step.
-    pub(super) reached: &'a BitSet,
+    /// Body rows that were struck since contacts were last looked at, if there are any.
+    pub(super) reached: Option<&'a BitSet>,
 }
 
 /// One pass over all rows.

@@ -30,6 +30,8 @@ pub(super) struct Blows {
     pub(super) found: Vec<Vec<Struck>>,
     /// Body rows that were struck in this step.
     pub(super) reached: BitSet,
+    /// Those that were struck for the first time in this step since contacts were last looked at.
+    pub(super) reached_anew: BitSet,
     /// Those of this substep, in order of groups.
     struck: Vec<Struck>,
     /// Manifolds before they are sorted. Empty between rounds.
@@ -87,6 +89,7 @@ impl Blows {
     /// Starts a step.
     pub(super) fn begin_step(&mut self) {
         self.reached.clear();
+        self.reached_anew.clear();
         self.given.clear();
         self.elapsed = 0.0;
     }
@@ -127,11 +130,15 @@ impl Blows {
     ) -> bool {
         self.find_groups(first_dynamic);
         self.sort();
-        let Self { struck, groups, given, reached, times, solved, .. } = self;
+        let Self { struck, groups, given, reached, reached_anew, times, solved, .. } = self;
         let mut count = 0;
         for group in struck.chunk_by(|a, b| a.group == b.group).filter(|group| is_due(group)) {
             count += group.len();
-            group.iter().flat_map(|one| movable(one, first_dynamic)).for_each(|row| _ = reached.insert(row));
+            for row in group.iter().flat_map(|one| movable(one, first_dynamic)) {
+                if reached.insert(row) {
+                    reached_anew.insert(row);
+                }
+            }
         }
         let most_sweeps = (BLOW_WORK.saturating_sub(*solved) / count.max(1)).min(BLOW_SWEEPS);
         let limits = (first_dynamic, width, most_sweeps.max(ROUND_OF_SWEEPS));

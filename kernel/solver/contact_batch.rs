@@ -421,11 +421,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for FindJob<'_, N, M, P> {
         let Striking { bodies, params, time, .. } = seek.striking;
         let mut is_watched = passes.are_watched();
         for (i, (row, impact)) in block.rows.iter().zip(block.impacts).enumerate() {
-            for ids in &row.ids {
-                let reached = Blows::reached_lanes(seek.reached, ids.lanes());
-                for lane in (0..N::WIDTH).filter(|lane| reached >> lane & 1 != 0) {
-                    if impact.watched.get(lane) >= 0.0 {
-                        impact.watched.set(lane, 1.0);
+            if let Some(reached) = seek.reached {
+                for ids in &row.ids {
+                    let reached = Blows::reached_lanes(reached, ids.lanes());
+                    for lane in (0..N::WIDTH).filter(|lane| reached >> lane & 1 != 0) {
+                        if impact.watched.get(lane) >= 0.0 {
+                            impact.watched.set(lane, 1.0);
+                        }
                     }
                 }
             }
@@ -435,7 +437,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for FindJob<'_, N, M, P> {
             }
             is_watched = true;
             // SAFETY: by the contract.
-            lanes &= unsafe { row.struck_lanes(&bodies, params, time) };
+            lanes = unsafe { row.struck_lanes(lanes, &bodies, params, time) };
             while lanes != 0 {
                 let lane = lanes.trailing_zeros() as usize;
                 lanes &= lanes - 1;

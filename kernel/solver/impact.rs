@@ -40,45 +40,79 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     #[inline(always)]
     pub(super) unsafe fn motions(&self, rows: &RowView<BodyRow>) -> Motions<N, P> {
         // SAFETY: by the contract.
+        let (moments, speeds) = unsafe { self.speeds(rows) };
+        // SAFETY: by the contract.
+        let gaps = unsafe { self.gaps(rows, &moments) };
+        Motions { moments, speeds, gaps }
+    }
+
+    /// The moments of the normal and the normal velocities of [`motions`](Self::motions).
+    ///
+    /// # Safety
+    /// As [`motions`](Self::motions).
+    #[inline(always)]
+    unsafe fn speeds(&self, rows: &RowView<BodyRow>) -> ([[Angular<N>; 2]; P], [N; P]) {
+        // SAFETY: by the contract.
         let pair = unsafe { Pair::load(rows, &self.ids) };
+        let (n, mut moments, mut speeds) = (self.normal, [[Angular::ZERO; 2]; P], [N::ZERO; P]);
+        for i in 0..P {
+            let (ra, rb) = (self.points[i].anchor, self.points[i].anchor - self.offset);
+            moments[i] = [ra.cross(n), rb.cross(n)];
+            speeds[i] = pair.along(n, moments[i]);
+        }
+        (moments, speeds)
+    }
+
+    /// The separations of [`motions`](Self::motions), given the moments of the normal.
+    ///
+    /// # Safety
+    /// As [`motions`](Self::motions).
+    #[inline(always)]
+    unsafe fn gaps(&self, rows: &RowView<BodyRow>, moments: &[[Angular<N>; 2]; P]) -> [N; P] {
         // SAFETY: by the contract.
         let [(pa, qa), (pb, qb)] = unsafe {
             [BodyRow::gather_delta::<N>(rows, &self.ids[0]), BodyRow::gather_delta::<N>(rows, &self.ids[1])]
         };
-        let n = self.normal;
+        let (n, mut gaps) = (self.normal, [N::ZERO; P]);
         let shift = (pb - pa).dot(n);
-        let mut motions =
-            Motions { moments: [[Angular::ZERO; 2]; P], speeds: [N::ZERO; P], gaps: [N::ZERO; P] };
         for i in 0..P {
             let (ra, rb) = (self.points[i].anchor, self.points[i].anchor - self.offset);
-            let (ma, mb) = (ra.cross(n), rb.cross(n));
+            let [ma, mb] = moments[i];
             let moved = shift + qb.shift_along(rb, mb, n) - qa.shift_along(ra, ma, n);
-            motions.gaps[i] = self.points[i].separation + moved;
-            motions.moments[i] = [ma, mb];
-            motions.speeds[i] = pair.along(n, [ma, mb]);
+            gaps[i] = self.points[i].separation + moved;
         }
-        motions
+        gaps
     }
 
-    /// The lanes with a point that closes faster than a blow and touches within `time` seconds, as bits.
+    /// Those of some `lanes` with a point that closes faster than a blow and touches within `time` seconds, as bits.
     ///
     /// # Safety
     /// Until it returns, no other thread writes the bodies of the row.
     #[inline(always)]
     pub(super) unsafe fn struck_lanes(
         &self,
+        lanes: u32,
         rows: &RowView<BodyRow>,
         params: &SubstepParams,
         time: f32,
     ) -> u32 {
         // SAFETY: by the contract.
-        let Motions { speeds, gaps, .. } = unsafe { self.motions(rows) };
-        let (slowest, time, mut lanes) = (N::splat(-params.blow_speed), N::splat(time * NEARLY), 0);
+        let (moments, speeds) = unsafe { self.speeds(rows) };
+        let (slowest, time, mut fast) = (N::splat(-params.blow_speed), N::splat(time * NEARLY), 0);
+        for i in 0..P {
+            fast |= N::bits(N::and(speeds[i].lt(slowest), N::ZERO.lt(self.points[i].mass)));
+        }
+        // Few close fast. The others need no gaps.
+        if fast & lanes == 0 {
+            return 0;
+        }
+        // SAFETY: by the contract.
+        let (gaps, mut struck) = (unsafe { self.gaps(rows, &moments) }, 0);
         for i in 0..P {
             let is_struck = N::and(speeds[i].lt(slowest), (gaps[i] + speeds[i] * time).le(N::ZERO));
-            lanes |= N::bits(N::and(is_struck, N::ZERO.lt(self.points[i].mass)));
+            struck |= N::bits(N::and(is_struck, N::ZERO.lt(self.points[i].mass)));
         }
-        lanes
+        struck & lanes
     }
 
     /// Lane `i`, with room for any number of points and without impulses.

@@ -348,12 +348,12 @@ impl Solver {
         let Self { bodies, joints, customs, rows, plan, layers, blows, bearing, .. } = self;
         let BodyRows { rows: body_rows, motions, .. } = bodies;
         let bodies = RowView::over(body_rows, self.first_dynamic);
-        let Blows { found, reached, elapsed, .. } = blows;
+        let Blows { found, reached_anew, elapsed, .. } = blows;
         let striking = Striking { bodies, motions, bearing, params, time, elapsed: *elapsed };
-        let seek = &Seek { striking, reached };
+        let seek = &Seek { striking, reached: (!reached_anew.is_empty()).then_some(reached_anew) };
         let mut blocks = core::mem::take(&mut plan.blocks);
         rows.with(joints, customs, |batches| {
-            let looked_at = |block: &&mut Block| !seek.reached.is_empty() || block.passes.are_watched();
+            let looked_at = |block: &&mut Block| seek.reached.is_some() || block.passes.are_watched();
             pool.each_into(found, blocks.iter_mut().filter(looked_at), |found, block| {
                 let items = plan.items(block, layers.colors());
                 let batch = batches[usize::from(block.batch)];
@@ -364,6 +364,7 @@ impl Solver {
             });
         });
         plan.blocks = blocks;
+        reached_anew.clear();
         found.iter().any(|found| !found.is_empty())
     }
 

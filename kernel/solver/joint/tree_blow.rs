@@ -66,7 +66,7 @@ impl TreeBlows {
     pub(in super::super) fn mark(
         &mut self,
         trees: &JointTrees,
-        Blows { times, reached, .. }: &mut Blows,
+        Blows { times, reached, reached_anew, .. }: &mut Blows,
     ) -> bool {
         let mut any = false;
         for (row, time) in times.drain(..) {
@@ -82,7 +82,9 @@ impl TreeBlows {
                 continue;
             }
             for body in &trees.bodies[range(trees.forest.trees[tree as usize].bodies)] {
-                reached.insert(body.row);
+                if reached.insert(body.row) {
+                    reached_anew.insert(body.row);
+                }
             }
         }
         any
