@@ -1,10 +1,11 @@
 //! Trees of joints, solved directly in each pass.
 //!
-//! A pass solves what all joints of a tree lock, limit and drive at once (`elimination.rs`, `tree_single.rs`). Rows of
-//! contacts, loops and other joints come before it in the solve pass, and follow and win in the relax pass.
+//! A pass solves all locked, limited and driven coordinates of a tree at once (`elimination.rs`,
+//! `tree_single.rs`). Rows of contacts, loops and other joints come between the two tree solutions of the
+//! solve pass, and come last in the relax pass, so that they have priority there.
 //!
-//! Being exact, the direct solution needs no warm start, and is soft at the rate of the substeps: one by one, rows that stiff
-//! would explode.
+//! The direct solution is exact, so it needs no warm start, and its softness has the rate of the substeps:
+//! rows that stiff would explode if solved one by one.
 #![expect(unsafe_code, reason = "bodies and joints of different trees are changed at once")]
 
 use super::super::BodyRows;
@@ -36,16 +37,21 @@ pub(in super::super) struct JointTrees {
     /// All joints, by id.
     all: BitSet,
     edges: Vec<Edge>,
-    /// By row, the node of a body.
+    /// The edges and the minimum tree size for which the last forest was built.
+    built_for: (Vec<Edge>, usize),
+    /// The last forest, while `forest` is empty.
+    kept: Forest,
+    is_built: bool,
+    /// The node of each body row.
     pub(super) numbers: Vec<u32>,
-    /// By node, the row of a body.
+    /// The body row of each node.
     numbered: Vec<u32>,
     pub(super) forest: Forest,
     hold: Hold,
     width: Width,
     pub(super) bodies: Vec<ListedBody>,
     shapes: Shapes,
-    /// Trees whose shape no other has.
+    /// Trees with a unique shape.
     ones: TreeRows<f32>,
     four: TreeRows<F32x4>,
     #[cfg(target_arch = "x86_64")]
@@ -59,7 +65,7 @@ impl JointTrees {
         !self.forest.branches.is_empty() && self.held.contains(id)
     }
 
-    /// Whether two body rows are of one tree.
+    /// Whether two body rows belong to one tree.
     pub(in super::super) fn connects(&self, rows: [u32; 2]) -> bool {
         if self.forest.trees.is_empty() {
             return false;
@@ -76,8 +82,12 @@ impl JointTrees {
         self.forest.branches.len() as u32
     }
 
+    /// Ends a step. The forest is kept for the next step.
     pub(in super::super) fn clear(&mut self) {
-        self.forest.clear();
+        if core::mem::take(&mut self.is_built) {
+            core::mem::swap(&mut self.forest, &mut self.kept);
+            self.forest.clear();
+        }
         self.ones.groups.clear();
         self.four.groups.clear();
         #[cfg(target_arch = "x86_64")]
@@ -101,12 +111,12 @@ impl JointTrees {
         for color in 0..COLOR_COUNT as u8 {
             colors.constraints(KIND, color).iter().for_each(|id| _ = self.all.insert(*id));
         }
-        let Self { held, all, edges, numbers, numbered, forest, shapes, .. } = self;
+        let Self { held, all, edges, built_for, kept, numbers, numbered, forest, shapes, .. } = self;
         numbered.iter().for_each(|row| numbers[*row as usize] = GROUND);
         numbered.clear();
         edges.clear();
         let constraints = input.bodies.constraints(KIND);
-        // By ascending id: the order in colours depends on their history.
+        // In the order of ids: the order within colours depends on their history.
         for id in all.iter() {
             if !table.summary(id).may_branch {
                 continue;
@@ -132,18 +142,30 @@ impl JointTrees {
             _ => (FEWEST, Hold::Tree),
         };
         (self.hold, self.width) = (hold, rows.width);
-        forest.build(edges, numbered.len(), fewest);
-        held.clear();
-        forest.branches.iter().for_each(|branch| _ = held.insert(branch.id));
+        let is_same = (&built_for.0, built_for.1) == (edges, fewest);
+        if is_same {
+            core::mem::swap(forest, kept);
+        } else {
+            forest.build(edges, numbered.len(), fewest);
+            held.clear();
+            forest.branches.iter().for_each(|branch| _ = held.insert(branch.id));
+            core::mem::swap(&mut built_for.0, edges);
+            built_for.1 = fewest;
+        }
+        self.is_built = true;
         self.bodies.clear();
         self.bodies.extend(forest.bodies.iter().map(|node| ListedBody::new(numbered[*node as usize], rows)));
         let shape = |id| table.summary(id).shape;
         match self.width {
             #[cfg(target_arch = "x86_64")]
             Width::Eight(_) => {
-                shapes.group(forest, shape, F32x8::WIDTH, [&mut self.ones.groups, &mut self.eight.groups]);
+                let groups = [&mut self.ones.groups, &mut self.eight.groups];
+                shapes.group((forest, is_same), shape, F32x8::WIDTH, groups);
             }
-            _ => shapes.group(forest, shape, F32x4::WIDTH, [&mut self.ones.groups, &mut self.four.groups]),
+            _ => {
+                let groups = [&mut self.ones.groups, &mut self.four.groups];
+                shapes.group((forest, is_same), shape, F32x4::WIDTH, groups);
+            }
         }
     }
 
@@ -162,12 +184,12 @@ impl JointTrees {
         let hold = self.hold;
         self.with(|forest, bodies, trees| {
             let filling = &TreeFilling { forest, bodies, records, hold, from };
-            // SAFETY: each group is filled once, and no two share a joint.
+            // SAFETY: each group is filled once, and no two groups share a joint.
             each(trees, pool, |trees, group| unsafe { trees.fill(group, filling) });
         });
     }
 
-    /// Calls a function with the trees that are alone, and with those side by side.
+    /// Calls a function with the groups of a single tree, and with the groups of several trees.
     pub(super) fn with(&mut self, f: impl FnOnce(&Forest, &[ListedBody], [&dyn Trees; 2])) {
         let (width, ones) = (self.width, self.ones.view(self.width, ()));
         let (forest, bodies) = (&self.forest, &self.bodies[..]);
@@ -178,7 +200,7 @@ impl JointTrees {
         }
     }
 
-    /// Gives back the memory of buffers.
+    /// Frees the memory of buffers.
     pub(in super::super) fn give_back(&mut self) {
         self.ones.give_back();
         self.four.give_back();
@@ -186,7 +208,7 @@ impl JointTrees {
         self.eight.give_back();
     }
 
-    /// Notes that bodies have moved.
+    /// Marks positions as outdated, after bodies have moved.
     pub(in super::super) fn forget_places(&mut self) {
         self.ones.forget_places();
         self.four.forget_places();
@@ -199,14 +221,15 @@ impl JointTrees {
         if self.forest.trees.is_empty() || sweep.pass == Pass::UndoSplit {
             return;
         }
-        // SAFETY: each group is run once, and no two share a joint or a dynamic body. Of the bodies only dynamic ones are written.
+        // SAFETY: each group is run once, and no two groups share a joint or a dynamic body. Only dynamic
+        // bodies are written.
         self.with(|_, _, trees| each(trees, pool, |trees, group| unsafe { trees.run(group, sweep) }));
     }
 
     /// Stores impulses in the joints.
     pub(in super::super) fn store(&mut self, records: &Records, pool: &ThreadPool) {
         self.with(|forest, _, trees| {
-            // SAFETY: each group is stored once, and no two share a joint.
+            // SAFETY: each group is stored once, and no two groups share a joint.
             each(trees, pool, |trees, group| unsafe { trees.store(group, forest, records) });
         });
     }

@@ -1,35 +1,52 @@
-//! Trees of equal shape, which are solved side by side: ragdolls, vehicles and bridges of a world are mostly alike.
+//! Groups of trees of equal shape, which are solved in SIMD lanes: ragdolls, vehicles and bridges of a
+//! world are mostly alike.
 
 use super::forest::{Branch, Forest, GROUND};
 use super::tree_joint::range;
 
-/// Most trees side by side.
+/// Maximum number of trees in a group.
 pub(super) const MAX_LANES: usize = 8;
 
-/// Some trees of equal shape, one in each lane, by number. [`GROUND`] for none.
+/// Numbers of trees of equal shape, one per lane. [`GROUND`] in unused lanes.
 pub(super) type Group = [u32; MAX_LANES];
 
-/// Finds trees of equal shape: their joints connect the same places and have the same rows.
+/// Finds trees of equal shape: their joints connect the same nodes and have the same rows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shapes {
-    /// By branch, the shape of its joint.
+    /// The shape of the joint of each branch.
     shapes: Vec<u32>,
-    /// By tree, a hash of its shape, and its number.
+    /// The shapes and the width of the last grouping.
+    grouped: (Vec<u32>, usize),
+    /// The last groups, of one tree and of several trees.
+    groups: [Vec<Group>; 2],
+    /// The hash of each tree's shape, and the tree's number.
     hashes: Vec<(u64, u32)>,
 }
 
 impl Shapes {
-    /// Groups all trees, up to `width` at once, given the shapes of joints by id. Groups of one tree are in the first list.
+    /// Groups all trees, at most `width` per group. `shape` gives the shapes of joints by id, and `is_same`
+    /// tells whether the forest is the same as in the last call. Groups of one tree are in the first list.
     pub(super) fn group(
         &mut self,
-        forest: &Forest,
+        (forest, is_same): (&Forest, bool),
         shape: impl Fn(u32) -> u32,
         width: usize,
-        [ones, wide]: [&mut Vec<Group>; 2],
+        groups: [&mut Vec<Group>; 2],
     ) {
         self.shapes.clear();
         self.shapes.extend(forest.branches.iter().map(|branch| shape(branch.id)));
-        let Self { shapes, hashes } = self;
+        if !(is_same && (&self.grouped.0, self.grouped.1) == (&self.shapes, width)) {
+            self.regroup(forest, width);
+            core::mem::swap(&mut self.grouped.0, &mut self.shapes);
+            self.grouped.1 = width;
+        }
+        for (groups, last) in groups.into_iter().zip(&self.groups) {
+            groups.clone_from(last);
+        }
+    }
+
+    fn regroup(&mut self, forest: &Forest, width: usize) {
+        let Self { shapes, hashes, groups: [ones, wide], .. } = self;
         let words = |tree: u32| words(forest, shapes, tree);
         hashes.clear();
         hashes.extend((0..forest.trees.len() as u32).map(|tree| {
@@ -55,7 +72,7 @@ impl Shapes {
     }
 }
 
-/// What makes up the shape of a tree.
+/// The numbers that describe the shape of a tree.
 fn words<'a>(forest: &'a Forest, shapes: &'a [u32], tree: u32) -> impl Iterator<Item = u32> + 'a {
     let span = &forest.trees[tree as usize];
     let first = span.bodies[0];
@@ -74,7 +91,7 @@ mod tests {
 
     #[test]
     fn trees_of_equal_shape_are_side_by_side() {
-        // Chains of three bodies, one of them held by its other end, and one with another kind of joint.
+        // Chains of three bodies: one is attached by its other end, and one has another kind of joint.
         let chain =
             |first: u32, id: u32| [[first, first + 1], [first + 1, first + 2]].map(move |nodes| (id, nodes));
         let edges: Vec<Edge> =
@@ -86,7 +103,7 @@ mod tests {
         let mut forest = Forest::default();
         forest.build(&edges, 15, 1);
         let (mut ones, mut wide) = (Vec::new(), Vec::new());
-        Shapes::default().group(&forest, |id| id, 4, [&mut ones, &mut wide]);
+        Shapes::default().group((&forest, false), |id| id, 4, [&mut ones, &mut wide]);
         let alike = |trees: [u32; 3]| {
             let mut group = [GROUND; MAX_LANES];
             group[..3].copy_from_slice(&trees);
@@ -113,7 +130,7 @@ mod tests {
             let mut forest = Forest::default();
             forest.build(&edges, nodes as usize, 1);
             let (mut ones, mut wide) = (Vec::new(), Vec::new());
-            Shapes::default().group(&forest, |id| id, width, [&mut ones, &mut wide]);
+            Shapes::default().group((&forest, false), |id| id, width, [&mut ones, &mut wide]);
             let mut seen: Vec<u32> = Vec::new();
             for group in ones.iter().chain(&wide) {
                 let trees: Vec<u32> = group.iter().copied().filter(|tree| *tree != GROUND).collect();
@@ -123,7 +140,7 @@ mod tests {
             }
             seen.sort_unstable();
             prop_assert!(seen.into_iter().eq(0..kinds.len() as u32));
-            // No two groups of a shape have room for each other.
+            // No two groups of the same shape have room for each other.
             let part: Vec<_> = ones.iter().chain(&wide).filter(|group| group[..width].contains(&GROUND)).collect();
             let mut shapes: Vec<_> = part.iter().map(|group| kinds[group[0] as usize]).collect();
             shapes.sort_unstable();
