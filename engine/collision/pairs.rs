@@ -4,8 +4,8 @@ use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
 use kernel::{
     bvh::{FoundPairs, Known, Movers},
-    contact::ContactFlags,
-    data::{BitSet, PairSet},
+    contact::{ContactFlags, ContactTable},
+    data::BitSet,
     table::{BodyTable, ColliderTable, Fattening, NONE},
 };
 
@@ -189,28 +189,30 @@ impl PairSearch {
     }
 }
 
-/// Pairs to be skipped: of one body, or with a contact.
+/// Pairs to be skipped: of one body, in a crowd, or with a contact.
 struct Contacted<'a> {
+    bodies: &'a BodyTable,
     colliders: &'a ColliderTable,
-    pairs: &'a PairSet,
+    contacts: &'a ContactTable,
 }
 
 impl Known for Contacted<'_> {
-    /// Colliders of one body may overlap in thousands of pairs. They are not even listed.
+    /// Colliders of one body, and bodies in one place, may overlap in thousands of pairs. They are not even listed.
     #[inline]
     fn is_plain(&self, a: u32, b: u32) -> bool {
         let body = self.colliders.body(a);
         body == self.colliders.body(b) && body != NONE
+            || self.contacts.is_superfluous([a, b], self.colliders, self.bodies)
     }
 
     #[inline]
     fn prefetch(&self, a: u32, b: u32) {
-        self.pairs.prefetch(a, b);
+        self.contacts.pairs().prefetch(a, b);
     }
 
     #[inline]
     fn contains(&self, a: u32, b: u32) -> bool {
-        self.pairs.contains(a, b)
+        self.contacts.pairs().contains(a, b)
     }
 }
 
@@ -218,6 +220,7 @@ impl Known for Contacted<'_> {
 pub(crate) fn find_new_pairs(
     mut search: ResMut<PairSearch>,
     mut threads: ResMut<Threads>,
+    bodies: Res<Bodies>,
     mut colliders: ResMut<Colliders>,
     contacts: Res<Contacts>,
     mut diagnostics: ResMut<CollisionDiagnostics>,
@@ -226,13 +229,17 @@ pub(crate) fn find_new_pairs(
     let PairSearch { found, movers, rejected } = &mut *search;
     rejected.clear();
     let Colliders { table, trees, moved, .. } = &mut *colliders;
+    if !table.relieved.is_empty() {
+        moved.union_with(&table.relieved);
+        table.relieved.clear();
+    }
     if moved.is_empty() {
         found.clear();
         threads.wake_for_pairs(0);
     } else {
         trees.movers(moved, &table.fat, movers);
         moved.clear();
-        let known = Contacted { colliders: table, pairs: contacts.table.pairs() };
+        let known = Contacted { bodies: &bodies.table, colliders: table, contacts: &contacts.table };
         threads.wake_for_pairs(movers.list().len());
         found.find(&trees.trees, movers, &known, &threads.pool);
     }
@@ -248,7 +255,10 @@ pub(crate) fn add_contacts(
     let start = bevy_platform::time::Instant::now();
     let mut sleepers = Vec::new();
     for (place, &(a, b)) in search.found.pairs().iter().enumerate() {
-        if tables.bodies.may_pair(&tables.colliders.table, [a, b]) && !search.rejected.contains(place as u32)
+        let colliders = &tables.colliders.table;
+        if tables.bodies.may_pair(colliders, [a, b])
+            && !search.rejected.contains(place as u32)
+            && !tables.contacts.table.is_superfluous([a, b], colliders, &tables.bodies.table)
         {
             sleepers.extend(add_contact(&mut tables, [a, b], ContactFlags::default()));
         }

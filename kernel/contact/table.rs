@@ -3,7 +3,7 @@
 use super::record::{Bearing, Contact, ContactFlags, Lost, Manifold, ManifoldSurface};
 use crate::data::{BitSet, IdPool, PairSet, Parts, Slack, prefetch};
 use crate::math::DIM;
-use crate::table::{ColliderTable, NONE};
+use crate::table::{BodyKind, BodyTable, ColliderDef, ColliderTable, NONE};
 use std::collections::BTreeMap;
 
 /// All contacts.
@@ -276,6 +276,7 @@ impl ContactTable {
         for side in 0..2 {
             let collider = self.contacts[id as usize].colliders[side];
             let edge = id << 1 | side as u32;
+            colliders.count_contact(collider, true);
             let first = core::mem::replace(&mut colliders[collider].first_contact, edge);
             self.contacts[id as usize].next[side] = first;
             if first != NONE {
@@ -283,6 +284,26 @@ impl ContactTable {
             }
         }
         id
+    }
+
+    /// Whether a pair in a crowd needs no contact: one of both colliders has as many as there are colours, and both overlap
+    /// others deeply, or each other. Bodies that were placed into each other come apart without it, and n of them have
+    /// contacts in proportion to n, not n². The pair is searched again when a collider is
+    /// [relieved](ColliderTable::relieved).
+    #[inline]
+    pub fn is_superfluous(&self, pair: [u32; 2], colliders: &ColliderTable, bodies: &BodyTable) -> bool {
+        pair.into_iter().any(|id| colliders.is_full(id)) && self.is_in_crowd(pair, colliders, bodies)
+    }
+
+    #[inline(never)]
+    fn is_in_crowd(&self, pair: [u32; 2], colliders: &ColliderTable, bodies: &BodyTable) -> bool {
+        let is_free = |id: u32| {
+            let ColliderDef { body, flags, .. } = &colliders[id].def;
+            !flags.sensor && *body != NONE && bodies[*body].kind == BodyKind::Dynamic
+        };
+        let is_crowded = |id: u32| self.crowded.contains(colliders.body(id));
+        pair.into_iter().all(is_free)
+            && (pair.into_iter().all(is_crowded) || colliders.are_cores_merged(pair))
     }
 
     /// Removes a contact from all lists but the colours and islands, and frees its id.
@@ -293,6 +314,7 @@ impl ContactTable {
         debug_assert_eq!(self.find(a, b), Some(id), "the pair's contact is this one");
         self.pairs.remove(a, b);
         for side in 0..2 {
+            colliders.count_contact([a, b][side], false);
             match previous[side] {
                 NONE => colliders[[a, b][side]].first_contact = next[side],
                 edge => self.contacts[(edge >> 1) as usize].next[(edge & 1) as usize] = next[side],

@@ -3,6 +3,7 @@
 
 use super::{BodyKind, BodyTable, FacetMaterials, Material, NONE};
 use crate::data::{BitSet, IdPool, Parts, prefetch};
+use crate::graph::COLOR_COUNT;
 use crate::math::{Pose, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Aabb, Shape};
 use crate::thread_pool::ThreadPool;
@@ -14,8 +15,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Number of bodies in a block of the job that refreshes their colliders.
 const BLOCK: usize = 128;
 
-/// Prefetch distance, in bodies. The collider of a body this far ahead is prefetched, and its hull half as far ahead.
-/// Less hides too little latency, more evicts lines before their use.
+/// Prefetch distance, in bodies. The collider of a body this far ahead is prefetched, and its hull half as
+/// far ahead. Less hides too little latency, more evicts lines before their use.
 const PREFETCH_DISTANCE: usize = 8;
 
 /// Collision layers as bit masks.
@@ -40,7 +41,7 @@ impl Layers {
 pub struct ColliderFlags {
     /// The collider detects contacts without response.
     pub sensor: bool,
-    /// The collider is there for queries only: the embedder makes no contacts for it.
+    /// The collider is for queries only: the embedder makes no contacts for it.
     pub inactive: bool,
 }
 
@@ -61,15 +62,15 @@ pub struct ColliderDef {
     pub layers: Layers,
     /// Flags.
     pub flags: ColliderFlags,
-    /// Distance from the shape at which others are kept, in metres.
+    /// Distance from the shape at which other shapes are kept, in metres.
     pub margin: f32,
     /// Maximum distance at which contacts are predicted, in metres. May be infinite.
     pub speculative: f32,
 }
 
 impl ColliderDef {
-    /// A collider of a shape in the frame of its body, or without a body for [`NONE`]: without friction and restitution,
-    /// in layer 1, which interacts with all, without margin, and with unlimited prediction.
+    /// A collider of a shape in the frame of its body, or without a body for [`NONE`]: without friction and
+    /// restitution, in layer 1, which interacts with all, without margin, and with unlimited prediction.
     pub fn new(shape: Shape, body: u32) -> Self {
         Self {
             shape,
@@ -107,6 +108,8 @@ pub struct Collider {
     pub first_contact: u32,
     /// Leaf in the tree, or [`NONE`].
     pub proxy: u32,
+    /// Number of contacts.
+    contact_count: u32,
     /// Neighbours in the list of the body's colliders.
     next: u32,
     previous: u32,
@@ -117,24 +120,25 @@ pub struct Collider {
 pub struct Reach {
     /// The distance from the body's centre of mass to the farthest point of the shape, in metres.
     pub extent: f32,
-    /// As `extent`, but 0 on a static body: displacement of the surface per radian of turning, at most.
+    /// As `extent`, but 0 on a static body: maximum displacement of the surface per radian of rotation.
     pub turning: f32,
-    /// How far normals of the surface pass from the body's centre of mass at most, in metres; 0 if that does not turn.
+    /// Maximum distance between a normal of the surface and the body's centre of mass, in metres; 0 if the
+    /// body does not turn.
     pub arm: f32,
     /// Maximum distance at which contacts are predicted, in metres.
     pub speculative: f32,
-    /// Distance from the shape at which others are kept, in metres.
+    /// Distance from the shape at which other shapes are kept, in metres.
     pub margin: f32,
     /// Counter of changes that invalidate cached contacts: shape, pose on the body, margins.
     pub revision: u32,
 }
 
-/// What of a body's colliders tells whether it is fast.
+/// The sizes of a body's colliders that decide whether the body is fast.
 #[derive(Clone, Copy, Debug)]
 pub struct BodySize {
-    /// No ball within one of the colliders is smaller than one of this radius, in metres; infinite without colliders.
+    /// A lower bound of the core radius of every collider, in metres; infinite without colliders.
     pub core: f32,
-    /// How far normals of the colliders' surfaces pass from the centre of mass at most, in metres.
+    /// Maximum distance between a normal of the colliders' surfaces and the centre of mass, in metres.
     pub arm: f32,
 }
 
@@ -142,13 +146,13 @@ impl BodySize {
     const NONE: Self = Self { core: f32::INFINITY, arm: 0.0 };
 }
 
-/// Turn in `dt` seconds at an angular speed of `spin` rad/s, clamped to [`MOST_TURN`], in radians.
+/// The rotation in `dt` seconds at an angular speed of `spin` rad/s, clamped to [`MOST_TURN`], in radians.
 #[inline(always)]
 pub(crate) fn turn(spin: f32, dt: f32) -> f32 {
     min(spin * dt, MOST_TURN)
 }
 
-/// Whether a turn may displace the surface by more than `small`, or by much for the size of the shape.
+/// Whether a rotation may displace the surface by more than `small`, or by much for the size of the shape.
 #[inline(always)]
 pub(crate) fn is_swinging(reach: &Reach, turn: f32, small: f32) -> bool {
     reach.extent * turn > min(small, FAT_SHARE * reach.extent)
@@ -157,15 +161,15 @@ pub(crate) fn is_swinging(reach: &Reach, turn: f32, small: f32) -> bool {
 /// All colliders of the simulation.
 #[derive(Clone, Debug, Default)]
 pub struct ColliderTable {
-    /// The ids in use. Those of colliders that were added as sensors are aside, so that they do not change the order of
-    /// others.
+    /// The ids in use. Colliders that were added as sensors have ids aside, so they do not change the order
+    /// of others.
     pub ids: IdPool,
     colliders: Vec<Collider>,
     /// The numbers in use.
     in_numbers: IdPool,
     /// The [number](Self::number) of each collider by id, [`NONE`] for sensors.
     numbers: Vec<u32>,
-    /// Bodies by collider id. A look-up in `colliders` would load a cache line each.
+    /// The body of each collider, by collider id. A look-up in `colliders` would load a cache line for each.
     owners: Vec<u32>,
     /// World poses by id.
     pub poses: Vec<WorldPose>,
@@ -175,7 +179,13 @@ pub struct ColliderTable {
     pub fat: Vec<Aabb>,
     /// Reaches by id.
     pub reaches: Vec<Reach>,
-    /// By body, as far as bodies had colliders. What left still counts until the last collider of the body has left.
+    /// Number of colliders that have [`COLOR_COUNT`] contacts or more.
+    full: u32,
+    /// Colliders that had this many contacts, and have fewer now. Their pairs may have been left out as
+    /// [superfluous](crate::contact::ContactTable::is_superfluous), and must be searched again.
+    pub relieved: BitSet,
+    /// The sizes by body, as far as bodies had colliders. Removed colliders count until the last collider of
+    /// the body is removed.
     sizes: Vec<BodySize>,
 }
 
@@ -189,18 +199,21 @@ pub struct Fattening {
 }
 
 impl ColliderTable {
-    /// Bytes of memory per collider, besides one bit, and besides the geometry of hulls, which colliders share.
+    /// Bytes of memory per collider, besides one bit, and besides the geometry of hulls, which colliders
+    /// share.
     pub const BYTES_PER_COLLIDER: usize = size_of::<Collider>()
         + 2 * size_of::<u32>()
         + size_of::<WorldPose>()
         + 2 * size_of::<Aabb>()
         + size_of::<Reach>();
 
-    /// Adds a collider at a pose and attaches it to its body. Its fat box is empty until [`refresh`](Self::refresh).
+    /// Adds a collider at a pose and attaches it to its body. Its fat box is empty until
+    /// [`refresh`](Self::refresh).
     pub fn add(&mut self, def: ColliderDef, pose: WorldPose, bodies: &mut BodyTable) -> u32 {
         let is_sensor = def.flags.sensor;
         let id = if is_sensor { self.ids.allocate_aside() } else { self.ids.allocate() };
-        let collider = Collider { def, first_contact: NONE, proxy: NONE, next: NONE, previous: NONE };
+        let collider =
+            Collider { def, first_contact: NONE, proxy: NONE, contact_count: 0, next: NONE, previous: NONE };
         let i = id as usize;
         if i == self.colliders.len() {
             self.colliders.push(collider);
@@ -218,7 +231,7 @@ impl ColliderTable {
         }
         self.renumber(id);
         self.attach(id, bodies);
-        // The revision keeps counting, so that caches of the id's last owner do not match.
+        // The revision keeps counting, so caches of the id's previous owner do not match.
         self.update_reach(id, bodies);
         id
     }
@@ -226,6 +239,7 @@ impl ColliderTable {
     /// Detaches a collider from its body and frees its id. Its contacts and its leaf must be removed before.
     pub fn remove(&mut self, id: u32, bodies: &mut BodyTable) {
         debug_assert!(self[id].first_contact == NONE, "a removed collider has no contacts");
+        self.relieved.remove(id);
         self.detach(id, bodies);
         self.ids.free(id);
         let number = core::mem::replace(&mut self.numbers[id as usize], NONE);
@@ -234,20 +248,21 @@ impl ColliderTable {
         }
     }
 
-    /// Makes ids and numbers that were freed before this usable again.
+    /// Makes ids and numbers that were freed before this call usable again.
     pub fn recycle_ids(&mut self) {
         self.ids.recycle();
         self.in_numbers.recycle();
     }
 
-    /// The number of a collider among those that are no sensors: its id, if there never was a sensor. What depends on
-    /// more than the order of ids takes this, so that sensors do not change what others do. [`NONE`] for sensors.
+    /// The number of a collider among the colliders that are not sensors: equal to its id if there never was
+    /// a sensor. Code that depends on more than the order of ids uses this number, so sensors do not change
+    /// the behaviour of other colliders. [`NONE`] for sensors.
     #[inline]
     pub fn number(&self, id: u32) -> u32 {
         self.numbers[id as usize]
     }
 
-    /// Gives a collider a number exactly if it is no sensor.
+    /// Gives a collider a number if and only if it is not a sensor.
     fn renumber(&mut self, id: u32) {
         let is_sensor = self[id].def.flags.sensor;
         let number = &mut self.numbers[id as usize];
@@ -261,8 +276,8 @@ impl ColliderTable {
         }
     }
 
-    /// Changes the definition of a collider, and invalidates its cached contacts. If the body changes, the contacts
-    /// must be removed before. Otherwise call `Link::reflag_of_collider` after it.
+    /// Changes the definition of a collider, and invalidates its cached contacts. If the body changes, the
+    /// contacts must be removed before. Otherwise call `Link::reflag_of_collider` after it.
     pub fn redefine(&mut self, id: u32, def: ColliderDef, bodies: &mut BodyTable) {
         debug_assert!(
             self[id].def.body == def.body || self[id].first_contact == NONE,
@@ -275,8 +290,8 @@ impl ColliderTable {
         self.update_reach(id, bodies);
     }
 
-    /// Recomputes the reach of a collider, and invalidates its cached contacts. Call it after the shape, the margins,
-    /// or the body's kind or centre of mass changed.
+    /// Recomputes the reach of a collider, and invalidates its cached contacts. Call it after the shape, the
+    /// margins, or the body's kind or centre of mass changed.
     pub fn update_reach(&mut self, id: u32, bodies: &mut BodyTable) {
         let def = &self.colliders[id as usize].def;
         let center = if def.body == NONE {
@@ -319,7 +334,39 @@ impl ColliderTable {
         self.owners[id as usize]
     }
 
-    /// What tells whether a body is fast.
+    /// Counts a contact that a collider gained or lost.
+    pub(crate) fn count_contact(&mut self, id: u32, is_new: bool) {
+        let count = &mut self[id].contact_count;
+        let before = core::mem::replace(count, if is_new { *count + 1 } else { *count - 1 });
+        match (before as usize + 1, before as usize) {
+            (COLOR_COUNT, _) if is_new => self.full += 1,
+            (_, COLOR_COUNT) if !is_new => {
+                self.full -= 1;
+                self.relieved.insert(id);
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether a collider has [`COLOR_COUNT`] contacts or more.
+    #[inline(always)]
+    pub fn is_full(&self, id: u32) -> bool {
+        self.full > 0 && self[id].contact_count as usize >= COLOR_COUNT
+    }
+
+    /// Whether the [core](Shape::core) of each of two convex shapes contains the centre of the other core.
+    pub fn are_cores_merged(&self, pair: [u32; 2]) -> bool {
+        let is_convex = |id: u32| {
+            !matches!(self[id].def.shape, Shape::Composite(_) | Shape::Foreign(_) | Shape::HalfSpace(_))
+        };
+        let [a, b] = pair.map(|id| {
+            let (center, radius) = self[id].def.shape.core();
+            (self.poses[id as usize].transform(center), radius)
+        });
+        pair.into_iter().all(is_convex) && (b.0 - a.0).to_local().length() < min(a.1, b.1)
+    }
+
+    /// The sizes that decide whether a body is fast.
     #[inline(always)]
     pub fn size_of(&self, body: u32) -> BodySize {
         self.sizes.get(body as usize).copied().unwrap_or(BodySize::NONE)
@@ -330,8 +377,9 @@ impl ColliderTable {
         self[id].next
     }
 
-    /// Moves a collider to its body's pose, and enlarges its fat box if that no longer contains the shape, the margin
-    /// and the motion of one step. Returns whether the fat box was enlarged. A collider without a body keeps its pose.
+    /// Moves a collider to its body's pose, and enlarges its fat box if the box no longer contains the shape,
+    /// the margin and the motion of one step. Returns whether the fat box was enlarged. A collider without a
+    /// body keeps its pose.
     pub fn refresh(&mut self, id: u32, bodies: &BodyTable, fattening: Fattening) -> bool {
         let i = id as usize;
         let places = (&mut self.poses[i], &mut self.tight[i], &mut self.fat[i]);
@@ -355,8 +403,8 @@ impl ColliderTable {
         bodies.pushed = pushed;
     }
 
-    /// Refreshes the colliders of the bodies with a row in this step. `listed` holds these bodies in the order of rows,
-    /// from row 1. `outgrown` receives the colliders whose fat box was enlarged.
+    /// Refreshes the colliders of the bodies with a row in this step. `listed` holds these bodies in the
+    /// order of rows, from row 1. `outgrown` receives the colliders whose fat box was enlarged.
     pub fn refresh_listed(
         &mut self,
         listed: &[u32],
@@ -369,7 +417,8 @@ impl ColliderTable {
         let (poses, tight, fat) = (Parts::of(poses), Parts::of(tight), Parts::of(fat));
         let outgrown = Mutex::new(outgrown);
         pool.each(listed.chunks(BLOCK).enumerate(), |(block, ids)| {
-            // The lock is taken once per batch of ids: for each id, workers would wait for each other.
+            // The lock is taken once per batch of ids: with a lock for each id, workers would wait for each
+            // other.
             let mut found = [NONE; BLOCK];
             let mut count = 0;
             let note = |found: &[u32]| {
@@ -452,7 +501,7 @@ impl ColliderTable {
 }
 
 impl Collider {
-    /// The box swept by the shape in a step while its body turns. `tight` is the box now.
+    /// The box swept by the shape in a step while its body turns. `tight` is the current box.
     #[inline(never)]
     fn swung(&self, bodies: &BodyTable, fattening: Fattening, reach: &Reach, tight: &Aabb) -> Aabb {
         let def = &self.def;
@@ -472,12 +521,12 @@ impl Collider {
         }
         body.rotation = rotation;
         let after = def.shape.aabb(&body.frame(bodies[def.body].local_center).then(&def.local));
-        // A point moves along an arc, which deviates from its chord by r (1 - cos φ/2) < r φ²/8 at most.
+        // A point moves along an arc, which deviates from its chord by at most r (1 - cos φ/2) < r φ²/8.
         tight.union(&after).grown(0.125 * reach.extent * turn * turn).intersection(&round)
     }
 
-    /// Recomputes pose and tight box of a collider, and enlarges the fat box if needed. Returns whether it was
-    /// enlarged.
+    /// Recomputes pose and tight box of a collider, and enlarges the fat box if needed. Returns whether it
+    /// was enlarged.
     #[inline]
     fn fit(
         &self,
