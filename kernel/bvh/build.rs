@@ -5,13 +5,13 @@ use super::tree::{Branch, Entry, FREE_BRANCH, Item, LEAF, MAX_HEIGHT, NONE, Prox
 use crate::math::{DIM, Vector};
 use crate::shape::Aabb;
 
-/// The number of bins of a split. More make builds slower and trees hardly better.
+/// The number of bins of a split. More bins make builds slower and trees hardly better.
 const BINS: usize = 8;
 /// Splits below this depth halve the number of items, which bounds the height for any boxes.
 const MAX_FREE_DEPTH: u32 = 40;
 
 impl Tree {
-    /// Replaces the tree by one of `(id, box)` pairs. The `i`-th becomes `ProxyId(i)`.
+    /// Replaces the tree by a tree of `(id, box)` pairs. The `i`-th pair becomes `ProxyId(i)`.
     pub fn build(&mut self, leaves: &[(u32, Aabb)]) {
         self.clear();
         for (i, (id, aabb)) in leaves.iter().enumerate() {
@@ -22,8 +22,8 @@ impl Tree {
         self.build_all();
     }
 
-    /// Adds many leaves and appends their proxies to `proxies` in order. Rebuilds the tree if there are many compared with
-    /// the leaves in it.
+    /// Adds many leaves and appends their proxies to `proxies` in order. Rebuilds the tree if the new leaves
+    /// are many compared with the leaves already in it.
     pub fn insert_many(&mut self, leaves: &[(u32, Aabb)], proxies: &mut Vec<ProxyId>) {
         if leaves.len() * 8 < self.len() {
             proxies.extend(leaves.iter().map(|(id, aabb)| self.insert(*id, *aabb)));
@@ -44,8 +44,9 @@ impl Tree {
         self.build_all();
     }
 
-    /// Rebuilds the branches above enlarged and inserted leaves. The largest subtrees without such leaves stay as they are.
-    /// Returns the number of subtrees and leaves that were sorted, 0 if nothing had changed.
+    /// Rebuilds the branches above enlarged and inserted leaves. The largest subtrees without such leaves
+    /// stay as they are. Returns the number of subtrees and leaves that were sorted, 0 if nothing had
+    /// changed.
     ///
     /// The cost depends on the changed part of the tree.
     pub fn rebuild_partial(&mut self) -> usize {
@@ -87,7 +88,7 @@ impl Tree {
         }
     }
 
-    /// Builds over `items`, which are all leaves.
+    /// Builds a tree over `items`, which are all leaves.
     fn build_all(&mut self) {
         self.branches.clear();
         self.free_branch = NONE;
@@ -100,8 +101,8 @@ impl Tree {
 
     /// Builds a tree over `items` with the branches in `order`, one fewer than items. Empties both.
     ///
-    /// Items are split and branches linked top down, in the order of a walk. Then boxes and heights are computed in the
-    /// reverse order, children before parents.
+    /// Items are split and branches linked top down, in the order of a walk. Then boxes and heights are
+    /// computed in the reverse order, children before parents.
     fn build_over_items(&mut self) {
         let mut items = core::mem::take(&mut self.items);
         let mut order = core::mem::take(&mut self.order);
@@ -180,7 +181,7 @@ fn split(items: &mut [Item], depth: u32) -> usize {
     middle
 }
 
-/// The last bin of the first group for the split of least area × items, summed over both sides; `None`
+/// The last bin of the first group, for the split that minimizes area × items summed over both sides. `None`
 /// if all items are in one bin or no sum is finite.
 fn best_bin(items: &[Item], bin: impl Fn(&Item) -> usize) -> Option<usize> {
     let mut boxes = [Aabb::EMPTY; BINS];

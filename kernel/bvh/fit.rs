@@ -1,4 +1,4 @@
-//! Sets all boxes of a tree, shared by workers.
+//! Sets all boxes of a tree, with the work shared by several workers.
 #![expect(unsafe_code, reason = "branches are changed by several threads, each its own subtrees")]
 
 use super::tree::{Branch, LEAF, Leaf, NONE, Tree, admitted};
@@ -6,7 +6,8 @@ use crate::data::Parts;
 use crate::shape::Aabb;
 use crate::thread_pool::ThreadPool;
 
-/// The approximate number of subtrees that workers fit. Fewer balance worse; more take longer to find.
+/// The approximate number of subtrees that workers fit. Fewer subtrees balance worse; more take longer to
+/// find.
 const SUBTREES: usize = 64;
 
 /// The source of the leaves' boxes.
@@ -16,18 +17,18 @@ struct Source<'a, F> {
 }
 
 impl Tree {
-    /// Sets the box of every leaf by its id, and recomputes the boxes above. The cost depends on the size of the tree: use it
-    /// where a large share of the leaves moved. [`Tree`] compares it with other changes.
+    /// Sets the box of every leaf by its id, and recomputes the boxes above. The cost depends on the size of
+    /// the tree: use it if a large share of the leaves moved. [`Tree`] compares it with other changes.
     pub fn fit(&mut self, boxes: &(impl Fn(u32) -> Aabb + Sync), pool: &ThreadPool) {
         if self.root == NONE {
             return;
         }
-        // Taken out of the tree, so that it is empty after a panic of `boxes`.
+        // The buffer is taken out of the tree, so it is empty even after a panic of `boxes`.
         let mut list = core::mem::take(&mut self.order);
         let Self { branches, leaves, root, root_box, .. } = self;
         let source = Source { leaves, boxes };
         if *root & LEAF == 0 {
-            // From the root down, until there are enough subtrees.
+            // Open branches from the root down, until there are enough subtrees.
             list.push(*root);
             let mut above = 0;
             while above < list.len() && list.len() - above < SUBTREES {
@@ -53,7 +54,7 @@ impl Tree {
 /// A box, and whether a leaf in it moved since the last rebuild (for a branch).
 type Fitted = (Aabb, bool);
 
-/// Sets the boxes of a branch to those of its children.
+/// Sets the boxes of a branch to the boxes of its children.
 #[inline(always)]
 fn put(branch: &mut Branch, fitted: [Fitted; 2]) {
     for (i, (aabb, is_enlarged)) in fitted.into_iter().enumerate() {
@@ -76,15 +77,16 @@ impl<F: Fn(u32) -> Aabb> Source<'_, F> {
         (admitted((self.boxes)(self.leaves[(node & !LEAF) as usize].id)), false)
     }
 
-    /// The box of a node; all boxes below it are up to date.
+    /// The box of a node. All boxes below it are up to date.
     fn fitted(&self, branches: &[Branch], node: u32) -> Fitted {
         if node & LEAF != 0 { self.leaf(node) } else { around(&branches[node as usize]) }
     }
 
-    /// Sets all boxes below a branch and returns the box around them. Recurses as deep as the tree is high.
+    /// Sets all boxes below a branch and returns the box around them. The recursion is as deep as the tree is
+    /// high.
     ///
     /// # Safety
-    /// While it runs no other thread may use the branch or those below it.
+    /// While the call runs, no other thread may use the branch or the branches below it.
     unsafe fn fit_below(&self, branches: &Parts<Branch>, branch: u32) -> Fitted {
         // SAFETY: by the contract.
         let branch = unsafe { branches.one(branch as usize) };
@@ -92,7 +94,7 @@ impl<F: Fn(u32) -> Aabb> Source<'_, F> {
             if child & LEAF != 0 {
                 self.leaf(child)
             } else {
-                // SAFETY: it is below the branch, and not the branch itself.
+                // SAFETY: the child is below the branch, and differs from it.
                 unsafe { self.fit_below(branches, child) }
             }
         });

@@ -1,16 +1,16 @@
-//! Walks of two trees at once, or one against itself, for pairs of leaves that touch.
+//! Walks two trees at once, or a tree against itself, for pairs of leaves that touch.
 //!
-//! Where most leaves moved a walk visits each branch a few times. Queries for each leaf would start at the root and find every
-//! pair twice.
+//! If most leaves moved, a walk visits each branch a few times, while a query for each leaf would start at
+//! the root and find every pair twice.
 
 use super::tree::{LEAF, MAX_HEIGHT, NONE, ROOT, Tree};
 
-/// Two slots, one in each tree, to be searched for pairs of leaves. In a walk of a tree against itself, the same slot twice
-/// means the pairs within it.
+/// Two slots, one in each tree, to be searched for pairs of leaves. In a walk of a tree against itself, the
+/// same slot twice stands for the pairs within that slot.
 pub(super) type Slots = [u32; 2];
 
-/// The most slots on the stack of a walk: at most three per level of both trees, one per level of one tree, two per level of
-/// one tree against itself.
+/// Maximum number of slot pairs on the stack of a walk. Each step adds at most three if it goes down in both
+/// trees, one if it goes down in one tree, and two in a walk of a tree against itself.
 const DEEPEST: usize = 3 * MAX_HEIGHT as usize + 4;
 
 /// The stack of a walk, kept between walks.
@@ -27,7 +27,7 @@ impl Default for Walk {
 }
 
 impl Walk {
-    /// Pushes slots if `needed`. Without a branch, which would be mispredicted.
+    /// Pushes slots if `needed`. It has no jump, since a jump would be mispredicted.
     #[inline(always)]
     fn push_if(&mut self, needed: bool, slots: Slots) {
         self.slots[self.len] = slots;
@@ -40,8 +40,8 @@ impl Walk {
         Some(self.slots[self.len])
     }
 
-    /// Calls `found` with the ids of leaves, one of each tree, whose boxes touch, below slots whose boxes touch. Without `b`:
-    /// leaves of `a` that touch each other, each pair once.
+    /// Calls `found` with the ids of a leaf of each tree if their boxes touch, for all leaves below two slots
+    /// whose boxes touch. Without `b` it finds the leaves of `a` that touch each other, each pair once.
     pub(super) fn meet(&mut self, a: &Tree, b: Option<&Tree>, slots: Slots, mut found: impl FnMut(u32, u32)) {
         self.len = 0;
         self.push_if(true, slots);
@@ -50,7 +50,8 @@ impl Walk {
         }
     }
 
-    /// Divides a walk into parts: breadth first, until there are at least `count` or none can be divided.
+    /// Divides a walk into parts, breadth first, until there are at least `count` parts or none can be
+    /// divided.
     pub(super) fn divide(&mut self, a: &Tree, b: Option<&Tree>, count: usize, parts: &mut Vec<Slots>) {
         parts.clear();
         let touch = match b {
@@ -79,7 +80,7 @@ impl Walk {
         parts.drain(whole..divided);
     }
 
-    /// Goes one level down.
+    /// Goes down by one level.
     #[inline(always)]
     fn step(&mut self, a: &Tree, b: Option<&Tree>, slots: Slots, found: &mut impl FnMut(u32, u32)) {
         let in_a = a.node_in(slots[0]);

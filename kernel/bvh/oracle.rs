@@ -1,4 +1,4 @@
-//! Tests of trees against exhaustive searches.
+//! Tests of trees against exhaustive search.
 
 use super::query::Sweep;
 use super::*;
@@ -22,14 +22,14 @@ impl Noise {
     pub fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
-    /// In 0 ≤ x < 1.
+    /// A number x with 0 ≤ x < 1.
     fn unit(&mut self) -> f32 {
         (self.next() >> 40) as f32 / (1u64 << 24) as f32
     }
     pub fn vector(&mut self, low: f32, high: f32) -> Vector {
         Vector::from_array(core::array::from_fn(|_| low + (high - low) * self.unit()))
     }
-    /// Integer coordinates, so that boxes often touch exactly.
+    /// Integer coordinates, so boxes often touch exactly.
     fn grid(&mut self, n: usize) -> Vector {
         Vector::from_array(core::array::from_fn(|_| self.below(n) as f32))
     }
@@ -115,7 +115,7 @@ impl Twin {
             }
             110..140 => {
                 if let Some(i) = self.pick(noise) {
-                    // Mostly near its old place, as bodies move.
+                    // Mostly near the old place, as bodies move.
                     let near = self.list[i].2.swept(noise.vector(-0.5, 0.5));
                     let aabb = if noise.below(8) == 0 { aabb } else { near };
                     self.tree.enlarge(self.list[i].0, aabb);
@@ -161,7 +161,7 @@ impl Twin {
         }
     }
 
-    /// One random query of both.
+    /// One random query of both the tree and the list.
     fn ask(&self, noise: &mut Noise) {
         match noise.below(5) {
             0 => {
@@ -228,15 +228,15 @@ impl Twin {
             self.expected(|b| sweep.entry(b, reach) <= reach),
             "from {origin:?} along {direction:?}"
         );
-        // Against slightly smaller and larger boxes in double precision: hits of the smaller ones are hits, misses of the
-        // larger ones are misses.
+        // Compares with slightly smaller and larger boxes in double precision: a hit of the smaller box must
+        // be found, a miss of the larger box must not be found.
         for (_, id, b) in &self.list {
             let hit = found.binary_search(id).is_ok();
             let far = if direction == Vector::ZERO { 1.0 } else { reach };
             assert!(hit || !met(b, half, origin, direction, far, -1.0e-3), "{b:?} is met but not found");
             assert!(!hit || met(b, half, origin, direction, far, 1.0e-3), "{b:?} is missed but found");
         }
-        // Closest hit by shrinking.
+        // Finds the closest hit by shrinking the limit.
         let entries = self.list.iter().map(|(_, id, b)| (*id, sweep.entry(b, reach)));
         let expected = entries.clone().filter(|e| !e.1.is_nan()).map(|e| e.1).fold(f32::INFINITY, f32::min);
         self.tree.cast_box(half, origin, direction, reach, |id, limit| {
@@ -249,8 +249,7 @@ impl Twin {
     }
 }
 
-/// Whether the swept box meets a box grown by `hair` times their size; in `f64`, by clipping the
-/// parameter interval.
+/// Whether the swept box meets a box grown by `hair` times their size. Clips the parameter interval in `f64`.
 fn met(b: &Aabb, half: Vector, origin: Vector, direction: Vector, reach: f32, hair: f64) -> bool {
     let (mut enter, mut exit) = (0.0f64, f64::from(reach) * (1.0 + hair.signum() * 1.0e-6));
     for i in 0..DIM {
@@ -275,7 +274,7 @@ fn met(b: &Aabb, half: Vector, origin: Vector, direction: Vector, reach: f32, ha
     enter <= exit
 }
 
-/// The known pairs, and those of them that a cheap test finds.
+/// The known pairs. `is_plain` recognizes some of them.
 struct Where<F>(F);
 
 impl<F: Fn(u32, u32) -> bool + Sync> Known for Where<F> {
@@ -346,7 +345,7 @@ proptest! {
     fn pairs_are_those_of_a_search_of_all(
         seed in any::<u64>(), count in 0..400u32, kinds in 1..=4usize, still in 1..6usize
     ) {
-        // With more kinds and fewer movers, more pairs are found by queries.
+        // With more kinds and fewer movers, more pairs are found by queries than by walks.
         const KINDS: [TreeKind; 4] =
             [TreeKind::Dynamic, TreeKind::Static, TreeKind::Kinematic, TreeKind::Standalone];
         let mut noise = Noise(seed);
@@ -362,7 +361,7 @@ proptest! {
             let moved = noise.below(still) == 0;
             all.push((mover, moved));
         }
-        // The order is not determined.
+        // Movers are inserted in an order unrelated to their ids.
         for k in 0..all.len() {
             let (mover, moved) = all[(k * 7919 + 13) % all.len()];
             if moved {
@@ -493,7 +492,7 @@ fn negative_stops_a_cast() {
     assert_eq!(order, [0, 1, 2, 3], "disjoint boxes on a line are met in order");
 }
 
-/// Sets of boxes that are hard on builders.
+/// Sets of boxes that are difficult for builders.
 fn hard_sets(n: usize) -> Vec<(&'static str, Vec<Aabb>)> {
     let cube = |c: f32, h: f32| Aabb::new(Vector::ONE * (c - h), Vector::ONE * (c + h));
     vec![

@@ -1,5 +1,5 @@
-//! Pairs of boxes that began to touch: by a query of the trees for every mover, or, where most moved, by walking two trees at
-//! once.
+//! Pairs of boxes that began to touch. They are found by a query of the trees for every mover, or, if most
+//! leaves moved, by walking two trees at once.
 
 use super::meet::{Slots, Walk};
 use super::tree::Tree;
@@ -8,20 +8,21 @@ use crate::shape::Aabb;
 use crate::thread_pool::ThreadPool;
 use std::sync::{Mutex, PoisonError};
 
-/// The movers of one block. Smaller blocks cost more to hand out, larger ones balance worse.
+/// The number of movers in a block. Smaller blocks cost more to hand out, larger ones balance worse.
 const BLOCK: usize = 32;
 
-/// Two trees are walked at once if at least one in `MANY.0` of their leaves moved, and at least `MANY.1` leaves in all. A
-/// walk visits also what did not move, queries go down from the root for each mover.
+/// Two trees are walked at once if at least one in `MANY.0` of their leaves moved, and at least `MANY.1`
+/// leaves in all. A walk also visits leaves that did not move; queries go down from the root for each mover.
 const MANY: (usize, usize) = (3, 64);
 
-/// The approximate number of parts of a walk of two trees, which workers share. Fewer balance worse.
+/// The approximate number of parts of a walk of two trees, which workers share. Fewer parts balance worse.
 const PARTS: usize = 64;
 
-/// The number of found pairs that are compared with the known ones at once: their prefetched slots are still in the cache.
+/// The number of found pairs that are compared with the known pairs at once. Their prefetched slots are still
+/// in the cache.
 const LOOK_UP_BATCH: usize = 128;
 
-/// The kinds of colliders, by what moves them. Each has a tree of its own.
+/// The kinds of colliders, by the kind of their body. Each kind has its own tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum TreeKind {
     /// On a static body.
@@ -54,7 +55,7 @@ impl PairMask {
         Self(1 << kind as u8)
     }
 
-    /// The kinds of either set.
+    /// The kinds in either set.
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
@@ -65,8 +66,8 @@ impl PairMask {
         self.0 >> kind as u8 & 1 != 0
     }
 
-    /// The kinds that solid colliders of a kind can touch: dynamic ones touch everything, all others only dynamic ones. Sensors
-    /// and event collectors need more.
+    /// The kinds that solid colliders of a kind can touch: dynamic colliders touch every kind, all others
+    /// only dynamic ones. Sensors and colliders with events need more.
     pub const fn solid(kind: TreeKind) -> Self {
         match kind {
             TreeKind::Dynamic => Self::ALL,
@@ -100,7 +101,7 @@ impl core::ops::IndexMut<TreeKind> for Trees {
 /// A collider whose box in its tree is new or changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mover {
-    /// The collider: the id its leaf was inserted with.
+    /// The collider: the id that its leaf was inserted with.
     pub id: u32,
     /// The tree of its leaf.
     pub kind: TreeKind,
@@ -115,14 +116,14 @@ pub struct Mover {
 pub struct Movers {
     list: Vec<Mover>,
     moved: BitSet,
-    /// By id; valid only for ids in `moved`.
+    /// By id. Valid only for ids in `moved`.
     masks: Vec<PairMask>,
-    /// Indices in the list by id; as above.
+    /// Indices in the list, by id. Valid only for ids in `moved`.
     places: Vec<u32>,
 }
 
 impl Movers {
-    /// Adds a mover, or replaces the one of the same id. Returns whether the id was absent.
+    /// Adds a mover, or replaces the mover with the same id. Returns whether the id was absent.
     pub fn insert(&mut self, mover: Mover) -> bool {
         let absent = self.moved.insert(mover.id);
         let i = mover.id as usize;
@@ -140,7 +141,7 @@ impl Movers {
         absent
     }
 
-    /// The movers in the order of insertion: blocks of it may be searched in parallel.
+    /// The movers in the order of insertion. Blocks of the list may be searched in parallel.
     #[inline]
     pub fn list(&self) -> &[Mover] {
         &self.list
@@ -173,10 +174,10 @@ impl Movers {
     }
 }
 
-/// The pairs that are not to be reported.
+/// The pairs that must not be reported.
 pub trait Known: Sync {
-    /// A cheap test whether a pair, lower id first, is not to be reported. Called for every two boxes that touch if one
-    /// moved.
+    /// A cheap test whether a pair, lower id first, must not be reported. Called for every pair of touching
+    /// boxes if at least one box moved.
     fn is_plain(&self, a: u32, b: u32) -> bool;
     /// Prefetches the memory that [`contains`](Self::contains) reads.
     fn prefetch(&self, a: u32, b: u32);
@@ -201,13 +202,13 @@ impl Known for PairSet {
     }
 }
 
-/// How pairs of each two kinds are searched: by walking both trees at once if most leaves moved, else by a query for each
-/// mover.
+/// How pairs of each two kinds are searched: by walking both trees at once if most leaves moved, otherwise by
+/// a query for each mover.
 #[derive(Debug, Default)]
 struct Plan {
     /// The kinds that are queried for movers of each kind.
     queried: [PairMask; 4],
-    /// Parts of walks with their two kinds.
+    /// Parts of walks, each with its two kinds.
     parts: Vec<([TreeKind; 2], Slots)>,
     /// Buffer for dividing walks.
     walk: Walk,
@@ -254,7 +255,8 @@ impl Plan {
     }
 }
 
-/// The pairs that a worker found, and its buffers. In cache lines of its own, since walks write it all the time.
+/// The pairs that a worker found, and its buffers. They have cache lines of their own, since walks write them
+/// all the time.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 struct Worker {
@@ -263,9 +265,9 @@ struct Worker {
 }
 
 impl Worker {
-    /// Adds the pairs `(lower id, higher id)` that one mover reports: colliders whose boxes it touches in the trees of its
-    /// `kinds`, except itself, pairs that the other mover reports, and [plain](Known::is_plain) ones. In the order of the
-    /// trees.
+    /// Adds the pairs `(lower id, higher id)` that one mover reports, in the order of the trees: colliders
+    /// whose boxes it touches in the trees of its `kinds`. Skips the mover itself, pairs that the other mover
+    /// reports, and [plain](Known::is_plain) pairs.
     #[inline]
     fn query(&mut self, mover: &Mover, kinds: PairMask, trees: &Trees, movers: &Movers, known: &impl Known) {
         for kind in TreeKind::ALL.into_iter().filter(|k| mover.mask.contains(*k) && kinds.contains(*k)) {
@@ -279,7 +281,8 @@ impl Worker {
         }
     }
 
-    /// Adds the pairs of one part of a walk, except those without a mover that may form them, and plain or known ones.
+    /// Adds the pairs of one part of a walk. Skips plain and known pairs, and pairs without a mover that may
+    /// form them.
     fn walk(
         &mut self,
         ([a, b], part): ([TreeKind; 2], Slots),
@@ -324,7 +327,7 @@ pub struct FoundPairs {
 }
 
 impl FoundPairs {
-    /// Finds the pairs of all movers, sorted, each once. Every id must be in one tree only, once.
+    /// Finds the pairs of all movers, sorted, each once. Every id must be in exactly one tree, once.
     pub fn find(&mut self, trees: &Trees, movers: &Movers, known: &impl Known, pool: &ThreadPool) {
         if self.workers.len() < pool.workers() {
             self.workers.resize_with(pool.workers(), Mutex::default);
@@ -341,7 +344,7 @@ impl FoundPairs {
             for mover in &list[block * BLOCK..list.len().min((block + 1) * BLOCK)] {
                 worker.query(mover, plan.queried[mover.kind as usize], trees, movers, known);
             }
-            // All are prefetched before any is read, so that loads overlap.
+            // All slots are prefetched before any is read, so the loads overlap.
             worker.found[start..].iter().for_each(|(a, b)| known.prefetch(*a, *b));
             drop_known(&mut worker.found, start, known);
         });

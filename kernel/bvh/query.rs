@@ -6,8 +6,8 @@ use crate::math::{DIM, F32x4, Lane, Vector, max, min};
 use crate::shape::Aabb;
 
 impl Tree {
-    /// Calls `found` with the user's id of every leaf whose box touches `aabb`, until it returns `false`. Returns `false` if
-    /// it was stopped. The order depends on the tree.
+    /// Calls `found` with the user's id of every leaf whose box touches `aabb`, until `found` returns
+    /// `false`. Returns `false` if it was stopped. The order depends on the tree.
     #[inline]
     pub fn query(&self, aabb: &Aabb, found: impl FnMut(u32) -> bool) -> bool {
         self.walk(|b| b.overlaps(aabb), found)
@@ -19,11 +19,13 @@ impl Tree {
         self.query(&Aabb::new(point, point), found)
     }
 
-    /// Visits the leaves whose boxes a ray hits, nearer branches first, with their ids and the present maximum distance.
+    /// Visits the leaves whose boxes a ray hits, nearer branches first, with their ids and the present
+    /// maximum distance.
     ///
-    /// `hit` returns the new maximum distance: that of the hit, the same (or more) to go on unchanged, negative to stop.
-    /// Distances are in lengths of `direction`, which need not be a unit vector; an infinite `max_distance` counts as
-    /// `f32::MAX`. With a direction of zero the ray is its origin. NaN in the input hits nothing.
+    /// `hit` returns the new maximum distance: the distance of the hit, the present one (or more) to go on
+    /// unchanged, or a negative one to stop. Distances are in lengths of `direction`, which need not be a
+    /// unit vector; an infinite `max_distance` counts as `f32::MAX`. With a direction of zero the ray is its
+    /// origin. NaN in the input hits nothing.
     #[inline]
     pub fn cast_ray(
         &self,
@@ -76,9 +78,9 @@ impl Tree {
         self.walk_ordered(limit, root, below, hit);
     }
 
-    /// Visits leaves by the distance of their boxes from a point, nearer branches first, with their ids and the present
-    /// maximum *squared* distance. `hit` returns the new one as in [`cast_ray`](Self::cast_ray), squared. Leaves whose squared
-    /// distance overflows are not found.
+    /// Visits leaves by the distance of their boxes from a point, nearer branches first, with their ids and
+    /// the present maximum *squared* distance. `hit` returns the new squared maximum as in
+    /// [`cast_ray`](Self::cast_ray). Leaves whose squared distance overflows are not found.
     pub fn query_nearest(&self, point: Vector, max_squared: f32, hit: impl FnMut(u32, f32) -> f32) {
         if point.is_finite() {
             let distance = |b: &Aabb| (b.min - point).max(point - b.max).max(Vector::ZERO).length_squared();
@@ -87,7 +89,7 @@ impl Tree {
         }
     }
 
-    /// Depth first through all boxes that pass the test.
+    /// Walks depth first through all boxes that pass the test.
     #[inline(always)]
     fn walk(&self, test: impl Fn(&Aabb) -> bool, mut found: impl FnMut(u32) -> bool) -> bool {
         if self.root == NONE || !test(&self.root_box) {
@@ -123,8 +125,9 @@ impl Tree {
         }
     }
 
-    /// Depth first, the nearer child first, through all boxes whose entry is at most the limit. `root` gives the entry of
-    /// the box around all, `below` those of a branch's children. The limit is finite, so that infinity is always a miss.
+    /// Walks depth first, the nearer child first, through all boxes whose entry distance is at most the
+    /// limit. `root` gives the entry distance of the box around all leaves, `below` the entry distances of a
+    /// branch's children. The limit is finite, so infinity is always a miss.
     #[inline(always)]
     fn walk_ordered(
         &self,
@@ -152,7 +155,7 @@ impl Tree {
             } else {
                 let branch = &self.branches[node as usize];
                 let [first, second] = below(branch, limit);
-                // Which child is nearer is a matter of chance: neither choice is a jump.
+                // The nearer child is unpredictable, so neither choice is a jump.
                 let far = usize::from(first <= second);
                 let (near_at, far_at) = (min(first, second), if second < first { first } else { second });
                 stack.push_if((branch.children[far], far_at), far_at <= limit);
@@ -174,19 +177,19 @@ impl Tree {
 
 /// A box that moves along a ray, prepared for slab tests.
 ///
-/// Per axis, the ray is between the box's planes from `(near − o) / d` to `(far − o) / d`, with near and
-/// far chosen by the sign of d (Williams et al., "An Efficient and Robust Ray–Box Intersection
-/// Algorithm", 2005); the swept box's half size moves the planes outward. Rounding is monotonic, so a box around a hit box is
-/// hit.
+/// Per axis, the ray is between the box's planes from `(near − o) / d` to `(far − o) / d`, with near and far
+/// chosen by the sign of d (Williams et al., "An Efficient and Robust Ray–Box Intersection Algorithm", 2005).
+/// The swept box's half size moves the planes outward. Rounding is monotonic, so every box around a hit box
+/// is hit.
 ///
-/// Both children of a branch are tested at once, in the lanes `[near, near, far, far]`. Distances to far planes are
-/// negated, so that all four are maxima.
+/// Both children of a branch are tested at once, in the lanes `[near, near, far, far]`. Distances to far
+/// planes are negated, so all four lanes are maxima.
 pub(super) struct Sweep {
-    /// The origin, shifted by the half size for the near and for the far planes.
+    /// The origin, shifted by the half size, for the near and for the far planes.
     origins: [F32x4; DIM],
-    /// 1 / d for the near planes, -(1 + 2 γ₃) / d for the far ones.
+    /// 1 / d for the near planes, -(1 + 2 γ₃) / d for the far planes.
     inverses: [F32x4; DIM],
-    /// A bit for each axis: whether the ray goes backward, so that the upper plane is the near one.
+    /// One bit per axis: whether the ray goes backward, so the upper plane is the near one.
     backward: usize,
 }
 
@@ -207,7 +210,8 @@ impl Sweep {
         }
     }
 
-    /// The distance at which the box is first touched, 0 if from the start; infinity if beyond the finite `limit`.
+    /// The distance at which the box is first touched; 0 if it is touched at the start, infinity if the
+    /// distance exceeds the finite `limit`.
     #[inline]
     pub fn entry(&self, aabb: &Aabb, limit: f32) -> f32 {
         let (low, high) = (aabb.min.to_array(), aabb.max.to_array());
@@ -221,8 +225,8 @@ impl Sweep {
         if enter <= -exit { enter } else { f32::INFINITY }
     }
 
-    /// The distance at which each of two boxes is first touched, 0 if from the start; infinity if beyond the finite
-    /// `limit`. `BACKWARD` is that of the sweep.
+    /// The distance at which each of two boxes is first touched; 0 if it is touched at the start, infinity if
+    /// the distance exceeds the finite `limit`. `BACKWARD` equals `backward` of the sweep.
     #[inline(always)]
     fn entries<const BACKWARD: usize>(&self, boxes: &[Aabb; 2], limit: f32) -> [f32; 2] {
         let [low, high] = [boxes.map(|b| b.min.to_array()), boxes.map(|b| b.max.to_array())];
@@ -230,7 +234,7 @@ impl Sweep {
         for i in 0..DIM {
             let (near, far) = if BACKWARD >> i & 1 == 1 { (&high, &low) } else { (&low, &high) };
             let planes = F32x4::new([near[0][i], near[1][i], far[0][i], far[1][i]]);
-            // For a ray along a plane 0 · ∞ is NaN, which the maximum drops.
+            // For a ray in a plane of the box, 0 · ∞ is NaN, which the maximum drops.
             most = ((planes - self.origins[i]) * self.inverses[i]).max(most);
         }
         [0, 1].map(|i| if most.get(i) <= -most.get(2 + i) { most.get(i) } else { f32::INFINITY })

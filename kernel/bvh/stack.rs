@@ -1,9 +1,10 @@
 //! The stack of a tree walk.
 
-/// The entries that fit without allocating. A walk needs at most one entry per level, and nearly all trees are lower.
+/// Number of entries that fit without allocating. A walk needs at most one entry per level, and nearly all
+/// trees are lower.
 const FIXED: usize = 64;
 
-/// A stack with its first entries inline; deeper ones spill to the heap.
+/// A stack with its first entries inline. Deeper entries spill to the heap.
 pub(super) struct Stack<T> {
     fixed: [T; FIXED],
     len: usize,
@@ -26,7 +27,7 @@ impl<T: Copy + Default> Stack<T> {
         }
     }
 
-    /// Pushes a value if `wanted`, without a jump while there is room.
+    /// Pushes a value if `wanted`. There is no jump while there is room.
     #[inline(always)]
     pub fn push_if(&mut self, value: T, wanted: bool) {
         if self.len < FIXED {

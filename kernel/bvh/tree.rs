@@ -3,35 +3,42 @@
 use crate::math::DIM;
 use crate::shape::Aabb;
 
-/// A dynamic tree of boxes with a `u32` of the user's each.
+/// A dynamic tree of boxes. Each leaf stores a `u32` of the user.
 ///
-/// *Layout.* A `Branch` holds the boxes of *both* children in one cache line, and a leaf's box is in its parent. So a walk
-/// reads one line per branch that was hit and none for what was missed. A leaf takes 72 bytes. (Bounds transposed for
-/// four-lane tests made rays some 15 % faster and box queries, which wait for mispredicted jumps, no faster.) Leaves keep
-/// their number (the [`ProxyId`]) when branches move, so that a full rebuild can sort the branches in the order of a walk.
+/// *Layout.* A `Branch` holds the boxes of *both* children in one cache line, and a leaf's box is in its
+/// parent. So a walk reads one line per branch that was hit, and none for nodes that were missed. A leaf
+/// takes 72 bytes. (Transposing the bounds for four-lane tests made rays some 15 % faster, and box queries,
+/// which wait for mispredicted jumps, no faster.) Leaves keep their number (the [`ProxyId`]) when branches
+/// move, so a full rebuild can sort the branches in the order of a walk.
 ///
 /// *Which change to use when:*
 ///
-/// | function | changes | cost | use it |
-/// |---|---|---|---|
-/// | [`set`](Self::set) | the leaf's place in the tree | as removing and inserting | for a leaf that moved far |
-/// | [`enlarge`](Self::enlarge) | the leaf's box, and the boxes above grow | the way to the root, at most | for a few small motions; queries stay right |
-/// | [`place`](Self::place) | the leaf's box alone | least | for many small motions, followed by `refit` or `fit` before any query |
-/// | [`refit`](Self::refit) | the boxes above changed leaves, which may shrink | the changed part of the tree | after `place` or `enlarge`, on one thread |
-/// | [`fit`](Self::fit) | all leaves' boxes, by a function of their ids, and all above | the whole tree, shared by workers | where a third of the leaves moved |
-/// | [`rebuild_partial`](Self::rebuild_partial) | the branches above changed leaves | as the changed part | when [`cost`](Self::cost) has grown |
-/// | [`rebuild_full`](Self::rebuild_full) | all branches | the whole tree, sorted | when it has grown much |
+/// - [`set`](Self::set) moves a leaf to another place in the tree. Its cost is removing and inserting the
+///   leaf. Use it for a leaf that moved far.
+/// - [`enlarge`](Self::enlarge) changes the box of a leaf and grows the boxes above. Its cost is at most the
+///   path to the root. Use it for a few small motions; queries stay correct.
+/// - [`place`](Self::place) changes only the box of a leaf, at the least cost. Use it for many small motions,
+///   followed by `refit` or `fit` before any query.
+/// - [`refit`](Self::refit) recomputes the boxes above changed leaves, which may shrink. Its cost is the
+///   changed part of the tree. Use it after `place` or `enlarge`, on one thread.
+/// - [`fit`](Self::fit) sets all leaves' boxes by a function of their ids, and all boxes above. Its cost is
+///   the whole tree, shared by workers. Use it if a third of the leaves moved.
+/// - [`rebuild_partial`](Self::rebuild_partial) rebuilds the branches above changed leaves. Its cost is the
+///   changed part of the tree. Use it when [`cost`](Self::cost) has grown.
+/// - [`rebuild_full`](Self::rebuild_full) rebuilds all branches. Its cost is sorting the whole tree. Use it
+///   when the tree's cost has grown much.
 ///
-/// *Invalid input.* A box that is not `min ≤ max` in every component (inverted, NaN) is stored as [`Aabb::EMPTY`]: the leaf
-/// stays, and no query finds it. Infinite boxes are found by all that they touch. A stale proxy is a bug of the caller: it
-/// panics in debug builds and is ignored in release builds.
+/// *Invalid input.* A box that is not `min ≤ max` in every component (inverted, NaN) is stored as
+/// [`Aabb::EMPTY`]: the leaf stays, and no query finds it. Infinite boxes are found by every query that
+/// touches them. A stale proxy is a bug of the caller: it panics in debug builds and is ignored in release
+/// builds.
 ///
 /// *Determinism.* The shape of the tree depends only on the calls made, in order.
 #[derive(Clone, Debug)]
 pub struct Tree {
     pub(super) branches: Vec<Branch>,
     pub(super) leaves: Vec<Leaf>,
-    /// The node at the top, [`NONE`] if the tree is empty, and its box.
+    /// The top node, [`NONE`] if the tree is empty, and its box.
     pub(super) root: u32,
     pub(super) root_box: Aabb,
     pub(super) free_branch: u32,
@@ -53,11 +60,11 @@ pub(super) struct Branch {
     pub boxes: [Aabb; 2],
     /// Two nodes: branch numbers, or leaf numbers with [`LEAF`] set.
     pub children: [u32; 2],
-    /// The slot of this branch; the next free branch if this one is free.
+    /// The slot of this branch, or the next free branch if this one is free.
     pub parent: u32,
     /// 1 above leaves; 0 if the branch is free.
     pub height: u16,
-    /// Bit `i`: below child `i` a leaf was inserted or enlarged since the last rebuild.
+    /// Bit `i` is set if a leaf below child `i` was inserted or enlarged since the last rebuild.
     pub enlarged: u16,
 }
 
@@ -76,10 +83,10 @@ pub(super) const LEAF: u32 = 1 << 31;
 pub(super) const ROOT: u32 = u32::MAX;
 /// No node; ends the free lists.
 pub(super) const NONE: u32 = u32::MAX;
-/// Ends the free list of leaves. Differs from [`ROOT`] with [`LEAF`] set, too.
+/// Ends the free list of leaves. Also differs from [`ROOT`] when [`LEAF`] is set.
 pub(super) const NO_LEAF: u32 = LEAF - 2;
-/// Children whose heights differ by more are rotated even if that costs area. Smaller values make worse trees; the bound
-/// only limits the depth of walks.
+/// Children whose heights differ by more are rotated even if that costs area. Smaller values make worse
+/// trees; the bound only limits the depth of walks.
 const MAX_IMBALANCE: u16 = 12;
 /// A tree that grew higher is rebuilt, since walks have a stack of fixed size.
 pub(super) const MAX_HEIGHT: u16 = 72;
@@ -108,7 +115,7 @@ impl Default for Tree {
     }
 }
 
-/// The box as it is stored; see [`Tree`] on invalid input.
+/// The box as the tree stores it; see [`Tree`] on invalid input.
 #[inline(always)]
 pub(super) fn admitted(aabb: Aabb) -> Aabb {
     let (low, high) = (aabb.min.to_array(), aabb.max.to_array());
@@ -116,7 +123,7 @@ pub(super) fn admitted(aabb: Aabb) -> Aabb {
 }
 
 impl Tree {
-    /// The bytes kept of each leaf.
+    /// The bytes that the tree keeps per leaf.
     pub const BYTES_PER_LEAF: usize = size_of::<Branch>() + size_of::<Leaf>();
 
     /// An empty tree without storage.
@@ -146,7 +153,7 @@ impl Tree {
         self.len == 0
     }
 
-    /// The most branches above a leaf: 0 for a tree of one leaf or none.
+    /// The maximum number of branches above a leaf: 0 for a tree with at most one leaf.
     pub fn height(&self) -> usize {
         usize::from(self.node_height(self.root))
     }
@@ -197,13 +204,13 @@ impl Tree {
             self.free_leaf = proxy.0;
             self.len -= 1;
             if self.len == 0 {
-                // The next leaves are numbered as in a new tree.
+                // The next leaves are then numbered as in a new tree.
                 self.clear();
             }
         }
     }
 
-    /// Moves a leaf: as removing and inserting it, but the proxy stays the same.
+    /// Moves a leaf as by removing and inserting it, but keeps the proxy.
     pub fn set(&mut self, proxy: ProxyId, aabb: Aabb) {
         if self.is_checked(proxy) {
             self.detach(proxy.0);
@@ -211,7 +218,7 @@ impl Tree {
         }
     }
 
-    /// Changes the box of a leaf in place; the boxes above it only grow. For small motions, followed by
+    /// Changes the box of a leaf in place; the boxes above it only grow. It is for small motions, followed by
     /// [`rebuild_partial`](Self::rebuild_partial).
     pub fn enlarge(&mut self, proxy: ProxyId, aabb: Aabb) {
         if !self.is_checked(proxy) {
@@ -230,7 +237,7 @@ impl Tree {
         while slot != ROOT {
             let branch = &mut self.branches[slot as usize >> 1];
             let (side, bit) = (slot as usize & 1, 1 << (slot & 1));
-            // Slots above an enlarged slot are enlarged, and boxes above contain those below.
+            // Slots above an enlarged slot are enlarged too, and boxes contain all boxes below them.
             if branch.enlarged & bit != 0 && branch.boxes[side].contains(&aabb) {
                 return;
             }
@@ -241,8 +248,8 @@ impl Tree {
         self.root_box = self.root_box.union(&aabb);
     }
 
-    /// Changes the box of a leaf in place, and not the boxes above it: until [`refit`](Self::refit) queries may miss the leaf.
-    /// Cheaper than [`enlarge`](Self::enlarge) where many leaves move.
+    /// Changes the box of a leaf in place, but not the boxes above it: until [`refit`](Self::refit), queries
+    /// may miss the leaf. Cheaper than [`enlarge`](Self::enlarge) if many leaves move.
     pub fn place(&mut self, proxy: ProxyId, aabb: Aabb) {
         if !self.is_checked(proxy) {
             return;
@@ -264,7 +271,8 @@ impl Tree {
         }
     }
 
-    /// Recomputes the boxes above leaves that were inserted or changed since the last rebuild. They may shrink.
+    /// Recomputes the boxes above leaves that were inserted or changed since the last rebuild. These boxes
+    /// may shrink.
     pub fn refit(&mut self) {
         if self.root & LEAF != 0 || self.branches[self.root as usize].enlarged == 0 {
             return;
@@ -291,13 +299,13 @@ impl Tree {
         }
     }
 
-    /// The boxes of all nodes but the root.
+    /// The boxes of all nodes except the root.
     pub fn boxes(&self) -> impl Iterator<Item = Aabb> {
         self.branches.iter().filter(|branch| branch.height > 0).flat_map(|branch| branch.boxes)
     }
 
-    /// A measure of the cost of queries: the surface of all boxes in m², in 2D their perimeter in m. Infinite boxes are
-    /// skipped. Takes O(n).
+    /// A measure of the cost of queries: the summed surface area of all boxes in m², in 2D their perimeter in
+    /// m. Infinite boxes are skipped. Takes O(n).
     pub fn cost(&self) -> f32 {
         self.boxes().map(|aabb| aabb.cost()).filter(|cost| cost.is_finite()).sum()
     }
@@ -325,7 +333,7 @@ impl Tree {
         Entry { aabb: b.boxes[side], node: b.children[side], enlarged: b.enlarged >> side & 1 != 0 }
     }
 
-    /// Writes a slot, and the slot's number into its content.
+    /// Writes a slot, and stores the slot's number in its node.
     #[inline(always)]
     pub(super) fn put(&mut self, slot: u32, entry: Entry) {
         if slot == ROOT {
@@ -375,7 +383,7 @@ impl Tree {
         }
         let slot = self.best_sibling(&aabb);
         let sibling = if slot == ROOT {
-            // The root has no flag: a branch there is enlarged if anything below it is.
+            // The root has no flag: a branch there is enlarged if any node below it is.
             let enlarged = self.root & LEAF != 0 || self.branches[self.root as usize].enlarged != 0;
             Entry { aabb: self.root_box, node: self.root, enlarged }
         } else {
@@ -412,10 +420,10 @@ impl Tree {
 
     /// The slot whose content becomes the sibling of a new leaf.
     ///
-    /// A sibling costs the area of the common box plus the growth of all boxes above it (Catto 2019). The search follows one
-    /// path, towards the child that grows less. It ends where the new leaf's own area plus the growth so far is no better
-    /// than the best sibling found. Of equal siblings the deepest wins, by way of the lower child, so that a tree of equal
-    /// boxes stays shallow.
+    /// A sibling costs the area of the common box plus the growth of all boxes above it (Catto 2019). The
+    /// search follows one path, towards the child that grows less. It ends when the new leaf's own area plus
+    /// the growth so far is no better than the best sibling found. Of equal siblings the deepest wins, and a
+    /// tie between children goes to the child of less height, so a tree of equal boxes stays shallow.
     fn best_sibling(&self, aabb: &Aabb) -> u32 {
         let own = aabb.cost();
         let mut node = self.root;
@@ -440,8 +448,8 @@ impl Tree {
         best
     }
 
-    /// The side for a box that makes both children grow alike (flat boxes have no surface in 3D): the child with the nearer
-    /// centre, of those the lower one.
+    /// The side for a box that makes both children grow equally (flat boxes have no surface in 3D): the child
+    /// with the nearer centre, or at equal distance the child of less height.
     #[cold]
     fn tied_side(&self, branch: &Branch, aabb: &Aabb) -> usize {
         let away = branch.boxes.map(|b| (b.min - aabb.min + (b.max - aabb.max)).length_squared());
@@ -449,8 +457,8 @@ impl Tree {
         usize::from(if away[0] == away[1] { heights[1] < heights[0] } else { away[1] < away[0] })
     }
 
-    /// Updates heights and boxes from a branch to the root, and rotates. After an insertion all branches above are enlarged;
-    /// after a removal the walk ends where nothing changes.
+    /// Updates heights and boxes from a branch up to the root, and rotates. After an insertion all branches
+    /// above are enlarged; after a removal the walk ends at the first branch that does not change.
     fn update_upward(&mut self, mut branch: u32, inserted: bool) {
         loop {
             self.rotate(branch, inserted);
@@ -474,15 +482,15 @@ impl Tree {
         }
     }
 
-    /// The height a branch should have, and the box around its children.
+    /// The height that a branch should have, and the box around its children.
     pub(super) fn measure(&self, branch: u32) -> (u16, Aabb) {
         let b = &self.branches[branch as usize];
         let height = b.children.map(|c| self.node_height(c));
         (1 + height[0].max(height[1]), b.boxes[0].union(&b.boxes[1]))
     }
 
-    /// Exchanges a child with a grandchild on the other side, if that shrinks the other child's box most, or if the heights of
-    /// the children differ too much.
+    /// Exchanges a child with a grandchild on the other side: the higher grandchild if the heights of the
+    /// children differ too much, otherwise the grandchild whose exchange shrinks the other child's box most.
     fn rotate(&mut self, branch: u32, for_area: bool) {
         let b = self.branches[branch as usize];
         let heights = b.children.map(|c| self.node_height(c));

@@ -1,15 +1,15 @@
-//! Checks of a whole tree, O(n): for tests and the feature `validate`.
+//! O(n) checks of a whole tree, for tests and the feature `validate`.
 
 use super::tree::{LEAF, NO_LEAF, NONE, ROOT, Tree};
 use crate::shape::Aabb;
 
 impl Tree {
-    /// Checks that links match, boxes contain those below them, heights and flags are right, and every record is either in the
-    /// tree or in a free list, once.
+    /// Checks that links match, boxes contain the boxes below them, heights and flags are right, and every
+    /// record is exactly once in the tree or in a free list.
     ///
     /// # Panics
     ///
-    /// With the invariant that does not hold.
+    /// Names the broken invariant.
     pub fn validate(&self) {
         let mut branches = vec![false; self.branches.len()];
         let mut leaves = vec![false; self.leaves.len()];

@@ -1,7 +1,7 @@
-//! When two moving shapes meet, by conservative [advancement](crate::distance::advance()).
+//! The time of impact of two moving shapes, by conservative [advancement](crate::distance::advance()).
 //!
-//! A manifold's normal and least separation are a slab between the shapes. Time advances by what the slab takes to be
-//! crossed at least, until the shapes are as near as they may come.
+//! A manifold's normal and least separation describe a slab between the shapes. Time advances by the least
+//! time that the shapes need to cross the slab, until they are at the target distance.
 
 use super::path::Path;
 use crate::contact::ManifoldSource;
@@ -16,11 +16,11 @@ use crate::tuning::sweeps::{MET, ROUNDS, VIEW};
 pub(super) struct Side<'a> {
     pub(super) collider: u32,
     pub(super) shape: &'a Shape,
-    /// The shape's frame in the body's.
+    /// The frame of the shape in the body's frame.
     pub(super) local: Pose,
-    /// The body's motion; a collider without a body has its own pose as that of a body.
+    /// The motion of the body. A collider without a body uses its own pose as the body's pose.
     pub(super) path: Path,
-    /// How far normals of the shape pass from the centre of mass at most.
+    /// Maximum distance between a normal of the surface and the centre of mass.
     pub(super) arm: f32,
 }
 
@@ -29,38 +29,38 @@ impl Side<'_> {
         self.path.frame(fraction).then(&self.local)
     }
 
-    /// How far turning moves the surface along its normals at most.
+    /// Maximum distance that rotation moves the surface along its normals.
     fn turning(&self) -> f32 {
         self.arm * self.path.spin.length()
     }
 }
 
-/// What of a moving collider is cast.
+/// The geometry of a moving collider that is cast.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Caster {
     /// The shape.
     Whole,
-    /// A ball within it: its place in the shape's frame, and its radius.
+    /// A ball within the shape: its centre in the shape's frame, and its radius.
     Ball(Vector, f32),
 }
 
-/// How a cast ends.
+/// The result of a cast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cast {
     /// The shapes do not meet.
     Miss,
-    /// They are too near when the step begins.
+    /// The shapes are already too close at the start of the step.
     Touching,
     /// They meet after this fraction of the step.
     Hit(f32),
 }
 
-/// The rest of a motion.
+/// The remaining motion.
 #[derive(Clone, Copy)]
 struct Rest {
-    /// The way of the moving shape against the other.
+    /// The displacement of the moving shape relative to the other shape.
     way: Vector,
-    /// How far turning may close as well, with some room, in metres.
+    /// Maximum distance that rotation may close in addition, plus a margin, in metres.
     turning: f32,
 }
 
@@ -79,16 +79,17 @@ pub(super) struct Pair<'a, S> {
     pub(super) other: Side<'a>,
     /// The sum of the collision margins.
     pub(super) margin: f32,
-    /// As near as the shapes may come, margins subtracted.
+    /// The distance at which the shapes have met, after subtracting the margins.
     pub(super) target: f32,
-    /// How far the moving shape reaches.
+    /// The distance from the body's centre of mass to the farthest point of the moving shape.
     pub(super) extent: f32,
 }
 
 impl<S: ManifoldSource> Pair<'_, S> {
     /// Casts the moving collider, or a ball within it.
     pub(super) fn cast(&self, caster: Caster, buffers: &mut CastBuffers<S::Workspace>) -> Cast {
-        // Balls that stopped are not free to go on in the next step.
+        // A ball touches only at a smaller distance than it stops at, so a ball that stopped is not free to
+        // go on in the next step.
         let (way, turning, touching) = match caster {
             Caster::Whole => (self.moving.path.way, self.moving.turning(), self.target),
             Caster::Ball(center, _) => (self.chord(center), 0.0, MET * self.target),
@@ -120,26 +121,27 @@ impl<S: ManifoldSource> Pair<'_, S> {
                 if gap <= self.target {
                     return Some(Approach::Met(Cast::Hit(fraction)));
                 }
-                // So that the shapes stop apart.
+                // Half of the target distance is kept, so the shapes stop apart.
                 let left = gap - 0.5 * self.target;
                 apart = min(apart, left / rate);
             }
             let later = fraction + max(apart, 0.5 * self.target / fastest);
-            // What is still apart after the last look counts as a hit: it stops early rather than passes.
+            // Shapes that are still apart after the last round count as a hit: the body stops early rather
+            // than passes through.
             let is_hit = round == ROUNDS && later < 1.0;
             Some(if is_hit { Approach::Met(Cast::Hit(later)) } else { Approach::ApartUntil(later) })
         });
         cast.unwrap_or(Cast::Miss)
     }
 
-    /// The way of a point of the moving shape over the step.
+    /// The displacement of a point of the moving shape over the step.
     fn chord(&self, point: Vector) -> Vector {
         let [start, end] = [0.0, 1.0].map(|fraction| self.moving.pose(fraction).transform(point));
         (end - start).to_local()
     }
 
-    /// Finds the manifolds after a fraction of the step, as far as the rest of the motion may close. Returns a lower bound of
-    /// the distance to all else that may be met.
+    /// Finds the manifolds after a fraction of the step, up to the distance that the remaining motion may
+    /// close. Returns a lower bound of the distance to all geometry without a manifold.
     fn look(
         &self,
         caster: Caster,
@@ -186,19 +188,20 @@ impl<S: ManifoldSource> Pair<'_, S> {
         }
         let mut local = LocalManifold::default();
         manifold::collide(a.shape, shape, &pose, reach, &mut FeatureCache::NONE.clone(), &mut local);
-        // Beyond the distance there is nothing that may be met.
+        // The search covers the whole remaining motion, so no other geometry can be met.
         found.extend((local.count > 0).then_some(local));
         f32::INFINITY
     }
 
-    /// The gap between the shapes when the step begins, negative where they overlap; infinite if it is wider than a distance.
+    /// The gap between the shapes at the start of the step; negative if they overlap, infinite if it exceeds
+    /// `distance`.
     pub(super) fn gap_at_start(&self, distance: f32, buffers: &mut CastBuffers<S::Workspace>) -> f32 {
         let rest = Rest { way: Vector::ZERO, turning: distance };
         self.look(Caster::Whole, &self.other.pose(0.0), 0.0, rest, buffers);
         buffers.found.iter().map(|local| local.lower_bound() - self.margin).fold(f32::INFINITY, min)
     }
 
-    /// How far the shapes overlap when the step ends; 0 if they do not.
+    /// The depth of overlap at the end of the step; 0 if the shapes do not overlap.
     pub(super) fn depth_at_end(&self, buffers: &mut CastBuffers<S::Workspace>) -> f32 {
         let rest = Rest { way: Vector::ZERO, turning: 0.0 };
         self.look(Caster::Whole, &self.other.pose(1.0), 1.0, rest, buffers);

@@ -1,4 +1,4 @@
-//! The motion of a body over a step: straight on, and turning evenly.
+//! The motion of a body over a step: a straight line at constant speed, and a rotation at a constant rate.
 
 use crate::math::{Angular, Rot, Vector, WorldPose};
 use crate::table::BodyPose;
@@ -6,19 +6,19 @@ use crate::table::BodyPose;
 /// The motion of a body over a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Path {
-    /// The body where the step begins.
+    /// The pose of the body at the start of the step.
     pub start: BodyPose,
     /// The centre of mass in the body's frame.
     pub local_center: Vector,
-    /// The way of the centre of mass over the step, in metres.
+    /// The displacement of the centre of mass over the step, in metres.
     pub way: Vector,
-    /// The turn over the step, as an axis times an angle in radians.
+    /// The rotation over the step, as an axis times an angle in radians.
     pub spin: Angular,
 }
 
 impl Path {
-    /// The path of a body from `start` by a shift and a turn. Whole turns do not show in `turn`: `spin`, about what the body
-    /// turned by according to its angular velocity, tells how many there are.
+    /// The path of a body from `start` by a displacement and a rotation. `turn` does not contain whole turns:
+    /// `spin`, the approximate rotation by the angular velocity, gives their number.
     pub fn new(start: BodyPose, local_center: Vector, way: Vector, turn: Rot, spin: Angular) -> Self {
         Self { start, local_center, way, spin: turn.angle_near(spin) }
     }
@@ -28,7 +28,7 @@ impl Path {
         Self { start, local_center, way: Vector::ZERO, spin: Angular::ZERO }
     }
 
-    /// The path, without the turn unless it counts.
+    /// The path, without its rotation unless `turns`.
     pub(super) fn turning_if(mut self, turns: bool) -> Self {
         if !turns {
             self.spin = Angular::ZERO;
@@ -45,7 +45,7 @@ impl Path {
         pose.frame(self.local_center)
     }
 
-    /// How far the body moved and turned after a fraction of the step.
+    /// The displacement and rotation of the body after a fraction of the step.
     pub fn delta(&self, fraction: f32) -> (Vector, Rot) {
         (self.way * fraction, Rot::IDENTITY.turned_by(self.spin * fraction))
     }

@@ -1,4 +1,4 @@
-//! Where one body stops in the step.
+//! The fraction of the step at which one body stops.
 
 use super::cast::{Cast, CastBuffers, Caster, Pair, Side};
 use super::path::Path;
@@ -10,24 +10,25 @@ use crate::shape::Aabb;
 use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach};
 use crate::tuning::sweeps::{CORE_SHARE, MET};
 
-/// The radii of the balls that are cast where shapes touch already, as shares of that within them. The first that is free when
-/// the step begins counts.
+/// The radii of the balls that are cast if the shapes touch already, as shares of the largest ball within the
+/// shape. The first ball that does not touch at the start of the step decides.
 const BALLS: [f32; 3] = [CORE_SHARE, MET, 0.0];
 
-/// The trees of what does not move.
+/// The trees of the colliders that do not move.
 const FIXED: [TreeKind; 2] = [TreeKind::Static, TreeKind::Standalone];
 
-/// What sweeps read; constant while they run.
+/// The input of sweeps, constant while they run.
 pub struct SweepInput<'a, S> {
-    /// The bodies as the step began.
+    /// The bodies at the start of the step.
     pub bodies: &'a BodyTable,
-    /// The colliders as the step began.
+    /// The colliders at the start of the step.
     pub colliders: &'a ColliderTable,
     /// The trees of the colliders.
     pub trees: &'a Trees,
-    /// The contacts of all pairs with overlapping fat boxes. Such a pair without a contact was refused, and is not swept.
+    /// The contacts of all pairs with overlapping fat boxes. A pair with overlapping fat boxes but no contact
+    /// was refused, and is not swept.
     pub contacts: &'a ContactTable,
-    /// For pairs with a foreign shape.
+    /// The source of manifolds for pairs with a foreign shape.
     pub source: &'a S,
     /// Shapes this far apart count as touching, in metres.
     pub tolerance: f32,
@@ -35,33 +36,35 @@ pub struct SweepInput<'a, S> {
     pub dt: f32,
 }
 
-/// How a body is swept against what moves.
+/// How a body is swept against moving bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swept {
-    /// Whether turning counts; else both bodies keep their rotation of the step's start.
+    /// Whether rotation counts. If not, both bodies keep their rotation of the start of the step.
     pub turns: bool,
-    /// Whether it is swept against dynamic bodies, not against kinematic ones alone.
+    /// Whether the body is swept against dynamic bodies as well, not only against kinematic bodies.
     pub include_dynamic: bool,
-    /// Two bodies that move slower than this against each other are not swept if they turn slower as well, in m/s.
+    /// Two bodies are not swept against each other if their relative speed is below this, in m/s, and their
+    /// relative angular speed is below `angular_threshold`.
     pub linear_threshold: f32,
-    /// The same for turning, in rad/s.
+    /// Threshold of the relative angular speed, in rad/s.
     pub angular_threshold: f32,
 }
 
 /// A body that is swept.
 struct Sweep<'a> {
     path: &'a Path,
-    /// Whether its surface moves far enough to get past something.
+    /// Whether its surface moves far enough to pass through something.
     is_fast: bool,
-    /// Whether it is put back from an overlap of the tolerance on, not only from [`CORE_SHARE`] of the ball within it on.
+    /// Whether it is put back from any overlap above the tolerance. If not, only from overlaps above
+    /// [`CORE_SHARE`] of the ball within it.
     is_strict: bool,
 }
 
-/// A collider where the step ends.
+/// A collider at the end of the step.
 struct End {
     pose: WorldPose,
     aabb: Aabb,
-    /// Around all places on its way there.
+    /// The box around all poses of the collider on its path.
     swept: Aabb,
 }
 
@@ -70,7 +73,7 @@ struct End {
 pub struct SweepBuffers<W = ()> {
     cast: CastBuffers<W>,
     candidates: Vec<u32>,
-    /// Bodies that stop, and after what fractions of the step.
+    /// The bodies that stop, each with its fraction of the step.
     pub(crate) stops: Vec<(u32, f32)>,
 }
 
@@ -81,21 +84,21 @@ impl<W: Default> Default for SweepBuffers<W> {
 }
 
 impl<S: ManifoldSource> SweepInput<'_, S> {
-    /// Whether a body that moves by `way` metres and turns by `angle` radians may get past something, or press a corner into
-    /// something where contacts of the step's start have no point.
+    /// Whether a body that moves by `way` metres and turns by `angle` radians may pass through something, or
+    /// press a corner into something where the contacts of the start of the step have no point.
     #[inline(always)]
     pub fn is_far(&self, body: u32, way: f32, angle: f32) -> bool {
         let turning = self.colliders.size_of(body).arm * angle;
         turning > self.tolerance || self.is_fast(body, way + turning)
     }
 
-    /// Whether a body whose surface moves by `way` metres may get past something.
+    /// Whether a body whose surface moves by `way` metres may pass through something.
     #[inline(always)]
     fn is_fast(&self, body: u32, way: f32) -> bool {
         way > max(CORE_SHARE * self.colliders.size_of(body).core, MET * self.tolerance)
     }
 
-    /// How a body is swept along a path against what does not move.
+    /// The sweep of a body along a path against colliders that do not move.
     fn sweep<'a>(&self, body: u32, path: &'a Path) -> Sweep<'a> {
         let turning = self.colliders.size_of(body).arm * path.spin.length();
         Sweep {
@@ -105,8 +108,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         }
     }
 
-    /// Whether a body has no joints and touches only what does not move. What moves with others is not put back for a
-    /// corner: with it would be all that it is joined to.
+    /// Whether a body has no joints and touches only colliders that do not move. A body that moves with
+    /// others is not put back for a corner, since all bodies connected to it would be put back as well.
     fn is_alone(&self, body: u32) -> bool {
         let is_free = |kind| self.bodies.constraints(kind).of_body(body).next().is_none();
         is_free(ConstraintKind::Joint)
@@ -130,26 +133,27 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         })
     }
 
-    /// Whether there is anything that does not move, and that a body may meet on a way of the step however it turns. Most fast
-    /// bodies are far from all that, so the few boxes of the trees are asked before the many contacts of a heap.
+    /// Whether a collider that does not move lies within reach of a body that moves by `way`, however the
+    /// body turns. Most fast bodies are far from such colliders, so the few boxes of the trees are tested
+    /// before the many contacts of a heap.
     pub fn may_meet(&self, body: u32, way: Vector) -> bool {
         let (mut reach, mut is_known) = (0.0, true);
         for id in self.colliders.of_body(body, self.bodies) {
             let Reach { extent, margin, .. } = self.colliders.reaches[id as usize];
             reach = max(reach, extent + margin);
-            // Casts stop this far before shapes touch.
+            // Casts stop at this distance before the shapes touch.
             let around = self.ball(body, extent + margin).swept(way).grown(MET * self.tolerance);
             is_known &= self.colliders.fat[id as usize].contains(&around);
         }
         let around = self.ball(body, reach).swept(way).grown(self.tolerance);
         let is_near = FIXED.iter().any(|kind| !self.trees[*kind].query(&around, |_| false));
-        // Within its fat boxes a body meets only what has contacts with it.
+        // Within its fat boxes a body can only meet colliders that it has contacts with.
         is_near
             && (!is_known
                 || self.contacts_of(body).any(|(contact, side)| self.is_fixed(contact.bodies[1 - side])))
     }
 
-    /// The tree that colliders of a body are in.
+    /// The tree that contains the colliders of a body.
     fn kind_of(&self, body: u32) -> TreeKind {
         if body == NONE {
             return TreeKind::Standalone;
@@ -165,17 +169,18 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         FIXED.contains(&self.kind_of(body))
     }
 
-    /// The box of a ball about the centre of mass of a body where the step begins.
+    /// The box of a ball about the centre of mass of a body at the start of the step.
     fn ball(&self, body: u32, radius: f32) -> Aabb {
         Aabb::new(Vector::ZERO, Vector::ZERO).at(self.bodies.poses[body as usize].center).grown(radius)
     }
 
-    /// The fraction of the step after which a body stops at what does not move; 1 if it does not.
+    /// The fraction of the step at which a body stops at a collider that does not move; 1 if it does not
+    /// stop.
     pub fn stop(&self, body: u32, path: &Path, buffers: &mut SweepBuffers<S::Workspace>) -> f32 {
         let sweep = self.sweep(body, path);
         let mut first = 1.0;
         if sweep.is_fast || sweep.is_strict {
-            // Colliders without a body stop only what would get past them.
+            // Colliders without a body stop only bodies that would pass through them.
             let kinds = if sweep.is_fast { &FIXED[..] } else { &[TreeKind::Static] };
             self.each_candidate(body, &sweep, kinds, buffers, |[collider, other], buffers| {
                 let impact = self.impact(collider, &sweep, self.side(other, None), &mut buffers.cast);
@@ -185,8 +190,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         first
     }
 
-    /// Notes after what fractions of the step a body, and the moving bodies that it meets, stop. `path_of` gives the path of
-    /// a body that may move, if it has one in this step.
+    /// Stores the fractions of the step at which a body, and the moving bodies that it meets, stop. `path_of`
+    /// gives the path of a body that may move; `None` if it has no path in this step.
     pub(crate) fn stop_swept(
         &self,
         body: u32,
@@ -217,7 +222,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         });
     }
 
-    /// Calls `met` with each collider of a body and each that it may meet on its path, of some kinds.
+    /// Calls `met` with each collider of a body and each collider of the given kinds that it may meet on its
+    /// path.
     fn each_candidate(
         &self,
         body: u32,
@@ -235,7 +241,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             candidates.clear();
             let end = self.end(collider, sweep.path);
             if self.colliders.fat[collider as usize].contains(&end.swept) {
-                // It can only meet what it has contacts with.
+                // The collider can only meet colliders that it has contacts with.
                 self.find_in_contacts(collider, sweep, kinds, &end, &mut candidates);
             } else {
                 self.find_in_trees(collider, kinds, &end.swept, &mut candidates);
@@ -245,7 +251,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         buffers.candidates = candidates;
     }
 
-    /// Adds the colliders of some kinds that a collider has contacts with, and may meet on its way to `end`.
+    /// Adds the colliders of the given kinds that a collider has contacts with, and may meet on its path to
+    /// `end`.
     fn find_in_contacts(
         &self,
         collider: u32,
@@ -261,7 +268,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             if !is_near || !kinds.contains(&self.kind_of(body)) || contact.is_let_through() {
                 continue;
             }
-            // The end tells only where the other side does not move.
+            // The poses at the end decide only if the other side does not move.
             if self.is_fixed(body) && self.ends_apart(contact, moving, sweep, end, allowed) {
                 continue;
             }
@@ -269,7 +276,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         }
     }
 
-    /// Adds the colliders of some kinds in a box that a collider may meet.
+    /// Adds the colliders of the given kinds in a box that a collider may meet.
     fn find_in_trees(&self, collider: u32, kinds: &[TreeKind], around: &Aabb, found: &mut Vec<u32>) {
         let layers = self.colliders[collider].def.layers;
         for &kind in kinds {
@@ -284,8 +291,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         }
     }
 
-    /// Whether the embedder lets two colliders through each other. A pair whose fat boxes did not overlap when the step began was
-    /// not offered to it, and counts as not refused.
+    /// Whether the embedder lets two colliders pass through each other. A pair whose fat boxes did not
+    /// overlap at the start of the step was not offered to the embedder, and counts as not refused.
     fn is_refused(&self, a: u32, b: u32) -> bool {
         match self.contacts.find(a, b) {
             Some(id) => self.contacts.get(id).is_let_through(),
@@ -299,7 +306,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         let pose = path.frame(1.0).then(&def.local);
         let aabb = def.shape.aabb(&pose);
         let round = Aabb::new(Vector::ZERO, Vector::ZERO).at(path.start.center).grown(extent);
-        // A point goes along an arc. Off the line between its ends that is by r (1 - cos φ/2) < r φ²/8 at most.
+        // A point moves along an arc, which deviates from its chord by at most r (1 - cos φ/2) < r φ²/8.
         let spin = path.spin.length_squared();
         let ends = self.colliders.tight[collider as usize].union(&aabb);
         let arcs = ends.grown(min(0.125 * extent * spin, 2.0 * extent));
@@ -307,7 +314,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         End { pose, aabb, swept }
     }
 
-    /// A collider on its body's path; without one it stays where it is.
+    /// A collider on the path of its body. Without a path it stays at its pose.
     fn side(&self, collider: u32, path: Option<Path>) -> Side<'_> {
         let entry = &self.colliders[collider];
         let def = &entry.def;
@@ -325,13 +332,14 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         Side { collider, shape: &def.shape, local, path, arm: self.colliders.reaches[collider as usize].arm }
     }
 
-    /// Whether a plane proves that the sides of a contact overlap by less than `allowed` when the step ends, and that none got
-    /// past the other: that of the contact, or a side of their boxes. Most bodies that turn slide, roll or land on one.
+    /// Whether a plane proves that the sides of a contact overlap by less than `allowed` at the end of the
+    /// step, and that neither passed the other. The plane is the contact's or a side of their boxes. Most
+    /// turning bodies slide, roll or land on such a plane.
     fn ends_apart(&self, contact: &Contact, moving: usize, sweep: &Sweep, end: &End, allowed: f32) -> bool {
         let sides = [contact.colliders[moving], contact.colliders[1 - moving]];
         let margins = sides.map(|id| self.colliders.reaches[id as usize].margin);
         let least = margins[0] + margins[1] - allowed;
-        // What is fast may have got past to another side of the box.
+        // A fast body may have passed to another side of the box.
         if !sweep.is_fast && end.aabb.gap(&self.colliders.tight[sides[1] as usize]) > least {
             return true;
         }
@@ -349,13 +357,13 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
             .is_some_and(|(a, b)| (place.position - end.pose.position).to_local().dot(toward) - a - b > least)
     }
 
-    /// The overlap at the step's end that is left to the solver.
+    /// The overlap at the end of the step that is left to the solver.
     fn allowed_overlap(&self, collider: u32, sweep: &Sweep) -> f32 {
         let allowed = CORE_SHARE * self.colliders[collider].def.shape.core().1;
         if sweep.is_strict { min(allowed, self.tolerance) } else { allowed }
     }
 
-    /// The fraction of the step after which a collider meets another, 1 if it does not.
+    /// The fraction of the step at which a collider meets another; 1 if they do not meet.
     fn impact(
         &self,
         collider: u32,
@@ -377,8 +385,9 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         };
         let allowed = self.allowed_overlap(collider, sweep);
         if pair.depth_at_end(buffers) > allowed {
-            // What touches already, as a rod that falls over on its foot, goes on to that overlap: stopped where it touches, it
-            // would hang there for many steps and gain their speed. What overlaps more goes on slowly.
+            // A shape that touches already, such as a rod that falls over on its foot, moves on to the
+            // allowed overlap. If it stopped at the first touch, it would hang there for many steps and gain
+            // the speed of all of them. A shape that overlaps more moves on slowly.
             let gap = pair.gap_at_start(self.tolerance, buffers);
             if gap < self.tolerance {
                 let deeper = 0.5 * allowed - gap;
@@ -388,7 +397,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
                 return fraction;
             }
         }
-        // What touches may slide, roll, and run over the seams of a floor. It must not pass.
+        // A touching shape may slide, roll, and run over the seams of a floor, but it must not pass through.
         if !sweep.is_fast {
             return 1.0;
         }

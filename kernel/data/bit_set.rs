@@ -14,7 +14,7 @@ impl BitSet {
         Self { words: Vec::new() }
     }
 
-    /// Makes room for the ids below `capacity`, so that inserting them does not allocate.
+    /// Makes room for the ids below `capacity`, so inserting them does not allocate.
     pub fn grow(&mut self, capacity: usize) {
         let words = capacity.div_ceil(BITS);
         if words > self.words.len() {
@@ -81,12 +81,12 @@ impl BitSet {
         self.words.iter().all(|w| *w == 0)
     }
 
-    /// Whether both sets have no id in common.
+    /// Whether the sets have no id in common.
     pub fn is_disjoint(&self, other: &Self) -> bool {
         self.words.iter().zip(&other.words).all(|(a, b)| a & b == 0)
     }
 
-    /// Adds all members of the other set.
+    /// Adds all members of another set.
     pub fn union_with(&mut self, other: &Self) {
         self.grow(other.words.len() * BITS);
         for (word, more) in self.words.iter_mut().zip(&other.words) {
@@ -113,7 +113,7 @@ impl BitSet {
         None
     }
 
-    /// The number of blocks of `words` times 64 ids, up to the largest member.
+    /// The number of blocks of `words` times 64 ids that cover all members.
     pub fn blocks(&self, words: usize) -> usize {
         self.words.len().div_ceil(words)
     }

@@ -4,19 +4,20 @@ use super::BitSet;
 
 /// Small dense ids, reused lowest first, but not before the next [`recycle`](Self::recycle).
 ///
-/// The next id depends only on the ids in use, not on the order in which others were allocated and freed. The order of ids
-/// is the order of work, so a level that is loaded again gives the same bits.
+/// The next id depends only on the ids in use, not on the order in which others were allocated and freed. The
+/// order of ids is the order of work, so a level that is loaded again gives the same bits.
 ///
-/// A freed id is neither live nor allocated again before it is recycled. An id that is still held from this step is
-/// then not live, instead of naming another object.
+/// A freed id is neither live nor allocated again before it is recycled. So an id that is still held from
+/// this step is not live, instead of naming another object.
 ///
-/// *Ids aside.* What takes no part in the ordered work gets its ids from [`allocate_aside`](Self::allocate_aside). Both
-/// kinds share the numbers, but each kind reuses its own only. So things aside never change the order of the others:
-/// with and without them, others get ids in the same order.
+/// *Ids aside.* Objects that take no part in the ordered work get their ids from
+/// [`allocate_aside`](Self::allocate_aside). Both kinds share the numbers, but each kind reuses its own only.
+/// So objects aside never change the order of the others: with and without them, the others get ids in the
+/// same order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdPool {
     live: BitSet,
-    /// Reusable ids: ordinary ones, and ids aside.
+    /// Reusable ordinary ids, and reusable ids aside.
     free: [Free; 2],
     /// All ids aside, live or not.
     aside: BitSet,
@@ -65,12 +66,12 @@ impl IdPool {
         }
     }
 
-    /// Allocates the lowest reusable id, or else the next id that was never allocated.
+    /// Allocates the lowest reusable id, or if there is none the next id that was never allocated.
     pub fn allocate(&mut self) -> u32 {
         self.allocate_of(false)
     }
 
-    /// The same for something that takes no part in the ordered work.
+    /// The same for an object that takes no part in the ordered work.
     pub fn allocate_aside(&mut self) -> u32 {
         self.allocate_of(true)
     }
@@ -87,8 +88,8 @@ impl IdPool {
         id
     }
 
-    /// Frees an id; [`recycle`](Self::recycle) makes it reusable. Freeing an id that is not live is a bug of the caller, and
-    /// ignored in release builds.
+    /// Frees an id; [`recycle`](Self::recycle) makes it reusable. Freeing an id that is not live is a bug of
+    /// the caller, and ignored in release builds.
     pub fn free(&mut self, id: u32) {
         let was_live = self.live.remove(id);
         debug_assert!(was_live, "id {id} is freed but not live");
@@ -104,8 +105,8 @@ impl IdPool {
         }
     }
 
-    /// Forgets the reusable ids beyond all that are not: the order of those that are allocated next stays. To be called when freed
-    /// ids were [recycled](Self::recycle).
+    /// Forgets the reusable ids above the highest live id. The order of the next allocated ids stays the
+    /// same. Call it after freed ids were [recycled](Self::recycle).
     pub fn trim(&mut self) {
         debug_assert!(self.pending.is_empty(), "freed ids were recycled");
         if !self.pending.is_empty() {
@@ -203,7 +204,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
 
-        /// Two pools, one with things aside. The others have ids of the same order in both.
+        /// Two pools, one of them with objects aside. The other objects get ids in the same order in both.
         #[test]
         fn ids_aside_do_not_change_the_order_of_others(
             ops in prop::collection::vec((0..20u8, any::<u32>()), 500),

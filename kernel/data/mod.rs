@@ -1,8 +1,8 @@
-//! Containers of ids for both dimensions: a pool that allocates ids, a set of ids, a map from pairs of ids; slices that
-//! several threads change at once; and when buffers are given back.
+//! Containers of ids for both dimensions: a pool that allocates ids, a set of ids, a map from pairs of ids.
+//! Also slices that several threads change at once, and the decision when buffers are given back.
 //!
-//! The containers are plain values: `Clone` is a snapshot, and results depend only on the calls made, never on addresses,
-//! hash seeds or threads.
+//! The containers are plain values: `Clone` is a snapshot, and results depend only on the calls made, never
+//! on addresses, hash seeds or threads.
 
 mod bit_set;
 mod id_pool;

@@ -4,9 +4,9 @@ use super::prefetch;
 
 /// Maps pairs of `u32` ids to a `u32`. `(a, b)` and `(b, a)` are the same pair.
 ///
-/// Open addressing at a load of at most one half with linear probing: most look-ups read one cache line. Removal shifts the
-/// rest of the run back, so there are no tombstones, and a map that stays at one size is never rehashed. There is no
-/// iteration: results would depend on the order of hashes.
+/// Open addressing at a load of at most one half with linear probing: most look-ups read one cache line.
+/// Removal shifts the rest of the run back, so there are no tombstones, and a map that stays at one size is
+/// never rehashed. There is no iteration: results would depend on the order of hashes.
 #[derive(Clone, Debug, Default)]
 pub struct PairSet {
     /// Empty or a power of two long.
@@ -21,7 +21,7 @@ struct Slot {
     value: u32,
 }
 
-/// The pair of a free slot. Two different ids never make it.
+/// The pair of a free slot. Two different ids never equal it.
 const VACANT: [u32; 2] = [u32::MAX; 2];
 const FREE: Slot = Slot { pair: VACANT, value: 0 };
 const MIN_SLOTS: usize = 16;
@@ -35,8 +35,8 @@ impl PairSet {
         Self { slots: Vec::new(), len: 0 }
     }
 
-    /// Maps a pair to a value. Returns the value it had. The pair `(u32::MAX, u32::MAX)` cannot be stored: inserting it does
-    /// nothing.
+    /// Maps a pair to a value. Returns the value it had. The pair `(u32::MAX, u32::MAX)` cannot be stored:
+    /// inserting it does nothing.
     pub fn insert(&mut self, a: u32, b: u32, value: u32) -> Option<u32> {
         let pair = ordered(a, b);
         debug_assert!(pair != VACANT, "the pair of two u32::MAX cannot be stored");
@@ -121,7 +121,7 @@ impl PairSet {
         self.len == 0
     }
 
-    /// Grows to a capacity of `pairs` pairs in all, so that inserting them does not allocate.
+    /// Grows to a capacity of `pairs` pairs in all, so inserting them does not allocate.
     pub fn reserve(&mut self, pairs: usize) {
         let slots = (pairs * 2).next_power_of_two().max(MIN_SLOTS);
         if slots > self.slots.len() {
@@ -157,7 +157,8 @@ fn ordered(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The slot of the pair, or the free slot that ends its run. The loop ends because half of the slots are free.
+/// The slot of the pair, or the free slot that ends its run. The loop ends because half of the slots are
+/// free.
 #[inline(always)]
 fn find(slots: &[Slot], pair: [u32; 2]) -> usize {
     let mask = slots.len() - 1;
@@ -232,8 +233,8 @@ mod tests {
 
     #[test]
     fn neighbouring_pairs_land_in_short_runs() {
-        // A pyramid's contacts: every id with a few neighbours. The mean probe at half load of a good hash
-        // is 1.5 (Knuth, vol. 3, 6.4); a poor one clusters.
+        // The contacts of a pyramid: every id with a few neighbours. With a good hash the mean number of
+        // probes at half load is 1.5 (Knuth, vol. 3, 6.4); a poor hash clusters.
         let mut set = PairSet::new();
         set.reserve(1 << 15);
         for a in 0..8192u32 {

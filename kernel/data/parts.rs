@@ -20,7 +20,7 @@ impl<'a, T> Parts<'a, T> {
         self.0.len()
     }
 
-    /// Prefetches an element, if there is one.
+    /// Prefetches an element, if it exists.
     #[inline(always)]
     pub(crate) fn prefetch(&self, index: u32) {
         prefetch(self.0, index);

@@ -1,8 +1,8 @@
 //! Prefetching memory.
 #![cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "the instruction is an intrinsic"))]
 
-/// Prefetches an element into the cache, if there is one. For elements that are needed in some hundred nanoseconds and that
-/// the CPU cannot predict. Results do not depend on it.
+/// Prefetches an element into the cache, if it exists. It is for elements that are needed in some hundred
+/// nanoseconds and that the CPU cannot predict. Results do not depend on it.
 #[inline(always)]
 pub(crate) fn prefetch<T>(slice: &[T], index: u32) {
     #[cfg(target_arch = "x86_64")]
@@ -10,7 +10,7 @@ pub(crate) fn prefetch<T>(slice: &[T], index: u32) {
         use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         let start = core::ptr::from_ref(element).cast::<i8>();
         for line in 0..size_of::<T>().div_ceil(64) {
-            // SAFETY: a prefetch of any address is harmless, and this is within the element.
+            // SAFETY: a prefetch of any address is harmless, and this address is within the element.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(64 * line)) };
         }
         // The element may begin within a line, so its last byte may be in one more line.

@@ -1,28 +1,28 @@
-//! Buffers that a crowd has filled, and that are given back when it is gone.
+//! When to give back buffers that a crowd filled, after the crowd is gone.
 
-/// The number of steps in which buffers were hardly used before they are given back. Fewer allocate anew for what comes in
-/// waves, more hold the memory longer.
+/// Buffers are given back after this number of steps in which they were hardly used. Fewer steps reallocate
+/// for crowds that come in waves; more steps hold the memory longer.
 const STEPS: u32 = 256;
 
-/// The number of places of a buffer for each one in use, from which it is given back. Smaller gives back and allocates more often;
-/// larger keeps more memory.
+/// The number of allocated places per used place from which a buffer is given back. Smaller gives back and
+/// allocates more often; larger keeps more memory.
 const SHARE: usize = 4;
 
-/// The least number of places that is worth giving back.
+/// The least number of places worth giving back.
 const WORTH: usize = 4096;
 
-/// How much of some buffers is used, step by step.
+/// The usage of some buffers, step by step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Slack {
-    /// The most that was used since buffers were given back.
+    /// Maximum usage since buffers were given back.
     held: usize,
-    /// The most that was used since the last look.
+    /// Maximum usage since the last check.
     recent: usize,
     steps: u32,
 }
 
 impl Slack {
-    /// Counts a step in which `used` places are used. Returns whether the buffers are to be given back.
+    /// Counts a step with `used` places in use. Returns whether to give the buffers back.
     #[inline]
     pub fn is_due(&mut self, used: usize) -> bool {
         self.recent = self.recent.max(used);

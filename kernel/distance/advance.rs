@@ -1,20 +1,23 @@
-//! When two shapes that move first meet, by conservative advancement (B. Mirtich, "Impulse-based Dynamic Simulation", 1996).
+//! The time at which two moving shapes first meet, by conservative advancement (B. Mirtich, "Impulse-based
+//! Dynamic Simulation", 1996).
 //!
-//! The time advances by what the gap between the shapes takes to close at least, until they are near enough. Casts, sweeps and
-//! predicted contacts differ in how they bound that time.
+//! Time advances by the least time that the gap between the shapes needs to close, until they are close
+//! enough. Casts, sweeps and predicted contacts differ in how they bound that time.
 
-/// How near two shapes are at a time of their motion.
+/// How close two shapes are at a time of their motion.
 pub(crate) enum Approach<T, M> {
-    /// Apart, and they stay apart at least until this time.
+    /// The shapes are apart, and stay apart at least until this time.
     ApartUntil(T),
-    /// Near enough.
+    /// The shapes are close enough.
     Met(M),
 }
 
-/// Advances the time from `start` to where two shapes meet. `look` gets a time and the number of the look, from 1 to `rounds`.
-/// It tells how near the shapes are then, or that they do not meet.
+/// Advances the time from `start` to the time at which two shapes meet. `look` gets a time and the number of
+/// the round, from 1 to `rounds`. It returns how close the shapes are at that time, or `None` if they do not
+/// meet.
 ///
-/// Shapes that are still apart after the last look count as a miss, unless `look` returns [`Approach::Met`] there.
+/// Shapes that are still apart after the last round count as a miss, unless `look` returns [`Approach::Met`]
+/// in it.
 #[inline(always)]
 pub(crate) fn advance<T, M>(
     start: T,

@@ -35,7 +35,7 @@ impl<'a> Convex<'a> {
         Some(Self { core, radius: shape.radius() })
     }
 
-    /// Whether the points of the core are rounded, since they lie on a curve. Vertices are exact.
+    /// Whether the points of the core are rounded because they lie on a curve. Vertices are exact.
     pub(crate) fn is_curved(&self) -> bool {
         matches!(self.core, Core::Whole(Shape::Curved(_)))
     }

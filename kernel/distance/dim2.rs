@@ -4,7 +4,8 @@ use super::simplex::{Weights, on_segment, on_triangle};
 use crate::math::Vector;
 use crate::shape::Hull;
 
-/// The weights of the corners of the point of a simplex that is nearest to the origin. `None` if the origin is inside.
+/// The weights of the corners of the point of a simplex that is nearest to the origin. `None` if the origin
+/// is inside.
 pub(super) fn nearest_weights(corners: &[Vector<f64>]) -> Option<Weights> {
     match *corners {
         [_] => Some([1.0, 0.0, 0.0, 0.0]),
@@ -15,7 +16,7 @@ pub(super) fn nearest_weights(corners: &[Vector<f64>]) -> Option<Weights> {
             if !inside {
                 return Some(weights);
             }
-            // The weights of an inner point are areas, which a triangle without one does not have.
+            // The weights of an inner point are areas, so a triangle without area has no inner point.
             let (ab, ac) = (b - a, c - a);
             let flat = ab.cross(ac).z.abs() <= 1.0e-12 * ab.length() * ac.length();
             flat.then(|| {

@@ -4,7 +4,8 @@ use super::simplex::{Weights, on_segment, on_triangle};
 use crate::math::Vector;
 use crate::shape::{Hull, farthest};
 
-/// The weights of the corners of the point of a simplex that is nearest to the origin. `None` if the origin is inside.
+/// The weights of the corners of the point of a simplex that is nearest to the origin. `None` if the origin
+/// is inside.
 pub(super) fn nearest_weights(corners: &[Vector<f64>]) -> Option<Weights> {
     match *corners {
         [_] => Some([1.0, 0.0, 0.0, 0.0]),
@@ -16,13 +17,13 @@ pub(super) fn nearest_weights(corners: &[Vector<f64>]) -> Option<Weights> {
 }
 
 fn on_tetrahedron(p: [Vector<f64>; 4]) -> Option<Weights> {
-    // Each face with the corner across from it.
+    // Each face, followed by the opposite corner.
     let faces = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]];
     let mut best: Option<(f64, Weights)> = None;
     for [i, j, k, across] in faces {
         let normal = (p[j] - p[i]).cross(p[k] - p[i]);
         let (origin, inside) = (-normal.dot(p[i]), normal.dot(p[across] - p[i]));
-        // A flat tetrahedron has no inside: every face is a candidate.
+        // A flat tetrahedron has no inside, so every face is a candidate.
         let flat = inside.abs() <= 1.0e-12 * normal.length() * (p[across] - p[i]).length();
         if origin * inside > 0.0 && !flat {
             continue;

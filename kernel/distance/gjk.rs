@@ -1,20 +1,20 @@
-//! The closest points of two convex cores (Gilbert, Johnson and Keerthi, "A Fast Procedure for Computing the Distance
-//! Between Complex Objects in Three-Dimensional Space", 1988), in `f64`.
+//! The closest points of two convex cores (Gilbert, Johnson and Keerthi, "A Fast Procedure for Computing the
+//! Distance Between Complex Objects in Three-Dimensional Space", 1988), in `f64`.
 
 use super::Convex;
 use super::dim::nearest_weights;
 use crate::math::{DIM, Pose, Rot, Vector};
 
-/// The most iterations. Polytopes need a few; curved cores gain about a digit every two.
+/// Maximum number of iterations. Polytopes need a few; curved cores gain about a digit every two iterations.
 const MAX_ITERATIONS: usize = 64;
 
 type Wide = Vector<f64>;
 
-/// The Minkowski difference A − B of two cores, by its farthest points.
+/// The Minkowski difference A − B of two cores, given by its farthest points.
 pub(crate) trait Difference {
-    /// Cores nearer than this share of the simplex's size touch: the rounding of vertices, with room.
+    /// Cores closer than this share of the simplex's size touch: the rounding of vertices, with a margin.
     const TOUCHING: f64;
-    /// The relative accuracy of distances, where it is more than what was asked for.
+    /// The relative accuracy of distances, added to the requested tolerance.
     const RELATIVE: f64;
 
     /// The vertex farthest along a direction of about unit length.
@@ -34,10 +34,10 @@ impl From<&Pose> for Frame {
     }
 }
 
-/// How exactly a distance is wanted.
+/// The requested accuracy of a distance.
 #[derive(Clone, Copy)]
 pub(crate) struct Accuracy {
-    /// In metres.
+    /// The tolerance, in metres.
     pub(crate) tolerance: f64,
     /// Cores farther apart than this need no exact distance, in metres.
     pub(crate) beyond: f64,
@@ -46,15 +46,15 @@ pub(crate) struct Accuracy {
 /// The closest points of two cores.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cores {
-    /// On A.
+    /// The point on A, in A's frame.
     pub(crate) a: Wide,
-    /// On B, in A's frame.
+    /// The point on B, in A's frame.
     pub(crate) b: Wide,
     /// The unit normal from A to B; zero if they touch or overlap.
     pub(crate) normal: Wide,
     /// In metres; 0 if they touch or overlap.
     pub(crate) distance: f64,
-    /// The gap between the planes with that normal at both cores: a lower bound of the distance, in metres.
+    /// The gap between the planes with this normal at both cores: a lower bound of the distance, in metres.
     pub(crate) gap: f64,
 }
 
@@ -65,19 +65,19 @@ pub(crate) struct Vertex {
     b: Wide,
     w: Wide,
     weight: f64,
-    /// The vertices of A and B, by number. The distance search does not need them, and sets 0.
+    /// The vertex numbers of A and B. The distance search does not need them, and sets 0.
     pub(crate) features: [u32; 2],
 }
 
 impl Vertex {
-    /// The difference of a point of A and one of B.
+    /// The difference of a point of A and a point of B.
     #[inline]
     pub(crate) fn new(a: Wide, b: Wide, features: [u32; 2]) -> Self {
         Self { a, b, w: a - b, weight: 1.0, features }
     }
 }
 
-/// Two cores, one of which moves.
+/// Two cores: A is fixed, B moves.
 pub(crate) struct Moving<'a> {
     a: &'a Convex<'a>,
     b: &'a Convex<'a>,
@@ -102,8 +102,8 @@ impl Difference for Moving<'_> {
     }
 }
 
-/// A search for the closest points of core A and core B. It keeps its simplex, so that the search after a small motion of
-/// B is short.
+/// A search for the closest points of core A and core B. It keeps its simplex, so the search after a small
+/// motion of B is short.
 pub(crate) struct Search<D> {
     difference: D,
     simplex: [Vertex; DIM + 1],
@@ -112,17 +112,17 @@ pub(crate) struct Search<D> {
     nearest: Wide,
 }
 
-/// A way of B along a line that meets nothing.
+/// A displacement of B along a line that meets nothing.
 #[derive(Clone, Copy)]
 pub(crate) struct FreeWay {
-    /// In metres.
+    /// The length, in metres.
     pub(crate) length: f64,
-    /// The normal of the last plane between A and B that B was moved up to; zero if there was none.
+    /// The normal of the last plane between A and B that B was moved up to; zero if there was no plane.
     pub(crate) normal: Wide,
 }
 
-/// The closest points of core A and core B, `frame` being where B is in A's. `guess` is a direction from A to B, of
-/// about unit length or zero. `None` if a number is not finite.
+/// The closest points of core A and core B. `frame` is the pose of B in A's frame, `guess` a direction from A
+/// to B, of about unit length or zero. `None` if a number is not finite.
 pub(crate) fn closest_cores(
     a: &Convex<'_>,
     b: &Convex<'_>,
@@ -158,7 +158,7 @@ impl<'a> Search<Moving<'a>> {
         }
     }
 
-    /// Reduces the simplex; one around the origin becomes its first vertex.
+    /// Reduces the simplex. A simplex around the origin becomes its first vertex.
     fn renew(&mut self) {
         match reduced(&mut self.simplex, self.count) {
             Some((count, point)) => (self.count, self.nearest) = (count, point),
@@ -169,10 +169,10 @@ impl<'a> Search<Moving<'a>> {
         }
     }
 
-    /// Moves B along the unit vector `direction` while planes are known to be farther than `target` between it and A, up
-    /// to `tolerance`. `None` if B meets nothing within `limit`. The search for planes is that for the closest points,
-    /// but goes on while B moves (G. van den Bergen, "Ray Casting against General Convex Objects with Application to
-    /// Continuous Collision Detection", 2004). All lengths are in metres.
+    /// Moves B along the unit vector `direction` while a plane keeps it farther than `target` from A, up to
+    /// `tolerance`. `None` if B meets nothing within `limit`. The search for planes is the search for the
+    /// closest points, continued while B moves (G. van den Bergen, "Ray Casting against General Convex
+    /// Objects with Application to Continuous Collision Detection", 2004). All lengths are in metres.
     pub(crate) fn advance(
         &mut self,
         direction: Wide,
@@ -245,7 +245,7 @@ impl<D: Difference> Search<D> {
         Self { difference, simplex, count: 1, nearest: first.w }
     }
 
-    /// The vertices that the closest points lie between.
+    /// The vertices between which the closest points lie.
     pub(crate) fn simplex(&self) -> &[Vertex] {
         &self.simplex[..self.count]
     }
@@ -289,7 +289,7 @@ impl<D: Difference> Search<D> {
         Some(Cores { a, b, normal, distance, gap })
     }
 
-    /// Whether the simplex, whose nearest point has that squared distance, touches the origin.
+    /// Whether the simplex touches the origin. `square` is the squared distance of its nearest point.
     fn touches(&self, square: f64) -> bool {
         let scale = self.simplex().iter().fold(0.0, |most: f64, v| most.max(v.w.length_squared()));
         square <= D::TOUCHING * D::TOUCHING * scale
@@ -300,8 +300,8 @@ impl<D: Difference> Search<D> {
     }
 }
 
-/// Reduces the simplex to its face nearest to the origin and returns the face's size and nearest point. `None` if the
-/// origin is inside.
+/// Reduces the simplex to its face nearest to the origin and returns the face's size and nearest point.
+/// `None` if the origin is inside.
 fn reduced(simplex: &mut [Vertex; DIM + 1], count: usize) -> Option<(usize, Wide)> {
     let corners = simplex.map(|v| v.w);
     let weights = nearest_weights(&corners[..count])?;

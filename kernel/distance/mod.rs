@@ -1,7 +1,8 @@
 //! Closest points of convex shapes by their support points.
 //!
-//! A convex shape is a core (a point, a segment, a polytope, or whatever has support points) and a radius around it.
-//! Cores that are apart have closest points ([`closest_cores`]); what overlaps deeper is measured by manifolds.
+//! A convex shape is a core (a point, a segment, a polytope, or any shape with support points) and a radius
+//! around it. Cores that are apart have closest points ([`closest_cores`]); overlap beyond the radii is
+//! measured by manifolds.
 
 mod advance;
 mod convex;

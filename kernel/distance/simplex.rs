@@ -1,4 +1,4 @@
-//! The point of a segment or triangle that is nearest to the origin, as the weights of its corners.
+//! The point of a segment or triangle that is nearest to the origin, as weights of the corners.
 
 use crate::math::Vector;
 

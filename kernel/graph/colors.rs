@@ -1,27 +1,28 @@
-//! Graph colouring of constraints. No two constraints of a colour share a dynamic body, so that a colour is solved in
-//! lanes and by several threads.
+//! Graph colouring of constraints. No two constraints of a colour share a dynamic body, so a colour is solved
+//! in lanes and by several threads.
 
 use super::kind::ConstraintKind;
 use core::num::NonZeroU8;
 
-/// The number of colours, the overflow included.
+/// The number of colours, including the overflow.
 pub const COLOR_COUNT: usize = 24;
-/// The last colour: constraints for which no colour was free. They may share bodies and are solved one by one, before
-/// all other colours.
+/// The last colour: constraints for which no colour was free. They may share bodies. They are solved one by
+/// one, before all other colours.
 pub const OVERFLOW: u8 = COLOR_COUNT as u8 - 1;
 
-/// Colours of constraints between two dynamic bodies, as a bit mask: 0..=19. The higher ones are left to static
-/// partners, so that these are solved last in every sweep and win.
+/// Colours of constraints between two dynamic bodies, as a bit mask: 0..=19. Higher colours are reserved for
+/// static partners, so these constraints are solved last in every sweep and win.
 const DYNAMIC_COLORS: u32 = (1 << 20) - 1;
 /// Colours of constraints with one dynamic body: 1..=22, taken from the top.
 const STATIC_COLORS: u32 = ((1 << OVERFLOW) - 1) & !1;
 
-/// Place of a constraint among those of its kind and colour. Another one moves into the slot of one that is released.
+/// The place of a constraint in the list of its kind and colour. When a constraint is released, another one
+/// moves into its slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColorSlot {
-    /// One more than the colour: an optional slot is no larger.
+    /// The colour plus one, so an optional slot is no larger.
     above_color: NonZeroU8,
-    /// Index in the list of that colour.
+    /// The index in the list of that colour.
     index: u32,
 }
 
@@ -37,8 +38,8 @@ impl ColorSlot {
     }
 }
 
-/// The constraints of one colour, by kind. All kinds share the masks of bodies, so that a joint and a contact of one
-/// pair never share a colour.
+/// The constraints of one colour, by kind. All kinds share the masks of bodies, so a joint and a contact of
+/// one pair never share a colour.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Color {
     lists: [Vec<u32>; ConstraintKind::COUNT],
@@ -52,16 +53,16 @@ impl Color {
 
 /// An incremental greedy edge colouring.
 ///
-/// A contact is assigned a colour when it begins to touch, and releases it when it stops. Nothing is recoloured.
-/// Colours are chosen by first fit, from below for two dynamic bodies, from above for one, as in the constraint graph
-/// of Box2D v3 (Catto, "SIMD Matters", 2024).
+/// A contact is assigned a colour when it begins to touch, and releases it when it stops touching.
+/// Constraints are never recoloured. Colours are chosen by first fit, from below for two dynamic bodies, from
+/// above for one, as in the constraint graph of Box2D v3 (Catto, "SIMD Matters", 2024).
 ///
-/// Decision: the colours of a body are one 32-bit mask per body, not one bit set over bodies per colour. The table is
-/// the same, transposed. First fit is then one `or` and one count of zeroes, not up to 20 probes of 20 arrays, and only
-/// one array grows.
+/// Decision: the colours of a body are one 32-bit mask per body, not one bit set over bodies per colour. The
+/// table is the same, transposed. First fit is then one `or` and one count of zeroes instead of up to 20
+/// probes of 20 arrays, and only one array grows.
 ///
-/// The order within a colour follows from the sequence of calls (append, swap-remove): the same calls give the same
-/// order.
+/// The order within a colour follows from the sequence of calls (append, swap-remove): the same calls give
+/// the same order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ColorGraph {
     colors: [Color; COLOR_COUNT],
@@ -78,11 +79,11 @@ impl ColorGraph {
         Self::default()
     }
 
-    /// Assigns a colour to a constraint. `bodies` are the ids of its dynamic bodies, `None` for a static or kinematic
-    /// one.
+    /// Assigns a colour to a constraint. `bodies` are the ids of its dynamic bodies, with `None` for a static
+    /// or kinematic body.
     ///
-    /// The two dynamic bodies should differ: a constraint of a body with itself goes to the overflow. A constraint
-    /// without a dynamic body conflicts with none and takes the highest colour.
+    /// The two dynamic bodies should differ: a constraint of a body with itself goes to the overflow. A
+    /// constraint without a dynamic body conflicts with none and takes the highest colour.
     pub(crate) fn assign(&mut self, kind: ConstraintKind, id: u32, bodies: [Option<u32>; 2]) -> ColorSlot {
         let color = self.take_color(bodies);
         let list = &mut self.colors[usize::from(color)].lists[kind as usize];
@@ -95,10 +96,10 @@ impl ColorGraph {
         self.colors.iter_mut().flat_map(|color| &mut color.lists).for_each(Vec::shrink_to_fit);
     }
 
-    /// Releases the colour of a constraint. `bodies` must be those it was assigned with.
+    /// Releases the colour of a constraint. `bodies` must be the bodies that it was assigned with.
     ///
-    /// Returns the constraint of the same kind that moved into the slot, if any: the caller must store `slot` as its
-    /// new slot.
+    /// Returns the constraint of the same kind that moved into the slot, if any: the caller must store `slot`
+    /// as its new slot.
     pub(crate) fn release(
         &mut self,
         kind: ConstraintKind,
@@ -117,12 +118,12 @@ impl ColorGraph {
         moved
     }
 
-    /// The contacts of a colour. Empty for a colour that does not exist.
+    /// The contacts of a colour. Empty if the colour does not exist.
     pub fn contacts(&self, color: u8) -> &[u32] {
         self.constraints(ConstraintKind::Contact, color)
     }
 
-    /// The constraints of a kind and colour. Empty for a colour that does not exist.
+    /// The constraints of a kind and colour. Empty if the colour does not exist.
     pub fn constraints(&self, kind: ConstraintKind, color: u8) -> &[u32] {
         self.colors.get(usize::from(color)).map_or(&[], |color| &color.lists[kind as usize])
     }
@@ -132,13 +133,13 @@ impl ColorGraph {
         self.contacts(OVERFLOW)
     }
 
-    /// The colours with contacts, without the overflow, in the order they are solved: ascending, contacts with static
-    /// partners last.
+    /// The colours with contacts, without the overflow, in the order of solving: ascending, contacts with
+    /// static partners last.
     pub fn colors(&self) -> impl Iterator<Item = (u8, &[u32])> {
         (0..OVERFLOW).map(|color| (color, self.contacts(color))).filter(|(_, contacts)| !contacts.is_empty())
     }
 
-    /// The other constraints in their colours, without the contacts.
+    /// The same graph without its contacts.
     pub fn without_contacts(&self) -> Self {
         let mut rest = self.clone();
         rest.colors.iter_mut().for_each(|color| color.lists[ConstraintKind::Contact as usize].clear());
@@ -160,7 +161,7 @@ impl ColorGraph {
         self.used.get(body as usize).copied().unwrap_or(0)
     }
 
-    /// The bodies with a constraint of any colour but the overflow, in ascending order.
+    /// The bodies with a constraint of any colour except the overflow, in ascending order.
     pub(crate) fn bodies(&self) -> impl Iterator<Item = u32> {
         self.used.iter().enumerate().filter(|(_, used)| **used != 0).map(|(body, _)| body as u32)
     }
@@ -202,8 +203,8 @@ impl ColorGraph {
         }
     }
 
-    /// Checks the graph against the caller's records: slot and bodies of each constraint. Panics with the broken
-    /// invariant. O(constraints + bodies).
+    /// Checks the graph against the caller's records: slot and bodies of each constraint. Panics with the
+    /// broken invariant. O(constraints + bodies).
     pub fn validate(&self, record: impl Fn(ConstraintKind, u32) -> (ColorSlot, [Option<u32>; 2])) {
         let mut used = vec![0u32; self.used.len()];
         let of_kind = |kind| (0..COLOR_COUNT as u8).map(move |color| (kind, color));
@@ -246,7 +247,7 @@ mod tests {
 
     type Bodies = [Option<u32>; 2];
 
-    /// The graph beside the caller's records.
+    /// The graph with the caller's records.
     #[derive(Clone, Default, PartialEq, Debug)]
     struct World {
         graph: ColorGraph,
@@ -268,7 +269,7 @@ mod tests {
             }
         }
 
-        /// The colour by the rules, found by a search of all contacts.
+        /// The colour by the rules, found by a search through all contacts.
         fn expected(&self, bodies: Bodies) -> u8 {
             let dynamic: BTreeSet<u32> = bodies.into_iter().flatten().collect();
             let free = |color: &u8| {
@@ -317,7 +318,7 @@ mod tests {
         assert_eq!(world.assign(50, [Some(0), None]), 22, "the static colours are still free");
     }
 
-    /// A tower on the ground needs two colours inside and one for the ground, at any height.
+    /// A tower on the ground needs two colours between its bodies and one for the ground, at any height.
     #[test]
     fn a_tower_needs_three_colors() {
         let mut world = World::default();
@@ -393,8 +394,8 @@ mod tests {
             prop_assert!((0..bodies).all(|body| world.graph.colors_of(body) == 0));
         }
 
-        /// A constraint has at most 2 (Δ − 1) neighbours, so first fit needs at most 2 Δ − 1 colours for degree Δ:
-        /// bodies with at most ten dynamic contacts never overflow, in any order of operations.
+        /// A constraint has at most 2 (Δ − 1) neighbours, so first fit needs at most 2 Δ − 1 colours for
+        /// degree Δ: bodies with at most ten dynamic contacts never overflow, in any order of operations.
         #[test]
         fn ten_contacts_per_body_never_overflow(operations in operations()) {
             const BODIES: u32 = 30;

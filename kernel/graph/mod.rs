@@ -1,7 +1,7 @@
 //! The constraint graph: colours for parallel solving, and islands for sleeping.
 //!
-//! Bodies, contacts and links are `u32` ids of the caller. Positions and shapes are unknown here. Both structures
-//! persist and are updated when a contact begins or stops touching. They are never rebuilt.
+//! Bodies, contacts and links are `u32` ids of the caller. Positions and shapes are unknown here. Both
+//! structures persist and are updated when a contact begins or stops touching. They are never rebuilt.
 
 mod colors;
 mod islands;

@@ -2,20 +2,21 @@
 
 use super::{IslandId, Islands};
 
-/// Number of bodies and links of all islands that are split in one step besides the first. It bounds the time of
-/// splitting small islands to about 0.05 ms a step. With a smaller budget, hundreds of islands that fall apart at once
-/// stay awake longer.
+/// Maximum number of bodies and links of the islands that are split in one step, not counting the first
+/// island. It bounds the time of splitting small islands to about 0.05 ms a step. With a smaller budget,
+/// hundreds of islands that fall apart at once stay awake longer.
 const SPLIT_BUDGET: usize = 4096;
 
 /// The outcome of one scan over the awake islands; keeps its memory between scans.
 ///
-/// An island falls asleep as a whole, once every body has been at rest long enough. An island that lost links may have
-/// fallen apart: it must be [split](Islands::split) before it may sleep (Catto, "Simulation Islands", 2023).
+/// An island falls asleep as a whole, once every body has been at rest long enough. An island that lost links
+/// may have fallen apart: it must be [split](Islands::split) before it may sleep (Catto, "Simulation
+/// Islands", 2023).
 ///
-/// Decision: a split visits the whole island, and a large heap may lose a link in every step. So islands with a body
-/// that is ready to sleep take turns by id: the first is split at any size, others only within a budget. The first
-/// island that is skipped has the next turn. Box2D splits the island whose body has rested longest; there a heap that
-/// keeps losing links keeps all other islands awake.
+/// Decision: a split visits the whole island, and a large heap may lose a link in every step. So islands with
+/// a body that is ready to sleep take turns by id: the first island is split at any size, others only within
+/// a budget. The first island that is skipped has the next turn. Box2D splits the island whose body has
+/// rested longest; there a heap that keeps losing links keeps all other islands awake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SleepScan {
     sleepers: Vec<IslandId>,
@@ -37,11 +38,11 @@ impl SleepScan {
         Self::default()
     }
 
-    /// Scans all awake islands. `rested` returns the seconds for which a body has been at rest, `None` if it must not
-    /// sleep. A body is ready to sleep after `time_to_sleep` seconds; NaN keeps it awake. [Woken](Islands::is_woken)
-    /// islands are skipped.
+    /// Scans all awake islands. `rested` returns the seconds for which a body has been at rest, `None` if it
+    /// must not sleep. A body is ready to sleep after `time_to_sleep` seconds; NaN keeps it awake.
+    /// [Woken](Islands::is_woken) islands are skipped.
     ///
-    /// The outcome depends on the islands only, which also store whose turn it is.
+    /// The outcome depends only on the islands, which also store whose turn it is.
     pub fn scan(&mut self, islands: &mut Islands, time_to_sleep: f32, rested: impl Fn(u32) -> Option<f32>) {
         let ready = |body: &u32| rested(*body).is_some_and(|time| time >= time_to_sleep);
         self.sleepers.clear();
@@ -111,7 +112,7 @@ mod tests {
         islands
     }
 
-    /// Adds a chain of bodies. A link has the number of its second body.
+    /// Adds a chain of bodies. Each link has the number of its second body.
     fn add_chain(islands: &mut Islands, bodies: core::ops::Range<u32>) {
         for body in bodies.clone() {
             islands.add_body(body);
@@ -150,7 +151,7 @@ mod tests {
         assert!(scan.sleepers().is_empty());
     }
 
-    /// The quiet half of a chain that was cut sleeps after one split, the moving half does not.
+    /// The resting half of a chain that was cut sleeps after one split, the moving half does not.
     #[test]
     fn a_cut_chain_is_split_before_its_quiet_half_sleeps() {
         let mut islands = chain(10);
@@ -167,7 +168,8 @@ mod tests {
         assert_eq!((scan.sleepers(), scan.splits()), (&[islands.island_of(3).unwrap()][..], &[][..]));
     }
 
-    /// The heap has rested longest. Chosen by rest time it would be split in every step, and no other island ever.
+    /// The heap has rested longest. If rest time decided, the heap would be split in every step, and no other
+    /// island ever.
     #[test]
     fn parted_pairs_sleep_beside_a_heap_that_loses_a_link_in_every_step() {
         let mut islands = Islands::new();
@@ -189,7 +191,7 @@ mod tests {
         };
         let mut scan = SleepScan::new();
         for i in 0..3u32 {
-            // Two more neighbours are linked, and one link fewer is left between them.
+            // Links two more neighbours, and removes the link again.
             islands.link(LinkId(10_000 + i), i, i + 1);
             islands.unlink(LinkId(10_000 + i));
             step(&mut scan, &mut islands, rested);
@@ -199,7 +201,7 @@ mod tests {
         islands.validate();
     }
 
-    /// None of the three is small; each is split in every third step.
+    /// All three islands are large; each is split in every third step.
     #[test]
     fn large_islands_take_turns() {
         let mut islands = Islands::new();
@@ -221,8 +223,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
 
-        /// A body that rests and is linked to no moving body sleeps after at most one step per body, for any history of
-        /// links and any split budget.
+        /// A resting body without a chain of links to a moving body sleeps after at most one step per body,
+        /// for any history of links and any split budget.
         #[test]
         fn all_that_could_sleep_does_so_in_bounded_time(
             count in 2u32..80,
@@ -242,7 +244,7 @@ mod tests {
                 islands.unlink(LinkId(key as u32));
                 left.remove(key);
             }
-            // Moving bodies, and those connected with one.
+            // Moving bodies, and bodies connected with a moving body.
             let mut restless: Vec<bool> = moving[..count as usize].to_vec();
             for _ in 0..count {
                 for &(a, b) in &left {
@@ -254,7 +256,7 @@ mod tests {
             let movers: Vec<u32> = (0..count).filter(|body| restless[*body as usize]).collect();
             let mut scan = SleepScan { budget, ..SleepScan::new() };
             for i in 0..=count as usize {
-                // Each moving body is next to a resting one, before islands are split.
+                // Before islands are split, each moving body is next to a resting one.
                 step(&mut scan, &mut islands, |body| Some(if moving[body as usize] { 0.0 } else { 1.0 }));
                 if let [.., _] = movers[..] {
                     let (a, b) = later[i % later.len()];
@@ -308,7 +310,7 @@ mod tests {
             }
             let expected: Vec<_> = may_sleep.into_iter().filter(|(_, may)| *may).map(|(id, _)| id).collect();
             prop_assert_eq!(scan.sleepers(), &expected[..]);
-            // All of the islands are small.
+            // All islands are small.
             prop_assert!(scan.splits().iter().eq(&candidates));
 
             for body in shuffle {

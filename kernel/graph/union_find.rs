@@ -61,7 +61,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The sets are the classes of the finest equivalence that holds the pairs, by brute force.
+        /// The sets are the classes of the finest equivalence that contains the pairs, by brute force.
         #[test]
         fn sets_are_connected_components(
             n in 1u32..60,

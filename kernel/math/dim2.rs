@@ -4,7 +4,7 @@ use super::{Lane, Num, Scalar};
 
 /// The number of spatial dimensions.
 pub const DIM: usize = 2;
-/// The most points one manifold holds after reduction.
+/// Maximum number of points of a manifold after reduction.
 pub const MAX_POINTS: usize = 2;
 
 /// A direction, offset or linear velocity.
@@ -105,13 +105,13 @@ impl Vector {
         Self { x: self.x.abs(), y: self.y.abs() }
     }
 
-    /// The componentwise smaller values.
+    /// The componentwise minimum.
     #[inline]
     pub fn min(self, other: Self) -> Self {
         Self { x: super::min(self.x, other.x), y: super::min(self.y, other.y) }
     }
 
-    /// The componentwise larger values.
+    /// The componentwise maximum.
     #[inline]
     pub fn max(self, other: Self) -> Self {
         Self { x: super::max(self.x, other.x), y: super::max(self.y, other.y) }
@@ -144,7 +144,7 @@ impl Vector<Scalar> {
         Vector { x: self.x as f32, y: self.y as f32 }
     }
 
-    /// Each component through `f`, for roundings other than the nearest.
+    /// Applies `f` to each component, for rounding modes other than to nearest.
     #[inline]
     pub fn map_to_f32(self, f: impl Fn(Scalar) -> f32) -> Vector {
         Vector { x: f(self.x), y: f(self.y) }
@@ -165,7 +165,7 @@ impl Vector<f64> {
         Vector { x: self.x as f32, y: self.y as f32 }
     }
 
-    /// The largest size of a component; infinite if one is not a number.
+    /// The largest absolute value of a component; infinite if a component is not finite.
     pub(crate) fn largest(self) -> f64 {
         let finite = self.x * 0.0 + self.y * 0.0 == 0.0;
         if finite { self.x.abs().max(self.y.abs()) } else { f64::INFINITY }
@@ -244,7 +244,7 @@ impl<N: Num> Angular<N> {
 }
 
 impl<N: Lane> Angular<N> {
-    /// The magnitude. That of -0 is 0: what is divided by it may not become -∞.
+    /// The magnitude. For -0 it is 0, so a quotient by it does not become -∞.
     #[inline(always)]
     pub fn length(self) -> N {
         (-self.z).max(self.z) + N::ZERO
@@ -278,7 +278,8 @@ impl<N: Num> SymTensor<N> {
     pub fn scaled(self, factor: N) -> Self {
         Self { zz: self.zz * factor }
     }
-    /// The product with a vector; of an [`InvInertia`] the change of angular velocity by an angular impulse.
+    /// The product with a vector. For an [`InvInertia`] it is the change of angular velocity by an angular
+    /// impulse.
     #[inline(always)]
     pub fn apply(self, impulse: Angular<N>) -> Angular<N> {
         Angular { z: self.zz * impulse.z }
@@ -318,12 +319,12 @@ impl<N: Lane> SymTensor<N> {
 }
 
 impl SymTensor {
-    /// The inverse inertia in world axes of a body turned by `rotation`; in 2D the same.
+    /// The inverse inertia in world axes of a body turned by `rotation`; in 2D it stays the same.
     #[inline]
     pub fn rotated(self, _rotation: Rot) -> Self {
         self
     }
-    /// What [`rotated`](Self::rotated) turns.
+    /// The tensor that [`rotated`](Self::rotated) turns.
     #[inline]
     pub(crate) fn blunt(self) -> Self {
         self
@@ -368,19 +369,19 @@ impl<N: Num> Rot<N> {
             sin: self.sin * other.cos + self.cos * other.sin,
         }
     }
-    /// How far the tip of `arm` moves along `normal` when it turns: n · (R r − r), given r × n.
+    /// The displacement of the tip of `arm` along `normal` when the arm turns: n · (R r − r), given r × n.
     /// In 2D (cos − 1) n · r + sin (r × n).
     #[inline(always)]
     pub fn shift_along(self, arm: Vector<N>, arm_cross_normal: Angular<N>, normal: Vector<N>) -> N {
         (self.cos - N::ONE) * arm.dot(normal) + self.sin * arm_cross_normal.z
     }
-    /// How far a vector moves when it is turned the other way: R⁻¹ v − v.
+    /// The displacement of a vector when it is turned the other way: R⁻¹ v − v.
     #[inline(always)]
     pub fn unturn(self, v: Vector<N>) -> Vector<N> {
         let less = self.cos - N::ONE;
         Vector { x: less * v.x + self.sin * v.y, y: less * v.y - self.sin * v.x }
     }
-    /// Turns a vector by a small turn. The length is kept to rounding also after many.
+    /// Turns a vector by a small turn. Its length stays exact to rounding even after many turns.
     #[inline(always)]
     pub fn turn_little(self, v: Vector<N>) -> Vector<N> {
         // 1 − cos = sin² / (1 + cos), without cancellation.
@@ -401,8 +402,8 @@ impl<N: Num> Rot<N> {
 }
 
 impl<N: Lane> Rot<N> {
-    /// Scaled to unit length. Within 0.05 % of it, as after a product, by three terms of (1 + e)^-½: cheap, and exact to
-    /// rounding.
+    /// Scaled to unit length. Lengths within 0.05 % of 1, as after a product, use three terms of (1 + e)^-½:
+    /// cheap, and exact to rounding.
     #[inline(always)]
     pub fn renormalized(self) -> Self {
         let e = self.cos * self.cos + self.sin * self.sin - N::ONE;
@@ -467,8 +468,8 @@ impl Rot {
     pub fn turned_by(self, delta: Angular) -> Self {
         Self::from_angle(delta.z).mul(self).normalized()
     }
-    /// Scaled to unit length from any length. Bits stay the same where the length is 1 to rounding. NaN if all components
-    /// are 0.
+    /// Scaled to unit length from any length. The bits stay the same if the length is 1 to rounding. NaN if
+    /// all components are 0.
     pub fn admitted(self) -> Self {
         let [cos, sin] = [self.cos, self.sin].map(f64::from);
         let square = cos * cos + sin * sin;

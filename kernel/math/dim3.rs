@@ -6,7 +6,7 @@ mod tensor3;
 
 /// The number of spatial dimensions.
 pub const DIM: usize = 3;
-/// The most points one manifold holds after reduction.
+/// Maximum number of points of a manifold after reduction.
 pub const MAX_POINTS: usize = 4;
 
 /// A direction, offset or linear velocity.
@@ -104,7 +104,7 @@ impl Vector {
         Self { x: self.x.abs(), y: self.y.abs(), z: self.z.abs() }
     }
 
-    /// The componentwise smaller values.
+    /// The componentwise minimum.
     #[inline]
     pub fn min(self, other: Self) -> Self {
         Self {
@@ -114,7 +114,7 @@ impl Vector {
         }
     }
 
-    /// The componentwise larger values.
+    /// The componentwise maximum.
     #[inline]
     pub fn max(self, other: Self) -> Self {
         Self {
@@ -151,7 +151,7 @@ impl Vector<Scalar> {
         Vector { x: self.x as f32, y: self.y as f32, z: self.z as f32 }
     }
 
-    /// Each component through `f`, for roundings other than the nearest.
+    /// Applies `f` to each component, for rounding modes other than to nearest.
     #[inline]
     pub fn map_to_f32(self, f: impl Fn(Scalar) -> f32) -> Vector {
         Vector { x: f(self.x), y: f(self.y), z: f(self.z) }
@@ -172,7 +172,7 @@ impl Vector<f64> {
         Vector { x: self.x as f32, y: self.y as f32, z: self.z as f32 }
     }
 
-    /// The largest size of a component; infinite if one is not a number.
+    /// The largest absolute value of a component; infinite if a component is not finite.
     pub(crate) fn largest(self) -> f64 {
         let finite = self.x * 0.0 + self.y * 0.0 + self.z * 0.0 == 0.0;
         if finite { self.x.abs().max(self.y.abs()).max(self.z.abs()) } else { f64::INFINITY }
@@ -287,8 +287,8 @@ impl<N: Num> Rot<N> {
             w: self.w * o.w - self.x * o.x - self.y * o.y - self.z * o.z,
         }
     }
-    /// How far the tip of `arm` moves along `normal` when it turns: n · (R r − r), given r × n.
-    /// With the quaternion (u, w) that is 2 (w u · (r × n) + (u · r)(u · n) − (u · u)(r · n)).
+    /// The displacement of the tip of `arm` along `normal` when the arm turns: n · (R r − r), given r × n.
+    /// With the quaternion (u, w) it is 2 (w u · (r × n) + (u · r)(u · n) − (u · u)(r · n)).
     #[inline(always)]
     pub fn shift_along(self, arm: Vector<N>, arm_cross_normal: Angular<N>, normal: Vector<N>) -> N {
         let u = Vector { x: self.x, y: self.y, z: self.z };
@@ -296,7 +296,7 @@ impl<N: Num> Rot<N> {
             - u.length_squared() * arm.dot(normal);
         half + half
     }
-    /// How far a vector moves when it is turned the other way: R⁻¹ v − v, exact also for small turns.
+    /// The displacement of a vector when it is turned the other way: R⁻¹ v − v, exact also for small turns.
     #[inline(always)]
     pub fn unturn(self, v: Vector<N>) -> Vector<N> {
         let u = Vector { x: self.x, y: self.y, z: self.z };
@@ -304,7 +304,7 @@ impl<N: Num> Rot<N> {
         let t = t + t;
         t * self.w - u.cross(t)
     }
-    /// Turns a vector by a small turn. The length is kept to rounding also after many.
+    /// Turns a vector by a small turn. Its length stays exact to rounding even after many turns.
     #[inline(always)]
     pub fn turn_little(self, v: Vector<N>) -> Vector<N> {
         self.rotate(v)
@@ -336,8 +336,8 @@ impl<N: Lane> Rot<N> {
     pub fn splat(v: Rot) -> Self {
         Self { x: N::splat(v.x), y: N::splat(v.y), z: N::splat(v.z), w: N::splat(v.w) }
     }
-    /// Scaled to unit length. Within 0.05 % of it, as after a product, by three terms of (1 + e)^-½: cheap, and exact to
-    /// rounding.
+    /// Scaled to unit length. Lengths within 0.05 % of 1, as after a product, use three terms of (1 + e)^-½:
+    /// cheap, and exact to rounding.
     #[inline(always)]
     pub fn renormalized(self) -> Self {
         let e = self.x * self.x + self.y * self.y + self.z * self.z + self.w * self.w - N::ONE;
@@ -401,7 +401,8 @@ impl Rot {
         let v = axis * (sin as f32);
         Self { x: v.x, y: v.y, z: v.z, w: cos as f32 }
     }
-    /// The rotation as an axis times an angle, with the number of whole turns that brings it nearest to `hint`.
+    /// The rotation as an axis times an angle, with the number of whole turns that brings it nearest to
+    /// `hint`.
     pub fn angle_near(self, hint: Angular) -> Angular {
         let sign = if self.w < 0.0 { -1.0 } else { 1.0 };
         let [x, y, z, w] = [self.x, self.y, self.z, self.w].map(|c| f64::from(c) * sign);
@@ -435,8 +436,8 @@ impl Rot {
     pub fn is_finite(self) -> bool {
         self.x * 0.0 + self.y * 0.0 + self.z * 0.0 + self.w * 0.0 == 0.0
     }
-    /// Scaled to unit length from any length. Bits stay the same where the length is 1 to rounding. NaN if all components
-    /// are 0.
+    /// Scaled to unit length from any length. The bits stay the same if the length is 1 to rounding. NaN if
+    /// all components are 0.
     pub fn admitted(self) -> Self {
         let [x, y, z, w] = [self.x, self.y, self.z, self.w].map(f64::from);
         let square = x * x + y * y + z * z + w * w;

@@ -1,15 +1,16 @@
-//! As many `f64` as a lane has floats, for what `f32` is not exact enough for.
+//! One `f64` for each float of a lane, for values that need more precision than `f32`.
 
 use super::num::Num;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// `f64` side by side, one for each float of a [`Lane`](super::Lane). A lane's result never depends on its neighbours.
+/// `f64` side by side, one for each float of a [`Lane`](super::Lane). A lane's result never depends on its
+/// neighbours.
 pub trait Double: Num {
     /// The same value in every lane.
     fn splat(value: f64) -> Self;
-    /// The inverse where it is above a bound, else 0.
+    /// The inverse of values above a bound, 0 for other values.
     fn inverse_above(self, bound: Self) -> Self;
-    /// Whether it is 0 in all lanes.
+    /// Whether the value is 0 in all lanes.
     fn is_zero(self) -> bool;
 }
 
@@ -28,7 +29,7 @@ impl Double for f64 {
     }
 }
 
-/// `W` times `f64`. The compiler puts them into registers as wide as those of the entry point.
+/// `W` values of `f64`. The compiler keeps them in registers of the width that the entry point allows.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 pub struct Doubles<const W: usize>([f64; W]);

@@ -1,4 +1,4 @@
-//! Entry points: where code that is compiled for the CPU features of a lane begins.
+//! Entry points: the functions at which code compiled for the CPU features of a lane begins.
 #![expect(unsafe_code, reason = "an entry point has a CPU feature that its caller may not have")]
 
 use super::F32x4;
@@ -8,11 +8,12 @@ use super::{Lane, Shared, Width};
 
 /// Work of an entry point.
 ///
-/// [`run`](Self::run) and all that it calls must be `#[inline(always)]`: what is not inlined is not compiled for the
-/// feature. Each type of job has an entry point of its own. Without optimisation, inlined values have places of their own on
-/// the stack: all passes over contact rows in one function took 4.6 MB of it in 3D, where threads have two.
+/// [`run`](Self::run) and all functions below it must be `#[inline(always)]`: a function that is not inlined
+/// is not compiled for the feature. Each type of job has an entry point of its own. Without optimisation,
+/// inlined values have separate places on the stack: all passes over contact rows in one function took 4.6 MB
+/// of stack in 3D, where threads have two.
 pub(crate) trait Job {
-    /// What the work results in.
+    /// The result of the work.
     type Output;
 
     /// Does the work.
@@ -24,7 +25,7 @@ pub(crate) trait Job {
 
 /// A lane with entry points.
 pub(crate) trait Entry: Lane {
-    /// What proves that the CPU has the lane's features.
+    /// The proof that the CPU has the lane's features.
     type Proof: Copy + Send + Sync;
 
     /// Runs a job in an entry point of its own.
@@ -33,7 +34,7 @@ pub(crate) trait Entry: Lane {
     /// As the job demands.
     unsafe fn enter<J: Job>(proof: Self::Proof, job: J) -> J::Output;
 
-    /// The same, but a job of one lane is compiled for the features of a width.
+    /// As [`enter`](Self::enter), but a job with single floats is compiled for the features of a width.
     ///
     /// # Safety
     /// As the job demands.

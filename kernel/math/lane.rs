@@ -1,4 +1,4 @@
-//! Lanes: one `f32`, or several that are computed with side by side.
+//! Lanes: one `f32`, or several computed side by side.
 
 use super::double::Double;
 use super::num::Num;
@@ -102,10 +102,10 @@ impl<const W: usize> Ids for [u32; W] {
     }
 }
 
-/// `WIDTH` floats that are computed with at once. A lane's result never depends on its neighbours.
+/// `WIDTH` floats that are computed at once. A lane's result never depends on its neighbours.
 ///
-/// `max` and `min` follow `a > b ? a : b` and `a < b ? a : b`, so that a NaN in either operand gives
-/// `b`, on every instruction set.
+/// `max` and `min` follow `a > b ? a : b` and `a < b ? a : b`, so a NaN in either operand gives `b`, on every
+/// instruction set.
 pub trait Lane: Num {
     /// The number of floats side by side.
     const WIDTH: usize;
@@ -115,7 +115,7 @@ pub trait Lane: Num {
     type Mask: Copy;
     /// The index of a row for each lane.
     type Ids: Ids;
-    /// As many `f64`.
+    /// One `f64` for each float.
     type Double: Double;
 
     /// The same value in every lane.
@@ -231,7 +231,7 @@ impl Lane for f32 {
     }
 }
 
-/// The inverse of a number, or 0 where that is not positive.
+/// The inverse of a number, or 0 where the number is not positive.
 #[inline(always)]
 pub(crate) fn inverse_of_positive<N: Lane>(number: N) -> N {
     let is_positive = N::ZERO.lt(number);
@@ -270,7 +270,7 @@ mod tests {
         out
     }
 
-    /// Every operation of the wide lane gives the bits that the scalar lane gives.
+    /// Every operation of the wide lane gives the same bits as the scalar lane.
     #[test]
     fn wide_lane_equals_scalar_lane() {
         let samples = [0.0, -0.0, 1.5, -2.25, 1e-38, 3e38, f32::NAN, f32::INFINITY, -7.0, 0.1];

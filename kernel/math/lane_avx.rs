@@ -1,9 +1,9 @@
 //! Eight lanes on x86-64 with AVX2, chosen at run time.
 //!
-//! The operations need AVX2, but the traits of lanes have no target feature. So the type is private to the crate, and only
-//! entry points with the feature `avx2` use it. All methods are inlined into these, and callers of an entry point have an
-//! [`Avx2`](super::Avx2). `tests/rules.rs` lists the files that may name the type. Each operation gives the bits of the
-//! four-lane type.
+//! The operations need AVX2, but the traits of lanes have no target feature. So the type is private to the
+//! crate, and only entry points with the feature `avx2` use it. All methods are inlined into these entry
+//! points, and their callers have an [`Avx2`](super::Avx2). `tests/rules.rs` lists the files that may name
+//! the type. Each operation gives the same bits as the four-lane type.
 #![expect(unsafe_code, reason = "AVX intrinsics; lanes of this width are only used where the CPU has them")]
 
 use super::double::Doubles;
@@ -17,7 +17,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[repr(transparent)]
 pub(crate) struct F32x8(__m256);
 
-/// A comparison of eight lanes, all bits set where it holds.
+/// A comparison of eight lanes. All bits of a lane are set where it holds.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(crate) struct Mask8(__m256);
@@ -115,7 +115,8 @@ fn transpose(rows: [__m256; 4]) -> [__m256; 4] {
 /// Two quads as the halves of one register.
 #[inline(always)]
 fn join(low: &Quad, high: &Quad) -> __m256 {
-    // SAFETY: a `Quad` is 16 bytes at an address aligned to 16; else as above.
+    // SAFETY: a `Quad` is 16 bytes at an address aligned to 16; below an entry point that has an `Avx2` (see
+    // the module).
     unsafe {
         let low = _mm256_castps128_ps256(_mm_load_ps(low.0.as_ptr()));
         _mm256_insertf128_ps::<1>(low, _mm_load_ps(high.0.as_ptr()))

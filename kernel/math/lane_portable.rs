@@ -1,4 +1,4 @@
-//! Four lanes as plain arrays, for targets without an implementation of their own.
+//! Four lanes as plain arrays, for targets without their own implementation.
 #![expect(unsafe_code, reason = "lanes are looked at one by one")]
 
 use super::double::Doubles;
@@ -51,7 +51,7 @@ impl F32x4 {
     /// The lanes of some values, one after another.
     #[inline(always)]
     pub fn flat(values: &[Self]) -> &[f32] {
-        // SAFETY: `Self` is four `f32` in order, without anything between, and more strictly aligned.
+        // SAFETY: `Self` is four `f32` in order, without padding, and more strictly aligned.
         unsafe { core::slice::from_raw_parts(values.as_ptr().cast(), 4 * values.len()) }
     }
 }

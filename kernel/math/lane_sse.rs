@@ -12,7 +12,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[repr(transparent)]
 pub struct F32x4(__m128);
 
-/// A comparison of four lanes, all bits set where it holds.
+/// A comparison of four lanes. All bits of a lane are set where it holds.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub struct Mask4(__m128);
@@ -87,7 +87,7 @@ impl F32x4 {
     /// The lanes of some values, one after another.
     #[inline(always)]
     pub fn flat(values: &[Self]) -> &[f32] {
-        // SAFETY: `Self` is four `f32` in order, without anything between, and more strictly aligned.
+        // SAFETY: `Self` is four `f32` in order, without padding, and more strictly aligned.
         unsafe { core::slice::from_raw_parts(values.as_ptr().cast(), 4 * values.len()) }
     }
 

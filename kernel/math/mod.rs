@@ -1,11 +1,11 @@
 //! The algebra of all other modules, in both dimensions and for any lane.
 //!
-//! Each concept is a small type with the *same operations* in 2D and 3D, so that solver rows are written once. `N` is `f32`,
-//! a wide lane, or (for world positions only) `f64`.
+//! Each concept is a small type with the *same operations* in 2D and 3D, so solver rows are written once. `N`
+//! is `f32`, a wide lane, or (for world positions only) `f64`.
 //!
-//! Rotations: [`Rot`] is the only type of them (a unit complex number in 2D, a unit quaternion in 3D); [`Pose`] is a rotation
-//! and a translation between frames, [`WorldPose`] one with a position in [`Scalar`] precision. Quantities about an axis are
-//! [`Angular`].
+//! Rotations: [`Rot`] is the only rotation type (a unit complex number in 2D, a unit quaternion in 3D).
+//! [`Pose`] is a rotation and a translation between frames, [`WorldPose`] a pose with a position in
+//! [`Scalar`] precision. Quantities about an axis are [`Angular`].
 
 /// Implements `+`, `-`, unary `-`, `* N`, `+=` and `-=` field by field.
 macro_rules! componentwise {
@@ -102,13 +102,15 @@ pub(crate) use pose::{wide_position, world_position};
 pub use tangent::{NormalMoment, Tangent, TangentFrame, TangentMass};
 pub use trig::{atan2, atan2_lanes, cos, sin, sin_cos};
 
-/// A rotation counts as of unit length if the square of its length differs from 1 by at most this. A product of a few
-/// rotations differs by a tenth of it; the integrator renormalises rotations of moving bodies.
+/// A rotation counts as of unit length if its squared length differs from 1 by at most this. A product of a
+/// few rotations differs by a tenth of it; the integrator renormalises rotations of moving bodies.
 const UNIT_TOLERANCE: f64 = 1.0e-5;
 
-/// The precision of world positions: `f64` with the feature `f64`, else `f32`. All else is `f32`.
+/// The precision of world positions: `f64` with the feature `f64`, otherwise `f32`. All other quantities are
+/// `f32`.
 #[cfg(feature = "f64")]
 pub type Scalar = f64;
-/// The precision of world positions: `f64` with the feature `f64`, else `f32`. All else is `f32`.
+/// The precision of world positions: `f64` with the feature `f64`, otherwise `f32`. All other quantities are
+/// `f32`.
 #[cfg(not(feature = "f64"))]
 pub type Scalar = f32;

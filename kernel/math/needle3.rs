@@ -1,9 +1,9 @@
-//! Inverse inertia in world axes, also of needles: their moments differ by more than `f32` resolves.
+//! Inverse inertia in world axes, including needles, whose moments differ by more than `f32` resolves.
 
 use super::{Lane, Rot, SymTensor, Vector};
 
-/// The largest ratio of principal moments of inertia that `f32` resolves in world axes: that of a box 140 times as
-/// long as thick. With more, energy comes from rounding.
+/// The largest ratio of principal moments of inertia that `f32` resolves in world axes: the ratio of a box
+/// 140 times as long as thick. With larger ratios rounding creates energy.
 pub(crate) const MAX_RATIO: f32 = 1.0e4;
 
 /// The relative rounding of an entry.
@@ -12,21 +12,22 @@ const ROUNDING: f32 = 2.0e-7;
 impl SymTensor {
     /// The tensor in world axes of a body turned by `rotation`: R I R⁻¹.
     ///
-    /// A principal value over 10,000 times the others is reduced to that. Its rounding would otherwise exceed the others: a
-    /// pole a thousand times as long as thick would turn across its axis as easily as about it.
+    /// A principal value over 10,000 times the others is reduced to that ratio. Its rounding would otherwise
+    /// exceed the others: a pole a thousand times as long as thick would turn across its axis as easily as
+    /// about it.
     #[inline]
     pub fn rotated(self, rotation: Rot) -> Self {
         self.blunt().turned(rotation)
     }
 
-    /// What [`rotated`](Self::rotated) turns.
+    /// The tensor that [`rotated`](Self::rotated) turns.
     #[inline]
     pub(crate) fn blunt(self) -> Self {
         self.blunted(MAX_RATIO)
     }
 
-    /// The ratio of one principal value to the mean of the others, if it is large. It is infinite or negative if the others
-    /// are lost in rounding.
+    /// The ratio of one principal value to the mean of the other two, if it is large. Infinite or negative if
+    /// the other two are lost in rounding.
     ///
     /// With the trace t = λ1 + λ2 + λ3 and the second invariant s = λ1 λ2 + λ1 λ3 + λ2 λ3 it is 2 t² / s.
     #[inline]
@@ -35,7 +36,7 @@ impl SymTensor {
         2.0 / ((xx * yy - xy * xy) + (xx * zz - xz * xz) + (yy * zz - yz * yz))
     }
 
-    /// The principal axis of a value that is much larger than the others, by the power method.
+    /// The principal axis of a value much larger than the others, by the power method.
     pub(crate) fn thin_axis(self) -> Vector {
         let unit = self.scaled(1.0 / (self.xx + self.yy + self.zz));
         let (xx, yy, zz) = (unit.xx, unit.yy, unit.zz);
@@ -64,7 +65,7 @@ impl SymTensor {
     fn blunted_from(self, actual: f32, ratio: f32) -> Self {
         let trace = self.xx + self.yy + self.zz;
         if trace <= 0.0 {
-            // No valid body has such a tensor. A body with one does not turn.
+            // No valid body has such a tensor. The body does not turn.
             return Self::ZERO;
         }
         if !trace.is_finite() {
@@ -78,13 +79,13 @@ impl SymTensor {
         let resolved = is_diagonal || actual > 0.0 && actual * ROUNDING < 1.0;
         let keep = if resolved { ratio / actual } else { ratio * ROUNDING };
         let cut = self.cut(self.thin_axis(), super::min(keep, 1.0));
-        // The others may be negative where they are lost in rounding.
+        // The other values may be negative if they are lost in rounding.
         let lift = if resolved { 0.0 } else { ROUNDING * trace };
         Self { xx: cut.xx + lift, yy: cut.yy + lift, zz: cut.zz + lift, ..cut }
     }
 
-    /// The tensor with the share `keep` of its value along a unit vector: S − (1 − k) (S a)(S a)ᵀ / aᵀ S a. Locked axes stay
-    /// locked.
+    /// The tensor with its value along a unit vector reduced to the share `keep`: S − (1 − k) (S a)(S a)ᵀ /
+    /// aᵀ S a. Locked axes stay locked.
     pub(crate) fn cut(self, axis: Vector, keep: f32) -> Self {
         let column = self.apply(axis);
         let along = axis.dot(column);
@@ -118,7 +119,7 @@ impl<N: Lane> SymTensor<N> {
     #[inline(always)]
     pub(crate) fn turned(self, rotation: Rot<N>) -> Self {
         let [cx, cy, cz] = rotation.axes();
-        // Rows of R are (cx.x, cy.x, cz.x), …; first T = R I, then T Rᵀ, of which six entries differ.
+        // Rows of R are (cx.x, cy.x, cz.x), …. First T = R I, then T Rᵀ, which has six different entries.
         let r = [
             Vector { x: cx.x, y: cy.x, z: cz.x },
             Vector { x: cx.y, y: cy.y, z: cz.y },

@@ -1,4 +1,4 @@
-//! What vector types consist of.
+//! The numbers that vector types consist of.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};

@@ -1,5 +1,5 @@
-//! Poses: relative ones in `f32`, world poses with a position in [`Scalar`] precision. Differences of world positions are
-//! formed in full precision, then rounded to `f32`.
+//! Poses: relative poses in `f32`, world poses with a position in [`Scalar`] precision. Differences of world
+//! positions are formed in full precision, then rounded to `f32`.
 
 use super::{Rot, Scalar, Vector};
 
@@ -97,7 +97,7 @@ impl WorldPose {
         Self { position, rotation }
     }
 
-    /// The world pose of a frame given relative to this one.
+    /// The world pose of a frame given relative to this pose.
     #[inline]
     pub fn then(&self, inner: &Pose) -> Self {
         Self {

@@ -1,5 +1,5 @@
-//! The tangent space of a contact in the plane: its direction, and the effective mass along it. `tangent3.rs` has
-//! the same types with the same operations.
+//! The tangent space of a contact in the plane: its direction, and the effective mass along it. `tangent3.rs`
+//! has the same types with the same operations.
 
 use super::{InvInertia, Lane, Num, Vector};
 
@@ -24,12 +24,12 @@ pub struct TangentMass<N = f32> {
     xx: N,
 }
 
-/// An angular impulse about the normal of a contact: nothing in 2D, and no bytes.
+/// An angular impulse about the normal of a contact. In 2D there is none, and the type takes no bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NormalMoment;
 
 impl NormalMoment {
-    /// Nothing in 2D.
+    /// Ignores the impulse in 2D.
     #[inline(always)]
     pub fn new(_impulse: f32) -> Self {
         Self
@@ -50,7 +50,7 @@ impl Vector {
 }
 
 impl<N: Num> Tangent<N> {
-    /// Nothing along the tangent.
+    /// The zero vector.
     pub const ZERO: Self = Self { x: N::ZERO };
 }
 
@@ -88,14 +88,14 @@ impl<N: Lane> TangentFrame<N> {
     pub fn project(&self, v: Vector<N>) -> Tangent<N> {
         Tangent { x: self.x.dot(v) }
     }
-    /// The vector of a tangent-space vector.
+    /// The vector that a tangent-space vector stands for.
     #[inline(always)]
     pub fn expand(&self, t: Tangent<N>) -> Vector<N> {
         self.x * t.x
     }
-    /// The inverse of the tangent row's K for two bodies of the inverse inertias and arms given:
-    /// K = tᵀ M⁻¹ t + Σ (rᵢ × t)ᵀ Iᵢ⁻¹ (rᵢ × t), where `inv_mass` is the diagonal of the summed M⁻¹. Zero
-    /// where K is zero.
+    /// The inverse of the tangent row's K for two bodies with the given inverse inertias and arms: K = tᵀ M⁻¹
+    /// t + Σ (rᵢ × t)ᵀ Iᵢ⁻¹ (rᵢ × t), where `inv_mass` is the diagonal of the summed M⁻¹. Zero where K is
+    /// zero.
     #[inline(always)]
     pub fn mass(&self, inv_mass: Vector<N>, bodies: [(InvInertia<N>, Vector<N>); 2]) -> TangentMass<N> {
         let mut k = self.x.dot(self.x.scale(inv_mass));
@@ -108,8 +108,9 @@ impl<N: Lane> TangentFrame<N> {
 }
 
 impl<N: Lane> TangentMass<N> {
-    /// The friction impulse that follows `impulse` at a slip of `v`, no longer than `limit`: one that stops the slip, else one
-    /// against it.
+    /// The new total friction impulse, given the total `impulse` so far and the slip velocity `v`: the
+    /// impulse that stops the slip if it is within `limit`, otherwise an impulse of that length against the
+    /// slip.
     #[inline(always)]
     pub fn rub(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
         (impulse - self.apply(v)).clamp_length(limit)

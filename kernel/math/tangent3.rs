@@ -1,5 +1,5 @@
-//! The tangent space of a contact in space: its directions, and the effective mass along them. `tangent2.rs` has
-//! the same types with the same operations.
+//! The tangent space of a contact in space: its directions, and the effective mass along them. `tangent2.rs`
+//! has the same types with the same operations.
 
 use super::{InvInertia, Lane, Num, Vector};
 
@@ -55,7 +55,7 @@ impl Vector {
 }
 
 impl<N: Num> Tangent<N> {
-    /// Nothing in the tangent plane.
+    /// The zero vector.
     pub const ZERO: Self = Self { x: N::ZERO, y: N::ZERO };
 }
 
@@ -86,8 +86,8 @@ impl<N: Lane> Tangent<N> {
     }
 }
 
-/// A symmetric 2 × 2 matrix counts as singular if its determinant is below this share of its squared trace: below it the
-/// determinant is rounding.
+/// A symmetric 2 × 2 matrix counts as singular if its determinant is below this share of its squared trace:
+/// below it the determinant is rounding.
 const SINGULAR: f32 = 1.0e-5;
 
 impl<N: Lane> TangentFrame<N> {
@@ -108,15 +108,15 @@ impl<N: Lane> TangentFrame<N> {
     pub fn project(&self, v: Vector<N>) -> Tangent<N> {
         Tangent { x: self.x.dot(v), y: self.y.dot(v) }
     }
-    /// The vector of a tangent-plane vector.
+    /// The vector that a tangent-plane vector stands for.
     #[inline(always)]
     pub fn expand(&self, t: Tangent<N>) -> Vector<N> {
         self.x * t.x + self.y * t.y
     }
-    /// The inverse of the coupled tangent rows' 2 × 2 K matrix for two bodies of the inverse inertias
-    /// and arms given: K_ab = t_aᵀ M⁻¹ t_b + Σ (rᵢ × t_a)ᵀ Iᵢ⁻¹ (rᵢ × t_b), where `inv_mass` is the
-    /// diagonal of the summed M⁻¹. If K has rank one, as between bodies locked to a plane, the inverse in its one direction;
-    /// zero if K is zero.
+    /// The inverse of the coupled tangent rows' 2 × 2 K matrix for two bodies with the given inverse inertias
+    /// and arms: K_ab = t_aᵀ M⁻¹ t_b + Σ (rᵢ × t_a)ᵀ Iᵢ⁻¹ (rᵢ × t_b), where `inv_mass` is the diagonal of the
+    /// summed M⁻¹. If K has rank one, as between bodies locked to a plane, it is the inverse along the only
+    /// direction; zero if K is zero.
     #[inline(always)]
     pub fn mass(&self, inv_mass: Vector<N>, bodies: [(InvInertia<N>, Vector<N>); 2]) -> TangentMass<N> {
         let (lx, ly) = (self.x.scale(inv_mass), self.y.scale(inv_mass));
@@ -139,13 +139,15 @@ impl<N: Lane> TangentFrame<N> {
 }
 
 impl<N: Lane> TangentMass<N> {
-    /// The friction impulse that follows `impulse` at a slip of `v`, no longer than `limit`: one that stops the slip, else one
-    /// against it.
+    /// The new total friction impulse, given the total `impulse` so far and the slip velocity `v`, at most
+    /// `limit` long: the impulse that stops the slip if that is allowed, otherwise an impulse against the
+    /// slip.
     ///
-    /// Let u be the slip without `impulse`. The impulse that stops it, λ = −M u, is not along u where bodies turn more easily about
-    /// one axis than another. So an impulse beyond the limit is replaced by one against u, no longer than stops the slip along u:
-    /// |u| / (û · M⁻¹ û). It never gains energy. All of it is computed from w = A λ, which is against u, where A is adj(M)
-    /// divided by the trace of M, so that w is about as large as λ.
+    /// Let u be the slip without `impulse`. The impulse that stops it, λ = −M u, is not along u if bodies
+    /// turn more easily about one axis than about another. So an impulse beyond the limit is replaced by an
+    /// impulse against u, no longer than the impulse that stops the slip along u: |u| / (û · M⁻¹ û). It never
+    /// gains energy. Everything is computed from w = A λ, which is against u, where A is adj(M) divided by
+    /// the trace of M, so w is about as large as λ.
     #[inline(always)]
     pub fn rub(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
         let stick = impulse - self.apply(v);
@@ -159,12 +161,12 @@ impl<N: Lane> TangentMass<N> {
         let bent = adjugate.apply(against);
         let square = against.x * against.x + against.y * against.y;
         let along = against.x * bent.x + against.y * bent.y;
-        // Lengths are divided by that of w: |w|³ / (w · A w) is the one that stops the slip.
+        // Lengths are divided by the length of w: |w|³ / (w · A w) is the length that stops the slip.
         let factor = (limit / square.sqrt().max(tiny)).min(square / along.max(tiny));
         let slide = Tangent::select(regular, against * factor, stick.clamp_length(limit));
         Tangent::select(slides, slide, stick)
     }
-    /// The change of slip per impulse, 1/kg, about: that along both tangents is not the same. 0 if nothing moves.
+    /// The approximate change of slip per impulse, 1/kg; it differs between the tangents. 0 if nothing moves.
     #[inline(always)]
     pub fn mean_inverse(self) -> N {
         let sum = self.xx + self.yy;
@@ -201,13 +203,13 @@ mod tests {
     }
 
     proptest! {
-        /// Against the closed form in f64, for masses of a speck to those of a planet.
+        /// Compares with the closed form in f64, for masses from a speck to a planet.
         #[test]
         fn friction_is_against_the_slip_and_gains_no_energy(
             (a, b, turn) in (0.1f64..10.0, 0.1f64..10.0, 0.0f64..3.2),
             slip in [-3.0f64..3.0, -3.0f64..3.0], limit in 0.0f64..3.0, scale in -9i32..12,
         ) {
-            // The masses along two axes, and the mass of a slip along x and y.
+            // The masses a and b along two axes, and the mass matrix of a slip along x and y.
             let scale = 10.0f64.powi(scale);
             let (sin, cos) = turn.sin_cos();
             let (xx, yy, xy) = (a * cos * cos + b * sin * sin, a * sin * sin + b * cos * cos, (a - b) * sin * cos);
@@ -225,12 +227,12 @@ mod tests {
             let (dot, across) =
                 (found[0] * slip[0] + found[1] * slip[1], found[0] * slip[1] - found[1] * slip[0]);
             prop_assert!(dot <= 0.0 && across.abs() <= 1e-3 * length(found) * length(slip), "{found:?} for {slip:?}");
-            // The energy gained: the impulse times the mean of the slips before and after.
+            // The gained energy: the impulse times the mean of the slips before and after.
             let determinant = a * b;
             let after = [(yy * found[0] - xy * found[1]) / determinant, (xx * found[1] - xy * found[0]) / determinant];
             let gained = dot + 0.5 * (found[0] * after[0] + found[1] * after[1]);
             prop_assert!(gained <= 1e-5 * dot.abs(), "{gained} J");
-            // It is as long as it may be.
+            // The impulse is as long as allowed.
             let stops = length(slip) * length(slip) * length(slip) * determinant
                 / (slip[0] * (yy * slip[0] - xy * slip[1]) + slip[1] * (xx * slip[1] - xy * slip[0]));
             prop_assert!((length(found) - limit.min(stops)).abs() < 1e-3 * limit.min(stops));

@@ -20,7 +20,8 @@ impl<N: Num> SymTensor<N> {
         }
     }
 
-    /// The product with a vector; of an [`InvInertia`](super::InvInertia) the change of angular velocity by an angular impulse.
+    /// The product with a vector. For an [`InvInertia`](super::InvInertia) it is the change of angular
+    /// velocity by an angular impulse.
     #[inline(always)]
     pub fn apply(self, v: Angular<N>) -> Angular<N> {
         Vector {
@@ -85,17 +86,18 @@ impl SymTensor {
 
     /// The inverse of this symmetric matrix; zero if it is singular, or if the inverse is not finite.
     ///
-    /// Computed in `f64`: the determinant is a product of three entries, which in `f32` underflows for bodies of millimetres.
+    /// Computed in `f64`: the determinant is a product of three entries, which in `f32` underflows for bodies
+    /// of millimetres.
     ///
-    /// In axes other than its own, the smallest moment of a needle may be less than the rounding of the others, or negative.
-    /// It is then raised to about that rounding.
+    /// In axes other than the principal axes, the smallest moment of a needle may be less than the rounding
+    /// of the others, or negative. It is then raised to about that rounding.
     pub fn inverse(self) -> Self {
         let [mut xx, mut yy, mut zz] = [self.xx, self.yy, self.zz].map(f64::from);
         let [xy, xz, yz] = [self.xy, self.xz, self.yz].map(f64::from);
         let askew = xy != 0.0 || xz != 0.0 || yz != 0.0;
         let trace = xx + yy + zz;
         let minors = (xx * yy - xy * xy) + (xx * zz - xz * xz) + (yy * zz - yz * yz);
-        // Of moments (e, 1, 1) the determinant is e / 2 of the product of trace and minors.
+        // For moments (e, 1, 1) the determinant is e / 2 times the product of trace and minors.
         let determinant = xx * (yy * zz - yz * yz) + xy * (xz * yz - xy * zz) + xz * (xy * yz - xz * yy);
         if askew && minors > 1.0e-3 * trace * trace && determinant <= 1.0e-7 * trace * minors {
             let lift = 2.0e-7 * trace;
@@ -119,11 +121,11 @@ impl SymTensor {
 
     /// The inverse inertia, in world axes, of a body that does not turn about the axes in `locks`.
     ///
-    /// A locked axis has an infinite moment of inertia. In the inverse that is a rank-one
-    /// downdate per locked axis: I⁻¹ − (I⁻¹ e)(I⁻¹ e)ᵀ / (eᵀ I⁻¹ e).
+    /// A locked axis has an infinite moment of inertia. In the inverse this is a rank-one downdate per locked
+    /// axis: I⁻¹ − (I⁻¹ e)(I⁻¹ e)ᵀ / (eᵀ I⁻¹ e).
     ///
-    /// Entries are scaled by a power of two near the largest one meanwhile, which rounds nothing: squares of those of tiny bodies
-    /// would overflow.
+    /// Meanwhile entries are scaled by a power of two near the largest entry, which rounds nothing: squares
+    /// of the entries of tiny bodies would overflow.
     pub fn locked(self, locks: AxisLocks) -> Self {
         let size = Vector { x: self.xx, y: self.yy, z: self.zz }.max_element();
         let scale = power_of_two_of(size);
@@ -166,7 +168,7 @@ fn power_of_two_of(size: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Characters of a tenth of a millimetre had inertia that was not a number.
+    /// Regression: the inertia of characters of a tenth of a millimetre was NaN.
     #[test]
     fn issue_locks_of_tiny_bodies_were_not_finite() {
         let tensor = SymTensor { xx: 3.0, yy: 2.0, zz: 1.5, xy: 0.2, xz: -0.3, yz: 0.1 };

@@ -1,10 +1,10 @@
-//! The kernel's own sine, cosine and arc tangent, in `f64`: the same bits on every machine, which libm does not guarantee.
-//! Taylor series after range reduction, accurate to about one unit in the last place of `f64`. Rounded to `f32`, results are
-//! the nearest `f32` but for rare ties.
+//! The kernel's own sine, cosine and arc tangent, in `f64`: the same bits on every machine, which libm does
+//! not guarantee. Taylor series after range reduction, accurate to about one unit in the last place of `f64`.
+//! Rounded to `f32`, results are the nearest `f32` except for rare ties.
 
 use super::Lane;
 
-/// π/2 in three parts; the first two have 33 bits, so that `k` times them is exact for `k < 2^20`.
+/// π/2 in three parts. The first two have 33 bits, so `k` times them is exact for `k < 2^20`.
 const HALF_PI: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
 /// Larger arguments are first reduced to one turn by the (exact) remainder.
 const LARGE: f64 = 1.0e6;
@@ -101,7 +101,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
 
 /// The angle of the point `(x, y)` in radians, in −π … π, to within 1e-6; 0 for the origin.
 ///
-/// The polynomial is that of Cephes' `atanf`, for ratios up to tan π/8; larger ones are turned back by π/4.
+/// The polynomial is from Cephes' `atanf`, for ratios up to tan π/8; larger ratios are turned back by π/4.
 #[inline(always)]
 pub fn atan2_lanes<N: Lane>(y: N, x: N) -> N {
     use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};

@@ -1,43 +1,47 @@
-//! When a shape that moves along a line meets another, by conservative [advancement](crate::distance::advance()).
+//! The distance at which a shape that moves along a line meets another, by conservative
+//! [advancement](crate::distance::advance()).
 //!
-//! The distance of two convex shapes is a convex function of the way. The plane between both closes at a constant rate,
-//! and the distance is never less than its gap: advancing by gap / rate is Newton's method on a convex function, from
-//! the left. It does not pass the first root, ends after as many faces as are met on polytopes, and doubles its digits
-//! on curves.
+//! The distance of two convex shapes is a convex function of the displacement. The plane between both closes
+//! at a constant rate, and the distance is never less than the plane's gap: advancing by gap / rate is
+//! Newton's method on a convex function, from the left. It does not pass the first root. On polytopes it ends
+//! after one step per face that is met, on curves each step doubles the digits.
 
 use super::closest::{Closest, closest};
 use crate::distance::{Accuracy, Approach, Convex, Cores, Frame, Search, advance, closest_cores};
 use crate::math::{Pose, Vector, max};
 use crate::shape::{Aabb, Composite, HalfSpace, Part, Shape};
 
-/// Most steps of an advance. A shape that touches another in passing takes the most: each step halves what is left.
+/// Maximum number of steps of an advance. A shape that touches another in passing takes the most steps: each
+/// step halves the remaining distance.
 const MAX_ROUNDS: usize = 64;
 
-/// Shapes meet when they are as near as this share of their sizes, of which a larger one without curves counts as the
-/// smaller: its vertices are exact, so that a cast over a large floor is as exact as over a small one.
+/// Shapes meet at this share of their sizes. For a shape without curves the smaller of both sizes counts: its
+/// vertices are exact, so a cast over a large floor is as exact as over a small one.
 const MET: f64 = 1.0e-6;
 
-/// The same, of the larger size, where the distance that counts as touching is more.
+/// A share of the larger size that is added, since the distance that counts as touching grows with it.
 const MET_OF_LARGER: f64 = 1.0e-9;
 
-/// How far curves are moved apart, times how near they meet, to tell their normal. More turns the normal, by the way over
-/// the radius of curvature.
+/// How far curves are moved apart to compute their normal, as a multiple of the distance at which they meet.
+/// A larger multiple turns the normal, by the displacement over the radius of curvature.
 const FAR_ENOUGH: f64 = 300.0;
 
-/// Shapes that close at less than this share of their speed slide along each other: the rounding of normals.
+/// Shapes that close at less than this share of their speed slide along each other: it covers the rounding of
+/// normals.
 const SLIDING: f32 = 1.0e-6;
 
-/// How far shapes that overlap where they met are moved back, times how near they meet.
+/// How far shapes that overlap where they met are moved back, as multiples of the distance at which they
+/// meet.
 const BACK: [f64; 5] = [4.0, 32.0, 256.0, 2048.0, 16384.0];
 
-/// What counts as a hit of a cast.
+/// The conditions of a hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CastConfig {
     /// The distance at which shapes meet, in metres.
     pub target_distance: f32,
-    /// Whether shapes that overlap from the start, and do not go deeper, are passed by.
+    /// Whether shapes that overlap at the start, and do not move deeper, are ignored.
     pub ignore_origin_penetration: bool,
-    /// Whether points and normal are computed of shapes that overlap from the start.
+    /// Whether points and normal are computed for shapes that overlap at the start.
     pub compute_contact_on_penetration: bool,
 }
 
@@ -47,27 +51,28 @@ impl Default for CastConfig {
     }
 }
 
-/// How a shape that moves, B, meets one that does not, A.
+/// The hit of a moving shape B on a resting shape A.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CastHit {
     /// The distance moved until the hit, in metres.
     pub distance: f32,
-    /// The nearest points then, on A and on B, in A's frame. Both are the frame's origin if they were not asked for.
+    /// The nearest points at the hit, on A and on B, in A's frame. Both are the frame's origin if they were
+    /// not requested.
     pub points: [Vector; 2],
-    /// The unit normal from A to B, in A's frame. Zero if it was not asked for.
+    /// The unit normal from A to B, in A's frame. Zero if it was not requested.
     pub normal: Vector,
 }
 
-/// A cast in the frame of the shape that does not move.
+/// A cast in the frame of the resting shape.
 #[derive(Clone, Copy)]
 struct Way {
-    /// Of unit length.
+    /// The direction, of unit length.
     direction: Vector,
     config: CastConfig,
 }
 
-/// The first hit of shape `b`, which moves from `pose_b_in_a` along the unit vector `direction` in A's frame, on shape
-/// `a` within `max_distance`, in metres.
+/// The first hit of shape `b` on shape `a` within `max_distance`, in metres. B moves from `pose_b_in_a` along
+/// the unit vector `direction` in A's frame.
 ///
 /// `None` also if a number is not finite, and for foreign shapes.
 pub fn cast_shape(
@@ -115,7 +120,7 @@ fn turned(a: &Shape, b: &Shape, pose: &Pose, way: &Way, limit: f32) -> Option<Ca
     Some(CastHit { points: [a, b], normal: -then.rotation.rotate(hit.normal), ..hit })
 }
 
-/// The first hit on any part; of equally near parts, on the first.
+/// The first hit on any part; of equally near parts, on the first part.
 fn of_parts(composite: &Composite<Shape>, b: &Shape, pose: &Pose, way: &Way, limit: f32) -> Option<CastHit> {
     let around = b.local_box(pose);
     let (from, inverse) = (around.center(), way.direction.to_array().map(|c| 1.0 / c));
@@ -148,7 +153,7 @@ fn of_parts(composite: &Composite<Shape>, b: &Shape, pose: &Pose, way: &Way, lim
     best.map(|best| best.0)
 }
 
-/// A hit of shapes that are near enough from the start.
+/// The hit of shapes that are close enough at the start.
 fn at_start(a: &Shape, b: &Shape, pose: &Pose, way: &Way) -> Option<CastHit> {
     let Way { direction, config } = way;
     let unknown = CastHit { distance: 0.0, points: [Vector::ZERO; 2], normal: Vector::ZERO };
@@ -174,7 +179,7 @@ fn met_distance(shapes: [(&Shape, &Convex); 2]) -> f64 {
     MET * (size(0, a) + size(1, b)) + MET_OF_LARGER * a.max(b)
 }
 
-/// Two bounded convex shapes: B moves as far as planes of a first search allow, then by Newton's method.
+/// Two bounded convex shapes. B moves as far as the planes of a first search allow, then by Newton's method.
 fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, way: &Way, limit: f32) -> Option<CastHit> {
     let (a, b) = (Convex::of(shape_a)?, Convex::of(shape_b)?);
     let direction = way.direction.widen();
@@ -194,18 +199,18 @@ fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, way: &Way, limit: f3
         if way_done == 0.0 && gap <= 0.0 {
             return at_start(shape_a, shape_b, pose, way).map(Approach::Met);
         }
-        // Where cores touch the normal is that of the plane which was crossed.
+        // If the cores touch, the normal is the normal of the plane that was crossed.
         if cores.distance > 0.0 {
             normal = cores.normal;
         }
         let rate = -direction.dot(normal);
         if gap <= met {
-            // Those that already part, or slide along each other, do not meet.
+            // Shapes that move apart already, or slide along each other, do not meet.
             let parting = !(rate > 1.0e-7);
             if parting && way_done == 0.0 {
                 return None;
             }
-            // The rest of the way is short, so that the points stay what they are.
+            // The rest of the way is short, so the points stay valid.
             let rest = if parting { 0.0 } else { (gap / rate).clamp(0.0, 16.0 * met) };
             let distance = (way_done + rest).min(f64::from(limit).max(way_done));
             let meeting = Meeting { shapes: [&a, &b], frame: search.frame(), direction, met, target };
@@ -232,7 +237,8 @@ struct Meeting<'a> {
 }
 
 impl Meeting<'_> {
-    /// The normal and the points on both, given the closest points of the cores and the normal of a plane between them.
+    /// The normal and the points on both shapes, given the closest points of the cores and the normal of a
+    /// plane between them.
     fn contact(&self, cores: Cores, normal: Vector<f64>) -> Option<(Vector, [Vector; 2])> {
         let [a, b] = self.shapes;
         let accuracy = Accuracy { tolerance: 0.1 * self.met, beyond: f64::INFINITY };
@@ -246,7 +252,7 @@ impl Meeting<'_> {
             if cores.distance > 0.0 { cores } else { BACK.into_iter().find_map(apart).unwrap_or(cores) };
         let mut normal = if cores.distance > 0.0 { cores.normal } else { normal };
         if (a.is_curved() || b.is_curved()) && cores.distance < FAR_ENOUGH * self.met {
-            // Points on curves are rounded to f32, and so is the direction between near ones.
+            // Points on curves are rounded to f32, and so is the direction between close points.
             let apart = earlier(FAR_ENOUGH * self.met)?;
             normal = if apart.distance > 0.0 { apart.normal } else { normal };
         }

@@ -8,17 +8,17 @@ use crate::shape::{Aabb, Composite, HalfSpace, Part, Shape};
 /// The nearest points of two shapes, or how they overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// On the surface of A and of B, in A's frame.
+    /// The points on the surface of A and of B, in A's frame.
     pub points: [Vector; 2],
     /// The unit normal from A to B, in A's frame. Zero for two half-spaces that are not opposite.
     pub normal: Vector,
-    /// In metres; negative where they overlap: B is then free after moving so far along the normal. The normal is that
-    /// of the least depth, or that of a face with somewhat more, as in contacts.
+    /// In metres; negative if the shapes overlap: B is free after moving by this depth along the normal. The
+    /// normal has the least depth, or belongs to a face of slightly more depth, as in contacts.
     pub distance: f32,
 }
 
 impl Closest {
-    /// The same seen from B, `pose` being where A is in B's frame.
+    /// The same result seen from B, where `pose` is the pose of A in B's frame.
     pub(super) fn flipped(&self, pose: &Pose) -> Self {
         let [a, b] = self.points;
         Self {
@@ -28,7 +28,7 @@ impl Closest {
         }
     }
 
-    /// The same in an outer frame.
+    /// The same result in an outer frame.
     fn moved(&self, pose: &Pose) -> Self {
         Self {
             points: self.points.map(|point| pose.transform(point)),
@@ -45,17 +45,18 @@ impl Closest {
     }
 }
 
-/// The nearest points of shape `a` and shape `b`, `pose_b_in_a` being where B is in A's frame. `None` if they are
-/// farther apart than `limit` metres, if a number is not finite, and for foreign shapes.
+/// The nearest points of shape `a` and shape `b`, where `pose_b_in_a` is the pose of B in A's frame. `None`
+/// if they are farther apart than `limit` metres, if a number is not finite, and for foreign shapes.
 ///
-/// Of composites it is the nearest part; where parts overlap the deepest.
+/// For composites it is the nearest part, or if parts overlap the deepest part.
 pub fn closest(a: &Shape, b: &Shape, pose_b_in_a: &Pose, limit: f32) -> Option<Closest> {
     let found = of_shapes(a, b, pose_b_in_a, limit)?;
     (found.distance <= limit && found.is_finite()).then_some(found)
 }
 
-/// Calls `visit` with the nearest points of each convex part of shape `a` and each of shape `b` that are within `limit`
-/// metres, in an order that depends on the shapes and the pose only. Parts that overlap are found as by [`closest`].
+/// Calls `visit` with the nearest points of each convex part of shape `a` and each convex part of shape `b`
+/// that are within `limit` metres, in an order that depends only on the shapes and the pose. Overlapping
+/// parts are found as by [`closest`].
 pub fn visit_closest(a: &Shape, b: &Shape, pose_b_in_a: &Pose, limit: f32, visit: &mut dyn FnMut(Closest)) {
     match (a, b) {
         (Shape::Composite(composite), b) => {
@@ -120,9 +121,9 @@ fn of_shapes(a: &Shape, b: &Shape, pose: &Pose, limit: f32) -> Option<Closest> {
     }
 }
 
-/// Calls `visit` with the parts of a composite whose boxes may be within a limit of a shape: the part's number, the
-/// part, its pose in the composite's frame, the shape's pose in the part's frame, and the present limit. It returns the
-/// new limit.
+/// Calls `visit` with the parts of a composite whose boxes may be within a limit of a shape: the part's
+/// number, the part, its pose in the composite's frame, the shape's pose in the part's frame, and the current
+/// limit. `visit` returns the new limit.
 fn visit_parts(
     composite: &Composite<Shape>,
     other: &Shape,
@@ -131,7 +132,7 @@ fn visit_parts(
     mut visit: impl FnMut(u32, &Shape, &Pose, &Pose, f32) -> f32,
 ) {
     let around = other.local_box(pose);
-    // Boxes are as exact as their numbers.
+    // Boxes are as exact as their coordinates.
     let slack = 1.0e-6 * (pose.position.abs() + around.half()).max_element();
     let gap = |aabb: &Aabb| {
         let apart = (aabb.min - around.max).max(around.min - aabb.max).max(Vector::ZERO).length();
@@ -148,7 +149,7 @@ fn cores(a: &Convex, b: &Convex, pose: &Pose, tolerance: f64, beyond: f64) -> Op
     closest_cores(a, b, &frame, frame.position * guess(frame.position), Accuracy { tolerance, beyond })
 }
 
-/// The factor that makes a vector one of unit length, or zero.
+/// The factor that scales a vector to unit length, or zero.
 fn guess(v: Vector<f64>) -> f64 {
     let length = v.length();
     if length > 0.0 && length < f64::INFINITY { 1.0 / length } else { 0.0 }
@@ -169,21 +170,21 @@ fn of_convex(shape_a: &Shape, shape_b: &Shape, pose: &Pose, limit: f32) -> Optio
     })
 }
 
-/// How shapes with cores that touch overlap: along the normal of their manifold, which is that of the least depth.
+/// The overlap of shapes with touching cores, along the normal of their manifold, which has the least depth.
 fn overlap(a: &Shape, b: &Shape, pose: &Pose, cores: &Cores) -> Option<Closest> {
     let (mut manifold, mut cache) = (LocalManifold::default(), FeatureCache::NONE);
-    // What cores touch by may be apart by the rounding of the manifold.
+    // Touching cores may be apart by the rounding of the manifold.
     let room = 1.0e-4 * (a.local_box(&Pose::IDENTITY).half() + b.local_box(&Pose::IDENTITY).half()).length();
     manifold::collide(a, b, pose, room, &mut cache, &mut manifold);
     let deepest = manifold.points().iter().reduce(|p, q| if q.separation < p.separation { q } else { p });
     let Some(deepest) = deepest else {
-        // Without an inside, as two segments that cross.
+        // Shapes without an inside, such as two crossing segments.
         let toward = pose.position.widen();
         let normal = toward * guess(toward);
         let normal = if normal == Vector::ZERO { Vector::Y } else { normal.narrow() };
         return Some(Closest { points: [cores.a.narrow(), cores.b.narrow()], normal, distance: 0.0 });
     };
-    // The manifold's points may leave out the deepest one.
+    // The manifold's points may leave out the deepest point.
     let normal = manifold.normal;
     let top = a.support(normal)?.dot(normal);
     let bottom = pose.transform(b.support(-pose.rotation.inverse_rotate(normal))?).dot(normal);

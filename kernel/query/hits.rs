@@ -4,13 +4,13 @@ use crate::math::Scalar;
 
 /// A hit of a collider.
 pub trait Hit: Copy {
-    /// Its order: nearer first. In metres.
+    /// The distance in metres; nearer hits come first.
     fn distance(&self) -> Scalar;
     /// The collider, which orders hits at the same distance.
     fn collider(&self) -> u32;
 }
 
-/// The nearest of some hits; of equally near ones that of the lowest id.
+/// The nearest of some hits; of equally near hits, the hit with the lowest collider id.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearest<H> {
     best: Option<H>,
@@ -23,7 +23,8 @@ impl<H> Default for Nearest<H> {
 }
 
 impl<H: Hit> Nearest<H> {
-    /// Takes a hit if it is the nearest so far, and returns the limit for others: its distance, or `limit`.
+    /// Takes a hit if it is the nearest so far. Returns the limit for further hits: its distance, or `limit`
+    /// if that is less.
     pub fn offer(&mut self, hit: Option<H>, limit: Scalar) -> Scalar {
         let Some(hit) = hit else { return limit };
         let is_nearer = |best: H| (hit.distance(), hit.collider()) < (best.distance(), best.collider());
@@ -39,7 +40,7 @@ impl<H: Hit> Nearest<H> {
     }
 }
 
-/// Sorts hits by distance, those at the same distance by collider.
+/// Sorts hits by distance, and hits at the same distance by collider.
 pub fn sort_hits<H: Hit>(hits: &mut [H]) {
     hits.sort_unstable_by(|a, b| a.distance().total_cmp(&b.distance()).then(a.collider().cmp(&b.collider())));
 }

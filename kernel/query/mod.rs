@@ -1,9 +1,11 @@
 //! Spatial queries: rays, shape casts, nearest points and overlaps.
 //!
-//! Of two shapes at poses: [`closest`], [`visit_closest`], [`overlaps`], [`cast_shape`], [`project_point`]. Of all colliders in trees: a
-//! [`Ray`] or a [`ShapeCast`] is made once and visits what it may meet.
+//! For two shapes at poses: [`closest`], [`visit_closest`], [`overlaps`], [`cast_shape`], [`project_point`].
+//! For all colliders in trees: a [`Ray`] or a [`ShapeCast`] is made once and visits the colliders that it may
+//! meet.
 //!
-//! All queries read only, take any numbers, and give the same bits for the same input. Distances are in metres.
+//! All queries are read-only, accept any numbers, and give the same bits for the same input. Distances are in
+//! metres.
 
 mod cast;
 mod closest;

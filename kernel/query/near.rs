@@ -1,6 +1,6 @@
 //! Searches of all trees: by a box, by the distance from a point, and along a line.
 //!
-//! Trees are in `f32` and positions may be in `f64`: boxes are grown by what rounding takes away.
+//! Trees are in `f32` and positions may be in `f64`, so boxes are grown by the rounding error.
 
 use crate::bvh::{TreeKind, Trees};
 use crate::math::{Scalar, Vector, WorldVector, max, min, wide_position};
@@ -9,11 +9,11 @@ use crate::shape::Aabb;
 /// Rounding of a unit vector to `f32`, per component.
 const DIRECTION_ROUNDING: f32 = 1.2e-7;
 
-/// How far lines are followed whose tree has no end, as those with half-spaces, to find how far rounding takes them
-/// aside; in metres.
+/// The length up to which a line is followed in an unbounded tree (with half-spaces), to bound its lateral
+/// error by rounding; in metres.
 const ENDLESS: f32 = 1.0e6;
 
-/// Calls `visit` with every collider whose box touches a box, until it returns `false`.
+/// Calls `visit` with every collider whose box touches a box, until `visit` returns `false`.
 pub fn visit_touching(trees: &Trees, aabb: &Aabb, mut visit: impl FnMut(u32) -> bool) {
     for kind in TreeKind::ALL {
         if !trees[kind].query(aabb, &mut visit) {
@@ -22,8 +22,8 @@ pub fn visit_touching(trees: &Trees, aabb: &Aabb, mut visit: impl FnMut(u32) -> 
     }
 }
 
-/// Calls `visit` with the colliders whose boxes are within a limit of a point, nearer branches first, and the present
-/// limit. It returns the new limit, negative to stop.
+/// Calls `visit` with the colliders whose boxes are within a limit of a point, nearer branches first, and the
+/// current limit. `visit` returns the new limit, negative to stop.
 pub fn visit_near(
     trees: &Trees,
     point: WorldVector,
@@ -51,7 +51,7 @@ pub fn visit_near(
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
     pub(super) origin: Vector<f64>,
-    /// Of unit length.
+    /// The direction, of unit length.
     pub(super) direction: Vector<f64>,
 }
 
@@ -70,14 +70,15 @@ impl Line {
         if !(largest > 0.0 && largest < f64::INFINITY) {
             return None;
         }
-        // Scaled first: the square of the length is no normal number.
+        // Scaled first, since the square of the length is not a normal number.
         let scaled = direction * (1.0 / largest);
         let direction = scaled * (1.0 / scaled.length());
         (direction.largest() < f64::INFINITY).then_some(Self { origin, direction })
     }
 
-    /// Calls `visit` with the colliders whose boxes are met within a limit by a box of half size `half` whose centre
-    /// moves along the line, nearer branches first, and the present limit. It returns the new limit, negative to stop.
+    /// Calls `visit` with the colliders whose boxes are met within a limit by a box of half size `half` whose
+    /// centre moves along the line, nearer branches first, and the current limit. `visit` returns the new
+    /// limit, negative to stop.
     pub(super) fn visit(
         &self,
         trees: &Trees,
@@ -110,13 +111,13 @@ impl Line {
     }
 }
 
-/// A limit in the trees' `f32`, no less.
+/// A limit in the trees' `f32`, rounded up.
 fn up(limit: Scalar) -> f32 {
     let limit = limit as f32 * (1.0 + 8.0 * f32::EPSILON);
     if limit < f32::MAX { limit.next_up() } else { f32::MAX }
 }
 
-/// A position in `f32`, and how far it is from the position on each axis at most.
+/// A position in `f32`, and its maximum distance from the exact position on each axis.
 fn rounded(position: Vector<f64>) -> (Vector, Vector) {
     let near = position.narrow();
     let off = (position - near.widen()).narrow().abs();

@@ -17,10 +17,12 @@ pub struct Projection {
 
 const POINT: Shape = Shape::Ball(Ball { radius: 0.0 });
 
-/// The nearest point of a shape to a point in its frame. A point inside is its own projection if `solid`, else it is
-/// projected onto the boundary; of a compound onto the boundary of the part that it is deepest in.
+/// The nearest point of a shape to a point in its frame. A point inside is its own projection if `solid`,
+/// otherwise it is projected onto the boundary; in a compound, onto the boundary of the part in which it is
+/// deepest.
 ///
-/// `None` if it is farther than `limit` metres, if a number is not finite, and for foreign shapes.
+/// `None` if the projection is farther than `limit` metres, if a number is not finite, and for foreign
+/// shapes.
 pub fn project_point(shape: &Shape, point: Vector, solid: bool, limit: f32) -> Option<Projection> {
     if !point.is_finite() || !(limit >= 0.0) {
         return None;
@@ -40,7 +42,7 @@ pub fn contains_point(shape: &Shape, point: Vector) -> bool {
     point.is_finite() && overlaps(shape, &POINT, &Pose::new(point, Rot::IDENTITY))
 }
 
-/// Whether points can be inside of the shape.
+/// Whether points can be inside the shape.
 fn has_inside(shape: &Shape) -> bool {
     match shape {
         Shape::Composite(composite) => composite.surface().is_none(),

@@ -6,10 +6,12 @@ use crate::bvh::Trees;
 use crate::math::{Rot, Scalar, Vector, WorldPose, WorldVector, wide_position};
 use crate::shape::Shape;
 
-/// Rays that begin farther than this from a shape, in metres, are cast from a nearer point: `f32` is too coarse there.
+/// Rays that begin farther than this from a shape, in metres, are cast from a nearer point, since `f32` is
+/// too coarse there.
 const FAR: f64 = 8.0;
 
-/// Added to balls around shapes, in metres: what rounding to `f32` takes aside where rays are not cast from nearer.
+/// Added to balls around shapes, in metres: the lateral error by rounding to `f32` of rays that are not cast
+/// from a nearer point.
 const LEAST_ROOM: f64 = 1.0e-5;
 
 /// A ray in the world.
@@ -27,7 +29,7 @@ pub struct RayCastHit {
     pub collider: u32,
     /// The distance along the ray, in metres.
     pub distance: Scalar,
-    /// The outward unit normal; zero if the ray begins inside of a solid.
+    /// The outward unit normal; zero if the ray begins inside a solid.
     pub normal: Vector,
 }
 
@@ -42,12 +44,14 @@ impl Hit for RayCastHit {
 }
 
 impl Ray {
-    /// The ray from `origin` along `direction`, of any length, up to `max_distance` metres, which may be infinite.
+    /// The ray from `origin` along `direction`, of any length, up to `max_distance` metres, which may be
+    /// infinite.
     ///
-    /// A ray that begins inside of a shape hits it at distance 0 if `solid`, else from within.
+    /// A ray that begins inside a shape hits it at distance 0 if `solid`, otherwise it hits the boundary from
+    /// within.
     ///
-    /// `None` if origin or direction is not finite, the direction is zero, or the distance negative or NaN: such a ray
-    /// hits nothing.
+    /// `None` if origin or direction is not finite, the direction is zero, or the distance negative or NaN:
+    /// such a ray hits nothing.
     pub fn new(
         origin: WorldVector,
         direction: WorldVector,
@@ -59,13 +63,14 @@ impl Ray {
         (max_distance >= 0.0).then_some(Self { line, max_distance, solid })
     }
 
-    /// Its length in metres.
+    /// The length of the ray in metres.
     pub fn max_distance(&self) -> Scalar {
         self.max_distance
     }
 
-    /// Calls `visit` with the colliders whose boxes it meets, nearer branches first, and the present limit. It returns
-    /// the new limit: the distance of a hit to find nearer ones only, negative to stop.
+    /// Calls `visit` with the colliders whose boxes the ray meets, nearer branches first, and the current
+    /// limit. `visit` returns the new limit: the distance of a hit to find only nearer hits, negative to
+    /// stop.
     pub fn visit(&self, trees: &Trees, visit: impl FnMut(u32, Scalar) -> Scalar) {
         self.line.visit(trees, Vector::ZERO, self.max_distance, visit);
     }
@@ -101,8 +106,9 @@ impl Ray {
     }
 }
 
-/// The way along a line until it is within `room` metres of the ball around a shape, or less, in metres. `None` if the
-/// line passes the ball. `offset` is from the shape's position to the origin of the line, in world axes.
+/// The distance along a line until it is within `room` metres of the ball around a shape, or less, in metres.
+/// `None` if the line passes the ball. `offset` is from the shape's position to the origin of the line, in
+/// world axes.
 pub(super) fn approach(
     shape: &Shape,
     rotation: Rot,

@@ -13,7 +13,7 @@ use crate::shape::Shape;
 pub struct ShapeCast<'a> {
     shape: &'a Shape,
     rotation: Rot,
-    /// From the position of the shape's frame.
+    /// The line that the position of the shape's frame moves along.
     line: Line,
     /// The centre of the shape's box relative to its frame's position, and half its size, in world axes.
     center: Vector,
@@ -29,7 +29,7 @@ pub struct ShapeCastHit {
     pub collider: u32,
     /// The distance moved until the hit, in metres.
     pub distance: Scalar,
-    /// The nearest points then, on the collider and on the shape, in the world.
+    /// The nearest points at the hit, on the collider and on the shape, in the world.
     pub points: [WorldVector; 2],
     /// The outward unit normal of the collider.
     pub normal: Vector,
@@ -46,11 +46,11 @@ impl Hit for ShapeCastHit {
 }
 
 impl<'a> ShapeCast<'a> {
-    /// A shape that moves from a pose along `direction`, of any length, for `max_distance` metres, which may be
-    /// infinite.
+    /// A shape that moves from a pose along `direction`, of any length, for `max_distance` metres, which may
+    /// be infinite.
     ///
-    /// `None` if a number is not finite, the direction is zero, or the distance negative or NaN: such a cast hits
-    /// nothing.
+    /// `None` if a number is not finite, the direction is zero, or the distance negative or NaN: such a cast
+    /// hits nothing.
     pub fn new(
         shape: &'a Shape,
         pose: &WorldPose,
@@ -73,13 +73,14 @@ impl<'a> ShapeCast<'a> {
         })
     }
 
-    /// Its way in metres.
+    /// The length of the cast in metres.
     pub fn max_distance(&self) -> Scalar {
         self.max_distance
     }
 
-    /// Calls `visit` with the colliders whose boxes its box comes near, nearer branches first, and the present limit.
-    /// It returns the new limit: the distance of a hit to find nearer ones only, negative to stop.
+    /// Calls `visit` with the colliders whose boxes the shape's box comes close to, nearer branches first,
+    /// and the current limit. `visit` returns the new limit: the distance of a hit to find only nearer hits,
+    /// negative to stop.
     pub fn visit(&self, trees: &Trees, visit: impl FnMut(u32, Scalar) -> Scalar) {
         let room = max(self.config.target_distance, 0.0);
         let center = Line { origin: self.line.origin + self.center.widen(), ..self.line };

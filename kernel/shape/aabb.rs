@@ -18,14 +18,14 @@ impl Default for Aabb {
     }
 }
 
-/// The `f32` next below `v`, or `v` where it is exact.
+/// The largest `f32` that is not above `v`.
 #[cfg(feature = "f64")]
 fn round_down(v: f64) -> f32 {
     let r = v as f32;
     if f64::from(r) > v { r.next_down() } else { r }
 }
 
-/// The `f32` next below `v`, or `v` where it is exact.
+/// The largest `f32` that is not above `v`.
 #[cfg(not(feature = "f64"))]
 #[inline(always)]
 fn round_down(v: f32) -> f32 {
@@ -38,7 +38,7 @@ impl Aabb {
         min: Vector::from_array([f32::INFINITY; DIM]),
         max: Vector::from_array([f32::NEG_INFINITY; DIM]),
     };
-    /// Contains everything. The bounds are finite, so that their differences are too.
+    /// Contains everything. The bounds are finite, so their differences are too.
     pub const EVERYTHING: Self =
         Self { min: Vector::from_array([-1.0e18; DIM]), max: Vector::from_array([1.0e18; DIM]) };
 
@@ -71,13 +71,14 @@ impl Aabb {
         (0..DIM).fold(true, |all, i| all & (a[i] <= d[i]) & (c[i] <= b[i]))
     }
 
-    /// The distance between the boxes along the axis where it is largest, in metres; at most 0 if they overlap.
+    /// The distance between the boxes along the axis with the largest distance, in metres; at most 0 if they
+    /// overlap.
     #[inline(always)]
     pub fn gap(&self, other: &Self) -> f32 {
         (self.min - other.max).max(other.min - self.max).max_element()
     }
 
-    /// Whether `other` lies in this box; touching counts.
+    /// Whether `other` lies in this box; touching from inside counts.
     #[inline(always)]
     pub fn contains(&self, other: &Self) -> bool {
         let a = self.min.to_array();
@@ -131,8 +132,8 @@ impl Aabb {
         (self.max - self.min) * 0.5
     }
 
-    /// A measure of how likely a random ray or box is to hit: half the perimeter in 2D, half the
-    /// surface in 3D.
+    /// A measure of how likely a random ray or box is to hit: half the perimeter in 2D, half the surface in
+    /// 3D.
     #[inline]
     pub fn cost(&self) -> f32 {
         let d = (self.max - self.min).to_array();
@@ -153,15 +154,15 @@ impl Aabb {
         (0..DIM).all(|i| a[i].is_finite() && b[i].is_finite() && a[i] <= b[i])
     }
 
-    /// The distance along a ray to where it enters the box, 0 from inside; `None` if it misses it or
-    /// enters beyond `max_distance`. `inverse` is the componentwise inverse of the direction.
+    /// The distance along a ray at which it enters the box, 0 if it starts inside; `None` if it misses the
+    /// box or enters it beyond `max_distance`. `inverse` is the componentwise inverse of the direction.
     #[inline]
     pub fn ray_entry(&self, origin: Vector, inverse: Vector, max_distance: f32) -> Option<f32> {
         let (mut enter, mut exit) = (0.0f32, max_distance);
         let (lo, hi) = (self.min.to_array(), self.max.to_array());
         let (o, inv) = (origin.to_array(), inverse.to_array());
         for i in 0..DIM {
-            // For a ray along a face 0 · ∞ is NaN, which the min/max rule drops.
+            // For a ray along a face, 0 · ∞ is NaN, which the min/max rule drops.
             let (a, b) = ((lo[i] - o[i]) * inv[i], (hi[i] - o[i]) * inv[i]);
             enter = crate::math::max(crate::math::min(a, b), enter);
             exit = crate::math::min(crate::math::max(a, b), exit);

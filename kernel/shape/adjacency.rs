@@ -1,4 +1,4 @@
-//! Which facets of a surface are neighbours: those that meet at equal vertices.
+//! Neighbouring facets of a surface: facets that meet at equal vertices.
 
 use crate::math::{DIM, Vector};
 
@@ -10,7 +10,7 @@ const NONE: u32 = u32::MAX;
 
 /// The borders of the facets of a surface: in 3D the sides from one corner to the next, in 2D the corners.
 pub(super) struct Borders {
-    /// The first of all vertices at the same place, for each vertex.
+    /// For each vertex, the first vertex at the same place.
     names: Vec<u32>,
     /// All borders, sorted.
     all: Vec<Border>,
@@ -19,22 +19,22 @@ pub(super) struct Borders {
 /// A border of a facet.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Border {
-    /// Of both ends, in ascending order.
+    /// The names of both ends, in ascending order.
     names: [u32; 2],
     /// The facet, and the number of the border in it in the lowest two bits.
     at: u32,
 }
 
 impl Borders {
-    /// The borders of facets, whose corners are indices of the vertices.
+    /// The borders of facets given by vertex indices.
     pub(super) fn new(vertices: &[Vector], facets: &[[u32; DIM]]) -> Self {
         let names = welded(vertices);
         let all = sorted(&names, facets);
         Self { names, all }
     }
 
-    /// The facet across each border of each facet. Facets that there are several times count as one, and those with two corners in one
-    /// place not at all.
+    /// The facet across each border of each facet. Facets that occur several times count as one, and facets
+    /// with two corners in one place do not count.
     pub(super) fn neighbors(&self, facets: &[[u32; DIM]]) -> Vec<[u32; DIM]> {
         let Self { names, all } = self;
         let mut neighbors = vec![[NO_FACET; DIM]; facets.len()];
@@ -57,7 +57,8 @@ impl Borders {
         neighbors
     }
 
-    /// Whether neighbours run through their common borders in opposite directions, but for facets with two corners in one place.
+    /// Whether neighbours run through their common borders in opposite directions. Facets with two corners in
+    /// one place do not count.
     pub(super) fn agree(&self, facets: &[[u32; DIM]]) -> bool {
         let Self { names, all } = self;
         // In 2D a corner is the end of one facet and the start of the next.
@@ -75,7 +76,7 @@ impl Borders {
     }
 }
 
-/// Makes neighbours of facets that alone have a border in common.
+/// Makes two facets neighbours if they alone share a border.
 fn connect(borders: &[Border], neighbors: &mut [[u32; DIM]]) {
     for same in borders.chunk_by(|a, b| a.names == b.names) {
         if let [Border { at: a, .. }, Border { at: b, .. }] = *same
@@ -87,13 +88,13 @@ fn connect(borders: &[Border], neighbors: &mut [[u32; DIM]]) {
     }
 }
 
-/// The names of the ends of a border, in ascending order: of a side, or twice that of a corner.
+/// The names of the ends of a border, in ascending order. In 2D both are the name of the corner.
 fn ends(names: &[u32], facet: &[u32; DIM], k: usize) -> [u32; 2] {
     let [a, b] = [k, (k + DIM - 2) % DIM].map(|end| names[facet[end] as usize]);
     [a.min(b), a.max(b)]
 }
 
-/// All borders in ascending order: first by the lower end, which leaves a few to be compared.
+/// All borders in ascending order: sorted by the lower end first, which leaves few borders to be compared.
 fn sorted(names: &[u32], facets: &[[u32; DIM]]) -> Vec<Border> {
     let borders = facets.iter().enumerate().flat_map(|(i, facet)| {
         (0..DIM).map(move |k| Border { names: ends(names, facet, k), at: (i as u32) << 2 | k as u32 })
@@ -115,7 +116,8 @@ fn sorted(names: &[u32], facets: &[[u32; DIM]]) -> Vec<Border> {
     all
 }
 
-/// For each facet the first with the same corners; [`NO_FACET`] if two of them are in one place.
+/// For each facet, the first facet with the same corners; [`NO_FACET`] if two of its corners are in one
+/// place.
 fn first_equals(names: &[u32], facets: &[[u32; DIM]]) -> Vec<u32> {
     let mut keys: Vec<([u32; DIM], u32)> = Vec::with_capacity(facets.len());
     for (i, facet) in facets.iter().enumerate() {
@@ -134,11 +136,11 @@ fn first_equals(names: &[u32], facets: &[[u32; DIM]]) -> Vec<u32> {
     first
 }
 
-/// The first of all vertices at the same place, for each vertex.
+/// For each vertex, the first vertex at the same place.
 pub(super) fn welded(vertices: &[Vector]) -> Vec<u32> {
     // Zero and minus zero are the same place.
     let key = |v: Vector| v.to_array().map(|c| (c + 0.0).to_bits());
-    // Places by hash, at most half of them taken.
+    // A hash table of places, at most half full.
     let mask = (2 * vertices.len()).next_power_of_two() - 1;
     let mut table = vec![NONE; mask + 1];
     let mut names = Vec::with_capacity(vertices.len());
@@ -156,7 +158,7 @@ pub(super) fn welded(vertices: &[Vector]) -> Vec<u32> {
     names
 }
 
-/// Mixes all bits of a place into the lowest ones (multiplication folded to its halves).
+/// Mixes all bits of a place into the lowest bits (a product folded to its halves).
 fn hash(key: [u32; DIM]) -> u64 {
     key.into_iter().fold(0x9e37_79b9_7f4a_7c15, |hash: u64, part| {
         let product = u128::from(hash ^ u64::from(part)) * 0xa076_1d64_78bd_642f;

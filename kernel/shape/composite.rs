@@ -11,7 +11,7 @@ use crate::math::Pose;
 pub struct Composite<S> {
     parts: Parts<S>,
     tree: PartTree,
-    /// What a closed convex surface bounds.
+    /// The solid that a closed convex surface bounds.
     solid: Option<Box<Self>>,
 }
 
@@ -30,12 +30,13 @@ pub enum Part<'a, S> {
 }
 
 impl<S> Composite<S> {
-    /// A surface as a shape. If it is closed and convex, `solid` is the solid that it bounds, as the only part of a composite.
+    /// A surface as a shape. If the surface is closed and convex, `solid` is the solid that it bounds, as the
+    /// only part of a composite.
     pub fn of_surface(surface: Surface, solid: Option<Self>) -> Self {
         Self { tree: surface.tree(), parts: Parts::Surface(surface), solid: solid.map(Box::new) }
     }
 
-    /// Solids as one shape; `aabb` gives the box of each in the composite's frame.
+    /// Solids as one shape. `aabb` gives the box of each solid in the composite's frame.
     pub fn of_solids(solids: Vec<(Pose, S)>, aabb: impl Fn(&Pose, &S) -> Aabb) -> Self {
         let boxes: Vec<Aabb> = solids.iter().map(|(pose, solid)| aabb(pose, solid)).collect();
         Self { tree: PartTree::new(&boxes), parts: Parts::Solids(solids), solid: None }
@@ -71,7 +72,7 @@ impl<S> Composite<S> {
         }
     }
 
-    /// The surface, if it is one.
+    /// The surface, if the composite is a surface.
     pub fn surface(&self) -> Option<&Surface> {
         match &self.parts {
             Parts::Surface(surface) => Some(surface),
@@ -79,7 +80,7 @@ impl<S> Composite<S> {
         }
     }
 
-    /// The solids with their poses; none if it is a surface.
+    /// The solids with their poses; none if the composite is a surface.
     pub fn solids(&self) -> &[(Pose, S)] {
         match &self.parts {
             Parts::Surface(_) => &[],

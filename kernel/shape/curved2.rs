@@ -28,24 +28,25 @@ impl Curved {
         direction_or(direction.scale(self.half), Vector::X).scale(self.half)
     }
 
-    /// The box around it turned by `rotation`.
+    /// The box around the ellipse turned by `rotation`.
     pub fn local_aabb(&self, rotation: Rot) -> Aabb {
         let [x, y] = Vector::AXES.map(|axis| rotation.inverse_rotate(axis).scale(self.half).length());
         let half = Vector { x, y };
         Aabb::new(-half, half)
     }
 
-    /// The largest ball within it: its centre and its radius.
+    /// The largest ball within the ellipse: its centre and its radius.
     pub(crate) fn core(&self) -> (Vector, f32) {
         (Vector::ZERO, self.half.min_element())
     }
 
-    /// The distance from a point to the farthest point, or somewhat more.
+    /// The distance from a point to the farthest point of the ellipse, or somewhat more.
     pub(crate) fn extent(&self, center: Vector) -> f32 {
         center.length() + self.half.max_element()
     }
 
-    /// The radius of curvature where the outward normal has the given direction, at most four times the larger half size.
+    /// The radius of curvature where the outward normal has the given direction, at most four times the
+    /// larger half size.
     pub(crate) fn curvature_radius(&self, normal: Vector) -> f32 {
         let (a, b) = (self.half.x, self.half.y);
         let most = 4.0 * max(a, b);
@@ -54,10 +55,10 @@ impl Curved {
         if radius < most { radius } else { most }
     }
 
-    /// The hit of a ray along the unit vector `direction`; see [`Shape::cast_ray`](crate::shape::Shape::cast_ray). A flat ellipse is
-    /// not hit.
+    /// The hit of a ray along the unit vector `direction`; see
+    /// [`Shape::cast_ray`](crate::shape::Shape::cast_ray). A flat ellipse is not hit.
     ///
-    /// Along both axes it is scaled to the unit circle.
+    /// The ellipse is scaled to the unit circle along both axes.
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -158,7 +159,7 @@ mod tests {
         fn the_radius_of_curvature_is_that_of_three_points(shape in ellipse(), angle in -3.0f32..3.0) {
             let at = |a: f32| Vector { x: a.cos(), y: a.sin() };
             let [p, q] = [-0.01, 0.01].map(|d| shape.support(at(angle + d)));
-            // Points with normals apart by dα are apart by ρ dα.
+            // Points whose normals differ by dα are ρ dα apart.
             let radius = (q - p).length() / 0.02;
             let most = 4.0 * shape.half.max_element();
             let expected = radius.min(most);

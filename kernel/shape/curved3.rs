@@ -1,4 +1,4 @@
-//! The frustum of a circular cone: a cylinder if both ends are alike, a cone if one is a point.
+//! The frustum of a circular cone: a cylinder if both ends are equal, a cone if one end is a point.
 
 use super::MassProperties;
 use crate::math::{Inertia, Rot, Vector, max, min};
@@ -6,7 +6,7 @@ use crate::shape::primitives::{checked_length, direction_or, hit_of_stretch};
 use crate::shape::{Aabb, RayHit, ShapeError};
 use core::f32::consts::PI;
 
-/// The solid between two circles about the y axis: a cylinder, a cone, or the frustum of one.
+/// The solid between two circles about the y axis: a cylinder, a cone, or the frustum of a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curved {
     /// The radius of the circle at `-half_height`, in metres.
@@ -23,14 +23,14 @@ impl Curved {
         Self::frustum(radius, radius, half_height)
     }
 
-    /// The cone with a base of the given radius at `-half_height` and its tip at `half_height`, in metres, which must be
-    /// finite and not negative.
+    /// The cone with a base of the given radius at `-half_height` and its tip at `half_height`, in metres,
+    /// which must be finite and not negative.
     pub fn cone(radius: f32, half_height: f32) -> Result<Self, ShapeError> {
         Self::frustum(radius, 0.0, half_height)
     }
 
-    /// The frustum with the given radii of its lower and upper end, and half height, in metres, which must be finite and
-    /// not negative.
+    /// The frustum with the given radii of its lower and upper end, and half height, in metres, which must be
+    /// finite and not negative.
     pub fn frustum(lower: f32, upper: f32, half_height: f32) -> Result<Self, ShapeError> {
         Ok(Self {
             lower: checked_length(lower)?,
@@ -39,14 +39,14 @@ impl Curved {
         })
     }
 
-    /// The frustum itself, or if it has no height the larger of its circles, which holds the other.
+    /// The frustum, or if it has no height, the disc of the larger circle, which contains the other.
     #[inline]
     pub(crate) fn with_equal_discs(&self) -> Self {
         let radius = max(self.lower, self.upper);
         if self.half_height > 0.0 { *self } else { Self { lower: radius, upper: radius, ..*self } }
     }
 
-    /// The radius of an end: 0 is the lower one, 1 the upper one.
+    /// The radius of an end: end 0 is the lower end, end 1 the upper.
     #[inline(always)]
     pub(crate) fn radius_of(&self, end: usize) -> f32 {
         if end == 0 { self.lower } else { self.upper }
@@ -58,7 +58,8 @@ impl Curved {
         if end == 0 { -self.half_height } else { self.half_height }
     }
 
-    /// The components of the side's unit normal away from the axis and along it. Those of a disc are away from the axis.
+    /// The components of the side's unit normal, away from the axis and along it. For a disc the normal
+    /// points away from the axis.
     #[inline(always)]
     pub(crate) fn slope(&self) -> (f32, f32) {
         let (outward, upward) = (2.0 * self.half_height, self.lower - self.upper);
@@ -85,19 +86,19 @@ impl Curved {
         self.farthest(direction).0
     }
 
-    /// The point farthest along a direction of any length, and the end it is on.
+    /// The point farthest along a direction of any length, and its end.
     #[inline(always)]
     pub(crate) fn farthest(&self, direction: Vector) -> (Vector, usize) {
         let (x, z) = (direction.x, direction.z);
         let across = (x * x + z * z).sqrt();
         let end = self.end_along(across, direction.y);
-        // A direction along the axis leaves the choice.
+        // A direction along the axis leaves the choice of the point.
         let (x, z) = if across > 1.0e-15 { (x / across, z / across) } else { (1.0, 0.0) };
         let radius = self.radius_of(end);
         (Vector { x: radius * x, y: self.height_of(end), z: radius * z }, end)
     }
 
-    /// The box around it turned by `rotation`.
+    /// The box around the frustum turned by `rotation`.
     pub fn local_aabb(&self, rotation: Rot) -> Aabb {
         let axis = rotation.rotate(Vector::Y);
         let (u, v) = (rotation.rotate(Vector::X).to_array(), rotation.rotate(Vector::Z).to_array());
@@ -109,10 +110,11 @@ impl Curved {
         Aabb::new(ends[0].0.min(ends[1].0), ends[0].1.max(ends[1].1))
     }
 
-    /// The largest ball within it: its centre and its radius.
+    /// The largest ball within the frustum: its centre and its radius.
     ///
-    /// On the axis, at the height y above the middle and with the larger end below, the base is h + y away and the side
-    /// (m + k y) o. The ball is where these are equal, or in the middle, where both ends are as far.
+    /// On the axis, at the height y above the middle and with the larger end below, the distance to the base
+    /// is h + y and to the side (m + k y) o. The ball's centre is where these are equal, or in the middle,
+    /// where both ends are at the same distance.
     pub(crate) fn core(&self) -> (Vector, f32) {
         let (h, (outward, _)) = (self.half_height, self.slope());
         let (larger, smaller) = (max(self.lower, self.upper), min(self.lower, self.upper));
@@ -123,7 +125,7 @@ impl Curved {
         (Vector::Y * up, max(min(h + y, (middle - fall * y) * outward), 0.0))
     }
 
-    /// The distance from a point to the farthest point.
+    /// The distance from a point to the farthest point of the frustum.
     pub(crate) fn extent(&self, center: Vector) -> f32 {
         let across = (center.x * center.x + center.z * center.z).sqrt();
         let [lower, upper] = [0, 1].map(|end| {
@@ -133,10 +135,12 @@ impl Curved {
         max(lower, upper)
     }
 
-    /// The hit of a ray along the unit vector `direction`; see [`Shape::cast_ray`](crate::shape::Shape::cast_ray).
+    /// The hit of a ray along the unit vector `direction`; see
+    /// [`Shape::cast_ray`](crate::shape::Shape::cast_ray).
     ///
-    /// Between the planes of its ends it is what is within the radius m + k y of the axis, a quadratic inequality in the
-    /// distance. It is convex, so of two ranges that hold it one is empty.
+    /// Between the planes of its ends, the frustum is the set of points within the radius m + k y of the
+    /// axis, a quadratic inequality in the distance. The frustum is convex, so if two ranges satisfy the
+    /// inequality, one of them is empty.
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -145,7 +149,7 @@ impl Curved {
         solid: bool,
     ) -> Option<RayHit> {
         let h = f64::from(self.half_height);
-        // From the nearest point of the line, so that no large squares cancel.
+        // Computed from the nearest point of the line, so no large squares cancel.
         let start = -origin.dot(direction);
         let at = |v: f32, d: f32| f64::from(v) + f64::from(start) * f64::from(d);
         let o = [at(origin.x, direction.x), at(origin.y, direction.y), at(origin.z, direction.z)];
@@ -165,7 +169,7 @@ impl Curved {
         let c = o[0] * o[0] + o[2] * o[2] - m * m;
         let square = b * b - a * c;
         if a.abs() < 1.0e-12 {
-            // Along the side.
+            // The ray is parallel to the side.
             if b.abs() > 1.0e-12 {
                 let t = -0.5 * c / b;
                 (enter, exit) = if b > 0.0 { (enter, exit.min(t)) } else { (enter.max(t), exit) };
@@ -182,7 +186,7 @@ impl Curved {
             if a > 0.0 {
                 (enter, exit) = (enter.max(p), exit.min(q));
             } else if exit.min(q) - enter >= exit - enter.max(p) {
-                // Inside before the one root and after the other, on both halves of the double cone.
+                // Inside before the first root and after the second, on both halves of the double cone.
                 exit = exit.min(q);
             } else {
                 enter = enter.max(p);
@@ -210,8 +214,9 @@ impl Curved {
 
     /// Mass, centre and inertia at 1 kg/m³.
     ///
-    /// With the radius m + d y/h for |y| ≤ h: V = 2πh (m² + d²/3), ∫ y dV = 4/3 π h² m d, ∫ y² dV = 2πh³ (m²/3 + d²/5), and
-    /// the moment about the axis is ½ π ∫ ρ⁴ dy = πh (m⁴ + 2 m² d² + d⁴/5). What overflows is infinite.
+    /// With the radius m + d y/h for |y| ≤ h: V = 2πh (m² + d²/3), ∫ y dV = 4/3 π h² m d, ∫ y² dV = 2πh³
+    /// (m²/3 + d²/5), and the moment about the axis is ½ π ∫ ρ⁴ dy = πh (m⁴ + 2 m² d² + d⁴/5). Values that
+    /// overflow are infinite.
     pub fn unit_mass(&self) -> MassProperties {
         let (m, d, h) = (0.5 * (self.lower + self.upper), 0.5 * (self.upper - self.lower), self.half_height);
         let (mm, dd) = (m * m, d * d);
@@ -230,7 +235,8 @@ impl Curved {
         MassProperties { mass, center: Vector::Y * center, inertia }
     }
 
-    /// As [`unit_mass`](Self::unit_mass), of sizes whose products overflow: their quotients and differences are no numbers.
+    /// As [`unit_mass`](Self::unit_mass), for sizes whose products overflow: their quotients and differences
+    /// would be NaN.
     fn huge_unit_mass(&self) -> MassProperties {
         let [lower, upper, h] = [self.lower, self.upper, self.half_height].map(f64::from);
         let (m, d, pi) = (0.5 * (lower + upper), 0.5 * (upper - lower), f64::from(PI));
@@ -244,7 +250,8 @@ impl Curved {
         MassProperties { mass: mass as f32, center: Vector::Y * center as f32, inertia }
     }
 
-    /// Where the surface is nearest to a point. The circles of a disc have to be [equal](Self::with_equal_discs).
+    /// The place of the surface nearest to a point. The circles of a disc must be
+    /// [equal](Self::with_equal_discs).
     ///
     /// The nearest point is in the plane through the axis, where the outline has three sides.
     pub(crate) fn nearest(&self, point: Vector) -> Nearest {
@@ -292,14 +299,14 @@ impl Curved {
     }
 }
 
-/// Where the surface is nearest to a point.
+/// The place of a surface nearest to a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nearest {
-    /// The distance from there, negative inside.
+    /// The distance of the point, negative inside.
     pub distance: f32,
     /// The unit normal.
     pub normal: Vector,
-    /// Whether it is on the side, off its edges.
+    /// Whether the place is on the side, off its edges.
     pub on_side: bool,
 }
 
@@ -342,7 +349,7 @@ mod tests {
         assert!((cone.inertia.xx - (0.15 * 0.25 + 0.0375 * 4.0) * cone.mass).abs() < 1e-6);
     }
 
-    /// Quotients and differences of overflowing products were no numbers.
+    /// Regression: quotients and differences of overflowing products were NaN.
     #[test]
     fn issue_the_centre_of_a_huge_frustum_was_no_number() {
         for size in [1.0e7, 1.0e13, 1.0e18, f32::MAX] {
@@ -405,7 +412,7 @@ mod tests {
             let foot = point - nearest.normal * nearest.distance;
             let height = shape.support(nearest.normal).dot(nearest.normal);
             prop_assert!((height - foot.dot(nearest.normal)).abs() < 1e-4, "{nearest:?}");
-            // A ray from outside toward the foot goes no farther than that.
+            // A ray from outside toward the nearest point goes no farther than the distance.
             if nearest.distance > 0.01 {
                 let hit = shape.cast_ray(point, -nearest.normal, nearest.distance + 0.01, false);
                 prop_assert!(hit.is_none_or(|hit| (hit.distance - nearest.distance).abs() < 5e-3));

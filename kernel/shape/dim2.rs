@@ -44,12 +44,13 @@ pub(super) fn face_normal([a, b]: [Vector; 2]) -> Option<Vector> {
     direction(b - a).map(|(axis, _)| axis.perp())
 }
 
-/// A multiple of the area between a segment and the origin, positive if its left normal faces away from the origin.
+/// A multiple of the area between a segment and the origin, positive if its left normal faces away from the
+/// origin.
 pub(super) fn signed_volume([a, b]: [Vector; 2]) -> f64 {
     -cross(wide(a), wide(b))
 }
 
-/// The properties of parts at poses together. Parts that overlap count twice.
+/// The combined properties of parts at poses. Overlapping parts count twice.
 pub(super) fn mass_of_compound<'a>(
     parts: impl Iterator<Item = (&'a Pose, MassProperties)> + Clone,
 ) -> MassProperties {
@@ -108,7 +109,8 @@ pub(super) fn core_of_triangle(triangle: &Triangle) -> (Vector, f32) {
     }
 }
 
-/// The hit of a ray along the unit vector `direction` on a solid triangle. Without area it acts as its longest side.
+/// The hit of a ray along the unit vector `direction` on a solid triangle. A triangle without area acts as
+/// its longest side.
 pub(super) fn cast_ray_triangle(
     triangle: &Triangle,
     origin: Vector,
@@ -124,8 +126,8 @@ pub(super) fn cast_ray_triangle(
     }
 }
 
-/// The corners counter-clockwise and the edges' normals, or the longest side of a triangle whose
-/// height over it is below 1e-6 of its length.
+/// The corners counter-clockwise and the normals of the edges; or the longest side of a triangle whose height
+/// over that side is below 1e-6 of the side's length.
 pub(crate) fn oriented(triangle: &Triangle) -> Result<([Vector; 3], [Vector; 3]), Segment> {
     let Triangle { a, b, c } = *triangle;
     let area = (b - a).perp_dot(c - a);
@@ -146,8 +148,8 @@ pub(crate) fn oriented(triangle: &Triangle) -> Result<([Vector; 3], [Vector; 3])
     }
 }
 
-/// A ray that is cast against many segments. None passes between segments that share an end: the heights of an end over
-/// the ray's line are the same number for both.
+/// A ray that is cast against many segments. It never passes between segments that share an end: the height
+/// of an end over the ray's line is the same number for both.
 pub(super) struct FacetRay {
     origin: Vector,
     direction: Vector,
@@ -159,15 +161,15 @@ impl FacetRay {
         Self { origin, direction }
     }
 
-    /// The hit within `max_distance`, as [`cast_ray_segment`] has it.
+    /// The hit within `max_distance`, as by [`cast_ray_segment`].
     #[inline]
     pub(super) fn hit(&self, segment: &Segment, max_distance: f32) -> Option<RayHit> {
         cast_ray_segment(segment, self.origin, self.direction, max_distance)
     }
 }
 
-/// Where a ray along the unit vector `direction` crosses a segment, from either side. A ray along the
-/// segment's own line hits its nearer end.
+/// The crossing of a ray along the unit vector `direction` with a segment, from either side. A ray along the
+/// segment's own line hits the nearer end.
 pub(super) fn cast_ray_segment(
     segment: &Segment,
     origin: Vector,

@@ -1,5 +1,5 @@
-//! What differs in space: mass properties, rays against flat shapes, and the polyhedron. `dim2.rs`
-//! exports the same names.
+//! The three-dimensional part of shapes: mass properties, rays against flat shapes, and the polyhedron.
+//! `dim2.rs` exports the same names.
 
 mod curved3;
 mod field3;
@@ -57,7 +57,7 @@ pub(super) fn core_of_triangle(triangle: &Triangle) -> (Vector, f32) {
     ((triangle.a + triangle.b + triangle.c) * (1.0 / 3.0), 0.0)
 }
 
-/// The properties of parts at poses together. Parts that overlap count twice.
+/// The combined properties of parts at poses. Overlapping parts count twice.
 pub(super) fn mass_of_compound<'a>(
     parts: impl Iterator<Item = (&'a Pose, MassProperties)> + Clone,
 ) -> MassProperties {
@@ -137,8 +137,8 @@ pub fn mass_of_triangle(_: &Triangle) -> MassProperties {
     MassProperties::ZERO
 }
 
-/// Where a ray meets a triangle, from either side; the normal faces the origin of the ray. Rays in the
-/// plane of the triangle and degenerate triangles are never hit.
+/// The hit of a ray on a triangle, from either side. The normal faces the origin of the ray. Degenerate
+/// triangles, and triangles whose plane contains the ray, are never hit.
 pub fn cast_ray_triangle(
     triangle: &Triangle,
     origin: Vector,
@@ -149,15 +149,16 @@ pub fn cast_ray_triangle(
     FacetRay::new(origin, direction).hit(triangle, max_distance)
 }
 
-/// A ray that is cast against many triangles. None passes between triangles that share an edge or a vertex.
+/// A ray that is cast against many triangles. It never passes between triangles that share an edge or a
+/// vertex.
 ///
-/// Space is sheared so that the ray becomes the z axis, and the three edges are tested in the xy plane (Woop, Benthin and
-/// Wald, "Watertight Ray/Triangle Intersection", 2013). The shear depends on the vertex alone, and products of two `f32` are
-/// exact in `f64`, so neighbours see the same sign at their edge.
+/// Space is sheared so that the ray becomes the z axis, and the three edges are tested in the xy plane (Woop,
+/// Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013). The shear of a vertex depends on the
+/// vertex alone, and products of two `f32` are exact in `f64`, so neighbours see the same sign at their edge.
 pub(super) struct FacetRay {
     origin: Vector,
     direction: Vector,
-    /// The axes that become x, y and z; z is the one along which the direction is largest.
+    /// The axes that become x, y and z. The direction is largest along z.
     axes: [usize; 3],
     /// The shear of x and y, and the scale of z.
     shear: [f32; 3],
@@ -172,7 +173,7 @@ impl FacetRay {
         Self { origin, direction, axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
     }
 
-    /// The hit within `max_distance`, as [`cast_ray_triangle`] has it.
+    /// The hit within `max_distance`, as by [`cast_ray_triangle`].
     #[inline]
     pub(super) fn hit(&self, triangle: &Triangle, max_distance: f32) -> Option<RayHit> {
         let [x, y, z] = self.axes;
@@ -196,7 +197,7 @@ impl FacetRay {
         if !(distance >= 0.0 && distance <= max_distance) {
             return None;
         }
-        // A facet that the ray meets has an area, but it may be too small for `f32`.
+        // A facet that the ray hits has an area, but the area may be too small for `f32`.
         let normal = face_normal(corners).unwrap_or(-self.direction);
         let is_behind = normal.dot(self.direction) > 0.0;
         Some(RayHit { distance, normal: if is_behind { -normal } else { normal } })

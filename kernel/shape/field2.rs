@@ -7,7 +7,7 @@ use crate::shape::adjacency::NO_FACET;
 use crate::shape::surface::Surface;
 
 impl Surface {
-    /// The line through vertices, of which no two are in one place.
+    /// The line through vertices. No two vertices may be in one place.
     ///
     /// # Errors
     /// If there is no segment, or a vertex is not finite.

@@ -7,9 +7,9 @@ use crate::shape::adjacency::NO_FACET;
 use crate::shape::surface::Surface;
 
 impl Surface {
-    /// The surface over a grid of vertices: `vertices[i + j * row]` is vertex `i` of row `j`. With the corners (0, 0), (1, 0), (0, 1) and
-    /// (1, 1) named A, B, C and D, a square has the facets ABC and BDC, or ABD and ADC where `is_turned` for its corner A.
-    /// They follow each other as the squares do, row by row.
+    /// The surface over a grid of vertices: `vertices[i + j * row]` is vertex `i` of row `j`. With the
+    /// corners (0, 0), (1, 0), (0, 1) and (1, 1) named A, B, C and D, a square has the facets ABC and BDC, or
+    /// ABD and ADC if `is_turned` for its corner A. Facets are in the order of their squares, row by row.
     ///
     /// # Errors
     /// If there is no square, a row is not complete, or a vertex is not finite.

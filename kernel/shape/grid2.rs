@@ -1,10 +1,11 @@
-//! Height fields: surfaces of segments that follow each other. Neighbours and tree follow from that, in linear time.
+//! Height fields: surfaces of consecutive segments. Neighbours and tree follow from this order, in linear
+//! time.
 
 use crate::math::Vector;
 use crate::shape::Aabb;
 use crate::shape::part_tree::{Builder, PartTree};
 
-/// How the facets of a surface lie.
+/// The arrangement of the facets of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::shape) enum Layout {
     /// Not known.
@@ -14,7 +15,7 @@ pub(in crate::shape) enum Layout {
 }
 
 impl Layout {
-    /// The tree over the facets of a surface that lie so, if that is known.
+    /// The tree over the facets of a surface with this arrangement, if it is known.
     pub(in crate::shape) fn tree(self, vertices: &[Vector]) -> Option<PartTree> {
         if self == Self::Any {
             return None;
@@ -25,7 +26,7 @@ impl Layout {
     }
 }
 
-/// Adds the tree over the facets from `low` up to `high`, which is not among them. Returns its box.
+/// Adds the tree over the facets from `low` to `high`, excluding `high`. Returns its box.
 fn grow(builder: &mut Builder, vertices: &[Vector], low: usize, high: usize) -> Aabb {
     if high - low <= 4 {
         let corners = vertices[low..=high].iter().copied();

@@ -5,19 +5,20 @@ use crate::shape::Aabb;
 use crate::shape::adjacency::NO_FACET;
 use crate::shape::part_tree::{Builder, PartTree};
 
-/// How the facets of a surface lie.
+/// The arrangement of the facets of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::shape) enum Layout {
     /// Not known.
     Any,
-    /// Two for each square of a grid with this number of squares in a row, and of rows.
+    /// Two facets for each square of a grid, given the number of squares per row and the number of rows.
     Grid([usize; 2]),
 }
 
 /// A square of a grid: its place in its row, and the number of the row.
 type Square = [usize; 2];
 
-/// The facets over a grid with this number of squares in a row, and of rows, and the neighbours of each.
+/// The facets over a grid with the given number of squares per row and of rows, and the neighbours of each
+/// facet.
 pub(super) fn facets(squares: [usize; 2], is_turned: impl Fn(usize, usize) -> bool) -> [Vec<[u32; 3]>; 2] {
     let row = squares[0] + 1;
     let count = 2 * squares[0] * squares[1];
@@ -56,7 +57,7 @@ fn first_facet(squares: [usize; 2], [i, j]: Square) -> u32 {
 }
 
 impl Layout {
-    /// The tree over the facets of a surface that lie so, if that is known.
+    /// The tree over the facets of a surface with this arrangement, if it is known.
     pub(in crate::shape) fn tree(self, vertices: &[Vector]) -> Option<PartTree> {
         let Self::Grid(squares) = self else { return None };
         let vertex = |[i, j]: Square| vertices[i + j * (squares[0] + 1)];
@@ -72,12 +73,12 @@ impl Layout {
 struct Halving<'a> {
     vertices: &'a [Vector],
     squares: [usize; 2],
-    /// The sides of a square, about, in metres.
+    /// The approximate sides of a square, in metres.
     sides: [f32; 2],
 }
 
 impl Halving<'_> {
-    /// Adds the tree over the squares from `low` up to `high`, which is not among them. Returns its box.
+    /// Adds the tree over the squares from `low` to `high`, excluding `high`. Returns its box.
     fn grow(&self, builder: &mut Builder, [low, high]: [Square; 2]) -> Aabb {
         let counts = [high[0] - low[0], high[1] - low[1]];
         if counts[0] * counts[1] <= 2 {

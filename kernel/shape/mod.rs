@@ -1,7 +1,8 @@
 //! Shapes: their boxes, support points, masses, and ray hits.
 //!
-//! Shapes are in `f32`, in a frame of their own: convex, or [composites](Composite) of convex parts. All other shapes are
-//! [`Shape::Foreign`] in the tables, and get their manifolds from a [`ManifoldSource`](crate::contact::ManifoldSource).
+//! Shapes are in `f32`, in their own frame. They are convex, or [composites](Composite) of convex parts. All
+//! other shapes are [`Shape::Foreign`] in the tables, and get their manifolds from a
+//! [`ManifoldSource`](crate::contact::ManifoldSource).
 
 mod aabb;
 mod adjacency;
@@ -45,7 +46,7 @@ pub enum Shape {
     Segment(Segment),
     /// The half of space behind a plane through the origin.
     HalfSpace(HalfSpace),
-    /// A surface of triangles (3D) or segments (2D), or solids that are one shape.
+    /// A surface of triangles (3D) or segments (2D), or several solids as one shape.
     Composite(Arc<Composite<Self>>),
     /// A shape of the embedder, which provides its box and its manifolds.
     Foreign(Foreign),
@@ -83,7 +84,7 @@ impl Shape {
     /// Convex solids at poses as one shape.
     ///
     /// # Errors
-    /// If there is none, or one is not convex, unbounded, or unknown to the kernel.
+    /// If there is no solid, or a solid is not convex, unbounded, or unknown to the kernel.
     pub fn compound(solids: Vec<(Pose, Self)>) -> Result<Self, ShapeError> {
         let is_solid = |s: &Self| !matches!(s, Self::HalfSpace(_) | Self::Composite(_) | Self::Foreign(_));
         if solids.is_empty() {
@@ -104,14 +105,13 @@ impl Shape {
         Aabb { min: turned.min + pose.position, max: turned.max + pose.position }
     }
 
-    /// The box around the shape at a world pose, rounded outward to `f32`. Half-spaces give an
-    /// infinite box.
+    /// The box around the shape at a world pose, rounded outward to `f32`. Half-spaces give an infinite box.
     pub fn aabb(&self, pose: &WorldPose) -> Aabb {
         self.local_aabb(pose.rotation).at(pose.position)
     }
 
-    /// Whether another shape is known to be the same. Hulls and composites are compared by reference. Foreign shapes are
-    /// never known to be the same.
+    /// Whether another shape is known to be equal. Hulls and composites are compared by reference. Foreign
+    /// shapes are never known to be equal.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Ball(a), Self::Ball(b)) => a == b,
@@ -151,7 +151,7 @@ impl Shape {
         }
     }
 
-    /// A ball around the shape: its centre and its radius in metres. Very large around what has no end.
+    /// A ball around the shape: its centre and its radius in metres. Very large for unbounded shapes.
     pub(crate) fn ball_around(&self) -> (Vector, f32) {
         let around = |a: Vector, b: Vector, radius: f32| ((a + b) * 0.5, 0.5 * (b - a).length() + radius);
         let around_box = |aabb: Aabb| (aabb.center(), aabb.half().length());
@@ -184,8 +184,8 @@ impl Shape {
         })
     }
 
-    /// The distance from `center` to the farthest point of the shape, in metres: how far a point of
-    /// the shape moves, per radian, when it turns about `center`. Zero for half-spaces.
+    /// The distance from `center` to the farthest point of the shape, in metres. It bounds the displacement
+    /// of a point of the shape per radian when the shape turns about `center`. Zero for half-spaces.
     pub fn extent(&self, center: Vector) -> f32 {
         let farthest = |points: &[Vector]| {
             points.iter().map(|p| (*p - center).length_squared()).fold(0.0, crate::math::max).sqrt()
@@ -209,11 +209,12 @@ impl Shape {
         }
     }
 
-    /// The largest distance at which a normal of the surface passes a point of the shape's frame, in metres; 0 for half-spaces.
+    /// Maximum distance between a normal of the surface and a point of the shape's frame, in metres; 0 for
+    /// half-spaces.
     pub fn arm(&self, center: Vector) -> f32 {
         let farthest = self.extent(center) - self.radius();
         match self {
-            // A normal at the distance a passes a face at √(r² − a²) from there.
+            // A normal of a face at the distance a from the point passes the point at √(r² − a²) at most.
             Self::Cuboid(s) => {
                 let inside = crate::math::max((s.half - center.abs()).min_element(), 0.0);
                 crate::math::max(farthest * farthest - inside * inside, 0.0).sqrt()
@@ -222,7 +223,7 @@ impl Shape {
         }
     }
 
-    /// A large ball within the shape: its centre and its radius, 0 for what has no inside.
+    /// A large ball within the shape: its centre and its radius, which is 0 for shapes without an inside.
     pub fn core(&self) -> (Vector, f32) {
         match self {
             Self::Ball(s) => (Vector::ZERO, s.radius),
@@ -234,13 +235,13 @@ impl Shape {
             Self::Segment(s) => ((s.a + s.b) * 0.5, 0.0),
             Self::HalfSpace(_) => (Vector::ZERO, f32::MAX),
             Self::Composite(s) => core_of_composite(s),
-            // What is within the box is not known.
+            // The embedder's geometry inside the box is unknown.
             Self::Foreign(s) => (s.aabb.center(), 0.5 * s.aabb.half().min_element()),
         }
     }
 
-    /// The radius around the shape's core (a point, a segment or a polygon), in metres. Zero for sharp, curved, composite and
-    /// foreign shapes.
+    /// The radius around the shape's core (a point, a segment or a polygon), in metres. Zero for sharp,
+    /// curved, composite and foreign shapes.
     pub fn radius(&self) -> f32 {
         match self {
             Self::Ball(s) => s.radius,
@@ -259,8 +260,8 @@ impl Shape {
     /// The first hit of a ray from `origin` along the unit vector `direction` on the shape within
     /// `max_distance`, all in the shape's frame.
     ///
-    /// A ray that starts inside hits at distance 0 with a zero normal if `solid`, else the boundary
-    /// from within. Surfaces without an inside (3D triangles, segments) are hit from both sides;
+    /// A ray that starts inside hits at distance 0 with a zero normal if `solid`, otherwise it hits the
+    /// boundary from within. Surfaces without an inside (3D triangles, segments) are hit from both sides;
     /// segments in 3D and foreign shapes are never hit.
     pub fn cast_ray(
         &self,
@@ -283,8 +284,8 @@ impl Shape {
         }
     }
 
-    /// Mass, centre of mass and inertia at a uniform density in kg/m² or kg/m³. Zero for shapes
-    /// without an inside, for half-spaces, and for foreign shapes. Parts of a compound that overlap count twice.
+    /// Mass, centre of mass and inertia at a uniform density in kg/m² or kg/m³. Zero for shapes without an
+    /// inside, for half-spaces, and for foreign shapes. Overlapping parts of a compound count twice.
     pub fn mass_properties(&self, density: f32) -> MassProperties {
         let unit = match self {
             Self::Ball(s) => mass_of_ball(s),
@@ -302,7 +303,8 @@ impl Shape {
     }
 }
 
-/// The largest of the balls within solids. What is within a surface is not known; it counts as a shape that fills its box.
+/// The largest of the balls within the solids. The volume inside a surface is unknown; a surface counts as a
+/// shape that fills its box.
 fn core_of_composite(composite: &Composite<Shape>) -> (Vector, f32) {
     let bounds = composite.tree().bounds();
     let unknown = (bounds.center(), 0.5 * bounds.half().min_element());
@@ -315,7 +317,8 @@ fn core_of_composite(composite: &Composite<Shape>) -> (Vector, f32) {
 
 /// The box around a composite shape turned by `rotation` about its frame's origin.
 fn composite_box(composite: &Composite<Shape>, rotation: crate::math::Rot) -> Aabb {
-    /// Boxes of up to this number of parts are joined; of more, the box of all parts is turned, which is faster and larger.
+    /// The boxes of up to this number of parts are joined. With more parts the box of all parts is turned,
+    /// which is faster but larger.
     const FEW: usize = 32;
     let bounds = composite.tree().bounds();
     if rotation == crate::math::Rot::IDENTITY {
@@ -336,7 +339,7 @@ fn composite_box(composite: &Composite<Shape>, rotation: crate::math::Rot) -> Aa
     parts.intersection(&turned)
 }
 
-/// The first hit of a ray on any part; of equally near parts, on the first.
+/// The first hit of a ray on any part; of equally near parts, on the first part.
 fn cast_ray_composite(
     composite: &Composite<Shape>,
     origin: Vector,

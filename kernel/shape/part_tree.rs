@@ -3,17 +3,17 @@
 use super::Aabb;
 use crate::math::{DIM, Vector, min};
 
-/// Leaves hold up to this number of parts. More makes walks test boxes in vain; less makes trees larger.
+/// Maximum number of parts of a leaf. More parts make walks test boxes in vain; fewer make trees larger.
 const LEAF_PARTS: usize = 4;
 
 /// Below this depth ranges are halved by count, which bounds the depth of walks for any boxes.
 const MAX_FREE_DEPTH: u32 = 24;
 
-/// The capacity of a walk's stack: the free depth, and halvings of 2³² parts.
+/// The capacity of a walk's stack: the free depth, plus the halvings of 2³² parts.
 const STACK: usize = MAX_FREE_DEPTH as usize + 40;
 
-/// Boxes are larger by this share of the distance of the farthest one when rays are cast, so that no facet is missed whose
-/// own test, rounded to `f32`, the ray passes.
+/// For ray casts, boxes are grown by this share of the distance of the farthest box. So no facet is missed
+/// whose own test, rounded to `f32`, reports a hit.
 const ROOM_FOR_ROUNDING: f32 = 8.0 * f32::EPSILON;
 
 /// A static tree of boxes. Its shape depends on the boxes alone, in their order.
@@ -28,18 +28,18 @@ pub struct PartTree {
 #[derive(Clone, Copy, Debug)]
 struct Node {
     aabb: Aabb,
-    /// Of a leaf, its first place in `order`; of a branch, the node of its second child.
+    /// For a leaf its first place in `order`, for a branch the node of its second child.
     start: u32,
     /// The number of a leaf's parts; 0 for a branch.
     count: u32,
 }
 
-/// Adds the nodes of a tree one after the other.
+/// Adds the nodes of a tree one after another.
 #[derive(Default)]
 pub(super) struct Builder(PartTree);
 
 impl Builder {
-    /// With room for a tree over this number of parts.
+    /// A builder with room for a tree over this number of parts.
     pub(super) fn with_parts(count: usize) -> Self {
         Self(PartTree { nodes: Vec::with_capacity(count), order: Vec::with_capacity(count) })
     }
@@ -74,7 +74,7 @@ impl Builder {
     }
 }
 
-/// A part that is to be sorted into the tree.
+/// A part to be sorted into the tree.
 #[derive(Clone, Copy)]
 struct Entry {
     part: u32,
@@ -83,7 +83,8 @@ struct Entry {
 }
 
 impl PartTree {
-    /// The tree over boxes, of which the `i`-th is part `i`. Boxes that are not `min ≤ max` are never found.
+    /// The tree over boxes, where the `i`-th box belongs to part `i`. Boxes that are not `min ≤ max` are
+    /// never found.
     pub fn new(boxes: &[Aabb]) -> Self {
         if boxes.is_empty() {
             return Self::default();
@@ -104,13 +105,15 @@ impl PartTree {
         self.nodes.first().map_or(Aabb::EMPTY, |root| root.aabb)
     }
 
-    /// Calls `found` with every part whose leaf's box touches `aabb`, in an order that depends on the tree alone.
+    /// Calls `found` with every part whose leaf's box touches `aabb`, in an order that depends on the tree
+    /// alone.
     #[inline]
     pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(u32)) {
         self.walk(|b| b.overlaps(aabb), |parts| parts.iter().for_each(|part| found(*part)));
     }
 
-    /// A lower bound of the distance of `around` to parts whose leaves' boxes do not touch `near`, or `limit` if that is less.
+    /// A lower bound of the distance from `around` to parts whose leaves' boxes do not touch `near`, or
+    /// `limit` if that is less.
     pub fn gap_beyond(&self, near: &Aabb, around: &Aabb, limit: f32) -> f32 {
         let mut least = limit;
         self.visit_leaves(
@@ -124,8 +127,8 @@ impl PartTree {
         least
     }
 
-    /// Visits the parts in leaves whose boxes a ray enters before a limit, nearer branches first. `hit` gets a part and the present
-    /// limit, and returns the new one.
+    /// Visits the parts in leaves whose boxes a ray enters before a limit, nearer branches first. `hit` gets
+    /// a part and the current limit, and returns the new limit.
     pub fn cast_ray(&self, origin: Vector, direction: Vector, limit: f32, hit: impl FnMut(u32, f32) -> f32) {
         let bounds = self.bounds();
         let farthest = (bounds.min - origin).abs().max((bounds.max - origin).abs()).max_element();
@@ -135,9 +138,9 @@ impl PartTree {
         self.visit(limit, entry, hit);
     }
 
-    /// Visits the parts of leaves by a distance of their boxes, nearer branches first, up to a limit. `entry` gives the distance
-    /// of a box, infinity to leave it out. `hit` gets a part and the present limit, and returns the new one; the walk ends
-    /// when it is negative.
+    /// Visits the parts of leaves by a distance of their boxes, nearer branches first, up to a limit. `entry`
+    /// gives the distance of a box, infinity to skip it. `hit` gets a part and the current limit, and returns
+    /// the new limit; the walk ends when the limit is negative.
     pub fn visit(&self, limit: f32, entry: impl Fn(&Aabb) -> f32, mut hit: impl FnMut(u32, f32) -> f32) {
         self.visit_leaves(limit, entry, |_, parts, mut limit| {
             for part in parts {
@@ -150,7 +153,7 @@ impl PartTree {
         });
     }
 
-    /// The same with the box of each leaf and its parts.
+    /// As [`visit`](Self::visit), but visits leaves, each with its box and its parts.
     #[inline(always)]
     fn visit_leaves(
         &self,
@@ -164,7 +167,7 @@ impl PartTree {
         let mut next = Some((0, entry(&root.aabb)));
         while let Some((index, at)) = next {
             next = None;
-            // Infinity is a miss also without a limit.
+            // Infinity is a miss even without a limit.
             if at <= limit && at < f32::INFINITY {
                 let node = &self.nodes[index as usize];
                 if node.count == 0 {
@@ -190,7 +193,7 @@ impl PartTree {
         }
     }
 
-    /// Depth first through all boxes that pass the test.
+    /// Walks depth first through all boxes that pass the test.
     #[inline(always)]
     fn walk(&self, test: impl Fn(&Aabb) -> bool, mut leaf: impl FnMut(&[u32])) {
         let mut stack = [0_u32; STACK];
@@ -223,7 +226,7 @@ fn admitted(aabb: &Aabb) -> Aabb {
     if (0..DIM).all(|i| low[i] <= high[i]) { *aabb } else { Aabb::EMPTY }
 }
 
-/// Adds the tree over some parts, of which the box around their centres is known. Returns its box.
+/// Adds the tree over some parts. `around` is the box around their centres. Returns the box of the tree.
 fn grow(builder: &mut Builder, entries: &mut [Entry], around: Aabb, boxes: &[Aabb], depth: u32) -> Aabb {
     if entries.len() <= LEAF_PARTS {
         let parts = entries.iter().map(|entry| entry.part);
@@ -238,8 +241,8 @@ fn grow(builder: &mut Builder, entries: &mut [Entry], around: Aabb, boxes: &[Aab
     )
 }
 
-/// Sorts at least two parts into two groups that are not empty, at the middle of the longest side of their centres' box.
-/// Returns the size of the first group, and the boxes around the centres of both.
+/// Sorts at least two parts into two groups that are not empty, at the middle of the longest side of their
+/// centres' box. Returns the size of the first group, and the boxes around the centres of both groups.
 fn split(entries: &mut [Entry], around: Aabb, depth: u32) -> (usize, [Aabb; 2]) {
     let size = (around.max - around.min).to_array();
     let axis = (1..DIM).fold(0, |best, i| if size[i] > size[best] { i } else { best });
@@ -285,7 +288,7 @@ mod tests {
             let vector = |v: [f32; 3]| Vector::from_array(core::array::from_fn(|i| v[i]));
             let mut boxes: Vec<Aabb> =
                 corners.iter().map(|(c, size)| Aabb::new(vector(*c), vector(*c) + Vector::ONE * *size)).collect();
-            // Equal boxes cannot be told apart by any plane.
+            // No plane can separate equal boxes.
             if let Some(first) = boxes.first().copied() {
                 boxes.extend((1..copies).map(|_| first));
             }
@@ -299,7 +302,7 @@ mod tests {
         }
     }
 
-    /// Also along axes, where a ray goes through as many boxes as it can.
+    /// Also along axes, where a ray goes through as many boxes as possible.
     #[test]
     fn a_ray_visits_what_is_nearest_first() {
         let side = if DIM == 2 { 64 } else { 16_usize };

@@ -1,8 +1,8 @@
-//! The shapes with the same code in both dimensions: plain values with public fields, their support points, boxes and ray hits.
-//! Masses differ and are in the twin files.
+//! The shapes with the same code in both dimensions: plain values with public fields, their support points,
+//! boxes and ray hits. Masses differ between 2D and 3D and are in the twin files.
 //!
-//! Constructors return errors for values that are not finite and for negative sizes. Since the fields are public, functions
-//! accept all values: degenerate shapes act as points or segments.
+//! Constructors return errors for values that are not finite and for negative sizes. Since the fields are
+//! public, functions accept all values: degenerate shapes act as points or segments.
 
 use super::aabb::rotate_half;
 use super::{Aabb, RayHit, ShapeError};
@@ -20,7 +20,7 @@ pub struct Ball {
 pub struct Capsule {
     /// The first end of the axis.
     pub a: Vector,
-    /// The second end of the axis; equal to `a`, the capsule is a ball off the origin.
+    /// The second end of the axis. If it equals `a`, the capsule is a ball off the origin.
     pub b: Vector,
     /// The radius in metres; 0 is a segment, which collides but has no mass.
     pub radius: f32,
@@ -72,8 +72,8 @@ impl From<[Vector; 3]> for Triangle {
     }
 }
 
-/// The direction and length of a vector; `None` if it is shorter than 1e-15 m or not finite, where the
-/// square of its length leaves the normal range of `f32`.
+/// The direction and length of a vector. `None` if the vector is shorter than 1e-15 m or not finite, since
+/// its squared length then leaves the normal range of `f32`.
 #[inline]
 pub(crate) fn direction(v: Vector) -> Option<(Vector, f32)> {
     let square = v.length_squared();
@@ -85,7 +85,7 @@ pub(crate) fn direction(v: Vector) -> Option<(Vector, f32)> {
     }
 }
 
-/// The unit vector along `v`, or `otherwise` where `v` has no direction.
+/// The unit vector along `v`, or `otherwise` if `v` has no direction.
 #[inline]
 pub(crate) fn direction_or(v: Vector, otherwise: Vector) -> Vector {
     match direction(v) {
@@ -94,7 +94,7 @@ pub(crate) fn direction_or(v: Vector, otherwise: Vector) -> Vector {
     }
 }
 
-/// The point of the segment from `a` to `b` that is nearest to `p`, as a fraction 0…1 from `a`.
+/// The point of the segment from `a` to `b` nearest to `p`, as a fraction 0…1 from `a`.
 #[inline]
 pub(crate) fn nearest_fraction(a: Vector, b: Vector, p: Vector) -> f32 {
     let axis = b - a;
@@ -105,8 +105,8 @@ pub(crate) fn nearest_fraction(a: Vector, b: Vector, p: Vector) -> f32 {
 /// The range of a ray in a convex solid: it enters at `.0` and leaves at `.1`, negative behind the origin.
 pub(crate) type Stretch = (f32, f32);
 
-/// The hit of a ray whose range in a solid is known. `normal_at` gives the outward normal at the
-/// entry (`true`) or exit (`false`) at a distance.
+/// The hit of a ray whose range in a solid is known. `normal_at` gives the outward normal at the entry
+/// (`true`) or exit (`false`) at a distance.
 pub(crate) fn hit_of_stretch(
     (enter, exit): Stretch,
     max_distance: f32,
@@ -124,8 +124,8 @@ pub(crate) fn hit_of_stretch(
     (distance <= max_distance).then(|| RayHit { distance, normal: normal_at(outside, distance) })
 }
 
-/// The range of the line `origin + t direction` within `radius` of `center`. The nearest point of
-/// the line is computed first, so that no large squares cancel.
+/// The range of the line `origin + t direction` within `radius` of `center`. The nearest point of the line is
+/// computed first, so no large squares cancel.
 #[inline]
 fn stretch_in_ball(center: Vector, radius: f32, origin: Vector, direction: Vector) -> Option<Stretch> {
     let to_center = center - origin;
@@ -205,8 +205,8 @@ impl Capsule {
         direction_or(point - (self.a + (self.b - self.a) * fraction), otherwise)
     }
 
-    /// The range of a line in the capsule: in the union of two balls and the tube between them. All
-    /// three are convex and so is the union, so its ends are the outermost ends of theirs.
+    /// The range of a line in the capsule, the union of two balls and the tube between them. All three and
+    /// their union are convex, so the range ends at the outermost ends of the three ranges.
     pub(crate) fn stretch(&self, origin: Vector, direction: Vector) -> Option<Stretch> {
         let pieces = [
             stretch_in_ball(self.a, self.radius, origin, direction),
@@ -304,14 +304,14 @@ impl Cuboid {
 }
 
 impl HalfSpace {
-    /// The half-space behind the plane through the origin with the given outward normal, of any length
-    /// but 0.
+    /// The half-space behind the plane through the origin with the given outward normal, of any length except
+    /// 0.
     pub fn new(normal: Vector) -> Result<Self, ShapeError> {
         let largest = checked_point(normal)?.abs().max_element();
         if largest == 0.0 {
             return Err(ShapeError::Degenerate);
         }
-        // Scaled to about 1 first: the square of a tiny or huge length is no finite `f32`.
+        // Scaled to about 1 first, since the square of a tiny or huge length is not a normal `f32`.
         let scaled = Vector::from_array(normal.to_array().map(|c| c / largest));
         Ok(Self { normal: direction_or(scaled, Vector::Y) })
     }
@@ -334,7 +334,7 @@ impl HalfSpace {
         } else {
             return None;
         };
-        // A ray that leaves at infinity does not leave.
+        // A ray that leaves only at infinity does not leave.
         hit_of_stretch(stretch, min(max_distance, f32::MAX), solid, |_, _| self.normal)
     }
 }

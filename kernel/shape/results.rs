@@ -7,7 +7,7 @@ use crate::math::Vector;
 pub struct RayHit {
     /// The distance along the (unit) direction, in metres.
     pub distance: f32,
-    /// The outward unit normal; zero if the ray starts inside of a solid shape.
+    /// The outward unit normal; zero if the ray starts inside a solid shape.
     pub normal: Vector,
 }
 
@@ -18,7 +18,7 @@ pub enum ShapeError {
     NotFinite,
     /// A radius or half extent is negative.
     Negative,
-    /// Fewer distinct points than span the shape, or all on a line (or plane).
+    /// Fewer distinct points than span the shape, or all points on a line (or plane).
     Degenerate,
     /// An outline or mesh is not convex.
     NotConvex,

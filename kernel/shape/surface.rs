@@ -1,4 +1,4 @@
-//! Surfaces of facets, with the neighbours of each.
+//! Surfaces of facets, with the neighbours of each facet.
 
 use super::adjacency::{Borders, NO_FACET};
 use super::dim::{Hull, Layout, face_normal, signed_volume};
@@ -6,13 +6,15 @@ use super::part_tree::PartTree;
 use super::{Aabb, ShapeError};
 use crate::math::{DIM, Vector, max, min};
 
-/// Surfaces of more facets are not looked at as solids. More takes longer to build; and hulls of more faces are slower than surfaces.
+/// Surfaces with more facets are not tested for being solids. A larger number makes building slower, and
+/// hulls of more faces are slower than surfaces.
 const MOST_FACETS_OF_SOLID: usize = 256;
 
-/// Surfaces of more facets are not looked at for whether they are closed: they are levels, not bodies.
+/// Surfaces with more facets are not tested for being closed: they are levels, not bodies.
 const MOST_FACETS_OF_BODY: usize = 1 << 16;
 
-/// Corners are on a hull up to this share of its size. More flattens dents; less leaves out what rounding makes uneven.
+/// Corners within this share of a hull's size are on the hull. A larger share flattens dents; a smaller one
+/// rejects surfaces that are uneven by rounding.
 const ON_HULL: f32 = 1.0e-4;
 
 /// A two-sided surface without thickness, of triangles in 3D and segments in 2D.
@@ -22,14 +24,15 @@ pub struct Surface {
     pub(super) facets: Vec<[u32; DIM]>,
     /// The facet across each border of each facet, [`NO_FACET`] if there is none or more than one.
     pub(super) neighbors: Vec<[u32; DIM]>,
-    /// 1 if the surface is closed and its facets face outward, -1 if they face inward, else 0.
+    /// 1 if the surface is closed and its facets face outward, -1 if they face inward, 0 otherwise.
     pub(super) outward: f32,
-    /// How its facets lie, if that is known.
+    /// The arrangement of its facets, if it is known.
     pub(in crate::shape) layout: Layout,
 }
 
 impl Surface {
-    /// The surface of `facets`, which are indices of `vertices`. Facets that meet at equal vertices are neighbours.
+    /// The surface of `facets`, which are indices of `vertices`. Facets that meet at equal vertices are
+    /// neighbours.
     ///
     /// # Errors
     /// If there is no facet, a vertex is not finite, or an index is out of range.
@@ -65,13 +68,14 @@ impl Surface {
         self.facets[facet as usize].map(|i| self.vertices[i as usize])
     }
 
-    /// Whether its facets face out of what it bounds: 1, or -1 if they face into it; 0 if it is not closed or they do not agree.
+    /// 1 if the facets face out of the volume that the surface bounds, -1 if they face into it, 0 if the
+    /// surface is not closed or its facets do not agree.
     #[inline]
     pub fn outward(&self) -> f32 {
         self.outward
     }
 
-    /// The solid that the surface bounds, if it is closed and convex, whichever way its facets face.
+    /// The solid that the surface bounds, if it is closed and convex. The facets may face either way.
     pub(super) fn solid(&self) -> Option<Hull> {
         if self.facets.len() > MOST_FACETS_OF_SOLID || !self.is_closed() {
             return None;
@@ -89,8 +93,8 @@ impl Surface {
         corners.chunks(DIM).all(is_on_hull).then_some(hull)
     }
 
-    /// Whether no facet's neighbours are on both sides of its plane, by more than a distance. This holds for convex surfaces, and takes
-    /// much less time than to make a hull.
+    /// Whether no facet has neighbours on both sides of its plane, by more than a distance. This holds for
+    /// convex surfaces, and takes much less time than making a hull.
     fn bulges(&self, near: f32) -> bool {
         (0..self.facets.len() as u32).all(|facet| {
             let corners = self.corners(facet);
@@ -108,7 +112,8 @@ impl Surface {
         self.vertices.iter().copied().reduce(further).unwrap_or(Vector::ZERO)
     }
 
-    /// The facets across the borders of a facet: in 3D border `k` is the side from corner `k` to the next, in 2D corner `k`.
+    /// The facets across the borders of a facet: in 3D border `k` is the side from corner `k` to the next, in
+    /// 2D corner `k`.
     #[inline]
     pub fn neighbors(&self, facet: u32) -> [u32; DIM] {
         self.neighbors[facet as usize]
@@ -127,7 +132,7 @@ impl Surface {
         })
     }
 
-    /// The sign of the volume that it bounds, if it is closed.
+    /// The sign of the volume that the surface bounds, if it is closed.
     fn side(&self) -> f32 {
         let origin = self.vertices[self.facets[0][0] as usize];
         let volume = |facet: &[u32; DIM]| signed_volume(facet.map(|i| self.vertices[i as usize] - origin));
@@ -141,7 +146,7 @@ impl Surface {
         (0..DIM).any(|k| corners[k] == corners[(k + 1) % DIM])
     }
 
-    /// Whether there is a neighbour across each border, but for those of empty facets.
+    /// Whether there is a neighbour across each border. Borders of empty facets do not count.
     fn is_closed(&self) -> bool {
         let is_inner = |neighbors: &[u32; DIM]| neighbors.iter().all(|facet| *facet != NO_FACET);
         let mut all = self.facets.iter().zip(&self.neighbors);
@@ -157,7 +162,8 @@ mod tests {
         Vector::X * i as f32 + Vector::AXES[DIM - 1] * j as f32
     }
 
-    /// A strip of flat facets: squares of two triangles in 3D, segments in 2D. Each has its own vertices.
+    /// A strip of flat facets: squares of two triangles in 3D, segments in 2D. Each facet has its own
+    /// vertices.
     fn strip(count: usize) -> Surface {
         let (mut vertices, mut facets) = (Vec::new(), Vec::new());
         for i in 0..count {
@@ -193,7 +199,8 @@ mod tests {
         }
     }
 
-    /// Levels are exported with facets twice, from both sides, and with facets of which two corners are in one place.
+    /// Levels are exported with duplicate facets, from both sides, and with facets that have two corners in
+    /// one place.
     #[test]
     fn doubled_and_empty_facets_leave_neighbors() {
         let plain = strip(5);
@@ -208,7 +215,7 @@ mod tests {
         let messy = Surface::new(plain.vertices.clone(), facets).expect("a surface");
         let count = plain.facets.len() as u32;
         for facet in 0..count {
-            // In the messy surface the first is the one that was turned, so that all others are one later.
+            // In the messy surface the turned facet is the first, so all others are one later.
             let known = |n: &u32| if *n == 0 { 2 } else { *n - 1 };
             let beside = messy.neighbors(facet + 1).map(|n| if n == NO_FACET { n } else { known(&n) });
             assert_eq!(beside, plain.neighbors(facet), "of facet {facet}");

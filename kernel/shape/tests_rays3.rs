@@ -1,4 +1,4 @@
-//! Masses and normals of shapes in space as rays find them, for tests.
+//! Masses and normals of shapes in space, measured by rays, for tests.
 
 use crate::math::{Rot, Vector};
 use crate::shape::Shape;
@@ -8,7 +8,7 @@ fn v(x: f32, y: f32, z: f32) -> Vector {
     Vector { x, y, z }
 }
 
-/// The mass properties of a shape about `center` as rays along z find them.
+/// The mass properties of a shape about `center`, measured by rays along z.
 fn mass_by_rays(shape: &Shape, center: Vector, reach: f32) -> (f64, [f64; 3], [f64; 6]) {
     const CELLS: usize = 400;
     let aabb = shape.local_aabb(Rot::IDENTITY);
@@ -44,7 +44,7 @@ fn mass_by_rays(shape: &Shape, center: Vector, reach: f32) -> (f64, [f64; 3], [f
     (volume, first.map(|m| m / volume), second)
 }
 
-/// Compares the mass properties with what rays find.
+/// Compares the mass properties with the measurement by rays.
 #[track_caller]
 pub(super) fn check_mass_by_rays(shape: &Shape, reach: f32) {
     let mass = shape.mass_properties(1.0);
@@ -61,7 +61,7 @@ pub(super) fn check_mass_by_rays(shape: &Shape, reach: f32) {
     }
 }
 
-/// Checks that a hit is on the surface: a point of a convex one is the farthest along its normal.
+/// Checks that a hit is on the surface: on a convex shape the hit is the farthest point along its normal.
 pub(super) fn check_ray(shape: &Shape, from: Vector, to: Vector, solid: bool) -> Result<(), TestCaseError> {
     let line = to - from;
     prop_assume!(line.length() > 0.1);

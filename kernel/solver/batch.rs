@@ -12,7 +12,7 @@ use crate::data::BitSet;
 use crate::math::Vector;
 use core::ops::Range;
 
-/// What a sweep does with each row.
+/// The operation of a sweep over rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pass {
     /// Apply the impulses of the last substep.
@@ -27,7 +27,8 @@ pub(super) enum Pass {
     Measure,
 }
 
-/// A set of passes, as bits, and whether the rows may have an overloaded body, or a point that may be struck.
+/// A set of passes, as bits, and two flags: the rows may have an overloaded body, and a point of the rows
+/// may be struck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Passes(u8);
 
@@ -42,17 +43,17 @@ impl Passes {
         Self(1 << pass as u8)
     }
 
-    /// This set and one more pass.
+    /// This set plus one more pass.
     pub(super) const fn with(self, pass: Pass) -> Self {
         Self(self.0 | Self::of(pass).0)
     }
 
-    /// This set, marked as of rows with an overloaded body.
+    /// This set, flagged for rows with an overloaded body.
     pub(super) const fn overloaded(self) -> Self {
         Self(self.0 | Self::OVERLOADED)
     }
 
-    /// This set, marked as of rows with a point that may be struck.
+    /// This set, flagged for rows with a point that may be struck.
     pub(super) const fn watched(self) -> Self {
         Self(self.0 | Self::WATCHED)
     }
@@ -91,11 +92,11 @@ pub(super) struct Filling<'a> {
     pub(super) axes: &'a [Vector],
 }
 
-/// What to find among rows.
+/// The query of a search for struck manifolds.
 #[derive(Clone, Copy)]
 pub(super) struct Seek<'a> {
     pub(super) striking: Striking<'a>,
-    /// Body rows that were struck since contacts were last looked at, if there are any.
+    /// Body rows that were struck since contacts were last searched, if any.
     pub(super) reached: Option<&'a BitSet>,
 }
 
@@ -107,27 +108,27 @@ pub(super) struct Sweep<'a> {
     pub(super) params: &'a SubstepParams,
 }
 
-/// Rows of one kind and shape. A batch is chosen once per block, so that the indirect call costs nothing.
+/// Rows of one kind and shape. A batch is chosen once per block, so the indirect call costs nothing.
 pub(super) trait Batch: Sync {
-    /// Fills rows from items: one item per lane, fewer in the last row. Returns the passes that the rows need. May be called
-    /// again after masses have changed.
+    /// Fills rows from items: one item per lane, fewer in the last row. Returns the passes that the rows
+    /// need. May be called again after masses changed.
     ///
     /// # Safety
-    /// Until it returns, no other thread uses these rows, or writes a body or contact of theirs.
+    /// Until the call returns, no other thread uses these rows, or writes their bodies or contacts.
     unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes;
 
     /// Runs a pass over rows that need `passes`.
     ///
     /// # Safety
-    /// Until it returns, no other thread uses these rows, or reads or writes a dynamic body of theirs, or writes any
-    /// other body of theirs.
+    /// Until the call returns, no other thread uses these rows, reads or writes their dynamic bodies, or
+    /// writes their other bodies.
     unsafe fn run(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep);
 
-    /// Watches lanes with a body that was reached, and adds those with a point that is struck. Returns whether any lane is
-    /// watched. Kinds without impacts add none.
+    /// Watches the lanes with a struck body, and adds the lanes with a struck point to `_found`. Returns
+    /// whether any lane is watched. The default is for kinds without impacts: it adds nothing.
     ///
     /// # Safety
-    /// Until it returns, no other thread uses these rows, or writes a body of theirs.
+    /// Until the call returns, no other thread uses these rows, or writes their bodies.
     unsafe fn find_struck(
         &self,
         _rows: Range<usize>,
@@ -141,6 +142,6 @@ pub(super) trait Batch: Sync {
     /// Stores the impulses of rows in the constraints of their items.
     ///
     /// # Safety
-    /// Until it returns, no other thread uses these rows, or reads or writes a constraint of theirs.
+    /// Until the call returns, no other thread uses these rows, or reads or writes their constraints.
     unsafe fn store(&self, rows: Range<usize>, items: &[Item], contacts: &ManifoldsView);
 }

@@ -1,4 +1,4 @@
-//! All rows of a step: the list of kinds, and how constraints are sorted into batches.
+//! All rows of a step: the list of constraint kinds, and the sorting of constraints into batches.
 
 use super::batch::Batch;
 use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, Room, sort_contacts};
@@ -14,12 +14,12 @@ use crate::math::F32x8;
 use crate::math::{Entry, F32x4, Lane, Shared, Width};
 use crate::thread_pool::ThreadPool;
 
-/// Rows of every lane width. Of the wide ones only one width is in use.
+/// Rows of every lane width. Only one of the wide widths is in use.
 #[derive(Clone, Debug, Default)]
 pub(super) struct AllRows {
     pub(super) width: Width,
     overflow: KindRows<f32>,
-    /// Contacts of the overflow, if there are many.
+    /// Contacts of the overflow that share rows, if there are many.
     shared: ContactRows<Shared<F32x4>>,
     four: KindRows<F32x4>,
     #[cfg(target_arch = "x86_64")]
@@ -36,21 +36,21 @@ struct KindRows<N: Lane> {
 
 /// Number of batches of one width.
 const BATCHES: usize = CUSTOM + CUSTOM_BATCHES;
-/// The first batch of joints. Those before are of contacts.
+/// The first batch of joints; contact batches come before it.
 const JOINT: usize = CONTACT_BATCHES;
 /// The first batch of custom constraints.
 const CUSTOM: usize = JOINT + JOINT_BATCHES;
 
-/// The first batch of rows that share bodies. Those before are of single constraints of the overflow.
+/// The first batch of rows that share bodies; batches of single overflow constraints come before it.
 const SHARED: usize = BATCHES;
 /// The first batch of wide rows.
 const WIDE: usize = SHARED + CONTACT_BATCHES;
 
-/// Minimum number of contacts of the overflow for which they share rows. Fewer are solved one by one, which converges
-/// faster.
+/// Minimum number of overflow contacts for which they share rows. Fewer are solved one by one, which
+/// converges faster.
 const WORTH_SHARED_ROWS: usize = 32;
 
-/// The tables that constraints are sorted by.
+/// Tables that are read to sort constraints.
 #[derive(Clone, Copy)]
 pub(super) struct SortedTables<'a> {
     pub(super) joints: (&'a JointTable, &'a JointTrees),
@@ -117,7 +117,7 @@ impl Layers {
     }
 }
 
-/// The layer with a number, which is created if it is the next one.
+/// The layer with a number. It is created if it is the next one.
 fn layer(layers: &mut Vec<Layer>, number: usize) -> &mut Layer {
     if number == layers.len() {
         layers.push(Layer::default());
@@ -147,15 +147,16 @@ fn sort_color(
     number
 }
 
-/// Sorts the constraints of the overflow into two layers: those that are solved one by one, in their order, and contacts
-/// that share rows. Returns the number of layers.
+/// Sorts the overflow constraints into two layers: constraints solved one by one, in their order, and
+/// contacts that share rows. Returns the number of layers.
 ///
-/// Decision: many contacts without a colour are those of a hub, a body that touches hundreds of others. Four of them share
-/// a row, and the hub is split into as many bodies of equal mass, whose mean velocity it gets (mass splitting: Tonge,
-/// Benevolenski, Voroshilov, "Mass Splitting for Jitter-Free Parallel Rigid Body Simulation", 2012). That conserves
-/// momentum and adds no energy, at any ratio of masses; and a heavy hub, as most are, hardly notices. A row has four
-/// lanes on every CPU, because the result depends on how many bodies a hub is split into. In steps with deep overlap all
-/// contacts stay single, as they work against each other.
+/// Decision: many contacts without a colour belong to a hub, a body that touches hundreds of others. Four
+/// of them share a row, and the hub is split into one body of equal mass per lane, whose mean velocity it
+/// gets (mass splitting: Tonge, Benevolenski, Voroshilov, "Mass Splitting for Jitter-Free Parallel Rigid
+/// Body Simulation", 2012). Mass splitting conserves momentum and adds no energy, at any mass ratio, and
+/// hardly affects a heavy hub, as most hubs are. A row has four lanes on every CPU, because the result
+/// depends on the number of bodies into which a hub is split. In steps with deep overlap all contacts stay
+/// single, as they work against each other.
 fn sort_overflow(
     colors: &ColorGraph,
     tables: SortedTables,
@@ -204,7 +205,7 @@ impl AllRows {
         }
     }
 
-    /// Number of items that are manifolds, given the number of items of each batch.
+    /// Number of manifolds among the items, given the number of items of each batch.
     pub(super) fn count_manifolds(items: &[u32]) -> usize {
         let of_contacts =
             [0, SHARED, WIDE].into_iter().flat_map(|first| items.iter().skip(first).take(CONTACT_BATCHES));
@@ -269,7 +270,7 @@ impl<N: Entry> KindViews<'_, N> {
         })
     }
 
-    /// Calls a function with these batches, then those that share bodies, then the wide ones.
+    /// Calls a function with these batches, then the batches that share bodies, then the wide ones.
     fn and<S: Entry, W: Entry, R>(
         &self,
         shared: &ContactView<S>,

@@ -1,19 +1,22 @@
-//! Light bodies below heavy ones: contacts see them with more mass.
+//! Light bodies below heavy ones: contacts see them with a larger mass.
 //!
-//! A soft contact has the stiffness m ω² of its effective mass m, and one sweep changes its impulse by at most m times
-//! the approach speed. Light bodies below a heavy one are therefore soft springs that harden slowly: 1,000 kg crushed a
-//! tower of five boxes of 1 kg. More sweeps help in proportion only, a larger mass helps at once.
+//! A soft contact has the stiffness m ω² of its effective mass m, and one sweep changes its impulse by at
+//! most m times the approach speed. Contacts of light bodies below a heavy one are therefore soft springs
+//! whose impulse grows slowly: 1,000 kg crushed a tower of five boxes of 1 kg. More sweeps help only in
+//! proportion; a larger mass helps at once.
 //!
-//! Decision: the mass is that of the body in all its contacts, not of one contact. Impulses between bodies then still
-//! balance, and forces at rest are those of the larger mass. Added mass is a share of the load ([`FULL_SAG`]), so what
-//! the heavy body does hardly changes. Only compression counts, not the net impulse: a body that hits a wall keeps its
-//! mass. Other engines let users scale masses by hand.
+//! Decision: the body gets a larger mass in all of its contacts, not in a single contact. Impulses between
+//! bodies then still balance, and forces at rest are the same as for a true mass of that size. The added
+//! mass is a share of the load ([`FULL_SAG`]), so the motion of the heavy body hardly changes. Only
+//! compression counts, not the net impulse: a body that hits a wall keeps its mass. Other engines let users
+//! scale masses by hand.
 //!
-//! Decision: each world axis has its own mass, by the compression along it. A light slab that slides below a heavy block has
-//! its own mass along its way, and friction gives the block no more momentum than the slab has. Blows see the true mass.
+//! Decision: each world axis has its own mass, by the compression along that axis. A light slab that slides
+//! below a heavy block keeps its true mass along the sliding direction, and friction gives the block no
+//! more momentum than the slab has. Blows see the true mass.
 //!
-//! Decision: masses are doubled step by step, upward at once and downward late. A mass that follows the load is fed
-//! back by the load, and such a tower shakes until it falls.
+//! Decision: masses are doubled and halved in steps, doubled at once and halved late. If the mass followed
+//! the load continuously, the load would feed it back, and the tower would shake until it falls.
 
 use super::input::RowInput;
 use super::{BodyRows, SubstepParams};
@@ -21,45 +24,47 @@ use crate::contact::{Contact, ContactFlags, ContactTable, Manifold};
 use crate::math::{DIM, Vector, max, min};
 use crate::tuning::solver::{FULL_SAG, HEAVY, MAX_DOUBLINGS, PRESSED, STEPS_TO_HALVE};
 
-/// Finds the bodies that bear much more than their weight. Buffers are kept between steps.
+/// Finds bodies whose load is much larger than their weight. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bearing {
-    /// By body row. Empty in steps without any such body.
+    /// The load of each body row. Empty in steps without overloaded bodies.
     loads: Vec<Load>,
-    /// Body rows of contacts that press.
+    /// The two body rows of each pressing contact.
     presses: Vec<[u32; 2]>,
-    /// Bodies with more mass in this step, by id, and for each axis for how many steps of halving it will last.
+    /// Bodies with raised mass in this step, by id, and for each axis the number of steps until the mass is
+    /// back to its true value.
     raised: Vec<(u32, [u8; DIM])>,
 }
 
 /// The impulses of all contacts of a body in the last substep, N·s.
 #[derive(Clone, Copy, Debug)]
 struct Load {
-    /// The sum of their lengths along each axis.
+    /// Sum of the magnitudes of the impulses along each axis.
     total: Vector,
-    /// Their sum.
+    /// Sum of the impulses.
     net: Vector,
-    /// Whether contacts that press connect the body with one below a heavy body.
+    /// Whether a chain of pressing contacts connects the body with a body directly below a heavy one.
     is_below: bool,
-    /// The ratio of the body's mass along each axis to the one that contacts see.
+    /// The ratio of the body's true mass to the mass that contacts see, along each axis.
     share: Vector,
 }
 
 impl Load {
     const NONE: Self = Self { total: Vector::ZERO, net: Vector::ZERO, is_below: false, share: Vector::ONE };
 
-    /// The impulse that compresses the body along each axis: the part that is balanced.
+    /// The impulse that compresses the body along each axis: the balanced part of the impulses.
     fn compression(&self) -> Vector {
         (self.total - self.net.abs()).max(Vector::ZERO) * 0.5
     }
 }
 
-/// The number of doublings of a mass that lasts for a number of steps.
+/// The number of doublings of a mass that lasts for `steps` more steps.
 fn doublings(steps: u8) -> u8 {
     steps.div_ceil(STEPS_TO_HALVE)
 }
 
-/// The steps for which the added mass of a body lasts that would sag by `sag` times the maximum, given those before.
+/// The number of steps for which the added mass of a body lasts. Without added mass, the body would sag by
+/// `sag` times the maximum; `last` is the number of the last step.
 fn next_steps(sag: f32, last: u8) -> u8 {
     let wanted = sag / FULL_SAG;
     let before = doublings(last);
@@ -74,21 +79,21 @@ fn next_steps(sag: f32, last: u8) -> u8 {
     if now > before { now * STEPS_TO_HALVE } else { last }
 }
 
-/// The sag of a contact per velocity that its impulse gives to a body: the overlap at rest of its spring, or the distance
-/// of a substep, in which no impulse can grow. In seconds.
+/// The sag of a contact per unit of velocity that its impulse gives a body, in seconds: the overlap of its
+/// spring at rest, or the distance moved in one substep, within which no impulse can grow.
 pub(super) fn sag_rate(params: &SubstepParams) -> f32 {
     max(params.soft.sag_rate(), params.h)
 }
 
 impl Bearing {
-    /// Starts a step: no body has more mass.
+    /// Starts a step: no body has raised mass.
     pub(super) fn clear(&mut self) {
         self.loads.clear();
         self.raised.clear();
     }
 
-    /// Raises the masses of overloaded bodies, as contacts see them. Returns whether there are any. `are_joined` tells whether two
-    /// body rows are of one tree of joints.
+    /// Raises the masses of overloaded bodies, as contacts see them. Returns whether any mass was raised.
+    /// `are_joined` tells whether two body rows belong to one tree of joints.
     pub(super) fn raise_masses(
         &mut self,
         input: &RowInput,
@@ -119,28 +124,29 @@ impl Bearing {
         !self.raised.is_empty()
     }
 
-    /// Share of the push-out speed of a contact between two body rows.
+    /// Factor of the push-out speed of a contact between two body rows.
     #[inline(always)]
     pub(super) fn push_share(&self, rows: [u32; 2]) -> f32 {
         let is_raised = |row| self.share(row) != Vector::ONE;
         if !self.raised.is_empty() && rows.into_iter().any(is_raised) { 0.5 / HEAVY } else { 1.0 }
     }
 
-    /// The ratio of a body's mass along each axis to the one that contacts see.
+    /// The ratio of a body's true mass to the mass that contacts see, along each axis.
     #[inline(always)]
     pub(super) fn share(&self, row: u32) -> Vector {
         self.loads.get(row as usize).map_or(Vector::ONE, |load| load.share)
     }
 
-    /// Stores which bodies have more mass, for the next step.
+    /// Stores the bodies with raised mass, for the next step.
     pub(super) fn store(&self, contacts: &mut ContactTable) {
         debug_assert!(self.raised.is_sorted(), "bodies are in the order of ids");
         contacts.raised_masses.clone_from(&self.raised);
     }
 
-    /// Sums up the impulses of the last substep by body row, in the order of contacts, and lists contacts that press.
-    /// Deep overlap and fast bodies do not count: their impulses are no load at rest. Nor do contacts within a tree of joints,
-    /// which presses its bodies on each other as well as a load.
+    /// Sums up the impulses of the last substep by body row, in the order of contacts, and lists pressing
+    /// contacts. Contacts with deep overlap or of fast bodies do not count: their impulses are not the load
+    /// of bodies at rest. Contacts within a tree of joints do not count either: joints press bodies
+    /// together as a load does.
     fn sum_up(
         &mut self,
         input: &RowInput,
@@ -169,8 +175,9 @@ impl Bearing {
         }
     }
 
-    /// Adds a manifold to the loads, and to the list if it presses. Marks the lighter body if the other is heavy and bears
-    /// on it with its weight, or by other forces: a blow without any is no load.
+    /// Adds a manifold to the loads, and to the list if it presses. Marks the lighter body if the other
+    /// body is heavy and the impulse is at most [`HEAVY`] times the impulse of its weight and other forces
+    /// in a substep; a larger impulse is a blow, not a load.
     fn add(&mut self, manifold: &Manifold, rows: [u32; 2], bodies: &BodyRows, params: &SubstepParams) {
         let impulse: f32 = manifold.points().iter().map(|point| point.impulse).sum();
         for (row, sign) in rows.into_iter().zip([-1.0, 1.0]) {
@@ -190,7 +197,7 @@ impl Bearing {
         }
     }
 
-    /// Marks all bodies that contacts that press connect with marked ones.
+    /// Marks all bodies that are connected with marked bodies by pressing contacts.
     fn spread(&mut self) {
         let Self { loads, presses, .. } = self;
         let mut mark = |[a, b]: [u32; 2]| {
@@ -221,7 +228,7 @@ fn speed(contact: &Contact, manifold: &Manifold, rows: [u32; 2], bodies: &BodyRo
 mod tests {
     use super::*;
 
-    /// The steps after a number of steps with a load.
+    /// The remaining steps after `count` steps with a load.
     fn after(wanted: f32, count: usize, last: u8) -> u8 {
         (0..count).fold(last, |last, _| next_steps(wanted * FULL_SAG, last))
     }
@@ -233,7 +240,7 @@ mod tests {
         assert_eq!(doublings(after(2.1, 1, 0)), 1);
         assert_eq!(doublings(after(33.0, 1, 0)), 5);
         assert_eq!(doublings(after(f32::INFINITY, 1, 0)), MAX_DOUBLINGS);
-        // A load that wavers changes nothing.
+        // A fluctuating load changes nothing.
         for wanted in [9.0, 16.0, 32.0, 60.0] {
             assert_eq!(doublings(after(wanted, 100, after(33.0, 1, 0))), 5);
         }

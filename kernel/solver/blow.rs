@@ -1,13 +1,15 @@
-//! Blows: manifolds that close fast within a substep are struck before any other pass sees them, normals and friction
-//! together, whatever their restitution.
+//! Blows: manifolds that close fast within a substep are struck before any other pass sees them, with
+//! normal impulses and friction together, at any restitution.
 //!
-//! A blow is solved in rounds. All manifolds that close now are struck at once: what falls flat on several pieces stays flat,
-//! and a ball that hits two others gives both the same. What an impact sets in motion may strike others, in the next round, as
-//! in Newton's cradle (Smith, Kaufman, Vouga, Tamstorf, Grinspun, "Reflections on Simultaneous Impact", 2012).
+//! A blow is solved in rounds. All manifolds that close fast are struck at once: a body that lands flat on
+//! several others stays flat, and a ball that hits two others gives both the same impulse. Bodies that an
+//! impact sets in motion may strike others in the next round, as in Newton's cradle (Smith, Kaufman, Vouga,
+//! Tamstorf, Grinspun, "Reflections on Simultaneous Impact", 2012).
 //!
-//! A round solves each [group](super::group) that bodies connect by itself.
+//! A round solves each [group](super::group) of manifolds connected by bodies on its own.
 //!
-//! Bodies move with their old velocity until they touch: each is displaced by the time until then, times the change of its velocity.
+//! Bodies move with their old velocity until they touch: each is displaced by its velocity change,
+//! reversed, times the time until touching.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::group::{GroupBuffers, solve};
@@ -20,43 +22,44 @@ use crate::math::{MAX_POINTS, Vector, Width};
 use crate::thread_pool::ThreadPool;
 use crate::tuning::solver::{BLOW_SWEEPS, BLOW_WORK, ROUND_OF_SWEEPS};
 
-/// Fewest manifolds of a batch of groups, if several workers solve them. Fewer fill fewer lanes.
+/// Minimum number of manifolds of a batch of groups, if several workers solve them. Smaller batches fill
+/// fewer lanes.
 const BATCH: usize = 64;
 
 /// The manifolds that are struck in a substep. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blows {
-    /// Those found in a round, by worker.
+    /// Manifolds found in a round, one list per worker.
     pub(super) found: Vec<Vec<Struck>>,
     /// Body rows that were struck in this step.
     pub(super) reached: BitSet,
-    /// Those that were struck for the first time in this step since contacts were last looked at.
+    /// Body rows that were struck for the first time in this step since contacts were last searched.
     pub(super) reached_anew: BitSet,
-    /// Those of this substep, in order of groups.
+    /// Struck manifolds of this substep, in order of groups.
     struck: Vec<Struck>,
-    /// Manifolds before they are sorted. Empty between rounds.
+    /// Struck manifolds before they are sorted. Empty between rounds.
     unordered: Vec<Struck>,
     order: Vec<SortKey>,
     /// Struck body rows of this substep, in ascending order.
     bodies: Vec<u32>,
     sets: DisjointSets,
-    /// By the representative of a set, its first body. Representatives depend on the order in which workers find manifolds, first
-    /// bodies do not.
+    /// By representative of a set, the first body of the set. Representatives depend on the order in which
+    /// workers find manifolds; first bodies do not.
     firsts: Vec<u32>,
-    /// By worker.
+    /// Buffers of each worker.
     groups: Vec<GroupBuffers>,
-    /// How often a manifold was solved in this substep, about.
+    /// Approximate number of manifold solves in this substep.
     solved: usize,
-    /// Of all rounds of the step.
+    /// Impulses of all rounds of the step.
     given: Vec<Given>,
-    /// Struck body rows since the caller last emptied this list, and when they were struck, in seconds from the start of the
-    /// substep.
+    /// Body rows struck since the caller last emptied this list, each with its time, in seconds from the
+    /// start of the substep.
     pub(super) times: Vec<(u32, f32)>,
     /// The time from the start of the step to the end of this substep, in seconds.
     pub(super) elapsed: f32,
 }
 
-/// The key by which a struck manifold is sorted, and its place before.
+/// The sort key of a struck manifold, and its index in the unsorted list.
 #[derive(Clone, Copy, Debug)]
 struct SortKey {
     group: u32,
@@ -64,7 +67,7 @@ struct SortKey {
     at: u32,
 }
 
-/// What a manifold got in a round.
+/// The impulses of a manifold in a round.
 #[derive(Clone, Debug)]
 struct Given {
     item: Item,
@@ -79,9 +82,10 @@ struct Given {
 pub struct ManifoldBlow {
     /// The contact of the manifold.
     pub contact: u32,
-    /// The sum of the normal impulses of its points, on the second body, in world axes, N·s.
+    /// The sum of the normal impulses of its points on the second body, in world axes, N·s.
     pub impulse: Vector,
-    /// The approach speed along the normal that accelerations of the bodies added since the start of the step, m/s.
+    /// The approach speed along the normal that accelerations of the bodies have added since the start of
+    /// the step, m/s.
     pub gained: f32,
 }
 
@@ -101,12 +105,13 @@ impl Blows {
         self.solved = 0;
     }
 
-    /// Whether there is no time for another round in this substep. What closes still is left to contacts.
+    /// Whether this substep has no work budget left for another round. Contacts that still close are left
+    /// to the contact solver.
     pub(super) fn is_spent(&self) -> bool {
         self.solved >= BLOW_WORK
     }
 
-    /// The blows of the step, in the order of time. A manifold may be struck several times.
+    /// The blows of the step, ordered by time. A manifold may be struck several times.
     pub(super) fn given(&self) -> impl Iterator<Item = ManifoldBlow> {
         self.given.iter().map(|given| ManifoldBlow {
             contact: given.item.id,
@@ -121,7 +126,7 @@ impl Blows {
         rows.iter().rev().fold(0, |lanes, row| lanes << 1 | u32::from(reached.contains(*row)))
     }
 
-    /// Solves a round with the manifolds that were found. Returns whether any was due.
+    /// Solves a round with the found manifolds. Returns whether any manifold was due.
     pub(super) fn strike(
         &mut self,
         (first_dynamic, width): (u32, Width),
@@ -151,10 +156,10 @@ impl Blows {
             !ends
         });
         pool.each_into(groups, batches, |buffers, batch| {
-            // SAFETY: no two groups have a body that may be written in common.
+            // SAFETY: no two groups have a dynamic body in common.
             unsafe { solve(batch, buffers, limits, striking) };
         });
-        // To find and to sort them takes about as long as to solve each once.
+        // Finding and sorting manifolds takes about as long as solving each of them once.
         *solved += struck.len();
         *solved += groups.iter_mut().map(|worker| core::mem::take(&mut worker.solved)).sum::<usize>();
         for one in struck.iter_mut() {
@@ -171,7 +176,8 @@ impl Blows {
         count > 0
     }
 
-    /// Lists what was struck in earlier rounds and what was found in this one, by groups of manifolds that bodies connect.
+    /// Lists the manifolds struck in earlier rounds and the manifolds found in this one, grouped by bodies
+    /// that connect them.
     fn find_groups(&mut self, first_dynamic: u32) {
         let Self { found, struck, unordered, order, bodies, sets, firsts, .. } = self;
         core::mem::swap(struck, unordered);
@@ -201,8 +207,8 @@ impl Blows {
         }
     }
 
-    /// Sorts the struck manifolds. What was struck in an earlier round and found again is replaced: the two are neighbours, as
-    /// rows and anchors do not change within a step.
+    /// Sorts the struck manifolds. A manifold that was struck in an earlier round and found again is
+    /// replaced: both copies are neighbours, because rows and anchors do not change within a step.
     fn sort(&mut self) {
         let Self { struck, unordered, order, .. } = self;
         order.sort_unstable_by(|a, b| {
@@ -221,7 +227,7 @@ impl Blows {
         unordered.clear();
     }
 
-    /// Adds the impulses to the sums of the manifolds.
+    /// Adds the impulses of blows to the impulse sums of the manifolds.
     pub(super) fn store(&self, contacts: &mut ContactTable) {
         if !contacts.sum_impulses {
             return;

@@ -30,7 +30,8 @@ impl Motion {
     };
 }
 
-/// Acceleration of a body by forces, in addition to its [`Motion`]. Few bodies have one. Constant over a step.
+/// Acceleration of a body by forces, in addition to its [`Motion`]. Few bodies have one. Constant over a
+/// step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thrust {
     /// Acceleration in world axes, m/s².
@@ -98,7 +99,7 @@ impl Limits {
     }
 }
 
-/// Items of some body rows, at most one per row, so that threads write different rows.
+/// At most one item per body row, so that threads that process items write different rows.
 #[derive(Clone, Debug)]
 pub(super) struct OnceEach<T> {
     list: Vec<(u32, T)>,
@@ -149,24 +150,24 @@ impl<T> OnceEach<T> {
     }
 }
 
-/// What is known of the gains ([`GainRow`]) in a step.
+/// State of the gains ([`GainRow`]) in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Gains {
-    /// Impulses are applied by rows in each substep.
+    /// The warm start applies the impulses of constraint rows in each substep.
     #[default]
     Unused,
-    /// There was no substep yet.
+    /// No substep has run yet.
     Unknown,
-    /// Those of the last substep.
+    /// The gains hold the velocity changes of the last substep.
     Known,
 }
 
-/// Flags of rows that are filled. Row 0, the dummy, always is.
+/// One flag per row, set once the row is filled. The flag of row 0, the dummy, is always set.
 #[derive(Debug, Default)]
 pub(super) struct Claims(pub(super) Vec<AtomicBool>);
 
 impl Clone for Claims {
-    /// A copy starts with no rows: flags are of one step.
+    /// A copy starts without rows: flags are valid for one step.
     fn clone(&self) -> Self {
         Self::default()
     }
@@ -182,9 +183,9 @@ impl Claims {
     }
 }
 
-/// The bodies of one step. Row 0 is the immovable dummy that static partners and padding refer to. Then come the
-/// kinematic bodies, then the dynamic ones from [`first_dynamic`](Self::first_dynamic) on. Constraint rows write
-/// dynamic rows only.
+/// The bodies of one step. Row 0 is the immovable dummy that static partners and padding refer to.
+/// Kinematic bodies follow, then dynamic bodies from [`first_dynamic`](Self::first_dynamic) on. Constraint
+/// rows write dynamic rows only.
 #[derive(Clone, Debug, Default)]
 pub struct BodyRows {
     /// Velocity and displacement.
@@ -193,37 +194,39 @@ pub struct BodyRows {
     pub masses: Vec<MassRow>,
     /// Acceleration and damping.
     pub motions: Vec<Motion>,
-    /// What impulses give each body in a substep.
+    /// The velocity change of each body by the impulses of a substep.
     pub(super) gains: Vec<GainRow>,
     pub(super) gains_known: Gains,
-    /// Limits of the bodies that have any.
+    /// Velocity limits of the bodies that have any.
     pub(super) limits: OnceEach<Limits>,
     /// Bodies with free spin. None in 2D.
     pub(super) spins: OnceEach<Spin>,
-    /// Bodies with accelerations in their own frame.
+    /// Accelerations given in the frame of a body.
     pub(super) thrusts: OnceEach<LocalThrust>,
-    /// Bodies with constraints that turn far within the step. None in 2D.
+    /// Bodies with constraints that rotate far within the step. Empty in 2D.
     pub(super) fast_turns: OnceEach<FastTurn>,
-    /// Whether bodies that turn far have the angular velocity that rows see, and not the true one.
+    /// Whether bodies that rotate far currently have the angular velocity that constraint rows see instead
+    /// of the true one.
     pub(super) see_rows: bool,
-    /// Rows of bodies with constraints. Filled only if a body turns far.
+    /// Rows of bodies with constraints. Filled only if a body rotates far.
     pub(super) constrained: BitSet,
-    /// Rows of bodies that cannot turn about each axis.
+    /// Rows of bodies with a locked rotation axis.
     pub(super) turn_locked: BitSet,
-    /// Factors of the inverse mass along each axis, by row: 0 where an axis is locked. Empty if all are 1.
+    /// Factors of the inverse mass along each axis, by row: 0 for a locked axis. Empty if all factors are
+    /// 1.
     pub(super) axes: Vec<Vector>,
     /// Rows of bodies that were displaced after the last relax pass.
     pub(super) moved: BitSet,
     pub(super) claims: Claims,
-    /// How many bodies are moved side by side.
+    /// SIMD width with which bodies are moved.
     pub(super) width: Width,
     /// Row of the first dynamic body.
     pub(super) first_dynamic: u32,
 }
 
 impl BodyRows {
-    /// Resizes to `kinematic` and `dynamic` bodies after the dummy, without limits and spins. Every row must be filled:
-    /// its content is stale.
+    /// Resizes to `kinematic` and `dynamic` bodies after the dummy, without limits and spins. The content
+    /// of rows is stale: every row must be filled.
     pub(super) fn reset(&mut self, kinematic: usize, dynamic: usize) {
         let count = 1 + kinematic + dynamic;
         debug_assert!(u32::try_from(count).is_ok(), "{count} rows have ids of 32 bits");
@@ -268,7 +271,8 @@ impl BodyRows {
         }
     }
 
-    /// Multiplies the inverse mass along each axis, as constraints see it, by shares, and the inverse inertia by the least.
+    /// Multiplies the inverse mass that constraints see by `shares`, per axis, and the inverse inertia by
+    /// the smallest share.
     pub(super) fn lower_inv_mass(&mut self, row: usize, shares: Vector) {
         let least = shares.min_element();
         let mass = &mut self.masses[row];
@@ -279,8 +283,9 @@ impl BodyRows {
         }
     }
 
-    /// Accelerates a dynamic body, whose row is filled, in each substep. `rotation` is the rotation at the start of the
-    /// step. At most once a step: later calls for the same row add no acceleration in the body's frame.
+    /// Accelerates a dynamic body, whose row must be filled, in each substep. `rotation` is the rotation at
+    /// the start of the step. Call it at most once a step per row: later calls add no acceleration in the
+    /// body's frame.
     pub fn thrust(&mut self, row: usize, thrust: &Thrust, rotation: Rot) {
         debug_assert!((self.first_dynamic as usize..self.rows.len()).contains(&row), "row {row} is dynamic");
         debug_assert!(thrust.is_finite(), "{thrust:?}");
@@ -294,9 +299,9 @@ impl BodyRows {
         }
     }
 
-    /// Lets the gyroscopic torque turn the spin axis of a dynamic body, if its inverse inertia, in its own frame, is
-    /// not that of a ball. `rotation` is the rotation at the start of the step. At most once a step: later calls for
-    /// the same row are ignored.
+    /// Lets the gyroscopic torque turn the spin axis of a dynamic body, unless all moments of
+    /// `inv_inertia`, given in the body's frame, are equal. `rotation` is the rotation at the start of the
+    /// step. Call it at most once a step per row: later calls are ignored.
     #[inline]
     pub fn spin(&mut self, row: usize, inv_inertia: InvInertia, rotation: Rot) {
         if let Some(spin) = Gyro::of(inv_inertia).map(|gyro| Spin::new(gyro, rotation)) {
@@ -311,10 +316,11 @@ impl BodyRows {
         debug_assert!(is_first, "body row {row} spins twice");
     }
 
-    /// Lists the bodies with constraints that turn far within a step of substeps of `h` seconds. Those that cannot turn about
-    /// each axis are left out.
+    /// Lists the constrained bodies that rotate far within the step, with substeps of `h` seconds. Bodies
+    /// with a locked rotation axis are left out.
     ///
-    /// A body without constraints would get its velocity back unchanged from every sweep.
+    /// Bodies without constraints are left out as well: every sweep would give them back their velocity
+    /// unchanged.
     pub(super) fn find_fast_turns(&mut self, input: &RowInput, colors: &ColorGraph, h: f32) {
         let Self { spins, fast_turns, rows, turn_locked, constrained, .. } = self;
         fast_turns.clear();
@@ -338,8 +344,9 @@ impl BodyRows {
         }
     }
 
-    /// After blows displaced bodies: free spin starts from their present rotations, and those that turn far from now on are
-    /// listed, and have the angular velocity that rows see.
+    /// Updates free spin after blows displaced bodies: spin restarts from the current rotations. Bodies
+    /// that rotate far from now on are added to the list, with the angular velocity that constraint rows
+    /// see.
     pub(super) fn follow_blows(&mut self, struck: &BitSet, h: f32) {
         let Self { spins, fast_turns, rows, turn_locked, .. } = self;
         if struck.is_empty() {
@@ -357,18 +364,22 @@ impl BodyRows {
         }
     }
 
-    /// After the embedder changed rotations between two stages of a substep: free spin starts from the present ones.
+    /// Restarts free spin from the current rotations, after the embedder changed rotations between two
+    /// stages of a substep.
     pub fn restart_spins(&mut self, turned: &BitSet) {
         for (_, spin) in self.spins.list_mut().iter_mut().filter(|(row, _)| turned.contains(*row)) {
             spin.restart();
         }
     }
 
-    /// Turns the inertia of bodies to that `time` seconds after the start of the step. With that of the start, contacts add to
-    /// the spin of bodies whose axes are askew to it. Bodies that turn far keep it: their constraints see the start.
+    /// Rotates the inertia of bodies to `time` seconds after the start of the step. With the inertia at the
+    /// start, contacts accelerate the spin of bodies whose principal axes are tilted against the spin axis.
+    /// Bodies that rotate far keep the inertia at the start, because their constraints see the start of the
+    /// step.
     ///
-    /// What free spin changes in a substep is taken back by the relax pass at its end. The mean time of these ends is that of
-    /// the middle of the step and half a substep. With the inertia of the middle, bodies gain a few per cent.
+    /// The relax pass at the end of a substep takes back the velocity change of free spin. The mean time of
+    /// these ends is the middle of the step plus half a substep. With the inertia at the middle of the
+    /// step, bodies gain a few per cent.
     pub(super) fn turn_inertia(&mut self, time: f32) {
         let Self { spins, fast_turns, rows, masses, turn_locked, .. } = self;
         for (row, _) in spins.list() {
@@ -404,7 +415,7 @@ impl BodyRows {
         self.motions[row] = Motion::FREE;
     }
 
-    /// Views of rows and gains that read all and write those from `first_dynamic` on.
+    /// Views of rows and gains. Both read all rows and write rows from `first_dynamic` on.
     pub(super) fn views(&mut self, first_dynamic: u32) -> (RowView<'_, BodyRow>, RowView<'_, GainRow>) {
         (RowView::over(&mut self.rows, first_dynamic), RowView::over(&mut self.gains, first_dynamic))
     }

@@ -1,8 +1,9 @@
-//! Sweeps of compression over struck manifolds, several side by side.
+//! Compression sweeps over struck manifolds, several of them in SIMD lanes.
 //!
-//! A sweep goes through the manifolds of a group in their order. Two without a movable body in common may change places, and no bit
-//! changes. So a manifold has a level, one above the highest of those before it that move one of its bodies, and those of one level,
-//! of all groups, are solved side by side, one in each lane.
+//! A sweep visits the manifolds of a group in order. Two consecutive manifolds without a common dynamic
+//! body may be swapped without changing any bit. Each manifold therefore has a level: one above the highest
+//! level of the earlier manifolds that move one of its bodies. Manifolds of one level, of all groups, are
+//! solved in parallel, one per lane.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::pair::Pair;
@@ -14,24 +15,25 @@ use crate::math::{Angular, Entry, F32x4, Job, Lane, MAX_POINTS, TangentFrame, Ve
 use crate::tuning::solver::ROUND_OF_SWEEPS;
 use core::ops::Range;
 
-/// No manifold, body, group or level.
+/// Marks the absence of a manifold, body, group or level.
 const NONE: u32 = u32::MAX;
 
-/// Manifolds are solved side by side if a row has more than this on average. Wide rows take as long as two or three single ones.
+/// Lanes are used if a row has more than this many manifolds on average. Wide rows take as long as two or
+/// three single ones.
 const WORTH_LANES: usize = 2;
 
-/// What a worker keeps between compressions.
+/// Buffers of a worker, kept between compressions.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Compression {
-    /// By manifold, its bodies among those of the batch. [`NONE`] for those that nothing moves.
+    /// By manifold, the indices of its bodies in the batch. [`NONE`] for a body that no impulse moves.
     bodies: Vec<[u32; 2]>,
-    /// By manifold, its group. [`NONE`] if it is not due.
+    /// By manifold, its group. [`NONE`] if the group is not due.
     groups: Vec<u32>,
-    /// By body, the highest level so far.
+    /// By body, the lowest level that its next manifold may have.
     body_levels: Vec<u32>,
     /// By manifold, its level; [`NONE`] if its group is not open.
     levels: Vec<u32>,
-    /// By level, the first place of its manifolds.
+    /// By level, the first index of its manifolds in `order`.
     level_starts: Vec<u32>,
     /// The manifolds in the lanes of all rows, level by level.
     order: Vec<u32>,
@@ -41,39 +43,39 @@ pub(super) struct Compression {
     eight: Vec<CompressionRow<F32x8>>,
 }
 
-/// Struck manifolds side by side.
+/// Struck manifolds, one per lane.
 #[derive(Clone, Debug)]
 struct CompressionRow<N: Lane> {
     contact: ContactRow<N, Vector<N>, MAX_POINTS>,
     moments: [[Angular<N>; 2]; MAX_POINTS],
-    /// 1 for points that take part, else 0.
+    /// 1 for points that take part in the impact, 0 for others.
     takes_part: [N; MAX_POINTS],
-    /// 1 for manifolds of open groups, else 0.
+    /// 1 for manifolds of open groups, 0 for others.
     open: N,
-    /// The number of sweeps in which impulses rise.
+    /// The number of sweeps over which impulses rise.
     rise: N,
-    /// The largest change of velocity in the last sweep, m/s.
+    /// The largest velocity change of the last sweep, m/s.
     change: N,
 }
 
-/// How far the sweeps over a group are.
+/// Progress of the sweeps over a group.
 #[derive(Clone, Debug)]
 pub(super) struct Progress {
-    /// Its manifolds in the batch.
+    /// The manifolds of the group, as a range of the batch.
     pub(super) manifolds: Range<usize>,
-    /// Its bodies.
+    /// The bodies of the group.
     pub(super) bodies: Range<usize>,
-    /// The number of sweeps in which impulses rise evenly.
+    /// The number of sweeps over which impulses rise evenly.
     rise: usize,
-    /// Sweeps end when velocities change by no more than this, m/s.
+    /// Sweeps end when velocities change by at most this, m/s.
     tolerance: f32,
-    /// The largest change of velocity in the present sweep, m/s.
+    /// The largest velocity change of the current sweep, m/s.
     change: f32,
-    /// The least change of this round of sweeps and of those before.
+    /// The smallest change per sweep in the current round of sweeps, and in the previous round.
     least: [f32; 2],
     sweeps: usize,
     is_open: bool,
-    /// Whether more sweeps would not help.
+    /// Whether sweeps stopped converging.
     pub(super) is_stuck: bool,
 }
 
@@ -93,36 +95,37 @@ impl Progress {
         }
     }
 
-    /// Starts sweeps anew, without a rise.
+    /// Restarts the count of sweeps, without a rise.
     pub(super) fn restart(&mut self) {
         *self = Self::new([self.manifolds.clone(), self.bodies.clone()], 1, self.tolerance);
     }
 
-    /// Whether sweeps go on.
+    /// Whether the group needs more sweeps.
     #[inline(always)]
     pub(super) fn is_open(&self) -> bool {
         self.is_open
     }
 
-    /// The number of sweeps in which impulses rise evenly.
+    /// The number of sweeps over which impulses rise evenly.
     #[inline(always)]
     pub(super) fn rise(&self) -> usize {
         self.rise
     }
 
-    /// The number of sweeps so far. Odd ones are backward.
+    /// The number of completed sweeps. Odd-numbered sweeps run backward.
     #[inline(always)]
     pub(super) fn sweeps(&self) -> usize {
         self.sweeps
     }
 
-    /// Notes a change of velocity in the present sweep, m/s.
+    /// Records a velocity change of the current sweep, m/s.
     #[inline(always)]
     pub(super) fn note(&mut self, change: f32) {
         self.change = max(self.change, change);
     }
 
-    /// Ends a sweep of `most` at most, if the group is open. Returns whether it was the last.
+    /// Ends a sweep if the group is open. Closes the group after at most `most` sweeps. Returns whether
+    /// this call closed it.
     #[inline(always)]
     pub(super) fn end_sweep(&mut self, most: usize) -> bool {
         if !self.is_open {
@@ -151,23 +154,24 @@ impl Compression {
         self.groups.clear();
     }
 
-    /// Leaves out some manifolds that are not due.
+    /// Adds manifolds of a group that is not due.
     pub(super) fn leave_out(&mut self, count: usize) {
         self.bodies.resize(self.bodies.len() + count, [NONE; 2]);
         self.groups.resize(self.groups.len() + count, NONE);
     }
 
-    /// Adds the manifolds of a group, given the places of its body rows that may be written among all of the batch.
+    /// Adds the manifolds of a group. `place` maps a dynamic body row to its index in the batch.
     pub(super) fn add(&mut self, group: &[Struck], number: usize, place: impl Fn(u32) -> Option<usize>) {
         let end = |[row]: [u32; 1]| place(row).map_or(NONE, |place| place as u32);
         self.bodies.extend(group.iter().map(|one| one.row.ids.map(end)));
         self.groups.resize(self.bodies.len(), number as u32);
     }
 
-    /// Compresses open groups until each is closed, in at most `most` sweeps.
+    /// Compresses open groups until all are closed, in at most `most` sweeps each.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes the bodies of the manifolds that may be written, or writes the others.
+    /// Until the call returns, no other thread reads or writes the dynamic bodies of the manifolds, or
+    /// writes their other bodies.
     pub(super) unsafe fn run(
         &mut self,
         struck: &mut [Struck],
@@ -200,7 +204,7 @@ impl Compression {
         }
     }
 
-    /// Puts the manifolds of open groups into lanes. Returns their number.
+    /// Assigns the manifolds of open groups to lanes. Returns their number.
     fn schedule(&mut self, groups: &[Progress], bodies: usize, lanes: usize) -> usize {
         let Self { bodies: bodies_of, groups: group_of, body_levels, levels, level_starts, order, .. } = self;
         body_levels.clear();
@@ -251,7 +255,7 @@ struct Operands<'a> {
     most: usize,
 }
 
-/// Sweeps until half of the manifolds are of closed groups.
+/// Sweeps until at least half of the manifolds belong to closed groups.
 struct SweepJob<'a, N: Lane> {
     operands: Operands<'a>,
     rows: &'a mut Vec<CompressionRow<N>>,
@@ -278,7 +282,7 @@ impl<N: Lane> Job for SweepJob<'_, N> {
         }
         let mut open = count;
         while 2 * open > count {
-            // All open groups have had as many sweeps.
+            // All open groups have had the same number of sweeps.
             let Some(sweeps) = groups.iter().find(|group| group.is_open()).map(Progress::sweeps) else {
                 break;
             };
@@ -359,10 +363,11 @@ impl<N: Lane> CompressionRow<N> {
         one.row.twist.set_impulse(0, self.contact.twist.impulse(lane));
     }
 
-    /// One sweep: stops a share of the approach of each point, then rubs.
+    /// One sweep: stops a share of the approach of each point, then solves friction.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes the bodies of the manifolds that may be written, or writes the others.
+    /// Until the call returns, no other thread reads or writes the dynamic bodies of the manifolds, or
+    /// writes their other bodies.
     #[inline(always)]
     unsafe fn compress(&mut self, body_rows: &RowView<BodyRow>, is_backward: bool, sweeps: f32) {
         // SAFETY: by the contract.
@@ -400,7 +405,8 @@ mod tests {
             manifolds in prop::collection::vec((0u32..12, 0u32..16, 0u32..4), 0..80),
             lanes in prop::sample::select(vec![1usize, 4, 8]),
         ) {
-            // Bodies of a group are its own. From 12 on nothing moves them, and the last group is not due.
+            // Each group has bodies of its own. Ends from 12 on are bodies that no impulse moves, and the
+            // last group is not due.
             let mut compression = Compression::default();
             for (a, b, group) in &manifolds {
                 let end = |body: u32| if body < 12 { group * 12 + body } else { NONE };
@@ -438,7 +444,7 @@ mod tests {
                 (state >> 40) as f32 / (1u64 << 23) as f32 - 1.0
             };
             let mut vector = move || Vector::from_array(core::array::from_fn(|_| random()));
-            // Each group has four bodies of its own. Row 0 is fixed.
+            // Each group has four bodies of its own. Row 0 is static.
             let angular = |arm: Vector| arm.cross(Vector::X);
             let bodies: Vec<_> =
                 (0..1 + 4 * sizes.len()).map(|_| BodyRow::new(vector(), angular(vector()))).collect();

@@ -1,4 +1,4 @@
-//! Contacts as batches of rows: one batch for each lane width, number of points and kind of inverse mass.
+//! Contact rows as batches: one batch per lane width, number of points and kind of inverse mass.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
 use super::batch::{Batch, Filling, Pass, Passes, Seek, Sweep};
@@ -21,7 +21,7 @@ pub(super) struct ContactRows<N: Lane> {
     free: ByPoints<N, N>,
 }
 
-/// The rows with one kind of inverse mass, by their capacity of points.
+/// The rows with one kind of inverse mass, by their maximum number of points.
 #[derive(Clone, Debug)]
 struct ByPoints<N: Lane, M> {
     four: Rows<N, M, 4>,
@@ -38,7 +38,7 @@ struct Rows<N: Lane, M, const P: usize> {
     impacts: Vec<ImpactRow<N>>,
     /// Data of split impulses.
     splits: Vec<SplitImpulseRow<N, P>>,
-    /// Sums of impulses over the substeps; empty where they are not kept.
+    /// Sums of impulses over the substeps. Empty if sums are not kept.
     sums: Vec<[N; P]>,
 }
 
@@ -54,19 +54,20 @@ impl<N: Lane, M, const P: usize> Default for Rows<N, M, P> {
     }
 }
 
-/// What rows have beside the data of every pass.
+/// Optional data of the rows of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Room {
-    /// A body overlaps another deeply: split impulses.
+    /// Whether rows have split impulses, because a body overlaps another deeply.
     pub(super) any_deep: bool,
-    /// Sums of impulses are kept.
+    /// Whether sums of impulses are kept.
     pub(super) sums: bool,
 }
 
 /// Number of batches of contacts in one width.
 pub(super) const CONTACT_BATCHES: usize = 6;
 
-/// The batch of a manifold. Those of bodies with locked axes come first. Within either group, more points come first.
+/// The batch of a manifold. Batches of bodies with locked axes come first; within both groups, more points
+/// come first.
 #[inline(always)]
 fn batch_of(is_held: bool, points: u32) -> usize {
     let by_points = match points {
@@ -77,8 +78,8 @@ fn batch_of(is_held: bool, points: u32) -> usize {
     if is_held { by_points } else { 3 + by_points }
 }
 
-/// Sorts the manifolds with number `index` of some contacts into a layer. Returns how many contacts have a next
-/// manifold.
+/// Sorts the manifolds with number `index` of some contacts into a layer. Returns the number of contacts
+/// with further manifolds.
 pub(super) fn sort_contacts(contacts: &[u32], index: u32, sorter: &Sorter, layer: &mut Layer) -> usize {
     let table = sorter.input.contacts;
     let (parts, mut more) = (layer.parts(), 0);
@@ -154,7 +155,7 @@ impl<N: Entry, M: InvMass<N>, const P: usize> Rows<N, M, P> {
     }
 }
 
-/// A view of [`ContactRows`] whose blocks are changed by several threads.
+/// A view of [`ContactRows`]. Several threads may change its blocks.
 pub(super) struct ContactView<'a, N: Entry> {
     held: ByPointsView<'a, N, Vector<N>>,
     free: ByPointsView<'a, N, N>,
@@ -174,7 +175,7 @@ impl<N: Entry> ContactView<'_, N> {
     }
 }
 
-/// A view of the rows of one batch whose blocks are changed by several threads.
+/// A view of the rows of one batch. Several threads may change its blocks.
 struct RowsView<'a, N: Entry, M, const P: usize> {
     /// Proof that the CPU has the features of the lanes.
     proof: N::Proof,
@@ -186,7 +187,7 @@ struct RowsView<'a, N: Entry, M, const P: usize> {
 
 impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
     /// # Safety
-    /// While the rows are in use no other thread may take any of them.
+    /// While the rows are in use, no other thread takes any of them.
     #[inline(always)]
     unsafe fn take(&self, range: Range<usize>) -> BlockRows<'a, N, M, P> {
         debug_assert!(!range.is_empty() && range.end <= self.rows.len(), "block {range:?} has rows");
@@ -203,7 +204,7 @@ impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
         }
     }
 
-    /// Runs a pass over rows in its own entry point.
+    /// Runs a pass over rows, in a function compiled for the CPU features of the lanes.
     ///
     /// # Safety
     /// As [`Batch::run`].
@@ -274,8 +275,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for FillJob<'_, N, M, P> {
 
 /// The operands of a pass.
 ///
-/// Views and parameters are copies. The compiler then knows that no written row aliases them, and keeps them in
-/// registers (8 % less time for sweeps in 2D (m)).
+/// Views and parameters are copies. The compiler then knows that they do not alias written rows, and keeps
+/// them in registers (8 % less time for sweeps in 2D (m)).
 struct Swept<'a, N: Lane, M, const P: usize> {
     block: BlockRows<'a, N, M, P>,
     passes: Passes,
@@ -299,7 +300,7 @@ impl<S: ContactPass, N: Lane, M: InvMass<N>, const P: usize> Job for RunJob<'_, 
     }
 }
 
-/// Whether a block with these passes has rows with split impulses.
+/// Whether the rows of a block with these passes have split impulses.
 #[inline(always)]
 fn has_split(passes: Passes) -> bool {
     passes.has(Pass::UndoSplit)
@@ -307,8 +308,8 @@ fn has_split(passes: Passes) -> bool {
 
 /// A pass over the rows of a block.
 ///
-/// The loops are plain, without iterator adaptors: code for a CPU feature must be inlined into the function that
-/// enables it.
+/// The loops are plain, without iterator adaptors: code for a CPU feature must be inlined into the function
+/// that enables it.
 trait ContactPass {
     /// # Safety
     /// As [`Batch::run`].
@@ -388,7 +389,7 @@ impl ContactPass for Relax {
     }
 }
 
-/// [`Relax`] for rows of which a point may be struck.
+/// [`Relax`] for rows with a point that may be struck.
 struct RelaxWatched;
 
 impl ContactPass for RelaxWatched {
@@ -469,13 +470,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for StoreJob<'_, N, M, P> {
             }
             let friction = TangentFrame::new(row.normal).expand(row.tangent_impulse);
             for (lane, item) in lanes.iter().enumerate() {
-                // SAFETY: by the contract; the manifold of the previous item is not used any more.
+                // SAFETY: by the contract; the manifold of the previous item is no longer used.
                 let (manifold, is_calm) = unsafe { contacts.at_end(item.id, item.index) };
                 manifold.friction_impulse = friction.get(lane);
                 manifold.twist_impulse = NormalMoment::new(row.twist.impulse(lane));
                 manifold.friction_owed = row.owed.get(lane);
                 let count = usize::from(manifold.count);
-                // Without sums an old one must not stay.
+                // If sums are not kept, the sum of an earlier step is cleared.
                 let sum = block.sums.get(i).copied().unwrap_or([N::ZERO; P]);
                 for ((p, point), sum) in manifold.points[..count].iter_mut().zip(&row.points).zip(sum) {
                     p.impulse = point.impulse.get(lane);

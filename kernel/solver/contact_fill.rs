@@ -1,4 +1,5 @@
-//! Filling contact rows: lane by lane from manifolds, then the effective masses for all lanes of a row at once.
+//! Fills contact rows: lane by lane from manifolds, then the effective masses for all lanes of a row at
+//! once.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::batch::{Filling, Pass, Passes};
@@ -23,7 +24,7 @@ pub(super) struct BlockRows<'a, N: Lane, M, const P: usize> {
     pub(super) impacts: &'a mut [ImpactRow<N>],
     /// Empty in steps without deep overlap.
     pub(super) splits: &'a mut [SplitImpulseRow<N, P>],
-    /// The sum of each point's impulses over the substeps, N·s. Empty where sums are not kept.
+    /// Sum of each point's impulses over the substeps, N·s. Empty if sums are not kept.
     pub(super) sums: &'a mut [[N; P]],
 }
 
@@ -76,7 +77,8 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
 }
 
 impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
-    /// The velocity that the normal impulses would give the lighter body, m/s, if the other is heavy. Else 0.
+    /// The velocity that the normal impulses give the lighter body, m/s, if the other body is much heavier;
+    /// otherwise 0.
     #[inline(always)]
     fn heavy_push(&self) -> N {
         let mut impulse = N::ZERO;
@@ -91,7 +93,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
 }
 
 impl<N: Lane, const P: usize> SplitImpulseRow<N, P> {
-    /// Marks the lanes of contacts with a deeply overlapping body. Returns whether there are any.
+    /// Marks the lanes of contacts with a deeply overlapping body. Returns whether any lane was marked.
     #[inline(always)]
     fn mark(&mut self, counts: &DeepCounts, ids: &[N::Ids; 2], first_dynamic: u32) -> bool {
         let mut any = false;
@@ -189,7 +191,8 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         self.copy(manifold, contact.frozen.offset, warm_start, from.params.friction_fade, lane, row);
     }
 
-    /// Sets the factors of the inverse masses along each axis. Not inlined, since most worlds have none.
+    /// Sets the factors of the inverse masses along each axis. Not inlined, since most worlds have no
+    /// locked axes.
     #[inline(never)]
     fn set_axes(&mut self, from: &Filling, ids: [u32; 2], lane: usize) {
         for (free, id) in self.free.iter_mut().zip(ids) {
@@ -197,7 +200,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         }
     }
 
-    /// Sets the velocity that friction gives the surfaces of a lane.
+    /// Sets the velocity to which friction drives the surfaces of a lane.
     #[inline(always)]
     fn drive(&mut self, lane: usize, velocity: Vector) {
         self.surface_velocity.set(lane, velocity);
@@ -244,14 +247,15 @@ impl<N: Lane, const P: usize> Fill<N, P> {
             point.impulse.set(lane, p.impulse * warm_start);
             // 1 marks the point as present until its mass is computed.
             point.mass.set(lane, 1.0);
-            // A separated point weighs less with distance, so that the friction centre does not jump when a point
-            // appears or disappears.
+            // A separated point weighs less with distance, so that the friction centre does not jump when a
+            // point appears or disappears.
             let weight = 2.0 - p.separation / friction_fade;
             self.weights[i].set(lane, crate::math::clamp(weight, 1.0e-10, 1.0));
         }
     }
 
-    /// Computes effective masses, friction centre and whether a point may be struck, for all lanes at once.
+    /// Computes effective masses, the friction centre and whether a point may be struck, for all lanes at
+    /// once.
     #[inline(always)]
     fn finish<M: InvMass<N>>(
         &self,
@@ -312,7 +316,8 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         }
         let [spin_lever, roll_lever] = levers(self.radii, row.rolling_arm());
         row.roll_lever = roll_lever;
-        // More points have levers of their own.
+        // Several points have levers of their own, so that only a single point needs the lever of its
+        // contact patch.
         let patch = if P == 1 { spin_lever } else { N::ZERO };
         row.twist.prepare(n, core, anchors, patch, row.inv_inertia);
     }

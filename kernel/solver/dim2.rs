@@ -1,11 +1,11 @@
-//! Parts of rows that depend on the dimension: memory layout of bodies, and twist friction. `dim3.rs` exports the same
-//! names.
+//! Parts of rows that depend on the dimension: memory layout of bodies, and twist friction. `dim3.rs`
+//! exports the same names.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::RowView;
 use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Tangent, TangentMass, Vector};
 
-/// A body while the solver runs: velocity, and displacement in this step. 32 bytes.
+/// A body during the solver stages: velocity, and displacement in this step. 32 bytes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct BodyRow {
@@ -15,7 +15,7 @@ pub struct BodyRow {
     delta: Quad,
 }
 
-/// The part of an angular velocity about a contact's normal: none in the plane.
+/// The part of an angular velocity about a contact's normal: none in 2D.
 #[inline(always)]
 pub(super) fn about<N: Lane>(_: Vector<N>, _: Angular<N>) -> Angular<N> {
     Angular::ZERO
@@ -74,10 +74,10 @@ impl BodyRow {
         self.velocity += Quad([a.x, a.y, w.z, 0.0]) * Quad([h; 4]);
     }
 
-    /// Loads the velocities of one body for each lane.
+    /// Loads velocities, one body per lane.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes these rows.
+    /// Until the call returns, no other thread writes these rows.
     #[inline(always)]
     pub(super) unsafe fn gather_velocity<N: Lane>(
         rows: &RowView<Self>,
@@ -87,20 +87,20 @@ impl BodyRow {
         let [x, y, z, _] = N::gather(ids, |id| unsafe { &rows.get(id).velocity });
         (Vector { x, y }, Angular { z })
     }
-    /// Loads displacement and rotation in this step, of one body for each lane.
+    /// Loads displacement and rotation in this step, one body per lane.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes these rows.
+    /// Until the call returns, no other thread writes these rows.
     #[inline(always)]
     pub(super) unsafe fn gather_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Rot<N>) {
         // SAFETY: by the contract; the reference does not outlive the load.
         let [x, y, cos, sin] = N::gather(ids, |id| unsafe { &rows.get(id).delta });
         (Vector { x, y }, Rot { cos, sin })
     }
-    /// Stores the velocities of one body for each lane, where the body may be written.
+    /// Stores velocities, one body per lane, in writable rows only.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    /// Until the call returns, no other thread reads or writes the writable rows among these.
     #[inline(always)]
     pub(super) unsafe fn scatter_velocity<N: Lane>(
         rows: &RowView<Self>,
@@ -112,10 +112,10 @@ impl BodyRow {
         // SAFETY: by the contract.
         unsafe { rows.scatter(values, ids, rows.are_writable(ids), |row, quad| row.velocity = quad) };
     }
-    /// Adds to the velocities of one body for each lane, where the body may be written. A body may be in several lanes.
+    /// Adds to velocities, one body per lane, in writable rows only. A body may be in several lanes.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    /// Until the call returns, no other thread reads or writes the writable rows among these.
     #[inline(always)]
     pub(super) unsafe fn add_velocity<N: Lane>(
         rows: &RowView<Self>,
@@ -128,10 +128,10 @@ impl BodyRow {
             rows.put(id, |row| row.velocity += quad);
         });
     }
-    /// Stores displacement and rotation in this step, of one body for each lane, where the body may be written.
+    /// Stores displacement and rotation in this step, one body per lane, in writable rows only.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    /// Until the call returns, no other thread reads or writes the writable rows among these.
     #[inline(always)]
     pub(super) unsafe fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
         let values = [p.x, p.y, q.cos, q.sin];
@@ -140,7 +140,8 @@ impl BodyRow {
     }
 }
 
-/// The velocity of a body before the impulses of a substep, and after them what they gave it. 16 bytes.
+/// During a substep the velocity of a body before its impulses, after it the velocity change by them. 16
+/// bytes.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(16))]
 pub(super) struct GainRow {
@@ -149,7 +150,8 @@ pub(super) struct GainRow {
 }
 
 impl GainRow {
-    /// Takes the velocity of a body. If `adds`, the body then gains what this was.
+    /// Stores the current velocity of a body. If `adds`, the last gain is then added to the body's
+    /// velocity.
     #[inline(always)]
     pub(super) fn begin(&mut self, row: &mut BodyRow, adds: bool) {
         let before = row.velocity;
@@ -158,7 +160,7 @@ impl GainRow {
         }
         self.velocity = before;
     }
-    /// Becomes what a body gained.
+    /// Stores the velocity change of a body since [`begin`](Self::begin).
     #[inline(always)]
     pub(super) fn end(&mut self, row: &BodyRow) {
         let mut now = row.velocity;
@@ -169,10 +171,10 @@ impl GainRow {
     pub(super) fn add(&mut self, linear: Vector, angular: Angular) {
         self.velocity += Quad([linear.x, linear.y, angular.z, 0.0]);
     }
-    /// Adds to the angular velocity of one body for each lane, where the body may be written and the change is not 0.
+    /// Adds nonzero changes to the angular velocities of gains, one body per lane, in writable rows only.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    /// Until the call returns, no other thread reads or writes the writable rows among these.
     #[inline(always)]
     pub(super) unsafe fn add_angular<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, w: Angular<N>) {
         // SAFETY: by the contract.
@@ -185,7 +187,7 @@ impl GainRow {
 }
 
 impl MassRow {
-    /// Inverse mass in 1/kg and inverse inertia in world axes. Zeros make the body immovable.
+    /// Takes the inverse mass, 1/kg, and the inverse inertia in world axes. Zeros make the body immovable.
     pub fn new(inv_mass: f32, inv_inertia: InvInertia) -> Self {
         Self { quad: Quad([inv_mass, inv_inertia.zz, 0.0, 0.0]) }
     }
@@ -197,9 +199,9 @@ impl MassRow {
     pub fn inv_inertia(&self) -> InvInertia {
         InvInertia { zz: self.quad.0[1] }
     }
-    /// Turns the inertia: in the plane it stays the same.
+    /// Rotates the inertia: no change in 2D.
     pub(super) fn turn(&mut self, _by: Angular) {}
-    /// Loads one body for each lane.
+    /// Loads masses, one body per lane.
     #[inline(always)]
     pub(super) fn gather<N: Lane>(rows: &[Self], ids: &N::Ids) -> (N, InvInertia<N>) {
         let [inv_mass, zz, ..] = N::gather(ids, |id| &rows[id as usize].quad);
@@ -207,7 +209,7 @@ impl MassRow {
     }
 }
 
-/// Torsional friction about the contact normal: nothing in 2D, and no bytes.
+/// Torsional friction about the contact normal: none in 2D, and no bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Twist<N, const P: usize>(core::marker::PhantomData<N>);
 
@@ -232,7 +234,7 @@ impl<N: Lane, const P: usize> Twist<N, P> {
         _w: &mut [Angular<N>; 2],
     ) {
     }
-    /// The limits of sliding and of torsional friction: in 2D all is sliding.
+    /// The limits of sliding and of torsional friction: in 2D sliding has the whole limit.
     #[inline(always)]
     pub(super) fn limits(
         &self,
@@ -265,7 +267,7 @@ impl<N: Lane, const P: usize> Twist<N, P> {
     pub(super) fn impulse(&self, _i: usize) -> f32 {
         0.0
     }
-    /// The accumulated impulse times the relative spin, J: none in 2D.
+    /// The accumulated impulse times the relative spin, J: zero in 2D.
     pub(super) fn power(&self, _normal: Vector<N>, _w: &[Angular<N>; 2]) -> N {
         N::ZERO
     }
@@ -274,7 +276,7 @@ impl<N: Lane, const P: usize> Twist<N, P> {
 }
 
 /// Rolling resistance: an impulse of at most `limit` against the relative angular velocity. It is not
-/// accumulated. With `scale` times that velocity, the limit fades from 1 on and is 0 from 2 on.
+/// accumulated. The limit fades where `scale` times that velocity is above 1, and is 0 from 2 on.
 #[inline(always)]
 pub(super) fn resist_rolling<N: Lane>(
     _normal: Vector<N>,

@@ -1,13 +1,13 @@
-//! Parts of rows that depend on the dimension: memory layout of bodies, and twist friction. `dim2.rs` exports the same
-//! names.
+//! Parts of rows that depend on the dimension: memory layout of bodies, and twist friction. `dim2.rs`
+//! exports the same names.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::RowView;
 use crate::math::{Angular, InvInertia, Lane, Quad, Rot, Tangent, TangentMass, Vector};
 use crate::tuning::solver::SPUN;
 
-/// A body while the solver runs: velocity, and displacement in this step. 64 bytes, one cache line. Padding makes each
-/// part one load of four floats.
+/// A body during the solver stages: velocity, and displacement in this step. 64 bytes, one cache line.
+/// Padding makes each part one load of four floats.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct BodyRow {
@@ -91,10 +91,10 @@ impl BodyRow {
         self.angular += Quad([w.x, w.y, w.z, 0.0]) * Quad([h; 4]);
     }
 
-    /// Loads the velocities of one body for each lane.
+    /// Loads velocities, one body per lane.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes these rows.
+    /// Until the call returns, no other thread writes these rows.
     #[inline(always)]
     pub(super) unsafe fn gather_velocity<N: Lane>(
         rows: &RowView<Self>,
@@ -106,10 +106,10 @@ impl BodyRow {
         let [a, b, c, _] = N::gather(ids, |id| unsafe { &rows.get(id).angular });
         (Vector { x, y, z }, Vector { x: a, y: b, z: c })
     }
-    /// Loads displacement and rotation in this step, of one body for each lane.
+    /// Loads displacement and rotation in this step, one body per lane.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes these rows.
+    /// Until the call returns, no other thread writes these rows.
     #[inline(always)]
     pub(super) unsafe fn gather_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids) -> (Vector<N>, Rot<N>) {
         // SAFETY: by the contract; the reference does not outlive the load.
@@ -118,10 +118,10 @@ impl BodyRow {
         let [a, b, c, w] = N::gather(ids, |id| unsafe { &rows.get(id).rotation });
         (Vector { x, y, z }, Rot { x: a, y: b, z: c, w })
     }
-    /// Stores the velocities of one body for each lane, where the body may be written.
+    /// Stores velocities, one body per lane, in writable rows only.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    /// Until the call returns, no other thread reads or writes the writable rows among these.
     #[inline(always)]
     pub(super) unsafe fn scatter_velocity<N: Lane>(
         rows: &RowView<Self>,
@@ -136,10 +136,10 @@ impl BodyRow {
             rows.scatter([w.x, w.y, w.z, N::ZERO], ids, all, |row, quad| row.angular = quad);
         }
     }
-    /// Adds to the velocities of one body for each lane, where the body may be written. A body may be in several lanes.
+    /// Adds to velocities, one body per lane, in writable rows only. A body may be in several lanes.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    /// Until the call returns, no other thread reads or writes the writable rows among these.
     #[inline(always)]
     pub(super) unsafe fn add_velocity<N: Lane>(
         rows: &RowView<Self>,
@@ -156,10 +156,10 @@ impl BodyRow {
             rows.put(id, |row| row.angular += quad);
         });
     }
-    /// Stores displacement and rotation in this step, of one body for each lane, where the body may be written.
+    /// Stores displacement and rotation in this step, one body per lane, in writable rows only.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    /// Until the call returns, no other thread reads or writes the writable rows among these.
     #[inline(always)]
     pub(super) unsafe fn scatter_delta<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, p: Vector<N>, q: Rot<N>) {
         let all = rows.are_writable(ids);
@@ -171,7 +171,8 @@ impl BodyRow {
     }
 }
 
-/// The velocity of a body before the impulses of a substep, and after them what they gave it. 32 bytes.
+/// During a substep the velocity of a body before its impulses, after it the velocity change by them. 32
+/// bytes.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub(super) struct GainRow {
@@ -182,7 +183,8 @@ pub(super) struct GainRow {
 }
 
 impl GainRow {
-    /// Takes the velocity of a body. If `adds`, the body then gains what this was.
+    /// Stores the current velocity of a body. If `adds`, the last gain is then added to the body's
+    /// velocity.
     #[inline(always)]
     pub(super) fn begin(&mut self, row: &mut BodyRow, adds: bool) {
         let (linear, angular) = (row.linear, row.angular);
@@ -192,7 +194,7 @@ impl GainRow {
         }
         *self = Self { linear, angular };
     }
-    /// Becomes what a body gained.
+    /// Stores the velocity change of a body since [`begin`](Self::begin).
     #[inline(always)]
     pub(super) fn end(&mut self, row: &BodyRow) {
         let (mut linear, mut angular) = (row.linear, row.angular);
@@ -205,10 +207,10 @@ impl GainRow {
         self.linear += Quad([v.x, v.y, v.z, 0.0]);
         self.angular += Quad([w.x, w.y, w.z, 0.0]);
     }
-    /// Adds to the angular velocity of one body for each lane, where the body may be written and the change is not 0.
+    /// Adds nonzero changes to the angular velocities of gains, one body per lane, in writable rows only.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    /// Until the call returns, no other thread reads or writes the writable rows among these.
     #[inline(always)]
     pub(super) unsafe fn add_angular<N: Lane>(rows: &RowView<Self>, ids: &N::Ids, w: Angular<N>) {
         // SAFETY: by the contract.
@@ -221,7 +223,7 @@ impl GainRow {
 }
 
 impl MassRow {
-    /// Inverse mass in 1/kg and inverse inertia in world axes. Zeros make the body immovable.
+    /// Takes the inverse mass, 1/kg, and the inverse inertia in world axes. Zeros make the body immovable.
     pub fn new(inv_mass: f32, i: InvInertia) -> Self {
         Self { diagonal: Quad([inv_mass, i.xx, i.yy, i.zz]), rest: Quad([i.xy, i.xz, i.yz, 0.0]) }
     }
@@ -234,13 +236,13 @@ impl MassRow {
         let ([_, xx, yy, zz], [xy, xz, yz, _]) = (self.diagonal.0, self.rest.0);
         InvInertia { xx, yy, zz, xy, xz, yz }
     }
-    /// Turns the inertia by a small rotation vector.
+    /// Rotates the inertia by a small rotation vector.
     pub(super) fn turn(&mut self, by: Angular) {
         let half = by * 0.5;
         let by = Rot { x: half.x, y: half.y, z: half.z, w: 1.0 }.normalized();
         *self = Self::new(self.inv_mass(), self.inv_inertia().rotated(by));
     }
-    /// Loads one body for each lane.
+    /// Loads masses, one body per lane.
     #[inline(always)]
     pub(super) fn gather<N: Lane>(rows: &[Self], ids: &N::Ids) -> (N, InvInertia<N>) {
         let [inv_mass, xx, yy, zz] = N::gather(ids, |id| &rows[id as usize].diagonal);
@@ -249,21 +251,23 @@ impl MassRow {
     }
 }
 
-/// The mean distance from the centre under even pressure, by number of points, as a share of that of the points: of a line
-/// half its end's, of a disc two thirds of its rim's.
+/// The mean distance from the centre under even pressure, by number of points, as a share of the points'
+/// distance: 1/2 for a line, 2/3 for a disc with points on its rim.
 const EVEN: [f32; 5] = [0.0, 1.0, 1.0 / 2.0, 2.0 / 3.0, 2.0 / 3.0];
 
 /// Torsional friction about the contact normal.
 ///
-/// The angular row K = nᵀ (I_A⁻¹ + I_B⁻¹) n. Alone it is limited by T = μ Σ lᵢ λᵢ: each point resists with its normal impulse
-/// λᵢ at a lever lᵢ. Together with sliding friction f, of limit F, its impulse τ is limited by an ellipse (Howe and
-/// Cutkosky, "Practical Force-Motion Models for Sliding Manipulation", 1996):
+/// The angular row K = nᵀ (I_A⁻¹ + I_B⁻¹) n. Alone it is limited by T = μ Σ lᵢ λᵢ: each point resists with
+/// its normal impulse λᵢ at a lever lᵢ. Together with sliding friction f, of limit F, its impulse τ is
+/// limited by an ellipse (Howe and Cutkosky, "Practical Force-Motion Models for Sliding Manipulation",
+/// 1996):
 ///
 /// (f / F)² + (τ / T)² ≤ 1.
 ///
-/// What slips at u and spins at ω would meet the impulses of the ellipse whose outward normal is (u, ω): with r = T / F these
-/// are f = F u / s and τ = T r ω / s, where s² = u² + r² ω². That f is half too strong where spin prevails: a disc under even
-/// pressure has f = F u / (u⁴ + (1.5 r ω)⁴)^¼ within 2 % of F, and ends both motions at once (`SPUN`).
+/// A contact that slips at u and spins at ω meets the impulses of the ellipse point whose outward normal is
+/// (u, ω): with r = T / F these are f = F u / s and τ = T r ω / s, where s² = u² + r² ω². This f is half
+/// too strong if spin dominates: a disc under even pressure has f = F u / (u⁴ + (1.5 r ω)⁴)^¼ within 2 % of
+/// F, and ends both motions at once (`SPUN`).
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Twist<N, const P: usize> {
@@ -279,7 +283,8 @@ impl<N: Lane, const P: usize> Default for Twist<N, P> {
 }
 
 impl<N: Lane, const P: usize> Twist<N, P> {
-    /// Computes the effective mass and the levers. `patch` is the lever of a point by itself, in metres.
+    /// Computes the effective mass and the levers. `patch` is the lever of a single point by its contact
+    /// patch, in metres.
     #[inline(always)]
     pub(super) fn prepare(
         &mut self,
@@ -302,8 +307,8 @@ impl<N: Lane, const P: usize> Twist<N, P> {
         w[0] -= inertia[0].apply(impulse);
         w[1] += inertia[1].apply(impulse);
     }
-    /// The limits of sliding and of torsional friction, if both together are limited by `limit`, μ times the normal impulse.
-    /// `sliding` is the effective mass of sliding, and the impulse that stops it.
+    /// The limits of sliding and of torsional friction, which share `limit`, μ times the normal impulse.
+    /// `mass` is the effective mass of sliding, and `stick` the impulse that stops it.
     #[inline(always)]
     pub(super) fn limits(
         &self,
@@ -351,7 +356,7 @@ impl<N: Lane, const P: usize> Twist<N, P> {
         w[0] -= inertia[0].apply(impulse);
         w[1] += inertia[1].apply(impulse);
     }
-    /// Lane `i`, with room for more points and no impulse.
+    /// Lane `i`, with room for more points and without impulse.
     pub(super) fn lane<const Q: usize>(&self, i: usize) -> Twist<f32, Q> {
         let levers = core::array::from_fn(|k| self.levers.get(k).map_or(0.0, |lever| lever.get(i)));
         Twist { levers, mass: self.mass.get(i), impulse: 0.0 }
@@ -379,8 +384,9 @@ impl<N: Lane, const P: usize> Twist<N, P> {
     }
 }
 
-/// Rolling resistance: an impulse of at most `limit` against the relative angular velocity across the normal. It is not
-/// accumulated. With `scale` times that velocity, the limit fades from 1 on and is 0 from 2 on.
+/// Rolling resistance: an impulse of at most `limit` against the relative angular velocity across the
+/// normal. It is not accumulated. The limit fades where `scale` times that velocity is above 1, and is 0
+/// from 2 on.
 #[inline(always)]
 pub(super) fn resist_rolling<N: Lane>(
     normal: Vector<N>,
@@ -393,7 +399,8 @@ pub(super) fn resist_rolling<N: Lane>(
     let rolling = relative - normal * relative.dot(normal);
     let speed = rolling.length();
     let limit = limit * (N::splat(2.0) - speed * scale).max(N::ZERO).min(N::ONE);
-    // The trace is at least the largest eigenvalue, so the impulse reverses the rotation about no axis.
+    // The trace is at least the largest eigenvalue, so the impulse does not reverse the rotation about any
+    // axis.
     let k = inertia[0].trace() + inertia[1].trace();
     let mass = N::select(N::ZERO.lt(k), N::ONE / k, N::ZERO);
     let impulse = rolling * N::select(N::ZERO.lt(speed), mass.min(limit / speed), N::ZERO);

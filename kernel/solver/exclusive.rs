@@ -11,11 +11,11 @@ pub(super) struct Seen {
     constraints: [BitSet; ConstraintKind::COUNT],
 }
 
-/// Checks that no dynamic body is twice in a colour other than the overflow, and no constraint twice in the graph.
-/// `first_dynamic` is the first row that constraints write.
+/// Checks that no dynamic body occurs twice in a colour other than the overflow, and no constraint twice in
+/// the graph. `first_dynamic` is the first row that constraints write.
 ///
 /// # Panics
-/// If a body or constraint is there twice.
+/// If a body or constraint occurs twice.
 pub(super) fn check(seen: &mut Seen, input: &RowInput, graph: &ColorGraph, first_dynamic: u32) {
     let Seen { rows, constraints } = seen;
     constraints.iter_mut().for_each(BitSet::clear);

@@ -1,22 +1,23 @@
-//! Bodies that turn far within a step: constraints see their angular velocity from the step's start.
+//! Bodies that rotate far within a step: constraints see their angular velocity as of the step's start.
 //!
-//! Rows keep the inertia I₀ and the arms of the start of the step. A body that turns within it has another inertia I. A
-//! sweep lowers ½ ω · I₀ ω, but not always ½ ω · I ω, which free spin conserves. A thin rod's moments differ by a
-//! factor of hundreds, so it gained many times its energy. Arms are off as well: if the axis swings by the angle θ, a
-//! spin σ about it moves a point on the axis at the distance l by σ l θ, where it is at rest.
+//! Rows keep the inertia I₀ and the arms of the start of the step. A body that rotates within it has
+//! another inertia I. A sweep lowers ½ ω · I₀ ω, but not always ½ ω · I ω, which free spin conserves. The
+//! moments of a thin rod differ by a factor of hundreds, so it gained many times its energy. Arms are off
+//! as well: if the axis swings by the angle θ, a spin σ about it moves a point on the axis at the distance
+//! l by σ l θ, although that point is at rest.
 //!
 //! Let S be the swing of the thin axis since the step began. Rows see
 //!
 //! ω₀ = c S⁻¹ ω, with c so that ω₀ · I₀ ω₀ = ω · I ω,
 //!
-//! and what they make of it is turned back in the same way. No sweep without bias raises the energy then, whatever the
-//! rows are. A body of revolution has c = 1, and on its axis the velocity is exact: ω₀ × r₀ = S⁻¹ (ω × S r₀). Impulses
-//! are off by the angle θ, as without it.
+//! and the angular velocity after the sweep is turned back in the same way. A sweep without bias then never
+//! raises the energy, for any rows. A body of revolution has c = 1, and on its axis the velocity is exact:
+//! ω₀ × r₀ = S⁻¹ (ω × S r₀). Impulses are off by the angle θ, as without this correction.
 
 use super::{BodyRow, gyro::*, spin::Spin};
 use crate::math::{Angular, Rot};
 
-/// A body that turns far within this step.
+/// A body that rotates far within this step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FastTurn {
     gyro: Gyro,
@@ -24,19 +25,19 @@ pub(super) struct FastTurn {
     rotation: Rot,
     /// The thin axis at the start of the step, in world axes.
     axis: Angular,
-    /// The last angular velocity as rows see it, and the true one that it came from.
+    /// The last angular velocity that rows see, and the true one it was computed from.
     seen: [Angular; 2],
 }
 
 impl FastTurn {
-    /// A body that turns far, by its free spin.
+    /// A body that rotates far, from its free spin.
     pub(super) fn new(spin: &Spin) -> Self {
         let rotation = spin.rotation();
         let axis = spin.gyro().thin_axis(rotation);
         Self { gyro: spin.gyro(), rotation, axis, seen: [Angular::ZERO; 2] }
     }
 
-    /// Sets the angular velocity to the one that rows see.
+    /// Replaces the true angular velocity by the one that rows see.
     pub(super) fn enter(&mut self, row: &mut BodyRow) {
         let ((v, w), turn) = (row.velocity(), row.delta().1);
         let mut start = w;
@@ -48,7 +49,7 @@ impl FastTurn {
         row.set_velocity(v, start);
     }
 
-    /// Sets the angular velocity back to the true one. Without an impulse it has the same bits as before.
+    /// Restores the true angular velocity, with the same bits as before if no impulse acted.
     pub(super) fn leave(&mut self, row: &mut BodyRow) {
         let ((v, start), turn) = (row.velocity(), row.delta().1);
         let mut w = start;
@@ -61,7 +62,7 @@ impl FastTurn {
         row.set_velocity(v, w);
     }
 
-    /// The factor that gives `to` at one rotation the energy of `from` at another.
+    /// The factor by which `to` at one rotation gets the energy of `from` at another.
     fn share(&self, from: Angular, from_rotation: Rot, to: Angular, to_rotation: Rot) -> f32 {
         let share = self.gyro.energy(from_rotation, from) / self.gyro.energy(to_rotation, to);
         if share > 0.0 && share.is_finite() { share.sqrt() } else { 1.0 }

@@ -1,4 +1,4 @@
-//! Filling body rows by several threads.
+//! Fills body rows with several threads.
 #![expect(unsafe_code, reason = "rows are written through a shared view, each by the thread that claimed it")]
 
 use super::{BodyRow, BodyRows, Limits, MassRow, Motion, gyro::Gyro, spin::Spin};
@@ -24,7 +24,7 @@ impl FilledBody {
     }
 }
 
-/// Limits and spins of the bodies that one thread filled. [`BodyRows::add_special`] adds them.
+/// Limits and spins of the bodies that one thread filled. Passed to [`BodyRows::add_special`].
 #[derive(Clone, Debug, Default)]
 pub struct SpecialBodies {
     limits: Vec<(usize, Limits)>,
@@ -58,7 +58,7 @@ pub struct BodyFiller<'a> {
 }
 
 impl BodyFiller<'_> {
-    /// Fills a row. Returns false and does nothing for the dummy, a row that is filled, or a row beyond the last.
+    /// Fills a row. Returns false and does nothing for the dummy, a filled row, or a row beyond the last.
     #[inline(always)]
     pub fn fill(&self, row: usize, body: &FilledBody) -> bool {
         if self.claims.get(row).is_none_or(|claim| claim.swap(true, Ordering::Relaxed)) {
@@ -76,7 +76,7 @@ impl BodyFiller<'_> {
 }
 
 impl BodyRows {
-    /// Prepares all rows but the dummy to be filled by several threads.
+    /// Prepares all rows except the dummy for filling by several threads.
     pub fn filler(&mut self) -> BodyFiller<'_> {
         let Self { rows, masses, motions, claims, .. } = self;
         claims.reset(rows.len());
@@ -88,7 +88,7 @@ impl BodyRows {
         }
     }
 
-    /// Fills the rows that no thread filled, with immovable bodies at rest.
+    /// Fills all unclaimed rows with immovable bodies at rest.
     pub fn fill_rest(&mut self) {
         for row in 0..self.rows.len() {
             if self.claims.0.get_mut(row).is_none_or(|claim| !*claim.get_mut()) {
@@ -97,7 +97,8 @@ impl BodyRows {
         }
     }
 
-    /// Adds the limits and spins that a thread recorded, and empties its list. The order makes no difference.
+    /// Adds the limits and spins that a thread recorded, and clears its lists. The order of calls makes no
+    /// difference.
     pub fn add_special(&mut self, special: &mut SpecialBodies) {
         for (row, limits) in special.limits.drain(..) {
             self.limit(row, limits);
@@ -119,7 +120,7 @@ mod tests {
         FilledBody { row: BodyRow::new(Vector::X * speed, Angular::ZERO), ..FilledBody::at_rest() }
     }
 
-    /// The contract of the view: each row has one writer, and the dummy none.
+    /// The contract of the filler: each row has one writer, and the dummy has none.
     #[test]
     fn each_row_is_filled_once() {
         let mut rows = BodyRows::default();

@@ -1,4 +1,4 @@
-//! After the last substep: from rows to the tables.
+//! Writes the result of the last substep back from rows to the body table.
 #![expect(unsafe_code, reason = "bodies are changed by several threads, each its own")]
 
 use super::{BodyRow, RowView, Solver};
@@ -10,17 +10,17 @@ use crate::thread_pool::ThreadPool;
 use crate::tuning::contact::RECYCLE_COS;
 use std::sync::{Mutex, PoisonError};
 
-/// Number of bodies in a block of the job, a multiple of the widest lanes. More leaves workers idle at the end, fewer cost
-/// more claims.
+/// Bodies per block of the job, a multiple of the widest lanes. More leaves workers idle at the end, fewer
+/// cost more claims.
 const BLOCK: usize = 256;
 
 impl Solver {
-    /// Adds the displacement of each body to its pose, stores the velocity of dynamic bodies, and updates sleep timers.
-    /// `listed` are the bodies in the order of rows, from row 1. `frames` receives the frame of each body that
-    /// [moved](BodyRow::is_moved), by id.
+    /// Adds the displacement of each body to its pose, stores the velocity of dynamic bodies, and updates
+    /// sleep timers. `listed` are the bodies in the order of rows, from row 1. `frames` receives the frame
+    /// of each body that [moved](BodyRow::is_moved), by id.
     ///
-    /// Returns the rows whose result is not finite, in no order: these bodies keep pose and velocity. Bodies whose row
-    /// now belongs to another body are skipped.
+    /// Returns the rows with a non-finite result, in no particular order: these bodies keep pose and
+    /// velocity. Bodies whose row now belongs to another body are skipped.
     pub fn finish(
         &mut self,
         bodies: &mut BodyTable,
@@ -84,7 +84,7 @@ impl Finish<'_> {
         let mut before = Rot::<N>::default();
         for (i, id) in ids.iter().enumerate() {
             lanes.set(i, first + i as u32);
-            // SAFETY: no two bodies share a row, so no other thread has this one.
+            // SAFETY: no two bodies share a row, so no other thread uses this row.
             before.set(i, unsafe { bodies.poses.one(*id as usize) }.rotation);
         }
         // SAFETY: no row is written through this view.
@@ -119,7 +119,7 @@ impl Finish<'_> {
             }
             let way = way.get(i) + CHORD * body.extent * angle.get(i);
             let is_far = is_near >> i & 1 == 0 || self.moved.contains(row);
-            // One more, for what is rounded down.
+            // One unit more, as the travel is rounded down.
             let travel = if is_far { FAR } else { bodies.travel_scale.travelled(way) + u32::from(way > 0.0) };
             pose.travel = pose.travel.wrapping_add(travel);
             if motion.is_moved() {

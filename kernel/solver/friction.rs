@@ -1,4 +1,5 @@
-//! The friction of a contact row: central friction with its limit, torsional friction, and rolling resistance.
+//! The friction of a contact row: central friction with its limit, torsional friction, and rolling
+//! resistance.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::pair::{Pair, lanes_of_body};
@@ -8,15 +9,16 @@ use crate::math::{DIM, Lane, TangentFrame, Vector, max};
 use crate::tuning::solver::ROLL_FRICTION;
 
 impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
-    /// What the velocity of B's surface over A's gains by the turn of a platform since the start of the step.
+    /// The velocity of B's surface over A's that a rotating platform has added since the start of the step.
     ///
-    /// Arms are those of the start of the step. A body that rides a turntable would move along a tangent of that time, and
-    /// outward from step to step. So the velocity of a body that contacts do not move is taken at the place where the other
-    /// body is in the middle of the substep: ω × Δ, where Δ is how far they moved against each other since. ω is the turn about
-    /// the normal; other turns change the normal, which is also that of the start of the step.
+    /// Arms are constant over the step. A body on a turntable would move along the tangent at the start of
+    /// the step, and outward from step to step. The velocity of a body that contacts do not move is
+    /// therefore taken at the position that the other body has in the middle of the substep. This adds ω ×
+    /// Δ, where Δ is their relative displacement since the start of the step. ω is the rotation about the
+    /// normal; rotation about other axes changes the normal, which also stays as at the start of the step.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the row.
+    /// Until the call returns, no other thread writes the bodies of the row.
     #[inline(always)]
     pub(super) unsafe fn carried(
         &self,
@@ -36,12 +38,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         turn.cross(pb - pa - (pair.v[1] - pair.v[0]) * N::splat(0.5 * params.h))
     }
 
-    /// Central and torsional friction, together limited by μ times the normal impulse `load`. `carried` is as in
-    /// [`carried`](Self::carried).
+    /// Central and torsional friction, together limited by μ times the normal impulse `load`. `carried` is
+    /// the result of [`carried`](Self::carried).
     ///
-    /// The impulses of the solve pass are not those of the substep: those of a spring are too large while it lifts a body, and a
-    /// body that is stopped gets most of its impulse in the relax pass, after friction. What the limit lacked is owed, and is
-    /// part of the limit of the next substep. So the limits of all substeps add up to μ times the normal impulses of all.
+    /// The impulses of the solve pass differ from the final impulses of the substep: a spring impulse is
+    /// too large while it lifts a body, and a stopped body gets most of its impulse in the relax pass,
+    /// after friction. The difference is owed: it is added to the limit of the next substep. The limits of
+    /// all substeps thus add up to μ times the sum of their normal impulses.
     #[inline(always)]
     pub(super) fn solve_friction(&mut self, pair: &mut Pair<N>, carried: Vector<N>, load: N) {
         let n = self.normal;
@@ -62,10 +65,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         self.twist.solve(n, spin, self.inv_inertia, &mut pair.w);
     }
 
-    /// The rolling resistance of round cores that move slowly. It is not accumulated, so `gains` leave it out.
+    /// The rolling resistance of round shapes that roll slowly. It is not accumulated, so
+    /// `gains` leave it out.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those gains of the row's bodies that may be written.
+    /// Until the call returns, no other thread reads or writes the gains of the row's dynamic bodies.
     #[inline(always)]
     pub(super) unsafe fn resist_rolling(
         &self,
@@ -74,7 +78,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         load: N,
         params: &SubstepParams,
     ) {
-        // Contacts with more points bear on a face, which does not roll.
+        // Contacts with more points lie on a face, which does not roll.
         if P < DIM && params.roll_speed > 0.0 {
             let scale = self.rolling_arm() * N::splat(1.0 / max(params.roll_speed, 1.0e-9));
             let limit = self.friction.min(N::splat(ROLL_FRICTION)) * load * self.roll_lever;

@@ -1,10 +1,12 @@
-//! The warm start by body: what impulses gave each body in the last substep.
+//! Warm start by body: repeats the velocity change by impulses that each body had in the last substep.
 //!
-//! Rows and masses stay the same through a step. So from the second substep on, the impulses of the last relax pass change a body's
-//! velocity by just what the last substep did: its velocity after relaxing less that before warm starting. Adding it takes one pass
-//! over bodies instead of one over contacts.
+//! Rows and masses stay the same through a step. From the second substep on, applying the impulses of the
+//! last relax pass therefore changes a body's velocity exactly as the last substep did: the velocity after
+//! relaxing minus the velocity before warm starting. Adding this change takes one pass over bodies instead
+//! of one over contacts.
 //!
-//! What is not accumulated is left out: free spin, limits of velocity, and rolling resistance.
+//! Velocity changes by anything that is not accumulated are left out: free spin, velocity limits and
+//! rolling resistance.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::body::Gains;
@@ -12,13 +14,14 @@ use super::{BodyRow, BodyRows, GainRow, RowView};
 use crate::data::Parts;
 use crate::thread_pool::ThreadPool;
 
-/// Number of bodies in a block of the job. More leaves workers idle at the end, fewer cost more claims.
+/// Bodies per block of the job. More leaves workers idle at the end, fewer cost more claims.
 const BLOCK: usize = 512;
 
 impl BodyRows {
-    /// Before impulses are applied. Returns whether it has added to the velocities what the accumulated ones give.
+    /// Starts the gains of a substep, before impulses are applied. Returns whether the warm start was
+    /// applied by adding the gains of the last substep.
     pub(super) fn begin_gains(&mut self, pool: &ThreadPool) -> bool {
-        // Bodies that turn far are seen otherwise in each substep.
+        // Bodies that rotate far are seen with a different angular velocity in each substep.
         let adds = self.gains_known == Gains::Known && self.fast_turns.list().is_empty();
         if self.gains_known == Gains::Unused {
             return false;
@@ -27,7 +30,7 @@ impl BodyRows {
         adds
     }
 
-    /// After the impulses of a substep were applied.
+    /// Ends the gains of a substep, after its impulses were applied.
     pub(super) fn end_gains(&mut self, pool: &ThreadPool) {
         if self.gains_known == Gains::Unused {
             return;
@@ -51,8 +54,9 @@ impl BodyRows {
         });
     }
 
-    /// Adds `share` of the velocities of those bodies to their gains whose velocity changes by other than impulses: with −1
-    /// before the change and with 1 after it, the gains leave it out.
+    /// Adds `share` times their velocity to the gains of bodies with free spin or limits, whose velocity
+    /// changes other than by impulses. A call with −1 before the change and one with 1 after it exclude the
+    /// change from the gains.
     pub(super) fn add_to_gains(&mut self, share: f32, pool: &ThreadPool) {
         if self.gains_known == Gains::Unused {
             return;

@@ -1,13 +1,16 @@
 //! The impact of a group of manifolds that bodies connect, in two phases (Poisson).
 //!
-//! Compression stops the approach of all points, with λ ≥ 0 and Coulomb's cone. It never gains energy, and the velocities after
-//! it do not depend on the order of points. Friction of several manifolds may share an impact in many ways: there impulses
-//! rise together, as they do in time, and the result does not depend on the order of manifolds either.
+//! Compression stops the approach of all points, with λ ≥ 0 and Coulomb's cone. It never gains energy, and
+//! the velocities after it do not depend on the order of points. If several manifolds have friction, the
+//! impulses that stop an impact are not unique: there, impulses rise together, as they do in time, so that
+//! the result does not depend on the order of manifolds either.
 //!
-//! Restitution returns a share of each normal impulse. Its friction is limited by what is returned, since that of compression is
-//! spent. Poisson's law alone may gain energy: friction that pushes a body into the ground makes compression larger than
-//! what it stops, and is over when the impulse is returned. So no more energy is returned than e² of what compression took
-//! (Stronge), e being the greatest share. Without friction that is what equal shares return, exactly.
+//! Restitution returns a share of each normal impulse. Its friction is limited by the returned impulses,
+//! since the compression impulses are spent. Poisson's law alone may gain energy: friction that pushes a
+//! body into the ground makes the compression impulse larger than the approach requires, and is gone when
+//! the impulse is returned. The returned energy is therefore at most e² times the energy that compression
+//! took (Stronge), where e is the greatest share. Without friction, equal shares return exactly this
+//! energy.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::compression::{Compression, Progress};
@@ -25,25 +28,26 @@ pub(super) struct StruckBody {
     before: (Vector, Angular),
     /// The velocity after compression.
     slow: (Vector, Angular),
-    /// The time until the first of its points touches, in seconds.
+    /// The time until the first point of the body touches, in seconds.
     time: f32,
 }
 
-/// What a worker keeps between batches of groups.
+/// Buffers of a worker, kept between batches of groups.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GroupBuffers {
     /// The bodies of all groups, group by group.
     bodies: Vec<StruckBody>,
     groups: Vec<Progress>,
     compression: Compression,
-    /// How often a manifold was solved since the caller last took this.
+    /// Number of manifold solves since the caller last took this count.
     pub(super) solved: usize,
 }
 
-/// Solves the impacts of a batch of groups that are due, with `most_sweeps` at most.
+/// Solves the impacts of the due groups of a batch, in at most `most_sweeps` sweeps.
 ///
 /// # Safety
-/// Until it returns, no other thread reads or writes the bodies of the groups that may be written, or writes the others.
+/// Until the call returns, no other thread reads or writes the dynamic bodies of the groups, or writes
+/// their other bodies.
 pub(super) unsafe fn solve(
     batch: &mut [Struck],
     GroupBuffers { bodies, groups, compression, solved }: &mut GroupBuffers,
@@ -68,7 +72,7 @@ pub(super) unsafe fn solve(
         compression.add(group, groups.len(), |row| place(row).ok().map(|k| range.start + k));
         let fastest = group.iter().fold(0.0, |fastest, one| max(fastest, one.speed));
         let bounces = group.iter().any(|one| one.bounces);
-        // Where something bounces, its height depends on the rest.
+        // If a point bounces, its rebound height depends on the remaining error.
         let tolerance = if bounces { BOUNCE_TOLERANCE } else { CONVERGED };
         let shares = bounces && group.len() > 1 && group.iter().any(|one| one.row.friction > 0.0);
         let rise = if shares { ROUND_OF_SWEEPS } else { 1 };
@@ -86,10 +90,10 @@ pub(super) unsafe fn solve(
     }
 }
 
-/// Lists the bodies of a group that may be written, by row. Returns their range.
+/// Lists the dynamic bodies of a group, by row. Returns their range.
 ///
 /// # Safety
-/// Until it returns, no other thread writes the bodies of the group.
+/// Until the call returns, no other thread writes the bodies of the group.
 unsafe fn list_bodies(
     group: &[Struck],
     bodies: &mut Vec<StruckBody>,
@@ -117,7 +121,8 @@ unsafe fn list_bodies(
     start..end
 }
 
-/// Returns what a compressed group returns, and displaces its bodies. Returns the number of sweeps of friction.
+/// Applies restitution to a compressed group, and displaces its bodies. Returns the number of friction
+/// sweeps.
 ///
 /// # Safety
 /// As [`solve`].
@@ -173,7 +178,7 @@ unsafe fn finish(
     sweeps
 }
 
-/// Scales the impulses of restitution and what they changed so that they add no more than this energy, J.
+/// Scales the impulses of restitution, and the velocity changes by them, to add at most `most` J of energy.
 ///
 /// # Safety
 /// As [`solve`].
@@ -183,7 +188,7 @@ unsafe fn return_at_most(most: f32, group: &mut [Struck], bodies: &[StruckBody],
     if linear + square <= most || square <= 0.0 {
         return;
     }
-    // The root of s · linear + s² · square = most.
+    // Solves s · linear + s² · square = most for s.
     let half = 0.5 * linear;
     let share = ((half * half + square * most).sqrt() - half) / square;
     group.iter_mut().for_each(|one| one.scale(share));
@@ -197,10 +202,10 @@ unsafe fn return_at_most(most: f32, group: &mut [Struck], bodies: &[StruckBody],
     }
 }
 
-/// The work of the impulses of the present phase, as [`Struck::work`].
+/// The work of the impulses of the current phase, as [`Struck::work`].
 ///
 /// # Safety
-/// Until it returns, no other thread writes the bodies of the group.
+/// Until the call returns, no other thread writes the bodies of the group.
 unsafe fn work(group: &[Struck], rows: &RowView<BodyRow>) -> [f32; 2] {
     // SAFETY: by the contract.
     group.iter().map(|one| unsafe { one.work(rows) }).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])

@@ -1,26 +1,27 @@
-//! Gyroscopic torque, which conserves the angular momentum of spinning bodies other than balls. `gyro2.rs` exports the
-//! same names.
+//! Gyroscopic torque, which conserves the angular momentum of spinning bodies with unequal moments.
+//! `gyro2.rs` exports the same names.
 
 use crate::math::{Angular, InvInertia, Lane, MAX_RATIO, Rot, SymTensor, Vector};
 use crate::tuning::solver::{CONVERGED, FAR_TURN, MIN_TURN, SMALL_TURN};
 use crate::tuning::sweeps::MOST_TURN;
 
-/// Inertia of a body in its own frame, for free spin; of one body for each lane.
+/// Inertia of a body in its own frame, for free spin; with wide lanes, one body per lane.
 ///
-/// Scaled so that the largest moment is about 1. Free spin does not depend on the scale, and determinants of tiny
-/// bodies' tensors would underflow.
+/// Scaled so that the largest moment is about 1. Free spin does not depend on the scale, and determinants
+/// of tiny bodies' tensors would underflow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gyro<N = f32> {
     pub(super) inertia: SymTensor<N>,
     pub(super) inv_inertia: SymTensor<N>,
 }
 
-/// Minimum of 1 + cos θ for which the swing by θ is known from both directions of the axis. Below it is rounding.
+/// Minimum of 1 + cos θ for which the swing by θ follows from the two directions of the axis. Below it,
+/// rounding dominates.
 const MIN_SWING: f32 = 1.0e-3;
 
 impl Gyro {
-    /// `None` if the three moments are equal (within 1 ‰) and the tensor is diagonal, so that ω × I ω vanishes, or if
-    /// the body cannot turn about some axis.
+    /// `None` if the three moments are equal (within 1 ‰) and the tensor is diagonal, so that ω × I ω
+    /// vanishes, or if the body cannot turn about some axis.
     pub(super) fn of(inv_inertia: InvInertia) -> Option<Self> {
         let i = inv_inertia;
         let size = i.xx.abs();
@@ -37,18 +38,20 @@ impl Gyro {
         Some(Self { inertia: inertia.scaled(1.0 / size), inv_inertia: i.scaled(size) })
     }
 
-    /// Whether a body turns so far in a substep of `h` seconds that constraints must know of it.
+    /// Whether a body rotates so far in a substep of `h` seconds that constraints need a correction (see
+    /// `FastTurn`).
     pub(super) fn turns_far(&self, w: Angular, h: f32) -> bool {
         let square = w.length_squared() * h * h;
         square * MAX_RATIO > FAR_TURN && square * self.inv_inertia.needle_ratio() > FAR_TURN
     }
 
-    /// The axis of the smallest moment of a body with this rotation, in world axes. Of two equal ones it is either.
+    /// The axis of the smallest moment of a body with this rotation, in world axes. If two moments are
+    /// equal, either axis.
     pub(super) fn thin_axis(&self, rotation: Rot) -> Angular {
         rotation.rotate(self.inv_inertia.thin_axis())
     }
 
-    /// The energy of rotation, as a multiple of a unit that depends on the body.
+    /// The rotational energy, in a unit that depends on the body.
     pub(super) fn energy(&self, rotation: Rot, w: Angular) -> f32 {
         let local = rotation.inverse_rotate(w);
         local.dot(self.inertia.apply(local))
@@ -56,20 +59,22 @@ impl Gyro {
 }
 
 impl<N: Lane> Gyro<N> {
-    /// The angular velocity in the middle and at the end of `h` seconds of free spin, all in the body's frame.
+    /// The angular velocity in the middle and at the end of `h` seconds of free spin, all in the body's
+    /// frame.
     ///
     /// Euler's equation I ω̇ = −ω × I ω by the implicit midpoint rule:
     ///
     /// I (ω' − ω) + h m × I m = 0, with m = (ω + ω') / 2.
     ///
-    /// Multiplied by m it gives ω' · I ω' = ω · I ω, multiplied by I m it gives |I ω'| = |I ω|: the rule conserves
-    /// energy and the length of the angular momentum at any step length (Hairer, Lubich and Wanner, "Geometric
-    /// Numerical Integration", IV.2.1: quadratic invariants). Implicit Euler (Catto, "Numerical Methods", GDC 2015) loses
-    /// both at the rate h |ω|². A body that turns by h m keeps the direction of the momentum to third order in h.
+    /// Multiplied by m it gives ω' · I ω' = ω · I ω, multiplied by I m it gives |I ω'| = |I ω|: the rule
+    /// conserves energy and the length of the angular momentum at any step length (Hairer, Lubich and
+    /// Wanner, "Geometric Numerical Integration", IV.2.1: quadratic invariants). Implicit Euler (Catto,
+    /// "Numerical Methods", GDC 2015) loses both at the rate h |ω|². A body that turns by h m keeps the
+    /// direction of the momentum to third order in h.
     ///
-    /// In m it reads I (m − ω) + ½ h m × I m = 0. Newton's method solves it from the explicit guess m = ω − ½ h I⁻¹ (ω
-    /// × I ω), with the Jacobian I + ½ h ([m]× I − [I m]×). The remaining difference between |I ω'| and |I ω| is scaled
-    /// away.
+    /// In m it reads I (m − ω) + ½ h m × I m = 0. Newton's method solves it from the explicit guess m = ω −
+    /// ½ h I⁻¹ (ω × I ω), with the Jacobian I + ½ h ([m]× I − [I m]×). The remaining difference between |I
+    /// ω'| and |I ω| is scaled away.
     #[inline(always)]
     pub(super) fn spun(&self, w: Angular<N>, h: N) -> (Angular<N>, Angular<N>) {
         let turn = w.length() * h;
@@ -96,7 +101,7 @@ impl<N: Lane> Gyro<N> {
     fn newton(&self, local: Vector<N>, m: Vector<N>, k: N) -> Vector<N> {
         let momentum = self.inertia.apply(m);
         let residual = self.inertia.apply(m - local) + m.cross(momentum) * k;
-        // The columns of I and of [I m]×, which give those of the Jacobian.
+        // The columns of I and of [I m]×; together they give the columns of the Jacobian.
         let SymTensor { xx, yy, zz, xy, xz, yz } = self.inertia;
         let Vector { x: p, y: q, z: r } = momentum;
         let column = |along: Vector<N>, across: Vector<N>| along + (m.cross(along) - across) * k;
@@ -109,8 +114,8 @@ impl<N: Lane> Gyro<N> {
         m - change * (N::ONE / determinant)
     }
 
-    /// The change of a velocity, scaled so that the momentum keeps its length. Zero if the energy is not conserved, or
-    /// if a singular Jacobian gave no number.
+    /// The velocity change, scaled so that the momentum keeps its length. Zero if the energy is not
+    /// conserved, or if a singular Jacobian gave NaN.
     #[inline(always)]
     fn kept(&self, local: Vector<N>, momentum: Vector<N>, change: Vector<N>) -> Vector<N> {
         let gained = self.inertia.apply(change);
@@ -139,39 +144,40 @@ pub(super) fn scale_angular(w: Angular, factors: Angular) -> Angular {
     w.scale(factors)
 }
 
-/// An angular velocity, in the frame of a body with this rotation.
+/// Transforms an angular velocity into the frame of a body with this rotation.
 #[inline(always)]
 pub(super) fn to_body<N: Lane>(rotation: Rot<N>, w: Angular<N>) -> Angular<N> {
     rotation.inverse_rotate(w)
 }
 
-/// An angular velocity of a body with this rotation, in world axes.
+/// Transforms an angular velocity from the frame of a body with this rotation into world axes.
 #[inline(always)]
 pub(super) fn to_world<N: Lane>(rotation: Rot<N>, w: Angular<N>) -> Angular<N> {
     rotation.rotate(w)
 }
 
-/// The current rotation of a body, of unit length: a deviation, kept over the steps, would change the spin.
+/// The current rotation of a body, normalized: a length error that persists over the steps would change the
+/// spin.
 #[inline(always)]
 pub(super) fn world_rotation<N: Lane>(delta: Rot<N>, start: Rot<N>) -> Rot<N> {
     delta.mul(start).renormalized()
 }
 
-/// The smallest rotation that brings the unit vector `axis` to where `turn` brings it. That is `turn` itself where `axis` ends
-/// opposite to itself.
+/// The smallest rotation that takes the unit vector `axis` to its direction after `turn`. Returns `turn`
+/// itself if `axis` is reversed.
 pub(super) fn swing_of(axis: Angular, turn: Rot) -> Rot {
     let end = turn.rotate(axis);
     let (cross, w) = (axis.cross(end), 1.0 + axis.dot(end));
     if w < MIN_SWING { turn } else { Rot { x: cross.x, y: cross.y, z: cross.z, w }.normalized() }
 }
 
-/// The rotation about x by an angle in radians, as a vector.
+/// A rotation vector about z by an angle in radians.
 #[cfg(test)]
 pub(super) fn spin(angle: f32) -> Angular {
     Vector::Z * angle
 }
 
-/// The inverse inertia of something round.
+/// An isotropic inverse inertia.
 #[cfg(test)]
 pub(super) fn round(inverse: f32) -> InvInertia {
     InvInertia::from_diagonal(Vector::ONE * inverse)

@@ -1,4 +1,4 @@
-//! How a contact row finds that it closes fast, and its lane as it is struck.
+//! Detection of contact rows that close fast, and extraction of their lanes for blows.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::bearing::Bearing;
@@ -13,8 +13,9 @@ use crate::tuning::solver::NEARLY;
 pub struct ImpactRow<N: Lane> {
     /// The mixed coefficient of restitution.
     pub restitution: N,
-    /// 1 if a point may be struck in this step: it closes fast at the start, or one of the bodies was struck. -1 if one of
-    /// them overlaps another deeply: what was placed into one another has not met. Else 0.
+    /// 1 if a point may be struck in this step: it closes fast at the start, or one of the bodies was
+    /// struck. -1 if one of the bodies overlaps another deeply: bodies that were placed inside one another
+    /// have not collided. Otherwise 0.
     pub watched: N,
 }
 
@@ -24,19 +25,19 @@ impl<N: Lane> Default for ImpactRow<N> {
     }
 }
 
-/// Where the points of a row are, and how fast they approach.
+/// Positions and approach speeds of the points of a row.
 pub(super) struct Motions<N, const P: usize> {
     /// The moments of the normal about both centres of mass.
     pub(super) moments: [[Angular<N>; 2]; P],
     /// Normal velocities, negative if they close, m/s.
     pub(super) speeds: [N; P],
-    /// Separations now, in metres.
+    /// Current separations, in metres.
     pub(super) gaps: [N; P],
 }
 
 impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the row.
+    /// Until the call returns, no other thread writes the bodies of the row.
     #[inline(always)]
     pub(super) unsafe fn motions(&self, rows: &RowView<BodyRow>) -> Motions<N, P> {
         // SAFETY: by the contract.
@@ -46,7 +47,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         Motions { moments, speeds, gaps }
     }
 
-    /// The moments of the normal and the normal velocities of [`motions`](Self::motions).
+    /// The moments of the normal and the normal velocities, as in [`motions`](Self::motions).
     ///
     /// # Safety
     /// As [`motions`](Self::motions).
@@ -63,7 +64,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         (moments, speeds)
     }
 
-    /// The separations of [`motions`](Self::motions), given the moments of the normal.
+    /// The separations, as in [`motions`](Self::motions), given the moments of the normal.
     ///
     /// # Safety
     /// As [`motions`](Self::motions).
@@ -84,10 +85,11 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         gaps
     }
 
-    /// Those of some `lanes` with a point that closes faster than a blow and touches within `time` seconds, as bits.
+    /// The lanes among `lanes` with a point that closes at more than the blow speed and touches within
+    /// `time` seconds, as bits.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the row.
+    /// Until the call returns, no other thread writes the bodies of the row.
     #[inline(always)]
     pub(super) unsafe fn struck_lanes(
         &self,
@@ -102,7 +104,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         for i in 0..P {
             fast |= N::bits(N::and(speeds[i].lt(slowest), N::ZERO.lt(self.points[i].mass)));
         }
-        // Few close fast. The others need no gaps.
+        // Few lanes close fast. The others need no gaps.
         if fast & lanes == 0 {
             return 0;
         }
@@ -115,10 +117,10 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         struck & lanes
     }
 
-    /// Lane `i`, with room for any number of points and without impulses.
+    /// Lane `i` as a row with room for the maximum number of points, without impulses.
     pub(super) fn lane(&self, i: usize) -> ContactRow<f32, Vector, MAX_POINTS> {
         let side = |side: usize| {
-            // Bodies of shared rows are split.
+            // In a shared row, the mass of a body is split among its lanes.
             let count = if N::SHARES { lanes_of_body::<N>(&self.ids, side).get(i) } else { 1.0 };
             let inertia = self.inv_inertia[side].get(i).scaled(1.0 / count);
             (self.inv_mass[side].diagonal().get(i) * (1.0 / count), inertia)
@@ -159,13 +161,14 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
 }
 
 impl ContactRow<f32, Vector, MAX_POINTS> {
-    /// Computes the effective masses of points that have any.
+    /// Computes the effective masses of points with a nonzero mass.
     pub(super) fn weigh_points(&mut self) {
         let arms = self.points.map(|point| [point.anchor, point.anchor - self.offset]);
         self.weigh(&arms.map(|arms| arms.map(|arm| arm.cross(self.normal))));
     }
 
-    /// Computes the effective masses of points that have any, by the moments of the normal about both centres of mass.
+    /// Computes the effective masses of points with a nonzero mass, from the moments of the normal about
+    /// both centres of mass.
     fn weigh(&mut self, moments: &[[Angular; 2]; MAX_POINTS]) {
         let (n, [ia, ib]) = (self.normal, self.inv_inertia);
         let linear = n.dot(self.inv_mass[0].scale(n)) + n.dot(self.inv_mass[1].scale(n));
@@ -175,7 +178,7 @@ impl ContactRow<f32, Vector, MAX_POINTS> {
         }
     }
 
-    /// Takes back that bodies below heavy ones have more mass in contacts.
+    /// Restores the true masses of bodies that have a raised mass in contacts.
     pub(super) fn take_true_masses(&mut self, bearing: &Bearing) {
         let shares = self.ids.map(|[row]| bearing.share(row));
         if shares == [Vector::ONE; 2] {
@@ -190,11 +193,12 @@ impl ContactRow<f32, Vector, MAX_POINTS> {
         self.weigh_friction(&TangentFrame::new(self.normal));
     }
 
-    /// Turns the normal, and the arms of a body that impulses do not move, to when the first point touches: a paddle may turn far
-    /// within a step. Returns the moments of the normal and the normal velocities then. `None` if no such body turns.
+    /// Rotates the normal and the arms of a body that impulses do not move to the time when the first point
+    /// touches: a paddle may rotate far within a step. Returns the moments of the normal and the normal
+    /// velocities at that time. `None` if no such body rotates.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the row.
+    /// Until the call returns, no other thread writes the bodies of the row.
     pub(super) unsafe fn turn_with_paddle(
         &mut self,
         rows: &RowView<BodyRow>,

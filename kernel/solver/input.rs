@@ -23,7 +23,7 @@ impl RowInput<'_> {
         }
     }
 
-    /// Row of a body in this step; the dummy's row for none.
+    /// Row of a body in this step; the dummy's row 0 for [`NONE`].
     #[inline(always)]
     pub(super) fn row_of(&self, body: u32) -> u32 {
         if body == NONE { 0 } else { self.bodies.rows[body as usize] }
@@ -35,6 +35,6 @@ impl RowInput<'_> {
 pub(super) struct Item {
     /// The id of the constraint.
     pub(super) id: u32,
-    /// Number of the row among those of the constraint; for contacts the number of the manifold.
+    /// Number of the row within its constraint; for contacts, the number of the manifold.
     pub(super) index: u32,
 }

@@ -11,15 +11,15 @@ use crate::thread_pool::ThreadPool;
 use core::marker::PhantomData;
 use core::ops::Range;
 
-/// Number of bodies in a block of the job, a multiple of the widest lanes. More leaves workers idle at the end, fewer cost
-/// more claims.
+/// Bodies per block of the job, a multiple of the widest lanes. More leaves workers idle at the end, fewer
+/// cost more claims.
 const BLOCK: usize = 256;
 
-/// As [`BLOCK`], of bodies with free spin, each of which takes twenty times as long.
+/// As [`BLOCK`], for bodies with free spin: each takes twenty times as long.
 const SPIN_BLOCK: usize = 64;
 
 impl<T: Send> OnceEach<T> {
-    /// Changes rows of bodies that have an item in the list.
+    /// Changes the rows of bodies with an item in the list.
     pub(super) fn each(
         &mut self,
         rows: &mut [BodyRow],
@@ -34,7 +34,7 @@ impl<T: Send> OnceEach<T> {
         });
     }
 
-    /// Calls `change` with blocks of items. No row is listed twice, and an item is in one block.
+    /// Calls `change` with blocks of items. No row is listed twice, and each item is in one block.
     fn each_block(
         &mut self,
         size: usize,
@@ -51,7 +51,7 @@ impl<T: Send> OnceEach<T> {
 }
 
 impl OnceEach<Spin> {
-    /// Before bodies are turned for `h` seconds: sets their angular velocities to those by which they turn.
+    /// Sets angular velocities to the ones with which bodies are rotated for `h` seconds.
     fn begin_turns(&mut self, rows: &mut [BodyRow], pool: &ThreadPool, h: f32) {
         self.each_block(SPIN_BLOCK, pool, rows, |spins, view| {
             let (wide, rest) = spins.split_at_mut(spins.len() - spins.len() % F32x4::WIDTH);
@@ -66,7 +66,7 @@ impl OnceEach<Spin> {
         });
     }
 
-    /// After bodies were turned: sets their angular velocities to those at the end of the substep.
+    /// Sets angular velocities to their values at the end of the substep, after bodies were rotated.
     fn end_turns(&mut self, rows: &mut [BodyRow], pool: &ThreadPool) {
         self.each_block(SPIN_BLOCK, pool, rows, |spins, view| {
             let (wide, rest) = spins.split_at_mut(spins.len() - spins.len() % F32x4::WIDTH);
@@ -88,8 +88,9 @@ fn limit_factor(speed: f32, max: f32) -> f32 {
 }
 
 impl BodyRows {
-    /// v ← v / (1 + c h) + h a for every dynamic body. Damping acts on the old velocity, so that without forces v falls
-    /// by exactly 1 / (1 + c h). An acceleration in a body's frame has the direction of the start of the substep.
+    /// v ← v / (1 + c h) + h a for every dynamic body. Damping acts on the old velocity, so that without
+    /// forces v falls by exactly 1 / (1 + c h). An acceleration in a body's frame uses the body's rotation
+    /// at the start of the substep.
     pub(super) fn integrate_velocities(&mut self, h: f32, pool: &ThreadPool) {
         let Self { rows, motions, first_dynamic, .. } = self;
         debug_assert_eq!(rows.len(), motions.len(), "each row has its motion");
@@ -104,7 +105,7 @@ impl BodyRows {
             for (row, motion) in rows.iter_mut().zip(&motions[range]) {
                 let gained = (motion.acceleration, motion.angular_acceleration);
                 let damping = [motion.linear_damping, motion.angular_damping];
-                // Divisions are dear, and most bodies are not damped.
+                // Divisions are expensive, and most bodies have no damping.
                 let kept = if damping == [0.0; 2] { [1.0; 2] } else { damping.map(|c| 1.0 / (1.0 + c * h)) };
                 row.accelerate(kept, gained, h);
             }
@@ -115,9 +116,9 @@ impl BodyRows {
 
     /// Δx ← Δx + h v and Δθ ← Δθ turned by h ω, for every body.
     ///
-    /// A body with free spin turns by the ω in the middle of it. Contacts use the ω before it, which belongs to the
-    /// same rotation as their arms. If contacts came after a step of the gyroscopic torque, the axis of a fast spinner
-    /// would have moved, and contacts would throw it back.
+    /// A body with free spin is rotated with the ω in the middle of the free spin. Contacts use the ω
+    /// before it, which belongs to the same rotation as their arms. If contacts came after the gyroscopic
+    /// torque, the axis of a fast spinner would have moved, and contacts would throw it back.
     pub(super) fn integrate_positions(&mut self, h: f32, pool: &ThreadPool) {
         self.add_to_gains(-1.0, pool);
         self.hold_back(pool);
@@ -141,21 +142,21 @@ impl BodyRows {
         self.add_to_gains(1.0, pool);
     }
 
-    /// Before a sweep: bodies that turn far have the angular velocity that rows see.
+    /// Before a sweep: gives bodies that rotate far the angular velocity that constraint rows see.
     pub(super) fn enter_rows(&mut self, pool: &ThreadPool) {
         if !core::mem::replace(&mut self.see_rows, true) {
             self.fast_turns.each(&mut self.rows, pool, |fast, row| fast.enter(row));
         }
     }
 
-    /// After a sweep: bodies that turn far have their true angular velocity.
+    /// After a sweep: gives bodies that rotate far their true angular velocity.
     pub(super) fn leave_rows(&mut self, pool: &ThreadPool) {
         if core::mem::replace(&mut self.see_rows, false) {
             self.fast_turns.each(&mut self.rows, pool, |fast, row| fast.leave(row));
         }
     }
 
-    /// Clamps velocities to their limits.
+    /// Applies axis locks and speed limits to velocities.
     fn hold_back(&mut self, pool: &ThreadPool) {
         self.limits.each(&mut self.rows, pool, |limits, row| {
             let (v, w) = row.velocity();
@@ -169,7 +170,7 @@ impl BodyRows {
     }
 }
 
-/// Moves the bodies of some rows.
+/// Integrates the positions of the bodies of some rows.
 struct MoveJob<'a, N> {
     view: RowView<'a, BodyRow>,
     rows: Range<usize>,
@@ -207,7 +208,7 @@ impl<N: Lane> Job for MoveJob<'_, N> {
 }
 
 /// # Safety
-/// Until it returns, no other thread reads or writes these rows.
+/// Until the call returns, no other thread reads or writes these rows.
 #[inline(always)]
 unsafe fn move_bodies<N: Lane>(view: &super::RowView<BodyRow>, ids: &N::Ids, h: f32) {
     // SAFETY: by the contract.
@@ -218,10 +219,10 @@ unsafe fn move_bodies<N: Lane>(view: &super::RowView<BodyRow>, ids: &N::Ids, h: 
     unsafe { BodyRow::scatter_delta::<N>(view, ids, p + v * h, turned(q, w * h)) };
 }
 
-/// Maximum x of [`exact_turn`], at 0.5 rad (in 2D: 0.25 rad). Up to here its series is exact to rounding.
+/// Maximum x of [`exact_turn`], at 0.5 rad (in 2D: 0.25 rad). Up to this x the series is exact to rounding.
 const SMALL: f32 = 0.0625;
 
-/// The rotation after turning by `delta`, of any size.
+/// The rotation `q` after turning by `delta`, of any size.
 #[inline(always)]
 fn turned<N: Lane>(q: Rot<N>, delta: Angular<N>) -> Rot<N> {
     let near = q.integrated(exact_turn(delta));
@@ -241,8 +242,9 @@ fn exact_turn<N: Lane>(turn: Angular<N>) -> Angular<N> {
     turn * (N::ONE + x * (N::splat(1.0 / 3.0) + x * series))
 }
 
-/// `near`, but in the lanes `far` the rotation by a large angle, lane by lane with sine and cosine: the tangent of
-/// [`exact_turn`] is infinite at half a turn. Not inlined, since few bodies turn so fast.
+/// Returns `near`, with the lanes `far` replaced by the rotation by a large angle, computed per lane with
+/// sine and cosine: the tangent of [`exact_turn`] is infinite at half a turn. Not inlined, since few bodies
+/// rotate so fast.
 #[inline(never)]
 fn large_turn<N: Lane>(q: Rot<N>, delta: Angular<N>, far: u32, near: Rot<N>) -> Rot<N> {
     let mut turned = near;
@@ -282,7 +284,8 @@ mod tests {
         assert!((v.y + 9.81 * t).abs() < 1e-4);
     }
 
-    /// v_n = h Σ R(ω k h) a: each substep accelerates by the rotation at its start. Twice as many bodies as in a block.
+    /// v_n = h Σ R(ω k h) a: each substep accelerates with the rotation at its start. The test has more
+    /// than two blocks of bodies.
     #[test]
     fn an_acceleration_in_the_frame_of_a_body_turns_with_it() {
         let (h, steps, rate, a) = (1.0 / 240.0, 300, 3.0, Vector::X * 8.0 + Vector::Y);

@@ -2,12 +2,12 @@
 
 use crate::math::{Lane, Num, Vector};
 
-/// How an impulse changes a velocity. Rows of bodies with locked axes have an inverse mass per world axis, all others
-/// have one number.
+/// The velocity change per impulse. Rows of bodies with locked axes have an inverse mass per world axis,
+/// all others have one number.
 pub trait InvMass<N: Lane>: Copy + Send + Sync {
     /// Immovable.
     const ZERO: Self;
-    /// The change of velocity by an impulse.
+    /// The velocity change by an impulse.
     fn apply(self, impulse: Vector<N>) -> Vector<N>;
     /// The inverse mass along each world axis.
     fn diagonal(self) -> Vector<N>;
@@ -15,7 +15,7 @@ pub trait InvMass<N: Lane>: Copy + Send + Sync {
     fn along(self, n: Vector<N>) -> N;
     /// Whether no impulse moves the body.
     fn is_zero(self) -> N::Mask;
-    /// From the inverse mass, and 1 along free, 0 along locked axes.
+    /// From the inverse mass, and factors that are 1 along free axes and 0 along locked ones.
     fn new(inv_mass: N, free: Vector<N>) -> Self;
 }
 

@@ -1,19 +1,19 @@
-//! The constraints of one colour, sorted into lists from which stages are planned.
+//! The constraints of one colour, sorted into the lists from which stages are planned.
 
 use super::input::{Item, RowInput};
 use super::shares::Shares;
 use crate::math::Vector;
 
-/// Items without a common dynamic body, in a list for each part of the stage and each batch.
+/// Items without a common dynamic body, in one list for each part of the stage and each batch.
 ///
-/// The manifolds of a contact are solved one after the other, in one layer each, so that no stage has a body twice.
+/// Each manifold of a contact is in a layer of its own, so that no stage has a body twice.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Layer {
     /// The lists. The last ones may be unused.
     lists: Vec<Vec<Item>>,
     batches: usize,
     parts: usize,
-    /// The batch of each item in the order of adding, if that is kept.
+    /// The batch of each item, in the order they were added. `None` if the order is not recorded.
     order: Option<Vec<u16>>,
 }
 
@@ -29,7 +29,7 @@ impl Layer {
         }
     }
 
-    /// As [`begin`](Self::begin) with one part, and records the order of items over all batches.
+    /// As [`begin`](Self::begin) with one part, and also records the order of items over all batches.
     pub(super) fn begin_ordered(&mut self, batches: usize) {
         self.order.get_or_insert_default();
         self.begin(batches, 1);
@@ -61,7 +61,7 @@ impl Layer {
         self.parts
     }
 
-    /// The batch of each item, in the order of adding.
+    /// The batch of each item, in the order they were added.
     pub(super) fn order(&self) -> &[u16] {
         self.order.as_deref().unwrap_or_default()
     }
@@ -76,7 +76,7 @@ pub(super) struct Sorter<'a> {
 }
 
 impl Sorter<'_> {
-    /// Whether one of two bodies has an inverse mass for each axis.
+    /// Whether one of two bodies has an inverse mass per axis.
     #[inline(always)]
     pub(super) fn is_held(&self, bodies: [u32; 2]) -> bool {
         let held = |body: u32| self.axes[self.input.row_of(body) as usize] != Vector::ONE;

@@ -1,16 +1,18 @@
 //! The TGS-Soft contact solver: dense body rows, wide contact rows, and the stages of a substep.
 //!
-//! One step: fill [`Solver::bodies`], build the rows of the constraints, run the substeps (integrate velocities →
-//! blows → warm start → solve with soft bias → integrate positions → relax), then blows once more, and store the impulses.
+//! A step fills [`Solver::bodies`] and builds the constraint rows. Each substep integrates velocities,
+//! solves blows, warm-starts, solves with soft bias, integrates positions and relaxes. After the last
+//! substep, blows are solved once more and impulses are stored.
 //!
-//! The method is Erin Catto's (Solver2D, Box2D v3, Box3D): soft constraints, relaxation, positions as displacements
-//! over the step. Rows differ in three ways. Both dimensions have one central friction row per manifold (in 2D the two
-//! points of an edge have the same tangent Jacobian up to the edge's slope). The second anchor is the first less one
-//! offset per manifold. Deep overlap is pushed out by split impulses, which do not change velocities
+//! The method is Erin Catto's (Solver2D, Box2D v3, Box3D): soft constraints, relaxation, positions as
+//! displacements over the step. Rows differ in three ways. Both dimensions have one central friction row
+//! per manifold (in 2D the two points of an edge have the same tangent Jacobian up to the edge's slope).
+//! Anchors are stored relative to body A; the anchor relative to body B is the first minus one offset per
+//! manifold. Deep overlap is pushed out by split impulses, which do not change velocities
 //! ([`SplitImpulseRow`]).
 //!
-//! A kind of constraint is a file that implements `Batch` (`batch.rs`), and is listed in `batches.rs`. The plan and its
-//! stages know only the batch and number of a row.
+//! Each kind of constraint is a file that implements `Batch` (`batch.rs`) and is listed in `batches.rs`.
+//! The plan and its stages know a row only by its batch and number.
 
 mod batch;
 mod batches;

@@ -13,7 +13,7 @@ pub(super) struct Pair<N> {
 
 impl<N: Lane> Pair<N> {
     /// # Safety
-    /// Until it returns, no other thread writes these rows.
+    /// Until the call returns, no other thread writes these rows.
     #[inline(always)]
     pub(super) unsafe fn load(rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) -> Self {
         // SAFETY: by the contract.
@@ -41,7 +41,7 @@ impl<N: Lane> Pair<N> {
     }
 
     /// # Safety
-    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    /// Until the call returns, no other thread reads or writes the writable rows among these.
     #[inline(always)]
     pub(super) unsafe fn store(&self, rows: &RowView<BodyRow>, ids: &[N::Ids; 2]) {
         if N::SHARES {
@@ -75,7 +75,7 @@ impl<N: Lane> Pair<N> {
     }
 }
 
-/// For each lane, the number of lanes that its body is in, on either side.
+/// For each lane, the number of lanes that hold its body, on either side.
 #[inline(always)]
 pub(super) fn lanes_of_body<N: Lane>(ids: &[N::Ids; 2], side: usize) -> N {
     let [a, b] = [ids[0].lanes(), ids[1].lanes()];

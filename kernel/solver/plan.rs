@@ -1,12 +1,12 @@
-//! The order of solving: stages, cut into blocks that workers share.
+//! The solve order: stages, cut into blocks that workers share.
 
 use super::batch::Passes;
 use super::input::Item;
 use super::layer::Layer;
 use super::shares::Shares;
 
-/// Consecutive rows of one batch. No two blocks of a stage have a dynamic body in common, so they may be solved in any
-/// order or at once.
+/// Consecutive rows of one batch. Blocks of a stage have no dynamic body in common, so they may be solved
+/// in any order or in parallel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
     pub(super) batch: u16,
@@ -14,7 +14,7 @@ pub(super) struct Block {
     pub(super) passes: Passes,
     start: u32,
     len: u32,
-    /// The place of the block's items: a list of the plan, and the first of its items.
+    /// Index of the list of the plan that holds the block's items.
     list: u32,
     first_item: u32,
     items: u32,
@@ -28,7 +28,7 @@ impl Block {
     }
 }
 
-/// The place of a list of items.
+/// Location of a list of items: colour, layer, part and batch.
 #[derive(Clone, Copy, Debug)]
 struct ListPlace {
     color: u8,
@@ -41,7 +41,7 @@ struct ListPlace {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Plan {
     pub(super) blocks: Vec<Block>,
-    /// The end of each stage among the blocks, and whether workers share the stage.
+    /// For each stage, the end of its blocks in `blocks`, and whether workers share the stage.
     ends: Vec<(u32, bool)>,
     /// For each stage and worker, the end of the worker's blocks within the stage.
     parts: Vec<u32>,
@@ -51,21 +51,21 @@ pub(super) struct Plan {
     workers: usize,
     /// Maximum number of rows of a block.
     block_rows: u32,
-    /// The next item of each batch, while items are added singly.
+    /// The next item of each batch, while items are planned one per row.
     next: Vec<u32>,
     /// Number of items of each batch that have a place in a row.
     items: Vec<u32>,
 }
 
-/// Blocks that may be solved in any order or at once.
+/// Blocks that may be solved in any order or in parallel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stage<'a> {
     pub(super) blocks: &'a [Block],
-    /// The end of each worker's blocks; `None` if there are too few to share.
+    /// The end of each worker's blocks; `None` if the stage is not shared.
     pub(super) parts: Option<&'a [u32]>,
 }
 
-/// The layer that is being planned, and the batches of its lists.
+/// The layer being planned, and the batches of its lists.
 pub(super) struct Planned<'a> {
     pub(super) color: u8,
     pub(super) number: u32,
@@ -77,8 +77,8 @@ pub(super) struct Planned<'a> {
 }
 
 impl Plan {
-    /// Clears the plan. Blocks then have at most `block_rows` rows, and shared stages have a range of blocks for each
-    /// worker.
+    /// Clears the plan. New blocks have at most `block_rows` rows, and shared stages have one range of
+    /// blocks per worker.
     pub(super) fn begin(&mut self, block_rows: u32, workers: usize, batches: usize) {
         self.blocks.clear();
         self.ends.clear();
@@ -107,8 +107,8 @@ impl Plan {
         self.end_stage(parts > 1);
     }
 
-    /// Plans the items of a layer in the order of adding, one per row. Consecutive items of a batch are one stage, which is not
-    /// shared.
+    /// Plans the items of a layer in the order they were added, one per row. Consecutive items of a batch
+    /// form one stage, which workers do not share.
     pub(super) fn add_singly(&mut self, planned: &Planned) {
         let layer = planned.layer;
         let mut next = core::mem::take(&mut self.next);

@@ -1,12 +1,14 @@
-//! Loads that end: bodies whose contacts begin a step without impulses.
+//! Released loads: bodies whose contacts begin a step without impulses.
 //!
-//! A crate between a door and a wall that do not yield has no solution: with each sweep its contacts press more, up to some hundred
-//! times the impulse that moves it. When the door opens, a sweep takes off no more than the mass times the speed of opening, so the
-//! door drags the crate along for half a second.
+//! A crate jammed between an immovable door and wall has no solution: each sweep raises the impulses of its
+//! contacts, up to some hundred times the impulse that moves it. When the door opens, a sweep lowers an
+//! impulse by at most the mass times the opening speed, so the door drags the crate along for half a
+//! second.
 //!
-//! Decision: where a kinematic body leaves faster than a blow what it presses, the load is over at once, in all contacts that it
-//! reached through bodies: their impulses balance, and the rest of them would throw a body. Bodies that impulses move give way
-//! instead of jamming, so their loads are left to sweeps.
+//! Decision: if a kinematic body separates from a pressed body at more than the blow speed, the load ends
+//! at once, in all contacts that the load reached through bodies: their impulses balance, and the remaining
+//! impulses would throw a body. Bodies that impulses move give way instead of jamming, so sweeps reduce
+//! their loads.
 
 use super::input::RowInput;
 use super::{BodyRows, SubstepParams};
@@ -17,19 +19,19 @@ use crate::math::{Angular, Vector, max, min};
 /// The bodies whose load ended. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Released {
-    /// In the order in which they were found.
+    /// Ids of these bodies, in the order in which they were found.
     bodies: Vec<u32>,
     rows: BitSet,
 }
 
 impl Released {
-    /// Whether the contact of two body rows begins without impulses.
+    /// Whether the contact between two body rows begins without impulses.
     #[inline(always)]
     pub(super) fn concerns(&self, rows: [u32; 2]) -> bool {
         !self.bodies.is_empty() && rows.into_iter().any(|row| self.rows.contains(row))
     }
 
-    /// Finds the bodies whose load ends with this step.
+    /// Finds the bodies whose load ends in this step.
     pub(super) fn find(&mut self, input: &RowInput, bodies: &BodyRows, params: &SubstepParams) {
         self.bodies.clear();
         self.rows.clear();
@@ -48,7 +50,7 @@ impl Released {
         }
     }
 
-    /// Adds the dynamic bodies that have a manifold with a body for which `ends` holds.
+    /// Adds the dynamic bodies of all contacts of `body` with a manifold for which `ends` holds.
     fn reach(
         &mut self,
         body: u32,
@@ -77,14 +79,14 @@ fn velocity(bodies: &BodyRows, row: u32) -> (Vector, Angular) {
     bodies.rows[row as usize].velocity()
 }
 
-/// Whether the normal impulse would give a body of a manifold the speed of a blow.
+/// Whether the normal impulse is large enough to give a body of the manifold the blow speed.
 fn is_pressed(manifold: &Manifold, rows: [u32; 2], bodies: &BodyRows, params: &SubstepParams) -> bool {
     let [a, b] = rows.map(|row| bodies.masses[row as usize].inv_mass());
     let impulse: f32 = manifold.points().iter().map(|point| point.impulse).sum();
     impulse * max(a, b) > params.blow_speed
 }
 
-/// The speed at which all points of a manifold open, m/s.
+/// The least separation speed of the points of a manifold, m/s.
 fn opening(contact: &Contact, manifold: &Manifold, rows: [u32; 2], bodies: &BodyRows) -> f32 {
     let [(va, wa), (vb, wb)] = rows.map(|row| velocity(bodies, row));
     let speed = |arm| (vb + wb.cross(arm - contact.frozen.offset) - va - wa.cross(arm)).dot(manifold.normal);

@@ -1,4 +1,4 @@
-//! One contact manifold as solver rows, written once for 2D and 3D, one lane or many.
+//! One contact manifold as solver rows, for 2D and 3D, one lane or several.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::pair::{Pair, SoftLanes};
@@ -9,8 +9,9 @@ use crate::math::{Angular, DIM, Ids, InvInertia, Lane, Tangent, TangentFrame, Ta
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct PointRow<N> {
-    /// From A's centre of mass to A's core (see [`Shape::radius`](crate::shape::Shape::radius)), at the start of the
-    /// step. From B's centre of mass to B's core it is this less the row's offset.
+    /// Vector from A's centre of mass to A's core (see [`Shape::radius`](crate::shape::Shape::radius)), at
+    /// the start of the step. The vector from B's centre of mass to B's core is `anchor` minus the row's
+    /// offset.
     pub anchor: Vector<N>,
     /// Separation at the start of the step, in metres.
     pub separation: N,
@@ -24,8 +25,8 @@ pub struct PointRow<N> {
 
 /// Manifolds of `N::WIDTH` contacts with at most `P` points each.
 ///
-/// Anchors and normals are constant over the step. Separations follow the bodies' exact motion. Absent points have zero
-/// mass.
+/// Anchors and normals are constant over the step. Separations follow the bodies' exact motion. Absent
+/// points have zero mass.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct ContactRow<N: Lane, M, const P: usize> {
@@ -37,9 +38,9 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
     pub inv_inertia: [InvInertia<N>; 2],
     /// Normal from A to B.
     pub normal: Vector<N>,
-    /// Difference between the anchors from A's and from B's centre of mass.
+    /// Anchor from A's centre of mass minus the anchor from B's.
     pub offset: Vector<N>,
-    /// Sum of both bodies' radii: the distances of their surfaces from their cores, in metres.
+    /// Sum of the radii of both shapes: the distances of their surfaces from their cores, in metres.
     pub radius: N,
     /// Lever of rolling resistance, in metres.
     pub roll_lever: N,
@@ -47,7 +48,7 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
     pub friction: N,
     /// Maximum speed at which overlap is pushed out, m/s.
     pub push_speed: N,
-    /// Target of B's surface velocity relative to A's, in the tangent space, m/s.
+    /// Target velocity of B's surface relative to A's, in the tangent space, m/s.
     pub surface_velocity: Tangent<N>,
     /// The friction row's anchor from A.
     pub center: Vector<N>,
@@ -55,8 +56,8 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
     pub tangent_mass: TangentMass<N>,
     /// The accumulated friction impulse, N·s.
     pub tangent_impulse: Tangent<N>,
-    /// Normal impulses that friction was not limited by yet: those of the last relax pass less those of the solve pass before
-    /// it, N·s.
+    /// Normal impulse by which friction has not been limited yet: impulses of the last relax pass minus
+    /// impulses of the solve pass before it, N·s.
     pub owed: N,
     /// Torsional friction about the normal.
     pub twist: Twist<N, P>,
@@ -66,15 +67,16 @@ pub struct ContactRow<N: Lane, M, const P: usize> {
 
 /// Data of split impulses, apart from the rows that every pass reads.
 ///
-/// Decision: the impulses that push deep overlap out only move the bodies. Before the relax pass they are removed from
-/// the velocities, impulse by impulse, which conserves momentum. The relax pass does not remove them by itself: it
-/// lowers an impulse only where bodies separate. Inside a crowd, where the pushes from all sides balance, they would
-/// add up over the substeps as in a compressed spring, and bodies at the edge would be flung off. The part of the solve
-/// pass without bias stops approaching bodies as usual.
+/// Decision: the impulses that push deep overlap out move bodies only. Before the relax pass they are
+/// removed from the velocities, impulse by impulse, which conserves momentum. The relax pass would not
+/// remove them by itself: it lowers an impulse only where bodies separate. Inside a crowd, where pushes
+/// from all sides balance, they would add up over the substeps as in a compressed spring, and bodies at the
+/// edge would be flung off. Approaching bodies are stopped as usual, by the unbiased part of the solve
+/// pass.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct SplitImpulseRow<N: Lane, const P: usize> {
-    /// 1 if a body of the contact overlaps another deeply, else 0.
+    /// 1 if a body of the contact overlaps another deeply, otherwise 0.
     pub deep: N,
     /// Share of the impulses for the warm start.
     pub warm: N,
@@ -119,7 +121,7 @@ impl<N: Lane, const P: usize> Default for SplitImpulseRow<N, P> {
 }
 
 impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
-    /// Applies `impulse` at the arms whose moments with it are `moments`.
+    /// Applies `impulse` to both bodies. `moments` are its moments about their centres of mass.
     #[inline(always)]
     pub(super) fn push(&self, pair: &mut Pair<N>, impulse: Vector<N>, moments: [Angular<N>; 2]) {
         pair.v[0] -= self.inv_mass[0].apply(impulse);
@@ -131,12 +133,13 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// Applies the accumulated impulses.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
+    /// Until the call returns, no other thread reads or writes the row's writable bodies, or writes the
+    /// others.
     #[inline(always)]
     pub(super) unsafe fn warm_start(&self, rows: &RowView<BodyRow>) {
         // SAFETY: by the contract.
         let mut pair = unsafe { Pair::load(rows, &self.ids) };
-        // All impulses of the manifold, as one impulse and one moment per body.
+        // Sum of all impulses of the manifold: one impulse, and one moment per body.
         let mut impulse = TangentFrame::new(self.normal).expand(self.tangent_impulse);
         let [ra, rb] = self.surface_arms();
         let mut moments = [ra.cross(impulse), rb.cross(impulse)];
@@ -152,11 +155,12 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         unsafe { pair.store(rows, &self.ids) };
     }
 
-    /// The solve pass: non-penetration with soft bias. Gaps are those of the last relax pass: nothing has moved since, and
-    /// where blows did, they were [measured](Self::measure) again.
+    /// The solve pass: non-penetration with soft bias. Gaps are up to date: bodies have not moved since the
+    /// last relax pass, and where blows moved them, gaps were [measured](Self::measure) again.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
+    /// Until the call returns, no other thread reads or writes the row's writable bodies, or writes the
+    /// others.
     #[inline(always)]
     pub(super) unsafe fn solve(&mut self, rows: &RowView<BodyRow>, params: &SubstepParams) {
         // SAFETY: by the contract.
@@ -170,16 +174,17 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
 
     /// The relax pass: friction, then non-penetration without bias.
     ///
-    /// Friction is solved between two sweeps over the normal rows: those of the solve pass and of this one. One
-    /// warm-started sweep per substep does not reach the solution but oscillates about it, and some orders amplify the
-    /// oscillation. With friction last, a pyramid of base 16 at rest reached 0.2 m/s in 50 s; with this order it comes
-    /// to rest.
+    /// Friction is solved between the two sweeps over normal rows, of the solve pass and of this one. One
+    /// warm-started sweep per substep does not reach the solution but oscillates about it, and some orders
+    /// amplify the oscillation. With friction last, a pyramid of base 16 at rest reached 0.2 m/s in 50 s;
+    /// with this order it comes to rest.
     ///
-    /// Where `watched` is given and not 0, free points that close fast are not slowed down, also if turning has brought them to
-    /// touch: they are left to the next blow.
+    /// Where `watched` is positive, points without an impulse that close fast are not slowed down, even if
+    /// rotation made them touch: they are left to the next blow.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
+    /// Until the call returns, no other thread reads or writes the row's writable bodies, or writes the
+    /// others.
     #[inline(always)]
     pub(super) unsafe fn relax(
         &mut self,
@@ -224,7 +229,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         self.owed = self.owed * split.warm;
     }
 
-    /// Saves the impulses that [`undo_split`](Self::undo_split) returns to.
+    /// Saves the impulses that [`undo_split`](Self::undo_split) restores.
     #[inline(always)]
     pub(super) fn save_impulses(&self, split: &mut SplitImpulseRow<N, P>) {
         for (before, point) in split.before.iter_mut().zip(&self.points) {
@@ -232,11 +237,12 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
     }
 
-    /// Removes the impulses of the solve pass from the velocities of deeply overlapping bodies, after they have moved
-    /// the bodies.
+    /// Removes the impulses of the solve pass from the velocities of deeply overlapping bodies, after
+    /// positions were integrated with them.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
+    /// Until the call returns, no other thread reads or writes the row's writable bodies, or writes the
+    /// others.
     #[inline(always)]
     pub(super) unsafe fn undo_split(&mut self, rows: &RowView<BodyRow>, split: &SplitImpulseRow<N, P>) {
         // SAFETY: by the contract.
@@ -254,7 +260,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         unsafe { pair.or_where_not(N::ZERO.lt(split.deep), before).store(rows, &self.ids) };
     }
 
-    /// Adds the impulses of a substep to their sums.
+    /// Adds the impulses of a substep to their sums over the step.
     #[inline(always)]
     pub(super) fn sum_impulses(&self, sum: &mut [N; P]) {
         for (sum, point) in sum.iter_mut().zip(&self.points) {
@@ -265,7 +271,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     /// Computes the gaps.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the row.
+    /// Until the call returns, no other thread writes the bodies of the row.
     #[inline(always)]
     pub(super) unsafe fn measure(&mut self, rows: &RowView<BodyRow>) {
         // SAFETY: by the contract.
@@ -281,8 +287,9 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         }
     }
 
-    /// One normal row per point: λ' = max(λ − m (k_m (v_n + b)) − k_i λ, 0). b is s/h for a separated point (it may
-    /// close exactly that far), the soft bias for an overlapping point if `soft` is given, else 0.
+    /// One normal row per point: λ' = max(λ − m (k_m v_n + b) − k_i λ, 0). b is s/h for a separated point
+    /// (it may close exactly that far); for an overlapping point it is the soft bias times k_m, limited by
+    /// the push speed, if `soft` is given, otherwise 0.
     #[inline(always)]
     fn solve_normals(
         &mut self,
@@ -293,14 +300,14 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     ) {
         let n = self.normal;
         let (inv_h, slowest) = (N::splat(params.inv_h), -self.push_speed);
-        // All points push along one normal, so they change one relative velocity of the centres of mass.
+        // All points push along one normal, so they share one relative velocity of the centres of mass.
         let mut approach = (pair.v[1] - pair.v[0]).dot(n);
         let yielding = self.inv_mass[0].along(n) + self.inv_mass[1].along(n);
         let mut pushed = N::ZERO;
         for k in 0..P {
-            // The relax pass begins with the other half of four points, so that over both passes neither half comes
-            // first, and a box that lands flat is hardly tilted. The first point differs from contact to contact (see
-            // the narrow phase).
+            // The relax pass begins with the other half of four points. Over both passes neither half comes
+            // first, and a box that lands flat is hardly tilted. The first point differs from contact to
+            // contact (see the narrow phase).
             let i = if soft.is_some() || P < 4 { k } else { k ^ 2 };
             let point = self.points[i];
             let (ma, mb) = (point.anchor.cross(n), (point.anchor - self.offset).cross(n));
@@ -348,8 +355,8 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         [self.center, self.center - self.offset - self.normal * self.radius]
     }
 
-    /// The shorter arm of those bodies that can turn, in metres; 0 if neither can. The centre of mass of a static body has
-    /// nothing to do with rolling.
+    /// The shorter surface arm of the bodies that can rotate, in metres; 0 if neither can. The centre of
+    /// mass of a static body is irrelevant for rolling.
     #[inline(always)]
     pub(super) fn rolling_arm(&self) -> N {
         let (far, arms) = (N::splat(f32::MAX), self.surface_arms());
@@ -361,7 +368,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         N::select(shorter.lt(far), shorter, N::ZERO)
     }
 
-    /// Sliding velocity of B's surface over A's at the friction centre, less the target velocity.
+    /// Sliding velocity of B's surface over A's at the friction centre, minus the target velocity.
     #[inline(always)]
     pub(super) fn slip(&self, pair: &Pair<N>, frame: &TangentFrame<N>) -> Tangent<N> {
         let [ra, rb] = self.surface_arms();

@@ -3,25 +3,26 @@
 use super::input::RowInput;
 use crate::graph::ColorGraph;
 
-/// Minimum number of constraints per worker for which a stage is shared. With fewer the stage is over before another
-/// core begins.
+/// Minimum number of constraints per worker for which workers share a stage. With fewer, the stage is over
+/// before another core begins.
 const WORTH_SHARING: usize = 256;
 
-/// Every how many bodies one is sampled for the work estimate.
+/// The work estimate samples one in this many bodies.
 const SAMPLE: usize = 16;
 
-/// In a shared stage, a worker solves the constraints of bodies whose rows are in its range.
+/// Assigns constraints of shared stages to workers: each worker solves the constraints of the bodies in its
+/// range of rows.
 ///
-/// A body then mostly stays with one worker, and in its core's cache, through all sweeps of a step. Otherwise another
-/// core would often have written it last, and loading it takes longer than solving the constraint. Results do not
-/// depend on the division.
+/// A body then mostly stays with one worker, and in the cache of its core, through all sweeps of a step.
+/// Otherwise another core would often have written it last, and loading it would take longer than solving
+/// the constraint. Results do not depend on the division.
 #[derive(Clone, Debug)]
 pub(super) struct Shares {
     workers: usize,
-    /// Minimum number of constraints per worker for which a stage is shared.
+    /// Minimum number of constraints per worker for which workers share a stage.
     pub(super) worth: usize,
     first_dynamic: u32,
-    /// The first row of each worker but worker 0, ascending.
+    /// The first row of each worker except worker 0, ascending.
     bounds: Vec<u32>,
 }
 
@@ -32,7 +33,7 @@ impl Default for Shares {
 }
 
 impl Shares {
-    /// Divides the rows of dynamic bodies so that workers get about as many constraints each.
+    /// Divides the rows of dynamic bodies so that workers get about the same number of constraints.
     pub(super) fn divide(
         &mut self,
         workers: usize,
@@ -65,7 +66,7 @@ impl Shares {
         (constraints / self.worth.max(1)).clamp(1, self.workers)
     }
 
-    /// The part of a constraint between two body rows. Between the rows of two workers, the id decides.
+    /// The part of a constraint between two body rows. If the rows belong to two workers, the id decides.
     #[inline(always)]
     pub(super) fn part(&self, [a, b]: [u32; 2], id: u32, parts: usize) -> usize {
         debug_assert!(parts <= self.workers, "{parts} parts for {} workers", self.workers);
@@ -79,8 +80,8 @@ impl Shares {
         worker * parts / self.workers
     }
 
-    /// The part whose first block a worker begins with; `None` for the second worker of a part, if there are fewer
-    /// parts than workers.
+    /// The part whose first block a worker begins with; `None` for the second worker of a part, if there
+    /// are fewer parts than workers.
     pub(super) fn of_worker(&self, worker: usize, parts: usize) -> Option<usize> {
         debug_assert!(worker < self.workers, "worker {worker} of {}", self.workers);
         let part = worker * parts / self.workers;

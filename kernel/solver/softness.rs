@@ -23,21 +23,21 @@ impl Softness {
     /// No softness: velocity error is removed, position error is ignored.
     pub const RIGID: Self = Self { bias_rate: 0.0, mass_scale: 1.0, impulse_scale: 0.0 };
 
-    /// Whether a row may be solved with these coefficients.
+    /// Whether the coefficients are valid for solving a row.
     fn is_valid(&self) -> bool {
         let share = 0.0..=1.0;
         self.bias_rate.is_finite() && share.contains(&self.mass_scale) && share.contains(&self.impulse_scale)
     }
 
-    /// Overlap at rest per metre per second by which the impulse of a substep would change the velocity, in seconds. 0 if the
-    /// constraint has no spring.
+    /// Overlap at rest per velocity change by the impulse of a substep, in seconds. 0 if the constraint has
+    /// no spring.
     pub(super) fn sag_rate(&self) -> f32 {
         let spring = self.mass_scale * self.bias_rate;
         if spring > 0.0 { self.impulse_scale / spring } else { 0.0 }
     }
 
-    /// Coefficients for a frequency in Hz, a damping ratio and a time step in seconds. Rigid if the frequency or the
-    /// time step is not positive.
+    /// Coefficients for a frequency in Hz, a damping ratio and a time step in seconds. Rigid if the
+    /// frequency or the time step is not positive.
     pub fn new(frequency: f32, damping_ratio: f32, h: f32) -> Self {
         let omega = core::f32::consts::TAU * frequency;
         if !(omega > 0.0 && h > 0.0) {
@@ -73,19 +73,22 @@ pub struct SubstepParams {
     pub blow_speed: f32,
     /// Separation over which the weight of a point in the friction centre fades, in metres.
     pub friction_fade: f32,
-    /// Overlap to which a heavy body may press light ones into each other, in metres, before they get more mass. Positive.
+    /// Overlap to which a heavy body may press light ones into each other, in metres, before their mass in
+    /// contacts is raised. Positive.
     pub max_sag: f32,
-    /// Rolling speed up to which rolling resistance is full, m/s. It is gone at twice that speed. 0 turns it off.
+    /// Rolling speed up to which rolling resistance acts fully, m/s. It fades to zero at twice that speed.
+    /// 0 turns it off.
     pub roll_speed: f32,
     /// How joints are solved.
     pub joints: JointSolver,
 }
 
 impl SubstepParams {
-    /// Parameters for a step of `dt` seconds in `substeps` substeps, in a world whose unit of length is the metre.
+    /// Parameters for a step of `dt` seconds in `substeps` substeps, in a world whose length unit is the
+    /// metre.
     ///
-    /// The frequency of contacts is 1.5 times the highest one that step and substeps resolve: half the step rate, and a
-    /// quarter of the substep rate (Catto, Solver2D, 2024).
+    /// The contact frequency is 1.5 times the highest one that step and substeps resolve: the lower of half
+    /// the step rate and a quarter of the substep rate (Catto, Solver2D, 2024).
     pub fn new(dt: f32, substeps: u32) -> Self {
         let h = dt / substeps as f32;
         let frequency = 1.5 * min(0.5 / dt, 0.25 / h);
@@ -106,8 +109,8 @@ impl SubstepParams {
         }
     }
 
-    /// The same in a world whose unit of length is `length_unit` metres of these parameters: all lengths and speeds are
-    /// multiplied by it.
+    /// These parameters in a world whose length unit is `length_unit` metres: all lengths and speeds are
+    /// multiplied by `length_unit`.
     pub fn in_units_of(self, length_unit: f32) -> Self {
         Self {
             max_push_speed: self.max_push_speed * length_unit,
@@ -120,7 +123,7 @@ impl SubstepParams {
         }
     }
 
-    /// Whether a substep may be run with these parameters.
+    /// Whether the parameters are valid for a substep.
     pub(super) fn is_valid(&self) -> bool {
         let is_step = [self.h, self.inv_h, self.dt].iter().all(|x| x.is_finite() && *x >= 0.0);
         let limits = [

@@ -1,4 +1,4 @@
-//! Free spin: none in the plane. `spin3.rs` exports the same name.
+//! Free spin: none in 2D. `spin3.rs` exports the same name.
 #![expect(unsafe_code, reason = "the interface is that of 3D")]
 
 use super::{BodyRow, RowView, gyro::*};
@@ -24,10 +24,10 @@ impl Spin {
         Rot::IDENTITY
     }
 
-    /// There is nothing to be taken.
+    /// Nothing in 2D.
     pub(super) fn restart(&mut self) {}
 
-    /// Nothing turns.
+    /// Nothing in 2D.
     ///
     /// # Safety
     /// None is needed.

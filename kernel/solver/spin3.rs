@@ -41,16 +41,17 @@ impl Spin {
         Rot { x, y, z, w }
     }
 
-    /// Takes the angular velocity as it will be when the body is turned next: its rotation was changed by other than its turning.
+    /// Discards the stored angular velocity, because the rotation was changed by something other than free
+    /// spin. The next turn takes the velocity of the row.
     pub(super) fn restart(&mut self) {
         self.after = [Quad::default(); 2];
     }
 
-    /// Sets the angular velocities to those in the middle of a substep of `h` seconds, by which bodies are turned. One body
-    /// for each lane.
+    /// Sets the angular velocities to their values in the middle of a substep of `h` seconds, with which
+    /// bodies are rotated. One body per lane.
     ///
     /// # Safety
-    /// No row is listed twice, and until it returns no other thread uses these rows.
+    /// No row is listed twice, and until the call returns no other thread uses these rows.
     #[inline(always)]
     pub(super) unsafe fn begin_turns<N: Lane>(spins: &mut [(u32, Self)], rows: &RowView<BodyRow>, h: f32) {
         let (places, ids) = ids_of::<N>(spins);
@@ -61,7 +62,8 @@ impl Spin {
         let gyro = gyro_of([quads(0), quads(1), quads(2)]);
         let [start, last] = [0, 1].map(|k| after::<N>(spins, &places, k));
         let rotation = world_rotation(turn, rotation::<N>(spins, &places));
-        // Only the change since the last substep is rotated into the body's frame, so that free spin is not rounded.
+        // Only the change since the last substep is rotated into the body's frame, so free spin itself is
+        // not rounded.
         let local = start + to_body(rotation, w - last);
         let (middle, end) = gyro.spun(local, N::splat(h));
         N::scatter([end.x, end.y, end.z, N::ZERO], &places, |i, quad| spins[i as usize].1.after[0] = quad);
@@ -69,7 +71,8 @@ impl Spin {
         unsafe { BodyRow::scatter_velocity::<N>(rows, &ids, v, to_world(rotation, middle)) };
     }
 
-    /// Sets the angular velocities of turned bodies to those at the end of the substep. One body for each lane.
+    /// Sets the angular velocities of rotated bodies to their values at the end of the substep. One body
+    /// per lane.
     ///
     /// # Safety
     /// As [`begin_turns`](Self::begin_turns).
@@ -123,7 +126,7 @@ mod tests {
     use super::*;
     use crate::math::{F32x4, InvInertia, Vector};
 
-    /// Turns of all sizes: at rest, with one and with three Newton steps, and beyond the largest.
+    /// Rotations of all sizes: at rest, with one and with three Newton steps, and beyond the largest.
     #[test]
     fn free_spin_has_the_same_bits_in_lanes_and_alone() {
         let speeds = [0.0, 1.0e-4, 3.0, 70.0, 1.0e3, 1.0e6, 20.0, 1.0e30];

@@ -1,15 +1,16 @@
-//! Split impulses: which bodies overlap others deeply. The push-out of deep overlap moves them without changing
-//! velocities.
+//! Split impulses: counts deep overlaps by body. Split impulses push deep overlap out by moving bodies
+//! without changing their velocities.
 
 use super::BodyRows;
 use super::input::RowInput;
 use crate::contact::ContactFlags;
 use crate::tuning::solver::WARM_CONTACTS;
 
-/// Number of deeply overlapping contacts of each dynamic body's row. Empty in steps without any.
+/// Number of deeply overlapping contacts of each dynamic body, by row. Empty in steps without deep overlap.
 ///
-/// Where a body overlaps many others deeply, as when a crowd is spawned in one place, contacts work against each other.
-/// Contacts in a crowd therefore push less, and start from a share of their last impulses.
+/// If a body overlaps many others deeply, as when a crowd is spawned in one place, its contacts work
+/// against each other. Contacts in a crowd therefore push less, and warm-start from a share of their last
+/// impulses.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DeepCounts(Vec<u32>);
 
@@ -31,21 +32,22 @@ impl DeepCounts {
         }
     }
 
-    /// Whether there are any.
+    /// Whether any contact overlaps deeply.
     pub(super) fn any(&self) -> bool {
         !self.0.is_empty()
     }
 
-    /// Number of deep contacts around a contact between two body rows, at least 1, by its less crowded movable side.
+    /// Number of deep contacts of the less crowded dynamic body of a contact, at least 1.
     #[inline(always)]
     fn crowd(&self, rows: [u32; 2], first_dynamic: u32) -> f32 {
         let count = rows.into_iter().filter(|r| *r >= first_dynamic).map(|r| self.0[r as usize]).min();
         count.unwrap_or(1).max(1) as f32
     }
 
-    /// Share of the push-out speed of a contact between two body rows with n deep contacts: n^(−3/4). With 1/n, a bound
-    /// for any sum, a hundred bodies in one place hardly move in five seconds, since most pushes cancel. With 1/√n, as
-    /// random pushes add up, an overfull container does not calm down.
+    /// Share of the push-out speed of a contact between two body rows with n deep contacts: n^(−3/4). With
+    /// 1/n, which bounds any sum of pushes, a hundred bodies in one place hardly move in five seconds,
+    /// since most pushes cancel. With 1/√n, the sum of random pushes, an overfull container does not calm
+    /// down.
     #[inline(always)]
     pub(super) fn share(&self, rows: [u32; 2], first_dynamic: u32) -> f32 {
         if !self.any() {
@@ -55,14 +57,15 @@ impl DeepCounts {
         1.0 / (root * root.sqrt())
     }
 
-    /// Share of the last impulses that a contact between two body rows starts from. One sweep does not converge for a
-    /// body with dozens of contacts: if it started from all impulses, the error would grow from substep to substep.
+    /// Share of the last impulses with which a contact between two body rows warm-starts. One sweep does
+    /// not converge for a body with dozens of contacts: if they started from all of their impulses, the
+    /// error would grow from substep to substep.
     #[inline(always)]
     pub(super) fn warm_share(&self, rows: [u32; 2], first_dynamic: u32) -> f32 {
         crate::math::min(1.0, WARM_CONTACTS / self.crowd(rows, first_dynamic))
     }
 
-    /// Whether a body of these rows overlaps another deeply.
+    /// Whether one of these bodies overlaps another deeply.
     #[inline(always)]
     pub(super) fn concern(&self, rows: [u32; 2]) -> bool {
         rows.iter().any(|row| self.0[*row as usize] > 0)

@@ -25,19 +25,20 @@ use crate::math::Width;
 use crate::thread_pool::ThreadPool;
 use crate::tuning::solver::{BLOW_SWEEPS, JOINT_ROUNDS};
 
-/// Maximum number of rows of a block if several workers share them: some microseconds of work. More leaves workers idle
-/// at the end of a stage, fewer cost more claims.
+/// Maximum number of rows of a block if several workers share the blocks: some microseconds of work. More
+/// leaves workers idle at the end of a stage, fewer cost more claims.
 const BLOCK_ROWS: u32 = 32;
 
-/// Minimum number of rows for which waking workers pays.
+/// Minimum number of rows for which waking workers pays off.
 const WORTH_WAKING: u32 = 256;
 
 /// The bodies and rows of one step.
 ///
-/// The stages run in the thread pool that they are given. The result does not depend on the number of its workers.
+/// The stages run in the thread pool that the caller passes. The result does not depend on the number of
+/// its workers.
 ///
-/// The order within every sweep: overflow constraints one by one, then the colours in ascending order, so that contacts
-/// with static and kinematic partners come last and win.
+/// Every sweep solves overflow constraints one by one, then the colours in ascending order, so that
+/// contacts with static and kinematic bodies come last and have priority.
 #[derive(Clone, Debug, Default)]
 pub struct Solver {
     /// The bodies. The embedder fills them and reads the results.
@@ -46,9 +47,9 @@ pub struct Solver {
     pub joints: JointTable,
     /// Constraints of the embedder.
     pub customs: CustomTable,
-    /// Joints that are solved directly.
+    /// Trees of joints, solved directly.
     trees: JointTrees,
-    /// What blows do to them.
+    /// State of the trees during blows.
     tree_blows: TreeBlows,
     inertia_floors: InertiaFloors,
     rows: AllRows,
@@ -60,32 +61,32 @@ pub struct Solver {
     bearing: Bearing,
     released: Released,
     blows: Blows,
-    /// Contacts that are not recycled in the next step, as bodies were put back.
+    /// Contacts that the next step must not recycle, because their bodies were moved back.
     pub(super) outdated: Vec<u32>,
-    /// The first body row that constraint rows may write, kept from when they were built.
+    /// The first body row that constraint rows may write, as of the last [`build_rows`](Self::build_rows).
     first_dynamic: u32,
-    /// Whether the embedder changed bodies since gaps were measured.
+    /// Whether the embedder changed bodies since gaps were last measured.
     gaps_are_old: bool,
-    /// How many rows there are, step by step.
+    /// Row counts of recent steps, by which storage is given back.
     slack: Slack,
 }
 
 impl Solver {
-    /// Whether to solve with four lanes where the CPU has eight, from the next [`build_rows`](Self::build_rows) on. For
-    /// comparison.
+    /// Whether to solve with four lanes even if the CPU has eight, from the next
+    /// [`build_rows`](Self::build_rows) on. For comparison.
     pub fn set_narrow(&mut self, narrow: bool) {
         self.rows.width = Width::of(narrow);
         self.bodies.width = self.rows.width;
     }
 
-    /// Sets the minimum number of constraints per worker for which a colour is shared, from the next
-    /// [`build_rows`](Self::build_rows) on. Tests share small colours with it.
+    /// Sets the minimum number of constraints per worker for which workers share a colour, from the next
+    /// [`build_rows`](Self::build_rows) on. Tests lower it to share small colours.
     pub fn share_from(&mut self, constraints: usize) {
         self.shares.worth = constraints;
     }
 
-    /// Clears the rows of the last step, and resizes [`bodies`](Self::bodies). Every body row must be filled, with or
-    /// without contacts.
+    /// Clears the rows of the last step, and resizes [`bodies`](Self::bodies). The caller must fill every
+    /// body row, with or without contacts.
     pub fn begin_step(&mut self, kinematic: usize, dynamic: usize) {
         self.plan.begin(0, 1, 0);
         self.trees.clear();
@@ -98,14 +99,14 @@ impl Solver {
     /// and [`customs`](Self::customs).
     ///
     /// # Safety
-    /// No two constraints of a colour other than the overflow share a body whose row is dynamic, and no constraint is
-    /// in the graph twice: with several workers two threads would write one body. This holds if contacts, colours and
-    /// the kinds of bodies were, since they were empty, changed only through one [`Link`](crate::contact::Link) to all
-    /// three. Debug builds check it.
+    /// No two constraints of a colour other than the overflow share a body whose row is dynamic, and no
+    /// constraint is in the graph twice: otherwise two threads would write one body. This holds if
+    /// contacts, colours and body kinds have been changed, since they were empty, only through one
+    /// [`Link`](crate::contact::Link) to all three. Debug builds check it.
     ///
     /// # Panics
-    /// If a contact or body of the graph is not in the input, or a row of the input is not among the
-    /// [`bodies`](Self::bodies).
+    /// If the graph has a contact or body that the input lacks, or the input has a row that is not among
+    /// the [`bodies`](Self::bodies).
     pub unsafe fn build_rows(
         &mut self,
         input: &RowInput,
@@ -147,7 +148,7 @@ impl Solver {
         if (any_overloaded || was_any)
             && bearing.raise_masses(input, bodies, params, |rows| trees.connects(rows))
         {
-            // Rows of bodies with a mass for each axis are others.
+            // Bodies with a mass per axis need rows of another kind.
             self.plan_rows(input, colors, pool);
             self.fill_rows(input, params, pool);
         }
@@ -158,7 +159,7 @@ impl Solver {
         }
     }
 
-    /// Sorts the constraints of all colours into rows, and makes room for them.
+    /// Sorts the constraints of all colours into rows, and resizes the rows.
     fn plan_rows(&mut self, input: &RowInput, colors: &ColorGraph, pool: &ThreadPool) {
         let Self { bodies, joints, customs, trees, rows, layers, plan, shares, deep, .. } = self;
         let workers = pool.workers();
@@ -189,7 +190,8 @@ impl Solver {
         rows.with(joints, customs, |batches| {
             let blocks = Parts::of(&mut blocks);
             pool.run(blocks.len(), |block, _| {
-                // SAFETY: each block is run once, and no two share a row. Bodies and contacts are only read.
+                // SAFETY: each block is filled once, and no two blocks share a row. Bodies and contacts are
+                // only read.
                 unsafe {
                     let block = blocks.one(block);
                     let items = plan.items(block, layers.colors());
@@ -205,7 +207,7 @@ impl Solver {
         self.plan.stages().filter(|stage| stage.parts.is_some()).count()
     }
 
-    /// Number of manifolds that are solved in the step.
+    /// Number of manifolds solved in the step.
     pub fn manifold_count(&self) -> usize {
         AllRows::count_manifolds(self.plan.item_counts())
     }
@@ -216,7 +218,7 @@ impl Solver {
         self.bodies.integrate_velocities(params.h, pool);
     }
 
-    /// Strikes what closes fast in this substep, then applies the accumulated impulses.
+    /// Solves blows of manifolds that close fast in this substep, then applies the accumulated impulses.
     pub fn warm_start(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         let was_struck = self.strike(params.h, params, pool);
         if core::mem::take(&mut self.gaps_are_old) || was_struck {
@@ -245,7 +247,8 @@ impl Solver {
         self.trees.forget_places();
     }
 
-    /// Removes split impulses from the velocities, then solves constraints without bias, and applies friction.
+    /// Removes split impulses from the velocities, then solves constraints without bias, and applies
+    /// friction.
     pub fn relax(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         if self.plan.blocks.iter().any(|block| block.passes.has(Pass::UndoSplit)) {
             self.sweep(Pass::UndoSplit, params, pool);
@@ -255,10 +258,11 @@ impl Solver {
         self.bodies.leave_rows(pool);
     }
 
-    /// Has to be called when the embedder changed velocities or displacements of [`bodies`](Self::bodies) between two calls of a step.
+    /// Must be called when the embedder changed velocities or displacements of [`bodies`](Self::bodies)
+    /// between two stages of a step.
     pub fn follow_changes(&mut self) {
         self.gaps_are_old = true;
-        // What the embedder gives is no impulse to be repeated.
+        // The embedder's change of velocity is no impulse, so the warm start must not repeat it.
         self.bodies.gains_known = Gains::Unused;
     }
 
@@ -271,7 +275,7 @@ impl Solver {
         self.relax(params, pool);
     }
 
-    /// Strikes what closes fast and touches, after the last substep.
+    /// Solves blows of manifolds that close fast and touch, after the last substep.
     pub fn restitute(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         if self.strike(0.0, params, pool) {
             let BodyRows { moved, .. } = &mut self.bodies;
@@ -280,8 +284,8 @@ impl Solver {
         self.bodies.leave_rows(pool);
     }
 
-    /// Strikes what closes fast and touches within `time` seconds. Joints of trees take part, in turns with contacts. Returns whether
-    /// bodies were displaced by it.
+    /// Solves blows of manifolds that close fast and touch within `time` seconds. Joints of trees take
+    /// part, alternating with contacts. Returns whether contacts were struck, which displaces bodies.
     fn strike(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) -> bool {
         self.blows.elapsed += time;
         let is_watched = self.plan.blocks.iter().any(|block| block.passes.are_watched());
@@ -310,7 +314,7 @@ impl Solver {
         any
     }
 
-    /// Calls a function with the trees and bodies, which have their true angular velocities.
+    /// Calls a function with the trees and the bodies, with true angular velocities.
     fn with_true_turns(
         &mut self,
         pool: &ThreadPool,
@@ -320,7 +324,8 @@ impl Solver {
         f(&mut self.tree_blows, &mut self.trees, self.bodies.views(self.first_dynamic));
     }
 
-    /// Strikes the contacts that close fast, and those that are reached then, in rounds. Returns whether there were any.
+    /// Strikes the contacts that close fast, then the contacts that these blows make close fast, in rounds.
+    /// Returns whether any contact was struck.
     fn strike_contacts(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) -> bool {
         let mut any = false;
         for _ in 0..BLOW_SWEEPS {
@@ -357,7 +362,7 @@ impl Solver {
             pool.each_into(found, blocks.iter_mut().filter(looked_at), |found, block| {
                 let items = plan.items(block, layers.colors());
                 let batch = batches[usize::from(block.batch)];
-                // SAFETY: each block is looked at once, and bodies are only read.
+                // SAFETY: each block is searched once, and bodies are only read.
                 if unsafe { batch.find_struck(block.rows(), (items, block.passes), seek, found) } {
                     block.passes = block.passes.watched();
                 }
@@ -368,7 +373,8 @@ impl Solver {
         found.iter().any(|found| !found.is_empty())
     }
 
-    /// The blows of the step, in the order of time. A manifold may be struck several times. They are kept until the next step.
+    /// The blows of the step, ordered by time and kept until the next step. A manifold may be struck
+    /// several times.
     pub fn blows(&self) -> impl Iterator<Item = ManifoldBlow> {
         self.blows.given()
     }
@@ -389,8 +395,8 @@ impl Solver {
         let manifolds = &contacts.manifolds_view();
         rows.with(joints, customs, |batches| {
             for Stage { blocks, parts } in plan.stages() {
-                // SAFETY: each block is run once, no two share a row, and by the contract of `build_rows` no constraint
-                // is there twice.
+                // SAFETY: each block is stored once, no two blocks share a row, and by the contract of
+                // `build_rows` each constraint occurs once.
                 let store = |block: usize, _| unsafe {
                     let block = &blocks[block];
                     let items = plan.items(block, layers.colors());
@@ -413,10 +419,11 @@ impl Solver {
 
     /// Runs a pass over all trees and rows.
     ///
-    /// The solve pass ends with trees, so that bodies move as joints let them; the relax pass ends with rows, so that contacts
-    /// have the last word on velocities. Trees are stiffer than contacts. What contacts open would be closed by the next tree pass
-    /// against the same contacts: such a loop gains energy from a mass ratio of three on. Trees come first as well, since they
-    /// have no warm start: contacts have to see what joints bear.
+    /// The solve pass ends with trees, so that bodies move as their joints allow; the relax pass ends with
+    /// rows, so that contacts have the last word on velocities. Trees are stiffer than contacts. If the
+    /// relax pass ended with trees, joints would close the errors that contacts open against the same
+    /// contacts, and such a loop gains energy from a mass ratio of three on. Trees also come first, because
+    /// they have no warm start: contacts have to see the load on the joints.
     fn sweep(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
         match pass {
@@ -438,7 +445,7 @@ impl Solver {
     fn sweep_trees(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
         let Self { bodies, trees, first_dynamic, .. } = self;
         if trees.len() > 0 {
-            // Trees follow the turns of bodies exactly.
+            // Trees use the true rotation of bodies, so they need true angular velocities.
             bodies.leave_rows(pool);
             let (rows, gains) = bodies.views(*first_dynamic);
             trees.run(&Sweep { pass, bodies: rows, gains, params }, pool);
@@ -463,8 +470,9 @@ impl Solver {
                         return;
                     }
                     let batch = batches[usize::from(block.batch)];
-                    // SAFETY: each block is run once, no two share a row, and by the contract of `build_rows` no two of
-                    // a shared stage share a dynamic body. Of the bodies only dynamic ones are written.
+                    // SAFETY: each block is run once, no two blocks share a row, and by the contract of
+                    // `build_rows` no two blocks of a shared stage have a dynamic body in common. Only
+                    // dynamic bodies are written.
                     unsafe { batch.run(block.rows(), block.passes, sweep) };
                 };
                 match parts {

@@ -1,4 +1,5 @@
-//! One manifold that is struck, and what the impact does to its two bodies. A [group](super::group) of them is solved together.
+//! A struck manifold, and the effect of the impact on its two bodies. Manifolds of a [group](super::group)
+//! are solved together.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::bearing::Bearing;
@@ -10,42 +11,45 @@ use crate::math::{Angular, Ids, Lane, MAX_POINTS, Tangent, TangentFrame, Vector,
 use crate::tuning::solver::{NEARLY, TOUCHING};
 use core::cmp::Ordering;
 
-/// A manifold that is struck.
+/// A struck manifold.
 #[derive(Clone, Debug)]
 pub(super) struct Struck {
     /// The contact, and the number of its manifold.
     pub(super) item: Item,
-    /// Its row. Impulses are those of the present phase.
+    /// The row of the manifold, with the impulses of the current phase.
     pub(super) row: ContactRow<f32, Vector, MAX_POINTS>,
-    /// The bodies that are connected by impacts have the same number.
+    /// The number of the group. Bodies that impacts connect are in one group.
     pub(super) group: u32,
-    /// The speed at which the fastest point closes, m/s. 0 if none is struck in this round.
+    /// The closing speed of the fastest struck point, m/s. 0 if no point is struck in this round.
     pub(super) speed: f32,
-    /// Whether a point that closes fast touches in time.
+    /// Whether a point that closes fast touches within the substep.
     pub(super) is_due: bool,
-    /// Whether it was struck in an earlier round.
+    /// Whether the manifold was struck in an earlier round.
     pub(super) is_old: bool,
-    /// Whether no impulse stopped it in an earlier round: its bodies are jammed. Further rounds would do no better.
+    /// Whether impulses failed to stop the manifold in an earlier round: its bodies are jammed, and further
+    /// rounds would not help.
     pub(super) is_jammed: bool,
     /// Whether a point bounces.
     pub(super) bounces: bool,
-    /// The time from the start of the substep until the first point touches, in seconds. Negative if it has touched before.
+    /// The time from the start of the substep until the first point touches, in seconds. Negative if it
+    /// touched before.
     pub(super) time: f32,
-    /// The approach speed along the normal that accelerations added since the start of the step, m/s.
+    /// The approach speed along the normal that accelerations have added since the start of the step, m/s.
     pub(super) gained: f32,
     pub(super) moments: [[Angular; 2]; MAX_POINTS],
-    /// The ratio of the impulse that a point returns to the one that stops it. Negative for points that do not take part.
+    /// The ratio of a point's restitution impulse to its compression impulse. Negative for points that take
+    /// no part.
     returned: [f32; MAX_POINTS],
-    /// The normal impulses that stopped the points, N·s, in the phase of restitution.
+    /// The normal impulses of compression, N·s, during the phase of restitution.
     stopped: [f32; MAX_POINTS],
-    /// The velocities before the present phase.
+    /// The velocities before the current phase.
     before: Pair<f32>,
 }
 
-/// A point that takes no part in an impact.
+/// Marks a point that takes no part in an impact.
 const ABSENT: f32 = -1.0;
 
-/// Operands of [`Struck::of`] that all manifolds have in common.
+/// Operands of [`Struck::of`] that are the same for all manifolds.
 #[derive(Clone, Copy)]
 pub(super) struct Striking<'a> {
     pub(super) bodies: RowView<'a, BodyRow>,
@@ -59,10 +63,10 @@ pub(super) struct Striking<'a> {
 }
 
 impl Struck {
-    /// A manifold by its row, as it closes now.
+    /// A struck manifold from its row, with the current closing speeds.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the row.
+    /// Until the call returns, no other thread writes the bodies of the row.
     pub(super) unsafe fn of(
         item: Item,
         mut row: ContactRow<f32, Vector, MAX_POINTS>,
@@ -81,7 +85,8 @@ impl Struck {
         let closing = (a - b).dot(row.normal);
         let gained = closing * params.h;
         let bounce = Bounce { restitution, gained, inv_h: params.inv_h };
-        // Contacts are predicted by velocities alone: what closes by acceleration may be this deep when it is found.
+        // Contacts are predicted by velocities alone, so acceleration may have closed a contact this deep
+        // before it is found.
         let unforeseen = 0.5 * max(gained, 0.0) * params.inv_h * params.dt * params.dt;
         let mut struck = Self {
             item,
@@ -120,7 +125,7 @@ impl Struck {
         struck
     }
 
-    /// A manifold by its row, whose points with a mass take part.
+    /// A struck manifold from its row. All points with a mass take part.
     #[cfg(test)]
     pub(super) fn of_row(mut row: ContactRow<f32, Vector, MAX_POINTS>) -> Self {
         row.weigh_points();
@@ -146,7 +151,8 @@ impl Struck {
         }
     }
 
-    /// An order of manifolds of the same bodies, by their places. Ids of contacts depend on what else was there before.
+    /// An order by position for manifolds of the same bodies. Ids of contacts depend on the contacts that
+    /// existed before.
     pub(super) fn in_order(&self, other: &Self) -> Ordering {
         let places = [self, other].map(|one| one.row.points[0].anchor.to_array());
         let by_place = || {
@@ -166,16 +172,16 @@ impl Struck {
     /// Starts compression.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the manifold.
+    /// Until the call returns, no other thread writes the bodies of the manifold.
     pub(super) unsafe fn begin(&mut self, rows: &RowView<BodyRow>) {
         // SAFETY: by the contract.
         self.before = unsafe { Pair::load(rows, &self.row.ids) };
     }
 
-    /// Ends compression: from here on impulses are those of restitution, which begins without friction.
+    /// Ends compression: impulses from here on are restitution impulses, starting from zero friction.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the manifold.
+    /// Until the call returns, no other thread writes the bodies of the manifold.
     pub(super) unsafe fn stop(&mut self, rows: &RowView<BodyRow>) {
         self.stopped = self.row.points.map(|point| point.impulse);
         self.row.forget();
@@ -183,10 +189,11 @@ impl Struck {
         unsafe { self.begin(rows) };
     }
 
-    /// Returns to each point its share of the impulse that stopped it.
+    /// Applies to each point the share of its compression impulse that it returns.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes the bodies of the manifold that may be written, or writes the others.
+    /// Until the call returns, no other thread reads or writes the dynamic bodies of the manifold, or
+    /// writes its other bodies.
     pub(super) unsafe fn restitute(&mut self, rows: &RowView<BodyRow>) {
         // SAFETY: by the contract.
         let mut pair = unsafe { Pair::load(rows, &self.row.ids) };
@@ -203,11 +210,12 @@ impl Struck {
         unsafe { pair.store(rows, &self.row.ids) };
     }
 
-    /// The work of the impulses of the present phase, J: that at the velocities before it, and what the velocities that all
-    /// impulses change add. With a share s of all impulses of a group it is s times the first and s² times the second.
+    /// The work of the impulses of the current phase, J, in two parts: the work at the velocities before
+    /// the phase, and the work at half of the velocity changes by the impulses of all manifolds. Scaling
+    /// all impulses of a group by s scales the first part by s and the second by s².
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the manifold.
+    /// Until the call returns, no other thread writes the bodies of the manifold.
     pub(super) unsafe fn work(&self, rows: &RowView<BodyRow>) -> [f32; 2] {
         // SAFETY: by the contract.
         let now = unsafe { Pair::load(rows, &self.row.ids) };
@@ -215,7 +223,7 @@ impl Struck {
         [before, 0.5 * (now - before)]
     }
 
-    /// The impulses of the present phase times velocities at the contact, J.
+    /// The impulses of the current phase times velocities at the contact, J.
     fn power(&self, pair: &Pair<f32>) -> f32 {
         let Self { row, moments, .. } = self;
         let normal = row.points.iter().zip(moments);
@@ -226,7 +234,7 @@ impl Struck {
         normal + impulse.dot(slip) + row.twist.power(row.normal, &pair.w)
     }
 
-    /// Scales the normal impulses of the present phase.
+    /// Scales the normal impulses of the current phase.
     pub(super) fn scale(&mut self, share: f32) {
         self.row.points.iter_mut().for_each(|point| point.impulse *= share);
     }
@@ -234,14 +242,14 @@ impl Struck {
     /// The normal velocities of the points, m/s.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the manifold.
+    /// Until the call returns, no other thread writes the bodies of the manifold.
     unsafe fn speeds(&self, rows: &RowView<BodyRow>) -> [f32; MAX_POINTS] {
         // SAFETY: by the contract.
         let pair = unsafe { Pair::load(rows, &self.row.ids) };
         self.moments.map(|moments| pair.along(self.row.normal, moments))
     }
 
-    /// One sweep of friction alone. Returns the largest change of velocity, m/s.
+    /// One sweep of friction alone. Returns the largest velocity change, m/s.
     ///
     /// # Safety
     /// As [`restitute`](Self::restitute).
@@ -254,10 +262,10 @@ impl Struck {
         change
     }
 
-    /// Notes whether it still closes fast.
+    /// Marks the manifold as jammed if it still closes fast.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the manifold.
+    /// Until the call returns, no other thread writes the bodies of the manifold.
     pub(super) unsafe fn find_jam(&mut self, rows: &RowView<BodyRow>, params: &SubstepParams) {
         // SAFETY: by the contract.
         let speeds = unsafe { self.speeds(rows) };
@@ -265,7 +273,7 @@ impl Struck {
         self.is_jammed |= speeds.iter().zip(&self.returned).any(closes);
     }
 
-    /// The greatest share that stopped points return.
+    /// The greatest share that a stopped point returns.
     pub(super) fn share(&self) -> f32 {
         let is_stopped = |(_, point): &(&f32, &PointRow<f32>)| point.impulse > 0.0;
         let stopped = self.returned.iter().zip(&self.row.points).filter(is_stopped);
@@ -277,7 +285,8 @@ impl Struck {
         core::array::from_fn(|i| self.stopped[i] + self.row.points[i].impulse)
     }
 
-    /// Ends the round: the next one begins without impulses, and strikes nothing of this manifold by itself.
+    /// Ends the round. In the next round the manifold begins without impulses, and none of its points is
+    /// struck unless found again.
     pub(super) fn rest(&mut self) {
         self.row.forget();
         self.stopped = [0.0; MAX_POINTS];
@@ -287,7 +296,7 @@ impl Struck {
 }
 
 impl ContactRow<f32, Vector, MAX_POINTS> {
-    /// Starts a phase without impulses.
+    /// Clears the impulses, at the start of a phase.
     fn forget(&mut self) {
         self.points.iter_mut().for_each(|point| point.impulse = 0.0);
         self.tangent_impulse = Tangent::ZERO;
@@ -296,7 +305,7 @@ impl ContactRow<f32, Vector, MAX_POINTS> {
 }
 
 impl<N: Lane, const P: usize> ContactRow<N, Vector<N>, P> {
-    /// Friction of an impact. Returns the change of the slip, m/s, about.
+    /// Solves the friction of an impact. Returns the approximate change of the slip, m/s.
     #[inline(always)]
     pub(super) fn rub(&mut self, pair: &mut Pair<N>) -> N {
         let (before, pressure) = (self.tangent_impulse, self.pressure());
@@ -304,7 +313,7 @@ impl<N: Lane, const P: usize> ContactRow<N, Vector<N>, P> {
         (self.tangent_impulse - before).length() * self.tangent_mass.mean_inverse()
     }
 
-    /// Copies one manifold into a lane. The effective mass of friction is left out.
+    /// Copies one manifold into a lane, without the effective mass of friction.
     #[inline(always)]
     pub(super) fn set(&mut self, lane: usize, one: &ContactRow<f32, Vector, P>) {
         for side in 0..2 {
@@ -327,17 +336,17 @@ impl<N: Lane, const P: usize> ContactRow<N, Vector<N>, P> {
     }
 }
 
-/// The body rows of a manifold that may be written.
+/// The dynamic body rows of a manifold.
 pub(super) fn movable(one: &Struck, first_dynamic: u32) -> impl Iterator<Item = u32> + use<> {
     one.row.ids.into_iter().map(|[row]| row).filter(move |row| *row >= first_dynamic)
 }
 
-/// Whether a manifold of a group touches in time.
+/// Whether a manifold of a group touches within the substep.
 pub(super) fn is_due(group: &[Struck]) -> bool {
     group.iter().any(|one| one.is_due && !one.is_jammed)
 }
 
-/// How a point rebounds within a substep.
+/// The rebound of a point within a substep.
 struct Bounce {
     restitution: f32,
     /// Approach speed that accelerations add in a substep, m/s.
@@ -346,12 +355,12 @@ struct Bounce {
 }
 
 impl Bounce {
-    /// The speed at which a point leaves that touches `time` seconds after the start of the substep. `approach` is the speed
-    /// before the substep's accelerations, `speed` the one after.
+    /// The speed at which a point leaves after it touches `time` seconds after the start of the substep.
+    /// `approach` is the speed before the substep's accelerations, `speed` the speed after them.
     ///
-    /// Symplectic Euler conserves E = ½ v² + g y − ½ g h v of a free fall exactly (v upward). The speed w makes E after
-    /// the substep, at y = w (h − t), e² times the E before. The rebound height is e² of the fall height at any step
-    /// length, and no energy is gained.
+    /// Symplectic Euler conserves E = ½ v² + g y − ½ g h v of a free fall exactly (v upward). The speed w
+    /// makes E after the substep, at y = w (h − t), e² times the E before. The rebound height is e² of the
+    /// fall height at any step length, and no energy is gained.
     fn parting(&self, time: f32, approach: f32, speed: f32) -> f32 {
         // g h and g t.
         let (gh, gt) = (self.gained, self.gained * self.inv_h * time);

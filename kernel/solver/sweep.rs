@@ -1,4 +1,4 @@
-//! Bodies that moved far stop where they meet something; see [`ccd`](crate::ccd).
+//! Stops bodies that moved far at their first impact; see [`ccd`](crate::ccd).
 
 use super::{BodyRow, Solver, gyro::*};
 use crate::ccd::{Path, SweepBuffers, SweepInput, Swept};
@@ -15,8 +15,9 @@ const BLOCK: usize = 64;
 const SWEPT_BLOCK: usize = 8;
 
 impl Solver {
-    /// Puts bodies back that moved far in the substeps and met what does not move, each with what it is joined to. `listed` are the
-    /// bodies in the order of rows, from row 1. `workers` are buffers, kept between steps.
+    /// Moves fast bodies back to their first impact with static geometry, each together with the bodies
+    /// joined to it. `listed` are the bodies in row order, from row 1. `workers` are buffers, kept between
+    /// steps.
     pub fn stop_fast<S: ManifoldSource>(
         &mut self,
         input: &SweepInput<S>,
@@ -35,7 +36,7 @@ impl Solver {
                 }
                 let moved = &rows[row as usize];
                 let (way, turn) = moved.delta();
-                // What turns by more than half a turn seems to turn less.
+                // A body that rotates by more than half a turn seems to rotate less by `turn`.
                 let angle = max(turn.small_turn().length(), moved.velocity().1.length() * input.dt);
                 if !input.is_far(body, way.length(), angle) || !input.may_meet(body, way) {
                     continue;
@@ -47,15 +48,16 @@ impl Solver {
             }
         });
         self.put_back_all(input, workers, |row, fraction| {
-            // Contacts do not stop a body that spins fast: it would be put back in every step, and keep its speed.
+            // Contacts do not stop a body that spins fast: it would be moved back in every step and keep
+            // its speed.
             if fraction == 0.0 {
                 row.set_velocity(Vector::ZERO, Angular::ZERO);
             }
         });
     }
 
-    /// Puts bodies back that are swept against what moves, and what they met, kinematic bodies too. Each stops at the first of
-    /// its impacts.
+    /// Moves back bodies that are swept against moving bodies, and the bodies they met, including kinematic
+    /// ones. Each body stops at its first impact.
     pub fn stop_swept<S: ManifoldSource>(
         &mut self,
         input: &SweepInput<S>,
@@ -77,8 +79,8 @@ impl Solver {
         self.put_back_all(input, workers, |_, _| ());
     }
 
-    /// Puts back all bodies that stop, each to the first of its impacts, and what they are joined to with them. Calls a function for
-    /// each, with the fraction of the step.
+    /// Moves all stopped bodies back, each to its first impact, together with the bodies joined to them.
+    /// Calls `stopped` for each, with the fraction of the step.
     fn put_back_all<S: ManifoldSource>(
         &mut self,
         input: &SweepInput<S>,
@@ -102,8 +104,10 @@ impl Solver {
         }
     }
 
-    /// All bodies that stop with some, given by ascending id, and the fractions of the step. What is joined stops together, or its joints
-    /// would open by its way. But what cannot move at all stops alone: it would hold the others in the air.
+    /// All stopped bodies and the bodies joined to them, each with its fraction of the step. `stops` is
+    /// sorted by body id. Joined bodies stop together, at the first impact of the group; otherwise the
+    /// joints would open by the distance that one body moves back. A body that cannot move at all (fraction
+    /// 0) stops alone: it would hold the others in the air.
     fn joined<S>(&self, input: &SweepInput<S>, stops: &[(u32, f32)]) -> Vec<(u32, f32)> {
         let own = |body: u32| stops.binary_search_by_key(&body, |stop| stop.0).ok().map(|k| stops[k].1);
         let first_dynamic = self.bodies.first_dynamic();
@@ -133,17 +137,19 @@ impl Solver {
     }
 }
 
-/// Notes the contacts of a body that was put back. It met what the narrow phase had no points for, so that has to look again.
+/// Marks the contacts of a body that was moved back as outdated. The narrow phase had no points where the
+/// body met the other one, so it has to update these contacts.
 fn mark_outdated<S: ManifoldSource>(input: &SweepInput<S>, body: u32, outdated: &mut Vec<u32>) {
     for collider in input.colliders.of_body(body, input.bodies) {
         outdated.extend(input.contacts.of_collider(collider, input.colliders));
     }
 }
 
-/// Puts a body back to a fraction of its path, without a gain of energy.
+/// Moves a body back to a fraction of its path, without a gain of energy.
 ///
-/// What it gains of potential energy, its speed loses: a body that is stopped on its way down would fall the same way
-/// twice. Its angular velocity is turned back with it: a rod that spins about its own axis goes on spinning about that axis.
+/// Its speed drops by the potential energy that the body gains: a body that is stopped while it falls would
+/// fall the same distance twice. Its angular velocity is rotated back as well, so that a rod that spins
+/// about its own axis goes on spinning about that axis.
 fn put_back(row: &mut BodyRow, path: &Path, fraction: f32, acceleration: Vector) {
     let ((v, w), (_, end)) = (row.velocity(), row.delta());
     let (way, turn) = path.delta(fraction);

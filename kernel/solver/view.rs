@@ -1,4 +1,4 @@
-//! Body rows, shared by constraint rows of different bodies.
+//! Body rows, shared by constraint rows that write different bodies.
 #![expect(unsafe_code, reason = "rows of disjoint bodies are written through shared views")]
 
 use crate::math::{Ids, Lane, Quad};
@@ -6,9 +6,9 @@ use core::cell::UnsafeCell;
 
 /// Body rows, shared by the batches of one colour.
 ///
-/// No two constraints of a colour share a dynamic body, so no two write the same row. Other rows are read by many and
-/// written by none. This makes the shared writes sound. The type cannot check it, so reading and writing are unsafe:
-/// [`Solver::build_rows`](super::Solver::build_rows) has the condition.
+/// Constraints of a colour share no dynamic body, so no two of them write the same row. Kinematic and
+/// static rows are only read. This makes the shared writes sound. The type cannot check it, so reading and
+/// writing are unsafe: [`Solver::build_rows`](super::Solver::build_rows) states the condition.
 pub(super) struct RowView<'a, T> {
     cells: &'a [UnsafeCell<T>],
     first_writable: u32,
@@ -22,7 +22,8 @@ impl<T> Clone for RowView<'_, T> {
 
 impl<T> Copy for RowView<'_, T> {}
 
-// SAFETY: by the contracts of `get` and `put`, threads write disjoint rows and read only rows that no thread writes.
+// SAFETY: by the contracts of `get` and `put`, threads write disjoint rows and read only rows that no
+// thread writes.
 unsafe impl<T: Send + Sync> Sync for RowView<'_, T> {}
 
 impl<'a, T> RowView<'a, T> {
@@ -35,18 +36,18 @@ impl<'a, T> RowView<'a, T> {
     /// Reads a row.
     ///
     /// # Safety
-    /// While the reference is in use, no thread writes this row.
+    /// No thread writes this row while the reference is in use.
     #[inline(always)]
     pub(super) unsafe fn get(&self, id: u32) -> &T {
         // SAFETY: by the contract.
         unsafe { &*self.cells[id as usize].get() }
     }
 
-    /// Changes a row, if it may be written.
+    /// Changes a row if it is writable.
     ///
     /// # Safety
-    /// If the row may be written, no other thread reads or writes it until it returns, and no reference to it is in
-    /// use.
+    /// If the row is writable, no other thread reads or writes it until the call returns, and no reference
+    /// to it is in use.
     #[inline(always)]
     pub(super) unsafe fn put(&self, id: u32, change: impl FnOnce(&mut T)) {
         if id >= self.first_writable {
@@ -55,14 +56,14 @@ impl<'a, T> RowView<'a, T> {
         }
     }
 
-    /// Whether the rows of all lanes may be written.
+    /// Whether the rows of all lanes are writable.
     #[inline(always)]
     pub(super) fn are_writable(&self, ids: &impl Ids) -> bool {
         ids.lanes().iter().fold(true, |all, id| all & (*id >= self.first_writable))
     }
 
-    /// Changes the rows of all lanes, each by its quad of `values`. `are_writable` tells of these lanes that
-    /// [all may be written](Self::are_writable); else those are changed that may be.
+    /// Changes the rows of all lanes, each by its quad of `values`. `are_writable` is the result of
+    /// [`are_writable`](Self::are_writable) for these lanes. If it is false, only the writable rows change.
     ///
     /// # Safety
     /// As [`put`](Self::put).

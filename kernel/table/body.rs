@@ -6,7 +6,7 @@ use crate::graph::ConstraintKind;
 use crate::math::{Angular, Rot, Vector, WorldPose, WorldVector};
 use crate::tuning::rest::MEAN_TIME;
 
-/// What moves a body.
+/// The cause of a body's motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BodyKind {
     /// Nothing.
@@ -18,9 +18,9 @@ pub enum BodyKind {
     Dynamic,
 }
 
-/// The speed below which a body counts as at rest. It is measured by displacement and angle over a whole step, not by
-/// velocity, so that a body that jitters in place rests. A dynamic body also rests if the average of the last steps is below
-/// it. With a negative value or NaN the body never rests.
+/// The speed below which a body counts as at rest. It is measured by displacement and angle over a whole
+/// step, not by velocity, so a body that jitters in place rests. A dynamic body also rests if its average
+/// over the last steps is below this speed. With a negative value or NaN the body never rests.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RestSpeed {
     /// Speed of the centre of mass, m/s.
@@ -33,7 +33,8 @@ impl RestSpeed {
     /// A body that never rests.
     pub const NEVER: Self = Self { linear: -1.0, angular: -1.0 };
 
-    /// Whether a body rests that moved and turned this far in `dt` seconds, given as squares of metres and radians.
+    /// Whether a body rests that moved and turned by these amounts in `dt` seconds, given as squares of
+    /// metres and radians.
     #[inline(always)]
     pub fn admits(self, displacement_squared: f32, angle_squared: f32, dt: f32) -> bool {
         let (far, wide) = (self.linear * dt, self.angular * dt);
@@ -48,7 +49,7 @@ pub struct Body {
     pub kind: BodyKind,
     /// Whether the body takes part in steps. Static bodies are never awake.
     pub awake: bool,
-    /// Of two dynamic bodies in contact, the one with lower dominance does not push the other.
+    /// Of two dynamic bodies in contact, the body with lower dominance does not push the other.
     pub dominance: i8,
     /// The centre of mass in the body's frame, in metres.
     pub local_center: Vector,
@@ -58,15 +59,16 @@ pub struct Body {
     pub rest_speed: RestSpeed,
     /// Seconds for which the body has been at rest; 0 while it moves.
     pub sleep_timer: f32,
-    /// The velocity of the last steps on average, measured by displacement.
+    /// The average velocity over the last steps, measured by displacement.
     pub mean_velocity: Velocity,
-    /// How far its colliders have reached from its centre of mass, in metres.
+    /// The farthest that its colliders have reached from its centre of mass, in metres.
     pub(crate) extent: f32,
 }
 
 impl Body {
-    /// Adds a step of `dt` seconds to the average velocity, and returns whether the body rests by that. So a body that shakes
-    /// in a cycle of a few steps rests, and one that rolls slowly does not. `turn` is the step's rotation vector.
+    /// Adds a step of `dt` seconds to the average velocity, and returns whether the body rests by this
+    /// average. So a body that shakes in a cycle of a few steps rests, and a body that rolls slowly does not.
+    /// `turn` is the step's rotation vector.
     #[inline(always)]
     pub(crate) fn rests_on_average(&mut self, displacement: Vector, turn: Angular, dt: f32) -> bool {
         let share = 1.0 / (MEAN_TIME + dt);
@@ -82,7 +84,8 @@ impl Body {
     }
 }
 
-/// Pose of a body, and what else the narrow phase reads of a body for every contact. One cache line.
+/// The pose of a body, and all other data of a body that the narrow phase reads for every contact. One cache
+/// line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyPose {
     /// Centre of mass in world space.
@@ -91,7 +94,8 @@ pub struct BodyPose {
     pub rotation: Rot,
     /// An upper bound of the speed of the surface, m/s.
     pub speed: f32,
-    /// An upper bound of the way of the surface so far, in units of 2⁻²⁴ length units. It overflows.
+    /// An upper bound of the distance that the surface has moved so far, in units of 2⁻²⁴ length units. It
+    /// overflows.
     pub travel: u32,
     /// Counter of changes that invalidate cached contacts: kind, centre of mass, teleports.
     pub revision: u32,
@@ -116,20 +120,21 @@ pub struct Velocity {
 }
 
 impl Velocity {
-    /// An upper bound of the speed of a surface that reaches that far from the centre of mass, m/s.
+    /// An upper bound of the speed of a surface that reaches `extent` metres from the centre of mass, m/s.
     #[inline(always)]
     pub(crate) fn surface_speed(&self, extent: f32) -> f32 {
         self.linear.length() + extent * self.angular.length()
     }
 }
 
-/// Travels are counted in this many units per length unit. More overflows sooner, fewer count too much for what hardly moves.
+/// Travel units per length unit. More units overflow sooner, fewer count too much for bodies that hardly
+/// move.
 const TRAVEL_UNITS: f32 = (1 << 24) as f32;
 
-/// The travel of a way of any length that counts as far: a quarter of the count, so that the sum of two does not overflow.
+/// The maximum travel that is counted at once: a quarter of the counter, so the sum of two does not overflow.
 pub(crate) const FAR: u32 = 1 << 30;
 
-/// How the travels of all bodies of a table are counted.
+/// The scale in which a table counts the travels of all its bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TravelScale {
     /// Units per metre.
@@ -176,13 +181,14 @@ pub struct BodyTable {
     /// Solver row of each body in this step. Bodies without a row have 0, the row of the immovable dummy.
     pub(crate) rows: Vec<u32>,
     pub(crate) travel_scale: TravelScale,
-    /// Bodies whose velocity was set by hand since the embedder last emptied this set. Their boxes must be swept before
-    /// pairs are found.
+    /// Bodies whose velocity was set by hand since the embedder last emptied this set. Their boxes must be
+    /// swept before pairs are found.
     pub pushed: BitSet,
-    /// Bodies that woke or fell asleep since the embedder last emptied this list. A body may be back in its first
-    /// state.
+    /// Bodies that woke or fell asleep since the embedder last emptied this list. A body may be back in its
+    /// original state.
     pub flipped: Vec<u32>,
-    /// Whether any body has a dominance other than 0. Rows skip dominance otherwise. Set it with [`Body::dominance`].
+    /// Whether any body has a dominance other than 0. Rows skip dominance otherwise. Set it with
+    /// [`Body::dominance`].
     pub any_dominance: bool,
     awake_kinematic: BitSet,
     awake_dynamic: BitSet,
@@ -198,7 +204,7 @@ impl BodyTable {
     /// Adds a body, awake unless static.
     pub fn add(&mut self, kind: BodyKind, local_center: Vector, pose: WorldPose) -> u32 {
         let is_static = kind == BodyKind::Static;
-        // Static bodies have no row, and do not change the order of those that have.
+        // Static bodies have no row, and do not change the order of bodies with a row.
         let id = if is_static { self.ids.allocate_aside() } else { self.ids.allocate() };
         let body = Body {
             kind,
@@ -225,7 +231,7 @@ impl BodyTable {
             self.velocities.push(Velocity::default());
             self.rows.push(0);
         } else {
-            // The revision keeps counting, so that caches of the id's last owner do not match.
+            // The revision keeps counting, so caches of the id's previous owner do not match.
             placed.revision = self.poses[i].revision.wrapping_add(1);
             self.bodies[i] = body;
             self.poses[i] = placed;
@@ -306,9 +312,9 @@ impl BodyTable {
         self.awake_kinematic.count() + self.awake_dynamic.count()
     }
 
-    /// Gives every awake body a row for this step: kinematic ones first, each kind in the order of ids. All other
-    /// bodies get row 0. `listed` receives the bodies in the order of their rows, from row 1. Returns the number of
-    /// kinematic bodies.
+    /// Gives every awake body a row for this step: kinematic bodies first, each kind in the order of ids. All
+    /// other bodies get row 0. `listed` receives the bodies in the order of their rows, from row 1. Returns
+    /// the number of kinematic bodies.
     pub fn assign_rows(&mut self, listed: &mut Vec<u32>) -> usize {
         for id in listed.drain(..) {
             if let Some(row) = self.rows.get_mut(id as usize) {
@@ -341,13 +347,14 @@ impl BodyTable {
         }
     }
 
-    /// About how long things are, in metres. 1 if never set.
+    /// The typical length of objects, in metres. 1 if never set.
     #[inline(always)]
     pub fn length_unit(&self) -> f32 {
         self.travel_scale.metres * TRAVEL_UNITS
     }
 
-    /// Sets about how long things are, in metres. Where it changes, all contacts are looked at in the next step.
+    /// Sets the typical length of objects, in metres. If it changes, all contacts are checked in the next
+    /// step.
     pub fn set_length_unit(&mut self, length_unit: f32) {
         debug_assert!(length_unit > 0.0 && length_unit.is_finite(), "a length unit of {length_unit} m");
         let scale = TravelScale::new(length_unit);
@@ -371,8 +378,8 @@ impl BodyTable {
     }
 
     /// Sets the velocity of a body by hand. Call
-    /// [`ColliderTable::refresh_pushed`](super::ColliderTable::refresh_pushed) before pairs are found, or the body may
-    /// tunnel in the next step.
+    /// [`ColliderTable::refresh_pushed`](super::ColliderTable::refresh_pushed) before pairs are found, or the
+    /// body may tunnel in the next step.
     #[inline]
     pub fn set_velocity(&mut self, id: u32, velocity: Velocity) {
         if velocity != self.velocities[id as usize] && velocity != Velocity::default() {
@@ -382,7 +389,7 @@ impl BodyTable {
         self.bound_speed(id);
     }
 
-    /// Notes that a collider of a body reaches that far from its centre of mass, in metres.
+    /// Records that a collider of a body reaches `extent` metres from the body's centre of mass.
     pub(super) fn reach_out(&mut self, id: u32, extent: f32) {
         if extent > self[id].extent {
             self[id].extent = extent;

@@ -18,14 +18,14 @@ pub struct Constraint {
 
 /// All constraints of one kind.
 ///
-/// Decision: each kind has its own lists of a body's constraints, outside of the body. Most bodies have no constraint
-/// and pay nothing.
+/// Decision: each kind has its own lists of a body's constraints, outside of the body. Most bodies have no
+/// constraint and pay nothing.
 #[derive(Clone, Debug, Default)]
 pub struct ConstraintTable {
     ids: IdPool,
     constraints: Vec<Constraint>,
-    /// First constraint of each body, as in [`Constraint`]. Shorter than the number of bodies if the last ones have
-    /// none.
+    /// First constraint of each body, as in [`Constraint`]. Shorter than the number of bodies if the last
+    /// bodies have none.
     first: Vec<u32>,
 }
 
@@ -35,7 +35,7 @@ impl ConstraintTable {
         self.ids.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no constraints.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -11,13 +11,15 @@ pub const MAX_FACET_MATERIALS: usize = 255;
 pub struct FacetMaterial {
     /// Friction and restitution.
     pub material: Material,
-    /// The velocity at which the surface carries what lies on it, in the collider's frame, m/s.
+    /// The velocity at which the surface carries objects that lie on it, in the collider's frame, m/s.
     pub velocity: Vector,
 }
 
-/// A table of materials, and the group of each facet: 0 for the collider's own material, k for entry k − 1 of the table.
+/// A table of materials, and the group of each facet: 0 for the collider's own material, k for entry k − 1 of
+/// the table.
 ///
-/// Facets are the parts of a composite shape in its order: triangles (in 2D segments) of a surface, solids of a compound.
+/// Facets are the parts of a composite shape in its order: triangles (in 2D segments) of a surface, solids of
+/// a compound.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FacetMaterials {
     materials: Vec<FacetMaterial>,
@@ -25,8 +27,8 @@ pub struct FacetMaterials {
 }
 
 impl FacetMaterials {
-    /// Facet i has `materials[facets[i]]`. Facets without an entry, and those whose material is not among the first
-    /// [`MAX_FACET_MATERIALS`], have the material of the collider.
+    /// Facet i has `materials[facets[i]]`. Facets without an entry, and facets whose material is not among
+    /// the first [`MAX_FACET_MATERIALS`], have the material of the collider.
     pub fn new(mut materials: Vec<FacetMaterial>, facets: &[u8]) -> Self {
         materials.truncate(MAX_FACET_MATERIALS);
         let group = |facet: &u8| if usize::from(*facet) < materials.len() { facet + 1 } else { 0 };
@@ -38,7 +40,7 @@ impl FacetMaterials {
         &self.groups
     }
 
-    /// The material of a group; `None` for that of the collider.
+    /// The material of a group; `None` for the collider's own material.
     #[inline]
     pub fn of_group(&self, group: u8) -> Option<&FacetMaterial> {
         self.materials.get(usize::from(group).checked_sub(1)?)

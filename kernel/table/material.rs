@@ -1,6 +1,6 @@
-//! Coefficients of surfaces, and how those of two surfaces combine.
+//! Coefficients of surfaces, and how the coefficients of two surfaces combine.
 
-/// How two coefficients combine. Of two different rules the greater is used.
+/// How two coefficients combine. Of two different rules the greater applies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Combine {

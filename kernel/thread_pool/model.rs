@@ -1,5 +1,6 @@
-//! The pool under loom, which runs each model with all interleavings up to a number of preemptions, and lets loads return
-//! every value that they may. It finds unordered accesses to cells, deadlocks, and endless loops.
+//! The pool under loom. Loom runs each model with all interleavings up to a number of preemptions, and lets
+//! loads return every value that they may return. It finds unordered accesses to cells, deadlocks, and
+//! endless loops.
 
 #![expect(unsafe_code, reason = "cells whose use loom checks")]
 
@@ -9,7 +10,7 @@ use loom::{cell::UnsafeCell, model::Builder};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 
-/// Checks a model with up to a number of preemptions. Most mistakes show with two.
+/// Checks a model with up to a number of preemptions. Most mistakes show with two preemptions.
 fn model(preemptions: usize, f: impl Fn() + Sync + Send + 'static) {
     let mut builder = Builder::new();
     builder.preemption_bound = Some(preemptions);
@@ -17,7 +18,7 @@ fn model(preemptions: usize, f: impl Fn() + Sync + Send + 'static) {
     builder.check(f);
 }
 
-/// Cells that blocks write, each its own, without any synchronisation.
+/// Cells that blocks write, each block its own cell, without any synchronisation.
 #[derive(Default)]
 struct Cells([UnsafeCell<u32>; 3]);
 
@@ -30,7 +31,7 @@ impl Cells {
         self.0[block].with_mut(|count| unsafe { *count += 1 });
     }
 
-    /// Asserts the values that the caller sees when a job is over.
+    /// Asserts the values that the caller sees after a job.
     fn are(&self, wanted: &[u32]) {
         for (cell, wanted) in self.0.iter().zip(wanted) {
             // SAFETY: as above.
@@ -60,14 +61,14 @@ fn threads_claim_from_each_other() {
         let pool = ThreadPool::new(3);
         pool.wake();
         let cells = Cells::default();
-        // All blocks begin in the queue of the first thread.
+        // All blocks start in the queue of the first thread.
         pool.run_parts(&[0, 3, 3], |block, _| cells.add(block));
         cells.are(&[1, 1, 1]);
     });
 }
 
-/// A woken thread parks again, and can be woken again: no wake-up is lost between its last round and its parking. After a
-/// lost one the thread would count as awake for ever.
+/// A woken thread parks again, and can be woken again: no wake-up is lost between its last round and its
+/// parking. After a lost wake-up the thread would count as awake for ever.
 #[test]
 fn no_wake_up_is_lost() {
     model(3, || {
@@ -82,7 +83,7 @@ fn no_wake_up_is_lost() {
     });
 }
 
-/// Threads end with the pool, whether they are parked, work, or are about to do either.
+/// Threads end with the pool, whether they are parked, work, or are about to park or work.
 #[test]
 fn threads_end_with_the_pool() {
     for calls in 0..3 {
@@ -96,7 +97,7 @@ fn threads_end_with_the_pool() {
     }
 }
 
-/// A block that panics counts as finished. The caller gets the panic when no thread runs the job any more.
+/// A block that panics counts as finished. The caller gets the panic after all threads have left the job.
 #[test]
 fn a_panic_reaches_the_caller() {
     model(2, || {
@@ -119,7 +120,7 @@ fn a_panic_reaches_the_caller() {
     });
 }
 
-/// Two callers share the threads. The second one runs its blocks alone.
+/// Two callers share the threads. The second caller runs its blocks alone.
 #[test]
 fn clones_do_not_mix() {
     model(2, || {
@@ -151,7 +152,7 @@ fn a_race_is_found() {
     });
 }
 
-/// A cell of another thread.
+/// A cell that another thread shares.
 struct Shared(Arc<SharedCell<Option<u32>>>);
 
 impl Shared {

@@ -1,4 +1,5 @@
-//! What the workers of a pool share: how blocks are issued, claimed and counted. The module above proves it.
+//! The state that the workers of a pool share: how blocks are issued, claimed and counted. The module above
+//! proves it.
 #![expect(unsafe_code, reason = "threads borrow a closure from the caller's stack")]
 
 use super::sync::*;
@@ -7,12 +8,12 @@ use core::ops::Range;
 use core::sync::atomic::Ordering;
 use std::sync::PoisonError;
 
-/// What the workers of a pool share.
+/// The state that the workers of a pool share.
 #[derive(Debug, Default)]
 pub(super) struct State {
     /// One queue per worker: its unclaimed blocks and the job they belong to.
     queues: Box<[WorkerQueue]>,
-    /// The number of blocks each worker has finished in its life.
+    /// The number of blocks that each worker has finished in its life.
     finished: Box<[CachePadded<AtomicU32>]>,
     caller: CachePadded<Caller>,
     /// Whether each thread is parked. The waking thread clears the flag before it unparks the thread.
@@ -26,32 +27,34 @@ pub(super) struct State {
     quit: AtomicBool,
 }
 
-/// What the caller writes with every job.
+/// The values that the caller writes with every job.
 #[derive(Debug, Default)]
 struct Caller {
     /// Whether a clone of the pool runs a job.
     busy: AtomicBool,
-    /// The sum of `finished` when all jobs so far are finished.
+    /// The sum of `finished` after all jobs so far.
     issued: AtomicU32,
 }
 
-/// A value in cache lines of its own. Processors fetch pairs of lines, hence 128 bytes.
+/// A value in its own cache lines. Processors fetch pairs of lines, hence 128 bytes.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 struct CachePadded<T>(T);
 
-/// The blocks of one worker, in cache lines of its own. Other workers read them only when their own queue is empty.
+/// The blocks of one worker, in their own cache lines. Other workers read them only when their own queue is
+/// empty.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 struct WorkerQueue {
     /// Unclaimed blocks.
     blocks: BlockRange,
-    /// The job. The caller writes it only while no block is unfinished; a worker reads it only while its claimed block is
-    /// unfinished.
+    /// The job. The caller writes it only while no block is unfinished; a worker reads it only while its
+    /// claimed block is unfinished.
     job: SharedCell<Option<Job>>,
 }
 
-/// Consecutive unclaimed blocks: the first in the upper half, one beyond the last in the lower.
+/// Consecutive unclaimed blocks: the first block in the upper half, one beyond the last block in the lower
+/// half.
 #[derive(Debug, Default)]
 struct BlockRange(AtomicU64);
 
@@ -60,7 +63,8 @@ impl BlockRange {
         self.0.store(u64::from(blocks.start) << 32 | u64::from(blocks.end), Ordering::Release);
     }
 
-    /// Claims one block exclusively: the owner of the queue takes the first, other workers take the last.
+    /// Claims one block exclusively: the owner of the queue takes the first block, other workers take the
+    /// last.
     #[inline]
     fn claim(&self, is_own: bool) -> Option<u32> {
         let mut range = self.0.load(Ordering::Acquire);
@@ -70,7 +74,8 @@ impl BlockRange {
                 return None;
             }
             let (block, rest) = if is_own { (start, range + (1 << 32)) } else { (end - 1, range - 1) };
-            // On success the queue has the range that was read, even if it belongs to another job by now.
+            // On success the queue contains the range that was read, even if the range belongs to another job
+            // by now.
             match self.0.compare_exchange_weak(range, rest, Ordering::AcqRel, Ordering::Acquire) {
                 Ok(_) => return Some(block),
                 Err(now) => range = now,
@@ -94,13 +99,15 @@ struct Job {
     run: unsafe fn(*const (), u32, usize),
 }
 
-// SAFETY: claims restrict the access to `job` as its comment says, and the closure that it points to is `Sync`.
+// SAFETY: claims restrict the access to `job` as its comment says, and the closure that it points to is
+// `Sync`.
 unsafe impl Sync for State {}
-// SAFETY: as above. Raw pointers carry no thread affinity; the caller keeps the closure alive until all blocks finish.
+// SAFETY: as above. Raw pointers carry no thread affinity; the caller keeps the closure alive until all
+// blocks finish.
 unsafe impl Send for State {}
 
 impl State {
-    /// The state of a pool of `workers`, the caller among them. All threads are parked.
+    /// The state of a pool of `workers`, including the caller. All threads are parked.
     pub(super) fn new(workers: usize) -> Self {
         Self {
             parked: (1..workers).map(|_| AtomicBool::new(true)).collect(),
@@ -116,13 +123,14 @@ impl State {
         self.stop_spinning.store(false, Ordering::Relaxed);
     }
 
-    /// Marks a thread, from 0, as not parked. Returns whether it was parked: then it is to be unparked.
+    /// Marks a thread, counted from 0, as not parked. Returns whether it was parked; the caller must then
+    /// unpark it.
     pub(super) fn clear_parked(&self, thread: usize) -> bool {
         let parked = &self.parked[thread];
         if !parked.load(Ordering::Relaxed) {
             return false;
         }
-        // Before the swap, which lets the thread subtract, so that the count never falls below 0.
+        // Incremented before the swap, which lets the thread subtract, so the count never falls below 0.
         self.awake.fetch_add(1, Ordering::Relaxed);
         let was_parked = parked.swap(false, Ordering::AcqRel);
         if !was_parked {
@@ -136,17 +144,17 @@ impl State {
         self.stop_spinning.store(true, Ordering::Relaxed);
     }
 
-    /// Whether threads were told to look for blocks, and not to stop.
+    /// Whether threads look for blocks and were not told to stop.
     pub(super) fn is_working(&self) -> bool {
         !self.stop_spinning.load(Ordering::Relaxed)
     }
 
-    /// Lets threads return. They are to be unparked.
+    /// Lets threads return. The caller must unpark them.
     pub(super) fn quit(&self) {
         self.quit.store(true, Ordering::Release);
     }
 
-    /// Whether there may be a thread to share with.
+    /// Whether a thread may be available to share blocks with.
     pub(super) fn is_any_awake(&self) -> bool {
         self.awake.load(Ordering::Relaxed) > 0
     }
@@ -155,7 +163,7 @@ impl State {
         self.panic.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Reserves the pool for a job, unless a clone, or a job that runs jobs, has reserved it.
+    /// Reserves the pool for a job, unless a clone, or an outer job, has reserved it.
     pub(super) fn try_begin(&self) -> Option<JobGuard<'_>> {
         let busy = &self.caller.0.busy;
         busy.compare_exchange(false, true, Ordering::Acquire, Ordering::Relaxed).ok().map(|_| JobGuard(self))
@@ -167,12 +175,12 @@ impl State {
             // SAFETY: `data` is the `F` that it was made from (see `Job::run`).
             unsafe { (*data.cast::<F>())(block, worker) }
         }
-        /// Waits, also when the caller's own block panics: threads may be using its stack.
+        /// Waits on drop, also if the caller's own block panics: threads may be using its stack.
         struct Wait<'a>(&'a State, u32);
         impl Drop for Wait<'_> {
             fn drop(&mut self) {
                 let Self(state, blocks) = self;
-                // After a panic of the caller unclaimed blocks are not run.
+                // After a panic of the caller, unclaimed blocks are not run.
                 let left = state.queues.iter().map(|queue| queue.blocks.drain()).sum::<u32>();
                 let issued = &state.caller.0.issued;
                 let all = issued.load(Ordering::Relaxed).wrapping_add(*blocks - left);
@@ -185,13 +193,14 @@ impl State {
         let mut start = 0;
         for (queue, end) in self.queues.iter().zip(ends) {
             let end = end.clamp(start, blocks);
-            // SAFETY: all blocks of the last job are finished, and no block of this job can be claimed here yet.
+            // SAFETY: all blocks of the last job are finished, and no block of this job can be claimed here
+            // yet.
             unsafe { queue.job.write(Some(erased)) };
             queue.blocks.fill(start..end);
             start = end;
         }
         while let Some((block, _)) = self.claim_own(0).or_else(|| self.claim_others(0)) {
-            // The block counts also if it panics, so that the wait ends.
+            // The block counts also if it panics, so the wait ends.
             let _count = CountFinished(self, 0);
             job(block, 0);
         }
@@ -208,8 +217,8 @@ impl State {
         }
     }
 
-    /// Claims a block of the worker's own queue. Workers begin with the same part in every job, so that data of the job
-    /// before is still in the cache of their core.
+    /// Claims a block of the worker's own queue. Workers begin with the same part in every job, so data of
+    /// the previous job is still in the cache of their core.
     #[inline]
     fn claim_own(&self, worker: usize) -> Option<(u32, &WorkerQueue)> {
         let queue = &self.queues[worker];
@@ -228,7 +237,7 @@ impl State {
     pub(super) fn run_thread(&self, worker: usize) {
         let parked = &self.parked[worker - 1];
         while !self.quit.load(Ordering::Acquire) {
-            // `park` may return for no reason or for an old wake-up: only the flag counts.
+            // `park` may return without a reason or for an old wake-up: only the flag counts.
             if parked.load(Ordering::Acquire) {
                 park();
                 continue;
@@ -239,11 +248,12 @@ impl State {
         }
     }
 
-    /// Claims and runs blocks until there have been none for some time.
+    /// Claims and runs blocks until none were found for some time.
     fn work(&self, worker: usize) {
         let mut idle = IdleTimer::default();
         loop {
-            // Other queues are read only after blocks of the own one: idle threads that poll them would slow their owners.
+            // A worker reads other queues only after it has run blocks of its own: idle threads that poll
+            // other queues would slow down their owners.
             let mut next = self.claim_own(worker);
             while let Some((block, queue)) = next {
                 self.run_block(block, queue, worker);
@@ -258,7 +268,7 @@ impl State {
         }
     }
 
-    /// Whether threads are to stop looking for blocks.
+    /// Whether threads must stop looking for blocks.
     fn is_over(&self) -> bool {
         self.stop_spinning.load(Ordering::Relaxed) || self.quit.load(Ordering::Relaxed)
     }
@@ -266,7 +276,8 @@ impl State {
     /// Runs a block that a thread has claimed from a queue.
     fn run_block(&self, block: u32, queue: &WorkerQueue, worker: usize) {
         let _count = CountFinished(self, worker);
-        // SAFETY: the worker's claimed block is unfinished, so the caller does not write the job and keeps its closure alive.
+        // SAFETY: the worker's claimed block is unfinished, so the caller does not write the job and keeps
+        // its closure alive.
         let Some(job) = (unsafe { queue.job.read() }) else { return };
         // SAFETY: as above.
         let run = || unsafe { (job.run)(job.data, block, worker) };
@@ -281,11 +292,11 @@ impl State {
 pub(super) struct JobGuard<'a>(&'a State);
 
 impl JobGuard<'_> {
-    /// Runs the blocks below `blocks`, where the queue of each worker gets those up to its end, and returns when all are
-    /// finished.
+    /// Runs the blocks below `blocks`, where the queue of each worker gets the blocks up to its end. Returns
+    /// when all are finished.
     ///
     /// # Panics
-    /// If a block does.
+    /// If a block panics.
     pub(super) fn run(
         self,
         blocks: u32,
@@ -303,18 +314,18 @@ impl JobGuard<'_> {
 
 impl Drop for JobGuard<'_> {
     fn drop(&mut self) {
-        // If a block of the caller panicked, its payload is thrown, and those of threads are forgotten.
+        // If a block of the caller panicked, its payload is thrown, and payloads of threads are forgotten.
         core::mem::forget(self.0.panic().take());
         self.0.caller.0.busy.store(false, Ordering::Release);
     }
 }
 
-/// Counts a block as finished when it is dropped, also by a panic.
+/// Counts a block as finished on drop, also during a panic.
 struct CountFinished<'a>(&'a State, usize);
 
 impl Drop for CountFinished<'_> {
     fn drop(&mut self) {
-        // This worker alone writes its count.
+        // Only this worker writes its count.
         let finished = &self.0.finished[self.1].0;
         finished.store(finished.load(Ordering::Relaxed).wrapping_add(1), Ordering::Release);
     }

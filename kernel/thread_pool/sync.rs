@@ -1,5 +1,5 @@
-//! The atomics and threads of the pool: the standard library's, or loom's in its model, which tries all interleavings and
-//! all values that a load may return.
+//! The atomics and threads of the pool: the standard library's, or loom's in the model, which tries all
+//! interleavings and all values that a load may return.
 #![expect(unsafe_code, reason = "several threads read and write a cell, one after the other")]
 
 #[cfg(all(loom, test))]
@@ -7,12 +7,12 @@ pub(super) use modelled::*;
 #[cfg(not(all(loom, test)))]
 pub(super) use real::*;
 
-/// What a thread without a block does next.
+/// The next action of a thread without a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Idle {
-    /// Look for a block again at once.
+    /// Look for a block at once.
     Spin,
-    /// Check whether threads are to park, and if not, look again.
+    /// Check whether threads must park, and if not, look again.
     Check,
     /// Park.
     Park,
@@ -27,12 +27,12 @@ mod real {
     pub(in crate::thread_pool) use std::thread::{Builder, JoinHandle, park};
     use std::time::{Duration, Instant};
 
-    /// An idle thread spins for this time before it starts to yield its core. Longer takes cores from other programs, shorter
-    /// delays the next stage.
+    /// An idle thread spins for this time before it starts to yield its core. A longer time takes cores from
+    /// other programs, a shorter time delays the next stage.
     const SPIN_TIME: Duration = Duration::from_micros(50);
 
-    /// An idle thread parks after this time. It is longer than what one thread does alone between two stages of a step: with
-    /// 50 µs steps took up to 40 % longer, since waking a thread takes 35 to 140 µs.
+    /// An idle thread parks after this time. It is longer than the single-threaded work between two stages of
+    /// a step: with 50 µs steps took up to 40 % longer, since waking a thread takes 35 to 140 µs.
     const PARK_TIMEOUT: Duration = Duration::from_micros(500);
 
     /// A value that several threads read and write.
@@ -41,7 +41,7 @@ mod real {
 
     impl<T: Copy> SharedCell<T> {
         /// # Safety
-        /// No other thread writes it meanwhile.
+        /// No other thread writes the cell meanwhile.
         #[inline]
         pub(in crate::thread_pool) unsafe fn read(&self) -> T {
             // SAFETY: by the contract.
@@ -49,7 +49,7 @@ mod real {
         }
 
         /// # Safety
-        /// No other thread reads or writes it meanwhile.
+        /// No other thread reads or writes the cell meanwhile.
         #[inline]
         pub(in crate::thread_pool) unsafe fn write(&self, value: T) {
             // SAFETY: by the contract.
@@ -57,7 +57,7 @@ mod real {
         }
     }
 
-    /// Waits for a moment in a loop; `rounds` counts its rounds.
+    /// Waits for a moment in a loop. `rounds` counts its rounds.
     #[inline]
     pub(in crate::thread_pool) fn pause(rounds: u32) {
         // The thread that runs the last block may have lost its core.
@@ -112,14 +112,14 @@ mod modelled {
 
     impl<T: Copy> SharedCell<T> {
         /// # Safety
-        /// No other thread writes it meanwhile.
+        /// No other thread writes the cell meanwhile.
         pub(in crate::thread_pool) unsafe fn read(&self) -> T {
             // SAFETY: by the contract.
             self.0.with(|value| unsafe { *value })
         }
 
         /// # Safety
-        /// No other thread reads or writes it meanwhile.
+        /// No other thread reads or writes the cell meanwhile.
         pub(in crate::thread_pool) unsafe fn write(&self, new: T) {
             // SAFETY: by the contract.
             self.0.with_mut(|value| unsafe { *value = new });
@@ -130,7 +130,7 @@ mod modelled {
         loom::thread::yield_now();
     }
 
-    /// A thread parks after three rounds without a block: time is not modelled.
+    /// A thread parks after three rounds without a block, since time is not modelled.
     #[derive(Default)]
     pub(in crate::thread_pool) struct IdleTimer(u32);
 

@@ -38,7 +38,7 @@ fn every_block_runs_once_wherever_parts_end() {
             if round % 50 == 0 {
                 pool.wake();
             }
-            // Some parts are empty, and now and then all but the first.
+            // Some parts are empty, and now and then all parts except the first.
             let mut ends: Vec<u32> = (1..=workers as u32).map(|k| (round * k * 7) % 23).collect();
             ends.sort_unstable();
             if round % 5 == 0 {

@@ -1,5 +1,5 @@
-//! Persistent islands: groups of dynamic bodies that are connected by links. The bodies of an island sleep and wake
-//! together.
+//! Persistent islands: groups of dynamic bodies that are connected by links. The bodies of an island sleep
+//! and wake together.
 
 mod split;
 mod validate;
@@ -19,7 +19,8 @@ pub struct IslandId(pub u32);
 pub struct LinkId(pub u32);
 
 impl LinkId {
-    /// The link of a constraint. The kind is the low digit, so that the table is as long as the largest kind needs.
+    /// The link of a constraint. The kind is the low digit, so the table is as long as the largest kind
+    /// needs.
     pub fn of(ConstraintId { kind, id }: ConstraintId) -> Self {
         Self(id * ConstraintKind::COUNT as u32 + kind as u32)
     }
@@ -47,7 +48,7 @@ impl IslandLink {
     }
 }
 
-/// Absent: no island, no index in the awake list, no body.
+/// Marks an absent island, index in the awake list, or body.
 const NONE: u32 = u32::MAX;
 
 const NOWHERE: Place = Place { island: NONE, index: NONE };
@@ -66,7 +67,7 @@ struct Place {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Member {
     place: Place,
-    /// The number of its links.
+    /// The number of links of the body.
     links: u32,
 }
 
@@ -85,7 +86,7 @@ struct Island {
     awake: u32,
     /// Number of links to carriers.
     carriers: u32,
-    /// Whether sleep timers of the bodies are to be reset.
+    /// Whether the sleep timers of the bodies must be reset.
     is_woken: bool,
 }
 
@@ -94,7 +95,7 @@ impl Island {
         Self { bodies: Vec::new(), links: Vec::new(), removed: 0, awake: NONE, carriers: 0, is_woken: false };
 }
 
-/// One connected part of an island that fell apart.
+/// A connected part of an island that fell apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Piece {
     lowest_body: u32,
@@ -106,7 +107,7 @@ struct Piece {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Scratch {
     sets: DisjointSets,
-    /// Index of the piece, by index of a body in the island.
+    /// Index of the piece of each body, by the body's index in the island.
     piece_of: Vec<u32>,
     pieces: Vec<Piece>,
     order: Vec<u32>,
@@ -115,21 +116,21 @@ struct Scratch {
 
 /// All islands.
 ///
-/// Decision: islands persist (Catto, "Simulation Islands", 2023). A new link merges two islands at once, the smaller
-/// into the larger. A removed link only increments `removed`; [`split`](Self::split) finds the connected parts when a
-/// body is ready to sleep. In between an island may be larger than its connected parts, never smaller. A search through
-/// all contacts in every step would cost most when nothing changes.
+/// Decision: islands persist (Catto, "Simulation Islands", 2023). A new link merges two islands at once, the
+/// smaller into the larger. A removed link only increments `removed`; [`split`](Self::split) finds the
+/// connected parts when a body is ready to sleep. In between an island may be larger than its connected
+/// parts, never smaller. A search through all contacts in every step would cost most when nothing changes.
 ///
-/// Only dynamic bodies are in islands: bodies on the same floor or lift need not sleep together. An island is awake or
-/// asleep as a whole. The caller puts bodies and contacts to sleep and wakes them.
+/// Only dynamic bodies are in islands: bodies on the same floor or lift need not sleep together. An island is
+/// awake or asleep as a whole. The caller puts bodies and contacts to sleep and wakes them.
 ///
-/// The state follows from the sequence of calls. The lowest free id is reused first, so that ids depend only on the
-/// live islands. Buffers are reused last in, first out: a steady state allocates nothing.
+/// The state follows from the sequence of calls. The lowest free id is reused first, so ids depend only on
+/// the live islands. Buffers are reused last in, first out: a steady state allocates nothing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Islands {
     islands: Vec<Island>,
     ids: IdPool,
-    /// Emptied buffers of former islands.
+    /// Emptied buffers of removed islands.
     spare: Vec<(Vec<u32>, Vec<IslandLink>)>,
     awake: Vec<IslandId>,
     /// Records by body id.
@@ -149,7 +150,7 @@ impl Islands {
     /// Bytes of memory per link.
     pub const BYTES_PER_LINK: usize = size_of::<Place>() + size_of::<IslandLink>();
 
-    /// No bodies and no islands.
+    /// An empty set of islands.
     pub fn new() -> Self {
         Self::default()
     }
@@ -163,7 +164,7 @@ impl Islands {
         self.spare.clear();
     }
 
-    /// Adds a body in an awake island of its own. A body that has an island stays there.
+    /// Adds a body in an awake island of its own. A body that already has an island stays in it.
     pub fn add_body(&mut self, body: u32) -> IslandId {
         if let Some(island) = self.island_of(body) {
             debug_assert!(false, "body {body} is already in {island:?}");
@@ -195,11 +196,12 @@ impl Islands {
         }
     }
 
-    /// Links two bodies and merges their islands: the one with fewer bodies into the other, at a tie into the one with
-    /// the lower id. Returns the id of the merged island.
+    /// Links two bodies and merges their islands: the island with fewer bodies into the other, at a tie into
+    /// the island with the lower id. Returns the id of the merged island.
     ///
-    /// Both islands must be awake or both asleep: wake a sleeping one first, with its bodies and contacts. If they
-    /// differ, the result is awake. Returns `None` and does nothing if a body has no island or the key is in use.
+    /// Both islands must be awake or both asleep: wake a sleeping island first, with its bodies and contacts.
+    /// If the islands differ, the result is awake. Returns `None` and does nothing if a body has no island or
+    /// the key is in use.
     pub fn link(&mut self, key: LinkId, a: u32, b: u32) -> Option<IslandId> {
         if self.is_linked(key) {
             debug_assert!(false, "{key:?} is linked twice");
@@ -217,8 +219,8 @@ impl Islands {
         Some(island)
     }
 
-    /// Links a body to a carrier: something that moves the body without being in an island, as a lift does. The link
-    /// connects nothing. It is counted, and stays with its body when islands merge or split.
+    /// Links a body to a carrier: an object that moves the body without being in an island, such as a lift.
+    /// The link connects no bodies. It is counted, and stays with its body when islands merge or split.
     pub fn link_carrier(&mut self, key: LinkId, body: u32) {
         if self.is_linked(key) {
             debug_assert!(false, "{key:?} is linked twice");
@@ -228,7 +230,8 @@ impl Islands {
         }
     }
 
-    /// Removes a link. The island stays whole until it is [split](Self::split). Returns whether the key was linked.
+    /// Removes a link. The island stays whole until it is [split](Self::split). Returns whether the key was
+    /// linked.
     pub fn unlink(&mut self, key: LinkId) -> bool {
         let place = place_in(&self.link_places, key.0);
         let Some(island) = self.islands.get_mut(place.island as usize) else { return false };
@@ -254,7 +257,7 @@ impl Islands {
         self.members.get(body as usize).map(|member| member.place).filter(|place| *place != NOWHERE)
     }
 
-    /// The bodies of an island, in an order that follows from the calls. Empty if there is no such island.
+    /// The bodies of an island, in an order that follows from the calls. Empty if the island does not exist.
     pub fn bodies(&self, island: IslandId) -> &[u32] {
         let bodies: &[u32] = self.get(island).map_or(&[], |island| &island.bodies);
         count_visits(bodies.len());
@@ -266,12 +269,13 @@ impl Islands {
         self.get(island).map_or(&[], |island| &island.links)
     }
 
-    /// The number of links that the island lost since it was last known to be connected. With 0 it is connected.
+    /// The number of links that the island lost since it was last known to be connected. With 0 it is
+    /// connected.
     pub fn removed(&self, island: IslandId) -> u32 {
         self.get(island).map_or(0, |island| island.removed)
     }
 
-    /// Whether the island is asleep; `false` if there is no such island.
+    /// Whether the island is asleep; `false` if the island does not exist.
     pub fn is_asleep(&self, island: IslandId) -> bool {
         self.get(island).is_some_and(|island| island.awake == NONE)
     }
@@ -284,9 +288,9 @@ impl Islands {
         if asleep { self.drop_from_awake(island.0) } else { self.add_to_awake(island.0) }
     }
 
-    /// Marks the sleep timers of all bodies of an awake island to be reset. [`drain_woken`](Self::drain_woken) visits
-    /// the bodies, once for all marks. An island that merges with a marked one is marked as well. Does nothing for a
-    /// sleeping island.
+    /// Marks an awake island: the sleep timers of all its bodies must be reset.
+    /// [`drain_woken`](Self::drain_woken) visits the bodies, once for all marks. An island that merges with a
+    /// marked island is marked as well. Does nothing for a sleeping island.
     pub fn mark_woken(&mut self, island: IslandId) {
         if let Some(island) = self.islands.get_mut(island.0 as usize).filter(|island| island.awake != NONE) {
             island.is_woken = true;
@@ -294,7 +298,7 @@ impl Islands {
         }
     }
 
-    /// Whether sleep timers of the island are still to be reset. Such an island must not fall asleep.
+    /// Whether the sleep timers of the island must still be reset. Such an island must not fall asleep.
     pub fn is_woken(&self, island: IslandId) -> bool {
         self.get(island).is_some_and(|island| island.is_woken)
     }
@@ -344,7 +348,7 @@ impl Islands {
         self.ids.len()
     }
 
-    /// Whether there are no islands, hence no bodies in any.
+    /// Whether there are no islands, and so no bodies.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -381,7 +385,7 @@ impl Islands {
         self.islands.get(island.0 as usize).filter(|island| !island.bodies.is_empty())
     }
 
-    /// Creates an island without bodies. The caller adds the first one.
+    /// Creates an island without bodies. The caller adds the first body.
     fn create(&mut self, awake: bool) -> u32 {
         let id = self.ids.allocate();
         let (bodies, links) = self.spare.pop().unwrap_or_default();
@@ -460,7 +464,7 @@ fn remove_link(island: &mut Island, places: &mut [Place], index: u32) -> IslandL
     if link.is_to_carrier() {
         island.carriers -= 1;
     } else {
-        // Islands are not split while sleeping is off: the counter must not wrap to 0, "connected".
+        // Islands are not split while sleeping is off: the counter must not wrap to 0, which means connected.
         island.removed = island.removed.saturating_add(1);
     }
     link

@@ -5,9 +5,9 @@ use super::{Island, IslandId, Islands, NONE, Piece, Scratch, count_visits};
 impl Islands {
     /// Splits an island into its connected parts. Each has `removed` = 0 afterwards.
     ///
-    /// The part with the most bodies (at a tie the one with the lowest body id) keeps the id, since moving it costs
-    /// most. Returns the other islands, created in the order of their lowest body id, asleep if the original is. Empty
-    /// if the island is connected.
+    /// The part with the most bodies (at a tie the part with the lowest body id) keeps the id, since moving
+    /// it costs most. Returns the other islands, created in the order of their lowest body id, asleep if the
+    /// original is. Empty if the island is connected.
     pub fn split(&mut self, island: IslandId) -> &[IslandId] {
         self.scratch.created.clear();
         if self.removed(island) > 0 {
@@ -44,7 +44,7 @@ impl Islands {
         scratch.piece_of.resize(island.bodies.len(), NONE);
         for (index, &body) in island.bodies.iter().enumerate() {
             let root = sets.find(index as u32) as usize;
-            // The entry of a root may be set by an earlier body of its set. It keeps that value.
+            // The entry of a root may already be set by an earlier body of its set, and keeps its value.
             if scratch.piece_of[root] == NONE {
                 scratch.piece_of[root] = scratch.pieces.len() as u32;
                 scratch.pieces.push(Piece { lowest_body: body, size: 0, island: NONE });

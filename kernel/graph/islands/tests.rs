@@ -4,7 +4,7 @@ use super::*;
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet, btree_map::Entry};
 
-/// The islands beside the caller's records: bodies with their sleep state, and links.
+/// The islands with the caller's records: bodies with their sleep state, and links.
 #[derive(Clone, Default)]
 struct World {
     islands: Islands,
@@ -102,7 +102,7 @@ impl World {
         }
     }
 
-    /// Islands contain whole components. After splitting everything they are the components.
+    /// Islands contain whole components. After all islands are split, they equal the components.
     fn check(&self) {
         self.islands.validate();
         for (body, asleep) in &self.asleep {
@@ -126,7 +126,7 @@ impl World {
         assert_eq!(links, self.links.len());
     }
 
-    /// One random operation; `density` is the number of links aimed at per 10 bodies.
+    /// One random operation. `density` is the intended number of links per 10 bodies.
     fn operate(&mut self, (kind, x, y): (u8, u32, u32), bodies: u32, density: usize) {
         let nth = |n: u32| self.asleep.keys().nth(n as usize % self.asleep.len().max(1)).copied();
         let (Some(a), Some(b)) = (nth(x), nth(y)) else { return self.add(x % bodies) };
@@ -175,7 +175,7 @@ fn a_ring_survives_one_cut_and_falls_apart_at_two() {
     world.unlink(6);
     assert_eq!(world.islands.bodies(ring).len(), 10, "whole until it is split");
     world.set_asleep(ring, true);
-    // 3..=6 and 7, 8, 9, 0, 1, 2: the larger one keeps the id.
+    // The parts are 3..=6 and 7, 8, 9, 0, 1, 2: the larger part keeps the id.
     let created = world.islands.split(ring).to_vec();
     assert_eq!(created, [world.island(3)]);
     assert_eq!((world.island(7), world.islands.bodies(created[0])), (ring, &[3, 4, 5, 6][..]));
@@ -195,7 +195,7 @@ fn unknown_names_are_answered() {
     assert_eq!(islands, Islands::new());
 }
 
-/// Linking without waking panics in debug builds. In release builds the merged island is awake.
+/// Linking a sleeping island panics in debug builds. In release builds the merged island is awake.
 #[test]
 #[cfg_attr(debug_assertions, should_panic(expected = "must be woken"))]
 fn linking_a_sleeper_unwoken() {
@@ -208,7 +208,7 @@ fn linking_a_sleeper_unwoken() {
     islands.validate();
 }
 
-/// Removing without unlinking panics in debug builds. In release builds the links are removed with the body.
+/// Removing a linked body panics in debug builds. In release builds the links are removed with the body.
 #[test]
 #[cfg_attr(debug_assertions, should_panic(expected = "must be unlinked"))]
 fn removing_a_linked_body() {
@@ -224,7 +224,7 @@ fn removing_a_linked_body() {
     assert_eq!(islands.links(islands.island_of(2).unwrap()), [IslandLink { key: LinkId(2), a: 2, b: 3 }]);
 }
 
-/// A second lap through the same states grows no buffer.
+/// A second pass through the same states grows no buffer.
 #[test]
 fn a_steady_state_does_not_allocate() {
     let mut islands = Islands::new();
@@ -248,7 +248,7 @@ fn a_steady_state_does_not_allocate() {
         let lists = islands.awake.capacity() + islands.spare.capacity();
         slots.sum::<usize>() + spare.sum::<usize>() + lists + tables
     };
-    // Ids wander between laps. After some laps every slot was used.
+    // Ids change between passes. After some passes every slot was used.
     (0..200).for_each(|_| lap(&mut islands));
     let before = memory(&islands);
     (0..200).for_each(|_| lap(&mut islands));

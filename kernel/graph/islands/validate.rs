@@ -1,4 +1,4 @@
-//! Checks of the lists of islands against each other.
+//! Checks that the lists of islands agree with each other.
 
 use super::{Island, IslandId, Islands, Member, NONE, NOWHERE, Place, place_in};
 use crate::graph::union_find::DisjointSets;
@@ -36,7 +36,8 @@ impl Islands {
         assert_eq!(self.awake.len(), awake, "the awake list holds the awake islands only");
     }
 
-    /// Bodies and links are at the place in their records, and links to carriers are counted.
+    /// Checks that bodies and links are at the place in their records, and that links to carriers are
+    /// counted.
     fn validate_lists(&self, id: u32, island: &Island) {
         let at = |index: usize| Place { island: id, index: index as u32 };
         for (index, &body) in island.bodies.iter().enumerate() {
@@ -50,7 +51,8 @@ impl Islands {
         assert_eq!(island.carriers as usize, carriers, "island {id} counts its carriers");
     }
 
-    /// Links are between bodies of the island. An island without removed links is connected.
+    /// Checks that links are between bodies of the island, and that an island without removed links is
+    /// connected.
     fn validate_connection(&self, id: u32, island: &Island, sets: &mut DisjointSets) {
         sets.reset(island.bodies.len());
         for link in &island.links {

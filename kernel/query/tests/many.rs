@@ -1,6 +1,7 @@
-//! Many rays and casts in random worlds, each of one kind of shape, against looking at every collider.
+//! Many rays and casts in random worlds, each with one kind of shape, compared with a search of every
+//! collider.
 //!
-//! `QUERY_CASES` is the number of rays for each kind of shape; casts are a tenth of that.
+//! `QUERY_CASES` is the number of rays for each kind of shape. There are a tenth as many casts.
 
 use super::super::*;
 use super::{composite, convex, dim, half_space, pose, unit, vector};
@@ -14,13 +15,13 @@ use proptest::test_runner::TestRunner;
 const SHAPES: usize = 24;
 const RAYS_PER_WORLD: usize = 250;
 
-/// How far a hit after some metres may be from the surface, in metres. The distance is rounded, and so is the slope on
-/// which a line comes down far away.
+/// Maximum distance of a hit from the surface, in metres, after a ray of `distance` metres. The distance is
+/// rounded, and so is the slope at which a line comes down far away.
 fn room(distance: f32) -> f32 {
     1.0e-4 + 4.0e-7 * distance
 }
 
-/// By how much [`closest`] may say more than the least depth of shapes of 2 m, where they touch in passing; in metres.
+/// Maximum excess of [`closest`] over the least depth of shapes of 2 m that touch in passing; in metres.
 const DEPTH: f32 = 2.0e-3;
 
 fn rays_per_kind() -> usize {

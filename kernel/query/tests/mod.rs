@@ -1,7 +1,7 @@
 //! Queries against certificates and brute force, over random shapes and poses.
 //!
-//! A distance is certified from both sides: points of both shapes at that distance, and a plane with that gap between
-//! the shapes' support points. No other implementation of a distance is needed.
+//! A distance is certified from both sides: points of both shapes at that distance, and a plane with that gap
+//! between the shapes' support points. No other implementation of a distance is needed.
 
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]

@@ -6,7 +6,7 @@ use crate::math::{Pose, Rot, Vector};
 use crate::shape::{Ball, Cuboid, HalfSpace, Shape};
 use proptest::prelude::*;
 
-/// The height of a shape along a direction; infinite for half-spaces but along their normal.
+/// The height of a shape along a direction; infinite for half-spaces, except along their normal.
 fn height(shape: &Shape, pose: &Pose, along: Vector) -> f32 {
     let local = pose.rotation.inverse_rotate(along);
     let top = match shape {
@@ -17,7 +17,7 @@ fn height(shape: &Shape, pose: &Pose, along: Vector) -> f32 {
     pose.transform(top).dot(along)
 }
 
-/// Whether a point is in a convex shape as far as some planes tell.
+/// Whether a point is in a convex shape, as far as some planes decide.
 fn is_in(shape: &Shape, pose: &Pose, point: Vector, planes: &[Vector], room: f32) -> bool {
     planes.iter().all(|n| point.dot(*n) <= height(shape, pose, *n) + room)
 }
@@ -83,7 +83,7 @@ proptest! {
     }
 }
 
-/// The nearest of all pairs of parts.
+/// The least distance over all pairs of parts.
 fn brute_closest(a: &Shape, b: &Shape, at: &Pose) -> f32 {
     let mut least = f32::INFINITY;
     for (pose_a, a) in parts(a) {
@@ -148,7 +148,7 @@ proptest! {
                 prop_assert!((found - least).abs() < 5.0e-4, "{found} and not {least}");
             }
             (None, None) => {}
-            // Whether what passes by touches is decided within rounding.
+            // Whether a shape that passes by touches is decided within rounding.
             (Some(t), None) | (None, Some(t)) => {
                 let then = Pose { position: at.position + direction * t, ..at };
                 let near = brute_closest(&a, &b, &then) - target;
@@ -190,7 +190,7 @@ proptest! {
         if let Some(hit) = hit {
             if hit.distance > 0.0 {
                 prop_assert!(gap(end) < 2.0e-5, "apart by {} at {end}", gap(end));
-                // Not by the depth, whose normal is that of a face if one is about as good.
+                // Not by the depth: its normal may belong to a face that is about as good.
                 let low = -height(&b, &moved(end), -hit.normal);
                 let between = low - height(&a, &Pose::IDENTITY, hit.normal) - target;
                 // The normal of two edges is accurate to 1e-4 rad, and edges are up to a metre long.
@@ -202,7 +202,7 @@ proptest! {
                 prop_assert!(is_in(&a, &Pose::IDENTITY, on_a, &planes, 5.0e-5), "a point of A");
                 prop_assert!(is_in(&b, &moved(end), on_b, &planes, 5.0e-5), "a point of B");
                 let sharp = height(&a, &Pose::IDENTITY, hit.normal) - on_a.dot(hit.normal);
-                // Of a shape thinner than a millimetre it may be any point.
+                // On a shape thinner than a millimetre any point is allowed.
                 let thin = height(&a, &Pose::IDENTITY, hit.normal) + height(&a, &Pose::IDENTITY, -hit.normal) < 1.0e-3;
                 prop_assert!(thin || sharp.abs() < 1.0e-4, "the normal is that of a plane between: {sharp}");
             } else {
@@ -243,7 +243,7 @@ proptest! {
     }
 }
 
-/// Numbers that are not finite, or huge, in any place.
+/// Numbers that may be infinite, NaN, huge or tiny.
 fn odd() -> impl Strategy<Value = f32> {
     prop_oneof![
         Just(f32::NAN),

@@ -7,7 +7,7 @@ use crate::query::Ray;
 use crate::shape::{Part, Shape};
 use proptest::prelude::*;
 
-/// Part of the way around a facet: a corner, then the next one.
+/// A point on the border of a facet: the facet, a corner, and the fraction of the side to the next corner.
 type Aim = (prop::sample::Index, u8, f32);
 
 fn aims() -> impl Strategy<Value = Vec<Aim>> {
@@ -15,7 +15,7 @@ fn aims() -> impl Strategy<Value = Vec<Aim>> {
     prop::collection::vec((any::<prop::sample::Index>(), 0..3u8, along), 400)
 }
 
-/// The point that is aimed at, in the shape's frame.
+/// The aimed point, in the shape's frame.
 fn point(shape: &Shape, (facet, corner, along): &Aim) -> Vector {
     let Shape::Composite(surface) = shape else { unreachable!("a surface") };
     let Part::Facet(facet) = surface.part(facet.index(surface.len()) as u32) else { unreachable!("a facet") };

@@ -129,7 +129,7 @@ proptest! {
         };
         let (a, b) = (hit(near), hit(far));
         if let (Some(a), Some(b)) = (a, b) {
-            // At a flat angle a lateral error is more along the ray.
+            // At a flat angle a lateral error is larger along the ray.
             let rate = a.normal.dot(direction).abs().max(1.0e-3);
             let room = (4.0e-7 * back + 4.0e-6) as Scalar / rate as Scalar;
             prop_assert!((b.distance - a.distance - back as Scalar).abs() < room + 2.0e-5, "{a:?} {b:?}");

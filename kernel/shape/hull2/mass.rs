@@ -4,7 +4,7 @@ use super::wide::{Point, cross, dot, length, sub, wide};
 use crate::math::{Vector, atan2};
 use crate::shape::MassProperties;
 
-/// Sums of area, first and second moments about one point.
+/// Sums of area, first and second moments about a point.
 #[derive(Default)]
 struct Moments {
     area: f64,
@@ -14,7 +14,7 @@ struct Moments {
 }
 
 impl Moments {
-    /// Adds a part by its area, and its first and polar moment about `at`.
+    /// Adds a part, given its area and its first and polar moments about `at`.
     fn add(&mut self, area: f64, at: Point, first_about: Point, polar_about: f64) {
         // ∫ |at + s|² = polar + 2 at · first + area |at|².
         self.area += area;
@@ -23,7 +23,7 @@ impl Moments {
         self.polar += polar_about + 2.0 * dot(at, first_about) + area * dot(at, at);
     }
 
-    /// About the centroid, with `origin` the point the sums are about.
+    /// The properties about the centroid. `origin` is the point that the sums are about.
     fn finish(&self, origin: Point) -> MassProperties {
         if self.area > 0.0 {
             let center = self.first.map(|v| v / self.area);
@@ -39,7 +39,7 @@ impl Moments {
     }
 }
 
-/// The area of a polygon grown by `radius`: the core as a fan of triangles, a rectangle on each edge, a
+/// The area of a polygon grown by `radius`: the core as a fan of triangles, a rectangle on each edge, and a
 /// sector of the exterior angle θ at each corner (∫ n̂ dθ from n₀ to n₁ is (n₁ − n₀) turned clockwise).
 pub(super) fn mass_of_rounded_polygon(vertices: &[Vector], radius: f64) -> MassProperties {
     let origin = wide(vertices[0]);

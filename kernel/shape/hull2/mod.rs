@@ -1,4 +1,4 @@
-//! The convex polygon, sharp or rounded, of any number of vertices.
+//! The convex polygon, sharp or rounded, with any number of vertices.
 
 mod mass;
 pub(super) mod outline;
@@ -19,11 +19,11 @@ use wide::{cross, length, sub, wide};
 
 /// A convex polygon, sharp or rounded: all points within [`radius`](Self::radius) of its core.
 ///
-/// The vertices go round counter-clockwise, without duplicates and without vertices on the line of
-/// their neighbours; edge `i` leads from vertex `i` to the next one and has normal `i`.
+/// The vertices go round counter-clockwise, without duplicates and without vertices on the line of their
+/// neighbours. Edge `i` leads from vertex `i` to the next vertex and has normal `i`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    /// The vertices, then the normals; up to eight of each are inline.
+    /// The vertices, then the normals. Up to eight of each are inline.
     points: SmallVec<[Vector; 16]>,
     radius: f32,
     aabb: Aabb,
@@ -33,12 +33,12 @@ pub struct Hull {
 impl Hull {
     /// The polygon with the given outline, rounded by `radius` metres (0 leaves it sharp).
     ///
-    /// The outline may have either orientation. Duplicate points and points on the line of their neighbours, within 1e-6 of the
-    /// size, are dropped.
+    /// The outline may have either orientation. Duplicate points, and points on the line of their neighbours,
+    /// within 1e-6 of the size, are dropped.
     ///
     /// # Errors
-    /// `NotFinite` and `Negative` for such numbers, `Degenerate` if less than a triangle remains, `NotConvex` if the outline
-    /// turns both ways or winds more than once.
+    /// `NotFinite` for a number that is not finite, `Negative` for a negative radius, `Degenerate` if less
+    /// than a triangle remains, `NotConvex` if the outline turns both ways or winds more than once.
     pub fn from_convex(vertices: &[Vector], radius: f32) -> Result<Self, ShapeError> {
         let radius = check(vertices, radius)?;
         let mut outline = vertices.to_vec();
@@ -54,8 +54,8 @@ impl Hull {
     /// The convex hull of any points, rounded by `radius` metres (0 leaves it sharp).
     ///
     /// # Errors
-    /// `NotFinite` and `Negative` for such numbers, `Degenerate` if all points lie on one line within
-    /// 1e-6 of their extent.
+    /// `NotFinite` for a number that is not finite, `Negative` for a negative radius, `Degenerate` if all
+    /// points lie on one line within 1e-6 of their extent.
     pub fn convex_hull_of(points: &[Vector], radius: f32) -> Result<Self, ShapeError> {
         let radius = check(points, radius)?;
         let tolerance = merge_distance(points);
@@ -91,7 +91,7 @@ impl Hull {
         &self.points[..self.points.len() / 2]
     }
 
-    /// The outward unit normals: `normals()[i]` is that of the edge from vertex `i` to the next.
+    /// The outward unit normals: `normals()[i]` is the normal of the edge from vertex `i` to the next.
     #[inline]
     pub fn normals(&self) -> &[Vector] {
         &self.points[self.points.len() / 2..]
@@ -114,13 +114,13 @@ impl Hull {
         self.aabb
     }
 
-    /// The ball around the centroid within the polygon: its centre and radius.
+    /// The largest ball around the centroid within the polygon: its centre and radius.
     pub fn core(&self) -> (Vector, f32) {
         let center = self.mass.center;
         (center, least_depth(center, self.vertices(), self.normals()) + self.radius)
     }
 
-    /// Whether a point is in the core, by a distance from each edge that `depth` gives for its normal.
+    /// Whether a point is in the core, at least `depth` of the edge's normal below each edge.
     pub fn contains(&self, point: Vector, depth: impl Fn(Vector) -> f32) -> bool {
         let mut edges = self.normals().iter().zip(self.vertices());
         edges.all(|(normal, vertex)| (point - *vertex).dot(*normal) <= -depth(*normal))
@@ -150,7 +150,7 @@ impl Hull {
         if self.radius == 0.0 {
             return cast_ray_polygon(self.vertices(), self.normals(), origin, direction, max_distance, solid);
         }
-        // The boundary of a rounded polygon is that of the capsules around its edges.
+        // The boundary of a rounded polygon is the boundary of the capsules around its edges.
         let mut whole: Option<Stretch> = None;
         let (mut first, mut last) = (None, None);
         for (a, b) in edges(self.vertices()) {
@@ -177,7 +177,7 @@ impl Hull {
         (self.aabb.center(), self.aabb.half().length())
     }
 
-    /// Area, centroid and polar moment of the area about it.
+    /// The area, the centroid, and the polar moment of the area about the centroid.
     #[inline]
     pub fn unit_mass(&self) -> MassProperties {
         self.mass

@@ -5,8 +5,8 @@ use crate::math::{Vector, max, min};
 use crate::shape::primitives::hit_of_stretch;
 use crate::shape::{Aabb, RayHit, ShapeError};
 
-/// Two points count as one, and a point as on the line of its neighbours, within this distance: 1e-6 of the outline's size,
-/// and at least the spacing of `f32` at its coordinates.
+/// Within this distance two points count as one, and a point counts as on the line of its neighbours: 1e-6 of
+/// the outline's size, and at least the spacing of `f32` at its coordinates.
 pub(super) fn merge_distance(points: &[Vector]) -> f64 {
     let bounds = Aabb::around(points.iter().copied());
     let size = (bounds.max - bounds.min).max_element();
@@ -26,8 +26,8 @@ pub(super) fn edges(outline: &[Vector]) -> impl Iterator<Item = (Vector, Vector)
     (0..n).map(move |i| (outline[i], outline[if i + 1 == n { 0 } else { i + 1 }]))
 }
 
-/// The outline without points that are within `tolerance` of the one before, or of the line of both
-/// neighbours while between them. Spikes remain, and are then found not to be convex.
+/// The outline without points within `tolerance` of the previous point, or of the line of both neighbours and
+/// between them. Spikes remain, and are later rejected as not convex.
 pub(super) fn simplified(mut outline: Vec<Vector>, tolerance: f64) -> Result<Vec<Vector>, ShapeError> {
     loop {
         let before = outline.len();
@@ -53,8 +53,8 @@ pub(super) fn simplified(mut outline: Vec<Vector>, tolerance: f64) -> Result<Vec
     }
 }
 
-/// Whether every corner turns left and the outline goes round once: its edges' directions pass from
-/// the lower into the upper half of the circle exactly once.
+/// Whether every corner turns left and the outline goes round once: the directions of its edges pass from the
+/// lower into the upper half of the circle exactly once.
 pub(super) fn turns_left_once(outline: &[Vector]) -> bool {
     let edge = |i: usize| sub(wide(outline[(i + 1) % outline.len()]), wide(outline[i % outline.len()]));
     let upper = |e: Point| e[1] > 0.0 || (e[1] == 0.0 && e[0] > 0.0);
@@ -69,8 +69,8 @@ pub(super) fn turns_left_once(outline: &[Vector]) -> bool {
     rounds == 1
 }
 
-/// The convex hull, counter-clockwise, of points that are finite (A. M. Andrew, "Another efficient
-/// algorithm for convex hulls in two dimensions", 1979). Fewer than three points if it has no area.
+/// The convex hull, counter-clockwise, of finite points (A. M. Andrew, "Another efficient algorithm for
+/// convex hulls in two dimensions", 1979). Fewer than three points if it has no area.
 pub(super) fn monotone_chain(points: &[Vector]) -> Vec<Vector> {
     let mut sorted = points.to_vec();
     // Adding 0 turns −0 into 0.

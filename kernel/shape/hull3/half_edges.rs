@@ -1,4 +1,4 @@
-//! The half edges of a polyhedron, each with the faces on both of its sides.
+//! The half edges of a polyhedron, each with the faces on both sides.
 
 /// A side of a face, counter-clockwise from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -13,7 +13,7 @@ pub(super) struct HalfEdge {
 /// All half edges in ascending order.
 pub(super) struct HalfEdges {
     pub(super) all: Vec<HalfEdge>,
-    /// Where those of each tail begin, followed by the number of all.
+    /// The start of each tail's half edges in `all`, followed by the total number.
     starts: Vec<u32>,
 }
 
@@ -21,7 +21,8 @@ pub(super) struct HalfEdges {
 const NONE: u32 = u32::MAX;
 
 impl HalfEdges {
-    /// Those of faces over some number of vertices. `None` if one occurs twice, or has no twin: the faces do not close a surface.
+    /// The half edges of faces over a number of vertices. `None` if a half edge occurs twice, or has no twin:
+    /// the faces do not close a surface.
     pub(super) fn of(vertices: usize, faces: &[Vec<u32>]) -> Option<Self> {
         let mut starts = vec![0_u32; vertices + 1];
         faces.iter().flatten().for_each(|tail| starts[*tail as usize + 1] += 1);

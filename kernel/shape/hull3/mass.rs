@@ -6,11 +6,11 @@ use crate::shape::MassProperties;
 
 /// Mass properties at 1 kg/m³ of a closed surface of counter-clockwise polygons.
 ///
-/// The solid is the signed sum of the tetrahedra from a point o inside to the triangles of each face.
-/// One with corners o, o+a, o+b, o+c has the volume V = a · (b × c) / 6, its centre at o + s/4 with
-/// s = a + b + c, and ∫ x xᵀ = V/20 (aaᵀ + bbᵀ + ccᵀ + ssᵀ) about o (Blow and Binstock, "How to find
-/// the inertia tensor (or other mass properties) of a 3D solid body represented by a triangle mesh",
-/// 2004). With o inside there is no cancellation; sums are in `f64`.
+/// The solid is the signed sum of the tetrahedra from a point o inside to the triangles of each face. A
+/// tetrahedron with corners o, o+a, o+b, o+c has the volume V = a · (b × c) / 6, its centre at o + s/4
+/// with s = a + b + c, and ∫ x xᵀ = V/20 (aaᵀ + bbᵀ + ccᵀ + ssᵀ) about o (Blow and Binstock, "How to find the
+/// inertia tensor (or other mass properties) of a 3D solid body represented by a triangle mesh", 2004). With
+/// o inside there is no cancellation; sums are in `f64`.
 pub(super) fn of_polyhedron(vertices: &[Vector], outlines: &[Vec<u32>]) -> MassProperties {
     let mut moments = Moments::about(center_of(vertices));
     add_polyhedron(&mut moments, vertices, outlines.iter().map(Vec::as_slice));

@@ -1,4 +1,5 @@
-//! From a closed convex mesh to a hull: vertices are welded, coplanar faces merged, and the result checked.
+//! Makes a hull from a closed convex mesh: vertices are welded, coplanar faces merged, and the result
+//! checked.
 //!
 //! All checks are relative to the largest extent of the mesh.
 
@@ -9,9 +10,9 @@ use crate::math::Vector;
 use crate::shape::ShapeError;
 use crate::shape::adjacency::welded;
 
-/// The tolerances, as shares of the size, within which a vertex is in a face's plane or on an edge. Larger ones remove small
-/// bevels, smaller ones leave the slivers of hull builders. In thin solids a large one joins faces that are not one polygon;
-/// then the next one is tried.
+/// The tolerances, as shares of the size, within which a vertex is in a face's plane or on an edge. Larger
+/// values remove small bevels, smaller values leave the slivers of hull builders. In thin solids a large
+/// tolerance joins faces that are not one polygon; then the next one is tried.
 const FLATNESS: [f64; 4] = [1.0e-4, 1.0e-5, 1.0e-6, 0.0];
 /// A vertex may lie in front of a face by this share of the size. More accepts meshes that are not convex.
 const CONVEXITY: f64 = 1.0e-3;
@@ -22,15 +23,14 @@ const FLAT_VOLUME: f64 = 1.0e-9;
 
 impl Hull {
     /// A hull from vertices (in metres) and faces, each a loop of at least three vertex indices,
-    /// counter-clockwise from outside. Neighbours that lie in a plane to within 0.01 % of the size are merged
-    /// into polygons; to within less, where those would not be all of the solid.
+    /// counter-clockwise from outside. Neighbours in a plane to within 0.01 % of the size are merged into
+    /// polygons; if the merged polygons do not form the whole solid, a smaller tolerance is used.
     ///
     /// # Errors
     ///
-    /// `NotFinite` for a bad coordinate; `Degenerate` if the faces do not close a surface of the
-    /// topology of a ball (Euler: V − E + F = 2), an index is out of range, or there is no volume;
-    /// `NotConvex` if a vertex lies in front of a face by more than 0.1 % of the size, or the faces
-    /// are clockwise.
+    /// `NotFinite` for a bad coordinate; `Degenerate` if the faces do not close a surface of the topology of
+    /// a ball (Euler: V − E + F = 2), an index is out of range, or there is no volume; `NotConvex` if a
+    /// vertex lies in front of a face by more than 0.1 % of the size, or the faces are clockwise.
     pub fn from_mesh(vertices: Vec<Vector>, faces: Vec<Vec<u32>>) -> Result<Self, ShapeError> {
         let (vertices, faces) = weld(vertices, faces)?;
         let (vertices, faces) = drop_unused(&vertices, faces);
@@ -77,8 +77,7 @@ impl Hull {
         Ok(Self::assemble(vertices, &planes, &outlines, &half_edges))
     }
 
-    /// A hull from a triangle mesh, as from builders of convex hulls; see
-    /// [`from_mesh`](Self::from_mesh).
+    /// A hull from a triangle mesh, as made by builders of convex hulls; see [`from_mesh`](Self::from_mesh).
     ///
     /// # Errors
     ///
@@ -118,8 +117,8 @@ fn area_vector(vertices: &[Vector], outline: &[u32]) -> Wide {
 
 /// The group of coplanar neighbours of each face.
 ///
-/// Groups grow from the largest face, and faces are compared with that face alone: comparing neighbours with each other would
-/// join all faces of a finely tessellated ball.
+/// Groups grow from the largest face, and faces are compared with that face alone: comparing neighbours with
+/// each other would join all faces of a finely tessellated ball.
 fn merge_coplanar(
     vertices: &[Vector],
     faces: &[Vec<u32>],
@@ -146,7 +145,7 @@ fn merge_coplanar(
             let sliver = area < tolerance * longest;
             let flat =
                 faces[face].iter().all(|v| normal.dot(widen(vertices[*v as usize]) - base).abs() < tolerance);
-            // A sliver joins the face that it is coplanar with, but not the other side of a thin solid.
+            // A sliver joins a face that it is coplanar with, but not the other side of a thin solid.
             let least = if sliver { 0.0 } else { SAME_DIRECTION * area };
             flat && normal.dot(areas[face]) > least
         };
@@ -167,8 +166,8 @@ fn merge_coplanar(
     group
 }
 
-/// The boundary loop of each group. Vertices that only two groups share are dropped, and must lie on a straight edge within
-/// `tolerance` metres.
+/// The boundary loop of each group. Vertices that only two groups share are dropped, and must lie on a
+/// straight edge within `tolerance` metres.
 fn outlines(
     vertices: &[Vector],
     group: &[u32],
@@ -208,7 +207,7 @@ fn outlines(
                 }
             }
         }
-        // Another loop, or a vertex passed twice: the group is not a disc.
+        // A second loop, or a vertex that is passed twice: the group is not a disc.
         let pinched = of_group.windows(2).any(|w| w[0].1 == w[1].1);
         if at != start || pinched || outline.len() < 3 {
             return Err(ShapeError::Degenerate);
@@ -245,7 +244,7 @@ fn drop_unused(vertices: &[Vector], mut outlines: Vec<Vec<u32>>) -> (Vec<Vector>
     (kept, outlines)
 }
 
-/// The planes of the faces, if no vertex, dropped ones included, lies in front of one.
+/// The planes of the faces, if no vertex, dropped vertices included, lies in front of a face.
 fn checked_planes(
     vertices: &[Vector],
     outlines: &[Vec<u32>],

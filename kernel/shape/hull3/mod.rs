@@ -1,4 +1,4 @@
-//! The convex polyhedron: vertices, polygonal faces, and edges with the faces beside them.
+//! The convex polyhedron: vertices, polygonal faces, and edges with their adjacent faces.
 
 mod half_edges;
 mod mass;
@@ -30,15 +30,15 @@ pub struct Face {
 
 /// An edge of a hull. Seen from outside, it runs counter-clockwise around the `left` face.
 ///
-/// On the Gauss map (each face a point of the unit sphere, its normal) the edge is the arc from the
-/// left normal to the right one, a turn about the direction of the edge.
+/// On the Gauss map (each face is a point of the unit sphere, its normal) the edge is the arc from the left
+/// normal to the right normal, a turn about the direction of the edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
     /// The vertex at its start.
     pub tail: u32,
     /// The vertex at its end.
     pub head: u32,
-    /// The face it runs counter-clockwise around.
+    /// The face around which it runs counter-clockwise.
     pub left: u32,
     /// The face on its other side.
     pub right: u32,
@@ -57,7 +57,7 @@ pub(crate) struct EdgeBlock {
     pub tail: Vector<F32x4>,
 }
 
-/// Four faces side by side, for the search for the face of the largest separation.
+/// Four faces side by side, for the search for the face with the largest separation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceBlock {
     /// The outward unit normal.
@@ -66,10 +66,10 @@ pub(crate) struct FaceBlock {
     pub offset: F32x4,
 }
 
-/// A convex polyhedron, or all points within a radius of one.
+/// A convex polyhedron, or all points within a radius of it.
 ///
-/// Immutable. Vertices, faces and edges are stored twice: one by one, and four side by side for the searches of the narrow
-/// phase.
+/// Immutable. Vertices, faces and edges are stored twice: single, and four side by side for the searches of
+/// the narrow phase.
 #[derive(Clone, Debug)]
 pub struct Hull {
     vertices: Vec<Vector>,
@@ -96,7 +96,7 @@ impl PartialEq for Hull {
     }
 }
 
-/// Packs vectors four side by side; the last is repeated to fill the tail.
+/// Packs vectors four side by side. The last vector is repeated to fill the last block.
 pub(crate) fn pack(values: &[Vector]) -> impl Iterator<Item = Vector<F32x4>> + '_ {
     values.chunks(4).map(|chunk| {
         let mut block = Vector::<F32x4>::splat(chunk[0]);
@@ -107,7 +107,7 @@ pub(crate) fn pack(values: &[Vector]) -> impl Iterator<Item = Vector<F32x4>> + '
     })
 }
 
-/// The index of the vector farthest along `direction`, the lowest of equals, and its distance.
+/// The index of the vector farthest along `direction`, at a tie the lowest index, and its distance.
 #[inline(always)]
 pub(crate) fn farthest(blocks: &[Vector<F32x4>], direction: Vector) -> (usize, f32) {
     let d = Vector::<F32x4>::splat(direction);
@@ -124,8 +124,8 @@ pub(crate) fn farthest(blocks: &[Vector<F32x4>], direction: Vector) -> (usize, f
     largest(best, at)
 }
 
-/// The largest of some values and its index, given the largest value and its index of each lane. Without branches, which
-/// would be mispredicted.
+/// The largest of some values and its index, given the largest value of each lane and its index. It has no
+/// branches, which would be mispredicted.
 #[inline(always)]
 pub(crate) fn largest(best: F32x4, at: F32x4) -> (usize, f32) {
     const LANES: F32x4 = F32x4::new([0.0, 1.0, 2.0, 3.0]);
@@ -220,7 +220,7 @@ impl Hull {
         &self.edges
     }
 
-    /// The ball around the centroid within the polyhedron: its centre and radius.
+    /// The largest ball around the centroid within the polyhedron: its centre and radius.
     pub fn core(&self) -> (Vector, f32) {
         let center = self.centroid();
         let depths = self.faces().iter().map(|face| face.offset - face.normal.dot(center));
@@ -247,12 +247,12 @@ impl Hull {
         &self.blocks
     }
 
-    /// The edges four side by side, the last repeated to fill the tail.
+    /// The edges four side by side. The last edge is repeated to fill the last block.
     pub(crate) fn edge_blocks(&self) -> &[EdgeBlock] {
         &self.edge_blocks
     }
 
-    /// The faces four side by side, the last repeated to fill the tail.
+    /// The faces four side by side. The last face is repeated to fill the last block.
     pub(crate) fn face_blocks(&self) -> &[FaceBlock] {
         &self.face_blocks
     }
@@ -262,7 +262,7 @@ impl Hull {
         (&self.fans, &self.fan_starts)
     }
 
-    /// Whether a point is in the polyhedron, by a distance from each face that `depth` gives for its normal.
+    /// Whether a point is in the polyhedron, at least `depth` of the face's normal below each face.
     pub fn contains(&self, point: Vector, depth: impl Fn(Vector) -> f32) -> bool {
         self.faces.iter().all(|face| point.dot(face.normal) <= face.offset - depth(face.normal))
     }
@@ -298,8 +298,8 @@ impl Hull {
     /// The first hit of a ray along the unit vector `direction` on the hull; see
     /// [`Shape::cast_ray`](crate::shape::Shape::cast_ray).
     ///
-    /// The ray is clipped by the plane of each face. The last entry and the first exit bound the range inside (Cyrus and Beck,
-    /// 1978).
+    /// The ray is clipped by the plane of each face. The last entry and the first exit bound the range inside
+    /// (Cyrus and Beck, 1978).
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -373,7 +373,7 @@ fn face_blocks(faces: &[Face]) -> Vec<FaceBlock> {
     pack(&normals).zip(offsets).map(|(normal, offset)| FaceBlock { normal, offset }).collect()
 }
 
-/// The faces around each of `count` vertices, and the index of each vertex' first face, followed by the number of all.
+/// The faces around each vertex, and the index of each vertex' first face, followed by the total number.
 fn fans(vertices: usize, outlines: &[Vec<u32>]) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0; vertices + 1];
     outlines.iter().flatten().for_each(|v| starts[*v as usize + 1] += 1);
@@ -391,7 +391,7 @@ fn fans(vertices: usize, outlines: &[Vec<u32>]) -> (Vec<u32>, Vec<u32>) {
     (fans, starts)
 }
 
-/// The largest extent of some points along an axis; 0 for none.
+/// The largest extent of some points along an axis; 0 without points.
 fn size_of(points: &[Vector]) -> f32 {
     let Some(first) = points.first() else { return 0.0 };
     let low = points.iter().fold(*first, |m, p| m.min(*p)).to_array();

@@ -1,17 +1,18 @@
 //! The convex hull of points, for users of the kernel alone and for tests.
 //!
 //! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", 1996) in `f64`
-//! about one of the points. Points are `f32`, so nine digits remain for the rounding of planes.
+//! relative to one of the points. Points are `f32`, so nine digits remain for the rounding of planes.
 
 use super::wide::{Wide, widen};
 use super::{Hull, size_of};
 use crate::math::Vector;
 use crate::shape::ShapeError;
 
-/// Points closer to each other than this share of the size are one, and points this close to a plane are in it.
+/// Points closer to each other than this share of the size count as one point, and points this close to a
+/// plane are in it.
 const TOLERANCE: f64 = 1.0e-5;
-/// A point in front of a face by less than this share of the tolerance is on it. It must be small: a point beyond the edge of
-/// a thin solid may be far away, but hardly in front of either face.
+/// A point in front of a face by less than this share of the tolerance is on the face. The share must be
+/// small: a point beyond the edge of a thin solid may be far away, but hardly in front of either face.
 const ON_FACE: f64 = 1.0e-4;
 
 /// A triangle of the growing hull.
@@ -19,7 +20,7 @@ struct Facet {
     corners: [usize; 3],
     normal: Wide,
     offset: f64,
-    /// Points in front of this facet and of none before it.
+    /// The points in front of this facet that `assign` gave to it.
     outside: Vec<usize>,
     alive: bool,
 }
@@ -48,8 +49,8 @@ impl Hull {
     ///
     /// # Errors
     ///
-    /// `NotFinite` for a bad coordinate, `Degenerate` if the points lie in a plane to within 0.001 %
-    /// of their extent, or span less volume than a cube of 0.1 % of it.
+    /// `NotFinite` for a bad coordinate, `Degenerate` if the points lie in a plane to within 0.001 % of their
+    /// extent, or span less volume than a cube of 0.1 % of their extent.
     pub fn convex_hull_of(points: &[Vector]) -> Result<Self, ShapeError> {
         if points.iter().any(|p| !p.is_finite()) {
             return Err(ShapeError::NotFinite);
@@ -72,7 +73,7 @@ impl Hull {
     }
 }
 
-/// The index of the point with the largest measure, if above the tolerance.
+/// The index of the point with the largest measure, if the measure is above the tolerance.
 fn farthest(points: &[Wide], tolerance: f64, measure: impl Fn(Wide) -> f64) -> Option<usize> {
     let mut best = None;
     let mut most = tolerance;
@@ -85,7 +86,7 @@ fn farthest(points: &[Wide], tolerance: f64, measure: impl Fn(Wide) -> f64) -> O
     best
 }
 
-/// Four points that span a tetrahedron, the last in front of none.
+/// Four points that span a tetrahedron. The last point is behind the face of the first three.
 fn first_tetrahedron(points: &[Wide], tolerance: f64) -> Option<[usize; 4]> {
     let a = *points.first()?;
     let b = farthest(points, tolerance, |p| (p - a).length())?;
@@ -98,7 +99,7 @@ fn first_tetrahedron(points: &[Wide], tolerance: f64) -> Option<[usize; 4]> {
     Some(if normal.dot(points[d] - a) > 0.0 { [0, c, b, d] } else { [0, b, c, d] })
 }
 
-/// The sides of the living facets, by the point at which they begin: where each ends, and its facet.
+/// The sides of the living facets, by their start point: the end point of each side, and its facet.
 struct Sides(Vec<Vec<(usize, usize)>>);
 
 impl Sides {
@@ -112,7 +113,7 @@ impl Sides {
         corners.into_iter().for_each(|tail| self.0[tail].retain(|side| side.1 != facet));
     }
 
-    /// The facet on the other side of a side.
+    /// The facet across a side.
     fn across(&self, tail: usize, head: usize) -> Option<usize> {
         self.0[head].iter().find(|side| side.0 == tail).map(|side| side.1)
     }
@@ -167,7 +168,7 @@ fn assign(points: &[Wide], facets: &mut [Facet], from: usize, candidates: Vec<us
     }
 }
 
-/// The facets that a point sees, connected to the one given, and the half edges around them.
+/// The facets that a point sees and that are connected to the given facet, and the half edges around them.
 fn visible_from(
     facets: &[Facet],
     sides: &Sides,

@@ -1,7 +1,7 @@
-//! What a radius around a polyhedron changes: its mass, and how rays hit it.
+//! The effect of a radius around a polyhedron on its mass and on ray hits.
 //!
-//! Around the polyhedron are a prism on each face, a wedge of a cylinder along each edge, and a sector of a ball at each
-//! vertex.
+//! Around the polyhedron are a prism on each face, a wedge of a cylinder along each edge, and a sector of a
+//! ball at each vertex.
 
 use super::mass::{Moments, add_polyhedron, center_of};
 use super::wide::{Wide, widen};
@@ -14,7 +14,7 @@ use core::f64::consts::TAU;
 /// The sector of a ball at a vertex: the directions between the normals of its faces.
 #[derive(Clone, Copy)]
 struct Sector {
-    /// Ω, their solid angle: a full turn less the angles of the faces at the vertex (Descartes).
+    /// Ω, the solid angle of the sector: a full turn less the angles of the faces at the vertex (Descartes).
     angle: f64,
     /// ∫ n dΩ.
     first: Wide,
@@ -23,8 +23,8 @@ struct Sector {
 /// The mass properties at 1 kg/m³.
 ///
 /// By Stokes' theorem on the unit sphere, with ν the outward direction across each arc that bounds Ω:
-/// ∫ n dΩ = −½ Σ φ ν for arcs of the angles φ, and 3 ∫ n nᵀ dΩ = Ω 1 − Σ (∫ n ds) νᵀ. The arcs belong to the edges of the
-/// vertex, and ν points along these.
+/// ∫ n dΩ = −½ Σ φ ν for arcs of the angles φ, and 3 ∫ n nᵀ dΩ = Ω 1 − Σ (∫ n ds) νᵀ. The arcs belong to the
+/// edges of the vertex, and ν points along these edges.
 fn mass_of(hull: &Hull) -> MassProperties {
     let r = f64::from(hull.radius);
     let mut moments = Moments::about(center_of(&hull.vertices));
@@ -51,7 +51,7 @@ fn mass_of(hull: &Hull) -> MassProperties {
         }
         let along = (q - p) * (1.0 / length);
         let angle = atan2(left.cross(right).length(), left.dot(right));
-        // Midway between the normals; of a flat hull it is across the edge.
+        // The direction midway between the normals; for a flat hull it is across the edge.
         let between = left + right;
         let middle =
             if between.length() > 1.0e-6 { between * (1.0 / between.length()) } else { along.cross(left) };
@@ -81,7 +81,7 @@ fn add_isotropic(moments: &mut Moments, k: f64) {
     }
 }
 
-/// Adds what is above a face, up to the height `r`.
+/// Adds the prism above a face, up to the height `r`.
 fn add_prism(moments: &mut Moments, outline: &[u32], normal: Wide, at: impl Fn(u32) -> Wide, r: f64) {
     for k in 2..outline.len() {
         let (a, b, c) = (at(outline[0]), at(outline[k - 1]), at(outline[k]));
@@ -97,7 +97,8 @@ fn add_prism(moments: &mut Moments, outline: &[u32], normal: Wide, at: impl Fn(u
     }
 }
 
-/// Adds the wedge of a cylinder along an edge. `across` are the directions to the middle of its angle, and across that.
+/// Adds the wedge of a cylinder along an edge. `across` contains the directions to the middle of its angle,
+/// and at right angles to it.
 fn add_wedge(moments: &mut Moments, [p, q]: [Wide; 2], across: [Wide; 2], angle: f64, r: f64) {
     let (middle, along) = ((p + q) * 0.5, q - p);
     let (length, sin_half) = (along.length(), sin_cos(0.5 * angle).0);
@@ -116,7 +117,7 @@ fn add_wedge(moments: &mut Moments, [p, q]: [Wide; 2], across: [Wide; 2], angle:
 }
 
 impl Hull {
-    /// All points within `radius` metres of this hull, whose own radius is replaced.
+    /// All points within `radius` metres of this hull. `radius` replaces the hull's own radius.
     ///
     /// # Errors
     ///
@@ -129,8 +130,9 @@ impl Hull {
         Ok(self)
     }
 
-    /// The hull is the union of its polyhedron, the prisms on its faces and the capsules around its edges. All are convex and
-    /// so is the union, so the ends of the range inside are the outermost ends of theirs.
+    /// The hull is the union of its polyhedron, the prisms on its faces and the capsules around its edges.
+    /// All of these and their union are convex, so the range inside ends at the outermost ends of their
+    /// ranges.
     pub(super) fn cast_ray_rounded(
         &self,
         origin: Vector,

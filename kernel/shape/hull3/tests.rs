@@ -33,7 +33,7 @@ fn close(a: Inertia, b: Inertia, tolerance: f32) -> bool {
     entries(a).iter().zip(entries(b)).all(|(x, y)| (x - y).abs() <= tolerance)
 }
 
-/// The inertia tensor of `m` about a point at `r` from its centre (Steiner's theorem).
+/// The inertia tensor of a mass about a point at `r` from its centre (Steiner's theorem).
 fn shifted(inertia: Inertia, mass: f32, r: Vector) -> Inertia {
     let s = r.length_squared();
     Inertia {
@@ -63,7 +63,7 @@ fn a_cuboid_has_square_faces() {
 }
 
 proptest! {
-    /// Four vertices at a time, the last block filled up.
+    /// Four vertices at a time, with the last block filled up.
     #[test]
     fn boxes_contain_all_vertices_and_no_more(points in cloud(), turn in rotation(), radius in 0.0f32..0.5) {
         let Ok(hull) = Hull::convex_hull_of(&points).and_then(|hull| hull.rounded(radius)) else { return Ok(()) };
@@ -126,7 +126,7 @@ fn a_needle_keeps_its_tips() {
 
 #[test]
 fn a_fine_ball_keeps_its_faces() {
-    // Fibonacci points: faces turn little against their neighbours, and none may be merged.
+    // Fibonacci points: the angles between neighbouring faces are small, and no faces may be merged.
     let count = 300;
     let points: Vec<Vector> = (0..count)
         .map(|i| {
@@ -154,14 +154,14 @@ fn masses_equal_closed_forms() {
     let expected = Inertia::from_diagonal(v(8.0 / 12.0 * 20.0, 8.0 / 12.0 * 17.0, 8.0 / 12.0 * 5.0));
     assert!(close(hull.inertia, expected, 1e-4) && close(cuboid.inertia, expected, 1e-4));
     // The corner tetrahedron of a cube: V = 1/6, centre (1,1,1)/4, and about the corner ∫x² = 1/60,
-    // ∫xy = 1/120, so that about the centre I_xx = 1/30 − 2 V/16 and I_xy = −1/120 + V/16.
+    // ∫xy = 1/120, so about the centre I_xx = 1/30 − 2 V/16 and I_xy = −1/120 + V/16.
     let corner = Hull::convex_hull_of(&[Vector::ZERO, Vector::X, Vector::Y, Vector::Z]).expect("solid");
     let m = corner.unit_mass();
     assert!((m.mass - 1.0 / 6.0).abs() < 1e-7 && (m.center - Vector::ONE * 0.25).length() < 1e-7);
     let (on, off) = (1.0 / 30.0 - 1.0 / 48.0, -1.0 / 120.0 + 1.0 / 96.0);
     let expected = Inertia { xx: on, yy: on, zz: on, xy: off, xz: off, yz: off };
     assert!(close(m.inertia, expected, 1e-7), "{:?}", m.inertia);
-    // A capsule without length is a ball; a long thin one a rod, I = m h²/12.
+    // A capsule without length is a ball; a long thin capsule is a rod, I = m h²/12.
     let ball = mass_of_capsule(&Capsule { a: Vector::Y, b: Vector::Y, radius: 0.7 });
     let same = mass_of_ball(&Ball { radius: 0.7 });
     assert!((ball.mass - same.mass).abs() < 1e-6 && close(ball.inertia, same.inertia, 1e-6));
@@ -186,7 +186,7 @@ fn ray_by_brute_force(hull: &Hull, origin: Vector, direction: Vector) -> Option<
     best
 }
 
-/// Asserts that the hull contains its points, along `axes` too, and is an error only if they are flat.
+/// Asserts that the hull contains its points, also along `axes`, and fails only for flat points.
 fn surrounds(points: &[Vector], axes: [Vector; 3]) -> Result<(), TestCaseError> {
     let size = size_of(points);
     let Ok(hull) = Hull::convex_hull_of(points) else {
@@ -228,7 +228,7 @@ proptest! {
         surrounds(&points, [Vector::X, Vector::Y, Vector::Z])?;
     }
 
-    /// Plates and needles, where two sides are nearly one plane and triangles are slivers.
+    /// Plates and needles, in which two sides are nearly one plane and triangles are slivers.
     #[test]
     fn a_thin_hull_surrounds_its_points(
         points in cloud(),
@@ -320,7 +320,7 @@ proptest! {
                     prop_assert!((hit.normal.dot(direction) > 0.0) == inside);
                 }
                 (None, None) => {}
-                // A ray through an edge may miss by either test.
+                // A ray through an edge may miss in either test.
                 (hit, brute) => {
                     let grazing = hull.edges().iter().any(|e| {
                         let [a, b] = [e.tail, e.head].map(|i| hull.vertices()[i as usize]);
@@ -337,7 +337,7 @@ proptest! {
     }
 }
 
-/// The approximate distance of a line from a segment, by samples along it.
+/// The approximate distance of a line from a segment, by samples along the segment.
 fn line_distance(origin: Vector, direction: Vector, a: Vector, b: Vector) -> f32 {
     let off = |p: Vector| {
         let r = p - origin;

@@ -1,4 +1,4 @@
-//! Rows of custom constraints in a batch. A row has as many constraints as lanes, which are run one after the other.
+//! Rows of custom constraints in a batch. A row has one constraint per lane, run one after the other.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
 use super::super::batch::{Batch, Filling, Pass, Passes, Sweep};
@@ -24,7 +24,8 @@ pub(in super::super) fn customs(colors: &ColorGraph, color: u8) -> &[u32] {
     colors.constraints(KIND, color)
 }
 
-/// Sorts constraints into a batch of a layer. Those that only connect bodies are left out.
+/// Sorts constraints into a batch of a layer. Constraints without an implementation, which only connect
+/// bodies, are left out.
 pub(in super::super) fn sort_customs(
     customs: &[u32],
     batch: usize,
@@ -39,7 +40,7 @@ pub(in super::super) fn sort_customs(
     }
 }
 
-/// A constraint in this step.
+/// A constraint of this step.
 #[derive(Clone, Copy, Debug)]
 struct CustomRow {
     /// The id; [`NONE`] for padding.
@@ -68,7 +69,7 @@ impl CustomRows {
     }
 }
 
-/// A view of [`CustomRows`] whose blocks are changed by several threads.
+/// A view of [`CustomRows`]. Several threads may change its blocks.
 pub(in super::super) struct CustomView<'a> {
     rows: Parts<'a, Option<CustomRow>>,
     width: usize,
@@ -79,7 +80,7 @@ impl<'a> CustomView<'a> {
     /// The constraints of a range of rows.
     ///
     /// # Safety
-    /// While they are in use, no range that overlaps this one may be taken.
+    /// While the constraints are in use, no overlapping range is taken.
     unsafe fn take(&self, rows: Range<usize>) -> &'a mut [Option<CustomRow>] {
         // SAFETY: by the contract.
         unsafe { self.rows.take(rows.start * self.width..rows.end * self.width) }
@@ -92,9 +93,9 @@ impl Batch for CustomView<'_> {
         let slots = unsafe { self.take(rows) };
         slots.fill(None);
         for (slot, item) in slots.iter_mut().zip(items) {
-            // SAFETY: by the contract bodies are not written meanwhile.
+            // SAFETY: by the contract, no other thread writes the bodies.
             let row = unsafe { CustomRow::new(item.id, from) };
-            // SAFETY: a constraint is in one row, so by the contract no other thread has its record.
+            // SAFETY: a constraint is in one row, so by the contract no other thread uses its record.
             let record = unsafe { self.records.0.one(item.id as usize) };
             if let Some(act) = &mut record.act {
                 let [a, b] = &row.bodies;
@@ -108,7 +109,7 @@ impl Batch for CustomView<'_> {
     unsafe fn run(&self, rows: Range<usize>, _: Passes, sweep: &Sweep) {
         // SAFETY: by the contract.
         for row in unsafe { self.take(rows) }.iter_mut().flatten() {
-            // SAFETY: a constraint is in one row, so by the contract no other thread has its record.
+            // SAFETY: a constraint is in one row, so by the contract no other thread uses its record.
             let record = unsafe { self.records.0.one(row.id as usize) };
             let Some(act) = &mut record.act else { continue };
             // SAFETY: by the contract.
@@ -128,7 +129,7 @@ impl Batch for CustomView<'_> {
     unsafe fn store(&self, rows: Range<usize>, items: &[Item], _: &ManifoldsView) {
         debug_assert!(rows.len() * self.width >= items.len(), "each item has a place");
         for item in items {
-            // SAFETY: a constraint is in one row, so by the contract no other thread has its record.
+            // SAFETY: a constraint is in one row, so by the contract no other thread uses its record.
             let record = unsafe { self.records.0.one(item.id as usize) };
             if let Some(act) = &mut record.act {
                 act.store();
@@ -139,7 +140,7 @@ impl Batch for CustomView<'_> {
 
 impl CustomRow {
     /// # Safety
-    /// Until it returns, no other thread writes a body of the constraint.
+    /// Until the call returns, no other thread writes a body of the constraint.
     unsafe fn new(id: u32, from: &Filling) -> Self {
         let input = from.input;
         let ids = input.bodies.constraints(KIND).get(id).bodies;
@@ -169,10 +170,10 @@ impl CustomRow {
         Self { id, rows, bodies }
     }
 
-    /// Reads the bodies' motion.
+    /// Loads the velocities and displacements of both bodies.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes these rows.
+    /// Until the call returns, no other thread writes these rows.
     unsafe fn load(&mut self, view: &RowView<BodyRow>) {
         for (body, row) in self.bodies.iter_mut().zip(self.rows) {
             // SAFETY: by the contract; the reference does not outlive the copy.
@@ -182,10 +183,10 @@ impl CustomRow {
         }
     }
 
-    /// Writes the bodies' velocities, if all are finite. Returns whether they are.
+    /// Stores the velocities of both bodies if all are finite. Returns whether they are.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those of these rows that may be written.
+    /// Until the call returns, no other thread reads or writes the writable rows among these.
     unsafe fn save(&self, view: &RowView<BodyRow>) -> bool {
         if self.bodies.iter().any(|body| !(body.linear.is_finite() && body.angular.is_finite())) {
             return false;

@@ -2,7 +2,7 @@
 
 use crate::math::{Angular, InvInertia, Rot, Vector, WorldVector};
 
-/// A body as a custom constraint sees it.
+/// The state of a body that a custom constraint reads and writes.
 #[derive(Clone, Copy, Debug)]
 pub struct CustomBody {
     /// Velocity of the centre of mass, m/s.

@@ -1,4 +1,5 @@
-//! Constraints of the embedder: objects that change the velocities of two bodies, in colours and islands as all others.
+//! Custom constraints: objects of the embedder that change the velocities of two bodies. They are in
+//! colours and islands like all others.
 
 mod batch;
 mod body;

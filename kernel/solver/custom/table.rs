@@ -10,39 +10,40 @@ use core::fmt;
 
 const KIND: ConstraintKind = ConstraintKind::Custom;
 
-/// A constraint between two bodies that the embedder defines.
+/// A constraint between two bodies, implemented by the embedder.
 ///
-/// It changes velocities only, those of its two bodies only, and computes the same from the same input. Then results do not
-/// depend on threads. Changes of a body that is not dynamic have no effect.
+/// It may change only the velocities of its two bodies, and must compute the same output from the same
+/// input, so that results do not depend on threads. Changes to a body that is not dynamic have no effect.
 pub trait CustomConstraint: Send + Sync {
-    /// Prepares for a step. Called again, with the same impulses, if masses change before the first substep.
+    /// Prepares for a step. Called again, with the same impulses, if masses change before the first
+    /// substep.
     fn prepare(&mut self, bodies: [&CustomBody; 2], params: &SubstepParams);
 
     /// Applies the impulses of the last substep.
     fn warm_start(&mut self, bodies: [&mut CustomBody; 2], params: &SubstepParams);
 
-    /// Changes velocities so that the constraint holds. With `use_bias` also so that errors of the positions get smaller.
+    /// Changes velocities to satisfy the constraint. With `use_bias` it also reduces position errors.
     fn solve(&mut self, bodies: [&mut CustomBody; 2], params: &SubstepParams, use_bias: bool);
 
-    /// Keeps the impulses of the last substep for the next step.
+    /// Stores the impulses of the last substep for the next step.
     fn store(&mut self);
 
-    /// A copy.
+    /// Returns a copy.
     fn boxed(&self) -> Box<dyn CustomConstraint>;
 
-    /// Itself, to be changed by whoever knows its type.
+    /// The constraint, for downcasting to its type and changing it.
     fn as_any_mut(&mut self) -> &mut dyn Any;
 
-    /// Itself, to be read by whoever knows its type.
+    /// The constraint, for downcasting to its type and reading it.
     fn as_any(&self) -> &dyn Any;
 }
 
-/// Why a custom constraint is refused.
+/// Reason why a custom constraint is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CustomError {
     /// A body with this id does not exist.
     NoBody(u32),
-    /// Both bodies are one.
+    /// Both bodies are the same.
     SameBody,
     /// A constraint with this id does not exist.
     NoConstraint(u32),
@@ -62,9 +63,9 @@ impl core::error::Error for CustomError {}
 
 /// State of a constraint between steps.
 pub(super) struct Record {
-    /// What it does; nothing if it only connects its bodies.
+    /// The implementation; `None` if the constraint only connects its bodies.
     pub(super) act: Option<Box<dyn CustomConstraint>>,
-    /// Whether it gave a velocity that is not finite, which was ignored.
+    /// Whether the constraint returned a velocity that is not finite. Such velocities are ignored.
     pub(super) is_faulty: bool,
 }
 
@@ -81,15 +82,17 @@ impl fmt::Debug for Record {
     }
 }
 
-/// All custom constraints by id. Their bodies are in [`BodyTable::constraints`](crate::table::BodyTable::constraints).
+/// All custom constraints by id. [`BodyTable::constraints`](crate::table::BodyTable::constraints) stores
+/// their bodies.
 #[derive(Clone, Debug, Default)]
 pub struct CustomTable {
-    /// Records by id. Those of free ids are stale.
+    /// Records by id. Records of free ids are stale.
     records: Vec<Record>,
 }
 
 impl CustomTable {
-    /// Connects two bodies, and wakes them. They are in one island if both are dynamic. Without `act` that is all.
+    /// Connects two bodies and wakes them. They are in one island if both are dynamic. Without `act`, the
+    /// constraint has no other effect.
     pub fn add(
         &mut self,
         link: &mut Link,
@@ -121,22 +124,23 @@ impl CustomTable {
         Ok(())
     }
 
-    /// What a constraint does, to be changed. The caller wakes its bodies if that matters to them.
+    /// The implementation of a constraint, for changing it. The caller wakes the bodies if the change
+    /// affects them.
     pub fn act_mut(&mut self, id: u32) -> Option<&mut (dyn CustomConstraint + 'static)> {
         self.records.get_mut(id as usize)?.act.as_deref_mut()
     }
 
-    /// What a constraint does.
+    /// The implementation of a constraint.
     pub fn act(&self, id: u32) -> Option<&(dyn CustomConstraint + 'static)> {
         self.records.get(id as usize)?.act.as_deref()
     }
 
-    /// Whether a constraint gave a velocity that is not finite. Such velocities are ignored.
+    /// Whether a constraint returned a velocity that is not finite. Such velocities are ignored.
     pub fn is_faulty(&self, id: u32) -> bool {
         self.records.get(id as usize).is_some_and(|record| record.is_faulty)
     }
 
-    /// Whether a constraint does anything.
+    /// Whether a constraint has an implementation.
     pub(super) fn acts(&self, id: u32) -> bool {
         self.records[id as usize].act.is_some()
     }
@@ -146,5 +150,5 @@ impl CustomTable {
     }
 }
 
-/// The records of all constraints, changed by several threads.
+/// The records of all constraints. Several threads may change them.
 pub(in super::super) struct Records<'a>(pub(super) Parts<'a, Record>);

@@ -1,4 +1,4 @@
-//! Rows of joints in batches: one for each size of block and number of single coordinates.
+//! Rows of joints in batches: one batch per size of block and number of single coordinates.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
 use super::super::batch::{Batch, Filling, Pass, Passes, Sweep};
@@ -33,7 +33,7 @@ pub(in super::super) fn joints(colors: &ColorGraph, color: u8) -> &[u32] {
     colors.constraints(KIND, color)
 }
 
-/// Sorts joints into a layer, from batch `first` on. Those of trees are left out.
+/// Sorts joints into a layer, from batch `first` on. Joints of trees are left out.
 pub(in super::super) fn sort_joints(
     joints: &[u32],
     first: usize,
@@ -60,9 +60,9 @@ pub(in super::super) struct JointRows<N: Lane> {
 #[derive(Clone, Debug)]
 struct ClassRows<N: Lane> {
     rows: Vec<Row<N>>,
-    /// For each row as many as its class has.
+    /// Single coordinates: for each row, the number of its class.
     singles: Vec<Single<N>>,
-    /// One for each row if its class has orientation motors.
+    /// One orientation motor per row, if the class has orientation motors.
     turns: Vec<OrientationRow<N>>,
 }
 
@@ -117,13 +117,13 @@ pub(in super::super) struct JointViews<'a, N: Entry> {
 }
 
 impl<N: Entry> JointViews<'_, N> {
-    /// A batch by its number among those of joints.
+    /// A batch by its number among the batches of joints.
     pub(in super::super) fn batch(&self, number: usize) -> &dyn Batch {
         if number == COUPLINGS { &self.couplings } else { &self.classes[number] }
     }
 }
 
-/// A view of the rows of one class whose blocks are changed by several threads.
+/// A view of the rows of one class. Several threads may change its blocks.
 struct JointView<'a, N: Entry> {
     proof: N::Proof,
     class: Class,
@@ -162,7 +162,7 @@ impl<'a, N: Entry> JointView<'a, N> {
     /// The rows of a range.
     ///
     /// # Safety
-    /// While the rows are in use, no range that overlaps theirs may be taken.
+    /// While the rows are in use, no overlapping range is taken.
     unsafe fn take(&self, rows: Range<usize>) -> Taken<'a, N> {
         let (class, count) = (self.class, self.class.singles);
         let turns = if class.turns { rows.clone() } else { 0..0 };
@@ -190,7 +190,7 @@ impl<N: Entry> Batch for JointView<'_, N> {
         for ((row, (singles, mut turns)), lanes) in taken.each().zip(items.chunks(N::WIDTH)) {
             for (lane, item) in lanes.iter().enumerate() {
                 ahead.next().into_iter().for_each(|item| self.records.prefetch(item.id));
-                // SAFETY: a joint is in one row, so by the contract no other thread has its state.
+                // SAFETY: a joint is in one row, so by the contract no other thread uses its state.
                 let joint = &unsafe { self.records.joint(item.id) };
                 row.set((singles, turns.as_deref_mut()), (lane, stiffness), joint, from);
             }
@@ -215,7 +215,7 @@ impl<N: Entry> Batch for JointView<'_, N> {
         for ((row, (singles, turns)), lanes) in taken.each().zip(items.chunks(N::WIDTH)) {
             for (lane, item) in lanes.iter().enumerate() {
                 ahead.next().into_iter().for_each(|item| self.records.prefetch_state(item.id));
-                // SAFETY: a joint is in one row, so by the contract no other thread has its state.
+                // SAFETY: a joint is in one row, so by the contract no other thread uses its state.
                 let joint = &mut unsafe { self.records.joint(item.id) };
                 row.store((singles, turns.as_deref()), lane, joint);
             }

@@ -1,4 +1,4 @@
-//! The coordinates of a joint that are locked in A's frame, solved at once.
+//! The coordinates of a joint locked in A's frame, solved as one block.
 
 use super::super::SubstepParams;
 use super::super::pair::Pair;
@@ -7,16 +7,16 @@ use super::place::{Gradient, Masses, Place, Response};
 use crate::math::{Angular, DIM, Lane, Vector};
 use crate::tuning::solver::NO_MASS;
 
-/// What a coordinate that is locked gives way.
+/// Softness of a locked coordinate.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Softening<N> {
     /// Bias velocity per metre or radian of error, 1/s.
     pub(super) bias_rate: N,
-    /// What is added to the inverse of the effective mass: a share of it, and a number in 1/kg or 1/(kg m²).
+    /// Softness added to the inverse effective mass: `share` times it, and `more` in 1/kg or 1/(kg m²).
     pub(super) share: N,
     pub(super) more: N,
-    /// 1 for a spring, whose implicit step is complete before the relax pass; else 0.
+    /// 1 for a spring, whose implicit step is complete before the relax pass; otherwise 0.
     pub(super) is_spring: N,
 }
 
@@ -24,8 +24,9 @@ impl<N: Lane> Softening<N> {
     pub(super) const NONE: Self =
         Self { bias_rate: N::ZERO, share: N::ZERO, more: N::ZERO, is_spring: N::ZERO };
 
-    /// The impulse of the lower limit, side 0, or the upper one, given how far the value is above it, its rate, and what a unit
-    /// impulse adds to that. Where both limits are one, the lower one acts both ways.
+    /// The new impulse of the lower limit (side 0) or the upper one. `gap` is the value's distance above
+    /// the limit, `rate` its rate, and `k` the rate added by a unit impulse. In the lanes of `both`, where
+    /// both limits are equal, the lower limit acts both ways.
     #[inline(always)]
     pub(super) fn limit(
         &self,
@@ -58,12 +59,12 @@ impl<N: Lane> Softening<N> {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Locked<N> {
-    /// 1 if it is locked, else 0.
+    /// 1 if the coordinate is locked, otherwise 0.
     pub(super) is_locked: N,
-    /// Where it is locked, in m or rad.
+    /// The value at which it is locked, m or rad.
     pub(super) target: N,
     pub(super) softening: Softening<N>,
-    /// In N·s or N·m·s.
+    /// Accumulated impulse, N·s or N·m·s.
     pub(super) impulse: N,
 }
 
@@ -79,7 +80,7 @@ pub(super) struct Block<N, const D: usize> {
     pub(super) responses: [Response<N>; D],
 }
 
-/// The gradients and values of the first `D` coordinates. The angles count if some of these are angles.
+/// The gradients and values of the first `D` coordinates. `angles` is only used if some of them are angles.
 #[inline(always)]
 pub(super) fn coordinates<N: Lane, const D: usize>(
     place: &Place<N>,
@@ -103,7 +104,7 @@ pub(super) fn coordinates<N: Lane, const D: usize>(
     (gradients, values)
 }
 
-/// A block whose matrix is factored.
+/// The factored matrix of a block.
 pub(super) struct Solved<N, const D: usize> {
     takes_part: [N; D],
     factors: Factors<N, D>,
@@ -121,7 +122,7 @@ impl<N: Lane, const D: usize> Block<N, D> {
         Self { gradients, values, responses }
     }
 
-    /// Applies impulses.
+    /// Applies the impulses of the rows.
     #[inline(always)]
     pub(super) fn push(&self, rows: &[Locked<N>], pair: &mut Pair<N>) {
         for (response, row) in self.responses.iter().zip(rows) {
@@ -129,7 +130,7 @@ impl<N: Lane, const D: usize> Block<N, D> {
         }
     }
 
-    /// Solves the coordinates. With bias, or without it as in the relax pass, where springs are left out.
+    /// Solves the coordinates, with bias, or without bias as in the relax pass, where springs are left out.
     #[inline(always)]
     pub(super) fn solve(
         &self,
@@ -157,7 +158,7 @@ impl<N: Lane, const D: usize> Block<N, D> {
                 rate += drift.dot(self.gradients[i].normal);
             }
             wanted[i] = -(rate * takes_part[i]);
-            // A coordinate that is free takes part as a row of its own.
+            // A free coordinate takes part as an uncoupled unit row.
             k[i][i] = N::select(N::ZERO.lt(takes_part[i]), diagonal, N::ONE);
             for j in 0..i {
                 k[i][j] = self.responses[i].along(&self.gradients[j]) * (takes_part[i] * takes_part[j]);
@@ -172,7 +173,8 @@ impl<N: Lane, const D: usize> Block<N, D> {
         Solved { takes_part, factors }
     }
 
-    /// A response that leaves the block solved, and the impulses of the block for each of its own.
+    /// Projects a response so that it leaves the block solved. Also returns the impulses of the block per
+    /// unit impulse of the response.
     #[inline(always)]
     pub(super) fn beside(&self, solved: &Solved<N, D>, mut response: Response<N>) -> (Response<N>, [N; D]) {
         let mut shared = [N::ZERO; D];
@@ -187,7 +189,7 @@ impl<N: Lane, const D: usize> Block<N, D> {
     }
 }
 
-/// An angle within a turn of 0, brought to −π … π.
+/// Wraps an angle within one turn of 0 to −π … π.
 #[inline(always)]
 pub(super) fn wrapped<N: Lane>(angle: N) -> N {
     let (half, turn) = (N::splat(core::f32::consts::PI), N::splat(core::f32::consts::TAU));
@@ -195,22 +197,22 @@ pub(super) fn wrapped<N: Lane>(angle: N) -> N {
     N::select(angle.lt(-half), angle + turn, angle)
 }
 
-/// K = L D Lᵀ.
+/// Factors of K = L D Lᵀ.
 pub(super) struct Factors<N, const D: usize> {
     lower: [[N; D]; D],
     inverse: [N; D],
 }
 
 impl<N: Lane, const D: usize> Factors<N, D> {
-    /// Factors the lower half of a symmetric K that is not negative. Rows that depend on those before, or that nothing
-    /// moves, are left out.
+    /// Factors a symmetric positive semidefinite K, given its lower half. Rows that depend on earlier rows,
+    /// and rows that no impulse moves, are left out.
     #[inline(always)]
     pub(super) fn of(k: [[N; D]; D]) -> Self {
         let (mut lower, mut inverse) = (k, [N::ZERO; D]);
         for j in 0..D {
             let mut pivot = k[j][j];
             for m in 0..j {
-                // It is still times d[m].
+                // `lower[j][m]` is still multiplied by D[m] here.
                 let scaled = lower[j][m] * inverse[m];
                 pivot -= scaled * lower[j][m];
                 lower[j][m] = scaled;

@@ -1,14 +1,14 @@
-//! Which batch a joint is in, and whether a tree may hold it.
+//! The batch of a joint, and whether the joint may be in a tree.
 
 use super::def::JointDef;
 use super::dim::{AXES, BLOCK};
 use crate::math::DIM;
 
-/// The batch of couplings, after those of classes.
+/// The batch of couplings, after the batches of classes.
 pub(super) const COUPLINGS: usize = CLASSES.len();
 
-/// The size of the block and the number of single coordinates that the joints of a batch have room for, and whether they may
-/// have an orientation motor.
+/// Capacity of the rows in a batch: the size of the block, the number of single coordinates, and whether
+/// there is an orientation motor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Class {
     pub(super) block: usize,
@@ -16,7 +16,7 @@ pub(super) struct Class {
     pub(super) turns: bool,
 }
 
-/// The class of each batch. A joint is in the first that it fits in.
+/// The class of each batch. A joint is in the first class that it fits into.
 pub(super) const CLASSES: [Class; 8] = [
     Class::new(DIM, 0),
     Class::new(0, 1),
@@ -34,19 +34,19 @@ impl Class {
     }
 }
 
-/// A digest of a definition: which batch the joint is in, and which of its coordinates have rows.
+/// A digest of a definition: the joint's batch, and the coordinates that have rows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Summary {
-    /// The number of its batch among those of joints.
+    /// The joint's batch among the batches of joints.
     pub(super) batch: u8,
-    /// Whether it may be part of a tree.
+    /// Whether the joint may be part of a tree.
     pub(super) may_branch: bool,
-    /// Whether it locks something.
+    /// Whether the joint locks something.
     pub(super) holds: bool,
-    /// Whether all shifts are locked at 0 and give way alike, so that any axes serve.
+    /// Whether all shifts are locked at 0 with the same softness, so that any axes may be used.
     pub(super) is_locked_alike: bool,
-    /// Bits of what is locked and what is set, by number of the coordinate, then of a rod and of an orientation motor: joints
-    /// with the same bits have the same rows in a tree.
+    /// Bits of locked coordinates, then of single coordinates, then of a rod and of an orientation motor.
+    /// Joints with the same bits have the same rows in a tree.
     pub(super) shape: u32,
 }
 
@@ -87,7 +87,7 @@ impl Summary {
         self.has(BLOCK + AXES)
     }
 
-    /// Whether it has an orientation motor.
+    /// Whether the joint has an orientation motor.
     pub(super) fn turns(self) -> bool {
         self.has(BLOCK + AXES + 1)
     }
@@ -104,7 +104,7 @@ mod tests {
     use crate::math::Vector;
     use proptest::prelude::*;
 
-    /// Free, locked, limited, driven, and a lock that gives way and is driven.
+    /// Free, locked, limited, driven, soft and driven lock, and locked at 1.
     fn axis(kind: u8) -> Axis {
         let drive = Drive::Force { stiffness: 1.0, damping: 0.0 };
         let motor = Some(Motor { target_velocity: 1.0, target_position: 0.0, max_force: 1.0, drive });

@@ -1,17 +1,17 @@
-//! What a coupling does: gears, racks, pulleys. One coordinate of each of two bodies in frames of the world, and limits of their
-//! weighted sum.
+//! Coupling definition, for gears, racks and pulleys: limits of the weighted sum of two coordinates, one of
+//! each body's frame in a world frame.
 
 use super::def::{Give, JointDef, JointError, JointFrame, are_in_order};
 use super::dim::{TURNING, angles};
 use crate::math::{Rot, Vector, WorldPose, WorldVector};
 use crate::table::BodyTable;
 
-/// A coordinate of a frame of a body in a frame of the world.
+/// A coordinate of a body's frame in a world frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndCoordinate {
-    /// The angle about the x axes in 3D, in 2D the angle: rad. It counts turns.
+    /// The angle about the x axes in 3D, the angle in 2D, rad. Whole turns are counted.
     Turn,
-    /// The way of the anchor along the x axis of the world frame, m.
+    /// The displacement of the anchor along the x axis of the world frame, m.
     Shift,
     /// The distance of the anchor from the origin of the world frame, m.
     Distance,
@@ -20,15 +20,15 @@ pub enum EndCoordinate {
 /// One end of a coupling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingEnd {
-    /// Which coordinate of the body's frame.
+    /// The coordinate of the body's frame.
     pub coordinate: EndCoordinate,
     /// The frame on the body.
     pub frame: JointFrame,
-    /// The frame of the world.
+    /// The world frame.
     pub ground: WorldPose,
 }
 
-/// Definition of a coupling: limits of the sum of a coordinate at A and `ratio` times one at B.
+/// Definition of a coupling: limits of the sum of a coordinate at A and `ratio` times a coordinate at B.
 ///
 /// - Gears: two turns. With radii r and s of wheels that mesh outside, the ratio is s / r; inside, −s / r.
 /// - Rack and pinion: a turn and a shift, ratio ±1 / r.
@@ -41,26 +41,27 @@ pub struct CouplingDef {
     pub ends: [CouplingEnd; 2],
     /// The weight of the coordinate at B. Not 0.
     pub ratio: f32,
-    /// Least and greatest sum, in units of the coordinate at A; equal where the coordinates are tied both ways.
+    /// Minimum and maximum of the sum, in units of the coordinate at A; equal to couple the coordinates in
+    /// both directions.
     pub limits: [f32; 2],
-    /// How far limits give way.
+    /// Softness of the limits.
     pub give: Give,
 }
 
 impl CouplingEnd {
-    /// The frame on the body in the world: the arm from the centre of mass to the anchor, and the axes.
+    /// The body's frame in world axes: the arm from the centre of mass to the anchor, and the rotation.
     pub(super) fn place(&self, bodies: &BodyTable, body: u32) -> (Vector, Rot) {
         let rotation = bodies.poses[body as usize].rotation;
         let arm = self.frame.anchor - bodies[body].local_center;
         (rotation.rotate(arm), rotation.mul(self.frame.basis).normalized())
     }
 
-    /// From the origin of the world frame to a body's centre of mass.
+    /// Vector from the origin of the world frame to a body's centre of mass.
     pub(super) fn offset(&self, bodies: &BodyTable, body: u32) -> WorldVector {
         bodies.poses[body as usize].center - self.ground.position
     }
 
-    /// The coordinate now; of angles the one nearest to another.
+    /// The current coordinate. An angle gets the whole turns that bring it closest to `near`.
     pub(super) fn value(&self, bodies: &BodyTable, body: u32, near: f64) -> f64 {
         let (arm, basis) = self.place(bodies, body);
         let from = self.offset(bodies, body) + arm.to_world();
@@ -88,7 +89,8 @@ impl CouplingEnd {
 }
 
 impl CouplingDef {
-    /// The sum of the coordinates now, with angles from −π to π. Limits equal to it hold the bodies as they are.
+    /// The current sum of the coordinates, with angles from −π to π. Limits equal to this sum hold the
+    /// bodies as they are.
     ///
     /// # Panics
     /// If a body is not in the table.
@@ -97,12 +99,12 @@ impl CouplingDef {
         (a + f64::from(self.ratio) * b) as f32
     }
 
-    /// A joint with its bodies and anchors that does nothing.
+    /// A joint without effect, with the bodies and anchors of the coupling.
     pub(super) fn joint(&self) -> JointDef {
         JointDef::free(self.bodies, self.ends.map(|end| end.frame.anchor))
     }
 
-    /// Whether it and a pair of bodies can be used. Bodies are not looked at.
+    /// Whether the definition is valid. It is not checked whether the bodies exist.
     pub(super) fn check(&self) -> Result<(), JointError> {
         let [a, b] = self.bodies;
         if a == b {
@@ -125,7 +127,7 @@ pub(super) struct CouplingRecord {
     pub(super) def: CouplingDef,
     /// Impulses of the lower and the upper limit, N·s or N·m·s.
     pub(super) impulses: [f32; 2],
-    /// The coordinates at the end of the last step, in which angles count turns.
+    /// The coordinates at the end of the last step. Angles include whole turns.
     pub(super) values: [f64; 2],
     /// The force along the coordinate at A in the last substep, N or N·m.
     pub(super) force: f32,
@@ -136,13 +138,13 @@ impl CouplingRecord {
         Self { def, impulses: [0.0; 2], values: [0.0; 2], force: 0.0 }
     }
 
-    /// The coordinates now, with the turns since the coupling began.
+    /// The current coordinates, with the whole turns since the coupling was created.
     pub(super) fn values_now(&self, bodies: &BodyTable) -> [f64; 2] {
         let Self { def, values, .. } = self;
         core::array::from_fn(|side| def.ends[side].value(bodies, def.bodies[side], values[side]))
     }
 
-    /// The limit from which the sum is counted.
+    /// The limit relative to which the sum is measured.
     pub(super) fn zero(&self) -> f64 {
         let [min, max] = self.def.limits;
         f64::from(if min.is_finite() { min } else { max })

@@ -1,5 +1,6 @@
-//! Rows of couplings: one limited sum of a coordinate at each of two bodies. The sum is counted from its value at the start of the
-//! step, which is computed in `f64`, so that no turn is lost and nothing drifts.
+//! Rows of couplings: one limited sum of a coordinate at each of two bodies. The change of the sum within
+//! the step is added to its start value, which is computed in `f64`, so that no whole turn is lost and
+//! nothing drifts.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::super::batch::{Batch, Filling, Pass, Passes, Sweep};
@@ -18,24 +19,25 @@ use crate::data::Parts;
 use crate::math::{Angular, Entry, Ids, Job, Lane, Rot, Vector};
 use core::ops::Range;
 
-/// An end of `N::WIDTH` lanes.
+/// One end of couplings, one coupling per lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct EndRow<N> {
-    /// Weights of turn, shift and distance: the weight of the coordinate in the sum, and zeros.
+    /// Weights of turn, shift and distance: the weight of the end's coordinate in the sum, and zeros for
+    /// the others.
     turn: N,
     along: N,
     apart: N,
-    /// From the centre of mass to the anchor at the start of the step.
+    /// Vector from the centre of mass to the anchor at the start of the step.
     arm: Vector<N>,
-    /// From the origin of the world frame to the anchor at the start of the step.
+    /// Vector from the origin of the world frame to the anchor at the start of the step.
     from: Vector<N>,
     /// The body's frame at the start of the step, and the world frame.
     basis: Rot<N>,
     ground: Rot<N>,
-    /// Of the distance and the angle, the value at the start of the step.
+    /// The distance or the angle at the start of the step.
     before: N,
-    /// How far the body has turned since then, and what is added for whole turns.
+    /// Rotation of the body since the start of the step, and the whole turns included in it.
     turned: N,
     turns: N,
 }
@@ -46,7 +48,7 @@ pub(super) struct CouplingRow<N: Lane> {
     ids: [N::Ids; 2],
     ends: [EndRow<N>; 2],
     masses: Masses<N>,
-    /// The sum at the start of the step, less the limit from which it is counted.
+    /// The sum at the start of the step, minus the limit relative to which it is measured.
     start: N,
     limits: [N; 2],
     softening: Softening<N>,
@@ -70,8 +72,8 @@ impl<N: Lane> EndRow<N> {
         turns: N::ZERO,
     };
 
-    /// The part of the sum that has changed since the start of the step, the velocity of the anchor and the turn along which it
-    /// grows, and the arm.
+    /// The change of the end's part of the sum since the start of the step, its gradient with respect to
+    /// the anchor's velocity and to the angular velocity, and the arm.
     #[inline(always)]
     fn look(&mut self, (shift, turn): (Vector<N>, Rot<N>)) -> (N, Vector<N>, Angular<N>, Vector<N>) {
         let arm = turn.rotate(self.arm);
@@ -89,7 +91,7 @@ impl<N: Lane> EndRow<N> {
         (change, axis * self.along + direction * self.apart, about * self.turn, arm)
     }
 
-    /// Notes an angle since the start of the step, given without whole turns.
+    /// Updates the rotation since the start of the step from an angle without whole turns.
     #[inline(always)]
     fn count(&mut self, angle: N) {
         let full = N::splat(core::f32::consts::TAU);
@@ -143,7 +145,7 @@ impl<N: Lane> CouplingRow<N> {
             row.before.set(lane, before);
             let number = from.input.row_of(body);
             self.ids[side].set(lane, number);
-            // Factors, until the mass is known.
+            // Axis factors, until the mass is known.
             self.masses.linear[side]
                 .set(lane, from.axes.get(number as usize).copied().unwrap_or(Vector::ONE));
         }
@@ -170,7 +172,8 @@ impl<N: Lane> CouplingRow<N> {
     /// Runs a pass.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
+    /// Until the call returns, no other thread reads or writes the row's writable bodies, or writes the
+    /// others.
     #[inline(always)]
     unsafe fn run(&mut self, bodies: &RowView<BodyRow>, params: &SubstepParams, pass: Pass) {
         // SAFETY: by the contract.
@@ -216,7 +219,7 @@ impl<N: Lane> CouplingRow<N> {
         unsafe { pair.store(bodies, &self.ids) };
     }
 
-    /// Copies a lane back into the coupling.
+    /// Stores the impulses and the reaction of a lane in its coupling.
     fn store(&self, lane: usize, reaction: &mut JointReaction, coupling: &mut CouplingRecord) {
         let inv_h = self.inv_h;
         *reaction = JointReaction {
@@ -235,7 +238,7 @@ impl<N: Lane> CouplingRow<N> {
     }
 }
 
-/// Changes velocities by an impulse, given what a unit impulse does to each body.
+/// Applies an impulse to both bodies. `responses` are their velocity changes by a unit impulse.
 #[inline(always)]
 fn push<N: Lane>(pair: &mut Pair<N>, responses: &[(Vector<N>, Angular<N>); 2], impulse: N) {
     for side in 0..2 {
@@ -244,7 +247,7 @@ fn push<N: Lane>(pair: &mut Pair<N>, responses: &[(Vector<N>, Angular<N>); 2], i
     }
 }
 
-/// A view of rows whose blocks are changed by several threads.
+/// A view of coupling rows. Several threads may change its blocks.
 pub(super) struct CouplingView<'a, N: Entry> {
     pub(super) proof: N::Proof,
     pub(super) rows: Parts<'a, CouplingRow<N>>,
@@ -258,7 +261,7 @@ impl<N: Entry> Batch for CouplingView<'_, N> {
         for (row, lanes) in rows.iter_mut().zip(items.chunks(N::WIDTH)) {
             *row = CouplingRow::default();
             for (lane, item) in lanes.iter().enumerate() {
-                // SAFETY: a coupling is in one row, so by the contract no other thread has its record.
+                // SAFETY: a coupling is in one row, so by the contract no other thread uses its record.
                 if let Some(coupling) = unsafe { self.records.coupling(item.id) } {
                     row.set(lane, coupling, from);
                 }
@@ -279,7 +282,8 @@ impl<N: Entry> Batch for CouplingView<'_, N> {
         let rows = unsafe { self.rows.take(rows) };
         for (row, lanes) in rows.iter().zip(items.chunks(N::WIDTH)) {
             for (lane, item) in lanes.iter().enumerate() {
-                // SAFETY: a coupling is in one row, so by the contract no other thread has its record or state.
+                // SAFETY: a coupling is in one row, so by the contract no other thread uses its record or
+                // state.
                 let (joint, coupling) =
                     unsafe { (self.records.joint(item.id), self.records.coupling(item.id)) };
                 if let Some(coupling) = coupling {

@@ -1,11 +1,12 @@
-//! What a joint does: two frames, and a setting for each coordinate of B's frame relative to A's.
+//! Joint definition: two frames, and a setting for each coordinate of B's frame relative to A's.
 
 use super::dim::coordinate::DISTANCE;
 use super::dim::{AXES, BLOCK, parts_of};
 use crate::math::{Angular, DIM, Rot, Vector};
 use core::fmt;
 
-/// Stiffness and damping as those of an oscillator with the mass that the coordinate moves.
+/// Stiffness and damping, given as the frequency and damping ratio of an oscillator with the mass that the
+/// coordinate moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
     /// Frequency of the undamped oscillation, in Hz. Positive.
@@ -14,10 +15,10 @@ pub struct Spring {
     pub damping_ratio: f32,
 }
 
-/// How far a coordinate gives way at a limit, or where it is locked.
+/// Softness of a coordinate at a limit, or at the value where it is locked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Give {
-    /// As little as the substeps resolve.
+    /// As stiff as the substeps resolve.
     #[default]
     Rigid,
     /// Metres per newton, or radians per newton metre; without damping. Positive.
@@ -26,7 +27,8 @@ pub enum Give {
     Spring(Spring),
 }
 
-/// The law of a motor. Force is k (target position − position) + c (target velocity − velocity), and torque alike.
+/// The law of a motor. Force = k (target position − position) + c (target velocity − velocity); torque
+/// likewise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
     /// k and c of an oscillator with the mass that the coordinate moves.
@@ -50,50 +52,51 @@ pub enum Drive {
 /// A motor along or about one coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor {
-    /// In m/s or rad/s.
+    /// Target velocity, m/s or rad/s.
     pub target_velocity: f32,
-    /// In m or rad. An angle without limits is reached the shorter way round.
+    /// Target position, m or rad. An angle without limits takes the shorter way round.
     pub target_position: f32,
-    /// Greatest force in N, or torque in N·m. May be infinite.
+    /// Maximum force in N, or torque in N·m. May be infinite.
     pub max_force: f32,
     /// The law.
     pub drive: Drive,
 }
 
-/// A spring along or about one coordinate, beside a motor.
+/// A spring along or about one coordinate, in addition to a motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisSpring {
-    /// The value at which it bears nothing, in m or rad. An angle without limits is pulled the shorter way round.
+    /// Rest value, at which the spring has no force, m or rad. An angle without limits is pulled the
+    /// shorter way round.
     pub rest: f32,
-    /// The law, with this target and no velocity.
+    /// The law, with `rest` as target position and target velocity 0.
     pub law: Drive,
 }
 
-/// A motor of all angles at once: it turns B's frame to a rotation in A's frame along the shortest arc.
+/// A motor of all angles at once: it rotates B's frame to a rotation in A's frame along the shortest arc.
 ///
-/// The error is the rotation vector from the target to the rotation now. In 2D it is the angle.
+/// The error is the rotation vector from the target to the current rotation. In 2D it is the angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrientationMotor {
-    /// Target of the rotation of B's frame in A's.
+    /// Target rotation of B's frame in A's.
     pub target_rotation: Rot,
-    /// Target of B's angular velocity relative to A, in A's frame, rad/s.
+    /// Target angular velocity of B relative to A, in A's frame, rad/s.
     pub target_velocity: Angular,
-    /// Greatest length of the torque, N·m. May be infinite.
+    /// Maximum magnitude of the torque, N·m. May be infinite.
     pub max_torque: f32,
     /// The law.
     pub drive: Drive,
 }
 
-/// What a joint does with one coordinate.
+/// Settings of a joint for one coordinate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Axis {
-    /// Least and greatest value, in m or rad; equal where the coordinate is locked. `None` if it is free.
+    /// Minimum and maximum value, m or rad; equal if the coordinate is locked. `None` if it has no limits.
     pub limits: Option<[f32; 2]>,
-    /// How far limits give way.
+    /// Softness of the limits.
     pub give: Give,
-    /// The spring. It has no effect where the coordinate is locked and rigid.
+    /// The spring. It has no effect on a coordinate that is locked and rigid.
     pub spring: Option<AxisSpring>,
-    /// The motor. It has no effect where the coordinate is locked and rigid.
+    /// The motor. It has no effect on a coordinate that is locked and rigid.
     pub motor: Option<Motor>,
 }
 
@@ -140,27 +143,27 @@ pub(super) fn are_in_order([min, max]: [f32; 2]) -> bool {
 }
 
 impl Axis {
-    /// Neither limits, nor a spring, nor a motor.
+    /// No limits, spring or motor.
     pub const FREE: Self = Self { limits: None, give: Give::Rigid, spring: None, motor: None };
-    /// Held at 0.
+    /// Locked at 0.
     pub const LOCKED: Self = Self::limited(0.0, 0.0);
 
-    /// Whether it is limited or driven.
+    /// Whether it has limits, a spring or a motor.
     fn is_set(&self) -> bool {
         self.limits.is_some() || self.spring.is_some() || self.motor.is_some()
     }
 
-    /// Kept between two values.
+    /// Limited to an interval.
     pub const fn limited(min: f32, max: f32) -> Self {
         Self { limits: Some([min, max]), ..Self::FREE }
     }
 
-    /// With another give.
+    /// With another softness.
     pub const fn with_give(self, give: Give) -> Self {
         Self { give, ..self }
     }
 
-    /// The value at which it is locked.
+    /// The value at which it is locked, if it is.
     pub(super) fn locked_at(&self) -> Option<f32> {
         self.limits.filter(|[min, max]| min == max).map(|[min, _]| min)
     }
@@ -181,24 +184,24 @@ impl Axis {
 /// A frame of a joint on a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointFrame {
-    /// In the body's frame, in metres.
+    /// Origin in the body's frame, in metres.
     pub anchor: Vector,
-    /// From the joint's frame to the body's.
+    /// Rotation from the joint's frame to the body's.
     pub basis: Rot,
 }
 
 /// Definition of a joint.
 ///
-/// Coordinates are those of B's frame in A's: [`X`](super::coordinate) and so on.
+/// Coordinates describe B's frame in A's: [`X`](super::coordinate) and so on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointDef {
     /// A and B: two different bodies.
     pub bodies: [u32; 2],
-    /// The frames on them.
+    /// The frames on A and on B.
     pub frames: [JointFrame; 2],
-    /// What it does with each coordinate, by number.
+    /// The settings of each coordinate, by number.
     pub axes: [Axis; AXES],
-    /// A motor of all angles at once, beside those of single ones.
+    /// A motor of all angles at once, in addition to motors of single angles.
     pub orientation: Option<OrientationMotor>,
     /// Rate at which the bodies lose relative velocity: linear and angular, 1/s. Not negative.
     pub damping: [f32; 2],
@@ -217,7 +220,7 @@ impl JointDef {
         self
     }
 
-    /// Whether it and a pair of bodies can be used. Bodies are not looked at.
+    /// Whether the definition is valid. It is not checked whether the bodies exist.
     pub(super) fn check(&self) -> Result<(), JointError> {
         let [a, b] = self.bodies;
         if a == b {
@@ -229,7 +232,7 @@ impl JointDef {
         if let Some(number) = self.axes.iter().position(|axis| !axis.is_valid()) {
             return Err(JointError::Axis(number));
         }
-        // A distance and an angle between axes are not negative.
+        // A distance and an angle between axes are never negative.
         let is_below = |number: &usize| self.axes[*number].limits.is_some_and(|[_, max]| max < 0.0);
         if let Some(number) = (BLOCK..AXES).find(is_below) {
             return Err(JointError::Axis(number));
@@ -243,15 +246,16 @@ impl JointDef {
         }
     }
 
-    /// The coordinates that are solved as one block: those of the frame that are locked. A lock that gives way and is driven
-    /// besides is solved by itself.
+    /// Whether a coordinate is solved in the block: a locked coordinate of the frame. A soft lock with a
+    /// spring or motor is solved on its own.
     pub(super) fn is_in_block(&self, number: usize) -> bool {
         let axis = &self.axes[number];
         let is_driven = axis.give != Give::Rigid && (axis.motor.is_some() || axis.spring.is_some());
         number < BLOCK && axis.locked_at().is_some() && !is_driven
     }
 
-    /// Whether it locks nothing but the distance of its anchors. A tree holds that as a coordinate of the block.
+    /// Whether the joint locks only the distance of its anchors. A tree solves this distance as a
+    /// coordinate of the block.
     pub(super) fn is_rod(&self) -> bool {
         let distance = &self.axes[DISTANCE];
         let is_driven = distance.motor.is_some() || distance.spring.is_some();
@@ -259,33 +263,34 @@ impl JointDef {
         distance.locked_at().is_some_and(|length| length > 0.0) && !is_driven && !has_block
     }
 
-    /// Whether all shifts are locked at 0 and give way alike, so that any axes serve.
+    /// Whether all shifts are locked at 0 with the same softness, so that any axes may be used.
     pub(super) fn is_locked_alike(&self) -> bool {
         (0..DIM).all(|k| self.axes[k].locked_at() == Some(0.0) && self.axes[k].give == self.axes[0].give)
     }
 
-    /// Whether a tree may hold it: something is locked, and nothing contradicts it.
+    /// Whether the joint may be in a tree: it locks something, and no settings contradict each other.
     pub(super) fn may_branch(&self) -> bool {
         self.holds() && !self.sets_twice()
     }
 
-    /// Whether something is locked.
+    /// Whether the joint locks something.
     pub(super) fn holds(&self) -> bool {
         self.is_rod() || (0..BLOCK).any(|number| self.is_in_block(number))
     }
 
-    /// Whether a distance or an angle between axes is limited or driven, and one of the coordinates of which it is made has limits: such
-    /// settings may contradict each other.
+    /// Whether a distance or an angle between axes is limited or driven, and one of its component
+    /// coordinates has limits: such settings may contradict each other.
     pub(super) fn sets_twice(&self) -> bool {
         (BLOCK..AXES).any(|number| self.axes[number].is_set() && self.has_set_parts(number))
     }
 
-    /// Whether a coordinate is a distance or an angle between axes, and one of those of which it is made has limits.
+    /// Whether a coordinate is a distance or an angle between axes, and one of its component coordinates
+    /// has limits.
     pub(super) fn has_set_parts(&self, number: usize) -> bool {
         number >= BLOCK && parts_of(number).any(|part| self.axes[part].limits.is_some())
     }
 
-    /// The coordinates that are solved one by one: outside the block those with limits, a spring or a motor.
+    /// Whether a coordinate is solved on its own: outside the block, with limits, a spring or a motor.
     pub(super) fn is_single(&self, number: usize) -> bool {
         !self.is_in_block(number) && self.axes[number].is_set()
     }
@@ -294,19 +299,20 @@ impl JointDef {
 /// How joints are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum JointSolver {
-    /// Trees of three joints and more directly, all others one by one.
+    /// Trees of three or more joints directly, all others one by one.
     #[default]
     Auto,
     /// One by one.
     Rows,
-    /// Directly and without softness, for cranes and machines. Fast swings of light bodies that hold heavy ones may gain energy.
+    /// Directly and without softness, for cranes and machines. Fast swings of light bodies that carry heavy
+    /// ones may gain energy.
     Rigid,
 }
 
-/// Why a joint cannot be added, changed or removed.
+/// Reason why a joint cannot be added, changed or removed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointError {
-    /// Both ends are on one body.
+    /// Both ends are on the same body.
     SameBody(u32),
     /// There is no body with this id.
     NoBody(u32),
@@ -314,15 +320,16 @@ pub enum JointError {
     NoJoint(u32),
     /// An anchor or a basis is not finite.
     Frame(JointFrame),
-    /// The setting of the coordinate with this number has limits in the wrong order, or a number that is not finite, or negative.
+    /// The setting of this coordinate has limits in the wrong order, or a number that is negative or not
+    /// finite.
     Axis(usize),
-    /// The orientation motor has a number that is not finite, or negative.
+    /// The orientation motor has a number that is negative or not finite.
     Orientation,
     /// A frame of this end of a coupling is not finite.
     End(usize),
-    /// Ratio, limits or give of a coupling are not finite, not in order, or zero.
+    /// The ratio, limits or softness of a coupling are not finite, out of order, or the ratio is 0.
     Coupling,
-    /// A damping is not finite, or negative.
+    /// A damping is negative or not finite.
     Damping(f32),
 }
 

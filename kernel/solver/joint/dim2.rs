@@ -10,44 +10,45 @@ pub mod coordinate {
     pub const Y: usize = 1;
     /// The angle from A's frame to B's, rad.
     pub const ANGLE: usize = 2;
-    /// The distance of the two anchors, m.
+    /// The distance between the two anchors, m.
     pub const DISTANCE: usize = 3;
 }
 
 /// Number of coordinates.
 pub const AXES: usize = 4;
-/// Number of coordinates that a frame has in another; they come first.
+/// Number of coordinates that describe a frame in another; they come first.
 pub(super) const BLOCK: usize = 3;
-/// Number of angles, those outside of the block included.
+/// Number of angles, including angles outside the block.
 pub(super) const ANGLES: usize = 1;
-/// The angle, by number among angles, that counts turns.
+/// Number, among the angles, of the angle that counts whole turns.
 pub(super) const TURNING: usize = 0;
 
 /// The coordinate of each angle.
 pub(super) const ANGLE_AXES: [usize; ANGLES] = [coordinate::ANGLE];
 
-/// The angles of B's frame in A's, and the axes about which each grows, as a change of B's angular velocity.
+/// The angles of B's frame in A's. Each has the axis about which it grows, as a change of B's angular
+/// velocity.
 #[inline(always)]
 pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] {
     let turn = a.inverse().mul(b);
     [(atan2_lanes(turn.sin, turn.cos), Angular { z: N::ONE })]
 }
 
-/// The coordinates of which one outside of the block is made: the shifts of the distance.
+/// The component coordinates of a coordinate outside the block: the shifts of the distance.
 pub(super) fn parts_of(_number: usize) -> core::ops::RangeInclusive<usize> {
     coordinate::X..=coordinate::Y
 }
 
-/// Number of coordinates in which a body moves: shifts, then turns.
+/// Number of degrees of freedom of a body: translations, then rotations.
 pub(super) const DOF: usize = 3;
 
-/// A motion, or an impulse and its moment, as numbers.
+/// The numbers of a motion, or of an impulse and its moment.
 #[inline(always)]
 pub(super) fn numbers<N: Lane>((v, w): (Vector<N>, Angular<N>)) -> [N; DOF] {
     [v.x, v.y, w.z]
 }
 
-/// The motion of which these are the numbers.
+/// The motion with these numbers.
 #[inline(always)]
 pub(super) fn of_numbers<N: Lane>(numbers: [N; DOF]) -> (Vector<N>, Angular<N>) {
     let [x, y, z] = numbers;
@@ -65,16 +66,16 @@ pub(super) fn inverse_of<N: Lane>(mass: Vector<N>, inertia: InvInertia<N>) -> [[
     inverse
 }
 
-/// Number of axes about which bodies turn.
+/// Number of axes about which bodies rotate.
 pub(super) const TURNS: usize = 1;
 
-/// The unit turns.
+/// The unit rotations.
 #[inline(always)]
 pub(super) fn units<N: Lane>() -> [Angular<N>; TURNS] {
     [Angular { z: N::ONE }]
 }
 
-/// The axes of a frame about which bodies turn.
+/// The axes of a frame about which bodies rotate.
 #[inline(always)]
 pub(super) fn turn_axes<N: Lane>(_basis: Rot<N>) -> [Angular<N>; TURNS] {
     units()
@@ -86,7 +87,7 @@ pub(super) fn rotation_vector<N: Lane>(turn: Rot<N>) -> Angular<N> {
     Angular { z: atan2_lanes(turn.sin, turn.cos) }
 }
 
-/// The inverse of each component, 0 where that is not positive.
+/// The inverse of each component; 0 for components that are not positive.
 #[inline(always)]
 pub(super) fn inverses<N: Lane>(v: Vector<N>) -> Vector<N> {
     Vector { x: inverse_of_positive(v.x), y: inverse_of_positive(v.y) }
@@ -98,13 +99,13 @@ pub(super) fn least_element<N: Lane>(v: Vector<N>) -> N {
     v.x.min(v.y)
 }
 
-/// How much inertia a body lacks to have the least that is given, in kg·m². 0 if it lacks none.
+/// The inertia to which a body must be raised to have at least `least`, kg·m². 0 if it has that much.
 #[inline(always)]
 pub(super) fn lacking<N: Lane>(inverse: InvInertia<N>, least: N) -> N {
     N::select((N::ONE / least).lt(inverse.zz), least, N::ZERO)
 }
 
-/// An inverse of inertia with what it [lacks](lacking).
+/// The inverse inertia of a body raised to the inertia that it [lacks](lacking).
 #[inline(always)]
 pub(super) fn with_inertia<N: Lane>(inverse: InvInertia<N>, lacking: N) -> InvInertia<N> {
     InvInertia { zz: N::select(N::ZERO.lt(lacking), N::ONE / lacking, inverse.zz) }

@@ -12,11 +12,11 @@ pub mod coordinate {
     pub const Z: usize = 2;
     /// The angle about the x axes, rad.
     pub const TWIST: usize = 3;
-    /// The part about A's y axis of the rotation vector from A's x axis to B's, rad.
+    /// The component about A's y axis of the rotation vector from A's x axis to B's, rad.
     pub const SWING_Y: usize = 4;
-    /// The part about A's z axis of that vector, rad.
+    /// The component about A's z axis of the rotation vector from A's x axis to B's, rad.
     pub const SWING_Z: usize = 5;
-    /// The distance of the two anchors, m.
+    /// The distance between the two anchors, m.
     pub const DISTANCE: usize = 6;
     /// The angle between the x axes, rad.
     pub const CONE: usize = 7;
@@ -24,25 +24,27 @@ pub mod coordinate {
 
 /// Number of coordinates.
 pub const AXES: usize = 8;
-/// Number of coordinates that a frame has in another; they come first.
+/// Number of coordinates that describe a frame in another; they come first.
 pub(super) const BLOCK: usize = 6;
-/// Number of angles, those outside of the block included.
+/// Number of angles, including angles outside the block.
 pub(super) const ANGLES: usize = 4;
-/// The angle, by number among angles, that counts turns.
+/// Number, among the angles, of the angle that counts whole turns.
 pub(super) const TURNING: usize = 0;
 
 /// The coordinate of each angle.
 pub(super) const ANGLE_AXES: [usize; ANGLES] =
     [coordinate::TWIST, coordinate::SWING_Y, coordinate::SWING_Z, coordinate::CONE];
 
-/// Square of the sine of half a swing below which it has no axis.
+/// Squared sine of half the swing angle below which a swing has no axis.
 const NO_SWING: f32 = 1.0e-12;
 
-/// The angles of B's frame in A's, and the axes about which each grows, as a change of B's angular velocity.
+/// The angles of B's frame in A's. Each has the axis about which it grows, as a change of B's angular
+/// velocity.
 ///
-/// The rotation is a twist about x, then a swing about an axis across it. Twist grows with the angular velocity along the
-/// mean of the two x axes, swings with that along A's y and z axes turned by the swing: y − m (y · b), with B's x axis b and
-/// m = (x + b) / (1 + x · b). For a swing θ across the other one the factor θ / sin θ is left out.
+/// The rotation is a twist about x, then a swing about an axis perpendicular to x. Twist grows with the
+/// angular velocity along the mean of the two x axes. Swings grow with the angular velocity along A's y and
+/// z axes turned by the swing: y − m (y · b), with B's x axis b and m = (x + b) / (1 + x · b). The factor θ
+/// / sin θ that a swing θ about the other axis adds is left out.
 #[inline(always)]
 pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] {
     let [x, y, z] = turn_axes(a);
@@ -65,11 +67,11 @@ pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] 
     let axis = Vector::select(swings, y * (sy / s) + z * (sz / s), y);
     let bx = b.rotate(Vector::splat(Vector::X));
     let mean = x + bx;
-    // The axes are opposite after half a turn: then twist is not defined, and grows along A's axis.
+    // The x axes are opposite after half a turn: twist is undefined there, and A's x axis is used.
     let along = N::ONE + x.dot(bx);
     let is_defined = N::splat(NO_SWING).lt(along);
     let twist_axis = Vector::select(is_defined, mean * (N::ONE / N::select(is_defined, along, N::ONE)), x);
-    // Swings do not change as B turns about its own x axis.
+    // Rotation of B about its own x axis does not change swings.
     let swung_y = y - twist_axis * N::select(is_defined, y.dot(bx), N::ZERO);
     let swung_z = z - twist_axis * N::select(is_defined, z.dot(bx), N::ZERO);
     [
@@ -80,7 +82,8 @@ pub(super) fn angles<N: Lane>([a, b]: [Rot<N>; 2]) -> [(N, Angular<N>); ANGLES] 
     ]
 }
 
-/// The coordinates of which one outside of the block is made: the shifts of the distance, the swings of the angle.
+/// The component coordinates of a coordinate outside the block: shifts for the distance, swings for the
+/// angle.
 pub(super) fn parts_of(number: usize) -> core::ops::RangeInclusive<usize> {
     match number {
         coordinate::DISTANCE => coordinate::X..=coordinate::Z,
@@ -88,16 +91,16 @@ pub(super) fn parts_of(number: usize) -> core::ops::RangeInclusive<usize> {
     }
 }
 
-/// Number of coordinates in which a body moves: shifts, then turns.
+/// Number of degrees of freedom of a body: translations, then rotations.
 pub(super) const DOF: usize = 6;
 
-/// A motion, or an impulse and its moment, as numbers.
+/// The numbers of a motion, or of an impulse and its moment.
 #[inline(always)]
 pub(super) fn numbers<N: Lane>((v, w): (Vector<N>, Angular<N>)) -> [N; DOF] {
     [v.x, v.y, v.z, w.x, w.y, w.z]
 }
 
-/// The motion of which these are the numbers.
+/// The motion with these numbers.
 #[inline(always)]
 pub(super) fn of_numbers<N: Lane>(numbers: [N; DOF]) -> (Vector<N>, Angular<N>) {
     let [x, y, z, a, b, c] = numbers;
@@ -118,17 +121,17 @@ pub(super) fn inverse_of<N: Lane>(mass: Vector<N>, i: InvInertia<N>) -> [[N; DOF
     inverse
 }
 
-/// Number of axes about which bodies turn.
+/// Number of axes about which bodies rotate.
 pub(super) const TURNS: usize = 3;
 
-/// The unit turns.
+/// The unit rotations.
 #[inline(always)]
 pub(super) fn units<N: Lane>() -> [Angular<N>; TURNS] {
     let [x, y, z] = Vector::AXES;
     [Vector::splat(x), Vector::splat(y), Vector::splat(z)]
 }
 
-/// The axes of a frame about which bodies turn.
+/// The axes of a frame about which bodies rotate.
 #[inline(always)]
 pub(super) fn turn_axes<N: Lane>(basis: Rot<N>) -> [Angular<N>; TURNS] {
     let [x, y, z] = units();
@@ -147,7 +150,7 @@ pub(super) fn rotation_vector<N: Lane>(turn: Rot<N>) -> Angular<N> {
     axis * N::select(turns, angle / sine, N::splat(2.0))
 }
 
-/// The inverse of each component, 0 where that is not positive.
+/// The inverse of each component; 0 for components that are not positive.
 #[inline(always)]
 pub(super) fn inverses<N: Lane>(v: Vector<N>) -> Vector<N> {
     Vector { x: inverse_of_positive(v.x), y: inverse_of_positive(v.y), z: inverse_of_positive(v.z) }
@@ -159,21 +162,21 @@ pub(super) fn least_element<N: Lane>(v: Vector<N>) -> N {
     v.x.min(v.y).min(v.z)
 }
 
-/// How much inertia a body lacks about the axis of least inertia to have about the least that is given, in kg·m². 0 if it
-/// lacks none.
+/// The inertia to add to a body, so that its smallest moment is about `least`, kg·m². 0 if it has that
+/// much.
 #[inline(always)]
 pub(super) fn lacking<N: Lane>(inverse: InvInertia<N>, least: N) -> N {
     (least - N::ONE / inverse.trace()).max(N::ZERO)
 }
 
-/// An inverse of inertia with what it [lacks](lacking), about all axes.
+/// The inverse inertia of a body after adding the inertia that it [lacks](lacking) about all axes.
 #[inline(always)]
 pub(super) fn with_inertia<N: Lane>(inverse: InvInertia<N>, lacking: N) -> InvInertia<N> {
     let mut with = inverse;
     let lacks = N::bits(N::ZERO.lt(lacking));
     for lane in (0..N::WIDTH).filter(|lane| lacks >> lane & 1 != 0) {
         let (more, lacking) = (inverse.get(lane).inverse(), lacking.get(lane));
-        // A body that does not turn about some axis has no inertia to add to.
+        // Inertia cannot be added to a body that does not rotate about some axis.
         if more != InvInertia::ZERO {
             let [xx, yy, zz] = [more.xx, more.yy, more.zz].map(|moment| moment + lacking);
             with.set(lane, InvInertia { xx, yy, zz, ..more }.inverse());

@@ -1,45 +1,50 @@
-//! The direct solution of a tree of joints: linear in their number.
+//! The direct solution of a tree of joints, in time linear in their number.
 //!
-//! Bodies move by Δv = M⁻¹ Σ Jᵀ λ, joints ask for J Δv + Γ λ = r. Joints are eliminated from the leaves to the root. Let B be the
-//! inverse inertia of a body with all that is eliminated hanging on it, at first M⁻¹, and g its motion by that. A joint
-//! between a parent p and a child c, whose own joints are all eliminated, has
+//! Bodies move by Δv = M⁻¹ Σ Jᵀ λ, and joints require J Δv + Γ λ = r. Joints are eliminated from the leaves
+//! to the root. Let B be the inverse inertia of a body with all eliminated joints attached, initially M⁻¹,
+//! and g its motion due to these joints. A joint between a parent p and a child c, whose own child joints
+//! are all eliminated, has
 //!
 //! E = J_c B_c J_cᵀ + Γ + J_p B_p J_pᵀ,  e = r − J_c g_c − J_p g_p,  λ = E⁻¹ (e − J_p B_p F)
 //!
-//! where F is the impulse on the parent by the joints that are eliminated later. So, with Y = E⁻¹ J_p B_p,
+//! where F is the impulse on the parent by the joints that are eliminated later. With Y = E⁻¹ J_p B_p
+//! follows
 //!
 //! B_p ← B_p − Yᵀ E Y,  g_p ← g_p + Yᵀ e
 //!
-//! and on the way back F is known. Only inverses of inertia are used: bodies with locked axes are nothing special. B is a
-//! difference of near numbers where a light body holds a heavy one, which takes `f64`.
+//! and F is known on the way back to the leaves. Only inverses of inertia are used, so bodies with locked
+//! axes need no special case. Where a light body holds a heavy one, B is a difference of close numbers,
+//! which requires `f64`.
 //!
-//! Trees of equal shape are solved side by side, one in each lane. A row that only some of them have is 0 in the others.
+//! Trees of equal shape are solved in parallel, one per lane. A row that only some of them have is 0 in the
+//! others.
 //!
-//! After Baraff, "Linear-time dynamics using Lagrange multipliers" (1996), and Featherstone's articulated bodies.
+//! After Baraff, "Linear-time dynamics using Lagrange multipliers" (1996), and Featherstone's articulated
+//! bodies.
 
 use super::dim::{AXES, DOF, numbers, of_numbers};
 use super::forest::GROUND;
 use crate::math::{Angular, Double, Lane, Num, Vector};
 
-/// Most rows of a link: one of each coordinate.
+/// Maximum number of rows of a link: one per coordinate.
 pub(super) const ROWS: usize = AXES;
 
 /// A motion of a body, or an impulse on it.
 pub(super) type Screw<N> = [<N as Lane>::Double; DOF];
 
-/// Share of a row's own inverse mass below which its pivot is rounding.
+/// Share of a row's own inverse mass below which its pivot is rounding error.
 const NO_PIVOT: f64 = 1.0e-10;
 
-/// Number of entries of the lower half of a matrix of rows, with its diagonal.
+/// Number of entries in the lower half of a matrix of rows, including the diagonal.
 const LOWER: usize = ROWS * (ROWS + 1) / 2;
 
-/// The place of an entry of the lower half.
+/// The index of an entry of the lower half.
 #[inline(always)]
 const fn at(row: usize, column: usize) -> usize {
     row * (row + 1) / 2 + column
 }
 
-/// A motion, or an impulse and its moment, in the precision of elimination.
+/// A motion, or an impulse and its moment, in the precision of the elimination.
 #[inline(always)]
 pub(super) fn screw<N: Lane>(v: Vector<N>, w: Angular<N>) -> Screw<N> {
     widen(&numbers((v, w)))
@@ -64,7 +69,7 @@ pub(super) fn widen<N: Lane>(a: &[N; DOF]) -> Screw<N> {
     wide
 }
 
-/// Sums of three products each do not wait for each other.
+/// The dot product, summed in groups of three products so that the groups are independent.
 #[inline(always)]
 fn dot<N: Lane>(a: &Screw<N>, b: &Screw<N>) -> N::Double {
     let mut sum = N::Double::ZERO;
@@ -74,7 +79,7 @@ fn dot<N: Lane>(a: &Screw<N>, b: &Screw<N>) -> N::Double {
     sum
 }
 
-/// Adds a multiple.
+/// Adds a multiple of `a`.
 #[inline(always)]
 pub(super) fn add<N: Lane>(to: &mut Screw<N>, a: &Screw<N>, times: N::Double) {
     for i in 0..DOF {
@@ -82,7 +87,7 @@ pub(super) fn add<N: Lane>(to: &mut Screw<N>, a: &Screw<N>, times: N::Double) {
     }
 }
 
-/// The product with a symmetric matrix, by columns: they are added side by side.
+/// The product with a symmetric matrix, summed column by column, so that the components are independent.
 #[inline(always)]
 fn product<N: Lane>(matrix: &[Screw<N>; DOF], a: &[N; DOF]) -> Screw<N> {
     let mut sum = [N::Double::ZERO; DOF];
@@ -97,11 +102,11 @@ fn product<N: Lane>(matrix: &[Screw<N>; DOF], a: &[N; DOF]) -> Screw<N> {
 pub(super) struct Node<N: Lane> {
     /// M⁻¹.
     pub(super) inverse: [[N; DOF]; DOF],
-    /// B, while joints are eliminated.
+    /// B, during elimination.
     left: [Screw<N>; DOF],
-    /// g, while joints are eliminated.
+    /// g, during elimination.
     motion: Screw<N>,
-    /// The impulse of its joints, after solving.
+    /// The total impulse of its joints, after solving.
     pub(super) impulse: Screw<N>,
 }
 
@@ -112,13 +117,13 @@ impl<N: Lane> Node<N> {
         Self { inverse, left: [none; DOF], motion: none, impulse: none }
     }
 
-    /// What the impulse of its joints changes.
+    /// The velocity change by the impulse of its joints.
     #[inline(always)]
     pub(super) fn change(&self) -> Screw<N> {
         self.moved(&self.impulse)
     }
 
-    /// What an impulse changes.
+    /// The velocity change by an impulse.
     #[inline(always)]
     pub(super) fn moved(&self, impulse: &Screw<N>) -> Screw<N> {
         let mut sum = [N::Double::ZERO; DOF];
@@ -129,15 +134,15 @@ impl<N: Lane> Node<N> {
     }
 }
 
-/// A row of a link: what passes use of it lies together, since all trees of a big scene are larger than caches. J, Γ and M⁻¹
-/// are stored as they are computed, in `f32`.
+/// A row of a link. Data of one pass is kept together, since all trees of a big scene are larger than
+/// caches. J, Γ and M⁻¹ are stored in `f32`, in which they are computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LinkRow<N: Lane> {
     /// J of parent and child.
     pub(super) jacobians: [[N; DOF]; 2],
     /// Γ.
     pub(super) softness: N,
-    /// By how much what is locked is off, in m or rad.
+    /// Position error of a locked coordinate, m or rad.
     pub(super) error: N,
     /// r.
     pub(super) wanted: N::Double,
@@ -164,11 +169,11 @@ impl<N: Lane> LinkRow<N> {
 /// A joint of a tree: some rows between a parent and a child.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link<N: Lane> {
-    /// Parent and child among the bodies of the tree, or [`GROUND`].
+    /// Indices of parent and child among the bodies of the tree, or [`GROUND`].
     pub(super) places: [u32; 2],
     /// Number of rows.
     pub(super) count: usize,
-    /// E, and then L below the diagonal.
+    /// E, replaced by L below the diagonal.
     lower: [N::Double; LOWER],
     pub(super) rows: [LinkRow<N>; ROWS],
 }
@@ -177,7 +182,7 @@ impl<N: Lane> Link<N> {
     pub(super) const NONE: Self =
         Self { places: [GROUND; 2], count: 0, lower: [N::Double::ZERO; LOWER], rows: [LinkRow::NONE; ROWS] };
 
-    /// Wants a motion of an end taken back.
+    /// Subtracts a motion of an end from the wanted velocities.
     #[inline(always)]
     pub(super) fn want_against(&mut self, end: usize, motion: &Screw<N>) {
         for row in &mut self.rows[..self.count] {
@@ -185,14 +190,15 @@ impl<N: Lane> Link<N> {
         }
     }
 
-    /// Replaces the lower half of E by its factors. Rows that depend on those before, or that nothing moves, are left out.
+    /// Replaces the lower half of E by its factors. Rows that depend on earlier rows, and rows that no
+    /// impulse moves, are left out.
     #[inline(always)]
     fn factor(&mut self, count: usize) {
         let Self { lower, rows, .. } = self;
         for j in 0..count {
             let (own, mut pivot) = (lower[at(j, j)], lower[at(j, j)]);
             for m in 0..j {
-                // It is still times D.
+                // `lower[at(j, m)]` is still multiplied by D[m] here.
                 let scaled = lower[at(j, m)] * rows[m].inverse;
                 pivot -= scaled * lower[at(j, m)];
                 lower[at(j, m)] = scaled;
@@ -225,7 +231,7 @@ impl<N: Lane> Link<N> {
         }
     }
 
-    /// Eliminates the joint: B of its parent is what is left.
+    /// Eliminates the joint, and updates B of its parent.
     #[inline(always)]
     fn eliminate(&mut self, nodes: &mut [Node<N>], count: usize) {
         let [parent, child] = self.places;
@@ -272,7 +278,7 @@ impl<N: Lane> Link<N> {
         }
     }
 
-    /// Writes E⁻¹ e, and passes e on to the parent.
+    /// Computes E⁻¹ e, and adds Yᵀ e to g of the parent.
     #[inline(always)]
     fn rise(&mut self, nodes: &mut [Node<N>], count: usize) {
         let mut is_still = true;
@@ -313,7 +319,8 @@ impl<N: Lane> Link<N> {
         }
     }
 
-    /// Takes off what the parent's other joints do, and adds the impulses to those of both bodies.
+    /// Subtracts the effect of the parent's other joints, and adds the impulses to the impulses on both
+    /// bodies.
     #[inline(always)]
     fn fall(&mut self, nodes: &mut [Node<N>], count: usize) {
         if let Some(node) = nodes.get(self.places[0] as usize) {
@@ -345,7 +352,7 @@ macro_rules! by_count {
     };
 }
 
-/// Eliminates the joints of a tree, which are in an order from the root on.
+/// Eliminates the joints of a tree. They are ordered from the root on.
 #[inline(always)]
 pub(super) fn factor<N: Lane>(links: &mut [Link<N>], nodes: &mut [Node<N>]) {
     for node in nodes.iter_mut() {
@@ -358,8 +365,8 @@ pub(super) fn factor<N: Lane>(links: &mut [Link<N>], nodes: &mut [Node<N>]) {
     }
 }
 
-/// Solves a factored tree for what its joints want. Afterwards joints have their impulses, and bodies those of all their
-/// joints.
+/// Solves a factored tree for the wanted velocities of its joints. Afterwards each joint has its impulse,
+/// and each body the total impulse of its joints.
 #[inline(always)]
 pub(super) fn solve<N: Lane>(links: &mut [Link<N>], nodes: &mut [Node<N>]) {
     for node in nodes.iter_mut() {
@@ -379,7 +386,7 @@ mod tests {
     use crate::math::{DIM, F32x4};
     use proptest::prelude::*;
 
-    /// A tree by seeds: masses, parents, rows and directions.
+    /// A tree built from seeds: masses, parents, rows and directions.
     fn tree(seeds: &[(f64, u32, u64)], ratio: f64) -> (Vec<Link<f32>>, Vec<Node<f32>>) {
         let mut state = 1u64;
         let mut any = |seed: u64| {
@@ -412,7 +419,7 @@ mod tests {
             }
             links.push(link);
             if ends[1] == GROUND && number > 0 {
-                // It hangs on an earlier body as well.
+                // The body is also attached to an earlier body.
                 let places = [parent % number as u32, number as u32];
                 links.insert(links.len() - 1, Link { places, ..link });
             }
@@ -451,7 +458,7 @@ mod tests {
         most
     }
 
-    /// A tree in one of four lanes.
+    /// The tree in one of four lanes.
     fn side_by_side(
         links: &[Link<f32>],
         nodes: &[Node<f32>],
@@ -482,7 +489,7 @@ mod tests {
             ratio in prop::sample::select(vec![1.0, 100.0, 1.0e6]),
         ) {
             let (mut links, mut nodes) = tree(&seeds, ratio);
-            // The same tree in a lane, beside empty ones.
+            // The same tree in one lane, next to empty lanes.
             let lane = seeds.len() % 4;
             let (mut wide_links, mut wide_nodes) = side_by_side(&links, &nodes, lane);
             factor(&mut links, &mut nodes);

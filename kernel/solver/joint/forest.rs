@@ -1,9 +1,10 @@
-//! Which joints are solved directly: the trees that joints make of bodies, in an order for elimination.
+//! Finds the joints that are solved directly: trees in the graph of bodies and joints, in an order for
+//! elimination.
 //!
-//! Bodies that joints do not move are no nodes: a joint to one of them is an end of its tree. So a bridge between two
-//! towers is a tree.
+//! Bodies that joints do not move are not nodes: a joint to such a body is a leaf of its tree. A bridge
+//! between two towers is therefore a tree.
 
-/// In place of a body that joints do not move.
+/// Stands for a body that joints do not move.
 pub(super) const GROUND: u32 = u32::MAX;
 
 /// An edge of the graph of bodies.
@@ -11,18 +12,18 @@ pub(super) const GROUND: u32 = u32::MAX;
 pub(super) struct Edge {
     /// The joint.
     pub(super) id: u32,
-    /// Its bodies, by dense numbers, or [`GROUND`].
+    /// Nodes of its bodies, or [`GROUND`].
     pub(super) nodes: [u32; 2],
 }
 
-/// A joint of a tree. The parent is the end nearer to the root.
+/// A joint of a tree. The parent is the end closer to the root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Branch {
     /// The joint.
     pub(super) id: u32,
-    /// The side of the joint that is at the parent: 0 for A.
+    /// The side of the joint on the parent: 0 for A.
     pub(super) parent_side: usize,
-    /// Parent and child as places among the bodies of all trees, or [`GROUND`].
+    /// Indices of parent and child among the bodies of all trees, or [`GROUND`].
     pub(super) places: [u32; 2],
 }
 
@@ -37,23 +38,23 @@ pub(super) struct Span {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Forest {
     pub(super) trees: Vec<Span>,
-    /// From the roots on: each branch after the one to its parent.
+    /// Branches from the roots on: each comes after the branch to its parent.
     pub(super) branches: Vec<Branch>,
-    /// The node of each body of the trees. The root of a tree is first.
+    /// The node of each body of the trees. The root of a tree comes first.
     pub(super) bodies: Vec<u32>,
-    /// By node: its tree, or [`GROUND`] if it is in none.
+    /// By node, its tree; [`GROUND`] if it is in no tree.
     pub(super) owners: Vec<u32>,
-    /// By node, the first of its edges in `links`; and one more.
+    /// By node, the first of its edges in `links`; one more entry marks the end.
     starts: Vec<u32>,
-    /// For each node in turn, indices of its edges.
+    /// Indices of the edges of each node, node by node.
     links: Vec<u32>,
-    /// By edge: whether it may be in a tree.
+    /// By edge, whether the edge may be in a tree.
     hangs: Vec<bool>,
-    /// By node: number of edges to other nodes that are not known to hang.
+    /// By node, the number of edges to other nodes that are not yet known to be in a tree.
     degrees: Vec<u32>,
-    /// Nodes with one such edge.
+    /// Nodes with exactly one such edge.
     ends: Vec<u32>,
-    /// By node: its place, or [`GROUND`] before it is found.
+    /// By node, its index among the bodies; [`GROUND`] before it is found.
     found: Vec<u32>,
 }
 
@@ -64,8 +65,8 @@ impl Forest {
         self.bodies.clear();
     }
 
-    /// Builds trees of at least `fewest` edges among `nodes` nodes. Loops, and what connects two loops, are left out; what hangs on
-    /// them is not.
+    /// Builds trees of at least `fewest` edges among `nodes` nodes. Loops, and paths between two loops, are
+    /// left out; trees attached to them are included.
     pub(super) fn build(&mut self, edges: &[Edge], nodes: usize, fewest: usize) {
         self.clear();
         self.link(edges, nodes);
@@ -94,7 +95,7 @@ impl Forest {
         (0..nodes).for_each(|node| starts[node + 1] += starts[node]);
         links.clear();
         links.resize(starts[nodes] as usize, 0);
-        // Each start moves to the end of its edges, which is the start of the next one.
+        // Each start advances to the end of its edges, which is the start of the next node.
         for (edge, node) in ends() {
             let place = &mut starts[node as usize];
             links[*place as usize] = edge;
@@ -104,7 +105,8 @@ impl Forest {
         starts[0] = 0;
     }
 
-    /// Finds the edges that are left when the last edge of each node is taken away until none is the last.
+    /// Marks the edges outside of loops and of paths between loops, by repeatedly removing the last edge of
+    /// each node with one edge left.
     fn peel(&mut self, edges: &[Edge], nodes: usize) {
         let Self { starts, links, hangs, degrees, ends, .. } = self;
         hangs.clear();
@@ -118,7 +120,7 @@ impl Forest {
         ends.extend((0..nodes as u32).filter(|node| degrees[*node as usize] == 1));
         while let Some(node) = ends.pop() {
             let of_node = &links[starts[node as usize] as usize..starts[node as usize + 1] as usize];
-            // Two ends may have had the same edge.
+            // Both ends of an edge may be in the list.
             let Some(edge) = of_node.iter().find(|edge| !hangs[**edge as usize]) else { continue };
             hangs[*edge as usize] = true;
             let [a, b] = edges[*edge as usize].nodes;
@@ -130,14 +132,14 @@ impl Forest {
         }
     }
 
-    /// Adds the tree of a node, breadth first, unless it has too few edges.
+    /// Adds the tree of a node, breadth first, unless the tree has too few edges.
     fn grow(&mut self, edges: &[Edge], root: u32, fewest: usize) {
         let Self { trees, branches, bodies, owners, starts, links, hangs, found, .. } = self;
         let first = [branches.len(), bodies.len()];
         let mut at = bodies.len();
         found[root as usize] = at as u32;
         bodies.push(root);
-        // The edge by which a node was found is not followed back, as its other end is found already.
+        // The edge by which a node was found is not followed back, because its other end is already found.
         while at < bodies.len() {
             let node = bodies[at];
             let of_node = &links[starts[node as usize] as usize..starts[node as usize + 1] as usize];
@@ -179,7 +181,7 @@ mod tests {
         let edge = |(id, nodes): (usize, &[u32; 2])| Edge { id: id as u32, nodes: *nodes };
         let edges: Vec<Edge> = pairs.iter().enumerate().map(edge).collect();
         let mut forest = Forest::default();
-        // Old content must not matter.
+        // Stale content must not matter.
         forest.build(&[Edge { id: 7, nodes: [0, 1] }], 2, 1);
         forest.build(&edges, nodes, fewest);
         (edges, forest)
@@ -204,7 +206,7 @@ mod tests {
         assert_eq!(built(&[[0, 1], [1, 0]], 2, 1).1.trees, []);
     }
 
-    /// Whether two nodes are connected without one edge.
+    /// Whether the ends of an edge are connected without the edge.
     fn is_loop(edges: &[Edge], without: &Edge) -> bool {
         let mut known = BTreeSet::from([without.nodes[0]]);
         for _ in 0..edges.len() {
@@ -223,7 +225,7 @@ mod tests {
             pairs in prop::collection::vec([0u32..24, 0u32..24], 0..40),
             fewest in 1usize..6,
         ) {
-            // Numbers beyond the nodes are the ground. A joint has two bodies, of which the ground is one at most.
+            // Numbers from 20 on are the ground. A joint has two bodies, at most one of them the ground.
             let (nodes, g) = (20, |n: u32| if n < 20 { n } else { GROUND });
             let pairs: Vec<_> = pairs.into_iter().map(|pair| pair.map(g)).filter(|[a, b]| a != b).collect();
             let (edges, forest) = built(&pairs, nodes, fewest);
@@ -256,7 +258,7 @@ mod tests {
                 let is_left_out = |edge: &&Edge| !taken.contains(&edge.id);
                 for edge in edges.iter().filter(is_left_out) {
                     prop_assert!(!edge.nodes.contains(&GROUND));
-                    // It is in a loop, or connects two.
+                    // The edge is in a loop, or connects two loops.
                     let in_loop = |node: u32| edges.iter().any(|other| other.nodes.contains(&node)
                         && !other.nodes.contains(&GROUND) && other.id != edge.id && !taken.contains(&other.id));
                     prop_assert!(edge.nodes.into_iter().all(in_loop), "{:?}", edge);

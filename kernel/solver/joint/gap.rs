@@ -1,4 +1,4 @@
-//! How far joints are off.
+//! Errors of joints.
 
 use super::coupling::{CouplingRecord, EndCoordinate};
 use super::def::JointDef;
@@ -7,22 +7,22 @@ use super::single::turns_near;
 use crate::math::{DIM, Vector};
 use crate::table::BodyTable;
 
-/// How far the locked coordinates and limits of a joint are off.
+/// Errors of the locked coordinates and limits of a joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointGap {
-    /// Of shifts and distances, m.
+    /// Error of shifts and distances, m.
     pub length: f32,
-    /// Of angles, rad.
+    /// Error of angles, rad.
     pub angle: f32,
 }
 
-/// How far a value is beyond limits.
+/// The distance by which a value exceeds limits.
 fn past([min, max]: [f32; 2], value: f32) -> f32 {
     (min - value).max(value - max).max(0.0)
 }
 
 impl JointGap {
-    /// How far a coupling is off now.
+    /// The current error of a coupling.
     pub(super) fn of_coupling(coupling: &CouplingRecord, bodies: &BodyTable) -> Self {
         let def = &coupling.def;
         let [a, b] = coupling.values_now(bodies);
@@ -35,8 +35,8 @@ impl JointGap {
         }
     }
 
-    /// How far a joint is off now, given the angle that counts turns at the end of the last step. Of several coordinates the root of
-    /// the sum of squares.
+    /// The current error of a joint; over several coordinates, the root of the sum of squares. `angle` is
+    /// the turning angle at the end of the last step.
     pub(super) fn of_joint(def: &JointDef, angle: f32, bodies: &BodyTable) -> Self {
         let [(a, of_a), (b, of_b)] = [0, 1].map(|side| {
             let (frame, pose) = (&def.frames[side], bodies.frame(def.bodies[side]));

@@ -1,15 +1,18 @@
-//! Joints: two frames of two bodies, and for each coordinate of one frame in the other whether it is free, locked, limited,
-//! driven or sprung. Kinds of joints are settings of this; none has rows of its own.
+//! Joints connect a frame on each of two bodies. Each coordinate of B's frame in A's is free, locked,
+//! limited, driven or sprung. Kinds of joints are settings of these coordinates; no kind has rows of its
+//! own.
 //!
-//! The coordinates that are locked in A's frame are solved as one block, K = J M⁻¹ Jᵀ + Γ, by LDLᵀ. Limits, motors and
-//! distances are one-dimensional rows after it, each in the space that the block leaves (the Schur complement): a limit that
-//! is struck does not open the hinge. Every coordinate is an oscillator, integrated implicitly: with stiffness k and damping c it has Γ = 1 / (h (c + h k)) and the bias
-//! k x / (c + h k). What is rigid has the highest frequency that the substeps resolve. Directions follow the exact motion
-//! of the bodies in every pass, so that long swings keep their length.
+//! The coordinates locked in A's frame are solved as one block, K = J M⁻¹ Jᵀ + Γ, by LDLᵀ. Limits, motors
+//! and distances are one-dimensional rows after it, each in the space that the block leaves free (the Schur
+//! complement): hitting a limit does not open a hinge. Every coordinate is an oscillator, integrated
+//! implicitly: with stiffness k and damping c it has Γ = 1 / (h (c + h k)) and the bias k x / (c + h k).
+//! Rigid coordinates have the highest frequency that the substeps resolve. Directions follow the exact
+//! motion of the bodies in every pass, so that long swings keep their length.
 //!
-//! Couplings are limits of the sum of a coordinate at each of two bodies, in frames of the world (`coupling.rs`).
+//! Couplings limit the weighted sum of two coordinates, one at each of two bodies, in world frames
+//! (`coupling.rs`).
 //!
-//! Joints that form trees are solved at once, before all rows (`tree.rs`).
+//! Trees of joints are solved directly, before all rows (`tree.rs`).
 //!
 //! After Catto, "Soft Constraints" (GDC 2011), and his Box2D v3.
 

@@ -1,11 +1,14 @@
-//! The motor of all angles at once: torque along the rotation vector from the target to the rotation now.
+//! The motor of all angles at once: torque along the rotation vector from the target to the current
+//! rotation.
 //!
-//! With the error e, the relative angular velocity ω and its target ω₀, stiffness k and damping c, the motor asks for the impulse
+//! With the error e, the relative angular velocity ω and its target ω₀, stiffness k and damping c, the
+//! motor applies the impulse
 //!
-//! λ = −h (k e + c (ω − ω₀)), implicitly: (K + Γ) Δλ = −(ω + b + Γ λ), Γ = 1 / (h (c + h k)), b = (k e − c ω₀) / (c + h k)
+//! λ = −h (k e + c (ω − ω₀)), implicitly: (K + Γ) Δλ = −(ω + b + Γ λ), Γ = 1 / (h (c + h k)), b = (k e − c
+//! ω₀) / (c + h k)
 //!
-//! where K is what is left of the inverse inertia beside the block. Where k and c are per mass, Γ is a multiple of K. An impulse
-//! longer than the maximum is shortened to it.
+//! where K is the inverse inertia that the block leaves free. If k and c are per mass, Γ is a multiple of
+//! K. An impulse longer than the maximum is shortened to the maximum.
 
 use super::super::pair::Pair;
 use super::block::{Block, Factors, Locked, Solved};
@@ -16,25 +19,25 @@ use super::single::laws;
 use crate::math::{Lane, Rot, Vector};
 use crate::tuning::solver::NO_MASS;
 
-/// An orientation motor of `N::WIDTH` lanes.
+/// Orientation motors, one per lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct OrientationRow<N> {
-    /// Stiffness and damping, times the inertia.
+    /// Stiffness and damping, per inertia.
     of_mass: [N; 2],
-    /// Stiffness and damping besides, N·m/rad and N·m·s/rad.
+    /// Additional stiffness and damping, N·m/rad and N·m·s/rad.
     besides: [N; 2],
-    /// The target of B's frame in A's.
+    /// Target rotation of B's frame in A's.
     target: Rot<N>,
-    /// Along A's axes, rad/s.
+    /// Target angular velocity along A's axes, rad/s.
     velocity: [N; TURNS],
-    /// Greatest impulse of a substep, N·m·s. 0 without a motor.
+    /// Maximum impulse of a substep, N·m·s. 0 without a motor.
     pub(super) most: N,
-    /// Along A's axes, N·m·s.
+    /// Impulses along A's axes, N·m·s.
     pub(super) impulses: [N; TURNS],
 }
 
-/// The axes of the motor in a pass, and what it wants.
+/// The axes of the motor in a pass, and its errors.
 pub(super) struct Turning<N> {
     pub(super) gradients: [Gradient<N>; TURNS],
     /// The error along each axis, rad.
@@ -67,7 +70,7 @@ impl<N: Lane> OrientationRow<N> {
         self.most.set(lane, motor.max_torque * h);
     }
 
-    /// The motor's axes and errors at a place.
+    /// The motor's gradients and errors at a place.
     #[inline(always)]
     pub(super) fn look(&self, place: &Place<N>) -> Turning<N> {
         let [a, b] = place.bases;
@@ -81,7 +84,7 @@ impl<N: Lane> OrientationRow<N> {
         turning
     }
 
-    /// Solves the motor, and changes the impulses of the block so that it stays solved.
+    /// Solves the motor, and changes the impulses of the block so that the block stays solved.
     #[inline(always)]
     pub(super) fn solve<const D: usize>(
         &mut self,
@@ -106,8 +109,8 @@ impl<N: Lane> OrientationRow<N> {
         }
     }
 
-    /// Solves the motor by the responses to unit impulses along its axes, given those without other joints. Returns the changes of
-    /// the impulses.
+    /// Solves the motor. `responses` are the responses to unit impulses along its axes, `alone` the
+    /// responses without other joints. Returns the changes of the impulses.
     #[inline(always)]
     pub(super) fn act(
         &mut self,
@@ -130,7 +133,7 @@ impl<N: Lane> OrientationRow<N> {
         let mut moves = [N::ZERO; TURNS];
         for i in 0..TURNS {
             let own = responses[i].along(&gradients[i]);
-            // What the block holds already, the motor cannot turn.
+            // The motor cannot rotate about an axis that the block already locks.
             let is_free = (alone[i].along(&gradients[i]) * N::splat(NO_MASS)).lt(own);
             moves[i] = N::select(N::and(is_free, drives), N::ONE, N::ZERO);
             for j in 0..=i {

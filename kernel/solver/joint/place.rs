@@ -1,16 +1,16 @@
-//! Where the bodies of a joint are in a pass.
+//! Positions, gradients and responses of a joint's bodies in a pass.
 
 use super::super::pair::Pair;
 use super::super::{BodyRow, InvMass, RowView};
 use super::dim::{ANGLES, TURNS, angles, turn_axes};
 use crate::math::{Angular, DIM, InvInertia, Lane, Rot, Vector};
 
-/// The direction in which a coordinate grows: as a change of the bodies' velocities.
+/// The gradient of a coordinate with respect to the motion of the bodies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gradient<N> {
-    /// The change along which B moves, and against which A moves.
+    /// The direction in which B moves as the coordinate grows; A moves against it.
     pub(super) normal: Vector<N>,
-    /// The moments of A and of B.
+    /// The moments of the normal about A and B.
     pub(super) moments: [Angular<N>; 2],
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Masses<N> {
 impl<N: Lane> Masses<N> {
     pub(super) const NONE: Self = Self { linear: [Vector::ZERO; 2], angular: [InvInertia::ZERO; 2] };
 
-    /// Writes those of a side where a mask is set.
+    /// Sets the masses of one side in the lanes of a mask.
     #[inline(always)]
     pub(super) fn set_where(
         &mut self,
@@ -49,7 +49,7 @@ impl<N: Lane> Masses<N> {
         self.angular[side] = InvInertia::select(mask, angular, self.angular[side]);
     }
 
-    /// The changes of velocity by a unit impulse along a gradient.
+    /// The velocity changes by a unit impulse along a gradient.
     #[inline(always)]
     pub(super) fn response(&self, gradient: &Gradient<N>) -> Response<N> {
         let Gradient { normal, moments: [ma, mb] } = *gradient;
@@ -60,7 +60,7 @@ impl<N: Lane> Masses<N> {
     }
 }
 
-/// The changes of velocity by a unit impulse. Those of A are against it.
+/// The velocity changes of both bodies by a unit impulse. The sign of A's changes is reversed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Response<N> {
     pub(super) v: [Vector<N>; 2],
@@ -70,13 +70,13 @@ pub(super) struct Response<N> {
 impl<N: Lane> Response<N> {
     pub(super) const NONE: Self = Self { v: [Vector::ZERO; 2], w: [Angular::ZERO; 2] };
 
-    /// How fast another coordinate grows by it.
+    /// The rate of another coordinate due to the unit impulse.
     #[inline(always)]
     pub(super) fn along(&self, g: &Gradient<N>) -> N {
         (self.v[0] + self.v[1]).dot(g.normal) + self.w[0].dot(g.moments[0]) + self.w[1].dot(g.moments[1])
     }
 
-    /// Adds the response to another impulse.
+    /// Adds `impulse` times another response.
     #[inline(always)]
     pub(super) fn add(&mut self, other: &Self, impulse: N) {
         for side in 0..2 {
@@ -95,15 +95,15 @@ impl<N: Lane> Response<N> {
     }
 }
 
-/// Where two frames are at the start of the step.
+/// The positions of both frames at the start of the step.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Start<N> {
-    /// From the centres of mass to the anchors.
+    /// Vectors from the centres of mass to the anchors.
     pub(super) arms: [Vector<N>; 2],
-    /// From A's centre of mass to B's.
+    /// Vector from A's centre of mass to B's.
     pub(super) offset: Vector<N>,
-    /// From the frames to the world.
+    /// Rotations from the frames to the world.
     pub(super) bases: [Rot<N>; 2],
 }
 
@@ -111,10 +111,10 @@ impl<N: Lane> Start<N> {
     pub(super) const NONE: Self =
         Self { arms: [Vector::ZERO; 2], offset: Vector::ZERO, bases: [Rot::IDENTITY; 2] };
 
-    /// The place now.
+    /// The current positions of the frames.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies.
+    /// Until the call returns, no other thread writes the bodies.
     #[expect(unsafe_code, reason = "rows of bodies are shared by threads")]
     #[inline(always)]
     pub(super) unsafe fn now(&self, bodies: &RowView<BodyRow>, ids: &[N::Ids; 2]) -> Place<N> {
@@ -128,7 +128,7 @@ impl<N: Lane> Start<N> {
     }
 }
 
-/// By how much the velocity of an arm's end changes its place in a substep beyond h ω × r, over h; see [`Place::drift`].
+/// The displacement of an arm's end in a substep beyond h ω × r, divided by h; see [`Place::drift`].
 #[inline(always)]
 fn bent<N: Lane>(w: Angular<N>, arm: Vector<N>, h: f32) -> Vector<N> {
     let (inward, turn) = (w.cross(w.cross(arm)), w.dot(w) * N::splat(h * h));
@@ -136,39 +136,39 @@ fn bent<N: Lane>(w: Angular<N>, arm: Vector<N>, h: f32) -> Vector<N> {
     (inward * N::splat(0.5 * h) + w.cross(inward) * N::splat(h * h / 6.0)) * weight
 }
 
-/// Where two frames are now.
+/// The current positions of both frames.
 #[derive(Clone, Copy)]
 pub(super) struct Place<N> {
-    /// From A's anchor to B's.
+    /// Vector from A's anchor to B's.
     pub(super) between: Vector<N>,
-    /// From the centres of mass to B's anchor.
+    /// Vectors from the centres of mass to B's anchor.
     arms: [Vector<N>; 2],
-    /// From the frames to the world.
+    /// Rotations from the frames to the world.
     pub(super) bases: [Rot<N>; 2],
 }
 
 impl<N: Lane> Place<N> {
-    /// From B's centre of mass to its anchor.
+    /// Vector from B's centre of mass to its anchor.
     #[inline(always)]
     pub(super) fn arm(&self) -> Vector<N> {
         self.arms[1]
     }
 
-    /// How fast the anchors part in a substep because bodies turn, beyond their velocities:
-    /// h/2 ω × (ω × r) + h²/6 ω × (ω × (ω × r)), up to the third order. It fades towards a radian in a substep, beyond which
-    /// it would drive what it follows.
+    /// The velocity at which rotation separates the anchors in a substep, beyond their linear velocities:
+    /// h/2 ω × (ω × r) + h²/6 ω × (ω × (ω × r)), up to third order. It fades towards one radian per
+    /// substep; beyond that, it would drive the rotation that it follows.
     #[inline(always)]
     pub(super) fn drift(&self, pair: &Pair<N>, h: f32) -> Vector<N> {
         bent(pair.w[1], self.arms[1], h) - bent(pair.w[0], self.arms[0] - self.between, h)
     }
 
-    /// The gradient of a shift along a direction, and of a turn.
+    /// The gradient of a shift along a direction plus a turn about an axis.
     #[inline(always)]
     pub(super) fn gradient(&self, normal: Vector<N>, turn: Angular<N>) -> Gradient<N> {
         Gradient { normal, moments: [self.arms[0].cross(normal) + turn, self.arms[1].cross(normal) + turn] }
     }
 
-    /// A's axes, or those of the world where the mask is set.
+    /// A's axes, or the world axes in the lanes of the mask.
     #[inline(always)]
     pub(super) fn axes(&self, of_world: N::Mask) -> [Vector<N>; DIM] {
         let mut axes = [Vector::ZERO; DIM];
@@ -179,13 +179,13 @@ impl<N: Lane> Place<N> {
         axes
     }
 
-    /// The axes of A about which bodies turn.
+    /// The axes of A about which bodies rotate.
     #[inline(always)]
     pub(super) fn turn_axes(&self) -> [Angular<N>; TURNS] {
         turn_axes(self.bases[0])
     }
 
-    /// The distance of the anchors, and the direction from A's to B's.
+    /// The distance between the anchors, and the direction from A's to B's.
     #[inline(always)]
     pub(super) fn apart(&self) -> (N, Vector<N>) {
         let distance = self.between.length();
@@ -194,10 +194,10 @@ impl<N: Lane> Place<N> {
         (distance, Vector::select(is_apart, scaled, Vector::splat(Vector::X)))
     }
 
-    /// In place of the angles, where no coordinate is one.
+    /// Stands in for the angles if no coordinate is an angle.
     pub(super) const NO_ANGLES: [(N, Angular<N>); ANGLES] = [(N::ZERO, Angular::ZERO); ANGLES];
 
-    /// The angles, and the axes about which they grow.
+    /// The angles, and the axis about which each angle grows.
     #[inline(always)]
     pub(super) fn angles(&self) -> [(N, Angular<N>); ANGLES] {
         angles(self.bases)

@@ -1,4 +1,4 @@
-//! The view of joints through which rows are filled and stored.
+//! The view of joints for filling and storing rows.
 #![expect(unsafe_code, reason = "several threads change states, each of other joints")]
 
 use super::class::Summary;
@@ -7,7 +7,7 @@ use super::def::JointDef;
 use super::state::State;
 use crate::data::{Parts, prefetch};
 
-/// All joints, whose states are changed by several threads.
+/// All joints. Several threads may change their states.
 pub(in super::super) struct Records<'a> {
     defs: &'a [JointDef],
     pub(super) summaries: &'a [Summary],
@@ -15,7 +15,7 @@ pub(in super::super) struct Records<'a> {
     couplings: Parts<'a, Option<Box<CouplingRecord>>>,
 }
 
-/// A joint whose state is changed.
+/// A joint with mutable state.
 pub(super) struct Joint<'a> {
     pub(super) def: &'a JointDef,
     pub(super) summary: Summary,
@@ -23,7 +23,7 @@ pub(super) struct Joint<'a> {
 }
 
 impl<'a> Records<'a> {
-    /// A view of the columns of a table.
+    /// A view of the columns of a joint table.
     pub(super) fn of(
         (defs, summaries): (&'a [JointDef], &'a [Summary]),
         states: &'a mut [State],
@@ -32,7 +32,7 @@ impl<'a> Records<'a> {
         Self { defs, summaries, states: Parts::of(states), couplings: Parts::of(couplings) }
     }
 
-    /// Prefetches all of a joint.
+    /// Prefetches the definition and state of a joint.
     pub(super) fn prefetch(&self, id: u32) {
         prefetch(self.defs, id);
         self.prefetch_state(id);
@@ -46,17 +46,17 @@ impl<'a> Records<'a> {
     /// A joint.
     ///
     /// # Safety
-    /// While the joint is in use, its state may not be taken again.
+    /// While the joint is in use, its state is not taken again.
     pub(super) unsafe fn joint(&self, id: u32) -> Joint<'a> {
         let (def, summary) = (&self.defs[id as usize], self.summaries[id as usize]);
         // SAFETY: by the contract.
         Joint { def, summary, state: unsafe { self.states.one(id as usize) } }
     }
 
-    /// The coupling with an id, if it is one.
+    /// The coupling with an id; `None` for a joint.
     ///
     /// # Safety
-    /// While the coupling is in use, it may not be taken again.
+    /// While the coupling is in use, it is not taken again.
     pub(super) unsafe fn coupling(&self, id: u32) -> Option<&'a mut CouplingRecord> {
         // SAFETY: by the contract.
         unsafe { self.couplings.one(id as usize) }.as_deref_mut()

@@ -1,4 +1,4 @@
-//! The joints of `N::WIDTH` lanes.
+//! Joint rows, with one joint per lane.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::super::batch::{Filling, Pass};
@@ -16,15 +16,15 @@ use super::state::JointReaction;
 use crate::math::{Angular, Ids, Lane, Vector};
 use crate::tuning::solver::{DIRECT_FREQUENCY, NO_MASS, RIGID_DAMPING, RIGID_FREQUENCY};
 
-/// How what is rigid is held.
+/// Method by which rigid coordinates are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Hold {
-    /// By rows that are solved one by one.
+    /// Rows that are solved one by one.
     #[default]
     Row,
-    /// By a tree that is solved at once.
+    /// A tree that is solved directly.
     Tree,
-    /// The same, without softness.
+    /// A tree that is solved directly, without softness.
     Exact,
 }
 
@@ -34,9 +34,9 @@ pub(super) struct Row<N: Lane> {
     pub(super) ids: [N::Ids; 2],
     pub(super) start: Start<N>,
     pub(super) masses: Masses<N>,
-    /// Share of the relative velocity that is lost in a substep: linear and angular.
+    /// Share of the relative velocity that damping removes in a substep: linear and angular.
     pub(super) damping: [N; 2],
-    /// 1 where the block's axes are those of the world: if all shifts are locked alike.
+    /// 1 if the block uses world axes, because all shifts are locked with the same softness.
     of_world: N,
     pub(super) block: [Locked<N>; BLOCK],
     force: Vector<N>,
@@ -46,9 +46,9 @@ pub(super) struct Row<N: Lane> {
     inv_h: f32,
 }
 
-/// What a joint does to B: an impulse at its anchor, and a moment.
+/// Total effect of a joint on B: an impulse at its anchor, and a moment.
 struct Borne<N> {
-    /// From B's centre of mass to its anchor.
+    /// Vector from B's centre of mass to its anchor.
     arm: Vector<N>,
     force: Vector<N>,
     torque: Angular<N>,
@@ -80,11 +80,11 @@ impl<N: Lane> Default for Row<N> {
     }
 }
 
-/// How coordinates of joints that are held alike give way in substeps of one length.
+/// Softness coefficients of joints solved by one method, for substeps of one length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stiffness {
     h: f32,
-    /// Bias rate and share of the mass where a coordinate is rigid.
+    /// Bias rate and mass share of rigid coordinates.
     rigid: (f32, f32),
 }
 
@@ -98,7 +98,8 @@ impl Stiffness {
         Self { h, rigid }
     }
 
-    /// The coefficients of an oscillator: bias rate, share of the mass, and what is added besides.
+    /// The coefficients of an oscillator: bias rate, share of the mass, additional softness, and whether it
+    /// is a spring.
     fn of(&self, give: Give) -> (f32, f32, f32, bool) {
         let h = self.h;
         match give {
@@ -112,7 +113,7 @@ impl Stiffness {
     }
 }
 
-/// Bias rate, and share of the mass.
+/// Bias rate and mass share of a spring.
 fn of_spring(frequency: f32, damping_ratio: f32, h: f32) -> (f32, f32) {
     let s = Softness::new(frequency, damping_ratio, h);
     (s.bias_rate, if s.mass_scale > 0.0 { s.impulse_scale / s.mass_scale } else { 0.0 })
@@ -141,7 +142,8 @@ impl<N: Lane> MotorRow<N> {
     }
 }
 
-/// The value near which an angle is looked for at first: its own if that is between the limits, else their middle.
+/// The initial guess for a turning angle with limits: `angle` itself if it is between the limits, otherwise
+/// their middle or the finite limit.
 fn first_guess(angle: f32, [min, max]: [f32; 2]) -> f32 {
     match (min.is_finite(), max.is_finite()) {
         _ if (min..=max).contains(&angle) => angle,
@@ -153,7 +155,7 @@ fn first_guess(angle: f32, [min, max]: [f32; 2]) -> f32 {
 }
 
 impl<N: Lane> Single<N> {
-    /// Copies a coordinate into a lane. `angle` is that of the turning coordinate, within a turn.
+    /// Copies a coordinate into a lane. `angle` is the turning angle within one turn.
     fn set(
         &mut self,
         (lane, stiffness): (usize, &Stiffness),
@@ -184,7 +186,7 @@ impl<N: Lane> Single<N> {
         }
         if let Some(of) = &axis.motor {
             self.motor.set(lane, of, params.h);
-            // Its maximum may be less than in the last step.
+            // The motor's maximum may have been reduced since the last step.
             let most = of.max_force * params.h;
             self.motor.impulse.set(lane, motor.clamp(-most, most));
         }
@@ -224,7 +226,7 @@ impl<N: Lane> Row<N> {
             let arm = frame.anchor - table[bodies[side]].local_center;
             self.start.arms[side].set(lane, poses[side].rotation.rotate(arm));
             self.start.bases[side].set(lane, poses[side].rotation.mul(frame.basis).normalized());
-            // Factors, until the mass is known.
+            // Axis factors, until the mass is known.
             self.masses.linear[side].set(lane, from.axes.get(row as usize).copied().unwrap_or(Vector::ONE));
         }
         self.inv_h = params.inv_h;
@@ -253,7 +255,7 @@ impl<N: Lane> Row<N> {
         }
     }
 
-    /// Makes a distance that is locked the first coordinate of the block in a lane, instead of a single one.
+    /// Makes a locked distance the first coordinate of the block in a lane, instead of a single coordinate.
     pub(super) fn take_rod(
         &mut self,
         singles: &mut [Single<N>],
@@ -286,10 +288,11 @@ impl<N: Lane> Row<N> {
         N::ZERO.lt(self.of_world)
     }
 
-    /// Runs a pass. All of them are one function, as it is inlined for every width and size of block.
+    /// Runs a pass. All passes are one function, since it is inlined for every width and size of block.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes those bodies of the row that may be written, or writes the others.
+    /// Until the call returns, no other thread reads or writes the row's writable bodies, or writes the
+    /// others.
     #[inline(always)]
     pub(super) unsafe fn run<const D: usize>(
         &mut self,
@@ -348,7 +351,7 @@ impl<N: Lane> Row<N> {
             }
         }
         if biased && has_more {
-            // A limit that was struck has changed how the bodies turn.
+            // Hitting a limit has changed the rotation of the bodies.
             let drift = place.drift(&pair, params.h);
             block.solve(rows, &mut pair, drift, biased);
         }
@@ -363,12 +366,13 @@ impl<N: Lane> Row<N> {
         unsafe { pair.store(bodies, &self.ids) };
     }
 
-    /// Takes a share of the relative velocities of the centres of mass, and of the bodies' turning.
+    /// Removes a share of the relative velocity of the centres of mass and of the relative angular
+    /// velocity.
     #[inline(always)]
     pub(super) fn damp(&self, pair: &mut Pair<N>) {
         let [a, b] = [self.masses.linear[0].diagonal(), self.masses.linear[1].diagonal()];
         let impulse = (pair.v[1] - pair.v[0]).scale(inverses(a + b)) * self.damping[0];
-        // What is not damped keeps its bits beside lanes that are.
+        // Lanes without damping keep their bits.
         let [shifts, turns] = [N::ZERO.lt(self.damping[0]), N::ZERO.lt(self.damping[1])];
         pair.v[0] = Vector::select(shifts, pair.v[0] + impulse.scale(a), pair.v[0]);
         pair.v[1] = Vector::select(shifts, pair.v[1] - impulse.scale(b), pair.v[1]);
@@ -392,13 +396,13 @@ impl<N: Lane> Row<N> {
         pair.w[1] = Angular::select(turns, turned[1], pair.w[1]);
     }
 
-    /// Notes what the joint does: an impulse on B at its anchor, and its moment.
+    /// Stores the force of the joint on B at its anchor, and its torque.
     #[inline(always)]
     pub(super) fn bear(&mut self, impulse: Vector<N>, moment: Angular<N>, params: &SubstepParams) {
         (self.force, self.torque) = (impulse * N::splat(params.inv_h), moment * N::splat(params.inv_h));
     }
 
-    /// Copies a lane back into the joint.
+    /// Stores the impulses and the reaction of a lane in its joint.
     pub(super) fn store(
         &self,
         (singles, orientation): (&[Single<N>], Option<&OrientationRow<N>>),

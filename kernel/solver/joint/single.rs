@@ -1,4 +1,4 @@
-//! Coordinates of a joint that are solved one by one: limits, motors, distances.
+//! Coordinates of a joint that are solved one by one: limits, motors and distances.
 
 use super::super::SubstepParams;
 use super::super::pair::Pair;
@@ -9,17 +9,17 @@ use super::place::{Gradient, Place, Response};
 use crate::math::{Angular, DIM, Lane};
 use crate::tuning::solver::NO_MASS;
 
-/// A motor of `N::WIDTH` lanes, or a spring.
+/// Motors or springs, one per lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct MotorRow<N> {
-    /// Stiffness and damping, times the effective mass.
+    /// Stiffness and damping, per effective mass.
     pub(super) of_mass: [N; 2],
-    /// Stiffness and damping besides, in N/m and N·s/m, or of angles.
+    /// Additional stiffness and damping, N/m and N·s/m, or for angles N·m/rad and N·m·s/rad.
     pub(super) besides: [N; 2],
     pub(super) target_velocity: N,
     pub(super) target_position: N,
-    /// Greatest impulse of a substep, N·s or N·m·s. 0 without a motor.
+    /// Maximum impulse of a substep, N·s or N·m·s. 0 without a motor.
     pub(super) most: N,
     pub(super) impulse: N,
 }
@@ -34,8 +34,9 @@ impl<N: Lane> MotorRow<N> {
         impulse: N::ZERO,
     };
 
-    /// Solves the motor at a rate and value of the coordinate. `k` is what a unit impulse adds to the rate, `mass` the inverse of
-    /// that without a spring. Returns the change of the impulse, and the share of another impulse that the motor would take.
+    /// Solves the motor at a rate and value of the coordinate. `k` is the rate added by a unit impulse, and
+    /// `mass` is 1/`k` for the case without a spring. Returns the change of the impulse, and the share of
+    /// another impulse that the motor would absorb.
     #[inline(always)]
     fn drive(&mut self, (rate, value): (N, N), (k, mass): (N, N), h: f32) -> (N, N) {
         let stiffness = self.of_mass[0] * mass + self.besides[0];
@@ -52,28 +53,30 @@ impl<N: Lane> MotorRow<N> {
     }
 }
 
-/// One coordinate of `N::WIDTH` lanes.
+/// Single coordinates, one per lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Single<N> {
-    /// Weights of the coordinates of the frame, of the distance and of the angles: one of them is 1.
+    /// Weights of the shifts, of the distance and of the angles: one of them is 1.
     pub(super) along: [N; DIM],
     pub(super) apart: N,
     pub(super) about: [N; ANGLES],
-    /// Least and greatest value.
+    /// Minimum and maximum value.
     pub(super) limits: [N; 2],
     pub(super) softening: Softening<N>,
-    /// Impulses of the lower and the upper limit, N·s or N·m·s. Not negative, but where both limits are one.
+    /// Impulses of the lower and the upper limit, N·s or N·m·s. Never negative, unless both limits are
+    /// equal.
     pub(super) impulses: [N; 2],
     pub(super) spring: MotorRow<N>,
     pub(super) motor: MotorRow<N>,
-    /// What is added to the angle for the turns that it has made: a multiple of 2π.
+    /// Whole turns added to the angle: a multiple of 2π.
     pub(super) turns: N,
-    /// Where the angle last was if it counts turns, else the value that it is to be near.
+    /// The last value of an angle that counts turns; for other angles, the value that the angle must be
+    /// close to.
     pub(super) near: N,
-    /// 1 if the angle counts turns, else 0.
+    /// 1 if the angle counts whole turns, otherwise 0.
     pub(super) counts_turns: N,
-    /// 1 if the block may hold what the coordinate is made of, else 0.
+    /// 1 if the block may lock a component coordinate of this coordinate, otherwise 0.
     pub(super) may_contradict: N,
 }
 
@@ -94,7 +97,7 @@ impl<N: Lane> Single<N> {
         may_contradict: N::ZERO,
     };
 
-    /// The gradient of the coordinate, and its value, given the angles of the place.
+    /// The gradient and value of the coordinate, given the angles at `place`.
     #[inline(always)]
     pub(super) fn gradient(
         &mut self,
@@ -120,7 +123,7 @@ impl<N: Lane> Single<N> {
         (place.gradient(normal, turn), value)
     }
 
-    /// The multiple of 2π that brings an angle nearest to where it is to be.
+    /// The multiple of 2π that brings an angle closest to `near`.
     #[inline(always)]
     fn count(&mut self, angle: N, weight: N) -> N {
         let full = N::splat(core::f32::consts::TAU);
@@ -132,8 +135,8 @@ impl<N: Lane> Single<N> {
         self.turns
     }
 
-    /// Solves spring, motor and limits, and changes the impulses of the block so that it stays solved. With bias, or without it as in
-    /// the relax pass, where motors and springs are left out.
+    /// Solves spring, motor and limits, and changes the impulses of the block so that it stays solved. With
+    /// bias, or without bias as in the relax pass, where motors and springs are left out.
     #[inline(always)]
     pub(super) fn solve<const D: usize>(
         &mut self,
@@ -151,11 +154,12 @@ impl<N: Lane> Single<N> {
         }
     }
 
-    /// Solves spring, motor and limits by the response to a unit impulse, given the one without other joints. Returns the change of the
-    /// impulse.
+    /// Solves spring, motor and limits. `response` is the response to a unit impulse, `alone` the response
+    /// without other joints. Returns the change of the impulse.
     ///
-    /// Where the block may hold the coordinate, impulses are those of the mass without the block. To shorten a distance across a locked
-    /// shift, the body would have to move along the other axis without bound.
+    /// If the block may lock a component of the coordinate, impulses are computed with the mass without the
+    /// block. To shorten a distance perpendicular to a locked shift, the body would otherwise have to move
+    /// along the other axis without bound.
     #[inline(always)]
     fn act(
         &mut self,
@@ -166,7 +170,7 @@ impl<N: Lane> Single<N> {
         biased: bool,
     ) -> N {
         let (k, own) = (response.along(gradient), alone.along(gradient));
-        // What the block holds already, a single row cannot move.
+        // A single row cannot move a coordinate that the block already locks.
         let moves = (own * N::splat(NO_MASS)).lt(k);
         let k = N::select(moves, k + (own - k) * self.may_contradict, N::ZERO);
         let before = self.impulse();
@@ -188,7 +192,7 @@ impl<N: Lane> Single<N> {
         self.impulse() - before
     }
 
-    /// Solves the spring, then the motor, which moves the spring as well.
+    /// Solves the spring, then the motor. The motor's impulse changes the spring's impulse as well.
     #[inline(always)]
     fn drive(
         &mut self,
@@ -206,14 +210,14 @@ impl<N: Lane> Single<N> {
         self.spring.impulse -= change * taken;
     }
 
-    /// The impulse along the coordinate.
+    /// The total impulse along the coordinate.
     #[inline(always)]
     pub(super) fn impulse(&self) -> N {
         self.impulses[0] - self.impulses[1] + self.spring.impulse + self.motor.impulse
     }
 }
 
-/// Stiffness and damping of a law per effective mass, and besides.
+/// Stiffness and damping of a law per effective mass, and in absolute units.
 pub(super) fn laws(drive: &Drive) -> ([f32; 2], [f32; 2]) {
     match *drive {
         Drive::Spring(spring) => {
@@ -225,7 +229,7 @@ pub(super) fn laws(drive: &Drive) -> ([f32; 2], [f32; 2]) {
     }
 }
 
-/// The turns, a multiple of 2π, that bring an angle nearest to another.
+/// The multiple of 2π that brings an angle closest to another.
 pub(super) fn turns_near(angle: f32, near: f32) -> f32 {
     let full = core::f32::consts::TAU;
     let turns = ((near - angle) / full).round();

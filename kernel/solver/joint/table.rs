@@ -16,21 +16,21 @@ use crate::thread_pool::ThreadPool;
 /// Buffers of [`JointTable::raise_inertia`].
 #[derive(Clone, Debug, Default)]
 pub(in super::super) struct InertiaFloors {
-    /// By colour and joint, for both bodies: the row, and the inertia, kg·m².
+    /// By colour and joint, the row and the minimum inertia, kg·m², of both bodies.
     asked: Vec<Vec<[(u32, f32); 2]>>,
-    /// By row of the body, kg·m².
+    /// Minimum inertia by body row, kg·m².
     least: Vec<f32>,
 }
 
-/// All joints by id. Their bodies are those in [`BodyTable::constraints`](crate::table::BodyTable::constraints). Columns of free
-/// ids are stale.
+/// All joints by id. [`BodyTable::constraints`](crate::table::BodyTable::constraints) stores their bodies.
+/// Entries of free ids are stale.
 #[derive(Clone, Debug, Default)]
 pub struct JointTable {
-    /// Those of couplings have bodies and anchors only.
+    /// Definitions. Couplings have bodies and anchors only.
     defs: Vec<JointDef>,
     summaries: Vec<Summary>,
     states: Vec<State>,
-    /// Set where a joint is a coupling.
+    /// Couplings by id; `None` for joints.
     couplings: Vec<Option<Box<CouplingRecord>>>,
 }
 
@@ -43,7 +43,7 @@ impl JointTable {
         self.enter(link, def, Summary::of(&def), None)
     }
 
-    /// Adds a coupling, as a joint with an id among joints, and wakes its bodies.
+    /// Adds a coupling, which gets an id among joints, and wakes its bodies.
     pub fn add_coupling(&mut self, link: &mut Link, def: CouplingDef) -> Result<u32, JointError> {
         def.check()?;
         self.enter(link, def.joint(), Summary::OF_COUPLING, Some(Box::new(CouplingRecord::new(def))))
@@ -74,7 +74,8 @@ impl JointTable {
         Ok(id)
     }
 
-    /// Changes all of a coupling but its bodies, and wakes them if anything is different. Turns are counted on.
+    /// Changes a coupling except for its bodies, and wakes them if the definition differs. The count of
+    /// turns continues.
     pub fn set_coupling(&mut self, link: &mut Link, id: u32, def: CouplingDef) -> Result<(), JointError> {
         def.check()?;
         let is_live = link.bodies.constraints(KIND).is_live(id);
@@ -94,15 +95,16 @@ impl JointTable {
         Ok(())
     }
 
-    /// The force of a coupling along the coordinate at A in the last substep, N or N·m: positive where it increases the coordinate.
-    /// Along the one at B it is the ratio times that. 0 for an unknown id.
+    /// The force of a coupling along the coordinate at A in the last substep, N or N·m: positive if it
+    /// increases the coordinate. The force along the coordinate at B is the ratio times this force. 0 for
+    /// an unknown id.
     pub fn coupling_force(&self, id: u32) -> f32 {
         let coupling = self.couplings.get(id as usize).and_then(Option::as_deref);
         coupling.map_or(0.0, |coupling| coupling.force)
     }
 
-    /// How far locked coordinates and limits of a joint or coupling are off, by the bodies' present poses. `None` for an unknown
-    /// id.
+    /// Errors of the locked coordinates and limits of a joint or coupling at the current poses. `None` for
+    /// an unknown id.
     pub fn gap(&self, id: u32, bodies: &BodyTable) -> Option<JointGap> {
         bodies.constraints(KIND).is_live(id).then(|| {
             let id = id as usize;
@@ -113,7 +115,8 @@ impl JointTable {
         })
     }
 
-    /// Changes all of a joint but its bodies, and wakes them if anything is different. What is kept has its impulses.
+    /// Changes a joint except for its bodies, and wakes them if the definition differs. Coordinates that
+    /// are still solved in the same way keep their impulses.
     pub fn set(&mut self, link: &mut Link, id: u32, def: JointDef) -> Result<(), JointError> {
         def.check()?;
         if !link.bodies.constraints(KIND).is_live(id) {
@@ -156,16 +159,17 @@ impl JointTable {
         Ok(())
     }
 
-    /// What the joint did in the last substep. Nothing for an unknown id.
+    /// Force and torque of a joint in the last substep. Zero for an unknown id.
     pub fn reaction(&self, id: u32) -> JointReaction {
         self.states.get(id as usize).map_or_else(JointReaction::default, |state| state.reaction)
     }
 
-    /// Gives bodies more inertia in this step where their joints bear much: h² Σ |force| |arm|.
+    /// Raises the inertia of bodies in this step if their joints bear large forces, to at least h² Σ
+    /// |force| |arm|.
     ///
-    /// An impulse acts in one direction for a whole substep. A light body under a large force turns so far in that time that
-    /// the next impulse turns it back further, and the motion grows (Andrews, Teichmann and Kry, "Geometric Stiffness for
-    /// Real-time Constrained Multibody Dynamics", 2017).
+    /// An impulse acts in one direction for a whole substep. A light body under a large force rotates so
+    /// far in that time that the next impulse turns it back further, and the motion grows (Andrews,
+    /// Teichmann and Kry, "Geometric Stiffness for Real-time Constrained Multibody Dynamics", 2017).
     pub(in super::super) fn raise_inertia(
         &self,
         input: &RowInput,
@@ -195,7 +199,7 @@ impl JointTable {
         }
     }
 
-    /// The rows of a joint's bodies, and the inertia that it asks for.
+    /// The rows of a joint's bodies, and the minimum inertia that the joint requires.
     fn asked_inertia(&self, id: u32, input: &RowInput, h: f32) -> [(u32, f32); 2] {
         let (def, state) = (&self.defs[id as usize], &self.states[id as usize]);
         let force = state.reaction.force.length();
@@ -206,7 +210,7 @@ impl JointTable {
         })
     }
 
-    /// Its bodies.
+    /// The bodies of a joint.
     pub(super) fn bodies(&self, id: u32) -> [u32; 2] {
         self.defs[id as usize].bodies
     }

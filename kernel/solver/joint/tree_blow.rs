@@ -1,8 +1,9 @@
-//! What a blow does to a tree of joints.
+//! The effect of blows on trees of joints.
 //!
-//! A blow changes velocities of single bodies. The tree passes it on to all its bodies at once, which may strike other contacts, and so
-//! on in turns: each is a projection, so no energy is gained. Bodies move with their old velocities until the first blow of their
-//! tree, all of them: otherwise a joint would open by the way between the start of the substep and the blow, up to 4 cm at 10 m/s.
+//! A blow changes the velocities of single bodies. The tree passes it on to all of its bodies at once;
+//! these may strike other contacts, and so on in turns. Each turn is a projection, so no energy is gained.
+//! All bodies of a tree move with their old velocities until the first blow on the tree: otherwise, joints
+//! would open by the distance moved between the start of the substep and the blow, up to 4 cm at 10 m/s.
 #![expect(unsafe_code, reason = "bodies and joints of different trees are changed at once")]
 
 use super::super::batch::Sweep;
@@ -14,32 +15,34 @@ use super::tree_joint::range;
 use crate::math::{Angular, Rot, Vector, min};
 use crate::thread_pool::ThreadPool;
 
-/// State of the trees while blows are solved. Buffers are kept between steps.
+/// State of the trees during blows. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(in super::super) struct TreeBlows {
-    /// Whether velocities before blows are known: from the first contact in a substep on that closes fast.
+    /// Whether the velocities before blows are stored, which happens at the first contact of a substep that
+    /// closes fast.
     pub(in super::super) has_begun: bool,
-    /// By tree, the time of its first blow from the start of the substep, in seconds. `f32::MAX` if it was not struck.
+    /// By tree, the time of its first blow from the start of the substep, in seconds. `f32::MAX` if the
+    /// tree was not struck.
     times: Vec<f32>,
     /// By tree, whether it was struck since it was last solved.
     is_due: Vec<bool>,
-    /// By body of the trees, velocity and way before all blows.
+    /// By body of the trees, velocity and displacement before all blows.
     before: Vec<Motion>,
-    /// By body, velocity before the tree was last solved.
+    /// By body of the trees, velocity before its tree was last solved.
     earlier: Vec<(Vector, Angular)>,
 }
 
 /// Velocity, and displacement and rotation since the start of the step.
 type Motion = ((Vector, Angular), (Vector, Rot));
 
-/// Moves a body as if its velocity had changed after a time, and not at once.
+/// Displaces a body as if its velocity had changed after `time` seconds instead of at once.
 fn displace(row: &mut BodyRow, (v, w): (Vector, Angular), (position, rotation): (Vector, Rot), time: f32) {
     let now = row.velocity();
     row.set_delta(position + (v - now.0) * time, rotation.turned_by((w - now.1) * time));
 }
 
 impl TreeBlows {
-    /// Starts the blows of a substep. Limits begin without impulses.
+    /// Starts the blows of a substep. Limits start without impulses.
     pub(in super::super) fn begin(&mut self, trees: &mut JointTrees, bodies: &RowView<BodyRow>) {
         let JointTrees { forest, bodies: listed, .. } = &*trees;
         let Self { has_begun, times, is_due, before, earlier } = self;
@@ -62,7 +65,8 @@ impl TreeBlows {
         });
     }
 
-    /// Marks the trees of struck body rows, given with the times of their blows. Returns whether there are any, and adds their bodies.
+    /// Marks the trees of struck body rows, and adds the bodies of these trees to the struck ones. `times`
+    /// holds the rows with the times of their blows. Returns whether any tree was struck.
     pub(in super::super) fn mark(
         &mut self,
         trees: &JointTrees,
@@ -90,7 +94,7 @@ impl TreeBlows {
         any
     }
 
-    /// Solves the trees that were struck, without bias.
+    /// Solves the struck trees, without bias.
     pub(in super::super) fn follow(
         &mut self,
         trees: &mut JointTrees,
@@ -111,8 +115,8 @@ impl TreeBlows {
             let due: Vec<_> = groups.filter(|(trees, group)| trees.is_due(*group, is_due)).collect();
             pool.run(due.len(), |k, _| {
                 let (trees, group) = due[k];
-                // SAFETY: each group is run once, and no two share a joint or a dynamic body. Of the bodies only dynamic ones
-                // are written.
+                // SAFETY: each group is run once, and no two groups share a joint or a dynamic body. Only
+                // dynamic bodies are written.
                 unsafe { trees.follow(group, is_due, sweep) }
             });
         });
@@ -127,7 +131,8 @@ impl TreeBlows {
         }
     }
 
-    /// Ends the blows of a substep: the bodies of a tree that was struck have moved with their old velocities until its first blow.
+    /// Ends the blows of a substep: the bodies of struck trees are displaced as if they had moved with
+    /// their old velocities until the first blow on their tree.
     pub(in super::super) fn end(&self, trees: &mut JointTrees, bodies: &RowView<BodyRow>, time: f32) {
         trees.forget_places();
         let JointTrees { forest, bodies: listed, .. } = &*trees;

@@ -1,4 +1,4 @@
-//! A body and a joint of trees side by side, one in each lane.
+//! A body and a joint of trees of equal shape, one tree per lane.
 
 use super::super::BodyRows;
 use super::super::batch::{Pass, Sweep};
@@ -14,18 +14,18 @@ use crate::math::{Angular, DIM, Ids, InvInertia, Lane, Num, Vector};
 use crate::tuning::solver::{NO_MASS, SMALL_TURN};
 use core::ops::Range;
 
-/// Softness of a spring in the relax pass, where it takes no part, as a multiple of its inverse mass.
+/// Softness of a spring in the relax pass, where springs take no part, as a multiple of the inverse mass.
 const LOOSE: f32 = 1.0e12;
 
-/// A body of a tree, as it is without what contacts add to its mass.
+/// A body of a tree, with its true mass, which contacts may see raised.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ListedBody {
     pub(super) row: u32,
     /// Inverse mass along each world axis, 1/kg. 0 along locked axes.
     linear: Vector,
-    /// At the start of the step.
+    /// Inverse inertia at the start of the step.
     angular: InvInertia,
-    /// Whether its inertia turns with it.
+    /// Whether its inertia rotates with it.
     turns: bool,
 }
 
@@ -42,25 +42,25 @@ impl ListedBody {
     }
 }
 
-/// A body of each tree, as it is without what contacts add to its mass.
+/// A body of each tree, with its true mass, which contacts may see raised.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TreeBody<N: Lane> {
     pub(super) ids: N::Ids,
     /// Inverse mass along each world axis, 1/kg. 0 along locked axes.
     pub(super) linear: Vector<N>,
-    /// At the start of the step.
+    /// Inverse inertia at the start of the step.
     pub(super) angular: InvInertia<N>,
-    /// The share of the inverse mass along each axis that is left, as contacts see it.
+    /// The ratio of the inverse mass that contacts see to the true one, along each axis.
     pub(super) share: Vector<N>,
-    /// 1 if its inertia turns with it, else 0.
+    /// 1 if the inertia rotates with the body, otherwise 0.
     pub(super) turns: N,
-    /// The same where the body is now, times the least share.
+    /// The inverse inertia at the current rotation, times the smallest share.
     pub(super) turned: InvInertia<N>,
-    /// The same now, with what its joints ask for.
+    /// The same, with the inertia that joints require.
     pub(super) now: InvInertia<N>,
-    /// How much inertia is added to its own, kg·m².
+    /// Inertia added to the body's own, kg·m².
     pub(super) lacking: N,
-    /// What they ask for: h Σ |impulse| |arm|, kg·m².
+    /// Minimum inertia that the joints require: h Σ |impulse| |arm|, kg·m².
     pub(super) least: N,
 }
 
@@ -68,29 +68,29 @@ pub(super) struct TreeBody<N: Lane> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TreeJoint<N: Lane> {
     pub(super) row: Row<N>,
-    /// The range of its single coordinates among those of its tree.
+    /// The range of its single coordinates among the single coordinates of its tree.
     pub(super) singles: [u32; 2],
-    /// The coordinates that are locked: the first rows of its link.
+    /// The locked coordinates: the first rows of its link.
     pub(super) locks: [u8; BLOCK],
-    /// Their number.
+    /// Number of locked coordinates.
     pub(super) locked: usize,
-    /// Whether the first coordinate of its block is the distance of the anchors.
+    /// Whether the first coordinate of its block is the distance between the anchors.
     pub(super) is_rod: bool,
-    /// Its side at the parent.
+    /// The side of the joint on the parent.
     pub(super) parent_side: usize,
-    /// Whether some of its impulses are warm started.
+    /// Whether some of its impulses are warm-started.
     pub(super) is_warm: bool,
-    /// From B's centre of mass to its anchor.
+    /// Vector from B's centre of mass to its anchor.
     pub(super) arm: Vector<N>,
     /// Lengths from the centres of mass to the anchors.
     pub(super) arms: [N; 2],
     /// Length of the last impulse, N·s.
     pub(super) load: N,
-    /// The impulse on B and its moment of what is not locked.
+    /// The impulse on B, and its moment, by rows that are not locked.
     pub(super) besides: Screw<N>,
     /// The orientation motor, if it has one.
     pub(super) orientation: Option<OrientationRow<N>>,
-    /// The velocity of its body outside of the tree, if its place is `GROUND`.
+    /// The velocity of its body outside the tree, if an end is `GROUND`.
     pub(super) outside: [N; DOF],
 }
 
@@ -122,7 +122,7 @@ impl<N: Lane> TreeBody<N> {
         self.turns.set(lane, f32::from(u8::from(body.turns)));
     }
 
-    /// What it lacks of the inertia that its joints ask for.
+    /// The inertia that the body lacks to meet the minimum of its joints.
     #[inline(always)]
     pub(super) fn lacks(&self) -> N {
         lacking(self.turned, self.least)
@@ -130,7 +130,7 @@ impl<N: Lane> TreeBody<N> {
 }
 
 impl<N: Lane> TreeJoint<N> {
-    /// No joint yet.
+    /// An empty joint.
     pub(super) fn none() -> Self {
         Self {
             row: Row::default(),
@@ -149,13 +149,13 @@ impl<N: Lane> TreeJoint<N> {
         }
     }
 
-    /// The side of its parent, 0, or of its child, 1.
+    /// The side of the joint on the parent (end 0) or on the child (end 1).
     #[inline(always)]
     pub(super) fn side(&self, end: usize) -> usize {
         if end == 0 { self.parent_side } else { 1 - self.parent_side }
     }
 
-    /// The coordinates that are locked.
+    /// The locked coordinates.
     #[inline(always)]
     pub(super) fn locks(&self) -> impl Iterator<Item = usize> + use<N> {
         let locks = self.locks;
@@ -170,7 +170,7 @@ impl<N: Lane> TreeJoint<N> {
         range(self.singles)
     }
 
-    /// Writes what is locked at a place: the rows of the link.
+    /// Writes the rows of the link for the locked coordinates, at a place.
     #[inline(always)]
     pub(super) fn lock<const D: usize>(
         &mut self,
@@ -197,7 +197,7 @@ impl<N: Lane> TreeJoint<N> {
     pub(super) fn add_row(&self, gradient: &Gradient<N>, softness: N, link: &mut Link<N>) -> usize {
         let number = link.count;
         let row = &mut link.rows[number];
-        // The first one is the parent's, which is A if its side is 0.
+        // `jacobians[0]` belongs to the parent, which is A if `parent_side` is 0.
         let Gradient { normal, moments } = *gradient;
         row.jacobians[self.parent_side] = numbers((-normal, -moments[0]));
         row.jacobians[1 - self.parent_side] = numbers((normal, moments[1]));
@@ -214,7 +214,7 @@ impl<N: Lane> TreeJoint<N> {
         Gradient { normal: of_b.0, moments: [-of_a.1, of_b.1] }
     }
 
-    /// Writes how soft what is locked is in a pass. The link has no other rows then.
+    /// Writes the softness of the locked coordinates in a pass. The link then has no other rows.
     #[inline(always)]
     pub(super) fn soften(&self, link: &mut Link<N>, pass: Pass) {
         link.count = self.locked;
@@ -228,7 +228,7 @@ impl<N: Lane> TreeJoint<N> {
         }
     }
 
-    /// Writes what the joint asks for in a pass, in the lanes of a mask.
+    /// Writes the wanted velocities of the locked coordinates in a pass, in the lanes of a mask.
     #[inline(always)]
     pub(super) fn ask(&self, pair: &Pair<N>, link: &mut Link<N>, lanes: N::Mask, sweep: &Sweep) {
         for (i, row) in self.locks().zip(&mut link.rows) {
@@ -249,7 +249,7 @@ impl<N: Lane> TreeJoint<N> {
         }
     }
 
-    /// Notes what the joint bears.
+    /// Stores the load on the joint, and its reaction.
     #[inline(always)]
     pub(super) fn bear(&mut self, link: &Link<N>, sweep: &Sweep) {
         let mut sum = self.besides;

@@ -1,4 +1,5 @@
-//! Orientation motors of trees, each solved by the responses of the whole tree to impulses along its axes.
+//! Orientation motors of trees. Each is solved with the responses of the whole tree to impulses along its
+//! axes.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::super::batch::{Pass, Sweep};
@@ -10,7 +11,7 @@ use super::tree_pass::{Tree, TreeEntry};
 use super::tree_single::{is, number};
 use crate::math::{Angular, Entry, Job, Num, Vector};
 
-/// Finds the lanes whose motors are due: nothing else changes in them. Returns whether there are any.
+/// Finds the lanes whose motors are due, because their pivoting is complete. Returns whether there are any.
 struct Begin<'t, 'a, N: Entry>(&'t mut Tree<'a, N>);
 
 impl<N: Entry> Job for Begin<'_, '_, N> {
@@ -27,7 +28,7 @@ impl<N: Entry> Job for Begin<'_, '_, N> {
     }
 }
 
-/// Solves the motor of a joint in the lanes that are due.
+/// Solves the orientation motor of a joint in the due lanes.
 struct Solve<'t, 'a, N: Entry>(&'t mut Tree<'a, N>, usize, &'t Sweep<'t>);
 
 impl<N: Entry> Job for Solve<'_, '_, N> {
@@ -40,7 +41,7 @@ impl<N: Entry> Job for Solve<'_, '_, N> {
     }
 }
 
-/// Opens the lanes that were open before, besides. Returns whether any are.
+/// Adds lanes that were open before to the open lanes. Returns whether any lane is open.
 struct End<'t, 'a, N: Entry>(&'t mut Tree<'a, N>, N);
 
 impl<N: Entry> Job for End<'_, '_, N> {
@@ -55,7 +56,8 @@ impl<N: Entry> Job for End<'_, '_, N> {
 }
 
 impl<N: Entry> Tree<'_, N> {
-    /// Solves the motors of the lanes in which nothing else changes, once, and pivots again. Returns whether lanes are open.
+    /// Solves the motors, once, in lanes whose pivoting is complete, and pivots again. Returns whether any
+    /// lane is open.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
@@ -116,8 +118,8 @@ impl<N: Entry> Tree<'_, N> {
         row.turning = Angular::select(due, sum, row.turning);
     }
 
-    /// Solves the trees for a unit impulse along a coordinate of a joint, and adds the impulse to those on its bodies. The
-    /// response of the joint's bodies.
+    /// Solves the trees for a unit impulse along a coordinate of a joint, and adds this impulse to the
+    /// impulses on its bodies. Returns the response of the joint's bodies.
     #[inline(always)]
     pub(super) fn unit_response(&mut self, k: usize, gradient: &Gradient<N>) -> Response<N> {
         let Self { joints, links, nodes, .. } = self;

@@ -1,4 +1,4 @@
-//! The parts of a pass over trees side by side: what joints ask for, and the direct solution.
+//! The parts of a pass over a group of trees: the wanted velocities of joints, and the direct solution.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::super::BodyRow;
@@ -15,7 +15,7 @@ use crate::math::{Angular, DIM, Entry, InvInertia, Lane, Rot, Vector};
 use crate::tuning::manifold::SAME;
 use crate::tuning::solver::NO_MASS;
 
-/// Where two velocities differ.
+/// Lanes in which two velocities differ.
 #[inline(always)]
 fn differs<N: Lane>(a: &[N; DOF], b: &[N; DOF]) -> N::Mask {
     let mut any = a[0].lt(a[0]);
@@ -26,7 +26,7 @@ fn differs<N: Lane>(a: &[N; DOF], b: &[N; DOF]) -> N::Mask {
 }
 
 impl<N: Entry> Tree<'_, N> {
-    /// The velocities of a joint's bodies now.
+    /// The current velocities of a joint's bodies.
     #[inline(always)]
     pub(super) fn pair(&self, k: usize) -> Pair<N> {
         let joint = &self.joints[k];
@@ -40,10 +40,10 @@ impl<N: Entry> Tree<'_, N> {
         pair
     }
 
-    /// Finds where joints are now.
+    /// Computes the current positions of joints.
     ///
     /// # Safety
-    /// Until it returns, no other thread writes the bodies of the trees.
+    /// Until the call returns, no other thread writes the bodies of the trees.
     #[inline(always)]
     pub(super) unsafe fn place(&mut self, sweep: &Sweep) {
         let Scratch { known, coordinates, open, .. } = &mut *self.scratch;
@@ -66,7 +66,7 @@ impl<N: Entry> Tree<'_, N> {
                 (at.gradient, at.value) = single.gradient(&place, &angles);
                 single.turns = N::select(open, single.turns, turns);
                 single.near = N::select(open, single.near, near);
-                // A blow may have let go a limit whose impulse was given back.
+                // A blow may have deactivated a limit whose impulse was restored afterwards.
                 let (held, is_free) = (single.held(), (at.held[0] + at.held[1]).eq(N::ZERO));
                 for side in 0..2 {
                     at.held[side] = N::select(is_free, held[side], at.held[side]);
@@ -76,8 +76,8 @@ impl<N: Entry> Tree<'_, N> {
         *known = Known::Places;
     }
 
-    /// Loads velocities. Closes lanes that the last pass solved with the same factors and whose velocities are the same. Returns
-    /// whether any lane is open.
+    /// Loads velocities. Closes lanes with the same velocities as in the last pass, if it solved them with
+    /// the same factors. Returns whether any lane is open.
     ///
     /// # Safety
     /// As [`place`](Self::place).
@@ -108,7 +108,7 @@ impl<N: Entry> Tree<'_, N> {
         N::any(is(*open))
     }
 
-    /// Finds the inertia of bodies where they are now, with what joints ask for.
+    /// Computes the inertia of bodies at their current rotations, with the inertia that joints require.
     ///
     /// # Safety
     /// As [`place`](Self::place).
@@ -125,7 +125,7 @@ impl<N: Entry> Tree<'_, N> {
                 }
             }
         }
-        // Lanes that are not solved keep what their warm start uses.
+        // Closed lanes keep the masses that the warm start uses.
         let open = is(self.scratch.open);
         for (body, node) in self.bodies.iter_mut().zip(&mut *self.nodes) {
             // SAFETY: by the contract.
@@ -148,10 +148,10 @@ impl<N: Entry> Tree<'_, N> {
         }
     }
 
-    /// Factors the trees with what is locked alone, as in the relax pass.
+    /// Factors the trees with locked coordinates alone, as in the relax pass.
     ///
     /// # Safety
-    /// No condition: unsafe as all parts are.
+    /// None: the function is unsafe because all parts are.
     #[inline(always)]
     pub(super) unsafe fn factor_locked(&mut self, _: &Sweep) {
         for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
@@ -160,21 +160,21 @@ impl<N: Entry> Tree<'_, N> {
         elimination::factor(self.links, self.nodes);
     }
 
-    /// Finds which mass a spring or motor moves that is given per mass, with all that is locked.
+    /// Computes the mass that a spring or motor with a law per mass moves, with all locked coordinates.
     #[inline(always)]
     pub(super) fn weigh(&mut self, k: usize, index: usize) {
         let gradient = self.scratch.coordinates[index].gradient;
         let alone = self.joints[k].row.masses.response(&gradient).along(&gradient);
         let left = self.unit_response(k, &gradient).along(&gradient);
-        // What is locked already, nothing moves.
+        // No impulse moves a coordinate that is already locked.
         let moves = (alone * N::splat(NO_MASS)).lt(left);
         self.scratch.coordinates[index].left = N::select(moves, left, N::ZERO);
     }
 
-    /// Gives each coordinate along which something acts a row, and factors the trees.
+    /// Adds a row for each coordinate with an active limit, spring or motor, and factors the trees.
     ///
     /// # Safety
-    /// No condition: unsafe as all parts are.
+    /// None: the function is unsafe because all parts are.
     #[inline(always)]
     pub(super) unsafe fn factor_all(&mut self, sweep: &Sweep) {
         let biased = sweep.pass == Pass::Solve;
@@ -199,10 +199,10 @@ impl<N: Entry> Tree<'_, N> {
         elimination::factor(self.links, self.nodes);
     }
 
-    /// Solves what joints ask for.
+    /// Solves the trees for the wanted velocities of the joints.
     ///
     /// # Safety
-    /// No condition: unsafe as all parts are.
+    /// None: the function is unsafe because all parts are.
     #[inline(always)]
     pub(super) unsafe fn round(&mut self, sweep: &Sweep) {
         self.ask(sweep);
@@ -210,7 +210,7 @@ impl<N: Entry> Tree<'_, N> {
         self.apply(self.scratch.open, sweep);
     }
 
-    /// Writes what joints ask for. Lanes that are done ask for nothing.
+    /// Writes the wanted velocities of the joints; zero in closed lanes.
     #[inline(always)]
     fn ask(&mut self, sweep: &Sweep) {
         let biased = sweep.pass == Pass::Solve;
@@ -228,7 +228,7 @@ impl<N: Entry> Tree<'_, N> {
         }
     }
 
-    /// Adds what was solved to velocities and impulses of some lanes.
+    /// Adds the solution to velocities and impulses in some lanes.
     #[inline(always)]
     pub(super) fn apply(&mut self, lanes: N, sweep: &Sweep) {
         let lanes = is(lanes);
@@ -263,15 +263,15 @@ impl<N: Entry> Tree<'_, N> {
         }
     }
 
-    /// Finds which limits act and which motors are at their maximum. Lanes in
-    /// which any changed stay open. Returns whether there are any.
+    /// Determines the active limits and the motors at their maximum. Lanes in which any of them changed
+    /// stay open. Returns whether there are any.
     ///
     /// # Safety
-    /// No condition: unsafe as all parts are.
+    /// None: the function is unsafe because all parts are.
     #[inline(always)]
     pub(super) unsafe fn pivot(&mut self, sweep: &Sweep) -> bool {
         let Scratch { settled, open, adds, .. } = &mut *self.scratch;
-        // What closes where nothing may be added is not settled.
+        // Lanes that are still open in a round without activation of limits are not settled.
         *settled = if *adds { N::ONE } else { settled.min(N::ONE - *open) };
         let (open, mut any_changed) = (is(*open), N::ZERO);
         let mut changes = core::mem::take(&mut self.scratch.changes);
@@ -311,7 +311,7 @@ impl<N: Entry> Tree<'_, N> {
         any
     }
 
-    /// Applies an impulse along a gradient of a joint to its two bodies alone.
+    /// Applies an impulse along a gradient of a joint to its two bodies only.
     #[inline(always)]
     fn push(&mut self, k: usize, gradient: &Gradient<N>, impulse: N) {
         let pushes = N::or(is(impulse), impulse.lt(N::ZERO));
@@ -327,7 +327,7 @@ impl<N: Entry> Tree<'_, N> {
         }
     }
 
-    /// Writes velocities and impulses.
+    /// Stores velocities, and sums up the impulses of single coordinates.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
@@ -350,10 +350,10 @@ impl<N: Entry> Tree<'_, N> {
         }
     }
 
-    /// Notes what joints bear.
+    /// Stores the loads on joints.
     ///
     /// # Safety
-    /// No condition: unsafe as all parts are.
+    /// None: the function is unsafe because all parts are.
     #[inline(always)]
     pub(super) unsafe fn bear(&mut self, sweep: &Sweep) {
         for (joint, link) in self.joints.iter_mut().zip(&*self.links) {

@@ -1,4 +1,4 @@
-//! A pass over trees side by side: its parts, and how they follow each other.
+//! A pass over a group of trees: its parts and their order.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::super::MassRow;
@@ -10,7 +10,7 @@ use super::tree_scratch::{Coordinate, Known, Scratch};
 use crate::math::{Entry, Job, Width};
 use crate::tuning::solver::JOINT_ROUNDS;
 
-/// How code with the CPU features of a lane is entered.
+/// The entry to code compiled for the CPU features of the lanes.
 #[derive(Clone, Copy)]
 pub(super) struct TreeEntry<N: Entry> {
     pub(super) width: Width,
@@ -19,16 +19,16 @@ pub(super) struct TreeEntry<N: Entry> {
 
 impl<N: Entry> TreeEntry<N> {
     /// # Safety
-    /// As the job demands.
+    /// The condition of the job holds.
     pub(super) unsafe fn run<J: Job>(self, job: J) -> J::Output {
         // SAFETY: by the contract.
         unsafe { N::enter_widest(self.proof, self.width, job) }
     }
 }
 
-/// Trees of equal shape side by side, one in each lane. Lanes without a tree have bodies that nothing moves.
+/// Trees of equal shape, one per lane. Lanes without a tree have immovable bodies.
 ///
-/// A pass consists of parts, each with an entry point of its own. All calculation with lanes is in them.
+/// A pass consists of parts, each with an entry point of its own. Only these parts compute with lanes.
 pub(super) struct Tree<'a, N: Entry> {
     pub(super) joints: &'a mut [TreeJoint<N>],
     pub(super) singles: &'a mut [Single<N>],
@@ -39,7 +39,7 @@ pub(super) struct Tree<'a, N: Entry> {
     pub(super) entry: TreeEntry<N>,
 }
 
-/// Jobs that call a method.
+/// Declares jobs that each call a method.
 macro_rules! parts {
     ($($part:ident: $method:ident -> $output:ty;)+) => {$(
         struct $part<'t, 'a, N: Entry>(&'t mut Tree<'a, N>, &'t Sweep<'t>);
@@ -69,7 +69,7 @@ parts! {
     Warm: warm -> ();
 }
 
-/// Computes what follows from joints and masses, at the start of a step.
+/// Computes derived values of joints and masses, at the start of a step.
 pub(super) struct BeginStep<'t, 'a, N: Entry> {
     pub(super) tree: Tree<'a, N>,
     pub(super) masses: &'t [MassRow],
@@ -97,7 +97,7 @@ impl<N: Entry> Job for BeginStep<'_, '_, N> {
     }
 }
 
-/// Finds which mass a single coordinate of a joint moves.
+/// Computes the mass that a single coordinate of a joint moves.
 struct Weigh<'t, 'a, N: Entry>(&'t mut Tree<'a, N>, usize, usize);
 
 impl<N: Entry> Job for Weigh<'_, '_, N> {
@@ -110,10 +110,11 @@ impl<N: Entry> Job for Weigh<'_, '_, N> {
 }
 
 impl<N: Entry> Tree<'_, N> {
-    /// Solves all that is locked, then limits and motors, and notes what joints bear.
+    /// Solves all locked coordinates, limits and motors, and stores the loads on joints.
     ///
     /// # Safety
-    /// Until it returns, no other thread reads or writes the dynamic bodies of the trees, or writes their other bodies.
+    /// Until the call returns, no other thread reads or writes the dynamic bodies of the trees, or writes
+    /// their other bodies.
     pub(super) unsafe fn solve(&mut self, sweep: &Sweep) {
         self.scratch.open = N::ONE;
         // SAFETY: by the contract.
@@ -123,7 +124,8 @@ impl<N: Entry> Tree<'_, N> {
         }
     }
 
-    /// Solves all that is locked, limited and driven in the open lanes. What is known holds until bodies move.
+    /// Solves all locked coordinates, limits, springs and motors in the open lanes. Positions and factors
+    /// stay valid until bodies move.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
@@ -146,7 +148,7 @@ impl<N: Entry> Tree<'_, N> {
                 // SAFETY: by the contract.
                 unsafe { self.factor(sweep) };
             }
-            // In the last rounds limits are only let go.
+            // In later rounds, limits are only deactivated.
             self.scratch.adds = 2 * round < JOINT_ROUNDS;
             self.scratch.is_last = round + 1 == JOINT_ROUNDS;
             // SAFETY: by the contract.
@@ -160,14 +162,14 @@ impl<N: Entry> Tree<'_, N> {
             }
         }
         if has_turns {
-            // Motors are solved one after the other.
+            // Motors are solved sequentially, so repeating the pass would change the result.
             self.scratch.settled = N::ZERO;
         }
         // SAFETY: by the contract.
         unsafe { entry.run(Finish(self, sweep)) };
     }
 
-    /// Pivots in the open lanes once more.
+    /// Pivots once more in the open lanes.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
@@ -176,7 +178,7 @@ impl<N: Entry> Tree<'_, N> {
         unsafe { self.entry.run(Pivot(self, sweep)) };
     }
 
-    /// Gives each coordinate along which something acts a row, and factors the trees.
+    /// Adds a row for each coordinate with an active limit, spring or motor, and factors the trees.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).
@@ -204,7 +206,7 @@ impl<N: Entry> Tree<'_, N> {
         self.scratch.known = Known::Factors(sweep.pass);
     }
 
-    /// Applies the impulses of springs and motors, and damps. What is rigid begins from nothing.
+    /// Applies the impulses of springs and motors, and damping. Rigid rows start from zero impulses.
     ///
     /// # Safety
     /// As [`solve`](Self::solve).

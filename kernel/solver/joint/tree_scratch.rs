@@ -1,4 +1,4 @@
-//! What of a tree of joints is kept between its passes.
+//! Data of trees of joints that is kept between passes.
 
 use super::super::batch::Pass;
 use super::dim::DOF;
@@ -6,43 +6,45 @@ use super::place::Gradient;
 use super::single::Single;
 use crate::math::Lane;
 
-/// What of a tree holds from pass to pass.
+/// The data of a tree that is still valid from earlier passes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Known {
-    /// Its bodies have moved.
+    /// Nothing, because its bodies have moved.
     #[default]
     Nothing,
-    /// Where its joints are.
+    /// The positions of its joints.
     Places,
-    /// The factors of a pass as well. Both solve passes of a substep use the same.
+    /// Positions, and the factors of a pass. Both solve passes of a substep use the same factors.
     Factors(Pass),
 }
 
-/// Buffers for the passes of trees side by side.
+/// Buffers for the passes of a group of trees.
 #[derive(Clone, Debug)]
 pub(super) struct Scratch<N: Lane> {
     pub(super) known: Known,
-    /// 1 in lanes that would come to the same again, else 0: the last pass found what acts, and no orientation motor is in turn.
+    /// 1 in lanes for which repeating the pass would give the same result, otherwise 0. These lanes have no
+    /// orientation motor, and the last pass found all active rows.
     pub(super) settled: N,
     /// Whether the masses that coordinates move are known in this step.
     pub(super) is_weighed: bool,
-    /// 1 in lanes that are solved, and not done yet, else 0.
+    /// 1 in lanes that still have to be solved, otherwise 0.
     pub(super) open: N,
-    /// The same before the last pivots.
+    /// The value of `open` before the last pivoting.
     pub(super) was_open: N,
-    /// 1 in lanes whose orientation motors were solved, else 0.
+    /// 1 in lanes whose orientation motors are solved, otherwise 0.
     pub(super) driven: N,
-    /// 1 in lanes whose orientation motors are solved next, else 0.
+    /// 1 in lanes whose orientation motors are solved next, otherwise 0.
     pub(super) due: N,
-    /// Whether limits may be added in this round.
+    /// Whether limits may be activated in this round.
     pub(super) adds: bool,
-    /// Whether it is the last round.
+    /// Whether this is the last round.
     pub(super) is_last: bool,
-    /// By body, its velocity.
+    /// The velocity of each body.
     pub(super) velocities: Vec<[N; DOF]>,
-    /// By single coordinate.
+    /// The state of each single coordinate.
     pub(super) coordinates: Vec<Coordinate<N>>,
-    /// Joints whose coordinates are let go or held, those coordinates, and by how much their impulses change.
+    /// Joints with coordinates that were released or capped, these coordinates, and the changes of their
+    /// impulses.
     pub(super) changes: Vec<(usize, usize, N)>,
 }
 
@@ -70,19 +72,20 @@ impl<N: Lane> Default for Scratch<N> {
 pub(super) struct Coordinate<N> {
     pub(super) gradient: Gradient<N>,
     pub(super) value: N,
-    /// What a unit impulse changes, as the two bodies alone allow.
+    /// The inverse effective mass, with the two bodies alone.
     pub(super) alone: N,
-    /// The same as all that is locked in the tree allows, at the start of the step. 0 if it allows nothing.
+    /// The inverse effective mass with all locked coordinates of the tree, at the start of the step. 0 if
+    /// they allow no motion.
     pub(super) left: N,
-    /// 1 for the limit that acts, the lower or the upper one, else 0.
+    /// 1 for the active limit, the lower or the upper one, otherwise 0.
     pub(super) held: [N; 2],
-    /// 1 if the motor is at its maximum, else 0.
+    /// 1 if the motor is at its maximum, otherwise 0.
     pub(super) is_capped: N,
-    /// 1 if anything acts, else 0.
+    /// 1 if a limit, spring or motor is active, otherwise 0.
     pub(super) acts: N,
-    /// Whether its laws depend on the mass that it moves.
+    /// Whether its laws depend on the mass that the coordinate moves.
     pub(super) is_per_mass: bool,
-    /// Its row of the link, if anything acts in any lane.
+    /// Its row of the link, if it is active in any lane.
     pub(super) row: Option<usize>,
 }
 
@@ -99,7 +102,8 @@ impl<N: Lane> Coordinate<N> {
         row: None,
     };
 
-    /// At the start of a step: what acted at the end of the last one acts again.
+    /// The state at the start of a step: limits and motors that were active at the end of the last step are
+    /// active again.
     #[inline(always)]
     pub(super) fn new(single: &Single<N>) -> Self {
         let is_per_mass = single.is_per_mass();
@@ -108,7 +112,7 @@ impl<N: Lane> Coordinate<N> {
 }
 
 impl<N: Lane> Scratch<N> {
-    /// Forgets what was found out: bodies have moved, or are others.
+    /// Marks all data as outdated, because bodies have moved or changed.
     pub(super) fn forget(&mut self) {
         self.known = Known::Nothing;
     }

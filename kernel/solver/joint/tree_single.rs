@@ -1,10 +1,11 @@
 //! Limits, springs and motors along a coordinate of a tree of joints: one row of its link.
 //!
-//! Side by side, each asks for the impulse −G (v + b), with the rate v of the coordinate, a bias b and a conductance G. Together they
-//! ask for −ΣG (v + ΣG b / ΣG), which is a row with the softness 1 / ΣG.
+//! Acting in parallel, each law wants the impulse −G (v + b), with the rate v of the coordinate, a bias b
+//! and a conductance G. Their sum is the impulse −ΣG (v + ΣG b / ΣG), which is a row with the softness 1 /
+//! ΣG.
 //!
-//! Which limits act, and which motors are at their maximum, is found by pivoting: a limit that would pull is let go, one that would be
-//! passed is added, and the tree is solved again.
+//! Pivoting determines the active limits and the motors at their maximum: a limit that would pull is
+//! deactivated, a limit that would be passed is activated, and the tree is solved again.
 
 use super::super::SubstepParams;
 use super::single::{MotorRow, Single};
@@ -12,39 +13,39 @@ use super::tree_scratch::Coordinate;
 use crate::math::Lane;
 use crate::tuning::solver::NO_MASS;
 
-/// What acts along a coordinate.
+/// Indices of the laws along a coordinate.
 const LIMIT: usize = 0;
 const SPRING: usize = 1;
 const MOTOR: usize = 2;
 
-/// 1 where a mask is set, else 0.
+/// 1 where the mask is set, otherwise 0.
 #[inline(always)]
 pub(super) fn number<N: Lane>(mask: N::Mask) -> N {
     N::select(mask, N::ONE, N::ZERO)
 }
 
-/// Where a number is positive.
+/// Lanes in which a number is positive.
 #[inline(always)]
 pub(super) fn is<N: Lane>(number: N) -> N::Mask {
     N::ZERO.lt(number)
 }
 
-/// The first mask without the second one.
+/// Lanes of the first mask that are not in the second one.
 #[inline(always)]
 fn without<N: Lane>(mask: N::Mask, but: N::Mask) -> N::Mask {
     N::and(mask, N::select(but, N::ZERO, N::ONE).eq(N::ONE))
 }
 
-/// Adds where a mask is set.
+/// Adds in the lanes of a mask.
 #[inline(always)]
 fn add_where<N: Lane>(to: &mut N, mask: N::Mask, change: N) {
     *to = N::select(mask, *to + change, *to);
 }
 
-/// What one of them asks for.
+/// The law of a limit, spring or motor.
 #[derive(Clone, Copy, Debug)]
 struct Law<N> {
-    /// G. 0 if it does not act.
+    /// G. 0 if the law is inactive.
     conductance: N,
     bias: N,
 }
@@ -57,13 +58,13 @@ impl<N: Lane> Law<N> {
         is(self.conductance)
     }
 
-    /// The law where a mask is set.
+    /// The law, active only in the lanes of a mask.
     #[inline(always)]
     fn only(self, mask: N::Mask) -> Self {
         Self { conductance: N::select(mask, self.conductance, N::ZERO), bias: self.bias }
     }
 
-    /// The impulse that it asks for at a rate.
+    /// The impulse of the law at a rate of the coordinate.
     #[inline(always)]
     fn asks(&self, rate: N) -> N {
         -self.conductance * (rate + self.bias)
@@ -71,7 +72,7 @@ impl<N: Lane> Law<N> {
 }
 
 impl<N: Lane> MotorRow<N> {
-    /// The law of a substep. What is per mass is per the mass that the coordinate moves in the tree.
+    /// The law in a substep. Coefficients per mass refer to the mass that the coordinate moves in the tree.
     #[inline(always)]
     fn law(&self, at: &Coordinate<N>, h: f32) -> Law<N> {
         let h = N::splat(h);
@@ -90,7 +91,7 @@ impl<N: Lane> MotorRow<N> {
         Law { conductance: N::select(acts, h * resistance, N::ZERO), bias }
     }
 
-    /// Where it is per mass.
+    /// Lanes in which the law is per mass.
     #[inline(always)]
     fn is_per_mass(&self) -> N::Mask {
         N::and(is(self.most), N::or(is(self.of_mass[0]), is(self.of_mass[1])))
@@ -98,20 +99,20 @@ impl<N: Lane> MotorRow<N> {
 }
 
 impl<N: Lane> Single<N> {
-    /// Where both limits are one: it acts both ways.
+    /// Lanes in which both limits are equal, so that the limit acts in both directions.
     #[inline(always)]
     fn is_locked(&self) -> N::Mask {
         self.limits[0].eq(self.limits[1])
     }
 
-    /// The limit that has an impulse.
+    /// The limit with an impulse, as 1 for the lower or the upper one.
     #[inline(always)]
     pub(super) fn held(&self) -> [N; 2] {
         let lower = N::or(self.is_locked(), is(self.impulses[0]));
         [number(lower), number(without::<N>(is(self.impulses[1]), lower))]
     }
 
-    /// 1 where the motor is at its maximum.
+    /// 1 in lanes whose motor is at its maximum.
     #[inline(always)]
     pub(super) fn is_capped(&self) -> N {
         let MotorRow { impulse, most, .. } = self.motor;
@@ -124,13 +125,13 @@ impl<N: Lane> Single<N> {
         N::any(N::or(self.spring.is_per_mass(), self.motor.is_per_mass()))
     }
 
-    /// Whether something acts along it that is warm started.
+    /// Whether it has an active law that is warm-started.
     #[inline(always)]
     pub(super) fn is_warm(&self) -> bool {
         N::any(is(self.spring.most + self.motor.most + self.softening.is_spring))
     }
 
-    /// What the limit of a side asks for, if it takes part in the pass.
+    /// The law of one limit in a pass; inactive if the limit takes no part.
     #[inline(always)]
     fn limit_law(&self, side: usize, at: &Coordinate<N>, params: &SubstepParams, biased: bool) -> Law<N> {
         let softening = &self.softening;
@@ -150,7 +151,7 @@ impl<N: Lane> Single<N> {
         Law { conductance, bias }
     }
 
-    /// What limit, spring and motor ask for in a pass.
+    /// The laws of limit, spring and motor in a pass.
     #[inline(always)]
     fn laws(&self, at: &Coordinate<N>, params: &SubstepParams, biased: bool) -> [Law<N>; 3] {
         let mut laws = [Law::NONE; 3];
@@ -171,7 +172,7 @@ impl<N: Lane> Single<N> {
         laws
     }
 
-    /// The softness of all that acts. Not positive if nothing does.
+    /// The softness of all active laws. Not positive if none is active.
     #[inline(always)]
     pub(super) fn softness(&self, at: &Coordinate<N>, params: &SubstepParams, biased: bool) -> N {
         let laws = self.laws(at, params, biased);
@@ -179,7 +180,7 @@ impl<N: Lane> Single<N> {
         N::select(is(sum), N::ONE / N::select(is(sum), sum, N::ONE), N::ZERO)
     }
 
-    /// What the row wants at a rate.
+    /// The velocity that the row wants at the current rate.
     #[inline(always)]
     pub(super) fn wanted(&self, at: &Coordinate<N>, rate: N, params: &SubstepParams, biased: bool) -> N {
         let laws = self.laws(at, params, biased);
@@ -201,7 +202,7 @@ impl<N: Lane> Single<N> {
         [self.impulses[0] - self.impulses[1], self.spring.impulse, self.motor.impulse]
     }
 
-    /// Adds to the impulse of one of them where a mask is set.
+    /// Adds to the impulse of one law in the lanes of a mask.
     #[inline(always)]
     fn add(&mut self, at: &Coordinate<N>, part: usize, mask: N::Mask, change: N) {
         match part {
@@ -215,8 +216,8 @@ impl<N: Lane> Single<N> {
         }
     }
 
-    /// Shares an impulse out where a mask is set, given the rate after it: each takes what it asks for, and the stiffest one the
-    /// rest.
+    /// Distributes an impulse among the laws in the lanes of a mask, given the rate after it: each law gets
+    /// its own impulse at this rate, and the stiffest law gets the rest.
     #[inline(always)]
     pub(super) fn share_out(
         &mut self,
@@ -228,7 +229,7 @@ impl<N: Lane> Single<N> {
     ) {
         let laws = self.laws(at, params, biased);
         let [a, b, c] = [laws[0].conductance, laws[1].conductance, laws[2].conductance];
-        // The first of those that are equal.
+        // The first of equally stiff laws.
         let stiffest = [N::and(b.le(a), c.le(a)), N::and(a.lt(b), c.le(b)), N::and(a.lt(c), b.lt(c))];
         let mut rest = change;
         for part in 0..3 {
@@ -245,9 +246,10 @@ impl<N: Lane> Single<N> {
         }
     }
 
-    /// Finds what acts by the rate that was solved for, where a mask is set: a limit that would pull is let go, one that would be
-    /// passed by more than a speed acts if some may be added, and a motor that exceeds its maximum is held there. Returns where
-    /// anything changes, and the impulse by which those that are let go or held change.
+    /// Updates the active limits and the motor for the solved rate, in the lanes of a mask. A limit that
+    /// would pull is deactivated. A limit that would be passed by more than the tolerated speed is
+    /// activated, if `adds` is set. A motor that exceeds its maximum is held there. Returns the lanes in
+    /// which anything changed, and the impulse by which released limits and capped motors change.
     #[inline(always)]
     pub(super) fn pivot(
         &mut self,

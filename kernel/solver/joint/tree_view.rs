@@ -36,12 +36,12 @@ pub(super) struct TreeRows<N: Lane> {
     bodies: Vec<TreeBody<N>>,
     /// By single coordinate, the impulses of its limits before blows.
     kept: Vec<[N; 2]>,
-    /// By group.
+    /// Buffers of each group.
     scratch: Vec<Scratch<N>>,
 }
 
 impl<N: Entry> TreeRows<N> {
-    /// Makes rows for all joints and bodies of the groups.
+    /// Creates rows for all joints and bodies of the groups.
     pub(super) fn make_room(&mut self, forest: &Forest, records: &Records) {
         let Self { groups, spans, joints, singles, links, nodes, bodies, kept, scratch } = self;
         spans.clear();
@@ -86,13 +86,13 @@ impl<N: Entry> TreeRows<N> {
         scratch.resize_with(scratch.len().max(groups.len()), Scratch::default);
     }
 
-    /// Gives back the memory of all but the groups.
+    /// Frees the memory of everything except the groups.
     pub(super) fn give_back(&mut self) {
         let groups = core::mem::take(&mut self.groups);
         *self = Self { groups, ..Self::default() };
     }
 
-    /// Notes that bodies have moved.
+    /// Marks positions as outdated, after bodies have moved.
     pub(super) fn forget_places(&mut self) {
         self.scratch.iter_mut().for_each(Scratch::forget);
     }
@@ -114,7 +114,7 @@ impl<N: Entry> TreeRows<N> {
     }
 }
 
-/// What trees are filled from.
+/// Inputs for filling trees.
 pub(super) struct TreeFilling<'a> {
     pub(super) forest: &'a Forest,
     pub(super) bodies: &'a [ListedBody],
@@ -131,32 +131,32 @@ pub(super) trait Trees: Sync {
     /// Fills a group from joints and masses.
     ///
     /// # Safety
-    /// Until it returns, no other thread uses the group or its joints.
+    /// Until the call returns, no other thread uses the group or its joints.
     unsafe fn fill(&self, group: usize, filling: &TreeFilling);
 
     /// Runs a pass over a group.
     ///
     /// # Safety
-    /// Until it returns, no other thread uses the group, or reads or writes a dynamic body of its trees, or writes their other
-    /// bodies.
+    /// Until the call returns, no other thread uses the group, reads or writes a dynamic body of its trees,
+    /// or writes their other bodies.
     unsafe fn run(&self, group: usize, sweep: &Sweep);
 
-    /// Takes the impulses of limits away, and keeps them.
+    /// Sets the impulses of limits aside, and continues without them.
     ///
     /// # Safety
-    /// Until it returns, no other thread uses the group.
+    /// Until the call returns, no other thread uses the group.
     unsafe fn begin_blows(&self, group: usize);
 
-    /// Whether a tree of a group is due.
+    /// Whether any tree of a group is due.
     fn is_due(&self, group: usize, is_due: &[bool]) -> bool;
 
-    /// Solves the trees of a group that are due, without bias.
+    /// Solves the due trees of a group, without bias.
     ///
     /// # Safety
     /// As [`run`](Self::run).
     unsafe fn follow(&self, group: usize, is_due: &[bool], sweep: &Sweep);
 
-    /// Gives the impulses of limits back.
+    /// Restores the impulses of limits.
     ///
     /// # Safety
     /// As [`begin_blows`](Self::begin_blows).
@@ -169,7 +169,7 @@ pub(super) trait Trees: Sync {
     unsafe fn store(&self, group: usize, forest: &Forest, records: &Records);
 }
 
-/// A view of [`TreeRows`] whose groups are changed by several threads.
+/// A view of [`TreeRows`]. Several threads may change its groups.
 pub(super) struct TreeView<'a, N: Entry> {
     entry: TreeEntry<N>,
     groups: &'a [Group],
@@ -183,14 +183,14 @@ pub(super) struct TreeView<'a, N: Entry> {
     scratch: Parts<'a, Scratch<N>>,
 }
 
-/// The lanes of a group, and the trees in them.
+/// The used lanes of a group, each with the number of its tree.
 fn lanes(group: &Group) -> impl Iterator<Item = (usize, usize)> + '_ {
     group.iter().map(|tree| *tree as usize).enumerate().filter(|(_, tree)| *tree != GROUND as usize)
 }
 
 impl<'a, N: Entry> TreeView<'a, N> {
     /// # Safety
-    /// While the trees of a group are in use, they may not be taken again.
+    /// While the trees of a group are in use, they are not taken again.
     unsafe fn take(&self, group: usize) -> Tree<'a, N> {
         let span = &self.spans[group];
         // SAFETY: by the contract, as no two groups share a range.
