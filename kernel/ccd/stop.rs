@@ -18,7 +18,7 @@ const BALLS: [f32; 3] = [CORE_SHARE, MET, 0.0];
 const FIXED: [TreeKind; 2] = [TreeKind::Static, TreeKind::Standalone];
 
 /// What sweeps read; constant while they run.
-pub struct SweepInput<'a, S> {
+pub struct SweepInput<'a> {
     /// The bodies as the step began.
     pub bodies: &'a BodyTable,
     /// The colliders as the step began.
@@ -28,7 +28,7 @@ pub struct SweepInput<'a, S> {
     /// The contacts of all pairs with overlapping fat boxes. Such a pair without a contact was refused, and is not swept.
     pub contacts: &'a ContactTable,
     /// For pairs with a foreign shape.
-    pub source: &'a S,
+    pub source: &'a dyn ManifoldSource,
     /// Shapes this far apart count as touching, in metres.
     pub tolerance: f32,
     /// The step's length, in seconds.
@@ -66,21 +66,15 @@ struct End {
 }
 
 /// Buffers of one worker, kept for their memory.
-#[derive(Clone, Debug)]
-pub struct SweepBuffers<W = ()> {
-    cast: CastBuffers<W>,
+#[derive(Clone, Debug, Default)]
+pub struct SweepBuffers {
+    cast: CastBuffers,
     candidates: Vec<u32>,
     /// Bodies that stop, and after what fractions of the step.
     pub(crate) stops: Vec<(u32, f32)>,
 }
 
-impl<W: Default> Default for SweepBuffers<W> {
-    fn default() -> Self {
-        Self { cast: CastBuffers::default(), candidates: Vec::new(), stops: Vec::new() }
-    }
-}
-
-impl<S: ManifoldSource> SweepInput<'_, S> {
+impl SweepInput<'_> {
     /// Whether a body that moves by `way` metres and turns by `angle` radians may get past something, or press a corner into
     /// something where contacts of the step's start have no point.
     #[inline(always)]
@@ -171,7 +165,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
     }
 
     /// The fraction of the step after which a body stops at what does not move; 1 if it does not.
-    pub fn stop(&self, body: u32, path: &Path, buffers: &mut SweepBuffers<S::Workspace>) -> f32 {
+    pub fn stop(&self, body: u32, path: &Path, buffers: &mut SweepBuffers) -> f32 {
         let sweep = self.sweep(body, path);
         let mut first = 1.0;
         if sweep.is_fast || sweep.is_strict {
@@ -192,7 +186,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         body: u32,
         swept: &Swept,
         path_of: &impl Fn(u32) -> Option<Path>,
-        buffers: &mut SweepBuffers<S::Workspace>,
+        buffers: &mut SweepBuffers,
     ) {
         let Some(path) = path_of(body).map(|path| path.turning_if(swept.turns)) else { return };
         let kinds = [TreeKind::Kinematic, TreeKind::Dynamic];
@@ -223,8 +217,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         body: u32,
         sweep: &Sweep,
         kinds: &[TreeKind],
-        buffers: &mut SweepBuffers<S::Workspace>,
-        mut met: impl FnMut([u32; 2], &mut SweepBuffers<S::Workspace>),
+        buffers: &mut SweepBuffers,
+        mut met: impl FnMut([u32; 2], &mut SweepBuffers),
     ) {
         let mut candidates = core::mem::take(&mut buffers.candidates);
         for collider in self.colliders.of_body(body, self.bodies) {
@@ -356,13 +350,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
     }
 
     /// The fraction of the step after which a collider meets another, 1 if it does not.
-    fn impact(
-        &self,
-        collider: u32,
-        sweep: &Sweep,
-        other: Side,
-        buffers: &mut CastBuffers<S::Workspace>,
-    ) -> f32 {
+    fn impact(&self, collider: u32, sweep: &Sweep, other: Side, buffers: &mut CastBuffers) -> f32 {
         let moving = self.side(collider, Some(*sweep.path));
         let (center, core) = moving.shape.core();
         let reaches = [collider, other.collider].map(|id| self.colliders.reaches[id as usize]);

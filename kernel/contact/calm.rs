@@ -52,7 +52,7 @@ fn travel([a, b]: [&BodyPose; 2]) -> u32 {
     a.travel.wrapping_add(b.travel)
 }
 
-impl<S> NarrowPhaseInput<'_, S> {
+impl NarrowPhaseInput<'_> {
     /// Whether a contact needs no look. Its separations have to be stored again until the next time.
     #[inline(always)]
     pub(super) fn is_calm(&self, contact: &mut Contact, poses: [&BodyPose; 2]) -> bool {

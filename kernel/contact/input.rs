@@ -8,19 +8,9 @@ use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach, Ve
 
 /// Computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign).
 pub trait ManifoldSource: Sync {
-    /// Buffers of the source, kept between calls.
-    type Workspace: Default + Send;
-
     /// Adds the manifolds of colliders `a` and `b`, `pose` being where B is in A's frame: in A's frame with normals from A to
     /// B, with points up to `prediction` metres apart.
-    fn manifolds(
-        &self,
-        colliders: [u32; 2],
-        pose: &Pose,
-        prediction: f32,
-        workspace: &mut Self::Workspace,
-        out: &mut Vec<LocalManifold>,
-    );
+    fn manifolds(&self, colliders: [u32; 2], pose: &Pose, prediction: f32, out: &mut Vec<LocalManifold>);
 
     /// The same for a collider and a ball, whose centre is given in the collider's frame.
     fn ball_manifolds(
@@ -29,27 +19,24 @@ pub trait ManifoldSource: Sync {
         center: Vector,
         radius: f32,
         prediction: f32,
-        workspace: &mut Self::Workspace,
         out: &mut Vec<LocalManifold>,
     );
 }
 
 impl ManifoldSource for () {
-    type Workspace = ();
+    fn manifolds(&self, _: [u32; 2], _: &Pose, _: f32, _: &mut Vec<LocalManifold>) {}
 
-    fn manifolds(&self, _: [u32; 2], _: &Pose, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
-
-    fn ball_manifolds(&self, _: u32, _: Vector, _: f32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
+    fn ball_manifolds(&self, _: u32, _: Vector, _: f32, _: f32, _: &mut Vec<LocalManifold>) {}
 }
 
 /// What the narrow phase reads; constant while it runs.
-pub struct NarrowPhaseInput<'a, S> {
+pub struct NarrowPhaseInput<'a> {
     /// The bodies.
     pub bodies: &'a BodyTable,
     /// The colliders.
     pub colliders: &'a ColliderTable,
     /// For pairs with a foreign shape.
-    pub source: &'a S,
+    pub source: &'a dyn ManifoldSource,
     /// The step's length, in seconds.
     pub dt: f32,
     /// Contacts up to this distance are always found, in metres.
@@ -66,10 +53,15 @@ pub struct NarrowPhaseInput<'a, S> {
     pub narrow: bool,
 }
 
-impl<'a, S> NarrowPhaseInput<'a, S> {
+impl<'a> NarrowPhaseInput<'a> {
     /// Input with the usual lengths for shapes of about a metre: a tolerance of 5 mm, prediction up to 2 cm, recycling up
     /// to 5 cm. `source` is `&()` if no shape is [foreign](crate::shape::Shape::Foreign), `dt` is in seconds.
-    pub fn new(bodies: &'a BodyTable, colliders: &'a ColliderTable, source: &'a S, dt: f32) -> Self {
+    pub fn new(
+        bodies: &'a BodyTable,
+        colliders: &'a ColliderTable,
+        source: &'a dyn ManifoldSource,
+        dt: f32,
+    ) -> Self {
         Self {
             bodies,
             colliders,
@@ -84,7 +76,7 @@ impl<'a, S> NarrowPhaseInput<'a, S> {
     }
 }
 
-impl<S> NarrowPhaseInput<'_, S> {
+impl NarrowPhaseInput<'_> {
     /// The poses of both sides' bodies; of a collider without one, its own, kept in `fixed`. By reference: a copy is
     /// written in other pieces than it is read in, which a processor waits for.
     #[inline(always)]

@@ -10,7 +10,7 @@
 //! depends on positions and velocities, not on the number of threads.
 
 use super::buffers::WorkerBuffers;
-use super::input::{ManifoldSource, NarrowPhaseInput, smaller};
+use super::input::{NarrowPhaseInput, smaller};
 use super::load;
 use super::manifolds;
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint, Parallel, Sliding};
@@ -57,7 +57,7 @@ enum Place {
 }
 
 impl<'a> Seen<'a> {
-    fn new<S>(input: &NarrowPhaseInput<S>, contact: &Contact, side: usize, manifold: &'a Manifold) -> Self {
+    fn new(input: &NarrowPhaseInput, contact: &Contact, side: usize, manifold: &'a Manifold) -> Self {
         let mut fixed = [None; 2];
         let poses = input.poses(contact, &mut fixed);
         let ground = 1 - side;
@@ -197,7 +197,7 @@ fn unit(v: Vector) -> Vector {
     if length > 0.0 { v * (1.0 / length) } else { Vector::ZERO }
 }
 
-impl<S> NarrowPhaseInput<'_, S> {
+impl NarrowPhaseInput<'_> {
     fn speed_squared(&self, body: u32) -> f32 {
         if body == NONE { 0.0 } else { self.bodies.velocities[body as usize].linear.length_squared() }
     }
@@ -223,12 +223,12 @@ impl<S> NarrowPhaseInput<'_, S> {
     /// Notes a contact whose manifolds are to be compared with others of the same collider, and the manifolds of one that slides no
     /// more. `extra` are its recycled manifolds after the first; `has_more` tells whether it has several, recycled or new.
     #[inline(always)]
-    pub(super) fn note_sliding<W>(
+    pub(super) fn note_sliding(
         &self,
         id: u32,
         contact: &mut Contact,
         (extra, has_more): (&[Manifold], bool),
-        worker: &mut WorkerBuffers<W>,
+        worker: &mut WorkerBuffers,
     ) {
         let side = if contact.is_solved() { self.sliding_side(contact) } else { None };
         contact.flags.set(ContactFlags::SLIDES_A, side == Some(0));
@@ -256,13 +256,13 @@ impl<S> NarrowPhaseInput<'_, S> {
     }
 
     /// Whether the ground on the other side of a contact goes on above the plane of a holding manifold.
-    fn rises<W>(
+    fn rises(
         &self,
         contact: &Contact,
         side: usize,
         seen: &Seen,
         holding: &Seen,
-        worker: &mut WorkerBuffers<W>,
+        worker: &mut WorkerBuffers,
     ) -> bool {
         let up = holding.normal;
         let cos = seen.normal.dot(up);
@@ -289,11 +289,11 @@ impl<S> NarrowPhaseInput<'_, S> {
 impl ContactTable {
     /// Marks the manifolds of internal edges of the colliders that the workers noted, so that they are not solved. Adds their
     /// points to those that were lost.
-    pub(super) fn mark_internal<S: ManifoldSource>(
+    pub(super) fn mark_internal(
         &mut self,
-        input: &NarrowPhaseInput<S>,
+        input: &NarrowPhaseInput,
         pool: &ThreadPool,
-        workers: &mut Vec<WorkerBuffers<S::Workspace>>,
+        workers: &mut Vec<WorkerBuffers>,
     ) {
         let mut compared = core::mem::take(&mut self.compared);
         // A collider's only manifold cannot be internal, so it is not compared.
@@ -342,7 +342,7 @@ impl ContactTable {
     }
 
     /// Adds the manifolds of a sliding collider whose mark is to change, and those that get another normal.
-    fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, collider: u32, worker: &mut WorkerBuffers<W>) {
+    fn find_internal(&self, input: &NarrowPhaseInput, collider: u32, worker: &mut WorkerBuffers) {
         let mut all = core::mem::take(&mut worker.slides);
         all.clear();
         for (contact, index, side, m) in self.sliding_manifolds(input, collider).filter(|(.., m)| m.count > 0)
@@ -386,12 +386,7 @@ impl ContactTable {
     }
 
     /// Groups manifolds that are parallel. Several groups are sorted, each by the heights of its planes.
-    fn group_parallel<S>(
-        &self,
-        input: &NarrowPhaseInput<S>,
-        all: &mut [Sliding],
-        groups: &mut Vec<Parallel>,
-    ) {
+    fn group_parallel(&self, input: &NarrowPhaseInput, all: &mut [Sliding], groups: &mut Vec<Parallel>) {
         groups.clear();
         // Within half of the tolerance of one, all are parallel.
         let tolerance = 0.5 * if all.iter().any(|m| m.is_round) { ALIKE } else { PARALLEL };
@@ -422,20 +417,20 @@ impl ContactTable {
         }
     }
 
-    fn see<'a, S>(&'a self, input: &NarrowPhaseInput<S>, sliding: &Sliding) -> Seen<'a> {
+    fn see<'a>(&'a self, input: &NarrowPhaseInput, sliding: &Sliding) -> Seen<'a> {
         let contact = self.get(sliding.contact);
         let manifold = self.manifold(contact, sliding.index).expect("its contact has it");
         Seen::new(input, contact, sliding.side, manifold)
     }
 
     /// What a manifold is beside the others of the collider.
-    fn role<S, W>(
+    fn role(
         &self,
-        input: &NarrowPhaseInput<S>,
+        input: &NarrowPhaseInput,
         this: &Sliding,
         all: &[Sliding],
         groups: &[Parallel],
-        worker: &mut WorkerBuffers<W>,
+        worker: &mut WorkerBuffers,
     ) -> Role {
         let contact = self.get(this.contact);
         let seen = &self.see(input, this);

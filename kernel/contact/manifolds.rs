@@ -1,7 +1,7 @@
 //! The manifolds of one contact: computed in A's frame, then put in place of the old ones in world axes.
 
 use super::buffers::WorkerBuffers;
-use super::input::{ManifoldSource, NarrowPhaseInput};
+use super::input::NarrowPhaseInput;
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint};
 use super::sweep::Meeting;
 use crate::manifold::{self, FeatureCache, LocalManifold, Look};
@@ -14,8 +14,8 @@ use crate::tuning::contact::SAME_FACE;
 /// subtracted. Points on rims are where they will be in the middle of the step; returns how far the surfaces may move until
 /// these lag behind.
 #[inline(always)]
-pub(super) fn collide<S>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn collide(
+    input: &NarrowPhaseInput,
     contact: &mut Contact,
     prediction: f32,
     local: &mut LocalManifold,
@@ -34,7 +34,7 @@ pub(super) fn collide<S>(
 }
 
 /// Whether a ball overlaps a shape, given the ball's pose in the shape's frame. Shapes of the embedder are not known: false.
-pub(super) fn touches<W>(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut WorkerBuffers<W>) -> bool {
+pub(super) fn touches(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut WorkerBuffers) -> bool {
     let WorkerBuffers { composite, local, .. } = buffers;
     let (ball, mut found) = (Shape::Ball(ball), LocalManifold::default());
     match shape {
@@ -53,12 +53,12 @@ pub(super) fn touches<W>(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut W
 /// Adds the manifolds of two shapes of which one is composite, margins not subtracted. The motion is that of B against A in
 /// this step, in world axes; parts farther away than `met` may be passed by. Returns a lower bound of the distance between the
 /// shapes.
-pub(super) fn collide_parts<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn collide_parts(
+    input: &NarrowPhaseInput,
     contact: &mut Contact,
     prediction: f32,
     (motion, met): (Vector, f32),
-    buffers: &mut WorkerBuffers<S::Workspace>,
+    buffers: &mut WorkerBuffers,
 ) -> f32 {
     let (shapes, [pose_a, pose_b]) = (input.shapes(contact), input.shape_poses(contact));
     let relative = pose_a.relative(pose_b);
@@ -77,11 +77,7 @@ pub(super) fn collide_parts<S: ManifoldSource>(
 
 /// Removes the points of a sensor's contact at which the surfaces are apart and do not meet in this step. Returns the least
 /// separation of those, or infinity.
-pub(super) fn keep_met<S>(
-    input: &NarrowPhaseInput<S>,
-    contact: &Contact,
-    found: &mut Vec<LocalManifold>,
-) -> f32 {
+pub(super) fn keep_met(input: &NarrowPhaseInput, contact: &Contact, found: &mut Vec<LocalManifold>) -> f32 {
     let [pose_a, _] = input.shape_poses(contact);
     let motion = pose_a.rotation.inverse_rotate(input.predicted_motion(contact));
     let margin = input.margin(contact);
@@ -105,13 +101,13 @@ pub(super) fn keep_met<S>(
 
 /// Puts the manifolds in `buffers.local` in place of the contact's. Old points hand on their impulses. `body_a` is the pose
 /// of A's body. Manifolds after the first come to `buffers.extra`; `old_extra` are the old ones.
-pub(super) fn replace<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn replace(
+    input: &NarrowPhaseInput,
     contact: &mut Contact,
     old_extra: &[Manifold],
     body_a: &BodyPose,
     meeting: Option<&Meeting>,
-    buffers: &mut WorkerBuffers<S::Workspace>,
+    buffers: &mut WorkerBuffers,
 ) {
     buffers.extra.clear();
     if contact.manifold.count == 0 && buffers.local.is_empty() {

@@ -6,7 +6,7 @@
 #![expect(unsafe_code, reason = "several threads change contacts, each other ones")]
 
 use super::buffers::WorkerBuffers;
-use super::input::{ManifoldSource, NarrowPhaseInput};
+use super::input::NarrowPhaseInput;
 use super::load::Before;
 use super::manifolds;
 use super::record::{Contact, ContactFlags, Frozen, Manifold};
@@ -52,11 +52,11 @@ enum Class {
 impl ContactTable {
     /// Updates all awake contacts. `workers` are buffers, kept between steps. `changed` receives the contacts that began or
     /// ended to touch or whose boxes came apart.
-    pub fn update<S: ManifoldSource>(
+    pub fn update(
         &mut self,
-        input: &NarrowPhaseInput<S>,
+        input: &NarrowPhaseInput,
         pool: &ThreadPool,
-        workers: &mut Vec<WorkerBuffers<S::Workspace>>,
+        workers: &mut Vec<WorkerBuffers>,
         changed: &mut BitSet,
     ) {
         workers.iter_mut().for_each(WorkerBuffers::clear);
@@ -94,7 +94,7 @@ impl ContactTable {
     }
 
     /// Finds the dynamic bodies that overlap others deeply.
-    fn find_crowded<S>(&mut self, input: &NarrowPhaseInput<S>) {
+    fn find_crowded(&mut self, input: &NarrowPhaseInput) {
         self.crowded.clear();
         if !self.any_deep {
             return;
@@ -110,7 +110,7 @@ impl ContactTable {
 
     /// Commits what the workers found. Manifolds after the first are stored in the order of contacts, not of workers, so that
     /// equal steps give equal tables.
-    fn commit<W>(&mut self, workers: &[WorkerBuffers<W>], changed: &mut BitSet) {
+    fn commit(&mut self, workers: &[WorkerBuffers], changed: &mut BitSet) {
         self.any_deep = workers.iter().any(|worker| worker.any_deep);
         let mut stored = core::mem::take(&mut self.stored);
         for (worker, found) in workers.iter().enumerate() {
@@ -131,8 +131,8 @@ impl ContactTable {
 }
 
 /// An update of all contacts while it runs; shared by the workers.
-struct Pass<'a, S> {
-    input: &'a NarrowPhaseInput<'a, S>,
+struct Pass<'a> {
+    input: &'a NarrowPhaseInput<'a>,
     contacts: Parts<'a, Contact>,
     points: Parts<'a, PointCount>,
     extra: Parts<'a, Vec<Manifold>>,
@@ -140,13 +140,13 @@ struct Pass<'a, S> {
     crowded: Option<&'a BitSet>,
 }
 
-impl<'a, S: ManifoldSource> Pass<'a, S> {
+impl<'a> Pass<'a> {
     /// Updates some contacts.
     ///
     /// # Safety
     /// While it runs no other thread may have one of these contacts, nor its count of points.
     #[inline(always)]
-    unsafe fn update_block(&self, ids: &[u32], worker: &mut WorkerBuffers<S::Workspace>) {
+    unsafe fn update_block(&self, ids: &[u32], worker: &mut WorkerBuffers) {
         // A panic in an earlier block may have left contacts in the batch.
         worker.batch.clear();
         ids[..PREFETCH_DISTANCE.min(ids.len())].iter().for_each(|id| self.contacts.prefetch(*id));
@@ -177,7 +177,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
     /// # Safety
     /// While it runs no other thread may have one of these contacts, nor its count of points.
     #[inline(always)]
-    unsafe fn recycle_batch(&self, worker: &mut WorkerBuffers<S::Workspace>) {
+    unsafe fn recycle_batch(&self, worker: &mut WorkerBuffers) {
         worker.batch.evaluate(self.input);
         for place in 0..worker.batch.ids().len() {
             let id = worker.batch.ids()[place];
@@ -212,7 +212,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
     ///
     /// # Safety
     /// While it runs no other thread may have the contact.
-    unsafe fn separate(&self, id: u32, contact: &mut Contact, worker: &mut WorkerBuffers<S::Workspace>) {
+    unsafe fn separate(&self, id: u32, contact: &mut Contact, worker: &mut WorkerBuffers) {
         if let Some(before) = Before::of(self.input, contact) {
             // SAFETY: by the contract.
             let extra = unsafe { self.extra(contact) };
@@ -225,13 +225,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
     }
 
     /// Recomputes a contact, and notes what is to be committed.
-    fn recompute(
-        &self,
-        id: u32,
-        contact: &mut Contact,
-        count: &mut PointCount,
-        worker: &mut WorkerBuffers<S::Workspace>,
-    ) {
+    fn recompute(&self, id: u32, contact: &mut Contact, count: &mut PointCount, worker: &mut WorkerBuffers) {
         let is_among = |crowd: &BitSet| contact.bodies.iter().any(|b| *b != NONE && crowd.contains(*b));
         let is_crowded = self.crowded.is_some_and(is_among);
         let touched = contact.flags.has(ContactFlags::TOUCHING);
@@ -263,12 +257,12 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
 
 /// Updates one contact alone, as [`ContactTable::update`] does all. `crowded` tells that one of its bodies overlapped
 /// another deeply before. Manifolds after the first are left in `buffers.extra`, for the caller to store.
-pub fn update_contact<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
+pub fn update_contact(
+    input: &NarrowPhaseInput,
     contact: &mut Contact,
     extra: &mut [Manifold],
     crowded: bool,
-    buffers: &mut WorkerBuffers<S::Workspace>,
+    buffers: &mut WorkerBuffers,
 ) -> Outcome {
     buffers.batch.clear();
     match classify(input, 0, contact, &mut buffers.batch) {
@@ -288,12 +282,7 @@ pub fn update_contact<S: ManifoldSource>(
 
 /// Classifies a contact; one that may be recycled is put into the batch.
 #[inline(always)]
-fn classify<S>(
-    input: &NarrowPhaseInput<S>,
-    id: u32,
-    contact: &mut Contact,
-    batch: &mut RecycleBatch,
-) -> Class {
+fn classify(input: &NarrowPhaseInput, id: u32, contact: &mut Contact, batch: &mut RecycleBatch) -> Class {
     let [a, b] = contact.colliders;
     if !input.colliders.fat[a as usize].overlaps(&input.colliders.fat[b as usize]) {
         return Class::Separated;
@@ -309,8 +298,8 @@ fn classify<S>(
 
 /// Recycles a contact of an evaluated batch; `false` if its bodies moved too far.
 #[inline(always)]
-fn recycle<S>(
-    input: &NarrowPhaseInput<S>,
+fn recycle(
+    input: &NarrowPhaseInput,
     batch: &RecycleBatch,
     place: usize,
     contact: &mut Contact,
@@ -326,12 +315,12 @@ fn recycle<S>(
 }
 
 /// Computes the manifolds of a contact at the present poses, or those of its swept shapes, and freezes it there.
-fn recompute<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
+fn recompute(
+    input: &NarrowPhaseInput,
     contact: &mut Contact,
     old_extra: &[Manifold],
     is_crowded: bool,
-    buffers: &mut WorkerBuffers<S::Workspace>,
+    buffers: &mut WorkerBuffers,
 ) {
     let mut fixed = [None; 2];
     let poses = input.poses(contact, &mut fixed);
@@ -376,23 +365,15 @@ struct Search {
 }
 
 /// Computes the manifolds of a pair with a foreign shape. It is not swept, but looked at as far as turning may close.
-fn search_foreign<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
-    contact: &Contact,
-    buffers: &mut WorkerBuffers<S::Workspace>,
-) -> Search {
+fn search_foreign(input: &NarrowPhaseInput, contact: &Contact, buffers: &mut WorkerBuffers) -> Search {
     let (pose, farthest) = input.foreign_view(contact);
-    input.source.manifolds(contact.colliders, &pose, farthest, &mut buffers.foreign, &mut buffers.local);
+    input.source.manifolds(contact.colliders, &pose, farthest, &mut buffers.local);
     Search { prediction: input.prediction(contact), meeting: None, has_far: false }
 }
 
 /// Computes the manifolds of a pair with a composite shape: of the parts nearby, and of those that the step's motion meets.
 /// Parts are looked at as far as turning may close.
-fn search_parts<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
-    contact: &mut Contact,
-    buffers: &mut WorkerBuffers<S::Workspace>,
-) -> Search {
+fn search_parts(input: &NarrowPhaseInput, contact: &mut Contact, buffers: &mut WorkerBuffers) -> Search {
     let (prediction, margin) = (input.prediction(contact), input.margin(contact));
     let farthest = input.farthest(contact, prediction);
     let gap = input.box_gap(contact) - margin;
@@ -418,8 +399,8 @@ fn search_parts<S: ManifoldSource>(
 /// Computes the manifold of two native shapes where they are now. If they do not touch, that of when the step's motion
 /// brings them together.
 #[inline(always)]
-fn search_native<S>(
-    input: &NarrowPhaseInput<S>,
+fn search_native(
+    input: &NarrowPhaseInput,
     contact: &mut Contact,
     poses: [&BodyPose; 2],
     found: &mut Vec<LocalManifold>,
@@ -471,8 +452,8 @@ fn search_native<S>(
 /// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is not recycled,
 /// nor a sensor's with points, which would be kept while the shapes part.
 #[inline(always)]
-fn freeze<S>(
-    input: &NarrowPhaseInput<S>,
+fn freeze(
+    input: &NarrowPhaseInput,
     contact: &mut Contact,
     poses: [&BodyPose; 2],
     search: &Search,

@@ -152,9 +152,9 @@ impl RecycleBatch {
 
     /// Adds a contact to a batch that is not full; `false` if its manifold cannot be kept. `poses` are those of its bodies.
     #[inline(always)]
-    pub(super) fn push<S>(
+    pub(super) fn push(
         &mut self,
-        input: &NarrowPhaseInput<S>,
+        input: &NarrowPhaseInput,
         id: u32,
         contact: &Contact,
         poses: [&BodyPose; 2],
@@ -204,7 +204,7 @@ impl RecycleBatch {
 
     /// Decides which contacts keep their manifolds, and computes their separations.
     #[inline(always)]
-    pub(super) fn evaluate<S>(&mut self, input: &NarrowPhaseInput<S>) {
+    pub(super) fn evaluate(&mut self, input: &NarrowPhaseInput) {
         let &NarrowPhaseInput { dt, tolerance, recycle_distance, .. } = input;
         self.evaluate_at(&Settings { dt, tolerance, recycle_distance }, Width::of(input.narrow));
     }

@@ -42,8 +42,8 @@ pub(super) struct Placed {
 /// Follows two native shapes, `gap` apart without margins, to the time when they meet in this step. `local` has their
 /// present points, if there are any within `prediction`, and receives those of that time, else none.
 #[inline(never)]
-pub(super) fn find_meeting<S>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn find_meeting(
+    input: &NarrowPhaseInput,
     contact: &mut Contact,
     poses: [&BodyPose; 2],
     gap: f32,
@@ -104,8 +104,8 @@ pub(super) fn find_meeting<S>(
 /// Whether two shapes that have points, and do not touch, may pass each other by in this step: their motion may cross the
 /// plane between them.
 #[inline(always)]
-pub(super) fn may_pass_by<S>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn may_pass_by(
+    input: &NarrowPhaseInput,
     contact: &Contact,
     poses: [&BodyPose; 2],
     local: &LocalManifold,
@@ -120,21 +120,21 @@ pub(super) fn may_pass_by<S>(
 }
 
 /// The distance at which two shapes that move past each other count as having met.
-pub(super) fn met_at<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> f32 {
+pub(super) fn met_at(input: &NarrowPhaseInput, contact: &Contact) -> f32 {
     MET * Motion::new(input, contact).met
 }
 
 /// Whether the bodies turn little in this step. The solver keeps the arms of the step's start. What turns farther gains energy
 /// if it is pushed where it comes to.
-pub(super) fn is_straight<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> bool {
+pub(super) fn is_straight(input: &NarrowPhaseInput, contact: &Contact) -> bool {
     input.reaches(contact).into_iter().enumerate().all(|(side, reach)| {
         reach.arm == 0.0 || input.velocity(contact, side).angular.length() * input.dt < 0.5 * MOST_TURN
     })
 }
 
 /// Whether the solver would push at some point if the bodies kept their velocities.
-pub(super) fn pushes<S>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn pushes(
+    input: &NarrowPhaseInput,
     contact: &Contact,
     poses: [&BodyPose; 2],
     local: &LocalManifold,
@@ -157,8 +157,8 @@ pub(super) fn pushes<S>(
 ///
 /// The solver keeps normals and arms for a step. The point where a round body rocks on another runs along both, and an arm
 /// that lags behind it feeds the rocking like a negative damper: a light body between heavy ones never came to rest.
-pub(super) fn lead<S>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn lead(
+    input: &NarrowPhaseInput,
     contact: &mut Contact,
     poses: [&BodyPose; 2],
     prediction: f32,
@@ -204,7 +204,7 @@ struct Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    fn new<S>(input: &'a NarrowPhaseInput<S>, contact: &Contact) -> Self {
+    fn new(input: &'a NarrowPhaseInput, contact: &Contact) -> Self {
         let reaches = input.reaches(contact);
         let [a, b] = [input.velocity(contact, 0), input.velocity(contact, 1)];
         Self {
@@ -358,12 +358,7 @@ impl View<'_> {
 }
 
 /// Both sides of the contact, `time` seconds after the step's start.
-fn place_at<S>(
-    input: &NarrowPhaseInput<S>,
-    contact: &Contact,
-    poses: [&BodyPose; 2],
-    time: f32,
-) -> [Placed; 2] {
+fn place_at(input: &NarrowPhaseInput, contact: &Contact, poses: [&BodyPose; 2], time: f32) -> [Placed; 2] {
     core::array::from_fn(|side| {
         let (body, collider) = (contact.bodies[side], contact.colliders[side]);
         let shape = input.colliders.poses[collider as usize];

@@ -2,7 +2,6 @@
 
 use super::{BodyRow, Solver, gyro::*};
 use crate::ccd::{Path, SweepBuffers, SweepInput, Swept};
-use crate::contact::ManifoldSource;
 use crate::data::BitSet;
 use crate::graph::ConstraintKind;
 use crate::math::{Angular, Vector, max, min};
@@ -17,11 +16,11 @@ const SWEPT_BLOCK: usize = 8;
 impl Solver {
     /// Puts bodies back that moved far in the substeps and met what does not move, each with what it is joined to. `listed` are the
     /// bodies in the order of rows, from row 1. `workers` are buffers, kept between steps.
-    pub fn stop_fast<S: ManifoldSource>(
+    pub fn stop_fast(
         &mut self,
-        input: &SweepInput<S>,
+        input: &SweepInput,
         listed: &[u32],
-        workers: &mut Vec<SweepBuffers<S::Workspace>>,
+        workers: &mut Vec<SweepBuffers>,
         pool: &ThreadPool,
     ) {
         let first_dynamic = self.bodies.first_dynamic();
@@ -56,11 +55,11 @@ impl Solver {
 
     /// Puts bodies back that are swept against what moves, and what they met, kinematic bodies too. Each stops at the first of
     /// its impacts.
-    pub fn stop_swept<S: ManifoldSource>(
+    pub fn stop_swept(
         &mut self,
-        input: &SweepInput<S>,
+        input: &SweepInput,
         swept: &[(u32, Swept)],
-        workers: &mut Vec<SweepBuffers<S::Workspace>>,
+        workers: &mut Vec<SweepBuffers>,
         pool: &ThreadPool,
     ) {
         if swept.is_empty() {
@@ -79,10 +78,10 @@ impl Solver {
 
     /// Puts back all bodies that stop, each to the first of its impacts, and what they are joined to with them. Calls a function for
     /// each, with the fraction of the step.
-    fn put_back_all<S: ManifoldSource>(
+    fn put_back_all(
         &mut self,
-        input: &SweepInput<S>,
-        workers: &mut [SweepBuffers<S::Workspace>],
+        input: &SweepInput,
+        workers: &mut [SweepBuffers],
         stopped: impl Fn(&mut BodyRow, f32),
     ) {
         let mut stops: Vec<_> = workers.iter_mut().flat_map(|worker| worker.stops.drain(..)).collect();
@@ -104,7 +103,7 @@ impl Solver {
 
     /// All bodies that stop with some, given by ascending id, and the fractions of the step. What is joined stops together, or its joints
     /// would open by its way. But what cannot move at all stops alone: it would hold the others in the air.
-    fn joined<S>(&self, input: &SweepInput<S>, stops: &[(u32, f32)]) -> Vec<(u32, f32)> {
+    fn joined(&self, input: &SweepInput, stops: &[(u32, f32)]) -> Vec<(u32, f32)> {
         let own = |body: u32| stops.binary_search_by_key(&body, |stop| stop.0).ok().map(|k| stops[k].1);
         let first_dynamic = self.bodies.first_dynamic();
         let joints = input.bodies.constraints(ConstraintKind::Joint);
@@ -134,7 +133,7 @@ impl Solver {
 }
 
 /// Notes the contacts of a body that was put back. It met what the narrow phase had no points for, so that has to look again.
-fn mark_outdated<S: ManifoldSource>(input: &SweepInput<S>, body: u32, outdated: &mut Vec<u32>) {
+fn mark_outdated(input: &SweepInput, body: u32, outdated: &mut Vec<u32>) {
     for collider in input.colliders.of_body(body, input.bodies) {
         outdated.extend(input.contacts.of_collider(collider, input.colliders));
     }
@@ -154,7 +153,7 @@ fn put_back(row: &mut BodyRow, path: &Path, fraction: f32, acceleration: Vector)
 }
 
 /// The path of a body in this step.
-fn path<S>(input: &SweepInput<S>, body: u32, moved: &BodyRow) -> Path {
+fn path(input: &SweepInput, body: u32, moved: &BodyRow) -> Path {
     let (way, turn) = moved.delta();
     let spin = moved.velocity().1 * input.dt;
     Path::new(input.bodies.poses[body as usize], input.bodies[body].local_center, way, turn, spin)

@@ -34,7 +34,7 @@ fn phase<'a>(
     dt: f32,
     recycle: bool,
     narrow: bool,
-) -> NarrowPhaseInput<'a, ()> {
+) -> NarrowPhaseInput<'a> {
     let unit = bodies.length_unit();
     NarrowPhaseInput {
         bodies,
