@@ -26,17 +26,6 @@ const BLOCK: usize = 2;
 /// The prefetch distance, in contacts. Shorter does not hide the latency of memory; longer evicts records before use.
 const PREFETCH_DISTANCE: usize = 4;
 
-/// The result of a contact's update.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// The fat boxes do not overlap any more.
-    Separated,
-    /// The manifold followed the motion.
-    Recycled,
-    /// The manifold was computed anew.
-    Recomputed,
-}
-
 /// What is known of a contact before its manifold is looked at.
 enum Class {
     /// The fat boxes do not overlap any more.
@@ -253,31 +242,6 @@ impl<'a> Pass<'a> {
             *count = now;
         }
     }
-}
-
-/// Updates one contact alone, as [`ContactTable::update`] does all. `crowded` tells that one of its bodies overlapped
-/// another deeply before. Manifolds after the first are left in `buffers.extra`, for the caller to store.
-pub fn update_contact(
-    input: &NarrowPhaseInput,
-    contact: &mut Contact,
-    extra: &mut [Manifold],
-    crowded: bool,
-    buffers: &mut WorkerBuffers,
-) -> Outcome {
-    buffers.batch.clear();
-    match classify(input, 0, contact, &mut buffers.batch) {
-        Class::Separated => return Outcome::Separated,
-        Class::Recyclable => {
-            buffers.batch.evaluate(input);
-            if recycle(input, &buffers.batch, 0, contact, extra) {
-                return Outcome::Recycled;
-            }
-        }
-        Class::Calm => return Outcome::Recycled,
-        Class::Stale => {}
-    }
-    recompute(input, contact, extra, crowded, buffers);
-    Outcome::Recomputed
 }
 
 /// Classifies a contact; one that may be recycled is put into the batch.
