@@ -171,13 +171,6 @@ impl ContactTable {
         }
     }
 
-    /// Whether a collider slides over the other one of a contact in this update.
-    fn slides(&self, id: u32, collider: u32) -> bool {
-        let contact = self.get(id);
-        let sides = [ContactFlags::SLIDES_A, ContactFlags::SLIDES_B];
-        contact.flags.has(sides[usize::from(contact.colliders[1] == collider)]) && self.is_active(id)
-    }
-
     /// The manifolds of the contacts in which a collider slides: the contact, the number of the manifold in it, and the side of
     /// the collider.
     pub(super) fn sliding_manifolds(
@@ -185,11 +178,13 @@ impl ContactTable {
         input: &NarrowPhaseInput,
         collider: u32,
     ) -> impl Iterator<Item = (u32, u32, usize, &Manifold)> {
-        let contacts =
-            self.of_collider(collider, input.colliders).filter(move |id| self.slides(*id, collider));
-        contacts.flat_map(move |id| {
+        let contacts = self.of_collider(collider, input.colliders).filter_map(move |id| {
             let contact = self.get(id);
             let side = usize::from(contact.colliders[1] == collider);
+            let slides = contact.flags.has([ContactFlags::SLIDES_A, ContactFlags::SLIDES_B][side]);
+            (slides && self.is_active(id)).then_some((id, contact, side))
+        });
+        contacts.flat_map(move |(id, contact, side)| {
             let manifolds = core::iter::once(&contact.manifold).chain(self.extra_of(contact));
             manifolds.zip(0..).map(move |(manifold, index)| (id, index, side, manifold))
         })
