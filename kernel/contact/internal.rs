@@ -17,7 +17,6 @@ use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint, Parallel, Sl
 use super::table::{ContactTable, PointCount};
 use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
-use crate::table::NONE;
 use crate::thread_pool::ThreadPool;
 use crate::tuning::contact::{FLUSH, MOVING, RESTING, RISES, SAME_FACE, SLIDING};
 use crate::tuning::manifold::{ALIKE, MARGIN, PARALLEL, SIDEWAYS};
@@ -59,29 +58,27 @@ enum Place {
 impl<'a> Seen<'a> {
     fn new(input: &NarrowPhaseInput, contact: &Contact, side: usize, manifold: &'a Manifold) -> Self {
         let mut fixed = [None; 2];
-        let poses = input.poses(contact, &mut fixed);
-        let ground = 1 - side;
+        let sides = input.sides(contact, &mut fixed);
+        let (poses, ground) = (sides.poses, 1 - side);
         // Points of a recycled manifold keep their places on the ground.
         let frozen = if ground == 1 { contact.frozen.offset } else { Vector::ZERO };
         let origin = (poses[ground].center - poses[side].center).to_local() - frozen;
         let sign = if side == 0 { -1.0 } else { 1.0 };
-        let [a, b] = input.reaches(contact);
-        let shapes = input.shapes(contact);
+        let ([a, b], shapes) = (sides.reaches(), sides.shapes());
         let is_curved = shapes.iter().any(|shape| matches!(shape, Shape::Curved(_)));
         let is_clipped =
             manifold.radii == [0.0; 2] || is_curved || !shapes.iter().any(|shape| is_line(shape));
         let clipped = if is_clipped { MARGIN * smaller([a.extent, b.extent]) } else { 0.0 };
         let is_recycled = contact.flags.has(ContactFlags::FROZEN);
-        let now = (poses[1].center - poses[0].center).to_local();
-        let until_met = if is_recycled { Vector::ZERO } else { contact.frozen.offset - now };
+        let until_met = if is_recycled { Vector::ZERO } else { contact.frozen.offset - sides.offset() };
         let (mut way, mut place) = (Vector::ZERO, Place::Meeting);
         let is_met_later = |p: &ManifoldPoint| p.separation != p.frozen_separation;
         if contact.flags.has(ContactFlags::COMPOSITE)
             && !is_recycled
             && manifold.points().iter().any(is_met_later)
         {
-            way = input.predicted_motion(contact) * sign;
-            let is_dynamic = contact.bodies.map(|body| input.is_dynamic(body));
+            way = sides.predicted_motion() * sign;
+            let is_dynamic = sides.are_dynamic();
             let placed_on = usize::from(matches!(shapes[0], Shape::Composite(_)));
             place = match is_dynamic {
                 [true, true] if placed_on == side => Place::Collider,
@@ -90,9 +87,8 @@ impl<'a> Seen<'a> {
                 _ => Place::Meeting,
             };
         }
-        let unit = input.bodies.length_unit();
-        let (flush, below) = (FLUSH * unit + clipped, input.tolerance);
-        let motion = until_met * sign;
+        let flush = FLUSH * input.bodies.length_unit() + clipped;
+        let (below, motion) = (input.tolerance, until_met * sign);
         Self { manifold, normal: manifold.normal * sign, origin, flush, below, motion, way, place }
     }
 
@@ -198,15 +194,12 @@ fn unit(v: Vector) -> Vector {
 }
 
 impl NarrowPhaseInput<'_> {
-    fn speed_squared(&self, body: u32) -> f32 {
-        if body == NONE { 0.0 } else { self.bodies.velocities[body as usize].linear.length_squared() }
-    }
-
     /// The side of a contact whose collider slides over the other one as over ground.
     pub(super) fn sliding_side(&self, contact: &Contact) -> Option<usize> {
         let unit = self.bodies.length_unit();
         let square = |speed: f32| (speed * unit) * (speed * unit);
-        let relative = (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length_squared();
+        let velocity = |side: usize| self.velocity(contact.bodies[side]).linear;
+        let relative = (velocity(1) - velocity(0)).length_squared();
         // Most do not move. And deep overlap is pushed out from all sides.
         if !(relative > square(min(SLIDING, MOVING))) || contact.flags.has(ContactFlags::DEEP) {
             return None;
@@ -214,7 +207,7 @@ impl NarrowPhaseInput<'_> {
         match contact.bodies.map(|body| self.is_dynamic(body)) {
             [false, false] => None,
             [true, true] => (0..2).find(|side| {
-                relative > square(SLIDING) && self.speed_squared(contact.bodies[1 - side]) < square(RESTING)
+                relative > square(SLIDING) && velocity(1 - side).length_squared() < square(RESTING)
             }),
             [is_of_a, _] => (relative > square(MOVING)).then_some(usize::from(!is_of_a)),
         }
@@ -248,10 +241,9 @@ impl NarrowPhaseInput<'_> {
     /// surfaces and planes.
     fn top(&self, contact: &Contact, side: usize, direction: Vector) -> Option<f32> {
         let mut fixed = [None; 2];
-        let center = self.poses(contact, &mut fixed)[side].center;
-        let ground = contact.colliders[1 - side];
-        let pose = &self.colliders.poses[ground as usize];
-        let farthest = self.colliders[ground].def.shape.support(pose.rotation.inverse_rotate(direction))?;
+        let sides = self.sides(contact, &mut fixed);
+        let (center, pose) = (sides.poses[side].center, sides.shape_poses()[1 - side]);
+        let farthest = sides.shapes()[1 - side].support(pose.rotation.inverse_rotate(direction))?;
         Some(((pose.position - center).to_local() + pose.rotation.rotate(farthest)).dot(direction))
     }
 
@@ -276,13 +268,11 @@ impl NarrowPhaseInput<'_> {
             if cos >= 0.0 { along * (1.0 / steepness) } else { up - level * (0.25 / level.length()) };
         let probe = foot + direction * (holding.plane() + height - foot.dot(up));
         let mut fixed = [None; 2];
-        let center = self.poses(contact, &mut fixed)[side].center;
-        let ground = contact.colliders[1 - side] as usize;
-        let shape = &self.colliders[ground as u32].def.shape;
-        let pose =
-            self.colliders.poses[ground].relative(&WorldPose::new(center + probe.to_world(), Rot::IDENTITY));
-        let ball = Ball { radius: 0.5 * height + self.margin(contact) };
-        manifolds::touches(shape, ball, &pose, worker)
+        let sides = self.sides(contact, &mut fixed);
+        let place = WorldPose::new(sides.poses[side].center + probe.to_world(), Rot::IDENTITY);
+        let pose = sides.shape_poses()[1 - side].relative(&place);
+        let ball = Ball { radius: 0.5 * height + sides.margin() };
+        manifolds::touches(sides.shapes()[1 - side], ball, &pose, worker)
     }
 }
 
@@ -369,10 +359,9 @@ impl ContactTable {
         let mut groups = core::mem::take(&mut worker.parallel);
         self.group_parallel(input, &mut all, &mut groups);
         for this in &all {
-            let role = if groups.len() == 1 {
-                Role::Obstacle
-            } else {
-                self.role(input, this, &all, &groups, worker)
+            let role = match groups.len() {
+                1 => Role::Obstacle,
+                _ => self.role(input, this, &all, &groups, worker),
             };
             if (role == Role::Internal) != this.is_marked {
                 worker.internal.push((this.contact, this.index));
@@ -435,9 +424,7 @@ impl ContactTable {
         let contact = self.get(this.contact);
         let seen = &self.see(input, this);
         let (mut is_held, mut plane, mut level) = (false, None, None);
-        for group in
-            groups.iter().zip(0..).filter(|(_, number)| *number != this.group).map(|(group, _)| group)
-        {
+        for (group, _) in groups.iter().zip(0..).filter(|(_, number)| *number != this.group) {
             // Planes below its points hold nothing of it.
             let least = seen.least_top(group);
             let others = all[group.range.clone()].iter().take_while(|other| !(other.height < least));
