@@ -10,7 +10,7 @@ use kernel::{
 
 use crate::{
     collision::{
-        collider::{Collider, Workspace, foreign_ball_manifolds, foreign_manifolds},
+        collider::{Collider, foreign_ball_manifolds, foreign_manifolds},
         contact_types::views::ContactViews,
         custom_contacts::CustomContacts,
         diagnostics::CollisionDiagnostics,
@@ -27,7 +27,7 @@ use crate::{
 
 /// Buffers of the narrow phase.
 #[derive(Resource, Default)]
-pub(crate) struct NarrowPhaseBuffers(Vec<WorkerBuffers<Workspace>>);
+pub(crate) struct NarrowPhaseBuffers(Vec<WorkerBuffers>);
 
 /// Manifolds of shapes that the kernel does not have: by parry, or those of collider types of the app.
 pub(crate) struct Foreign<'a, 'w, 's, 'c> {
@@ -38,18 +38,9 @@ pub(crate) struct Foreign<'a, 'w, 's, 'c> {
 }
 
 impl ManifoldSource for Foreign<'_, '_, '_, '_> {
-    type Workspace = Workspace;
-
-    fn manifolds(
-        &self,
-        colliders: [u32; 2],
-        pose: &Pose,
-        prediction: f32,
-        workspace: &mut Workspace,
-        out: &mut Vec<LocalManifold>,
-    ) {
+    fn manifolds(&self, colliders: [u32; 2], pose: &Pose, prediction: f32, out: &mut Vec<LocalManifold>) {
         if let Ok([a, b]) = self.colliders.get_many(colliders.map(|id| self.entities[id as usize])) {
-            foreign_manifolds(a, b, pose, prediction, workspace, out);
+            foreign_manifolds(a, b, pose, prediction, out);
         } else {
             self.custom.find(colliders, pose, out);
         }
@@ -61,11 +52,10 @@ impl ManifoldSource for Foreign<'_, '_, '_, '_> {
         center: Vector,
         radius: f32,
         prediction: f32,
-        workspace: &mut Workspace,
         out: &mut Vec<LocalManifold>,
     ) {
         if let Ok(collider) = self.colliders.get(self.entities[collider as usize]) {
-            foreign_ball_manifolds(collider, center, radius, prediction, workspace, out);
+            foreign_ball_manifolds(collider, center, radius, prediction, out);
         }
     }
 }

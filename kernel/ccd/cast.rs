@@ -66,15 +66,14 @@ struct Rest {
 
 /// Buffers of a cast, kept for their memory.
 #[derive(Clone, Debug, Default)]
-pub(super) struct CastBuffers<W> {
+pub(super) struct CastBuffers {
     found: Vec<LocalManifold>,
     parts: CompositeBuffers,
-    source: W,
 }
 
 /// Two colliders, one cast against the other.
-pub(super) struct Pair<'a, S> {
-    pub(super) source: &'a S,
+pub(super) struct Pair<'a> {
+    pub(super) source: &'a dyn ManifoldSource,
     pub(super) moving: Side<'a>,
     pub(super) other: Side<'a>,
     /// The sum of the collision margins.
@@ -85,9 +84,9 @@ pub(super) struct Pair<'a, S> {
     pub(super) extent: f32,
 }
 
-impl<S: ManifoldSource> Pair<'_, S> {
+impl Pair<'_> {
     /// Casts the moving collider, or a ball within it.
-    pub(super) fn cast(&self, caster: Caster, buffers: &mut CastBuffers<S::Workspace>) -> Cast {
+    pub(super) fn cast(&self, caster: Caster, buffers: &mut CastBuffers) -> Cast {
         // A ball touches only at a smaller distance than it stops at, so a ball that stopped is not free to
         // go on in the next step.
         let (way, turning, touching) = match caster {
@@ -148,10 +147,10 @@ impl<S: ManifoldSource> Pair<'_, S> {
         other: &WorldPose,
         fraction: f32,
         rest: Rest,
-        buffers: &mut CastBuffers<S::Workspace>,
+        buffers: &mut CastBuffers,
     ) -> f32 {
         let distance = rest.way.length() + rest.turning;
-        let CastBuffers { found, parts, source } = buffers;
+        let CastBuffers { found, parts } = buffers;
         let [a, b] = [&self.other, &self.moving];
         found.clear();
         let reach = distance + self.margin;
@@ -174,10 +173,10 @@ impl<S: ManifoldSource> Pair<'_, S> {
         if is_foreign(a.shape) || is_foreign(shape) {
             match caster {
                 Caster::Whole => {
-                    self.source.manifolds([a.collider, b.collider], &pose, near, source, found);
+                    self.source.manifolds([a.collider, b.collider], &pose, near, found);
                 }
                 Caster::Ball(_, radius) => {
-                    self.source.ball_manifolds(a.collider, pose.position, radius, near, source, found);
+                    self.source.ball_manifolds(a.collider, pose.position, radius, near, found);
                 }
             }
             return near - self.margin;
@@ -195,14 +194,14 @@ impl<S: ManifoldSource> Pair<'_, S> {
 
     /// The gap between the shapes at the start of the step; negative if they overlap, infinite if it exceeds
     /// `distance`.
-    pub(super) fn gap_at_start(&self, distance: f32, buffers: &mut CastBuffers<S::Workspace>) -> f32 {
+    pub(super) fn gap_at_start(&self, distance: f32, buffers: &mut CastBuffers) -> f32 {
         let rest = Rest { way: Vector::ZERO, turning: distance };
         self.look(Caster::Whole, &self.other.pose(0.0), 0.0, rest, buffers);
         buffers.found.iter().map(|local| local.lower_bound() - self.margin).fold(f32::INFINITY, min)
     }
 
     /// The depth of overlap at the end of the step; 0 if the shapes do not overlap.
-    pub(super) fn depth_at_end(&self, buffers: &mut CastBuffers<S::Workspace>) -> f32 {
+    pub(super) fn depth_at_end(&self, buffers: &mut CastBuffers) -> f32 {
         let rest = Rest { way: Vector::ZERO, turning: 0.0 };
         self.look(Caster::Whole, &self.other.pose(1.0), 1.0, rest, buffers);
         let depths = buffers.found.iter().map(|local| self.margin - local.lower_bound());

@@ -18,7 +18,7 @@ const BALLS: [f32; 3] = [CORE_SHARE, MET, 0.0];
 const FIXED: [TreeKind; 2] = [TreeKind::Static, TreeKind::Standalone];
 
 /// The input of sweeps, constant while they run.
-pub struct SweepInput<'a, S> {
+pub struct SweepInput<'a> {
     /// The bodies at the start of the step.
     pub bodies: &'a BodyTable,
     /// The colliders at the start of the step.
@@ -29,7 +29,7 @@ pub struct SweepInput<'a, S> {
     /// was refused, and is not swept.
     pub contacts: &'a ContactTable,
     /// The source of manifolds for pairs with a foreign shape.
-    pub source: &'a S,
+    pub source: &'a dyn ManifoldSource,
     /// Shapes this far apart count as touching, in metres.
     pub tolerance: f32,
     /// The step's length, in seconds.
@@ -69,21 +69,15 @@ struct End {
 }
 
 /// Buffers of one worker, kept for their memory.
-#[derive(Clone, Debug)]
-pub struct SweepBuffers<W = ()> {
-    cast: CastBuffers<W>,
+#[derive(Clone, Debug, Default)]
+pub struct SweepBuffers {
+    cast: CastBuffers,
     candidates: Vec<u32>,
     /// The bodies that stop, each with its fraction of the step.
     pub(crate) stops: Vec<(u32, f32)>,
 }
 
-impl<W: Default> Default for SweepBuffers<W> {
-    fn default() -> Self {
-        Self { cast: CastBuffers::default(), candidates: Vec::new(), stops: Vec::new() }
-    }
-}
-
-impl<S: ManifoldSource> SweepInput<'_, S> {
+impl SweepInput<'_> {
     /// Whether a body that moves by `way` metres and turns by `angle` radians may pass through something, or
     /// press a corner into something where the contacts of the start of the step have no point.
     #[inline(always)]
@@ -176,7 +170,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
 
     /// The fraction of the step at which a body stops at a collider that does not move; 1 if it does not
     /// stop.
-    pub fn stop(&self, body: u32, path: &Path, buffers: &mut SweepBuffers<S::Workspace>) -> f32 {
+    pub fn stop(&self, body: u32, path: &Path, buffers: &mut SweepBuffers) -> f32 {
         let sweep = self.sweep(body, path);
         let mut first = 1.0;
         if sweep.is_fast || sweep.is_strict {
@@ -197,7 +191,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         body: u32,
         swept: &Swept,
         path_of: &impl Fn(u32) -> Option<Path>,
-        buffers: &mut SweepBuffers<S::Workspace>,
+        buffers: &mut SweepBuffers,
     ) {
         let Some(path) = path_of(body).map(|path| path.turning_if(swept.turns)) else { return };
         let kinds = [TreeKind::Kinematic, TreeKind::Dynamic];
@@ -229,8 +223,8 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
         body: u32,
         sweep: &Sweep,
         kinds: &[TreeKind],
-        buffers: &mut SweepBuffers<S::Workspace>,
-        mut met: impl FnMut([u32; 2], &mut SweepBuffers<S::Workspace>),
+        buffers: &mut SweepBuffers,
+        mut met: impl FnMut([u32; 2], &mut SweepBuffers),
     ) {
         let mut candidates = core::mem::take(&mut buffers.candidates);
         for collider in self.colliders.of_body(body, self.bodies) {
@@ -364,13 +358,7 @@ impl<S: ManifoldSource> SweepInput<'_, S> {
     }
 
     /// The fraction of the step at which a collider meets another; 1 if they do not meet.
-    fn impact(
-        &self,
-        collider: u32,
-        sweep: &Sweep,
-        other: Side,
-        buffers: &mut CastBuffers<S::Workspace>,
-    ) -> f32 {
+    fn impact(&self, collider: u32, sweep: &Sweep, other: Side, buffers: &mut CastBuffers) -> f32 {
         let moving = self.side(collider, Some(*sweep.path));
         let (center, core) = moving.shape.core();
         let reaches = [collider, other.collider].map(|id| self.colliders.reaches[id as usize]);

@@ -5,14 +5,13 @@ use super::recycle::RecycleBatch;
 use crate::manifold::{CompositeBuffers, LocalManifold};
 use crate::math::Vector;
 
-/// Buffers of one worker, kept between steps; `W` are those of its [`ManifoldSource`](super::ManifoldSource). They are
-/// written with every contact, so each worker's are in cache lines of their own.
+/// Buffers of one worker, kept between steps. They are written with every contact, so each worker's are in cache lines of
+/// their own.
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
-pub struct WorkerBuffers<W = ()> {
+pub struct WorkerBuffers {
     /// The manifolds of the contact at hand, in A's frame.
     pub(super) local: Vec<LocalManifold>,
-    pub(super) foreign: W,
     pub(super) composite: CompositeBuffers,
     /// Contacts that may be recycled.
     pub(super) batch: RecycleBatch,
@@ -40,7 +39,7 @@ pub struct WorkerBuffers<W = ()> {
     pub(super) any_deep: bool,
 }
 
-impl<W> WorkerBuffers<W> {
+impl WorkerBuffers {
     /// Empties what the last update left for the table.
     pub(super) fn clear(&mut self) {
         self.changed.clear();

@@ -4,7 +4,7 @@
 //! what the bodies may travel until the next look. Each body adds up a bound of its surface's way. The solver stores the
 //! separations at its end, as long as they are those of the next step's start.
 
-use super::input::{NarrowPhaseInput, smaller};
+use super::input::{Sides, smaller};
 use super::record::{Contact, ContactFlags};
 use crate::math::min;
 use crate::shape::Shape;
@@ -52,10 +52,11 @@ fn travel([a, b]: [&BodyPose; 2]) -> u32 {
     a.travel.wrapping_add(b.travel)
 }
 
-impl<S> NarrowPhaseInput<'_, S> {
+impl Sides<'_> {
     /// Whether a contact needs no look. Its separations have to be stored again until the next time.
     #[inline(always)]
-    pub(super) fn is_calm(&self, contact: &mut Contact, poses: [&BodyPose; 2]) -> bool {
+    pub(super) fn is_calm(&self, contact: &mut Contact) -> bool {
+        let &Self { input, poses, .. } = self;
         let flags = contact.flags;
         if !flags.has(ContactFlags::CALM) {
             return false;
@@ -64,8 +65,8 @@ impl<S> NarrowPhaseInput<'_, S> {
         contact.flags.set(ContactFlags::CALM, !touches);
         let speed = poses[0].speed + poses[1].speed;
         let left = contact.calm_until.wrapping_sub(travel(poses)) as i32;
-        let is_near = speed * self.dt < self.bodies.travel_scale.way_of(left);
-        if !(is_near && self.recycle_distance > 0.0) || contact.revisions != self.revisions(contact, poses) {
+        let is_near = speed * input.dt < input.bodies.travel_scale.way_of(left);
+        if !(is_near && input.recycle_distance > 0.0) || contact.revisions != self.revisions() {
             return false;
         }
         if !touches {
@@ -75,7 +76,7 @@ impl<S> NarrowPhaseInput<'_, S> {
         if is_turned(0, ContactFlags::PLATFORM_A) || is_turned(1, ContactFlags::PLATFORM_B) {
             return false;
         }
-        self.sliding_side(contact).is_none()
+        input.sliding_side(contact).is_none()
     }
 
     /// Sets the bits that follow from a recomputed manifold: that of deep overlap, and that the embedder has changed nothing.
@@ -102,7 +103,7 @@ impl<S> NarrowPhaseInput<'_, S> {
     /// Whether the shapes overlap by more than a share of the smaller one's reach.
     fn overlaps_by(&self, share: f32, contact: &Contact) -> bool {
         let deepest = contact.manifold.points().iter().fold(0.0, |d, p| min(d, p.separation));
-        let [a, b] = self.reaches(contact);
+        let [a, b] = self.reaches();
         let reach = smaller([a.extent, b.extent]);
         deepest < 0.0 && deepest < -share * reach
     }
@@ -111,13 +112,13 @@ impl<S> NarrowPhaseInput<'_, S> {
     /// roll under the same normal; what stands on its flat end is not round there.
     #[inline(always)]
     pub(super) fn set_platform(&self, contact: &mut Contact) {
-        let is_round = |side: usize| match self.shapes(contact)[side] {
+        let is_round = |side: usize| match self.shapes()[side] {
             Shape::Ball(_) | Shape::Capsule(_) | Shape::Segment(_) => true,
             Shape::Curved(_) => contact.manifold.radii[side] != 0.0,
             _ => false,
         };
         let are_round = is_round(0) && is_round(1);
-        let [a, b] = contact.bodies.map(|body| !are_round && !self.is_dynamic(body));
+        let [a, b] = self.are_dynamic().map(|is_dynamic| !are_round && !is_dynamic);
         contact.flags.set(ContactFlags::PLATFORM_A, a);
         contact.flags.set(ContactFlags::PLATFORM_B, b && !a);
     }

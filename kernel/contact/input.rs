@@ -2,25 +2,15 @@
 
 use super::record::Contact;
 use crate::manifold::LocalManifold;
-use crate::math::{Lane, Pose, Vector, WorldPose, max, min};
+use crate::math::{Lane, Pose, Rot, Vector, WorldPose, max, min};
 use crate::shape::Shape;
 use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach, Velocity, is_swinging, turn};
 
 /// Computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign).
 pub trait ManifoldSource: Sync {
-    /// Buffers of the source, kept between calls.
-    type Workspace: Default + Send;
-
     /// Adds the manifolds of colliders `a` and `b`, `pose` being where B is in A's frame: in A's frame with normals from A to
     /// B, with points up to `prediction` metres apart.
-    fn manifolds(
-        &self,
-        colliders: [u32; 2],
-        pose: &Pose,
-        prediction: f32,
-        workspace: &mut Self::Workspace,
-        out: &mut Vec<LocalManifold>,
-    );
+    fn manifolds(&self, colliders: [u32; 2], pose: &Pose, prediction: f32, out: &mut Vec<LocalManifold>);
 
     /// The same for a collider and a ball, whose centre is given in the collider's frame.
     fn ball_manifolds(
@@ -29,27 +19,24 @@ pub trait ManifoldSource: Sync {
         center: Vector,
         radius: f32,
         prediction: f32,
-        workspace: &mut Self::Workspace,
         out: &mut Vec<LocalManifold>,
     );
 }
 
 impl ManifoldSource for () {
-    type Workspace = ();
+    fn manifolds(&self, _: [u32; 2], _: &Pose, _: f32, _: &mut Vec<LocalManifold>) {}
 
-    fn manifolds(&self, _: [u32; 2], _: &Pose, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
-
-    fn ball_manifolds(&self, _: u32, _: Vector, _: f32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {}
+    fn ball_manifolds(&self, _: u32, _: Vector, _: f32, _: f32, _: &mut Vec<LocalManifold>) {}
 }
 
 /// What the narrow phase reads; constant while it runs.
-pub struct NarrowPhaseInput<'a, S> {
+pub struct NarrowPhaseInput<'a> {
     /// The bodies.
     pub bodies: &'a BodyTable,
     /// The colliders.
     pub colliders: &'a ColliderTable,
     /// For pairs with a foreign shape.
-    pub source: &'a S,
+    pub source: &'a dyn ManifoldSource,
     /// The step's length, in seconds.
     pub dt: f32,
     /// Contacts up to this distance are always found, in metres.
@@ -66,10 +53,15 @@ pub struct NarrowPhaseInput<'a, S> {
     pub narrow: bool,
 }
 
-impl<'a, S> NarrowPhaseInput<'a, S> {
+impl<'a> NarrowPhaseInput<'a> {
     /// Input with the usual lengths for shapes of about a metre: a tolerance of 5 mm, prediction up to 2 cm, recycling up
     /// to 5 cm. `source` is `&()` if no shape is [foreign](crate::shape::Shape::Foreign), `dt` is in seconds.
-    pub fn new(bodies: &'a BodyTable, colliders: &'a ColliderTable, source: &'a S, dt: f32) -> Self {
+    pub fn new(
+        bodies: &'a BodyTable,
+        colliders: &'a ColliderTable,
+        source: &'a dyn ManifoldSource,
+        dt: f32,
+    ) -> Self {
         Self {
             bodies,
             colliders,
@@ -84,131 +76,34 @@ impl<'a, S> NarrowPhaseInput<'a, S> {
     }
 }
 
-impl<S> NarrowPhaseInput<'_, S> {
-    /// The poses of both sides' bodies; of a collider without one, its own, kept in `fixed`. By reference: a copy is
-    /// written in other pieces than it is read in, which a processor waits for.
+impl NarrowPhaseInput<'_> {
+    /// The sides of a contact. The pose of a collider without a body is kept in `fixed`.
     #[inline(always)]
-    pub(super) fn poses<'a>(
-        &'a self,
-        contact: &Contact,
-        fixed: &'a mut [Option<BodyPose>; 2],
-    ) -> [&'a BodyPose; 2] {
+    pub(super) fn sides<'a>(&'a self, contact: &Contact, fixed: &'a mut [Option<BodyPose>; 2]) -> Sides<'a> {
+        let Contact { colliders, bodies, .. } = *contact;
         let [a, b] = fixed;
-        [self.pose(contact, 0, a), self.pose(contact, 1, b)]
+        let poses = [self.pose(colliders[0], bodies[0], a), self.pose(colliders[1], bodies[1], b)];
+        Sides { input: self, colliders, bodies, poses }
     }
 
     #[inline(always)]
-    fn pose<'a>(&'a self, contact: &Contact, side: usize, fixed: &'a mut Option<BodyPose>) -> &'a BodyPose {
-        match contact.bodies[side] {
+    fn pose<'a>(&'a self, collider: u32, body: u32, fixed: &'a mut Option<BodyPose>) -> &'a BodyPose {
+        match body {
             NONE => {
-                let WorldPose { position, rotation } = self.colliders.poses[contact.colliders[side] as usize];
+                let WorldPose { position, rotation } = self.colliders.poses[collider as usize];
                 fixed.insert(BodyPose { center: position, rotation, ..BodyPose::default() })
             }
             body => &self.bodies.poses[body as usize],
         }
     }
 
+    /// The velocity of a body, 0 of [`NONE`].
     #[inline(always)]
-    pub(super) fn velocity(&self, contact: &Contact, side: usize) -> Velocity {
-        match contact.bodies[side] {
+    pub(super) fn velocity(&self, body: u32) -> Velocity {
+        match body {
             NONE => Velocity::default(),
             body => self.bodies.velocities[body as usize],
         }
-    }
-
-    /// The side's revision: of its collider and its body together.
-    #[inline(always)]
-    fn revision(reach: &Reach, pose: &BodyPose) -> u32 {
-        reach.revision.wrapping_add(pose.revision.wrapping_mul(0x9E37_79B1))
-    }
-
-    /// The reaches of both sides. Without `map`, which the compiler does not inline here.
-    #[inline(always)]
-    pub(super) fn reaches(&self, contact: &Contact) -> [&Reach; 2] {
-        let [a, b] = contact.colliders;
-        [&self.colliders.reaches[a as usize], &self.colliders.reaches[b as usize]]
-    }
-
-    /// How far apart the shapes are kept, in metres.
-    #[inline(always)]
-    pub(super) fn margin(&self, contact: &Contact) -> f32 {
-        let [a, b] = self.reaches(contact);
-        a.margin + b.margin
-    }
-
-    #[inline(always)]
-    pub(super) fn revisions(&self, contact: &Contact, poses: [&BodyPose; 2]) -> [u32; 2] {
-        let [a, b] = self.reaches(contact);
-        [Self::revision(a, poses[0]), Self::revision(b, poses[1])]
-    }
-
-    /// The distance up to which contacts are predicted at rest: no body's speculative margin is exceeded. What does not
-    /// move has none.
-    pub(super) fn near(&self, contact: &Contact) -> f32 {
-        let [a, b] = self.reaches(contact).map(|reach| match reach.turning {
-            0.0 => f32::MAX,
-            _ => reach.speculative,
-        });
-        max(self.tolerance, min(self.speculative, min(a, b)))
-    }
-
-    /// The velocity of a side's body, no faster than to its speculative margin in the step.
-    #[inline(always)]
-    fn predicted_velocity(&self, contact: &Contact, side: usize, margin: f32) -> Vector {
-        let velocity = self.velocity(contact, side).linear;
-        let way = velocity * self.dt;
-        let is_beyond = way.length_squared() > margin * margin;
-        if is_beyond { velocity * (margin / way.length()) } else { velocity }
-    }
-
-    /// Surfaces up to this distance apart count as a contact: as far as they can close in this step if nothing turns. The
-    /// velocity of each body is limited by its own speculative margin.
-    pub(super) fn prediction(&self, contact: &Contact) -> f32 {
-        max(self.near(contact), self.predicted_motion(contact).length())
-    }
-
-    /// How far B moves against A in this step, in world axes, as far as their speculative margins allow.
-    pub(super) fn predicted_motion(&self, contact: &Contact) -> Vector {
-        let [a, b] = self.reaches(contact);
-        let a = self.predicted_velocity(contact, 0, a.speculative);
-        let b = self.predicted_velocity(contact, 1, b.speculative);
-        (b - a) * self.dt
-    }
-
-    /// The [`prediction`](Self::prediction), and as far as turning may close as well.
-    pub(super) fn farthest(&self, contact: &Contact, prediction: f32) -> f32 {
-        let mut turning = 0.0;
-        for (side, reach) in self.reaches(contact).into_iter().enumerate() {
-            let velocity = self.velocity(contact, side);
-            let turn = turn(velocity.angular.length(), self.dt);
-            if is_swinging(reach, turn, self.speculative) {
-                let left = max(reach.speculative - velocity.linear.length() * self.dt, 0.0);
-                turning += min(reach.arm * turn, left);
-            }
-        }
-        prediction + turning
-    }
-
-    /// What a [`ManifoldSource`] is asked of a contact with a foreign shape: where B is in A's frame, and how far apart points
-    /// may be.
-    pub fn foreign_view(&self, contact: &Contact) -> (Pose, f32) {
-        let [a, b] = self.shape_poses(contact);
-        let prediction = self.prediction(contact);
-        (a.relative(b), self.farthest(contact, prediction) + self.margin(contact))
-    }
-
-    /// The shapes of both sides.
-    #[inline(always)]
-    pub(super) fn shapes(&self, contact: &Contact) -> [&Shape; 2] {
-        let [a, b] = contact.colliders;
-        [&self.colliders[a].def.shape, &self.colliders[b].def.shape]
-    }
-
-    /// The poses of both colliders.
-    #[inline(always)]
-    pub(super) fn shape_poses(&self, contact: &Contact) -> [&WorldPose; 2] {
-        let [a, b] = contact.colliders;
-        [&self.colliders.poses[a as usize], &self.colliders.poses[b as usize]]
     }
 
     /// Whether a body is dynamic. [`NONE`] is not.
@@ -217,11 +112,151 @@ impl<S> NarrowPhaseInput<'_, S> {
         body != NONE && self.bodies[body].kind == BodyKind::Dynamic
     }
 
+    /// What a [`ManifoldSource`] is asked of a contact with a foreign shape: where B is in A's frame, and how far apart points
+    /// may be.
+    pub fn foreign_view(&self, contact: &Contact) -> (Pose, f32) {
+        let mut fixed = [None; 2];
+        let sides = self.sides(contact, &mut fixed);
+        (sides.relative(), sides.farthest(sides.prediction()) + sides.margin())
+    }
+}
+
+/// The two sides of a contact in the tables.
+#[derive(Clone, Copy)]
+pub(super) struct Sides<'a> {
+    pub(super) input: &'a NarrowPhaseInput<'a>,
+    pub(super) colliders: [u32; 2],
+    pub(super) bodies: [u32; 2],
+    /// The poses of the bodies; of a collider without one, its own. By reference: a copy is written in other pieces than it is
+    /// read in, which a processor waits for.
+    pub(super) poses: [&'a BodyPose; 2],
+}
+
+impl<'a> Sides<'a> {
+    #[inline(always)]
+    pub(super) fn velocity(&self, side: usize) -> Velocity {
+        self.input.velocity(self.bodies[side])
+    }
+
+    /// Without `map`, which the compiler does not inline here.
+    #[inline(always)]
+    pub(super) fn reaches(&self) -> [&'a Reach; 2] {
+        let ([a, b], reaches) = (self.colliders, &self.input.colliders.reaches);
+        [&reaches[a as usize], &reaches[b as usize]]
+    }
+
+    #[inline(always)]
+    pub(super) fn shapes(&self) -> [&'a Shape; 2] {
+        let ([a, b], colliders) = (self.colliders, self.input.colliders);
+        [&colliders[a].def.shape, &colliders[b].def.shape]
+    }
+
+    /// The poses of the colliders.
+    #[inline(always)]
+    pub(super) fn shape_poses(&self) -> [&'a WorldPose; 2] {
+        let ([a, b], poses) = (self.colliders, &self.input.colliders.poses);
+        [&poses[a as usize], &poses[b as usize]]
+    }
+
+    /// The rotation of A's shape, in whose frame manifolds are computed.
+    #[inline(always)]
+    pub(super) fn frame(&self) -> Rot {
+        self.shape_poses()[0].rotation
+    }
+
+    /// Where B's shape is in that frame.
+    #[inline(always)]
+    pub(super) fn relative(&self) -> Pose {
+        let [a, b] = self.shape_poses();
+        a.relative(b)
+    }
+
+    /// From A's to B's centre of mass.
+    #[inline(always)]
+    pub(super) fn offset(&self) -> Vector {
+        (self.poses[1].center - self.poses[0].center).to_local()
+    }
+
+    /// Whether each body is dynamic.
+    #[inline(always)]
+    pub(super) fn are_dynamic(&self) -> [bool; 2] {
+        let [a, b] = self.bodies;
+        [self.input.is_dynamic(a), self.input.is_dynamic(b)]
+    }
+
+    /// How far apart the shapes are kept, in metres.
+    #[inline(always)]
+    pub(super) fn margin(&self) -> f32 {
+        let [a, b] = self.reaches();
+        a.margin + b.margin
+    }
+
+    /// Each side's revision: of its collider and its body together.
+    #[inline(always)]
+    pub(super) fn revisions(&self) -> [u32; 2] {
+        let ([a, b], poses) = (self.reaches(), self.poses);
+        let of = |reach: &Reach, pose: &BodyPose| {
+            reach.revision.wrapping_add(pose.revision.wrapping_mul(0x9E37_79B1))
+        };
+        [of(a, poses[0]), of(b, poses[1])]
+    }
+
+    /// The distance up to which contacts are predicted at rest: no body's speculative margin is exceeded. What does not
+    /// move has none.
+    pub(super) fn near(&self) -> f32 {
+        let [a, b] = self.reaches().map(|reach| match reach.turning {
+            0.0 => f32::MAX,
+            _ => reach.speculative,
+        });
+        max(self.input.tolerance, min(self.input.speculative, min(a, b)))
+    }
+
+    /// The velocity of a side's body, no faster than to its speculative margin in the step.
+    #[inline(always)]
+    fn predicted_velocity(&self, side: usize) -> Vector {
+        let (velocity, margin) = (self.velocity(side).linear, self.reaches()[side].speculative);
+        let way = velocity * self.input.dt;
+        let is_beyond = way.length_squared() > margin * margin;
+        if is_beyond { velocity * (margin / way.length()) } else { velocity }
+    }
+
+    /// Surfaces up to this distance apart count as a contact: as far as they can close in this step if nothing turns. The
+    /// velocity of each body is limited by its own speculative margin.
+    pub(super) fn prediction(&self) -> f32 {
+        max(self.near(), self.predicted_motion().length())
+    }
+
+    /// How far B moves against A in this step, in world axes, as far as their speculative margins allow.
+    pub(super) fn predicted_motion(&self) -> Vector {
+        (self.predicted_velocity(1) - self.predicted_velocity(0)) * self.input.dt
+    }
+
+    /// The [`prediction`](Self::prediction), and as far as turning may close as well.
+    pub(super) fn farthest(&self, prediction: f32) -> f32 {
+        let mut turning = 0.0;
+        let NarrowPhaseInput { dt, speculative, .. } = *self.input;
+        for (side, reach) in self.reaches().into_iter().enumerate() {
+            let velocity = self.velocity(side);
+            let turn = turn(velocity.angular.length(), dt);
+            if is_swinging(reach, turn, speculative) {
+                let left = max(reach.speculative - velocity.linear.length() * dt, 0.0);
+                turning += min(reach.arm * turn, left);
+            }
+        }
+        prediction + turning
+    }
+
+    #[inline(always)]
+    pub(super) fn fat_boxes_overlap(&self) -> bool {
+        let ([a, b], fat) = (self.colliders, &self.input.colliders.fat);
+        fat[a as usize].overlaps(&fat[b as usize])
+    }
+
     /// The gap between the tight boxes of both sides, margins not subtracted.
     #[inline(always)]
-    pub(super) fn box_gap(&self, contact: &Contact) -> f32 {
-        let [a, b] = contact.colliders;
-        self.colliders.tight[a as usize].gap(&self.colliders.tight[b as usize])
+    pub(super) fn box_gap(&self) -> f32 {
+        let ([a, b], tight) = (self.colliders, &self.input.colliders.tight);
+        tight[a as usize].gap(&tight[b as usize])
     }
 }
 

@@ -10,14 +10,13 @@
 //! depends on positions and velocities, not on the number of threads.
 
 use super::buffers::WorkerBuffers;
-use super::input::{ManifoldSource, NarrowPhaseInput, smaller};
+use super::input::{NarrowPhaseInput, smaller};
 use super::load;
 use super::manifolds;
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint, Parallel, Sliding};
 use super::table::{ContactTable, PointCount};
 use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
-use crate::table::NONE;
 use crate::thread_pool::ThreadPool;
 use crate::tuning::contact::{FLUSH, MOVING, RESTING, RISES, SAME_FACE, SLIDING};
 use crate::tuning::manifold::{ALIKE, MARGIN, PARALLEL, SIDEWAYS};
@@ -57,31 +56,29 @@ enum Place {
 }
 
 impl<'a> Seen<'a> {
-    fn new<S>(input: &NarrowPhaseInput<S>, contact: &Contact, side: usize, manifold: &'a Manifold) -> Self {
+    fn new(input: &NarrowPhaseInput, contact: &Contact, side: usize, manifold: &'a Manifold) -> Self {
         let mut fixed = [None; 2];
-        let poses = input.poses(contact, &mut fixed);
-        let ground = 1 - side;
+        let sides = input.sides(contact, &mut fixed);
+        let (poses, ground) = (sides.poses, 1 - side);
         // Points of a recycled manifold keep their places on the ground.
         let frozen = if ground == 1 { contact.frozen.offset } else { Vector::ZERO };
         let origin = (poses[ground].center - poses[side].center).to_local() - frozen;
         let sign = if side == 0 { -1.0 } else { 1.0 };
-        let [a, b] = input.reaches(contact);
-        let shapes = input.shapes(contact);
+        let ([a, b], shapes) = (sides.reaches(), sides.shapes());
         let is_curved = shapes.iter().any(|shape| matches!(shape, Shape::Curved(_)));
         let is_clipped =
             manifold.radii == [0.0; 2] || is_curved || !shapes.iter().any(|shape| is_line(shape));
         let clipped = if is_clipped { MARGIN * smaller([a.extent, b.extent]) } else { 0.0 };
         let is_recycled = contact.flags.has(ContactFlags::FROZEN);
-        let now = (poses[1].center - poses[0].center).to_local();
-        let until_met = if is_recycled { Vector::ZERO } else { contact.frozen.offset - now };
+        let until_met = if is_recycled { Vector::ZERO } else { contact.frozen.offset - sides.offset() };
         let (mut way, mut place) = (Vector::ZERO, Place::Meeting);
         let is_met_later = |p: &ManifoldPoint| p.separation != p.frozen_separation;
         if contact.flags.has(ContactFlags::COMPOSITE)
             && !is_recycled
             && manifold.points().iter().any(is_met_later)
         {
-            way = input.predicted_motion(contact) * sign;
-            let is_dynamic = contact.bodies.map(|body| input.is_dynamic(body));
+            way = sides.predicted_motion() * sign;
+            let is_dynamic = sides.are_dynamic();
             let placed_on = usize::from(matches!(shapes[0], Shape::Composite(_)));
             place = match is_dynamic {
                 [true, true] if placed_on == side => Place::Collider,
@@ -90,9 +87,8 @@ impl<'a> Seen<'a> {
                 _ => Place::Meeting,
             };
         }
-        let unit = input.bodies.length_unit();
-        let (flush, below) = (FLUSH * unit + clipped, input.tolerance);
-        let motion = until_met * sign;
+        let flush = FLUSH * input.bodies.length_unit() + clipped;
+        let (below, motion) = (input.tolerance, until_met * sign);
         Self { manifold, normal: manifold.normal * sign, origin, flush, below, motion, way, place }
     }
 
@@ -197,16 +193,13 @@ fn unit(v: Vector) -> Vector {
     if length > 0.0 { v * (1.0 / length) } else { Vector::ZERO }
 }
 
-impl<S> NarrowPhaseInput<'_, S> {
-    fn speed_squared(&self, body: u32) -> f32 {
-        if body == NONE { 0.0 } else { self.bodies.velocities[body as usize].linear.length_squared() }
-    }
-
+impl NarrowPhaseInput<'_> {
     /// The side of a contact whose collider slides over the other one as over ground.
     pub(super) fn sliding_side(&self, contact: &Contact) -> Option<usize> {
         let unit = self.bodies.length_unit();
         let square = |speed: f32| (speed * unit) * (speed * unit);
-        let relative = (self.velocity(contact, 1).linear - self.velocity(contact, 0).linear).length_squared();
+        let velocity = |side: usize| self.velocity(contact.bodies[side]).linear;
+        let relative = (velocity(1) - velocity(0)).length_squared();
         // Most do not move. And deep overlap is pushed out from all sides.
         if !(relative > square(min(SLIDING, MOVING))) || contact.flags.has(ContactFlags::DEEP) {
             return None;
@@ -214,7 +207,7 @@ impl<S> NarrowPhaseInput<'_, S> {
         match contact.bodies.map(|body| self.is_dynamic(body)) {
             [false, false] => None,
             [true, true] => (0..2).find(|side| {
-                relative > square(SLIDING) && self.speed_squared(contact.bodies[1 - side]) < square(RESTING)
+                relative > square(SLIDING) && velocity(1 - side).length_squared() < square(RESTING)
             }),
             [is_of_a, _] => (relative > square(MOVING)).then_some(usize::from(!is_of_a)),
         }
@@ -223,12 +216,12 @@ impl<S> NarrowPhaseInput<'_, S> {
     /// Notes a contact whose manifolds are to be compared with others of the same collider, and the manifolds of one that slides no
     /// more. `extra` are its recycled manifolds after the first; `has_more` tells whether it has several, recycled or new.
     #[inline(always)]
-    pub(super) fn note_sliding<W>(
+    pub(super) fn note_sliding(
         &self,
         id: u32,
         contact: &mut Contact,
         (extra, has_more): (&[Manifold], bool),
-        worker: &mut WorkerBuffers<W>,
+        worker: &mut WorkerBuffers,
     ) {
         let side = if contact.is_solved() { self.sliding_side(contact) } else { None };
         contact.flags.set(ContactFlags::SLIDES_A, side == Some(0));
@@ -248,21 +241,20 @@ impl<S> NarrowPhaseInput<'_, S> {
     /// surfaces and planes.
     fn top(&self, contact: &Contact, side: usize, direction: Vector) -> Option<f32> {
         let mut fixed = [None; 2];
-        let center = self.poses(contact, &mut fixed)[side].center;
-        let ground = contact.colliders[1 - side];
-        let pose = &self.colliders.poses[ground as usize];
-        let farthest = self.colliders[ground].def.shape.support(pose.rotation.inverse_rotate(direction))?;
+        let sides = self.sides(contact, &mut fixed);
+        let (center, pose) = (sides.poses[side].center, sides.shape_poses()[1 - side]);
+        let farthest = sides.shapes()[1 - side].support(pose.rotation.inverse_rotate(direction))?;
         Some(((pose.position - center).to_local() + pose.rotation.rotate(farthest)).dot(direction))
     }
 
     /// Whether the ground on the other side of a contact goes on above the plane of a holding manifold.
-    fn rises<W>(
+    fn rises(
         &self,
         contact: &Contact,
         side: usize,
         seen: &Seen,
         holding: &Seen,
-        worker: &mut WorkerBuffers<W>,
+        worker: &mut WorkerBuffers,
     ) -> bool {
         let up = holding.normal;
         let cos = seen.normal.dot(up);
@@ -276,24 +268,22 @@ impl<S> NarrowPhaseInput<'_, S> {
             if cos >= 0.0 { along * (1.0 / steepness) } else { up - level * (0.25 / level.length()) };
         let probe = foot + direction * (holding.plane() + height - foot.dot(up));
         let mut fixed = [None; 2];
-        let center = self.poses(contact, &mut fixed)[side].center;
-        let ground = contact.colliders[1 - side] as usize;
-        let shape = &self.colliders[ground as u32].def.shape;
-        let pose =
-            self.colliders.poses[ground].relative(&WorldPose::new(center + probe.to_world(), Rot::IDENTITY));
-        let ball = Ball { radius: 0.5 * height + self.margin(contact) };
-        manifolds::touches(shape, ball, &pose, worker)
+        let sides = self.sides(contact, &mut fixed);
+        let place = WorldPose::new(sides.poses[side].center + probe.to_world(), Rot::IDENTITY);
+        let pose = sides.shape_poses()[1 - side].relative(&place);
+        let ball = Ball { radius: 0.5 * height + sides.margin() };
+        manifolds::touches(sides.shapes()[1 - side], ball, &pose, worker)
     }
 }
 
 impl ContactTable {
     /// Marks the manifolds of internal edges of the colliders that the workers noted, so that they are not solved. Adds their
     /// points to those that were lost.
-    pub(super) fn mark_internal<S: ManifoldSource>(
+    pub(super) fn mark_internal(
         &mut self,
-        input: &NarrowPhaseInput<S>,
+        input: &NarrowPhaseInput,
         pool: &ThreadPool,
-        workers: &mut Vec<WorkerBuffers<S::Workspace>>,
+        workers: &mut Vec<WorkerBuffers>,
     ) {
         let mut compared = core::mem::take(&mut self.compared);
         // A collider's only manifold cannot be internal, so it is not compared.
@@ -342,7 +332,7 @@ impl ContactTable {
     }
 
     /// Adds the manifolds of a sliding collider whose mark is to change, and those that get another normal.
-    fn find_internal<S, W>(&self, input: &NarrowPhaseInput<S>, collider: u32, worker: &mut WorkerBuffers<W>) {
+    fn find_internal(&self, input: &NarrowPhaseInput, collider: u32, worker: &mut WorkerBuffers) {
         let mut all = core::mem::take(&mut worker.slides);
         all.clear();
         for (contact, index, side, m) in self.sliding_manifolds(input, collider).filter(|(.., m)| m.count > 0)
@@ -369,10 +359,9 @@ impl ContactTable {
         let mut groups = core::mem::take(&mut worker.parallel);
         self.group_parallel(input, &mut all, &mut groups);
         for this in &all {
-            let role = if groups.len() == 1 {
-                Role::Obstacle
-            } else {
-                self.role(input, this, &all, &groups, worker)
+            let role = match groups.len() {
+                1 => Role::Obstacle,
+                _ => self.role(input, this, &all, &groups, worker),
             };
             if (role == Role::Internal) != this.is_marked {
                 worker.internal.push((this.contact, this.index));
@@ -386,12 +375,7 @@ impl ContactTable {
     }
 
     /// Groups manifolds that are parallel. Several groups are sorted, each by the heights of its planes.
-    fn group_parallel<S>(
-        &self,
-        input: &NarrowPhaseInput<S>,
-        all: &mut [Sliding],
-        groups: &mut Vec<Parallel>,
-    ) {
+    fn group_parallel(&self, input: &NarrowPhaseInput, all: &mut [Sliding], groups: &mut Vec<Parallel>) {
         groups.clear();
         // Within half of the tolerance of one, all are parallel.
         let tolerance = 0.5 * if all.iter().any(|m| m.is_round) { ALIKE } else { PARALLEL };
@@ -422,27 +406,25 @@ impl ContactTable {
         }
     }
 
-    fn see<'a, S>(&'a self, input: &NarrowPhaseInput<S>, sliding: &Sliding) -> Seen<'a> {
+    fn see<'a>(&'a self, input: &NarrowPhaseInput, sliding: &Sliding) -> Seen<'a> {
         let contact = self.get(sliding.contact);
         let manifold = self.manifold(contact, sliding.index).expect("its contact has it");
         Seen::new(input, contact, sliding.side, manifold)
     }
 
     /// What a manifold is beside the others of the collider.
-    fn role<S, W>(
+    fn role(
         &self,
-        input: &NarrowPhaseInput<S>,
+        input: &NarrowPhaseInput,
         this: &Sliding,
         all: &[Sliding],
         groups: &[Parallel],
-        worker: &mut WorkerBuffers<W>,
+        worker: &mut WorkerBuffers,
     ) -> Role {
         let contact = self.get(this.contact);
         let seen = &self.see(input, this);
         let (mut is_held, mut plane, mut level) = (false, None, None);
-        for group in
-            groups.iter().zip(0..).filter(|(_, number)| *number != this.group).map(|(group, _)| group)
-        {
+        for (group, _) in groups.iter().zip(0..).filter(|(_, number)| *number != this.group) {
             // Planes below its points hold nothing of it.
             let least = seen.least_top(group);
             let others = all[group.range.clone()].iter().take_while(|other| !(other.height < least));

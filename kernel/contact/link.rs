@@ -93,8 +93,7 @@ impl Link<'_> {
     /// Has the next narrow phase update those contacts of a collider that push nothing, although both bodies are at rest:
     /// after the collider was moved, or added. Others wait until a body wakes.
     pub fn visit_of_collider(&mut self, collider: u32) {
-        let ids = self.contacts_of_collider(collider);
-        for id in ids {
+        for id in self.contacts_of_collider(collider) {
             self.visit(id);
         }
     }
@@ -171,8 +170,7 @@ impl Link<'_> {
     /// Re-reads what its colliders say of a contact after one of them was redefined in place. Its manifold is
     /// computed anew; its colour and island change only if it responds now and did not before, or the reverse.
     pub fn reflag_of_collider(&mut self, collider: u32) {
-        let ids = self.contacts_of_collider(collider);
-        for id in ids {
+        for id in self.contacts_of_collider(collider) {
             let flags = self.fresh_flags(id);
             let contact = self.contacts.get_mut(id);
             let (was_solved, inert) = (contact.is_solved(), contact.is_inert());
@@ -194,17 +192,15 @@ impl Link<'_> {
         if body == NONE {
             return;
         }
-        match (self.bodies[body].kind, self.island_of(body)) {
-            (BodyKind::Static, _) => {}
-            (BodyKind::Kinematic, _) => self.set_kinematic_awake(body, true),
-            (BodyKind::Dynamic, Some(island)) => {
+        match self.bodies[body].kind {
+            BodyKind::Static => {}
+            BodyKind::Kinematic => self.set_kinematic_awake(body, true),
+            BodyKind::Dynamic => {
                 self.bodies[body].sleep_timer = 0.0;
-                self.wake_island(island);
-            }
-            (BodyKind::Dynamic, None) => {
-                self.bodies[body].sleep_timer = 0.0;
-                if !self.bodies[body].awake {
-                    self.set_awake(&[body], true);
+                match self.island_of(body) {
+                    Some(island) => self.wake_island(island),
+                    None if self.bodies[body].awake => {}
+                    None => self.set_awake(&[body], true),
                 }
             }
         }
@@ -321,9 +317,7 @@ impl Link<'_> {
         for constraint in self.constraints_of_body(body) {
             let tie = self.tie(constraint);
             if awake && tie.is_solved {
-                for other in tie.bodies.into_iter().filter(|b| *b != body) {
-                    self.wake_body(other);
-                }
+                self.wake_bodies(tie.bodies);
             }
             self.refresh(constraint);
         }
@@ -361,8 +355,7 @@ impl Link<'_> {
 
     /// Mixes the surfaces of a collider's contacts anew.
     fn mix_of_collider(&mut self, collider: u32) {
-        let ids = self.contacts_of_collider(collider);
-        for id in ids {
+        for id in self.contacts_of_collider(collider) {
             self.contacts.get_mut(id).surface = self.mixed(self.contacts.get(id).colliders);
         }
     }
@@ -382,11 +375,9 @@ impl Link<'_> {
         let is_composite = defs.iter().any(|d| matches!(d.shape, Shape::Composite(_)));
         flags.set(ContactFlags::FOREIGN, is_foreign);
         flags.set(ContactFlags::COMPOSITE, is_composite && !is_foreign);
-        let is_hull = defs.iter().any(|d| matches!(d.shape, Shape::Hull(_)));
-        flags.set(ContactFlags::HULL, is_hull);
-        let unattached = bodies.contains(&NONE);
-        let movable = bodies.iter().any(|b| *b != NONE && self.bodies[*b].kind == BodyKind::Dynamic);
-        flags.set(ContactFlags::IMMOVABLE, unattached || !movable);
+        flags.set(ContactFlags::HULL, defs.iter().any(|d| matches!(d.shape, Shape::Hull(_))));
+        let is_movable = !bodies.contains(&NONE) && self.movable(bodies) != [None; 2];
+        flags.set(ContactFlags::IMMOVABLE, !is_movable);
         flags
     }
 

@@ -50,7 +50,7 @@ fn loaded(
 impl Before {
     /// The manifolds of a contact, if it slides under load.
     #[inline(always)]
-    pub(super) fn of<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> Option<Self> {
+    pub(super) fn of(input: &NarrowPhaseInput, contact: &Contact) -> Option<Self> {
         if contact.manifold.count == 0 || !contact.is_solved() || !input.match_points {
             return None;
         }
@@ -135,7 +135,7 @@ fn nearest<'a>(points: &'a [Bearing], axis: usize, lost: &Lost) -> Option<&'a Be
 
 impl ContactTable {
     /// Gives the impulses of lost points to the nearest ones, and empties the list.
-    pub(super) fn hand_on<S>(&mut self, input: &NarrowPhaseInput<S>) {
+    pub(super) fn hand_on(&mut self, input: &NarrowPhaseInput) {
         let (mut lost, mut points) = (core::mem::take(&mut self.lost), core::mem::take(&mut self.bearings));
         lost.sort_unstable_by_key(|lost| (lost.collider, lost.contact, lost.number));
         for of_one in lost.chunk_by(|a, b| a.collider == b.collider) {
@@ -153,7 +153,7 @@ impl ContactTable {
     }
 
     /// Lists the points of a sliding collider that bear load.
-    fn list_bearings<S>(&self, input: &NarrowPhaseInput<S>, collider: u32, points: &mut Vec<Bearing>) {
+    fn list_bearings(&self, input: &NarrowPhaseInput, collider: u32, points: &mut Vec<Bearing>) {
         points.clear();
         for (id, index, side, m) in self.sliding_manifolds(input, collider).filter(|(.., m)| !m.is_internal) {
             let offset = self.get(id).frozen.offset;
@@ -171,25 +171,20 @@ impl ContactTable {
         }
     }
 
-    /// Whether a collider slides over the other one of a contact in this update.
-    fn slides(&self, id: u32, collider: u32) -> bool {
-        let contact = self.get(id);
-        let sides = [ContactFlags::SLIDES_A, ContactFlags::SLIDES_B];
-        contact.flags.has(sides[usize::from(contact.colliders[1] == collider)]) && self.is_active(id)
-    }
-
     /// The manifolds of the contacts in which a collider slides: the contact, the number of the manifold in it, and the side of
     /// the collider.
-    pub(super) fn sliding_manifolds<S>(
+    pub(super) fn sliding_manifolds(
         &self,
-        input: &NarrowPhaseInput<S>,
+        input: &NarrowPhaseInput,
         collider: u32,
     ) -> impl Iterator<Item = (u32, u32, usize, &Manifold)> {
-        let contacts =
-            self.of_collider(collider, input.colliders).filter(move |id| self.slides(*id, collider));
-        contacts.flat_map(move |id| {
+        let contacts = self.of_collider(collider, input.colliders).filter_map(move |id| {
             let contact = self.get(id);
             let side = usize::from(contact.colliders[1] == collider);
+            let slides = contact.flags.has([ContactFlags::SLIDES_A, ContactFlags::SLIDES_B][side]);
+            (slides && self.is_active(id)).then_some((id, contact, side))
+        });
+        contacts.flat_map(move |(id, contact, side)| {
             let manifolds = core::iter::once(&contact.manifold).chain(self.extra_of(contact));
             manifolds.zip(0..).map(move |(manifold, index)| (id, index, side, manifold))
         })

@@ -1,40 +1,38 @@
 //! The manifolds of one contact: computed in A's frame, then put in place of the old ones in world axes.
 
 use super::buffers::WorkerBuffers;
-use super::input::{ManifoldSource, NarrowPhaseInput};
+use super::input::Sides;
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint};
 use super::sweep::Meeting;
 use crate::manifold::{self, FeatureCache, LocalManifold, Look};
 use crate::math::{Pose, Rot, Vector, min};
 use crate::shape::{Ball, Shape};
-use crate::table::BodyPose;
 use crate::tuning::contact::SAME_FACE;
 
 /// Computes the manifold of two native shapes where they are now, with points up to `prediction` apart, margins not
 /// subtracted. Points on rims are where they will be in the middle of the step; returns how far the surfaces may move until
 /// these lag behind.
 #[inline(always)]
-pub(super) fn collide<S>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn collide(
+    sides: &Sides,
     contact: &mut Contact,
     prediction: f32,
     local: &mut LocalManifold,
 ) -> f32 {
-    let (shapes, [pose_a, pose_b]) = (input.shapes(contact), input.shape_poses(contact));
-    let relative = pose_a.relative(pose_b);
+    let (shapes, relative) = (sides.shapes(), sides.relative());
     manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, local);
     let is_curved = |shape: &Shape| matches!(shape, Shape::Curved(_));
     if local.count == 0 || !(is_curved(shapes[0]) || is_curved(shapes[1])) {
         return f32::INFINITY;
     }
-    let spin = input.velocity(contact, 1).angular - input.velocity(contact, 0).angular;
+    let spin = sides.velocity(1).angular - sides.velocity(0).angular;
     // A point that does not touch, moved past a seam of the ground, would not be recognised as one of an inner edge.
-    let near = input.margin(contact);
-    manifold::lead_rims(shapes, pose_a.rotation, &relative, spin * (0.5 * input.dt), near, local)
+    let (near, turn) = (sides.margin(), spin * (0.5 * sides.input.dt));
+    manifold::lead_rims(shapes, sides.frame(), &relative, turn, near, local)
 }
 
 /// Whether a ball overlaps a shape, given the ball's pose in the shape's frame. Shapes of the embedder are not known: false.
-pub(super) fn touches<W>(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut WorkerBuffers<W>) -> bool {
+pub(super) fn touches(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut WorkerBuffers) -> bool {
     let WorkerBuffers { composite, local, .. } = buffers;
     let (ball, mut found) = (Shape::Ball(ball), LocalManifold::default());
     match shape {
@@ -53,21 +51,20 @@ pub(super) fn touches<W>(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut W
 /// Adds the manifolds of two shapes of which one is composite, margins not subtracted. The motion is that of B against A in
 /// this step, in world axes; parts farther away than `met` may be passed by. Returns a lower bound of the distance between the
 /// shapes.
-pub(super) fn collide_parts<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn collide_parts(
+    sides: &Sides,
     contact: &mut Contact,
     prediction: f32,
     (motion, met): (Vector, f32),
-    buffers: &mut WorkerBuffers<S::Workspace>,
+    buffers: &mut WorkerBuffers,
 ) -> f32 {
-    let (shapes, [pose_a, pose_b]) = (input.shapes(contact), input.shape_poses(contact));
-    let relative = pose_a.relative(pose_b);
-    let groups = contact.colliders.map(|id| {
-        let facets = input.colliders[id].def.facets.as_ref();
+    let (shapes, relative) = (sides.shapes(), sides.relative());
+    let groups = sides.colliders.map(|id| {
+        let facets = sides.input.colliders[id].def.facets.as_ref();
         facets.map_or(&[][..], |facets| facets.groups())
     });
-    let ground = contact.bodies.map(|body| !input.is_dynamic(body));
-    let look = Look { prediction, motion: pose_a.rotation.inverse_rotate(motion), met, ground, groups };
+    let ground = sides.are_dynamic().map(|is_dynamic| !is_dynamic);
+    let look = Look { prediction, motion: sides.frame().inverse_rotate(motion), met, ground, groups };
     let WorkerBuffers { composite, local, .. } = buffers;
     composite.cache = contact.cache;
     let gap = manifold::collide_composite(shapes[0], shapes[1], &relative, look, composite, local);
@@ -77,14 +74,9 @@ pub(super) fn collide_parts<S: ManifoldSource>(
 
 /// Removes the points of a sensor's contact at which the surfaces are apart and do not meet in this step. Returns the least
 /// separation of those, or infinity.
-pub(super) fn keep_met<S>(
-    input: &NarrowPhaseInput<S>,
-    contact: &Contact,
-    found: &mut Vec<LocalManifold>,
-) -> f32 {
-    let [pose_a, _] = input.shape_poses(contact);
-    let motion = pose_a.rotation.inverse_rotate(input.predicted_motion(contact));
-    let margin = input.margin(contact);
+pub(super) fn keep_met(sides: &Sides, found: &mut Vec<LocalManifold>) -> f32 {
+    let motion = sides.frame().inverse_rotate(sides.predicted_motion());
+    let margin = sides.margin();
     let mut gap = f32::INFINITY;
     for local in found.iter_mut() {
         let parting = local.normal.dot(motion);
@@ -103,31 +95,30 @@ pub(super) fn keep_met<S>(
     gap
 }
 
-/// Puts the manifolds in `buffers.local` in place of the contact's. Old points hand on their impulses. `body_a` is the pose
-/// of A's body. Manifolds after the first come to `buffers.extra`; `old_extra` are the old ones.
-pub(super) fn replace<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
+/// Puts the manifolds in `buffers.local` in place of the contact's. Old points hand on their impulses. Manifolds after
+/// the first come to `buffers.extra`; `old_extra` are the old ones.
+pub(super) fn replace(
+    sides: &Sides,
     contact: &mut Contact,
     old_extra: &[Manifold],
-    body_a: &BodyPose,
     meeting: Option<&Meeting>,
-    buffers: &mut WorkerBuffers<S::Workspace>,
+    buffers: &mut WorkerBuffers,
 ) {
     buffers.extra.clear();
     if contact.manifold.count == 0 && buffers.local.is_empty() {
         contact.flags.set(ContactFlags::TOUCHING, false);
         return;
     }
-    let margin = input.margin(contact);
-    let pose_a = meeting.map_or(input.shape_poses(contact)[0], |meeting| &meeting.placed[0].shape);
-    let body_a = meeting.map_or(body_a, |meeting| &meeting.placed[0].body);
+    let margin = sides.margin();
+    let pose_a = meeting.map_or(sides.shape_poses()[0], |meeting| &meeting.placed[0].shape);
+    let body_a = meeting.map_or(sides.poses[0], |meeting| &meeting.placed[0].body);
     // From body A's centre of mass to collider A's origin, in world axes.
     let to_shape = (pose_a.position - body_a.center).to_local();
     let old = core::mem::take(&mut contact.manifold);
     let is_foreign = contact.flags.has(ContactFlags::FOREIGN);
     for (i, local) in buffers.local.iter().enumerate() {
         let mut m = to_world(local, pose_a.rotation, to_shape, margin);
-        m.radii = if is_foreign { input.shapes(contact).map(Shape::radius) } else { local.radii };
+        m.radii = if is_foreign { sides.shapes().map(Shape::radius) } else { local.radii };
         if let Some(meeting) = meeting {
             meeting.rewind(&mut m);
         }
@@ -136,8 +127,8 @@ pub(super) fn replace<S: ManifoldSource>(
         {
             continue;
         }
-        vary_first(&mut m, contact.colliders.map(|id| input.colliders.number(id)));
-        if input.match_points {
+        vary_first(&mut m, sides.colliders.map(|id| sides.input.colliders.number(id)));
+        if sides.input.match_points {
             inherit(&mut m, core::iter::once(&old).chain(old_extra.iter()));
         }
         if i == 0 {

@@ -22,7 +22,6 @@ mod table;
 pub use buffers::WorkerBuffers;
 pub use input::{ManifoldSource, NarrowPhaseInput};
 pub use link::{Link, Status};
-pub use narrow_phase::{Outcome, update_contact};
 pub use record::{Contact, ContactFlags, Frozen, Manifold, ManifoldPoint, ManifoldSurface};
 pub(crate) use recycle::CHORD;
 pub use table::ContactTable;

@@ -6,17 +6,16 @@
 #![expect(unsafe_code, reason = "several threads change contacts, each other ones")]
 
 use super::buffers::WorkerBuffers;
-use super::input::{ManifoldSource, NarrowPhaseInput};
+use super::input::{NarrowPhaseInput, Sides};
 use super::load::Before;
 use super::manifolds;
 use super::record::{Contact, ContactFlags, Frozen, Manifold};
-use super::recycle::RecycleBatch;
 use super::sweep::{self, Meeting};
 use super::table::{ContactTable, PointCount, Stored};
 use crate::data::{BitSet, Parts};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Vector, max, min};
-use crate::table::{BodyPose, NONE};
+use crate::table::NONE;
 use crate::thread_pool::ThreadPool;
 
 /// The size of a block of contacts, in words of 64 ids. Recycling a block takes some microseconds. Smaller blocks cost more
@@ -26,37 +25,14 @@ const BLOCK: usize = 2;
 /// The prefetch distance, in contacts. Shorter does not hide the latency of memory; longer evicts records before use.
 const PREFETCH_DISTANCE: usize = 4;
 
-/// The result of a contact's update.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// The fat boxes do not overlap any more.
-    Separated,
-    /// The manifold followed the motion.
-    Recycled,
-    /// The manifold was computed anew.
-    Recomputed,
-}
-
-/// What is known of a contact before its manifold is looked at.
-enum Class {
-    /// The fat boxes do not overlap any more.
-    Separated,
-    /// The contact waits in the batch for whether it is recycled.
-    Recyclable,
-    /// The manifold cannot be kept.
-    Stale,
-    /// The bodies have moved too little for anything to be done.
-    Calm,
-}
-
 impl ContactTable {
     /// Updates all awake contacts. `workers` are buffers, kept between steps. `changed` receives the contacts that began or
     /// ended to touch or whose boxes came apart.
-    pub fn update<S: ManifoldSource>(
+    pub fn update(
         &mut self,
-        input: &NarrowPhaseInput<S>,
+        input: &NarrowPhaseInput,
         pool: &ThreadPool,
-        workers: &mut Vec<WorkerBuffers<S::Workspace>>,
+        workers: &mut Vec<WorkerBuffers>,
         changed: &mut BitSet,
     ) {
         workers.iter_mut().for_each(WorkerBuffers::clear);
@@ -94,7 +70,7 @@ impl ContactTable {
     }
 
     /// Finds the dynamic bodies that overlap others deeply.
-    fn find_crowded<S>(&mut self, input: &NarrowPhaseInput<S>) {
+    fn find_crowded(&mut self, input: &NarrowPhaseInput) {
         self.crowded.clear();
         if !self.any_deep {
             return;
@@ -110,7 +86,7 @@ impl ContactTable {
 
     /// Commits what the workers found. Manifolds after the first are stored in the order of contacts, not of workers, so that
     /// equal steps give equal tables.
-    fn commit<W>(&mut self, workers: &[WorkerBuffers<W>], changed: &mut BitSet) {
+    fn commit(&mut self, workers: &[WorkerBuffers], changed: &mut BitSet) {
         self.any_deep = workers.iter().any(|worker| worker.any_deep);
         let mut stored = core::mem::take(&mut self.stored);
         for (worker, found) in workers.iter().enumerate() {
@@ -131,8 +107,8 @@ impl ContactTable {
 }
 
 /// An update of all contacts while it runs; shared by the workers.
-struct Pass<'a, S> {
-    input: &'a NarrowPhaseInput<'a, S>,
+struct Pass<'a> {
+    input: &'a NarrowPhaseInput<'a>,
     contacts: Parts<'a, Contact>,
     points: Parts<'a, PointCount>,
     extra: Parts<'a, Vec<Manifold>>,
@@ -140,13 +116,13 @@ struct Pass<'a, S> {
     crowded: Option<&'a BitSet>,
 }
 
-impl<'a, S: ManifoldSource> Pass<'a, S> {
+impl<'a> Pass<'a> {
     /// Updates some contacts.
     ///
     /// # Safety
     /// While it runs no other thread may have one of these contacts, nor its count of points.
     #[inline(always)]
-    unsafe fn update_block(&self, ids: &[u32], worker: &mut WorkerBuffers<S::Workspace>) {
+    unsafe fn update_block(&self, ids: &[u32], worker: &mut WorkerBuffers) {
         // A panic in an earlier block may have left contacts in the batch.
         worker.batch.clear();
         ids[..PREFETCH_DISTANCE.min(ids.len())].iter().for_each(|id| self.contacts.prefetch(*id));
@@ -156,12 +132,14 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
             }
             // SAFETY: by the contract the contact is this thread's, and no reference to it is in use.
             let contact = unsafe { self.contacts.one(id as usize) };
-            match classify(self.input, id, contact, &mut worker.batch) {
+            let mut fixed = [None; 2];
+            let sides = self.input.sides(contact, &mut fixed);
+            if !sides.fat_boxes_overlap() {
                 // SAFETY: as above.
-                Class::Separated => unsafe { self.separate(id, contact, worker) },
-                Class::Recyclable | Class::Calm => {}
+                unsafe { self.separate(id, contact, worker) };
+            } else if !sides.is_calm(contact) && !worker.batch.push(id, contact, &sides) {
                 // SAFETY: as above.
-                Class::Stale => self.recompute(id, contact, unsafe { self.points.one(id as usize) }, worker),
+                self.recompute(id, contact, unsafe { self.points.one(id as usize) }, worker);
             }
             if worker.batch.is_full() {
                 // SAFETY: the batch holds contacts of this block, and the references above are in use no more.
@@ -177,7 +155,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
     /// # Safety
     /// While it runs no other thread may have one of these contacts, nor its count of points.
     #[inline(always)]
-    unsafe fn recycle_batch(&self, worker: &mut WorkerBuffers<S::Workspace>) {
+    unsafe fn recycle_batch(&self, worker: &mut WorkerBuffers) {
         worker.batch.evaluate(self.input);
         for place in 0..worker.batch.ids().len() {
             let id = worker.batch.ids()[place];
@@ -185,12 +163,17 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
             let (contact, count) = unsafe { (self.contacts.one(id as usize), self.points.one(id as usize)) };
             // SAFETY: a slot belongs to one contact.
             let extra = unsafe { self.extra(contact) };
-            if recycle(self.input, &worker.batch, place, contact, extra) {
-                worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
-                self.input.note_sliding(id, contact, (extra, !extra.is_empty()), worker);
-            } else {
+            if !worker.batch.apply(place, contact, extra) {
                 self.recompute(id, contact, count, worker);
+                continue;
             }
+            let mut fixed = [None; 2];
+            let sides = self.input.sides(contact, &mut fixed);
+            sides.after_recycling(contact);
+            let [allowed, moved] = worker.batch.ways(place);
+            contact.calm_down(sides.poses, self.input.bodies.travel_scale, allowed, moved);
+            worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
+            self.input.note_sliding(id, contact, (extra, !extra.is_empty()), worker);
         }
         worker.batch.clear();
     }
@@ -212,7 +195,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
     ///
     /// # Safety
     /// While it runs no other thread may have the contact.
-    unsafe fn separate(&self, id: u32, contact: &mut Contact, worker: &mut WorkerBuffers<S::Workspace>) {
+    unsafe fn separate(&self, id: u32, contact: &mut Contact, worker: &mut WorkerBuffers) {
         if let Some(before) = Before::of(self.input, contact) {
             // SAFETY: by the contract.
             let extra = unsafe { self.extra(contact) };
@@ -225,13 +208,7 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
     }
 
     /// Recomputes a contact, and notes what is to be committed.
-    fn recompute(
-        &self,
-        id: u32,
-        contact: &mut Contact,
-        count: &mut PointCount,
-        worker: &mut WorkerBuffers<S::Workspace>,
-    ) {
+    fn recompute(&self, id: u32, contact: &mut Contact, count: &mut PointCount, worker: &mut WorkerBuffers) {
         let is_among = |crowd: &BitSet| contact.bodies.iter().any(|b| *b != NONE && crowd.contains(*b));
         let is_crowded = self.crowded.is_some_and(is_among);
         let touched = contact.flags.has(ContactFlags::TOUCHING);
@@ -261,108 +238,44 @@ impl<'a, S: ManifoldSource> Pass<'a, S> {
     }
 }
 
-/// Updates one contact alone, as [`ContactTable::update`] does all. `crowded` tells that one of its bodies overlapped
-/// another deeply before. Manifolds after the first are left in `buffers.extra`, for the caller to store.
-pub fn update_contact<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
-    contact: &mut Contact,
-    extra: &mut [Manifold],
-    crowded: bool,
-    buffers: &mut WorkerBuffers<S::Workspace>,
-) -> Outcome {
-    buffers.batch.clear();
-    match classify(input, 0, contact, &mut buffers.batch) {
-        Class::Separated => return Outcome::Separated,
-        Class::Recyclable => {
-            buffers.batch.evaluate(input);
-            if recycle(input, &buffers.batch, 0, contact, extra) {
-                return Outcome::Recycled;
-            }
-        }
-        Class::Calm => return Outcome::Recycled,
-        Class::Stale => {}
-    }
-    recompute(input, contact, extra, crowded, buffers);
-    Outcome::Recomputed
-}
-
-/// Classifies a contact; one that may be recycled is put into the batch.
-#[inline(always)]
-fn classify<S>(
-    input: &NarrowPhaseInput<S>,
-    id: u32,
-    contact: &mut Contact,
-    batch: &mut RecycleBatch,
-) -> Class {
-    let [a, b] = contact.colliders;
-    if !input.colliders.fat[a as usize].overlaps(&input.colliders.fat[b as usize]) {
-        return Class::Separated;
-    }
-    let mut fixed = [None; 2];
-    let poses = input.poses(contact, &mut fixed);
-    if input.is_calm(contact, poses) {
-        return Class::Calm;
-    }
-    let is_waiting = batch.push(input, id, contact, poses);
-    if is_waiting { Class::Recyclable } else { Class::Stale }
-}
-
-/// Recycles a contact of an evaluated batch; `false` if its bodies moved too far.
-#[inline(always)]
-fn recycle<S>(
-    input: &NarrowPhaseInput<S>,
-    batch: &RecycleBatch,
-    place: usize,
-    contact: &mut Contact,
-    extra: &mut [Manifold],
-) -> bool {
-    let is_kept = batch.apply(place, contact, extra);
-    if is_kept {
-        input.after_recycling(contact);
-        let [allowed, moved] = batch.ways(place);
-        contact.calm_down(input.poses(contact, &mut [None; 2]), input.bodies.travel_scale, allowed, moved);
-    }
-    is_kept
-}
-
 /// Computes the manifolds of a contact at the present poses, or those of its swept shapes, and freezes it there.
-fn recompute<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
+fn recompute(
+    input: &NarrowPhaseInput,
     contact: &mut Contact,
     old_extra: &[Manifold],
     is_crowded: bool,
-    buffers: &mut WorkerBuffers<S::Workspace>,
+    buffers: &mut WorkerBuffers,
 ) {
     let mut fixed = [None; 2];
-    let poses = input.poses(contact, &mut fixed);
-    let revisions = input.revisions(contact, poses);
+    let sides = input.sides(contact, &mut fixed);
+    let revisions = sides.revisions();
     let is_changed = contact.revisions != revisions;
     if is_changed {
         // The cached features may be of other shapes.
         contact.cache = FeatureCache::NONE;
     }
     contact.revisions = revisions;
-    contact.excite(poses);
+    contact.excite(sides.poses);
     buffers.local.clear();
     let mut search = if contact.flags.has(ContactFlags::FOREIGN) {
-        search_foreign(input, contact, buffers)
+        search_foreign(&sides, contact, buffers)
     } else if contact.flags.has(ContactFlags::COMPOSITE) {
-        search_parts(input, contact, buffers)
+        search_parts(&sides, contact, buffers)
     } else {
-        search_native(input, contact, poses, &mut buffers.local)
+        search_native(&sides, contact, &mut buffers.local)
     };
     if contact.flags.has(ContactFlags::SENSOR) && search.meeting.is_none() {
-        let gap = manifolds::keep_met(input, contact, &mut buffers.local);
+        let gap = manifolds::keep_met(&sides, &mut buffers.local);
         search.prediction = min(search.prediction, gap);
     }
-    freeze(input, contact, poses, &search, &buffers.local);
-    manifolds::replace(input, contact, old_extra, poses[0], search.meeting.as_ref(), buffers);
+    freeze(&sides, contact, &search, &buffers.local);
+    manifolds::replace(&sides, contact, old_extra, search.meeting.as_ref(), buffers);
     if contact.flags.any(ContactFlags::TOUCHING.union(ContactFlags::COMPOSITE)) {
-        input.set_platform(contact);
+        sides.set_platform(contact);
     }
     // Only what has just come together, or was changed by hand, was placed where it is; all else was pressed there,
     // unless its bodies are crowded by those that were placed.
-    input.after_recomputing(contact, is_crowded || is_changed);
+    sides.after_recomputing(contact, is_crowded || is_changed);
 }
 
 /// The result of looking for points, beside the points themselves.
@@ -376,39 +289,27 @@ struct Search {
 }
 
 /// Computes the manifolds of a pair with a foreign shape. It is not swept, but looked at as far as turning may close.
-fn search_foreign<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
-    contact: &Contact,
-    buffers: &mut WorkerBuffers<S::Workspace>,
-) -> Search {
-    let (pose, farthest) = input.foreign_view(contact);
-    input.source.manifolds(contact.colliders, &pose, farthest, &mut buffers.foreign, &mut buffers.local);
-    Search { prediction: input.prediction(contact), meeting: None, has_far: false }
+fn search_foreign(sides: &Sides, contact: &Contact, buffers: &mut WorkerBuffers) -> Search {
+    let (pose, farthest) = sides.input.foreign_view(contact);
+    sides.input.source.manifolds(contact.colliders, &pose, farthest, &mut buffers.local);
+    Search { prediction: sides.prediction(), meeting: None, has_far: false }
 }
 
 /// Computes the manifolds of a pair with a composite shape: of the parts nearby, and of those that the step's motion meets.
 /// Parts are looked at as far as turning may close.
-fn search_parts<S: ManifoldSource>(
-    input: &NarrowPhaseInput<S>,
-    contact: &mut Contact,
-    buffers: &mut WorkerBuffers<S::Workspace>,
-) -> Search {
-    let (prediction, margin) = (input.prediction(contact), input.margin(contact));
-    let farthest = input.farthest(contact, prediction);
-    let gap = input.box_gap(contact) - margin;
+fn search_parts(sides: &Sides, contact: &mut Contact, buffers: &mut WorkerBuffers) -> Search {
+    let (prediction, margin) = (sides.prediction(), sides.margin());
+    let farthest = sides.farthest(prediction);
+    let gap = sides.box_gap() - margin;
     if gap > farthest {
         return Search { prediction: gap, meeting: None, has_far: false };
     }
-    let near = input.near(contact);
-    let motion = if prediction > near { input.predicted_motion(contact) } else { Vector::ZERO };
+    let near = sides.near();
+    let motion = if prediction > near { sides.predicted_motion() } else { Vector::ZERO };
     let turning = farthest - prediction;
     let near = near + turning;
-    let met = if sweep::is_straight(input, contact) {
-        sweep::met_at(input, contact) + turning
-    } else {
-        f32::INFINITY
-    };
-    let gap = manifolds::collide_parts(input, contact, near + margin, (motion, met + margin), buffers);
+    let met = if sweep::is_straight(sides) { sweep::met_at(sides) + turning } else { f32::INFINITY };
+    let gap = manifolds::collide_parts(sides, contact, near + margin, (motion, met + margin), buffers);
     // Without any part the gap is infinite.
     let known = if buffers.local.is_empty() && gap.is_finite() { max(gap - margin, near) } else { near };
     let known = min(known, buffers.composite.passed() - margin);
@@ -418,27 +319,22 @@ fn search_parts<S: ManifoldSource>(
 /// Computes the manifold of two native shapes where they are now. If they do not touch, that of when the step's motion
 /// brings them together.
 #[inline(always)]
-fn search_native<S>(
-    input: &NarrowPhaseInput<S>,
-    contact: &mut Contact,
-    poses: [&BodyPose; 2],
-    found: &mut Vec<LocalManifold>,
-) -> Search {
-    let (prediction, margin) = (input.prediction(contact), input.margin(contact));
-    let mut gap = input.box_gap(contact);
+fn search_native(sides: &Sides, contact: &mut Contact, found: &mut Vec<LocalManifold>) -> Search {
+    let (prediction, margin) = (sides.prediction(), sides.margin());
+    let mut gap = sides.box_gap();
     let mut local = LocalManifold::default();
     let mut meeting = None;
     let mut looked_up_to = prediction;
     let mut until_lag = f32::INFINITY;
     let mut has_far = false;
     let with_margin = prediction + margin;
-    let farthest = input.farthest(contact, prediction);
+    let farthest = sides.farthest(prediction);
     // Negated, so that a NaN is not taken for a gap.
     if !(gap > with_margin) || !(gap - margin > farthest) {
         // What touches may slap down within the step with points that are far yet.
-        let slaps = farthest > prediction && sweep::is_straight(input, contact);
+        let slaps = farthest > prediction && sweep::is_straight(sides);
         let up_to = if slaps { farthest + margin } else { with_margin };
-        until_lag = manifolds::collide(input, contact, up_to, &mut local);
+        until_lag = manifolds::collide(sides, contact, up_to, &mut local);
         if local.lower_bound() > with_margin {
             local = LocalManifold { gap: local.lower_bound(), ..LocalManifold::default() };
             until_lag = f32::INFINITY;
@@ -447,18 +343,18 @@ fn search_native<S>(
         if local.count == 0 {
             // Shapes that turn are often much farther apart than their boxes.
             gap = max(gap, local.gap);
-            meeting = sweep::find_meeting(input, contact, poses, gap - margin, prediction, &mut local);
-        } else if prediction > input.near(contact) && sweep::may_pass_by(input, contact, poses, &local) {
+            meeting = sweep::find_meeting(sides, contact, gap - margin, prediction, &mut local);
+        } else if prediction > sides.near() && sweep::may_pass_by(sides, &local) {
             gap = max(gap, local.lower_bound());
             looked_up_to = gap - margin;
             let present = local;
-            meeting = sweep::find_meeting(input, contact, poses, gap - margin, prediction, &mut local);
-            if meeting.is_none() && !sweep::pushes(input, contact, poses, &present) {
+            meeting = sweep::find_meeting(sides, contact, gap - margin, prediction, &mut local);
+            if meeting.is_none() && !sweep::pushes(sides, &present) {
                 local = present;
             }
         }
         if meeting.is_none() && until_lag == f32::INFINITY {
-            meeting = sweep::lead(input, contact, poses, with_margin, &mut local);
+            meeting = sweep::lead(sides, contact, with_margin, &mut local);
         }
     }
     if local.count == 0 {
@@ -471,23 +367,16 @@ fn search_native<S>(
 /// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is not recycled,
 /// nor a sensor's with points, which would be kept while the shapes part.
 #[inline(always)]
-fn freeze<S>(
-    input: &NarrowPhaseInput<S>,
-    contact: &mut Contact,
-    poses: [&BodyPose; 2],
-    search: &Search,
-    found: &[LocalManifold],
-) {
-    let offset = (poses[1].center - poses[0].center).to_local();
+fn freeze(sides: &Sides, contact: &mut Contact, search: &Search, found: &[LocalManifold]) {
     contact.frozen = Frozen {
-        rotations: poses.map(|p| p.rotation),
-        offset: search.meeting.as_ref().map_or(offset, |meeting| meeting.offset),
+        rotations: sides.poses.map(|p| p.rotation),
+        offset: search.meeting.as_ref().map_or(sides.offset(), |meeting| meeting.offset),
         prediction: search.prediction,
     };
     let is_native = !contact.flags.has(ContactFlags::FOREIGN);
     let is_lasting =
         search.meeting.is_none() && !search.has_far && !found.iter().any(LocalManifold::is_met_later);
-    let is_recyclable = input.recycle_distance > 0.0 && is_native && is_lasting;
+    let is_recyclable = sides.input.recycle_distance > 0.0 && is_native && is_lasting;
     let is_kept = found.is_empty() || !contact.flags.has(ContactFlags::SENSOR);
     contact.flags.set(ContactFlags::FROZEN, is_recyclable && is_kept);
 }

@@ -14,12 +14,11 @@
 //! floats.
 #![expect(unsafe_code, reason = "rows of numbers are turned into lanes of numbers")]
 
-use super::input::{NarrowPhaseInput, smaller};
+use super::input::{NarrowPhaseInput, Sides, smaller};
 use super::record::{Contact, ContactFlags, Manifold};
 #[cfg(target_arch = "x86_64")]
 use crate::math::F32x8;
 use crate::math::{Angular, F32x4, Ids, Lane, MAX_POINTS, Num, Quad, Rot, Vector, Width, max};
-use crate::table::BodyPose;
 use crate::tuning::contact::{RECYCLE_COS, RECYCLE_SHARE};
 use crate::tuning::manifold::{KEPT, ROUNDING};
 use core::mem::MaybeUninit;
@@ -150,23 +149,17 @@ impl RecycleBatch {
         &self.ids[..self.len]
     }
 
-    /// Adds a contact to a batch that is not full; `false` if its manifold cannot be kept. `poses` are those of its bodies.
+    /// Adds a contact to a batch that is not full; `false` if its manifold cannot be kept.
     #[inline(always)]
-    pub(super) fn push<S>(
-        &mut self,
-        input: &NarrowPhaseInput<S>,
-        id: u32,
-        contact: &Contact,
-        poses: [&BodyPose; 2],
-    ) -> bool {
-        let reaches = input.reaches(contact);
+    pub(super) fn push(&mut self, id: u32, contact: &Contact, sides: &Sides) -> bool {
+        let (&Sides { input, poses, .. }, reaches) = (sides, sides.reaches());
         let frozen = &contact.frozen;
         // The sum of both speeds bounds the closing speed. So velocities are read of fast bodies only.
         let fastest = (poses[0].speed + poses[1].speed) * input.dt;
         if !contact.flags.has(ContactFlags::FROZEN)
             || !(input.recycle_distance > 0.0)
-            || contact.revisions != input.revisions(contact, poses)
-            || (fastest > frozen.prediction && frozen.prediction < input.prediction(contact))
+            || contact.revisions != sides.revisions()
+            || (fastest > frozen.prediction && frozen.prediction < sides.prediction())
             // A point and a half-space: neither has a reach.
             || max(reaches[0].extent, reaches[1].extent) == 0.0
         {
@@ -178,7 +171,7 @@ impl RecycleBatch {
         row.rotations = [poses[0].rotation, poses[1].rotation];
         row.frozen = frozen.rotations;
         row.offset = frozen.offset;
-        row.offset_now = (poses[1].center - poses[0].center).to_local();
+        row.offset_now = sides.offset();
         row.prediction = frozen.prediction;
         row.extents = [reaches[0].extent, reaches[1].extent];
         row.turning = [reaches[0].turning, reaches[1].turning];
@@ -187,7 +180,7 @@ impl RecycleBatch {
         row.platform = platform(contact.flags);
         let may_lack = contact.flags.any(ContactFlags::COMPOSITE.union(ContactFlags::HULL));
         if usize::from(m.count) < MAX_POINTS || may_lack {
-            let [a, b] = [input.velocity(contact, 0), input.velocity(contact, 1)];
+            let [a, b] = [sides.velocity(0), sides.velocity(1)];
             row.speed = (b.linear - a.linear).length();
             row.angular = [a.angular, b.angular];
             let turns = row.angular != [Angular::ZERO; 2];
@@ -204,7 +197,7 @@ impl RecycleBatch {
 
     /// Decides which contacts keep their manifolds, and computes their separations.
     #[inline(always)]
-    pub(super) fn evaluate<S>(&mut self, input: &NarrowPhaseInput<S>) {
+    pub(super) fn evaluate(&mut self, input: &NarrowPhaseInput) {
         let &NarrowPhaseInput { dt, tolerance, recycle_distance, .. } = input;
         self.evaluate_at(&Settings { dt, tolerance, recycle_distance }, Width::of(input.narrow));
     }

@@ -9,7 +9,7 @@
 #[path = "tests_sweep.rs"]
 mod tests;
 
-use super::input::{NarrowPhaseInput, smaller};
+use super::input::{Sides, smaller};
 use super::record::{Contact, Manifold};
 use crate::distance::{Approach, advance};
 use crate::manifold::{self, LocalManifold};
@@ -42,30 +42,25 @@ pub(super) struct Placed {
 /// Follows two native shapes, `gap` apart without margins, to the time when they meet in this step. `local` has their
 /// present points, if there are any within `prediction`, and receives those of that time, else none.
 #[inline(never)]
-pub(super) fn find_meeting<S>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn find_meeting(
+    sides: &Sides,
     contact: &mut Contact,
-    poses: [&BodyPose; 2],
     gap: f32,
     prediction: f32,
     local: &mut LocalManifold,
 ) -> Option<Meeting> {
-    let farthest = input.farthest(contact, prediction);
+    let farthest = sides.farthest(prediction);
     if gap > farthest || (local.count == 0 && !(farthest > prediction)) {
         return None;
     }
-    let shapes = input.shapes(contact);
-    let mut motion = Motion::new(input, contact);
+    let shapes = sides.shapes();
+    let mut motion = Motion::new(sides);
     if local.count > 0 {
         motion.met *= MET;
     }
-    let margin = input.margin(contact);
-    let end = min(input.dt, MOST_TURN / max(motion.spins[0], motion.spins[1]));
-    let placed: [Placed; 2] = core::array::from_fn(|side| Placed {
-        body: *poses[side],
-        turn: Rot::IDENTITY,
-        shape: *input.shape_poses(contact)[side],
-    });
+    let margin = sides.margin();
+    let end = min(sides.input.dt, MOST_TURN / max(motion.spins[0], motion.spins[1]));
+    let placed = [Placed::now(sides, 0), Placed::now(sides, 1)];
     // A lower bound of the time when the shapes meet, given their gap at `time`.
     let apart_until = |placed: &[Placed; 2], local: &LocalManifold, gap: f32, time: f32| {
         let offset = (placed[1].body.center - placed[0].body.center).to_local();
@@ -81,17 +76,17 @@ pub(super) fn find_meeting<S>(
         if !(time >= 0.0 && time < end) {
             return None;
         }
-        let placed = place_at(input, contact, poses, time);
+        let placed = place_at(sides, time);
         let relative = placed[0].shape.relative(&placed[1].shape);
         // What is farther away than the rest of the motion does not meet.
-        let rest = max(farthest * (1.0 - time / input.dt), input.near(contact)) + margin;
+        let rest = max(farthest * (1.0 - time / sides.input.dt), sides.near()) + margin;
         manifold::collide(shapes[0], shapes[1], &relative, rest, &mut contact.cache, local);
         let gap = local.lower_bound() - margin;
         if gap <= motion.met || (round == MEETING_ROUNDS && local.count > 0) {
             // Points that only turning brings together are found again when they are near.
             let prediction = prediction + margin;
             manifold::collide(shapes[0], shapes[1], &relative, prediction, &mut contact.cache, local);
-            return (local.count > 0).then(|| Approach::Met(Meeting::new(placed, poses)));
+            return (local.count > 0).then(|| Approach::Met(Meeting::new(placed, sides)));
         }
         Some(Approach::ApartUntil(apart_until(&placed, local, gap, time)))
     });
@@ -104,51 +99,40 @@ pub(super) fn find_meeting<S>(
 /// Whether two shapes that have points, and do not touch, may pass each other by in this step: their motion may cross the
 /// plane between them.
 #[inline(always)]
-pub(super) fn may_pass_by<S>(
-    input: &NarrowPhaseInput<S>,
-    contact: &Contact,
-    poses: [&BodyPose; 2],
-    local: &LocalManifold,
-) -> bool {
-    let motion = Motion::new(input, contact);
-    let gap = local.lower_bound() - input.margin(contact);
-    let normal = input.shape_poses(contact)[0].rotation.rotate(local.normal);
-    let offset = (poses[1].center - poses[0].center).to_local();
-    is_straight(input, contact)
+pub(super) fn may_pass_by(sides: &Sides, local: &LocalManifold) -> bool {
+    let motion = Motion::new(sides);
+    let gap = local.lower_bound() - sides.margin();
+    let normal = sides.frame().rotate(local.normal);
+    is_straight(sides)
         && gap > MET * motion.met
-        && motion.closing(normal, offset) * (AHEAD * input.dt) > gap
+        && motion.closing(normal, sides.offset()) * (AHEAD * sides.input.dt) > gap
 }
 
 /// The distance at which two shapes that move past each other count as having met.
-pub(super) fn met_at<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> f32 {
-    MET * Motion::new(input, contact).met
+pub(super) fn met_at(sides: &Sides) -> f32 {
+    MET * Motion::new(sides).met
 }
 
 /// Whether the bodies turn little in this step. The solver keeps the arms of the step's start. What turns farther gains energy
 /// if it is pushed where it comes to.
-pub(super) fn is_straight<S>(input: &NarrowPhaseInput<S>, contact: &Contact) -> bool {
-    input.reaches(contact).into_iter().enumerate().all(|(side, reach)| {
-        reach.arm == 0.0 || input.velocity(contact, side).angular.length() * input.dt < 0.5 * MOST_TURN
+pub(super) fn is_straight(sides: &Sides) -> bool {
+    sides.reaches().into_iter().enumerate().all(|(side, reach)| {
+        reach.arm == 0.0 || sides.velocity(side).angular.length() * sides.input.dt < 0.5 * MOST_TURN
     })
 }
 
 /// Whether the solver would push at some point if the bodies kept their velocities.
-pub(super) fn pushes<S>(
-    input: &NarrowPhaseInput<S>,
-    contact: &Contact,
-    poses: [&BodyPose; 2],
-    local: &LocalManifold,
-) -> bool {
-    let [frame, _] = input.shape_poses(contact);
+pub(super) fn pushes(sides: &Sides, local: &LocalManifold) -> bool {
+    let [frame, _] = sides.shape_poses();
     let normal = frame.rotation.rotate(local.normal);
-    let margin = input.margin(contact);
+    let margin = sides.margin();
     local.points().iter().any(|p| {
         let place = frame.transform(p.point);
         let [a, b] = [0, 1].map(|side| {
-            let velocity = input.velocity(contact, side);
-            velocity.linear + velocity.angular.cross((place - poses[side].center).to_local())
+            let velocity = sides.velocity(side);
+            velocity.linear + velocity.angular.cross((place - sides.poses[side].center).to_local())
         });
-        (a - b).dot(normal) * (AHEAD * input.dt) > p.separation - margin
+        (a - b).dot(normal) * (AHEAD * sides.input.dt) > p.separation - margin
     })
 }
 
@@ -157,39 +141,38 @@ pub(super) fn pushes<S>(
 ///
 /// The solver keeps normals and arms for a step. The point where a round body rocks on another runs along both, and an arm
 /// that lags behind it feeds the rocking like a negative damper: a light body between heavy ones never came to rest.
-pub(super) fn lead<S>(
-    input: &NarrowPhaseInput<S>,
+pub(super) fn lead(
+    sides: &Sides,
     contact: &mut Contact,
-    poses: [&BodyPose; 2],
     prediction: f32,
     local: &mut LocalManifold,
 ) -> Option<Meeting> {
     let is_round = |local: &LocalManifold| local.count == 1 && max(local.radii[0], local.radii[1]) > 0.0;
-    let presses = is_round(local) && local.points[0].separation <= input.margin(contact);
+    let presses = is_round(local) && local.points[0].separation <= sides.margin();
     if !presses || contact.is_inert() {
         return None;
     }
-    let [va, vb] = [input.velocity(contact, 0), input.velocity(contact, 1)];
-    let turn = (vb.angular - va.angular).length() * input.dt;
-    let fastest = max(va.angular.length(), vb.angular.length()) * input.dt;
-    let way = (vb.linear - va.linear).length() * input.dt;
-    let size = min(smaller(input.reaches(contact).map(|reach| reach.extent)), smaller(local.radii));
+    let [va, vb] = [sides.velocity(0), sides.velocity(1)];
+    let turn = (vb.angular - va.angular).length() * sides.input.dt;
+    let fastest = max(va.angular.length(), vb.angular.length()) * sides.input.dt;
+    let way = (vb.linear - va.linear).length() * sides.input.dt;
+    let size = min(smaller(sides.reaches().map(|reach| reach.extent)), smaller(local.radii));
     let rocks = turn > STILL && turn < SMALL_TURN && fastest < MOST_TURN && way < MOST_WAY * size;
-    if !(rocks && contact.bodies.iter().all(|body| input.is_dynamic(*body))) {
+    if !(rocks && sides.are_dynamic() == [true; 2]) {
         return None;
     }
-    let placed = place_at(input, contact, poses, 0.5 * input.dt);
+    let placed = place_at(sides, 0.5 * sides.input.dt);
     let relative = placed[0].shape.relative(&placed[1].shape);
-    let [a, b] = input.shapes(contact);
+    let [a, b] = sides.shapes();
     let mut then = LocalManifold::default();
     manifold::collide(a, b, &relative, prediction, &mut contact.cache, &mut then);
-    let normal = input.shape_poses(contact)[0].rotation.rotate(local.normal);
+    let normal = sides.frame().rotate(local.normal);
     let continues = placed[0].shape.rotation.rotate(then.normal).dot(normal) > SAME_FACE;
     if !(is_round(&then) && continues) {
         return None;
     }
     *local = then;
-    Some(Meeting::new(placed, poses))
+    Some(Meeting::new(placed, sides))
 }
 
 /// How fast two shapes may close in this step.
@@ -204,15 +187,15 @@ struct Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    fn new<S>(input: &'a NarrowPhaseInput<S>, contact: &Contact) -> Self {
-        let reaches = input.reaches(contact);
-        let [a, b] = [input.velocity(contact, 0), input.velocity(contact, 1)];
+    fn new(sides: &Sides<'a>) -> Self {
+        let reaches = sides.reaches();
+        let [a, b] = [sides.velocity(0), sides.velocity(1)];
         Self {
             linear: b.linear - a.linear,
             angular: [a.angular, b.angular],
             spins: [a.angular.length(), b.angular.length()],
             reaches,
-            met: min(input.tolerance, LAG * smaller(reaches.map(|reach| reach.extent))),
+            met: min(sides.input.tolerance, LAG * smaller(reaches.map(|reach| reach.extent))),
         }
     }
 
@@ -358,33 +341,33 @@ impl View<'_> {
 }
 
 /// Both sides of the contact, `time` seconds after the step's start.
-fn place_at<S>(
-    input: &NarrowPhaseInput<S>,
-    contact: &Contact,
-    poses: [&BodyPose; 2],
-    time: f32,
-) -> [Placed; 2] {
+fn place_at(sides: &Sides, time: f32) -> [Placed; 2] {
     core::array::from_fn(|side| {
-        let (body, collider) = (contact.bodies[side], contact.colliders[side]);
-        let shape = input.colliders.poses[collider as usize];
-        let mut placed = Placed { body: *poses[side], turn: Rot::IDENTITY, shape };
+        let (body, mut placed) = (sides.bodies[side], Placed::now(sides, side));
         if body != NONE {
-            let velocity = input.bodies.velocities[body as usize];
+            let velocity = sides.velocity(side);
             placed.turn = Rot::IDENTITY.turned_by(velocity.angular * time);
             placed.body.center += (velocity.linear * time).to_world();
-            placed.body.rotation = placed.turn.mul(poses[side].rotation);
-            let frame = placed.body.frame(input.bodies[body].local_center);
-            placed.shape = frame.then(&input.colliders[collider].def.local);
+            placed.body.rotation = placed.turn.mul(placed.body.rotation);
+            let frame = placed.body.frame(sides.input.bodies[body].local_center);
+            placed.shape = frame.then(&sides.input.colliders[sides.colliders[side]].def.local);
         }
         placed
     })
 }
 
+impl Placed {
+    /// A side at the step's start.
+    fn now(sides: &Sides, side: usize) -> Self {
+        Self { body: *sides.poses[side], turn: Rot::IDENTITY, shape: *sides.shape_poses()[side] }
+    }
+}
+
 impl Meeting {
     /// From both sides at that time, and the poses of their bodies at the step's start.
-    fn new(placed: [Placed; 2], poses: [&BodyPose; 2]) -> Self {
+    fn new(placed: [Placed; 2], sides: &Sides) -> Self {
         let offset = (placed[1].body.center - placed[0].body.center).to_local();
-        Self { placed, offset, shift: offset - (poses[1].center - poses[0].center).to_local() }
+        Self { placed, offset, shift: offset - sides.offset() }
     }
 
     /// Changes the separations of a manifold to those at the step's start. The solver moves the bodies with these arms, and

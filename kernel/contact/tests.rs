@@ -236,13 +236,11 @@ fn a_woken_body_rests_anew_in_whatever_island_it_comes_to() {
 struct Rounds(u32);
 
 impl ManifoldSource for Rounds {
-    type Workspace = ();
-
-    fn ball_manifolds(&self, _: u32, _: Vector, _: f32, _: f32, (): &mut (), _: &mut Vec<LocalManifold>) {
+    fn ball_manifolds(&self, _: u32, _: Vector, _: f32, _: f32, _: &mut Vec<LocalManifold>) {
         unreachable!("nothing is swept");
     }
 
-    fn manifolds(&self, [a, b]: [u32; 2], _: &Pose, _: f32, (): &mut (), out: &mut Vec<LocalManifold>) {
+    fn manifolds(&self, [a, b]: [u32; 2], _: &Pose, _: f32, out: &mut Vec<LocalManifold>) {
         // Some take long, so that workers take contacts in another order.
         if a % 97 == 3 {
             std::thread::sleep(std::time::Duration::from_micros(300));

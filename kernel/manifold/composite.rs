@@ -74,85 +74,66 @@ fn collide_parts(
         return 0.0;
     }
     let pose_a_in_b = pose_b_in_a.inverse();
-    let solids = if alone {
-        [None; 2]
-    } else {
-        [solid(a, b, pose_b_in_a, look, 0), solid(b, a, &pose_a_in_b, look, 1)]
+    let of_a = forms([a, b], pose_b_in_a, look, 0, alone);
+    let of_b = forms([b, a], &pose_a_in_b, look, 1, alone);
+    // A composite first, of two the larger one.
+    let is_b = match (of_a, of_b) {
+        ((_, None), (_, None)) => !(a.ball_around().1 >= b.ball_around().1),
+        ((parts, _), (_, whole)) => parts.is_none() || whole.is_none(),
     };
-    let cache_of = |composite: &Composite<Shape>| {
-        let is_solid = |solid: &Composite<Shape>| core::ptr::eq(solid, composite);
-        solids.into_iter().flatten().any(is_solid).then_some(cache)
+    let (first, second, pose, look) = match is_b {
+        false => (of_a, of_b, pose_b_in_a, look),
+        true => (of_b, of_a, &pose_a_in_b, look.swapped(pose_b_in_a)),
     };
-    let over = |composite: &Composite<Shape>, other: &Shape, buffers: &mut PartBuffers| {
-        with_other(composite, other, |other| {
-            let pass = Pass::new(composite, other, pose_b_in_a, look, alone);
-            Pass { cache: cache_of(composite), ..pass }.collide(buffers)
-        })
-    };
-    // The other way round, with points on B if both are composite.
-    let swapped = look.swapped(pose_b_in_a.rotation.inverse_rotate(-look.motion));
-    let under = |other: &Shape, composite: &Composite<Shape>, buffers: &mut PartBuffers| {
-        let on_composite = matches!(a, Shape::Composite(_));
-        let gap = with_other(composite, other, |other| {
-            let pass = Pass::new(composite, other, &pose_a_in_b, swapped, alone);
-            Pass { on_composite, is_b: true, cache: cache_of(composite), ..pass }.collide(buffers)
-        });
-        buffers.found.iter_mut().for_each(|m| *m = m.flipped(&pose_a_in_b));
-        gap
-    };
-    match (a, b, solids) {
-        (Shape::Composite(a), _, [None, Some(solid)]) => over(a, only_part(solid, b), buffers),
-        (_, Shape::Composite(b), [Some(solid), None]) => under(only_part(solid, a), b, buffers),
-        (_, _, [Some(solid), None]) => over(solid, b, buffers),
-        (_, _, [None, Some(solid)]) => under(a, solid, buffers),
-        (_, _, [Some(solid), Some(other)]) => over(solid, only_part(other, b), buffers),
-        (Shape::Composite(large), Shape::Composite(small), _) if a.ball_around().1 >= b.ball_around().1 => {
-            collide_both([large, small], pose_b_in_a, look, alone, false, buffers)
+    // Points are on B if both are composite.
+    let on_composite = is_b && of_a.0.is_some();
+    let gap = match (first, second) {
+        ((Some(composite), whole), (_, Some(other))) => with_other(composite, other, |other| {
+            let cache = whole.map(|_| cache);
+            let pass = Pass::new(composite, other, pose, look, alone);
+            Pass { on_composite, is_b, cache, ..pass }.collide(buffers)
+        }),
+        ((Some(large), _), (Some(small), _)) => {
+            collide_both([large, small], pose, look, alone, on_composite, buffers)
         }
-        (Shape::Composite(small), Shape::Composite(large), _) => {
-            let gap = collide_both([large, small], &pose_a_in_b, swapped, alone, true, buffers);
-            buffers.found.iter_mut().for_each(|m| *m = m.flipped(&pose_a_in_b));
-            gap
-        }
-        (Shape::Composite(a), b, _) => over(a, b, buffers),
-        (a, Shape::Composite(b), _) => under(a, b, buffers),
         _ => {
             debug_assert!(false, "one of the shapes is composite");
             0.0
         }
+    };
+    if is_b {
+        buffers.found.iter_mut().for_each(|m| *m = m.flipped(&pose_a_in_b));
     }
+    gap
 }
 
-/// What takes the place of a closed convex surface: the solid that it bounds. Not if the other shape is inside, nor if its facets have
-/// materials of their own.
-fn solid<'a>(
-    shape: &'a Shape,
-    other: &Shape,
+/// The parts of the first of two shapes, if it is composite, and the convex shape that it is, if it is one. A closed convex surface is
+/// both, as the solid that it bounds. Not if the other shape is inside, nor if its facets have materials of their own.
+fn forms<'a>(
+    [shape, other]: [&'a Shape; 2],
     pose: &Pose,
     look: Look<'_>,
     side: usize,
-) -> Option<&'a Composite<Shape>> {
-    let Shape::Composite(composite) = shape else { return None };
-    let solid = composite.solid().filter(|_| look.groups[side].is_empty())?;
-    if look.ground[1 - side] && !look.ground[side] {
-        return Some(solid);
-    }
-    let Shape::Hull(hull) = only_part(solid, shape) else { return None };
-    let size = other.ball_around().1;
-    let is_inside = || {
+    alone: bool,
+) -> (Option<&'a Composite<Shape>>, Option<&'a Shape>) {
+    let Shape::Composite(composite) = shape else { return (None, Some(shape)) };
+    let solid = composite.solid().filter(|_| !alone && look.groups[side].is_empty());
+    let only_part = solid.and_then(|solid| solid.solids().first()).map(|(_, part)| part);
+    let is_outside = |part: &Shape| {
+        if look.ground[1 - side] && !look.ground[side] || !(other.ball_around().1 < shape.ball_around().1) {
+            return true;
+        }
+        let Shape::Hull(hull) = part else { return false };
         let around = other.local_box(pose);
         let (center, half) = (around.center(), around.half());
         // What does not move may be a room. The centre of what is in it stays there.
         let deep = if look.ground[side] { 0.0 } else { CORE_SHARE };
-        hull.contains(center, |normal| deep * normal.abs().dot(half))
+        !hull.contains(center, |normal| deep * normal.abs().dot(half))
     };
-    let can_be_inside = size < shape.ball_around().1;
-    (!can_be_inside || !is_inside()).then_some(solid)
-}
-
-/// The shape of the only part of a solid at the origin.
-fn only_part<'a>(solid: &'a Composite<Shape>, without: &'a Shape) -> &'a Shape {
-    solid.solids().first().map_or(without, |(_, shape)| shape)
+    match only_part.filter(|part| is_outside(part)) {
+        None => (Some(composite), None),
+        part => (solid, part),
+    }
 }
 
 /// Calls `f` with a shape that is to be collided with the parts of a composite.

@@ -39,9 +39,10 @@ impl<'a> Look<'a> {
         Self { prediction, motion: Vector::ZERO, met: f32::INFINITY, ground: [false; 2], groups: Self::ALIKE }
     }
 
-    /// The same with A and B swapped; the motion is given in B's frame.
-    pub(super) fn swapped(&self, motion: Vector) -> Self {
+    /// The same with A and B swapped, `pose` being where B is in A's frame.
+    pub(super) fn swapped(&self, pose: &Pose) -> Self {
         let ([own, other], [a, b]) = (self.ground, self.groups);
+        let motion = pose.rotation.inverse_rotate(-self.motion);
         Self { motion, ground: [other, own], groups: [b, a], ..*self }
     }
 

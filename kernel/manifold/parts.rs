@@ -442,22 +442,16 @@ impl<'a> Pass<'a> {
         }
         let is_behind = facing > SIDEWAYS;
         let corners = self.composite.surface().map(|surface| surface.corners(part));
-        let face = corners.and_then(|corners| Some((corners, face_normal(corners)?)));
-        let Some((corners, face)) = face else {
-            if is_behind {
-                (local.count, local.gap) = (0, max(local.lower_bound(), 0.0));
+        let own = corners.and_then(|corners| {
+            Some((corners, self.toward_other(corners[0], face_normal(corners)?, local.normal)))
+        });
+        match own {
+            None if !is_behind => {}
+            Some((_, own)) if !is_behind && !(local.normal.dot(own) < -SIDEWAYS) => {}
+            Some((corners, own)) if !(own.dot(skin.outward) > SIDEWAYS) => {
+                self.collide_face(corners, own, prediction, local);
             }
-            return;
-        };
-        let own = self.toward_other(corners[0], face, local.normal);
-        if !is_behind && !(local.normal.dot(own) < -SIDEWAYS) {
-            return;
-        }
-        let gap = max(local.lower_bound(), 0.0);
-        if own.dot(skin.outward) > SIDEWAYS {
-            (local.count, local.gap) = (0, gap);
-        } else {
-            self.collide_face(corners, own, prediction, local);
+            _ => (local.count, local.gap) = (0, max(local.lower_bound(), 0.0)),
         }
     }
 

@@ -2,7 +2,6 @@
 
 use super::{BodyRow, Solver, gyro::*};
 use crate::ccd::{Path, SweepBuffers, SweepInput, Swept};
-use crate::contact::ManifoldSource;
 use crate::data::BitSet;
 use crate::graph::ConstraintKind;
 use crate::math::{Angular, Vector, max, min};
@@ -18,11 +17,11 @@ impl Solver {
     /// Moves fast bodies back to their first impact with static geometry, each together with the bodies
     /// joined to it. `listed` are the bodies in row order, from row 1. `workers` are buffers, kept between
     /// steps.
-    pub fn stop_fast<S: ManifoldSource>(
+    pub fn stop_fast(
         &mut self,
-        input: &SweepInput<S>,
+        input: &SweepInput,
         listed: &[u32],
-        workers: &mut Vec<SweepBuffers<S::Workspace>>,
+        workers: &mut Vec<SweepBuffers>,
         pool: &ThreadPool,
     ) {
         let first_dynamic = self.bodies.first_dynamic();
@@ -58,11 +57,11 @@ impl Solver {
 
     /// Moves back bodies that are swept against moving bodies, and the bodies they met, including kinematic
     /// ones. Each body stops at its first impact.
-    pub fn stop_swept<S: ManifoldSource>(
+    pub fn stop_swept(
         &mut self,
-        input: &SweepInput<S>,
+        input: &SweepInput,
         swept: &[(u32, Swept)],
-        workers: &mut Vec<SweepBuffers<S::Workspace>>,
+        workers: &mut Vec<SweepBuffers>,
         pool: &ThreadPool,
     ) {
         if swept.is_empty() {
@@ -81,10 +80,10 @@ impl Solver {
 
     /// Moves all stopped bodies back, each to its first impact, together with the bodies joined to them.
     /// Calls `stopped` for each, with the fraction of the step.
-    fn put_back_all<S: ManifoldSource>(
+    fn put_back_all(
         &mut self,
-        input: &SweepInput<S>,
-        workers: &mut [SweepBuffers<S::Workspace>],
+        input: &SweepInput,
+        workers: &mut [SweepBuffers],
         stopped: impl Fn(&mut BodyRow, f32),
     ) {
         let mut stops: Vec<_> = workers.iter_mut().flat_map(|worker| worker.stops.drain(..)).collect();
@@ -108,7 +107,7 @@ impl Solver {
     /// sorted by body id. Joined bodies stop together, at the first impact of the group; otherwise the
     /// joints would open by the distance that one body moves back. A body that cannot move at all (fraction
     /// 0) stops alone: it would hold the others in the air.
-    fn joined<S>(&self, input: &SweepInput<S>, stops: &[(u32, f32)]) -> Vec<(u32, f32)> {
+    fn joined(&self, input: &SweepInput, stops: &[(u32, f32)]) -> Vec<(u32, f32)> {
         let own = |body: u32| stops.binary_search_by_key(&body, |stop| stop.0).ok().map(|k| stops[k].1);
         let first_dynamic = self.bodies.first_dynamic();
         let joints = input.bodies.constraints(ConstraintKind::Joint);
@@ -139,7 +138,7 @@ impl Solver {
 
 /// Marks the contacts of a body that was moved back as outdated. The narrow phase had no points where the
 /// body met the other one, so it has to update these contacts.
-fn mark_outdated<S: ManifoldSource>(input: &SweepInput<S>, body: u32, outdated: &mut Vec<u32>) {
+fn mark_outdated(input: &SweepInput, body: u32, outdated: &mut Vec<u32>) {
     for collider in input.colliders.of_body(body, input.bodies) {
         outdated.extend(input.contacts.of_collider(collider, input.colliders));
     }
@@ -160,7 +159,7 @@ fn put_back(row: &mut BodyRow, path: &Path, fraction: f32, acceleration: Vector)
 }
 
 /// The path of a body in this step.
-fn path<S>(input: &SweepInput<S>, body: u32, moved: &BodyRow) -> Path {
+fn path(input: &SweepInput, body: u32, moved: &BodyRow) -> Path {
     let (way, turn) = moved.delta();
     let spin = moved.velocity().1 * input.dt;
     Path::new(input.bodies.poses[body as usize], input.bodies[body].local_center, way, turn, spin)

@@ -1,9 +1,9 @@
 //! When a manifold is recycled in the next step, and when it must be recomputed.
 
 use super::dim::{sized, spin, turned};
-use super::sim::Sim;
+use super::sim::{Outcome, Sim};
 use crate::kernel;
-use kernel::contact::{ContactFlags, Outcome};
+use kernel::contact::ContactFlags;
 use kernel::math::{Pose, Rot, Vector, WorldPose};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::table::{BodyKind, ColliderDef, Velocity};

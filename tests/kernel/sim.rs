@@ -8,9 +8,7 @@ use super::units;
 use crate::kernel;
 use kernel::bvh::{FoundPairs, Mover, Movers, PairMask, ProxyId, TreeKind, Trees};
 use kernel::ccd::{SweepBuffers, SweepInput};
-use kernel::contact::{
-    Contact, ContactFlags, ContactTable, Link, NarrowPhaseInput, Outcome, WorkerBuffers, update_contact,
-};
+use kernel::contact::{Contact, ContactFlags, ContactTable, Frozen, Link, NarrowPhaseInput, WorkerBuffers};
 use kernel::data::BitSet;
 use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
@@ -34,7 +32,7 @@ fn phase<'a>(
     dt: f32,
     recycle: bool,
     narrow: bool,
-) -> NarrowPhaseInput<'a, ()> {
+) -> NarrowPhaseInput<'a> {
     let unit = bodies.length_unit();
     NarrowPhaseInput {
         bodies,
@@ -55,6 +53,17 @@ fn put<T>(list: &mut Vec<T>, id: u32, value: T) {
         Some(place) => *place = value,
         None => list.push(value),
     }
+}
+
+/// What the narrow phase does with a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// The fat boxes do not overlap any more.
+    Separated,
+    /// The manifold followed the motion.
+    Recycled,
+    /// The manifold was computed anew.
+    Recomputed,
 }
 
 /// A whole simulation.
@@ -471,9 +480,23 @@ impl Sim {
     /// The narrow phase's outcome for the contact of two bodies at their current poses, and the contact.
     pub fn look(&self, a: u32, b: u32) -> (Outcome, Contact) {
         let id = self.contacts.find(a, b).expect("they have a contact");
-        let mut contact = self.contacts.get(id).clone();
         let phase = phase(&self.bodies, &self.colliders, self.dt, self.recycle, self.is_narrow);
-        (update_contact(&phase, &mut contact, &mut [], false, &mut WorkerBuffers::default()), contact)
+        let mut contacts = self.contacts.clone();
+        contacts.update(&phase, &ThreadPool::new(1), &mut Vec::new(), &mut BitSet::new());
+        let [before, after] = [&self.contacts, &contacts].map(|contacts| contacts.get(id));
+        // A new manifold is of the present poses, or cannot be recycled.
+        let origin = |contact: &Contact| {
+            let Frozen { rotations, offset, prediction } = contact.frozen;
+            (contact.flags.has(ContactFlags::FROZEN), contact.revisions, rotations, offset, prediction)
+        };
+        let outcome = if after.flags.has(ContactFlags::SEPARATED) {
+            Outcome::Separated
+        } else if origin(before) == origin(after) {
+            Outcome::Recycled
+        } else {
+            Outcome::Recomputed
+        };
+        (outcome, after.clone())
     }
 
     fn narrow(&mut self) {

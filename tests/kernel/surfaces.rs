@@ -2,7 +2,7 @@
 
 use super::dim::{any_rotation, riders, sized, terrain};
 use super::extreme::Dice;
-use super::sim::Sim;
+use super::sim::{Outcome, Sim};
 use crate::kernel;
 use kernel::manifold::{CompositeBuffers, FeatureCache, LocalManifold, Look, collide, collide_composite};
 use kernel::math::{Pose, Rot, Vector};
@@ -187,7 +187,7 @@ fn a_body_at_rest_on_a_surface_is_recycled() {
     let cube = sim.add(BodyKind::Dynamic, block(Vector::ONE * 0.3), sized(2.0, 0.7, 1.0), Rot::IDENTITY);
     sim.steps(240);
     let before = sim.position(cube);
-    assert_eq!(sim.look(ground, cube).0, kernel::contact::Outcome::Recycled);
+    assert_eq!(sim.look(ground, cube).0, Outcome::Recycled);
     sim.steps(240);
     assert!((sim.position(cube) - before).length() < 1.0e-3);
     let contact = sim.contacts.get(sim.contacts.find(ground, cube).expect("it lies there"));

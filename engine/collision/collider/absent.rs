@@ -19,29 +19,18 @@ impl Collider {
     }
 }
 
-/// Unused buffers.
-pub(crate) type Workspace = ();
-
 /// Contact manifolds of a collider that the kernel has no shape for, and a ball.
 pub(crate) fn foreign_ball_manifolds(
     collider: &Collider,
     _: Vector,
     _: f32,
     _: f32,
-    (): &mut Workspace,
     _: &mut Vec<LocalManifold>,
 ) {
     match *collider {}
 }
 
 /// Contact manifolds of two colliders, one of which the kernel has no shape for.
-pub(crate) fn foreign_manifolds(
-    a: &Collider,
-    _: &Collider,
-    _: &Pose,
-    _: f32,
-    (): &mut Workspace,
-    _: &mut Vec<LocalManifold>,
-) {
+pub(crate) fn foreign_manifolds(a: &Collider, _: &Collider, _: &Pose, _: f32, _: &mut Vec<LocalManifold>) {
     match *a {}
 }

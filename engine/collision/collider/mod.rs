@@ -21,7 +21,7 @@ mod scale;
 
 pub use aabb::{ColliderAabb, EnlargedAabb};
 #[cfg(not(feature = "default-collider"))]
-pub(crate) use absent::{Collider, Workspace, foreign_ball_manifolds, foreign_manifolds};
+pub(crate) use absent::{Collider, foreign_ball_manifolds, foreign_manifolds};
 pub use any_collider::{
     AabbContext, AnyCollider, ContactManifoldContext, IntoCollider, ScalableCollider, SimpleCollider,
 };

@@ -3,7 +3,7 @@
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
 use kernel::{
-    contact::NarrowPhaseInput,
+    contact::{ManifoldSource, NarrowPhaseInput},
     table::{BodyTable, ColliderTable},
 };
 
@@ -36,12 +36,12 @@ pub(crate) struct Settings<'w> {
 
 impl Settings<'_> {
     /// The input of the narrow phase.
-    pub(crate) fn input<'a, S>(
+    pub(crate) fn input<'a>(
         &self,
         bodies: &'a BodyTable,
         colliders: &'a ColliderTable,
-        source: &'a S,
-    ) -> NarrowPhaseInput<'a, S> {
+        source: &'a dyn ManifoldSource,
+    ) -> NarrowPhaseInput<'a> {
         let unit = self.unit.metres();
         NarrowPhaseInput {
             bodies,

@@ -10,10 +10,7 @@ use kernel::{
 use super::{SweepMode, SweptCcd};
 use crate::{
     collision::{
-        collider::{Collider, Workspace},
-        contacts::Foreign,
-        custom_contacts::CustomContacts,
-        narrow_phase::ContactResponse,
+        collider::Collider, contacts::Foreign, custom_contacts::CustomContacts, narrow_phase::ContactResponse,
     },
     dynamics::{
         ids::BodyId,
@@ -32,7 +29,7 @@ use crate::{
 /// Buffers of sweeps, kept for their memory.
 #[derive(Default)]
 pub(crate) struct Buffers {
-    workers: Vec<SweepBuffers<Workspace>>,
+    workers: Vec<SweepBuffers>,
     swept: Vec<(u32, Swept)>,
 }
 

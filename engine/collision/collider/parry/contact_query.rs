@@ -11,7 +11,7 @@
 //! assert!((gap.unwrap() - 2.0).abs() < 1.0e-5);
 //! ```
 
-use super::{Collider, Workspace, dim, foreign_manifolds};
+use super::{Collider, dim, foreign_manifolds};
 use crate::collision::contact_types::{ContactManifold, ContactPoint, PackedFeatureId, SingleContact};
 use crate::dynamics::rigid_body::LinearVelocity;
 use crate::math::{
@@ -202,8 +202,7 @@ pub fn contact_manifolds(
             found.push(local);
         }
         None => {
-            let workspace = &mut Workspace::default();
-            foreign_manifolds(collider1, collider2, &pair.relative, prediction, workspace, &mut found);
+            foreign_manifolds(collider1, collider2, &pair.relative, prediction, &mut found);
         }
     }
     let [from1, from2] = pair.poses.map(|(position, _)| position.0);

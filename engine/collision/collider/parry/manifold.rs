@@ -11,13 +11,6 @@ use crate::parry::shape::SharedShape;
 use kernel::manifold::{LocalManifold, LocalPoint};
 use kernel::math::Pose;
 
-/// Buffers for parry's manifolds, kept to save allocations.
-#[derive(Default)]
-pub(crate) struct Workspace {
-    manifolds: Vec<ContactManifold<(), ()>>,
-    points: Vec<LocalPoint>,
-}
-
 /// Appends the contact manifolds of two colliders, one of which the kernel has no shape for.
 ///
 /// `pose` is the pose of `b` in the frame of `a`. See [`parry_manifolds`].
@@ -26,10 +19,9 @@ pub(crate) fn foreign_manifolds(
     b: &Collider,
     pose: &Pose,
     prediction: f32,
-    workspace: &mut Workspace,
     out: &mut Vec<LocalManifold>,
 ) {
-    parry_manifolds(a.shape_scaled(), b.shape_scaled(), pose, prediction, workspace, out);
+    parry_manifolds(a.shape_scaled(), b.shape_scaled(), pose, prediction, out);
 }
 
 /// Appends the contact manifolds of a collider and a ball, whose centre is given in the collider's frame.
@@ -38,12 +30,11 @@ pub(crate) fn foreign_ball_manifolds(
     center: kernel::math::Vector,
     radius: f32,
     prediction: f32,
-    workspace: &mut Workspace,
     out: &mut Vec<LocalManifold>,
 ) {
     let ball = SharedShape::ball(Scalar::from(radius));
     let pose = Pose { position: center, ..Pose::IDENTITY };
-    parry_manifolds(collider.shape_scaled(), &ball, &pose, prediction, workspace, out);
+    parry_manifolds(collider.shape_scaled(), &ball, &pose, prediction, out);
 }
 
 /// Appends the contact manifolds of two shapes: one for convex shapes, one per touching part for composite ones, none
@@ -60,15 +51,13 @@ pub(crate) fn parry_manifolds(
     shape2: &SharedShape,
     pose: &Pose,
     prediction: f32,
-    workspace: &mut Workspace,
     out: &mut Vec<LocalManifold>,
 ) {
     if !(pose.position.is_finite() && pose.rotation.is_finite() && prediction.is_finite()) {
         return;
     }
     let pose = dim::pose_from_kernel(pose);
-    let Workspace { manifolds, points } = workspace;
-    manifolds.clear();
+    let (mut manifolds, mut points) = (Vec::<ContactManifold<(), ()>>::new(), Vec::new());
     // Composite shapes store the parts of each manifold here. It is dropped with the manifolds.
     let mut parts: Option<ContactManifoldsWorkspace> = None;
     let found = DefaultQueryDispatcher.contact_manifolds(
@@ -76,7 +65,7 @@ pub(crate) fn parry_manifolds(
         &**shape1,
         &**shape2,
         Scalar::from(prediction),
-        manifolds,
+        &mut manifolds,
         &mut parts,
     );
     if found.is_err() {
@@ -84,7 +73,7 @@ pub(crate) fn parry_manifolds(
     }
     // In the order of parts, independent of the order in which parry's tree is walked.
     manifolds.sort_by_key(|m| (m.subshape1, m.subshape2));
-    for manifold in manifolds.iter() {
+    for manifold in &manifolds {
         let Some(normal) = normal_in_frame_1(manifold) else {
             continue;
         };
@@ -94,9 +83,9 @@ pub(crate) fn parry_manifolds(
             (point.separation <= prediction && point.separation.is_finite() && point.point.is_finite())
                 .then_some(point)
         }));
-        reduce(points);
+        reduce(&mut points);
         let mut local = LocalManifold { normal, ..Default::default() };
-        for p in points.iter() {
+        for p in &points {
             local.push(p.point, p.separation, p.feature);
         }
         if local.count > 0 {

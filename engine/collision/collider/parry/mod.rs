@@ -48,7 +48,7 @@ mod mesh_type {
     pub(crate) enum Mesh {}
 }
 
-pub(crate) use manifold::{Workspace, foreign_ball_manifolds, foreign_manifolds};
+pub(crate) use manifold::{foreign_ball_manifolds, foreign_manifolds};
 pub(crate) use spatial::{ForeignCast, cast_foreign, overlaps_foreign};
 
 use super::{ColliderAabb, ColliderMarker, CollisionLayers, EnlargedAabb, IntoCollider};

@@ -16,7 +16,7 @@ pub(super) fn collide(
     prediction: f32,
     out: &mut Vec<LocalManifold>,
 ) {
-    foreign_manifolds(a, b, pose, prediction, &mut Workspace::default(), out);
+    foreign_manifolds(a, b, pose, prediction, out);
 }
 
 /// A direction for each i, spread around.
